@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "command_line.h"
 #include "comparisons.h"
@@ -23,6 +24,7 @@
 #include "galactic/bake/assets.h"
 #include "support/atomic_file.h"
 #include "support/out_of_memory.h"
+#include "support/output_files.h"
 #include "support/printable.h"
 #include "support/sentence_kinds.h"
 #include "support/try.h"
@@ -44,29 +46,38 @@ int refuse(const Error& error) {
   return static_cast<int>(error.code);
 }
 
-/// What is written must not replace what is read, the packs that the world lists among it.
-Result<void> checkOutputs(const Command& command, const World& world) {
-  bake::ReadLog log;
-  log.noteRead(command.recipe);
-  if (!command.recording.empty()) log.noteRead(command.recording);
-  if (!command.policyFile().empty()) log.noteRead(command.policyFile());
-  for (const std::filesystem::path& pack : command.packs) log.noteRead(pack);
-  for (const PackFile& pack : world.packs()) log.noteRead(pack.where());
-  for (const std::filesystem::path& output :
-       {command.report, command.shown.view, command.shown.pictures}) {
-    RETURN_IF_ERROR(log.checkNotRead(output));
+/// What is done, beside the report.
+std::filesystem::path journalFile(const Command& command) {
+  return command.report.string() + ".partial";
+}
+
+/// Before the work: what will be written must not replace what is read, the packs that the world
+/// lists among it, nor each other, and it must be possible to write it.
+Result<void> tryOutputs(const Command& command, const World& world, const bake::ReadLog& sources) {
+  std::vector<std::filesystem::path> inputs(command.packs.begin(), command.packs.end());
+  for (const PackFile& pack : world.packs()) inputs.emplace_back(pack.where());
+  for (const bake::ReadFile& source : sources.files()) inputs.push_back(source.path);
+  if (!command.recording.empty()) inputs.push_back(command.recording);
+  if (!command.policyFile().empty()) inputs.push_back(command.policyFile());
+  std::vector<OutputFile> outputs;
+  if (!command.report.empty()) {
+    outputs = {{"--report", command.report}, {"--report", journalFile(command)}};
   }
+  if (!command.shown.view.empty()) outputs.push_back({"--view", command.shown.view});
+  if (!command.shown.pictures.empty()) outputs.push_back({"--pictures", command.shown.pictures});
+  RETURN_IF_ERROR(checkOutputs(outputs, inputs));
+  for (const OutputFile& output : outputs) RETURN_IF_ERROR(tryFile(output.file));
   return {};
 }
 
-/// Beside the report. Null where no report is wanted.
+/// Null where no report is wanted.
 Result<std::unique_ptr<Journal>> openJournal(const Command& command, const EpisodePlan& plan) {
   if (command.report.empty()) return std::unique_ptr<Journal>();
   const WorldOptions& world = command.world;
   const std::string subject =
       fmt::format("galactic-dynamics " GALACTIC_VERSION " {} {} {} {} {}", command.recipe.string(),
                   nameOf(world.arm), nameOf(world.base), world.friction, plan.describe());
-  return Journal::open(command.report.string() + ".partial", subject);
+  return Journal::open(journalFile(command), subject);
 }
 
 Result<void> showBoth(const Command& command, const EpisodePlan& plan,
@@ -96,10 +107,10 @@ int endInterrupted(const Command& command, std::size_t done, std::size_t all) {
 /// The exit code.
 Result<int> run(const Command& command) {
   ASSIGN_OR_RETURN(const auto world, World::open(command.packs));
-  RETURN_IF_ERROR(checkOutputs(command, world));
-  ASSIGN_OR_RETURN(const auto plan, EpisodePlan::create(command, world));
   ASSIGN_OR_RETURN(const auto sources,
                    readSources({.recipe = command.recipe, .data = command.data}, world));
+  RETURN_IF_ERROR(tryOutputs(command, world, sources.log));
+  ASSIGN_OR_RETURN(const auto plan, EpisodePlan::create(command, world));
   // The report holds all of them.
   for (const std::string& warning : oneOfEachKind(sources.warnings, "--report lists them")) {
     if (command.is_quiet) break;

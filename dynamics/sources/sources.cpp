@@ -75,6 +75,7 @@ class SourceReader {
     const std::string name = nameOr(job.name, job.input);
     if (!scenes_.contains(name)) return {};
     ASSIGN_OR_RETURN(const auto asset, bake::readSceneFile(job));
+    sources_.log.noteRead(job.input.parent_path(), asset.files);
     ASSIGN_OR_RETURN(const auto clean, bake::placeAndClean(asset));
     sources_.scenes.emplace(name, makeSceneShape(clean.mesh));
     return {};
@@ -82,6 +83,7 @@ class SourceReader {
   Result<void> operator()(const bake::ObjectJob& job) {
     ASSIGN_OR_RETURN(const auto inputs, bake::findObjects(job.inputs));
     for (const bake::ObjectInput& input : inputs) {
+      sources_.log.noteRead(input.path);
       const std::string& name = job.name.empty() ? input.name : job.name;
       if (!objects_.contains(name)) continue;
       ASSIGN_OR_RETURN(const auto object, readObject(input.path, name, job));
@@ -91,6 +93,7 @@ class SourceReader {
   }
   Result<void> operator()(const bake::RobotJob& job) {
     ASSIGN_OR_RETURN(auto robot, bake::readRobotFile(job));
+    sources_.log.noteRead(job.input.parent_path(), robot.files);
     ASSIGN_OR_RETURN(auto inertials, bake::readInertials(job.input));
     ASSIGN_OR_RETURN(sources_.robot,
                      robotParts({std::move(robot), std::move(inertials)}, world_.robot()));
@@ -128,6 +131,7 @@ class SourceReader {
                                   const bake::ObjectJob& job) {
     ObjectConfig config;
     if (const auto file = findObjectConfig(mesh, name)) {
+      sources_.log.noteRead(*file);
       ASSIGN_OR_RETURN(config, readObjectConfig(*file));
     }
     for (const std::string& warning : config.warnings) {
@@ -137,8 +141,9 @@ class SourceReader {
     ObjectSource object{
         .hulls = {}, .mass = config.mass.value_or(kObjectMass), .friction = config.friction};
     const bool has_pieces = !config.collision_asset.empty();
-    ASSIGN_OR_RETURN(const auto asset,
-                     bake::importMesh(has_pieces ? config.collision_asset : mesh, job.import));
+    const std::filesystem::path& pieces = has_pieces ? config.collision_asset : mesh;
+    ASSIGN_OR_RETURN(const auto asset, bake::importMesh(pieces, job.import));
+    sources_.log.noteRead(pieces.parent_path(), asset.files);
     if (has_pieces && !config.joins_meshes) {
       object.hulls = piecesOf(asset);
     } else {
@@ -170,7 +175,9 @@ Result<Sources> readSources(const SourceFiles& files, const World& world) {
                    bake::jobsOfRecipe({.recipe = files.recipe, .data = files.data}, "world.pack"));
   Sources sources;
   SourceReader reader(world, sources);
+  sources.log.noteRead(files.recipe);
   for (const bake::PackJob& pack : list.assets) {
+    for (const std::filesystem::path& file : bake::filesOf(pack.job)) sources.log.noteRead(file);
     RETURN_IF_ERROR(std::visit(reader, pack.job));
   }
   RETURN_IF_ERROR(reader.finish(files.recipe));

@@ -7,6 +7,7 @@
 
 #include "dynamics/sources/robot_model.h"
 #include "dynamics/world.h"
+#include "galactic/bake/assets.h"
 #include "galactic/error.h"
 #include "galactic/world.h"
 
@@ -27,6 +28,9 @@ struct Sources {
   std::map<std::string, std::shared_ptr<const ObjectShape>, std::less<>> objects;
   RobotParts robot;
   std::shared_ptr<const RobotShape> robot_shape;
+  /// The recipe and the files that it names, also those that the world does not use, and what those
+  /// that were read refer to.
+  bake::ReadLog log;
   /// What was missing and what is taken instead, one sentence each.
   std::vector<std::string> warnings;
 };

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "galactic/error.h"
@@ -48,6 +50,17 @@ class DynamicsCli : public testing::Test {
                                        (sourceFolder() / "packs/sample").string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(GALACTIC_DYNAMICS, folder_->path(), arguments);
+  }
+  /// The scripted policy in closed loop, told to end when the first episode is done.
+  [[nodiscard]] static ProgramRun interrupted(const std::string& report) {
+    const std::string script =
+        "\"$@\" & tool=$!\n"
+        "until grep -q number $report.partial 2> /dev/null; do :; done\n"
+        "kill -TERM $tool; wait $tool";
+    return runProgram("/usr/bin/env", folder_->path(),
+                      {"report=" + report, "sh", "-c", script, "sh", GALACTIC_DYNAMICS, "home.toml",
+                       "home.pack", "--data", (sourceFolder() / "packs/sample").string(),
+                       "--policy", "scripted", "--report", report, "-j", "1"});
   }
   [[nodiscard]] static std::filesystem::path path(const std::string& name) {
     return folder_->path() / name;
@@ -104,16 +117,9 @@ TEST_F(DynamicsCli, GoesOnWhereItWasInterrupted) {
     all.insert(all.end(), {"--arm", more});
     return run(all);
   };
-  // A run that has done all but written the report: pictures that cannot be written stop it there.
-  std::vector<std::string> stopped = words;
-  stopped.insert(stopped.end(), {"--pictures", "no/such/folder.png"});
-  EXPECT_NE(run(stopped).exit_code, 0);
-  const std::string partial = fileContent(path("again.json.partial"));
-  ASSERT_FALSE(partial.empty());
-  // Half of it is lost, and one number is changed to see that the rest is not computed again.
-  std::size_t end = 0;
-  for (int lines = 0; lines < 4; ++lines) end = partial.find('\n', end) + 1;
-  std::string kept = partial.substr(0, end);
+  ASSERT_EQ(interrupted("again.json").exit_code, kExitInterrupted);
+  // One number is changed to see that what is done is not computed again.
+  std::string kept = fileContent(path("again.json.partial"));
   const std::string disturbed = "\"disturbed\":";
   kept.insert(kept.find(disturbed) + disturbed.size(), "70");
   std::ofstream(path("again.json.partial"), std::ios::binary | std::ios::trunc) << kept;
@@ -128,15 +134,7 @@ TEST_F(DynamicsCli, GoesOnWhereItWasInterrupted) {
 }
 
 TEST_F(DynamicsCli, SaysHowToGoOnWhenItIsInterrupted) {
-  // Told to end when the first episode is done.
-  const std::string script =
-      "report=$1; shift; \"$@\" --report $report -j 1 & tool=$!\n"
-      "until grep -q number $report.partial 2> /dev/null; do :; done\n"
-      "kill -TERM $tool; wait $tool";
-  const ProgramRun stopped =
-      runProgram("/bin/sh", path("").parent_path(),
-                 {"-c", script, "sh", "stopped.json", GALACTIC_DYNAMICS, "home.toml", "home.pack",
-                  "--data", (sourceFolder() / "packs/sample").string(), "--policy", "scripted"});
+  const ProgramRun stopped = interrupted("stopped.json");
   EXPECT_EQ(stopped.exit_code, kExitInterrupted) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("galactic-dynamics: interrupted after "));
   EXPECT_THAT(stopped.err, HasSubstr(" of 6 episodes; start it again to go on from there\n"));
@@ -187,6 +185,57 @@ TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
     EXPECT_THAT(done.err, HasSubstr(refusal.part));
     EXPECT_THAT(done.err, HasSubstr("galactic-dynamics: "));
   }
+}
+
+TEST_F(DynamicsCli, ReplacesNothingThatIsReadOrWritten) {
+  // Its own sources, so that nothing is lost if one is replaced.
+  std::filesystem::copy(sourceFolder() / "packs/sample", path("sources"),
+                        std::filesystem::copy_options::recursive);
+  std::filesystem::create_symlink(path("sources/apartment.glb"), path("linked.html"));
+  std::map<std::filesystem::path, std::string> before;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path(""))) {
+    // But what the programs print.
+    const bool counts = entry.is_regular_file() && entry.path().extension() != ".txt";
+    if (counts) before.emplace(entry.path(), fileContent(entry.path()));
+  }
+  const std::string input = "is also an input; write to another file\n";
+  const std::string twice = "would be written twice: by ";
+  std::vector<std::pair<std::vector<std::string>, std::string>> attempts{
+      {{"--view", "home.toml"}, input},
+      {{"--pictures", "home/episodes.pack"}, input},
+      {{"--view", "linked.html"}, input},
+      {{"--view", "a", "--pictures", "./a"}, twice + "--view and by --pictures; give each its"},
+      {{"--report", "a", "--view", "a.partial"}, twice + "--report and by --view; give each its"},
+  };
+  for (const char* source :
+       {"apartment.glb", "objects/mug.glb", "robot/porter.urdf", "robot/robot.toml"}) {
+    attempts.push_back({{"--pictures", path("sources") / source}, input});
+  }
+  for (const auto& [words, message] : attempts) {
+    std::vector<std::string> arguments{"home.toml", "home.pack", "--data", "sources",
+                                       "--policy",  "scripted",  "-q"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const ProgramRun done = runProgram(GALACTIC_DYNAMICS, path("").parent_path(), arguments);
+    EXPECT_EQ(done.exit_code, kInvalid) << words.back();
+    EXPECT_THAT(done.err, HasSubstr(message)) << words.back();
+  }
+  for (const auto& [file, content] : before) {
+    EXPECT_TRUE(fileContent(file) == content) << file;
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("a")));
+}
+
+TEST_F(DynamicsCli, TriesItsOutputsBeforeTheWork) {
+  for (const char* option : {"--view", "--pictures"}) {
+    const ProgramRun done =
+        run({"--policy", "scripted", "--report", "tried.json", option, "no/such/folder/file"});
+    EXPECT_EQ(done.exit_code, 2) << done.err;
+    EXPECT_TRUE(done.out.empty()) << done.out;
+    EXPECT_FALSE(std::filesystem::exists(path("tried.json.partial"))) << option;
+  }
+  const ProgramRun report = run({"--policy", "scripted", "--report", "no/such/folder/file"});
+  EXPECT_EQ(report.exit_code, 2) << report.err;
+  EXPECT_TRUE(report.out.empty()) << report.out;
 }
 
 TEST_F(DynamicsCli, GroupsWarningsAndReportsAllOfThem) {

@@ -1,5 +1,7 @@
 #include "support/output_files.h"
 
+#include <fmt/format.h>
+
 #include <system_error>
 
 #include "support/atomic_file.h"
@@ -24,6 +26,19 @@ bool isSameFile(const fs::path& a, const fs::path& b) {
 Result<void> checkNotInput(const fs::path& output, const fs::path& input) {
   if (!isSameFile(output, input)) return {};
   return fail(ErrorCode::kInvalidInput, output.string(), "is also an input; write to another file");
+}
+
+Result<void> checkOutputs(std::span<const OutputFile> outputs, std::span<const fs::path> inputs) {
+  for (auto one = outputs.begin(); one != outputs.end(); ++one) {
+    for (const fs::path& input : inputs) RETURN_IF_ERROR(checkNotInput(one->file, input));
+    for (auto other = outputs.begin(); other != one; ++other) {
+      if (one->option == other->option || !isSameFile(one->file, other->file)) continue;
+      return fail(ErrorCode::kInvalidInput, one->file.string(),
+                  fmt::format("would be written twice: by {} and by {}; give each its own name",
+                              other->option, one->option));
+    }
+  }
+  return {};
 }
 
 Result<void> tryFile(const fs::path& path) {

@@ -1,5 +1,7 @@
 #pragma once
 #include <filesystem>
+#include <span>
+#include <string_view>
 
 #include "galactic/error.h"
 
@@ -12,6 +14,16 @@ namespace galactic {
 /// Fails with kInvalidInput when `output` is the file `input`, which writing would lose.
 [[nodiscard]] Result<void> checkNotInput(const std::filesystem::path& output,
                                          const std::filesystem::path& input);
+
+/// A file that a program may write, and the option that asks for it.
+struct OutputFile {
+  std::string_view option;
+  std::filesystem::path file;
+};
+
+/// Fails with kInvalidInput when one of the outputs is an input, or the output of another option.
+[[nodiscard]] Result<void> checkOutputs(std::span<const OutputFile> outputs,
+                                        std::span<const std::filesystem::path> inputs);
 
 /// Fails with kIo when no file can be written under this name; leaves nothing behind and a file of
 /// the name as it is. Long work that ends with a file begins with this.
