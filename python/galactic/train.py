@@ -47,7 +47,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser = Parser(
         prog="python3 -m galactic.train",
         description="Trains a policy in the homes of a world.",
-        epilog=f"{EXIT_CODES}, 130 interrupted and saved.",
+        epilog=f"{EXIT_CODES}; after the first Ctrl-C, the run was saved.",
     )
     parser.add_argument(
         "world", type=named_path, nargs="?", help="world pack; leave it out with --resume"

@@ -16,7 +16,10 @@ from galactic.learning.settings import SettingsError, did_you_mean
 # Those of all tools of the project.
 OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL = 0, 1, 2, 3, 4
 INTERRUPTED = 130
-EXIT_CODES = "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported"
+EXIT_CODES = (
+    "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, "
+    "130 interrupted"
+)
 
 
 class Parser(argparse.ArgumentParser):
@@ -91,6 +94,8 @@ def told(
         code, message = INPUT_OUTPUT, str(error)
     except (ArithmeticError, RankLost) as error:
         code, message = INTERNAL, str(error)
+    except KeyboardInterrupt:
+        code, message = INTERRUPTED, "interrupted"
     if may_say(message):
         print(f"{program}: {message}", file=sys.stderr)
     return code

@@ -12,6 +12,7 @@ from typing import Any, Optional
 
 import galactic
 from galactic import export
+from galactic.learning.command import INTERRUPTED
 
 TOOL = "galactic-dynamics"
 
@@ -47,7 +48,8 @@ def require_tool() -> str:
 
 def play(run: DynamicsRun) -> dict[str, Any]:
     """Plays each episode in both worlds; the report of galactic-dynamics. What the tool says goes to where
-    this process says things. Raises galactic.Error where it fails."""
+    this process says things. Raises galactic.Error where it fails, KeyboardInterrupt where it was
+    interrupted."""
     tool = require_tool()
     with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
         pack = pathlib.Path(folder) / f"{run.policy.stem}.pack"
@@ -64,6 +66,8 @@ def play(run: DynamicsRun) -> dict[str, Any]:
         command += ["--data", str(run.data)] if run.data else []
         command += ["--deterministic"] if run.deterministic else []
         code = subprocess.run(command, check=False).returncode
+        if code == INTERRUPTED:
+            raise KeyboardInterrupt
         if code != 0:
             raise galactic.Error(
                 _error_of(code), TOOL, f"ended with exit code {code}; it has said why"

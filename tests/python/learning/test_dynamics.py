@@ -11,7 +11,7 @@ import pytest
 
 import galactic
 from galactic import evaluate
-from galactic.learning import dynamics
+from galactic.learning import command, dynamics
 
 STAND_IN = f"""#!{sys.executable}
 import json, pathlib, sys
@@ -67,6 +67,19 @@ def test_its_exit_codes_are_passed_on(tool: pathlib.Path) -> None:
         with pytest.raises(galactic.Error) as refused:
             dynamics.play(run_of())
         assert refused.value.code == wanted and f"exit code {code}" in str(refused.value)
+
+
+def test_an_interrupted_tool_interrupts_what_asked_for_it(
+    tool: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tool.with_name("galactic-dynamics.code").write_text("130", encoding="utf-8")
+
+    def play() -> int:
+        dynamics.play(run_of())
+        return 0
+
+    assert command.told("galactic.evaluate", play) == 130
+    assert capsys.readouterr().err == "galactic.evaluate: interrupted\n"
 
 
 def test_where_it_is_not_installed_evaluate_says_so_first(
