@@ -11,6 +11,12 @@ namespace {
 
 constexpr float kTurn = 6.28318531F;
 constexpr float kLongestEdge = 0.1F;
+/// What robots of shorter actions are searched with, meters and radians: cells of the lattice, and
+/// how far apart the poses on their ways are looked at. The time and the memory of a search are
+/// then those of other robots.
+constexpr float kShortestEdge = 0.05F;
+constexpr float kFinestDrive = 0.02F;
+constexpr float kFinestTurn = 0.04F;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Driving backwards costs a little more, so that the robot looks where it goes.
 constexpr float kBackwards = 1.5F;
@@ -44,7 +50,9 @@ FloorSearch::FloorSearch(PlanningScene& scene, const Robot& robot)
     : scene_(scene),
       forward_step_(robot.base()->forward_step),
       turn_step_(robot.base()->turn_step),
-      eighth_(static_cast<std::uint32_t>(std::max(actionsFor(kTurn / 8, turn_step_), 1.0F))),
+      eighth_(static_cast<std::uint32_t>(
+          std::max(actionsFor(kTurn / 8, std::max(turn_step_, kFinestTurn)), 1.0F))),
+      eighth_cost_(std::max(actionsFor(kTurn / 8, turn_step_), 1.0F)),
       fines_(kHeadings * eighth_) {}
 
 void FloorSearch::layOut() {
@@ -192,9 +200,9 @@ bool FloorSearch::canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t 
 
 bool FloorSearch::canTurnFreely(const BasePlace& at, float to) {
   const float way = wrapped(to - at.yaw);
-  const int actions = static_cast<int>(actionsFor(way, turn_step_));
-  for (int n = 1; n <= actions; ++n) {
-    const float turned = way * (static_cast<float>(n) / static_cast<float>(actions));
+  const int looks = static_cast<int>(actionsFor(way, std::max(turn_step_, kFinestTurn)));
+  for (int n = 1; n <= looks; ++n) {
+    const float turned = way * (static_cast<float>(n) / static_cast<float>(looks));
     if (!scene_.isFree({at.position, at.yaw + turned})) return false;
   }
   return true;
@@ -203,9 +211,10 @@ bool FloorSearch::canTurnFreely(const BasePlace& at, float to) {
 bool FloorSearch::canDrive(const BasePlace& from, const BasePlace& to) {
   const Vec3 way = to.position - from.position;
   const float length = std::sqrt(way.x * way.x + way.z * way.z);
-  const int actions = static_cast<int>(actionsFor(length, forward_step_));
-  for (int n = 1; n <= actions; ++n) {
-    const float share = n == actions ? 1.0F : static_cast<float>(n) * forward_step_ / length;
+  const float apart = std::max(forward_step_, kFinestDrive);
+  const int looks = static_cast<int>(actionsFor(length, apart));
+  for (int n = 1; n <= looks; ++n) {
+    const float share = n == looks ? 1.0F : static_cast<float>(n) * apart / length;
     BasePlace at{from.position + way * share, from.yaw};
     const std::optional<float> floor =
         scene_.floorAt(at.position.x, at.position.z, from.position.y);
@@ -292,7 +301,7 @@ void FloorSearch::expand(std::uint32_t node) {
     const std::uint32_t to = (heading + turned) % kHeadings;
     if (nodes_[cell * kHeadings + to].settled) continue;
     if (!canTurn(cell, heading * eighth_, to * eighth_)) continue;
-    reach(cell * kHeadings + to, nodes_[node].cost + static_cast<float>(eighth_), node);
+    reach(cell * kHeadings + to, nodes_[node].cost + eighth_cost_, node);
   }
 }
 
@@ -361,7 +370,7 @@ FloorSearch::Answer FloorSearch::search(const BasePlace& start, const Joints& ca
   constexpr int kFinest = 3;
   Answer answer;
   for (int pitch = 1; pitch <= kFinest && answer.outcome != Outcome::kFound; ++pitch) {
-    edge_ = std::min(forward_step_, kLongestEdge) / static_cast<float>(pitch);
+    edge_ = std::clamp(forward_step_, kShortestEdge, kLongestEdge) / static_cast<float>(pitch);
     answer = searchLattice(start, carried, target, accept);
   }
   return answer;

@@ -16,8 +16,9 @@ namespace galactic::scripted {
 using BaseRoute = std::vector<BasePlace>;
 
 /// Ways of the base over the floor, with the arm in one pose: a search for the cheapest (A*, Hart,
-/// Nilsson and Raphael 1968) on a lattice of places as far apart as one action drives and of eight
-/// headings. Costs are actions. Every pose that the actions lead through is looked at.
+/// Nilsson and Raphael 1968) on a lattice of places as far apart as one action drives, 5 to 10 cm,
+/// and of eight headings. Costs are actions. Every pose that the actions lead through is looked at;
+/// where actions are smaller than 2 cm or 0.04 radians, only poses that far apart.
 class FloorSearch {
  public:
   /// `scene` must outlive the search.
@@ -106,8 +107,10 @@ class FloorSearch {
   PlanningScene& scene_;
   float forward_step_;
   float turn_step_;
-  /// Actions of an eighth of a turn, and of a whole one.
+  /// Headings that are looked at in an eighth of a turn, the actions that it takes, and the
+  /// headings of a whole one.
   std::uint32_t eighth_;
+  float eighth_cost_;
   std::uint32_t fines_;
   // Of the current search:
   /// Edge of a cell, meters.

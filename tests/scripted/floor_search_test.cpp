@@ -36,8 +36,9 @@ MeshBuilder deadEnd() {
 /// One robot on one floor, with where it wants to go.
 class Floor {
  public:
-  Floor(const MeshBuilder& room, const Vec3& from, const Vec3& to)
-      : made_(stickWorld(room.build(), from, to, to)), scene_(made_.world(), {}) {
+  Floor(const MeshBuilder& room, const Vec3& from, const Vec3& to,
+        const RobotPackFields& robot = stickRobot())
+      : made_(stickWorld(room.build(), from, to, to, robot)), scene_(made_.world(), {}) {
     EnvState state;
     state.objects = {{to, {}}};
     state.world_from_root.translation = from;
@@ -119,6 +120,20 @@ TEST(FloorSearch, GoesThroughADoorOnlyAFinerLatticeFits) {
     floor.follow(answer.route);
   }
   EXPECT_GE(found, 3);
+}
+
+TEST(FloorSearch, NeedsNoMoreRoomForRobotsOfSmallSteps) {
+  // A lattice of cells of a micrometer would have 10^13 of them, or as many headings.
+  RobotPackFields slow = stickRobot();
+  slow.base->forward_step = 1e-6F;
+  RobotPackFields turns_slowly = stickRobot();
+  turns_slowly.base->turn_step = 1e-9F;
+  for (const RobotPackFields& robot : {slow, turns_slowly}) {
+    Floor floor(twoRooms(0.7F), kWest, kEast, robot);
+    const FloorSearch::Answer answer = floor.search();
+    ASSERT_EQ(answer.outcome, FloorSearch::Outcome::kFound);
+    EXPECT_LT(floor.follow(answer.route), 6.0F);
+  }
 }
 
 TEST(FloorSearch, SaysThatThereIsNoWay) {
