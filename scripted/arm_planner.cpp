@@ -11,9 +11,13 @@ namespace {
 /// Between the positions on a line that are looked at, radians or meters: finer than a step, so
 /// that nothing of the robot's size is jumped over.
 constexpr float kResolution = 0.07F;
+/// No line is longer, radians or meters: arms whose joints have wound up further do not come to an
+/// end in an episode.
+constexpr float kLongestLine = 100;
 /// Longest edge of a tree, radians or meters.
 constexpr float kEdge = 0.4F;
-/// Nodes of both trees together, and random positions, after which the search is given up.
+/// Nodes of both trees together, and random positions, after which the search is given up. The last
+/// positions are connected with as many nodes again at most.
 constexpr std::size_t kMostNodes = 1200;
 constexpr int kMostDraws = 500;
 /// Length of the pieces in which the hand moves straight, meters.
@@ -30,6 +34,7 @@ bool ArmPlanner::isFreeAt(const BasePlace& base, const Joints& joints) {
 
 bool ArmPlanner::isFree(const BasePlace& base, const Joints& from, const Joints& to) {
   const float length = arm_.distance(from, to);
+  if (length > kLongestLine) return false;
   const auto pieces = std::max(1, static_cast<int>(std::ceil(length / kResolution)));
   // The end first: it is the likeliest to be blocked.
   for (int n = pieces; n > 0; --n) {
@@ -110,12 +115,15 @@ std::optional<ArmPath> ArmPlanner::connect(const BasePlace& base, const Joints& 
   for (int n = 0; n < kMostDraws; ++n) {
     Tree& growing = trees[n % 2];
     Tree& other = trees[1 - n % 2];
-    if (growing.nodes.size() + other.nodes.size() > kMostNodes) break;
+    const auto nodes = [&] { return growing.nodes.size() + other.nodes.size(); };
+    if (nodes() > kMostNodes) break;
     arm_.draw(random, drawn);
     if (extend(base, growing, drawn) == Growth::kBlocked) continue;
     const Joints reached = growing.nodes.back();
     Growth growth = Growth::kGrown;
-    while (growth == Growth::kGrown) growth = extend(base, other, reached);
+    while (growth == Growth::kGrown && nodes() <= 2 * kMostNodes) {
+      growth = extend(base, other, reached);
+    }
     if (growth != Growth::kArrived) continue;
     ArmPath path;
     const auto walk = [&path](const Tree& tree) {

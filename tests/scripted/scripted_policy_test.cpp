@@ -167,5 +167,26 @@ TEST(ScriptedPolicy, GivesUpWhereThereIsNoWayAndStandsStill) {
   EXPECT_EQ(nameOf(policy.trouble(0)), "no way to target");
 }
 
+TEST(ScriptedPolicy, GivesUpWhereTheArmWouldHaveToUnwindForever) {
+  // The way back is looked at neither in millions of places nor with a tree that grows along it.
+  RobotPackFields robot = stickRobot();
+  robot.limits[0] = {-1e7F, 1e7F};
+  robot.controlled_joints[0] = {0, 0.2F, -1e7F, 1e7F};
+  robot.start_positions[0] = 1e6F;
+  MeshBuilder room = madeRoom(4, 3);
+  room.box({2.2F, 0, 1}, {2.8F, 0.5F, 2});
+  const ScriptedWorld made =
+      stickWorld(room.build(), {0.8F, 0, 1.5F}, {2.5F, 0.501F, 1.2F}, {2.5F, 0.501F, 1.8F}, robot);
+  SimulationOptions options;
+  options.envs = 1;
+  options.threads = 1;
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(made.world(), options));
+  std::vector<float> actions(simulator.actionCount(), 1);
+  policy.act(simulator, actions);
+  EXPECT_EQ(policy.phase(0), ScriptedPhase::kGaveUp);
+  EXPECT_EQ(policy.trouble(0), ScriptedTrouble::kNoGrasp);
+}
+
 }  // namespace
 }  // namespace galactic::test::scripted_policy_test
