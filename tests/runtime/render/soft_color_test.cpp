@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "render/soft/bc1.h"
+#include "render/soft/soft_scene.h"
 #include "support/packs/render_model_builder.h"
 #include "support/render_images.h"
 
@@ -430,6 +432,60 @@ TEST(SoftColor, Bc1BlocksDecodeToTheColorsOfTheirFormat) {
   EXPECT_EQ(texels[3], 0xFFAA0055);
   EXPECT_EQ(texels[16], kRed);
   EXPECT_EQ(texels[20], 0xFF808080);
+}
+
+/// Of 4 x 4 texels and two smaller levels.
+using SmallBlocks = std::array<std::uint8_t, 24>;
+
+/// A model that has a material for each of some textures of such blocks.
+RenderModelBuilder texturedModel(std::size_t textures) {
+  RenderModelBuilder builder;
+  for (std::size_t n = 0; n < textures; ++n) {
+    builder.material(0, builder.texture(4, std::vector<std::uint32_t>(16)));
+  }
+  builder.model();
+  builder.quad(facing(2, 2), {});
+  builder.finish();
+  return builder;
+}
+
+TEST(SoftColor, ATextureOfBlocksIsUnpackedOnceToWhereItsNumbersReach) {
+  std::mt19937 random(32);
+  std::array<SmallBlocks, 3> blocks;
+  for (SmallBlocks& of_texture : blocks) {
+    for (std::uint8_t& byte : of_texture) byte = static_cast<std::uint8_t>(random());
+  }
+  // Two packs share the first texture; material 0 of a builder has none.
+  const std::array<std::array<std::size_t, 2>, 2> wanted{{{0, 1}, {0, 2}}};
+  const RenderModelBuilder builder = texturedModel(2);
+  RenderLibrary library;
+  for (const auto& of_pack : wanted) {
+    RenderMeshes meshes = builder.meshes();
+    for (std::size_t n = 0; n < of_pack.size(); ++n) {
+      meshes.textures[n].format = TexelFormat::kBc1;
+      meshes.textures[n].texels = blocks[of_pack[n]];
+    }
+    library.add(std::move(meshes));
+  }
+  constexpr std::size_t kTexels = 16 + 4 + 1;
+  // Room for two of the three.
+  const render::SoftScene scene(library, 2 * kTexels * sizeof(std::uint32_t));
+  std::array<std::set<const std::uint32_t*>, 3> places;
+  std::set<std::uint32_t> bases;
+  for (std::size_t pack = 0; pack < wanted.size(); ++pack) {
+    for (std::size_t n = 0; n < 2; ++n) {
+      const render::SurfaceTexels& surface = scene.models()[pack].pack->surfaces[n + 1];
+      const std::uint32_t base = surface.kind >> 8U;
+      const std::uint32_t* first = scene.texelBases()[base] + surface.texels;
+      std::vector<std::uint32_t> texels;
+      render::decodeBc1(blocks[wanted[pack][n]], 4, texels);
+      EXPECT_TRUE(std::equal(texels.begin(), texels.end(), first)) << pack << ", " << n;
+      places[wanted[pack][n]].insert(first);
+      bases.insert(base);
+    }
+  }
+  for (const auto& places_of_one : places) EXPECT_EQ(places_of_one.size(), 1U);
+  EXPECT_EQ(bases.size(), 2U);
 }
 
 }  // namespace

@@ -11,25 +11,16 @@
 namespace galactic::render {
 namespace {
 
-/// From a base to the last texel of a texture: what a 32-bit number of bytes can tell.
-constexpr std::uintptr_t kFarthest = 0x7FFFFFFF;
-
 std::uintptr_t addressOf(const void* pointer) { return reinterpret_cast<std::uintptr_t>(pointer); }
-
-bool reaches(const std::uint32_t* base, std::span<const std::uint8_t> texels) {
-  const std::uintptr_t from = addressOf(base);
-  const std::uintptr_t first = addressOf(texels.data());
-  return from <= first && first + texels.size() - from <= kFarthest && (first - from) % 4 == 0;
-}
 
 }  // namespace
 
-SoftScene::SoftScene(const RenderLibrary& library) {
+SoftScene::SoftScene(const RenderLibrary& library, std::size_t most_bytes)
+    : most_bytes_(most_bytes) {
   const std::vector<RenderMeshes>& packs = library.packs();
   surfaces_.resize(packs.size());
   packs_.reserve(packs.size());
   color_kinds_.reserve(packs.size());
-  bases_.push_back(nullptr);  // of what is unpacked
   findBases(packs);
   for (std::size_t p = 0; p < packs.size(); ++p) {
     std::vector<SurfaceTexels> textures;
@@ -42,7 +33,7 @@ SoftScene::SoftScene(const RenderLibrary& library) {
     tables.first_semantic = library.firstSemantic(p);
     packs_.push_back(tables);
   }
-  bases_[0] = unpacked_.data();
+  for (const std::vector<std::uint32_t>& texels : unpacked_) bases_.push_back(texels.data());
   models_.reserve(library.modelCount());
   for (std::uint32_t n = 0; n < library.modelCount(); ++n) addModel(library, n);
 }
@@ -50,13 +41,8 @@ SoftScene::SoftScene(const RenderLibrary& library) {
 void SoftScene::addTextures(const RenderMeshes& meshes, std::vector<SurfaceTexels>& textures) {
   textures.reserve(meshes.textures.size());
   for (const RenderTexture& texture : meshes.textures) {
-    if (texture.format == TexelFormat::kRgba8) {
-      textures.push_back(inPlace(texture));
-      continue;
-    }
-    textures.push_back({.texels = static_cast<std::uint32_t>(unpacked_.size()),
-                        .kind = textureKind(texture.size, 0)});
-    decodeBc1(texture.texels, texture.size, unpacked_);
+    const bool is_in_place = texture.format == TexelFormat::kRgba8;
+    textures.push_back(is_in_place ? inPlace(texture) : unpacked(texture));
   }
 }
 
@@ -72,9 +58,16 @@ void SoftScene::findBases(const std::vector<RenderMeshes>& packs) {
   std::sort(all.begin(), all.end(),
             [](const auto& a, const auto& b) { return addressOf(a.data()) < addressOf(b.data()); });
   for (const std::span<const std::uint8_t> texels : all) {
-    if (bases_.size() > 1 && reaches(bases_.back(), texels)) continue;
+    if (!bases_.empty() && reaches(bases_.back(), texels)) continue;
     bases_.push_back(reinterpret_cast<const std::uint32_t*>(texels.data()));
   }
+  bases_in_packs_ = bases_.size();
+}
+
+bool SoftScene::reaches(const std::uint32_t* base, std::span<const std::uint8_t> texels) const {
+  const std::uintptr_t from = addressOf(base);
+  const std::uintptr_t first = addressOf(texels.data());
+  return from <= first && first + texels.size() - from <= most_bytes_ && (first - from) % 4 == 0;
 }
 
 SurfaceTexels SoftScene::inPlace(const RenderTexture& texture) const {
@@ -83,6 +76,21 @@ SurfaceTexels SoftScene::inPlace(const RenderTexture& texture) const {
   return {.texels = static_cast<std::uint32_t>(
               (addressOf(texture.texels.data()) - addressOf(bases_[b])) / 4),
           .kind = textureKind(texture.size, b)};
+}
+
+/// A texture is unpacked once, however many packs have it.
+SurfaceTexels SoftScene::unpacked(const RenderTexture& texture) {
+  const auto [known, is_new] = known_.try_emplace({texture.texels.data(), texture.size});
+  if (!is_new) return known->second;
+  const std::size_t bytes = textureBytes(texture.size, TexelFormat::kRgba8);
+  const bool has_room =
+      !unpacked_.empty() && unpacked_.back().size() * sizeof(std::uint32_t) + bytes <= most_bytes_;
+  if (!has_room) unpacked_.emplace_back();
+  std::vector<std::uint32_t>& texels = unpacked_.back();
+  known->second = {.texels = static_cast<std::uint32_t>(texels.size()),
+                   .kind = textureKind(texture.size, bases_in_packs_ + unpacked_.size() - 1)};
+  decodeBc1(texture.texels, texture.size, texels);
+  return known->second;
 }
 
 void SoftScene::addModel(const RenderLibrary& library, std::uint32_t number) {
