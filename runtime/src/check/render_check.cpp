@@ -72,6 +72,7 @@ class RenderChecker {
 
   void checkTextures() {
     const std::size_t bytes = meshes_.texels()->size();
+    std::size_t next_byte = 0;
     for (flatbuffers::uoffset_t n = 0; n < meshes_.textures()->size() && !offence_.found(); ++n) {
       const schema::RenderTexture& texture = *meshes_.textures()->Get(n);
       const std::string field = fmt::format("textures[{}]", n);
@@ -83,12 +84,17 @@ class RenderChecker {
       }
       offence_.require(texture.first_byte() % kTexelAlignment == 0, field + ".first_byte",
                        "is {}, expected a multiple of {}", texture.first_byte(), kTexelAlignment);
+      // What is unpacked for drawing is then bounded by what the pack has.
+      offence_.require(texture.first_byte() >= next_byte, field + ".first_byte",
+                       "is {}, expected {} or more, behind the texture before",
+                       texture.first_byte(), next_byte);
       if (offence_.found()) return;
       const std::size_t needed =
           textureBytes(texture.size(), static_cast<TexelFormat>(texture.format()));
       offence_.require(texture.first_byte() + needed <= bytes, field + ".first_byte",
                        "is {} with {} bytes from there on, expected within the {} of texels",
                        texture.first_byte(), needed, bytes);
+      next_byte = texture.first_byte() + needed;
     }
   }
 

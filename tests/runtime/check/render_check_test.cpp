@@ -120,6 +120,8 @@ TEST(RenderCheck, RefusesWrongTexturesAndMaterials) {
       in("textures[0].first_byte",
          "is 4294967264 with 20 bytes from there on, expected within the 20 of texels",
          [](RenderMeshesFields& f) { f.textures[0].first_byte = 0xFFFFFFE0; }),
+      in("textures[1].first_byte", "is 0, expected 20 or more, behind the texture before",
+         [](RenderMeshesFields& f) { f.textures.push_back(f.textures[0]); }),
       in("materials[1].texture", "is 1, expected one of the 1 textures, or -1",
          [](RenderMeshesFields& f) { f.materials[1].texture = 1; }),
       in("materials[0].texture", "is -2, expected one of the 1 textures, or -1",
