@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -35,6 +36,44 @@ constexpr float kStorey = 0.5F;
 /// Lanes as the kernels of the motion want them.
 struct alignas(32) Lanes {
   std::array<float, kLanes> values{};
+};
+
+/// Tries where the robot can stand in cells.
+class Stander {
+ public:
+  Stander(const Scene& scene, const StandingRobot& robot, const GroundOptions& ground)
+      : scene_(scene), robot_(robot), step_(ground) {
+    // What can be driven both ways.
+    step_.most_rise = step_.most_drop = std::min(ground.most_rise, ground.most_drop);
+  }
+
+  struct Answer {
+    /// Whether there is a floor within a step of the one that it comes from.
+    bool has_floor = false;
+    /// Of the floor on which it can stand, meters.
+    std::optional<float> height;
+  };
+  /// In the cell with this middle, coming from a floor at `from_height`.
+  [[nodiscard]] Answer tryAt(const Vec3& middle, float from_height,
+                             StandingRobot::Scratch& scratch) const {
+    Answer answer;
+    for (const auto& [x, z] : kPlaces) {
+      Vec3 base{middle.x + x * kPlanCell, from_height, middle.z + z * kPlanCell};
+      const simulation::FloorUnder under = simulation::floorUnder(scene_, base, step_);
+      if (under.floor != simulation::Floor::kCarries) continue;
+      answer.has_floor = true;
+      base.y = under.height;
+      if (!robot_.isFree(scene_, base, scratch)) continue;
+      answer.height = under.height;
+      break;
+    }
+    return answer;
+  }
+
+ private:
+  const Scene& scene_;
+  const StandingRobot& robot_;
+  GroundOptions step_;
 };
 
 }  // namespace
@@ -96,8 +135,7 @@ bool StandingRobot::isFree(const Scene& scene, const Vec3& base, Scratch& scratc
   return false;
 }
 
-FloorPlan::FloorPlan(const Scene& scene, const StandingRobot& robot, const Vec3& start,
-                     const GroundOptions& ground) {
+FloorPlan::FloorPlan(const Scene& scene) {
   const ColumnGrid& grid = scene.grids().front();
   const auto cells = [](std::uint32_t columns, float spacing) {
     return static_cast<std::int32_t>(std::ceil(static_cast<float>(columns) * spacing / kPlanCell));
@@ -106,44 +144,60 @@ FloorPlan::FloorPlan(const Scene& scene, const StandingRobot& robot, const Vec3&
   columns_z_ = cells(grid.columnsZ(), grid.spacing());
   min_x_ = grid.layout().min_x;
   min_z_ = grid.layout().min_z;
+}
+
+FloorPlan::FloorPlan(const Scene& scene, const StandingRobot& robot, const FloorSeed& seed,
+                     const GroundOptions& ground)
+    : FloorPlan(scene) {
   heights_.assign(static_cast<std::size_t>(columns_x_) * static_cast<std::size_t>(columns_z_),
                   kNowhere);
-  // What can be driven both ways.
-  GroundOptions step = ground;
-  step.most_rise = step.most_drop = std::min(ground.most_rise, ground.most_drop);
+  const Stander stander(scene, robot, ground);
   std::vector<std::uint8_t> is_tried(heights_.size());
-  std::vector<PlanCell> open;
+  std::vector<PlanCell> open{seed.cell};
+  heights_[indexOf(seed.cell)] = seed.height;
+  is_tried[indexOf(seed.cell)] = 1;
   StandingRobot::Scratch scratch = robot.scratch();
-  const auto visit = [&](const PlanCell& cell, float from_height) {
-    if (!isInside(cell) || is_tried[indexOf(cell)] != 0) return;
-    const Vec3 at = middle(cell);
-    for (const auto& [x, z] : kPlaces) {
-      Vec3 base{at.x + x * kPlanCell, from_height, at.z + z * kPlanCell};
-      const simulation::FloorUnder under = simulation::floorUnder(scene, base, step);
-      // Another neighbor may lie higher or lower.
-      if (under.floor != simulation::Floor::kCarries) continue;
-      is_tried[indexOf(cell)] = 1;
-      base.y = under.height;
-      if (!robot.isFree(scene, base, scratch)) continue;
-      heights_[indexOf(cell)] = under.height;
-      open.push_back(cell);
-      return;
-    }
-  };
-  // From the start's cell, or where the robot can only stand aside of it from the one next to it.
-  const PlanCell first = cellAt(start.x, start.z);
-  for (std::int32_t reach = 0; reach <= kStartReach && open.empty(); ++reach) {
-    for (std::int32_t k = -reach; k <= reach && open.empty(); ++k) {
-      for (std::int32_t i = -reach; i <= reach && open.empty(); ++i) {
-        visit({first.i + i, first.k + k}, start.y);
-      }
-    }
-  }
   for (std::size_t n = 0; n < open.size(); ++n) {
     const PlanCell cell = open[n];
     const float height = heights_[indexOf(cell)];
-    for (const PlanCell& way : kAround) visit({cell.i + way.i, cell.k + way.k}, height);
+    for (const PlanCell& way : kAround) {
+      const PlanCell next{cell.i + way.i, cell.k + way.k};
+      if (!isInside(next) || is_tried[indexOf(next)] != 0) continue;
+      const Stander::Answer answer = stander.tryAt(middle(next), height, scratch);
+      // Another neighbor may lie higher or lower.
+      if (!answer.has_floor) continue;
+      is_tried[indexOf(next)] = 1;
+      if (!answer.height) continue;
+      heights_[indexOf(next)] = *answer.height;
+      open.push_back(next);
+    }
   }
+}
+
+PlanCell FloorPlan::cellOf(const Scene& scene, const Vec3& point) {
+  return FloorPlan(scene).cellAt(point.x, point.z);
+}
+
+std::optional<FloorSeed> FloorPlan::seedOf(const Scene& scene, const StandingRobot& robot,
+                                           const Vec3& start, const GroundOptions& ground) {
+  const FloorPlan plan(scene);
+  const Stander stander(scene, robot, ground);
+  StandingRobot::Scratch scratch = robot.scratch();
+  const PlanCell first = plan.cellAt(start.x, start.z);
+  for (std::int32_t reach = 0; reach <= kStartReach; ++reach) {
+    for (std::int32_t k = -reach; k <= reach; ++k) {
+      for (std::int32_t i = -reach; i <= reach; ++i) {
+        const PlanCell cell{first.i + i, first.k + k};
+        // Nearer ones have been tried.
+        const bool is_new = std::max(std::abs(i), std::abs(k)) == reach;
+        if (!is_new || !plan.isInside(cell)) continue;
+        const Stander::Answer answer =
+            stander.tryAt(plan.middleAt(cell, start.y), start.y, scratch);
+        if (answer.height) return FloorSeed{cell, *answer.height};
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 PlanCell FloorPlan::cellAt(float x, float z) const {
@@ -151,14 +205,21 @@ PlanCell FloorPlan::cellAt(float x, float z) const {
           static_cast<std::int32_t>(std::floor((z - min_z_) / kPlanCell))};
 }
 
-Vec3 FloorPlan::middle(const PlanCell& cell) const {
-  const float height = isInside(cell) ? heights_[indexOf(cell)] : kNowhere;
+Vec3 FloorPlan::middleAt(const PlanCell& cell, float height) const {
   return {min_x_ + (static_cast<float>(cell.i) + 0.5F) * kPlanCell, height,
           min_z_ + (static_cast<float>(cell.k) + 0.5F) * kPlanCell};
 }
 
+Vec3 FloorPlan::middle(const PlanCell& cell) const {
+  return middleAt(cell, isInside(cell) ? heights_[indexOf(cell)] : kNowhere);
+}
+
 bool FloorPlan::isPassable(const PlanCell& cell) const {
   return isInside(cell) && !std::isnan(heights_[indexOf(cell)]);
+}
+
+bool FloorPlan::has(const FloorSeed& seed) const {
+  return isPassable(seed.cell) && std::fabs(middle(seed.cell).y - seed.height) < kStorey;
 }
 
 bool FloorPlan::covers(const Vec3& base) const {

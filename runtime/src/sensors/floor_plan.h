@@ -45,6 +45,13 @@ struct PlanCell {
   std::int32_t k = 0;
 };
 
+/// Where a robot stands on a floor.
+struct FloorSeed {
+  PlanCell cell;
+  /// Of the floor, meters.
+  float height = 0;
+};
+
 /// The floor that a robot can drive over from where it starts: cells over the whole scene, one
 /// floor to a cell. A cell belongs to it when the robot's start pose is free in some heading with
 /// the base in its middle or a third of a cell beside, and when the floor there is within a step
@@ -52,8 +59,19 @@ struct PlanCell {
 /// above each other, the one that is met first counts. Immutable.
 class FloorPlan {
  public:
-  FloorPlan(const Scene& scene, const StandingRobot& robot, const Vec3& start,
+  /// Without cells: of a robot that can stand nowhere.
+  FloorPlan() = default;
+  FloorPlan(const Scene& scene, const StandingRobot& robot, const FloorSeed& seed,
             const GroundOptions& ground);
+
+  /// The cell of a point in all plans of a scene.
+  [[nodiscard]] static PlanCell cellOf(const Scene& scene, const Vec3& point);
+  /// From where the floor of a start spreads: its cell or, where the robot can only stand aside of
+  /// it, one next to it. None where there is none.
+  [[nodiscard]] static std::optional<FloorSeed> seedOf(const Scene& scene,
+                                                       const StandingRobot& robot,
+                                                       const Vec3& start,
+                                                       const GroundOptions& ground);
 
   [[nodiscard]] std::int32_t columnsX() const { return columns_x_; }
   [[nodiscard]] std::int32_t columnsZ() const { return columns_z_; }
@@ -77,8 +95,14 @@ class FloorPlan {
   [[nodiscard]] bool isPassable(const PlanCell& cell) const;
   /// Whether a base at `base` is on this plan's floor, or beside it by a cell at most.
   [[nodiscard]] bool covers(const Vec3& base) const;
+  /// Whether the seed is on this plan's floor.
+  [[nodiscard]] bool has(const FloorSeed& seed) const;
 
  private:
+  /// The frame of the cells, and no heights yet.
+  explicit FloorPlan(const Scene& scene);
+  [[nodiscard]] Vec3 middleAt(const PlanCell& cell, float height) const;
+
   std::int32_t columns_x_ = 0;
   std::int32_t columns_z_ = 0;
   float min_x_ = 0;

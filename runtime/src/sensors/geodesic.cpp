@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -20,6 +22,59 @@ bool isNear(const Vec3& a, const Vec3& b) {
   return dot(apart, apart) < kSamePlace * kSamePlace;
 }
 
+/// The floors of one scene, each planned once. Starts come one after the other: most share the
+/// first one's floor.
+class ScenePlanner {
+ public:
+  ScenePlanner(const Scene& scene, const StandingRobot& robot, const GroundOptions& ground,
+               std::size_t most_bytes)
+      : scene_(scene), robot_(robot), ground_(ground), most_bytes_(most_bytes) {}
+
+  /// The number of the plan of a start.
+  std::uint32_t planOf(const Vec3& start) {
+    const std::uint32_t covering =
+        firstWhere([&](const FloorPlan& plan) { return plan.covers(start); });
+    if (covering < plans_.size()) return covering;
+    const PlanCell cell = FloorPlan::cellOf(scene_, start);
+    const auto [found, is_new] = beside_.try_emplace({cell.i, cell.k, start.y}, kNowhere);
+    if (is_new) found->second = planBeside(start);
+    return found->second;
+  }
+
+  [[nodiscard]] std::vector<FloorPlan> take() { return std::move(plans_); }
+
+ private:
+  static constexpr std::uint32_t kNowhere = 0;
+
+  /// That of a start which no plan covers.
+  std::uint32_t planBeside(const Vec3& start) {
+    const std::optional<FloorSeed> seed = FloorPlan::seedOf(scene_, robot_, start, ground_);
+    if (!seed) return kNowhere;
+    const std::uint32_t known = firstWhere([&](const FloorPlan& plan) { return plan.has(*seed); });
+    // A field is made for each plan, at least; where these are too many, make() refuses them.
+    if (known < plans_.size()) return known;
+    if (bytes_ > most_bytes_) return kNowhere;
+    plans_.emplace_back(scene_, robot_, *seed, ground_);
+    bytes_ += plans_.back().cellCount() * sizeof(std::uint16_t);
+    return known;
+  }
+
+  template <class Fits>
+  [[nodiscard]] std::uint32_t firstWhere(const Fits& fits) const {
+    return static_cast<std::uint32_t>(std::ranges::find_if(plans_, fits) - plans_.begin());
+  }
+
+  const Scene& scene_;
+  const StandingRobot& robot_;
+  const GroundOptions& ground_;
+  std::size_t most_bytes_;
+  std::size_t bytes_ = 0;
+  /// The first one is that of all starts where the robot cannot stand.
+  std::vector<FloorPlan> plans_{FloorPlan()};
+  /// By cell and height, of starts which no plan covered.
+  std::map<std::tuple<std::int32_t, std::int32_t, float>, std::uint32_t> beside_;
+};
+
 }  // namespace
 
 Result<Geodesic> Geodesic::make(const World& world, const StandingRobot& robot,
@@ -28,9 +83,9 @@ Result<Geodesic> Geodesic::make(const World& world, const StandingRobot& robot,
   Geodesic geodesic;
   geodesic.errands_.reserve(errands.size());
   for (const Errand& errand : errands) geodesic.errands_.push_back({.errand = errand});
-  geodesic.planFloors(world, robot, ground, threads);
-  geodesic.listFields();
   constexpr std::size_t kMegabyte = 1'000'000;
+  geodesic.planFloors(world, robot, ground, most_megabytes * kMegabyte, threads);
+  geodesic.listFields();
   const std::size_t bytes = geodesic.bytes();
   if (bytes > most_megabytes * kMegabyte) {
     return fail(
@@ -49,21 +104,16 @@ Result<Geodesic> Geodesic::make(const World& world, const StandingRobot& robot,
 }
 
 void Geodesic::planFloors(const World& world, const StandingRobot& robot,
-                          const GroundOptions& ground, std::uint32_t threads) {
+                          const GroundOptions& ground, std::size_t most_bytes,
+                          std::uint32_t threads) {
   const std::size_t scenes = world.scenes().size();
   std::vector<std::vector<FloorPlan>> plans(scenes);
-  // Errands of one scene one after the other: most share the first one's plan.
   detail::forEachPart(threads, scenes, [&](std::size_t scene) {
-    std::vector<FloorPlan>& known = plans[scene];
+    ScenePlanner planner(world.scenes()[scene], robot, ground, most_bytes);
     for (Known& one : errands_) {
-      if (one.errand.scene != scene) continue;
-      std::uint32_t plan = 0;
-      while (plan < known.size() && !known[plan].covers(one.errand.base)) ++plan;
-      if (plan == known.size()) {
-        known.emplace_back(world.scenes()[scene], robot, one.errand.base, ground);
-      }
-      one.plan = plan;
+      if (one.errand.scene == scene) one.plan = planner.planOf(one.errand.base);
     }
+    plans[scene] = planner.take();
   });
   std::vector<std::uint32_t> first;
   for (std::uint32_t scene = 0; scene < scenes; ++scene) {

@@ -64,7 +64,7 @@ class Geodesic {
   };
 
   void planFloors(const World& world, const StandingRobot& robot, const GroundOptions& ground,
-                  std::uint32_t threads);
+                  std::size_t most_bytes, std::uint32_t threads);
   void listFields();
   [[nodiscard]] Way along(std::uint32_t field, const Vec3& base) const noexcept;
 

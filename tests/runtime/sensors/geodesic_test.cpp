@@ -176,6 +176,31 @@ TEST(Geodesic, IsRefusedBeforeItFillsTheMemory) {
   EXPECT_GT(enough->fieldCount(), 600U);
 }
 
+TEST(Geodesic, PlansAFloorOnceWhateverStartsDoNotLieOnIt) {
+  const BoxWorld world(walls(), cartRobot(), episode({0.75F, 0.05F, 2.25F}, {2.25F, 0.05F, 0.75F}));
+  const auto motion =
+      simulation::makeMotionModel(world.world().robot(), world.world().startPositionIndices());
+  const sensors::StandingRobot robot(world.world().robot(), motion.value(),
+                                     simulation::motionKernels());
+  constexpr Vec3 kTarget{0.75F, 0.05F, 2.25F};
+  constexpr Vec3 kGoal{2.25F, 0.05F, 0.75F};
+  // In the wall: the robot in its start pose can only stand two or three cells aside.
+  std::vector<sensors::Errand> aside;
+  for (int n = 0; n < 10; ++n) {
+    aside.push_back({0, {1.5F, 0, 0.5F + 0.15F * static_cast<float>(n)}, kTarget, kGoal});
+  }
+  const auto beside_wall = sensors::Geodesic::make(world.world(), robot, {}, aside, 1, 1);
+  ASSERT_TRUE(beside_wall);
+  EXPECT_EQ(beside_wall->fieldCount(), 2U);
+  EXPECT_GT(beside_wall->toGoal(9, {0.75F, 0, 0.75F}).distance, 3);
+  // Where there is no floor, there is nothing to keep.
+  const std::vector<sensors::Errand> nowhere(1000, {0, {0.75F, 1.5F, 0.75F}, kTarget, kGoal});
+  const auto none = sensors::Geodesic::make(world.world(), robot, {}, nowhere, 1, 1);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->bytes(), 0U);
+  EXPECT_LT(none->toGoal(999, {0.75F, 0, 0.75F}).distance, 0);
+}
+
 TEST(Geodesic, IsTheSameForAnyNumberOfThreads) {
   const BoxWorld world(walls(), cartRobot(), episode({0.75F, 0.05F, 2.25F}, {2.25F, 0.05F, 0.75F}));
   SimulationOptions some = options();

@@ -35,6 +35,14 @@ StandingRobot standing(const World& world) {
   return {world.robot(), motion.value(), simulation::motionKernels()};
 }
 
+/// The floor of a start; none where the robot cannot stand there.
+FloorPlan planFrom(const World& world, const Vec3& start) {
+  const Scene& scene = world.scenes().front();
+  const StandingRobot robot = standing(world);
+  const auto seed = FloorPlan::seedOf(scene, robot, start, {});
+  return seed ? FloorPlan(scene, robot, *seed, {}) : FloorPlan();
+}
+
 /// A room with walls around, and a few inside.
 std::vector<Block> maze(std::mt19937& random) {
   std::vector<Block> blocks{plainFloor(),
@@ -137,8 +145,7 @@ TEST(FloorPlan, ReachesWhatTheRobotCanDriveTo) {
                             // A board under which it does not fit.
                             {{2.25F, 0.3F, 2}, {3, 0.35F, 3}}};
   const BoxWorld world(blocks, {{{0.625F, 0, 0.625F}, 0, {{0.6F, 1.5F, 0.6F}}}});
-  const FloorPlan plan(world.world().scenes().front(), standing(world.world()), {0.625F, 0, 0.625F},
-                       {});
+  const FloorPlan plan = planFrom(world.world(), {0.625F, 0, 0.625F});
   const auto at = [&plan](float x, float z) { return plan.isPassable(plan.cellAt(x, z)); };
   EXPECT_TRUE(at(0.65F, 0.65F));
   EXPECT_TRUE(at(1.35F, 2.75F));
@@ -165,7 +172,7 @@ TEST(WayField, IsAsLongAsTheShortestPath) {
     const Vec3 start{uniformIn(random, 0.3F, 2.7F), 0, uniformIn(random, 0.3F, 2.7F)};
     const BoxWorld world(blocks, {{{0.5F, 0, 0.5F}, 0, {{1, 1.5F, 1}}}});
     const Scene& scene = world.world().scenes().front();
-    const FloorPlan plan(scene, standing(world.world()), start, {});
+    const FloorPlan plan = planFrom(world.world(), start);
     Vec3 point;
     do {
       point = {uniformIn(random, 0.3F, 2.7F), 0.5F, uniformIn(random, 0.3F, 2.7F)};
@@ -214,8 +221,8 @@ TEST(WayField, LeadsThere) {
     const std::vector<Block> blocks = maze(random);
     const BoxWorld world(blocks, {{{0.5F, 0, 0.5F}, 0, {{1, 1.5F, 1}}}});
     const Scene& scene = world.world().scenes().front();
-    const FloorPlan plan(scene, standing(world.world()),
-                         {uniformIn(random, 0.3F, 2.7F), 0, uniformIn(random, 0.3F, 2.7F)}, {});
+    const FloorPlan plan =
+        planFrom(world.world(), {uniformIn(random, 0.3F, 2.7F), 0, uniformIn(random, 0.3F, 2.7F)});
     const Vec3 point{uniformIn(random, 0.3F, 2.7F), 0.5F, uniformIn(random, 0.3F, 2.7F)};
     const std::vector<std::uint16_t> field = sensors::wayField(plan, scene, point);
     for (int n = 0; n < 40; ++n) {
@@ -248,7 +255,7 @@ TEST(WayField, SaysWhereThereIsNoWay) {
       plainFloor(), {{2, 0, 0}, {2.125F, 2, 1}}, {{2, 0, 1}, {3, 2, 1.125F}}};
   const BoxWorld world(blocks, {{{0.5F, 0, 0.5F}, 0, {{1, 1.5F, 1}}}});
   const Scene& scene = world.world().scenes().front();
-  const FloorPlan plan(scene, standing(world.world()), {0.5F, 0, 0.5F}, {});
+  const FloorPlan plan = planFrom(world.world(), {0.5F, 0, 0.5F});
   const std::vector<std::uint16_t> field = sensors::wayField(plan, scene, {2.5F, 0.5F, 0.5F});
   EXPECT_TRUE(std::ranges::all_of(field, [](std::uint16_t v) { return v == sensors::kNoWay; }));
   const Way way = sensors::wayFrom(plan, field, 0.5F, 0.5F);
