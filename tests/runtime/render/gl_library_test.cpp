@@ -61,6 +61,19 @@ TEST(TexturePlan, BeginsAnotherArrayWhereOneIsFullAndDecodesWhenThereAreTooMany)
             "textures in fewer sizes, or use the soft backend");
 }
 
+TEST(TexturePlan, GivesPacksThatShareATextureOneLayer) {
+  TextureShelf shelf;
+  shelf.add(64, TexelFormat::kRgba8);
+  shelf.add(64, TexelFormat::kRgba8);
+  RenderLibrary library = shelf.library();
+  library.add(shelf.meshes);
+  const Result<TexturePlan> plan = planTextures(library, {});
+  ASSERT_TRUE(plan.has_value());
+  ASSERT_EQ(plan->arrays.size(), 1U);
+  EXPECT_EQ(plan->arrays[0].layers.size(), 2U);
+  EXPECT_EQ(plan->slots[0], plan->slots[1]);
+}
+
 /// The triangles of a model as world positions and semantics, in no order.
 using Triangles = std::multiset<std::vector<float>>;
 

@@ -36,7 +36,8 @@ Result<PackTables> DeviceScene::putPack(const RenderMeshes& meshes,
                                         std::vector<DeviceAddress>& bases) {
   std::vector<std::uint32_t> texels;
   std::vector<SurfaceTexels> textures;
-  // All textures of a pack share a base, as long as 32 bits can count their texels.
+  // All textures of a pack that no pack before has share a base, as long as 32 bits can count their
+  // texels.
   constexpr std::size_t kMostTexels = 0x7FFFFFFF;
   const auto close = [&]() -> Result<void> {
     ASSIGN_OR_RETURN(const DeviceAddress base, put(texels));
@@ -45,11 +46,15 @@ Result<PackTables> DeviceScene::putPack(const RenderMeshes& meshes,
     return {};
   };
   for (const RenderTexture& texture : meshes.textures) {
-    const std::vector<std::uint32_t> own = decodedTexels(texture);
-    if (texels.size() + own.size() > kMostTexels) RETURN_IF_ERROR(close());
-    textures.push_back({.texels = static_cast<std::uint32_t>(texels.size()),
-                        .kind = textureKind(texture.size, bases.size())});
-    texels.insert(texels.end(), own.begin(), own.end());
+    const auto [known, is_new] = known_.try_emplace(keyOf(texture));
+    if (is_new) {
+      const std::vector<std::uint32_t> own = decodedTexels(texture);
+      if (texels.size() + own.size() > kMostTexels) RETURN_IF_ERROR(close());
+      known->second = {.texels = static_cast<std::uint32_t>(texels.size()),
+                       .kind = textureKind(texture.size, bases.size())};
+      texels.insert(texels.end(), own.begin(), own.end());
+    }
+    textures.push_back(known->second);
   }
   RETURN_IF_ERROR(close());
   PackTables tables;

@@ -1,9 +1,11 @@
 #pragma once
+#include <map>
 #include <vector>
 
 #include "galactic/render_library.h"
 #include "render/cuda/driver.h"
 #include "render/raster/pane_task.h"
+#include "render/raster/tables.h"
 
 namespace galactic::render::cuda {
 
@@ -34,6 +36,8 @@ class DeviceScene {
   DeviceAddress models_ = 0;
   DeviceAddress texel_bases_ = 0;
   std::vector<std::uint32_t> cluster_counts_;
+  /// Where textures are. Asked, never walked through.
+  std::map<TextureKey, SurfaceTexels> known_;
 };
 
 }  // namespace galactic::render::cuda

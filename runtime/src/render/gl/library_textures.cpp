@@ -6,7 +6,9 @@
 #include <bit>
 #include <cstddef>
 #include <iterator>
+#include <map>
 
+#include "render/raster/tables.h"
 #include "render/soft/bc1.h"
 
 namespace galactic::render::gl {
@@ -31,12 +33,15 @@ std::uint32_t place(const RenderTexture& texture, TexelFormat format, std::size_
 TexturePlan spread(const RenderLibrary& library, std::size_t most_layers, bool bc1) {
   TexturePlan plan;
   plan.slots.reserve(library.packs().size());
+  std::map<TextureKey, std::uint32_t> known;
   for (const RenderMeshes& meshes : library.packs()) {
     std::vector<std::uint32_t>& slots = plan.slots.emplace_back();
     slots.reserve(meshes.textures.size());
     for (const RenderTexture& texture : meshes.textures) {
+      const auto [slot, is_new] = known.try_emplace(keyOf(texture));
       const TexelFormat format = bc1 ? texture.format : TexelFormat::kRgba8;
-      slots.push_back(place(texture, format, most_layers, plan.arrays));
+      if (is_new) slot->second = place(texture, format, most_layers, plan.arrays);
+      slots.push_back(slot->second);
     }
   }
   return plan;

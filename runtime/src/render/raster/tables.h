@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "galactic/render_library.h"
@@ -12,6 +13,13 @@ namespace galactic::render {
 
 /// PackTables::color_kinds of a pack; none where it has no colors.
 [[nodiscard]] std::vector<std::uint32_t> colorKinds(const RenderMeshes& meshes);
+
+/// What tells textures of a library apart: where their texels lie, and their edge. Packs of a world
+/// share textures.
+using TextureKey = std::pair<const std::uint8_t*, std::uint32_t>;
+[[nodiscard]] inline TextureKey keyOf(const RenderTexture& texture) {
+  return {texture.texels.data(), texture.size};
+}
 
 /// SurfaceTexels::kind of a texture whose largest level has this edge, a power of two.
 [[nodiscard]] std::uint32_t textureKind(std::uint32_t size, std::size_t base);

@@ -80,7 +80,7 @@ SurfaceTexels SoftScene::inPlace(const RenderTexture& texture) const {
 
 /// A texture is unpacked once, however many packs have it.
 SurfaceTexels SoftScene::unpacked(const RenderTexture& texture) {
-  const auto [known, is_new] = known_.try_emplace({texture.texels.data(), texture.size});
+  const auto [known, is_new] = known_.try_emplace(keyOf(texture));
   if (!is_new) return known->second;
   const std::size_t bytes = textureBytes(texture.size, TexelFormat::kRgba8);
   const bool has_room =

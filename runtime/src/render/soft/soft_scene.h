@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <map>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "galactic/render_library.h"
 #include "render/raster/pane_task.h"
+#include "render/raster/tables.h"
 
 namespace galactic::render {
 
@@ -47,9 +47,8 @@ class SoftScene {
   std::size_t bases_in_packs_ = 0;
   /// Texels that no pack has as they are drawn.
   std::vector<std::vector<std::uint32_t>> unpacked_;
-  /// By where a texture lies and its edge: packs of a world share textures. Asked, never walked
-  /// through.
-  std::map<std::pair<const std::uint8_t*, std::uint32_t>, SurfaceTexels> known_;
+  /// Asked, never walked through.
+  std::map<TextureKey, SurfaceTexels> known_;
 };
 
 }  // namespace galactic::render

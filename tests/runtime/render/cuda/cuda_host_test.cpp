@@ -187,6 +187,28 @@ TEST_F(CudaHost, ReservesNothingMoreForTheSameBatch) {
   EXPECT_EQ(standin_->allocated_bytes, bytes);
 }
 
+TEST_F(CudaHost, UploadsATextureThatPacksShareOnce) {
+  constexpr std::uint32_t kEdge = 128;
+  RenderModelBuilder textured;
+  const std::int32_t texture =
+      textured.texture(kEdge, std::vector<std::uint32_t>(std::size_t{kEdge} * kEdge));
+  const std::uint16_t material = textured.material(0, texture);
+  textured.model();
+  textured.quad({{{2, -1, -1}, {2, -1, 1}, {2, 1, 1}, {2, 1, -1}}}, {.material = material});
+  textured.finish();
+  const auto bytes_of = [&](int packs) {
+    library_ = {};
+    for (int n = 0; n < packs; ++n) library_.add(textured.meshes());
+    const std::uint64_t before = standin_->allocated_bytes;
+    const auto engine = makeEngine(library_, options_);
+    EXPECT_TRUE(engine);
+    return standin_->allocated_bytes - before;
+  };
+  const std::uint64_t one = bytes_of(1);
+  EXPECT_GT(one, std::uint64_t{4} * kEdge * kEdge);
+  EXPECT_LT(bytes_of(3), one + std::uint64_t{4} * kEdge * kEdge);
+}
+
 TEST_F(CudaHost, LeavesOnTheDeviceWhatItWouldRead) {
   options_.semantics = true;
   auto engine = makeEngine(library_, options_);
