@@ -14,6 +14,10 @@ namespace {
 
 using Corners = std::array<Point, 3>;
 
+/// From this size on, floats lose too much of a triangle, which reaches far from its own first
+/// corner: it is computed in double, column by column. Meters.
+constexpr double kMostInFloats = 32;
+
 /// Where the columns' centers stand relative to the grid's corner: x split in two floats, so that
 /// differences to a triangle's corner lose nothing, and z in double.
 struct Centers {
@@ -62,8 +66,6 @@ class MeshScatter {
   /// Adds the blocked heights of triangle `index` to the rows of `strip`.
   void operator()(std::uint32_t index, ColumnStrip& strip) const {
     const Corners corners = cornersOf(index);
-    const ScatterTriangle triangle = prepareTriangle(corners, frame_.radius);
-    const ScatterTarget target = targetOf(strip);
     const double r = static_cast<double>(frame_.radius);
     const auto [min_x, max_x] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
     const auto [min_z, max_z] = std::minmax({corners[0][2], corners[1][2], corners[2][2]});
@@ -73,6 +75,13 @@ class MeshScatter {
                            .end_row = std::min(rows.end, strip.endRow()),
                            .first_column = columns.first,
                            .end_column = columns.end};
+    const auto [min_y, max_y] = std::minmax({corners[0][1], corners[1][1], corners[2][1]});
+    if (std::max({max_x - min_x, max_y - min_y, max_z - min_z}) > kMostInFloats) {
+      addInDouble(corners, box, strip);
+      return;
+    }
+    const ScatterTriangle triangle = prepareTriangle(corners, frame_.radius);
+    const ScatterTarget target = targetOf(strip);
     // The box of a small triangle is hardly bigger than the triangle grown by the radius; of a big
     // one, each row takes only what it needs.
     const double small = 4 * r + 8 * static_cast<double>(frame_.spacing);
@@ -81,13 +90,33 @@ class MeshScatter {
       return;
     }
     for (std::uint32_t row = box.first_row; row < box.end_row; ++row) {
-      const HeightInterval x = extentBetween(corners, centers_.z[row] - r, centers_.z[row] + r);
-      const IndexRange run = columnRange(x.lo - r, x.hi + r);
+      const IndexRange run = runInRow(corners, row);
       scatter(triangle, {row, row + 1, run.first, run.end}, target);
     }
   }
 
  private:
+  /// The columns of a row that a triangle may touch.
+  [[nodiscard]] IndexRange runInRow(const Corners& corners, std::uint32_t row) const {
+    const double r = static_cast<double>(frame_.radius);
+    const HeightInterval x = extentBetween(corners, centers_.z[row] - r, centers_.z[row] + r);
+    return columnRange(x.lo - r, x.hi + r);
+  }
+
+  void addInDouble(const Corners& corners, const ScatterBlock& box, ColumnStrip& strip) const {
+    for (std::uint32_t row = box.first_row; row < box.end_row; ++row) {
+      const IndexRange run = runInRow(corners, row);
+      for (std::uint32_t column = run.first; column < run.end; ++column) {
+        const double x = static_cast<double>(centers_.x_high[column]) +
+                         static_cast<double>(centers_.x_low[column]);
+        const auto heights =
+            touchingHeights(corners, x, centers_.z[row], static_cast<double>(frame_.radius));
+        if (!heights) continue;
+        strip.add(row, column, static_cast<float>(heights->lo), static_cast<float>(heights->hi));
+      }
+    }
+  }
+
   [[nodiscard]] Corners cornersOf(std::uint32_t index) const {
     Corners corners{};
     for (std::size_t i = 0; i < 3; ++i) {

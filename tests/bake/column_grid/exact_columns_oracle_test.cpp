@@ -112,6 +112,22 @@ TEST(ExactColumnsAgainstBruteForce, AgreeFarFromTheOrigin) {
   tally.judge();
 }
 
+/// What floats lose grows with the size of a triangle.
+TEST(ExactColumnsAgainstBruteForce, AgreeOnTrianglesAsLongAsAStreet) {
+  Tally tally;
+  for (const float a : {20.0F, 60.0F, 120.0F}) {
+    SCOPED_TRACE(testing::Message() << 2 * a << " m");
+    TriangleMesh mesh;
+    mesh.vertices = {{-a, -a / 2, 0}, {a, a / 2, 0.3F}, {0.9F * a, a / 2, -0.4F},
+                     {-a, -a / 3, 1}, {a, 0, 1.2F},     {0.8F * a, a / 5, 9}};
+    mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+    mesh.bounds = {{-a, -a / 2, -0.4F}, {a, a / 2, 9}};
+    const GridFrame frame = makeGridFrame(mesh.bounds, 0.12F, 0.2F).value();
+    tally.add(compareWithOracle(ColumnOracle(mesh, kReach), exactColumns(mesh, frame).columns));
+  }
+  tally.judge();
+}
+
 /// Distances sampled along a column, with nothing of the closed form: the heights where a sphere of
 /// `radius` begins or ceases to touch, by bisection between samples that differ.
 class SampledColumn {
