@@ -49,6 +49,24 @@ class GenerationCli : public test::BakeFolder {
   }
 };
 
+TEST_F(GenerationCli, DoesNotCareAboutTheOrderOfPacksOfOneName) {
+  bakePacks();
+  write("moved/other.glb", test::fileContent(sample("apartment.glb")));
+  std::filesystem::create_directory(path("other"));
+  const ProgramRun baked =
+      run({"moved/other.glb", "-o", "other/apartment.pack", "--transform",
+           "1,0,0,0.5,0,1,0,0,0,0,1,0", "--no-render-meshes", "--check-columns", "0", "-q"});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  const auto draw_in = [this](const std::string& first, const std::string& second,
+                              const std::string& to) {
+    return run({first, second, "objects.pack", "porter.pack", "--as", "episodes", "--count", "2",
+                "--objects", "1", "--solve", "0", "-o", to});
+  };
+  ASSERT_EQ(draw_in("apartment.pack", "other/apartment.pack", "one.pack").exit_code, 0);
+  ASSERT_EQ(draw_in("other/apartment.pack", "apartment.pack", "two.pack").exit_code, 0);
+  EXPECT_TRUE(content("one.pack") == content("two.pack"));
+}
+
 TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   bakePacks();
   const ProgramRun drawn = draw({"--seed", "7"});

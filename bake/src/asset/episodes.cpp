@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "asset/asset_parts.h"
@@ -143,8 +144,11 @@ Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context)
   const auto start = Clock::now();
   ASSIGN_OR_RETURN(auto opened, openPacks(job.packs));
   RETURN_IF_ERROR(addGeometry(job, context.log, opened));
-  // The bytes of the pack do not depend on the order of the inputs.
-  std::ranges::sort(opened.files, {}, &SourceFile::name);
+  // The bytes of the pack do not depend on the order of the inputs, of which several may have one
+  // name.
+  std::ranges::sort(opened.files, {}, [](const SourceFile& file) {
+    return std::tie(file.name, file.bytes, file.hash_high, file.hash_low);
+  });
   EpisodeInputs inputs;
   inputs.packs.reserve(opened.packs.size());
   for (const PackFile& pack : opened.packs) inputs.packs.push_back(&pack);
