@@ -108,6 +108,56 @@ TEST_F(PlanCli, BakesASceneAnewWhenWhatItLackedAppears) {
   EXPECT_THAT(run.out, Not(HasSubstr("lamp")));
 }
 
+TEST_F(PlanCli, BakesMeshesAndRobotsAnewWhenWhatTheyNameAppears) {
+  const auto cube = [](double size) {
+    std::string text = "mtllib looks.mtl\nvt 0 0\nusemtl looks\n";
+    for (unsigned n = 0; n < 8; ++n) {
+      text += fmt::format("v {} {} {}\n", (n & 1U) * size, (n >> 1U & 1U) * size, (n >> 2U) * size);
+    }
+    for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
+      text += "f ";
+      for (const char c : std::string_view(face)) {
+        text += c == ' ' ? std::string(" ") : fmt::format("{}/1", c);
+      }
+      text += "\n";
+    }
+    return text;
+  };
+  write("room/room.obj", cube(2));
+  write("thing/thing.obj", cube(0.1));
+  write("thing/looks.mtl", "newmtl looks\nmap_Kd paint.png\n");
+  write("robot/robot.urdf", R"(<robot name="r"><link name="base">
+      <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>
+      <visual><geometry><mesh filename="part.obj"/></geometry></visual>
+      <visual><geometry><mesh filename="broken.obj"/></geometry></visual></link></robot>)");
+  write("robot/broken.obj", "v 0 0\n");
+  write("w.toml",
+        "[bake]\nno-render-meshes = true\nradii = [0.05, 0.12]\n"
+        "[[scenes]]\nfiles = [\"room/room.obj\"]\n"
+        "[[objects]]\nfiles = [\"thing/thing.obj\"]\n"
+        "[robot]\nfiles = [\"robot/robot.urdf\"]\n");
+  const auto bakeAll = [this] {
+    const ProgramRun baked = run({"w.toml", "--report", "report.json"});
+    EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  };
+  bakeAll();
+  EXPECT_THAT(packsThatAre("baked"), SizeIs(3));
+  bakeAll();
+  EXPECT_THAT(packsThatAre("unchanged"), SizeIs(3));
+  write("room/looks.mtl", "newmtl looks\nKd 1 0 0\n");
+  bakeAll();
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/room.pack"));
+  write("thing/paint.png", "any");
+  bakeAll();
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("objects/thing.pack"));
+  write("robot/part.obj", cube(0.2));
+  bakeAll();
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("robot.pack"));
+  write("robot/broken.obj", cube(0.2));
+  bakeAll();
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("robot.pack"));
+}
+
 TEST_F(PlanCli, WritesTheSameBytesOnAnyNumberOfThreadsAndInShards) {
   ASSERT_EQ(bake("one", {"-j", "1"}).exit_code, 0);
   ASSERT_EQ(bake("two", {"-j", "2", "--memory", "0.001"}).exit_code, 0);

@@ -23,6 +23,11 @@ void ReadLog::noteRead(const std::filesystem::path& folder, const std::vector<So
   for (const SourceFile& file : files) read_.push_back({folder / file.name, file});
 }
 
+void ReadLog::noteAbsent(const std::filesystem::path& folder,
+                         const std::vector<std::string>& files) {
+  for (const std::string& file : files) absent_.push_back(folder / file);
+}
+
 Result<void> ReadLog::checkNotRead(const std::filesystem::path& output) const {
   for (const ReadFile& source : read_) {
     if (!output.empty()) RETURN_IF_ERROR(checkNotInput(output, source.path));

@@ -20,6 +20,7 @@ namespace {
 struct ObjectWork {
   double import_seconds = 0;
   std::vector<SourceFile> files;
+  std::vector<std::string> absent_files;
   std::optional<Result<BakedObject>> baked;
 };
 
@@ -61,6 +62,7 @@ Result<BakedObject> bakeOne(const ObjectInput& input, const ObjectTask& task, Ob
   }();
   if (!asset) return tl::unexpected(asset.error());
   work.files = asset->files;
+  work.absent_files = asset->absent_files;
   asset->name = input.name;
   ASSIGN_OR_RETURN(const auto options, optionsOf(input.name, task, asset->warnings));
   auto object = bakeObject(*asset, options);
@@ -113,6 +115,7 @@ void collect(const std::vector<ObjectInput>& inputs, std::vector<ObjectWork> wor
   for (std::size_t n = 0; n < work.size(); ++n) {
     if (!work[n].baked) continue;
     log.noteRead(inputs[n].path.parent_path(), work[n].files);
+    log.noteAbsent(inputs[n].path.parent_path(), work[n].absent_files);
     if (!*work[n].baked) {
       outcome.failures.push_back({inputs[n].path, work[n].baked->error()});
       continue;

@@ -1,7 +1,5 @@
 #include <chrono>
-#include <cstdlib>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "asset/asset_parts.h"
@@ -14,19 +12,6 @@
 
 namespace galactic::bake {
 namespace {
-
-/// The folders of ROS_PACKAGE_PATH, separated by colons.
-std::vector<std::filesystem::path> rosPackagePath() {
-  std::vector<std::filesystem::path> folders;
-  const char* text = std::getenv("ROS_PACKAGE_PATH");
-  std::string_view rest = text == nullptr ? "" : text;
-  while (!rest.empty()) {
-    const std::size_t colon = rest.find(':');
-    if (colon != 0) folders.emplace_back(rest.substr(0, colon));
-    rest.remove_prefix(colon == std::string_view::npos ? rest.size() : colon + 1);
-  }
-  return folders;
-}
 
 void append(const std::vector<std::string>& more, std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), more.begin(), more.end());
@@ -102,6 +87,7 @@ Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
   outcome.input = job.input;
   outcome.resolutions = robot->resolutions;
   context.log.noteRead(job.input.parent_path(), robot->files);
+  context.log.noteAbsent(job.input.parent_path(), robot->absent_files);
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
   ASSIGN_OR_RETURN(auto baked, bakeParts(job, *robot, context));
   outcome.robot = std::move(baked);

@@ -20,7 +20,7 @@ struct ReadScene {
 Result<ReadScene> readInstance(const InstancedScene& scene, ReadLog& log) {
   const std::filesystem::path& folder = scene.dataset->folder();
   ASSIGN_OR_RETURN(auto composed, scene.dataset->compose(scene.name, *scene.meshes));
-  for (const std::string& file : composed.absent_files) log.noteAbsent(folder / file);
+  log.noteAbsent(folder, composed.absent_files);
   std::vector<std::string>& warnings = composed.scene.warnings;
   warnings.insert(warnings.end(), composed.missing.begin(), composed.missing.end());
   return ReadScene{folder / scene.name, std::move(composed.scene)};
@@ -29,6 +29,7 @@ Result<ReadScene> readInstance(const InstancedScene& scene, ReadLog& log) {
 Result<ReadScene> readScene(const SceneJob& job, ReadLog& log) {
   if (job.instance) return readInstance(*job.instance, log);
   ASSIGN_OR_RETURN(auto asset, importMesh(job.input, job.import));
+  log.noteAbsent(job.input.parent_path(), asset.absent_files);
   return ReadScene{job.input, std::move(asset)};
 }
 

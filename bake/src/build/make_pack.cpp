@@ -43,6 +43,8 @@ Result<BakeInputs> inputsOf(const ReadLog& log, const PackJob& pack, FileDigests
   for (const fs::path& file : log.absent()) {
     inputs.absent.push_back(relativeName(file, pack.folder));
   }
+  std::ranges::sort(inputs.absent);
+  inputs.absent.erase(std::unique(inputs.absent.begin(), inputs.absent.end()), inputs.absent.end());
   return inputs;
 }
 

@@ -129,6 +129,7 @@ Result<std::shared_ptr<const SourceAsset>> SceneComposer::load(const fs::path& m
   for (const SourceFile& file : (*asset)->files) {
     merger_.noteFile(mesh.parent_path() / file.name, file);
   }
+  for (const std::string& file : (*asset)->absent_files) noteAbsent(mesh.parent_path() / file);
   noteWarnings(mesh, (*asset)->warnings);
   return asset;
 }
@@ -258,11 +259,11 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   if (!furniture) return tl::unexpected(furniture.error());
   const fs::path folder = urdf.parent_path();
   for (const SourceFile& file : (*furniture)->files) merger_.noteFile(folder / file.name, file);
+  for (const std::string& file : (*furniture)->absent_files) noteAbsent(folder / file);
   noteWarnings(urdf, (*furniture)->warnings);
   for (const std::string& reference : (*furniture)->missing) {
     noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kKind).noun, entry->name,
                             reference));
-    if (reference.find("://") == std::string::npos) noteAbsent(folder / reference);
   }
   // Neither the center of mass nor a frame: Habitat takes a URDF's root as it is.
   Affine root_from_urdf = kIdentityAffine;

@@ -34,7 +34,7 @@ void transferFields(Archive& archive, Is<SourceFile> auto& file) {
 template <class Archive>
 void transferRest(Archive& archive, auto& asset) {
   archive(asset.name, asset.format, asset.convention, asset.instances, asset.materials,
-          asset.textures, asset.files, asset.warnings);
+          asset.textures, asset.files, asset.absent_files, asset.warnings);
 }
 
 namespace {

@@ -85,6 +85,7 @@ struct AskedFiles {
   std::vector<std::string> missing;
   /// Not looked for: they lie outside the asset's folder.
   std::vector<std::string> outside;
+  FileSearch search;
 };
 
 /// Opens files for the reader and remembers which, because the reader does not tell. Nothing but
@@ -124,8 +125,7 @@ class RecordingFiles final : public Assimp::DefaultIOSystem {
   }
 
   [[nodiscard]] bool isPlainFile(const std::string& name) const {
-    std::error_code ignored;
-    return isNear(name) && std::filesystem::is_regular_file(name, ignored);
+    return isNear(name) && asked_.search.findsFile(name);
   }
 
   AskedFiles& asked_;
@@ -481,6 +481,9 @@ void SceneReader::convertTextures() {
 void SceneReader::nameFiles() {
   for (const std::string& file : asked_.opened) {
     asset_.files.push_back({.name = nameRelativeTo(path_, file)});
+  }
+  for (const std::filesystem::path& file : asked_.search.absent()) {
+    asset_.absent_files.push_back(nameRelativeTo(path_, file));
   }
   // The OBJ reader looks for a namesake of the OBJ when the named MTL is missing: one warning each.
   std::filesystem::path namesake = path_;

@@ -37,13 +37,9 @@ std::string withForwardSlashes(std::string path) {
   return path;
 }
 
-bool isFile(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
 /// The file that `reference` means, if it is there.
-std::optional<fs::path> findReference(const fs::path& folder, std::string reference, Reach reach) {
+std::optional<fs::path> findReference(const fs::path& folder, std::string reference, Reach reach,
+                                      FileSearch& search) {
   constexpr std::string_view kFileScheme = "file://";
   if (reference.starts_with(kFileScheme)) reference.erase(0, kFileScheme.size());
   // Exporters leave blanks and carriage returns at the end of MTL lines.
@@ -55,25 +51,25 @@ std::optional<fs::path> findReference(const fs::path& folder, std::string refere
   for (const std::string& spelling : spellings) {
     const bool is_near = isBelow(folder / spelling, folder / "..");
     if (!is_near && reach == Reach::kNear) continue;
-    if (isFile(folder / spelling)) return folder / spelling;
+    if (search.findsFile(folder / spelling)) return folder / spelling;
   }
   const fs::path name = fs::path(spellings.back()).filename();
   // As Gazebo's models have them: meshes/model.obj, materials/textures/texture.png.
   for (const fs::path& place : {folder, folder / ".." / "materials" / "textures"}) {
-    if (isFile(place / name)) return place / name;
+    if (search.findsFile(place / name)) return place / name;
   }
   return std::nullopt;
 }
 
 /// The image that belongs to a mesh by its name: that of the mesh or, as Google Scanned Objects
 /// have it, "texture"; beside it, or where Gazebo's models have theirs.
-std::optional<fs::path> namesakeOf(const fs::path& main_input) {
+std::optional<fs::path> namesakeOf(const fs::path& main_input, FileSearch& search) {
   const fs::path folder = main_input.parent_path();
   for (const fs::path& place : {folder, folder / ".." / "materials" / "textures"}) {
     for (const std::string& stem : {main_input.stem().string(), std::string("texture")}) {
       for (const char* extension : {".png", ".jpg", ".jpeg"}) {
         fs::path image = place / (stem + extension);
-        if (isFile(image)) return image;
+        if (search.findsFile(image)) return image;
       }
     }
   }
@@ -92,8 +88,8 @@ std::size_t namedTextures(const SourceAsset& asset) {
 
 /// What to draw for the only texture, which is missing: the mesh's namesake. Says so in a warning.
 std::optional<fs::path> substituteFor(const std::string& reference, SourceAsset& asset,
-                                      const fs::path& main_input) {
-  auto namesake = namesakeOf(main_input);
+                                      const fs::path& main_input, FileSearch& search) {
+  auto namesake = namesakeOf(main_input, search);
   if (!namesake) return std::nullopt;
   asset.warnings.push_back(fmt::format("texture '{}' is missing: '{}' is drawn instead", reference,
                                        nameRelativeTo(main_input, *namesake)));
@@ -102,7 +98,7 @@ std::optional<fs::path> substituteFor(const std::string& reference, SourceAsset&
 
 /// Gives an OBJ without MTL the mesh's namesake, where there is one. Meshes without texture
 /// coordinates stay as they are.
-void paintWithNamesake(SourceAsset& asset, const fs::path& main_input) {
+void paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearch& search) {
   const bool is_obj = asset.format == "Wavefront OBJ";
   const bool has_coordinates =
       std::any_of(asset.meshes.begin(), asset.meshes.end(),
@@ -112,7 +108,7 @@ void paintWithNamesake(SourceAsset& asset, const fs::path& main_input) {
       std::any_of(asset.files.begin(), asset.files.end(),
                   [](const SourceFile& file) { return file.name.ends_with(".mtl"); });
   if (!is_obj || has_mtl || !has_coordinates) return;
-  const auto namesake = namesakeOf(main_input);
+  const auto namesake = namesakeOf(main_input, search);
   if (!namesake) return;
   const std::string name = nameRelativeTo(main_input, *namesake);
   for (SourceMaterial& material : asset.materials) {
@@ -132,6 +128,20 @@ Result<void> hashFile(SourceFile& file, const fs::path& path) {
 }
 
 }  // namespace
+
+bool FileSearch::findsFile(const fs::path& file) {
+  std::error_code unknown;
+  const fs::file_status status = fs::status(file, unknown);
+  if (status.type() == fs::file_type::not_found) absent_.push_back(file);
+  return fs::is_regular_file(status);
+}
+
+bool FileSearch::findsFolder(const fs::path& folder) {
+  std::error_code unknown;
+  const fs::file_status status = fs::status(folder, unknown);
+  if (status.type() == fs::file_type::not_found) absent_.push_back(folder);
+  return fs::is_directory(status);
+}
 
 std::string withoutUriEscapes(std::string_view uri) {
   std::string plain;
@@ -178,13 +188,14 @@ void findTextures(SourceAsset& asset, const fs::path& main_input, Reach reach) {
   const fs::path folder = main_input.parent_path();
   const bool only_one = namedTextures(asset) == 1;
   std::map<std::string, std::optional<fs::path>> found;
+  FileSearch search;
   for (SourceMaterial& material : asset.materials) {
     const std::string reference = material.base_color_texture;
     if (reference.empty() || reference.starts_with('*')) continue;
     const auto [entry, is_new] = found.try_emplace(reference);
-    if (is_new) entry->second = findReference(folder, reference, reach);
+    if (is_new) entry->second = findReference(folder, reference, reach, search);
     if (!entry->second && is_new && only_one) {
-      entry->second = substituteFor(reference, asset, main_input);
+      entry->second = substituteFor(reference, asset, main_input, search);
     }
     if (entry->second) {
       material.base_color_texture = nameRelativeTo(main_input, *entry->second);
@@ -198,7 +209,10 @@ void findTextures(SourceAsset& asset, const fs::path& main_input, Reach reach) {
                       reference, material.name));
     }
   }
-  if (found.empty()) paintWithNamesake(asset, main_input);
+  if (found.empty()) paintWithNamesake(asset, main_input, search);
+  for (const fs::path& file : search.absent()) {
+    asset.absent_files.push_back(nameRelativeTo(main_input, file));
+  }
 }
 
 Result<void> hashFiles(SourceAsset& asset, const fs::path& main_input) {

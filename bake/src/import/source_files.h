@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "galactic/bake/source_asset.h"
 #include "galactic/error.h"
@@ -12,6 +13,19 @@ namespace galactic::bake {
 enum class Reach {
   kNear,      ///< Below the asset's folder; of textures below the folder above it.
   kAnywhere,  ///< Wherever it points.
+};
+
+/// Looks for files and folders, and remembers those that are not there: once they are, the same
+/// search may end elsewhere.
+class FileSearch {
+ public:
+  [[nodiscard]] bool findsFile(const std::filesystem::path& file);
+  [[nodiscard]] bool findsFolder(const std::filesystem::path& folder);
+  /// In the order of the search, some perhaps several times.
+  [[nodiscard]] const std::vector<std::filesystem::path>& absent() const { return absent_; }
+
+ private:
+  std::vector<std::filesystem::path> absent_;
 };
 
 /// `uri` with its escapes (%20) undone.
@@ -26,7 +40,8 @@ enum class Reach {
 
 /// Looks for the textures that the materials name, relative to the folder of `main_input`: found
 /// ones join `asset.files` and their materials get the path that was found; of missing ones the
-/// materials get none, with one warning each. Knows %20, backslashes, file:// and absolute paths of
+/// materials get none, with one warning each. Every place where one is not joins
+/// `asset.absent_files`. Knows %20, backslashes, file:// and absolute paths of
 /// another machine (then the file's name beside the main input counts, as it does for files out of
 /// reach). Where the only texture that is named is missing, or an OBJ has no MTL, an image of the
 /// mesh's own name, or "texture", takes its place, with a warning.

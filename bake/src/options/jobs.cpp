@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dataset/scene_dataset.h"
+#include "galactic/bake/urdf_import.h"
 
 namespace galactic::bake {
 namespace {
@@ -82,6 +83,13 @@ std::string internalsOf(const Job& job) {
                },
                [](const ObjectJob& one) {
                  return fmt::format("name={}\nsmallest={}\n", one.name, one.import.smallest_size);
+               },
+               [](const RobotJob&) {
+                 std::string searched;
+                 for (const fs::path& root : rosPackagePath()) {
+                   searched += fmt::format("packages {}\n", root.string());
+                 }
+                 return searched;
                },
                [](const auto&) { return std::string(); }},
       job);

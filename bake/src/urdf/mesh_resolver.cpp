@@ -27,11 +27,6 @@ bool isFile(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-bool isFolder(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
-
 /// The <name> of a package.xml, without a parser: the first one counts.
 std::string nameInPackageFile(const fs::path& folder) {
   std::ifstream stream(folder / "package.xml", std::ios::binary);
@@ -53,20 +48,6 @@ std::string nameInPackageFile(const fs::path& folder) {
 
 bool isPackage(const fs::path& folder, const std::string& package) {
   return folder.filename() == package || nameInPackageFile(folder) == package;
-}
-
-/// `folder / name`, also with %20 and backslashes undone, if it is a file.
-std::optional<fs::path> fileIn(const fs::path& folder, const std::string& name) {
-  std::vector<std::string> spellings{name, withoutUriEscapes(name)};
-  for (std::size_t i = 0; i < 2; ++i) {
-    std::string& spelling = spellings.emplace_back(spellings[i]);
-    std::replace(spelling.begin(), spelling.end(), '\\', '/');
-  }
-  for (const std::string& spelling : spellings) {
-    fs::path path = (folder / spelling).lexically_normal();
-    if (isFile(path)) return path;
-  }
-  return std::nullopt;
 }
 
 /// The folders directly in `folder`, by name; not those behind links or hidden.
@@ -112,12 +93,30 @@ MeshResolver::MeshResolver(const fs::path& urdf, const UrdfImportOptions& option
   }
 }
 
+std::optional<fs::path> MeshResolver::fileIn(const fs::path& folder, const std::string& name) {
+  std::vector<std::string> spellings{name, withoutUriEscapes(name)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::string& spelling = spellings.emplace_back(spellings[i]);
+    std::replace(spelling.begin(), spelling.end(), '\\', '/');
+  }
+  for (const std::string& spelling : spellings) {
+    fs::path path = (folder / spelling).lexically_normal();
+    if (search_.findsFile(path)) return path;
+  }
+  return std::nullopt;
+}
+
+bool MeshResolver::isPackageAbove(const fs::path& folder, const std::string& package) {
+  return folder.filename() == package ||
+         (search_.findsFile(folder / "package.xml") && nameInPackageFile(folder) == package);
+}
+
 const std::vector<fs::path>& MeshResolver::foldersOf(const std::string& package) {
   const auto [entry, is_new] = folders_of_package_.try_emplace(package);
   if (is_new) {
     for (const fs::path& root : options_.search_roots) {
       // The usual case first: no search through the whole of an installation.
-      if (isFolder(root / package)) entry->second.push_back(root / package);
+      if (search_.findsFolder(root / package)) entry->second.push_back(root / package);
     }
     if (entry->second.empty()) {
       for (const fs::path& root : options_.search_roots) {
@@ -174,10 +173,10 @@ MeshResolution MeshResolver::resolvePackage(const std::string& package, const st
     if (auto found = in(folder, "package search path")) return *found;
   }
   for (const fs::path& ancestor : ancestors_) {
-    if (isPackage(ancestor, package)) {
+    if (isPackageAbove(ancestor, package)) {
       if (auto found = in(ancestor, "package above the URDF")) return *found;
     }
-    if (isFolder(ancestor / package)) {
+    if (search_.findsFolder(ancestor / package)) {
       if (auto found = in(ancestor / package, "package beside the URDF's folders")) return *found;
     }
   }
@@ -198,7 +197,7 @@ MeshResolution MeshResolver::resolvePackage(const std::string& package, const st
   return notFound(tried);
 }
 
-MeshResolution MeshResolver::resolveRelative(const std::string& reference) const {
+MeshResolution MeshResolver::resolveRelative(const std::string& reference) {
   const fs::path path(reference);
   if (path.empty()) return {.file = {}, .how = "a file name, which is empty", .guessed = false};
   const auto out_of_reach = [this](const fs::path& file) {

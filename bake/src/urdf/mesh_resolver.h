@@ -1,10 +1,12 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "galactic/bake/urdf_import.h"
+#include "import/source_files.h"
 
 namespace galactic::bake {
 
@@ -25,9 +27,13 @@ class MeshResolver {
 
   [[nodiscard]] MeshResolution resolve(const std::string& reference);
 
+  /// Where the references so far were looked for; below the search roots, only in the folder that
+  /// has the package's name.
+  [[nodiscard]] const FileSearch& search() const { return search_; }
+
  private:
   [[nodiscard]] MeshResolution resolvePackage(const std::string& package, const std::string& rest);
-  [[nodiscard]] MeshResolution resolveRelative(const std::string& reference) const;
+  [[nodiscard]] MeshResolution resolveRelative(const std::string& reference);
   /// A resolution without file that lists where it was looked for.
   [[nodiscard]] MeshResolution notFound(const std::vector<std::filesystem::path>& tried) const;
   /// Folders named or described as `package` in the search roots.
@@ -36,7 +42,15 @@ class MeshResolver {
   /// Whether a path that leads anywhere may be followed.
   [[nodiscard]] bool isInReach(const std::filesystem::path& path) const;
 
+  /// `folder / name`, also with %20 and backslashes undone, if it is a file.
+  [[nodiscard]] std::optional<std::filesystem::path> fileIn(const std::filesystem::path& folder,
+                                                            const std::string& name);
+  /// Whether `folder`, one above the URDF, is the package by its name or its package.xml.
+  [[nodiscard]] bool isPackageAbove(const std::filesystem::path& folder,
+                                    const std::string& package);
+
   const UrdfImportOptions& options_;
+  FileSearch search_;
   /// The URDF's folder and its parents, nearest first.
   std::vector<std::filesystem::path> ancestors_;
   std::map<std::string, std::vector<std::filesystem::path>> folders_of_package_;

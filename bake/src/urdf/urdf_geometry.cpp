@@ -152,6 +152,7 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
   auto asset = importMesh(file, mesh_options);
   if (!asset) {
     if (asset.error().code == ErrorCode::kInternal) return tl::unexpected(asset.error());
+    if (describeFile(file)) robot_.files.push_back({.name = nameRelativeTo(urdf_, file)});
     return LoadedMesh{
         .index = {},
         .failure = fmt::format("'{}' does not load: {}", nameRelativeTo(urdf_, asset.error().where),
@@ -161,6 +162,9 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
   for (SourceFile& source : asset->files) {
     source.name = nameRelativeTo(urdf_, folder / source.name);
     robot_.files.push_back(source);
+  }
+  for (const std::string& absent : asset->absent_files) {
+    robot_.absent_files.push_back(nameRelativeTo(urdf_, folder / absent));
   }
   for (SourceMaterial& material : asset->materials) {
     std::string& texture = material.base_color_texture;
@@ -275,6 +279,12 @@ Result<std::vector<GeometryBuilder::LostShape>> GeometryBuilder::addList(const U
     if (*shape) list.to.push_back(**shape);
   }
   return lost;
+}
+
+void GeometryBuilder::noteAbsentFiles() {
+  for (const fs::path& absent : resolver_.search().absent()) {
+    robot_.absent_files.push_back(nameRelativeTo(urdf_, absent));
+  }
 }
 
 Result<void> GeometryBuilder::addShapes(const UrdfLink& from, SourceLink& to) {

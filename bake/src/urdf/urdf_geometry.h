@@ -24,6 +24,9 @@ class GeometryBuilder {
   /// lost all the geometry that it had, unless the options allow it.
   Result<void> addShapes(const UrdfLink& from, SourceLink& to);
 
+  /// Fills in where the meshes of the links so far are not.
+  void noteAbsentFiles();
+
  private:
   /// A mesh that was loaded, or why there is none.
   struct LoadedMesh {

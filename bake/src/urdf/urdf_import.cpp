@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <numbers>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "import/source_files.h"
@@ -73,6 +75,18 @@ Result<void> finishFiles(SourceRobot& robot, const fs::path& path) {
 
 }  // namespace
 
+std::vector<fs::path> rosPackagePath() {
+  std::vector<fs::path> folders;
+  const char* text = std::getenv("ROS_PACKAGE_PATH");
+  std::string_view rest = text == nullptr ? "" : text;
+  while (!rest.empty()) {
+    const std::size_t colon = rest.find(':');
+    if (colon != 0) folders.emplace_back(rest.substr(0, colon));
+    rest.remove_prefix(colon == std::string_view::npos ? rest.size() : colon + 1);
+  }
+  return folders;
+}
+
 Result<SourceRobot> importUrdf(const fs::path& path, const UrdfImportOptions& options) {
   if (options.up != UpAxis::kZ && options.up != UpAxis::kY) {
     return fail(ErrorCode::kUnsupported, path.string(),
@@ -92,6 +106,7 @@ Result<SourceRobot> importUrdf(const fs::path& path, const UrdfImportOptions& op
   for (std::size_t i = 0; i < tree.size(); ++i) {
     RETURN_IF_ERROR(geometry.addShapes(model.links[tree[i].link], robot.links[i]));
   }
+  geometry.noteAbsentFiles();
   RETURN_IF_ERROR(finishFiles(robot, path));
   return robot;
 }

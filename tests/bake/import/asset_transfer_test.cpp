@@ -42,6 +42,7 @@ SourceAsset exampleRest() {
                              .alpha_cutoff = 0.25F});
   asset.textures.push_back({.format = "png", .bytes = {1, 2, 3}});
   asset.files.push_back({.name = "room.glb", .bytes = 5, .hash_low = 6, .hash_high = 7});
+  asset.absent_files = {"room.mtl"};
   asset.warnings = {"first", "second"};
   return asset;
 }
@@ -96,6 +97,7 @@ TEST(AssetTransfer, DeliversEveryField) {
   EXPECT_EQ(asset->files[0].bytes, 5U);
   EXPECT_EQ(asset->files[0].hash_low, 6U);
   EXPECT_EQ(asset->files[0].hash_high, 7U);
+  EXPECT_EQ(asset->absent_files, expected.absent_files);
   EXPECT_EQ(asset->warnings, expected.warnings);
 }
 

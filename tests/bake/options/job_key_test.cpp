@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <optional>
 #include <set>
 
@@ -65,6 +66,17 @@ TEST(JobKey, ChangesWithInputsNamesAndKinds) {
   bake::ObjectJob small{.inputs = {"mug.glb"}};
   small.import.smallest_size = 0.1;
   EXPECT_TRUE(keys.insert(keyOf(small, "/data")).second);
+}
+
+TEST(JobKey, OfRobotsChangesWithTheSearchPathOfPackages) {
+  constexpr const char* kVariable = "ROS_PACKAGE_PATH";
+  const bake::RobotJob robot{.input = "r.urdf"};
+  ::setenv(kVariable, "/opt/ros/share", 1);
+  const std::string one = keyOf(robot, "/data");
+  ::setenv(kVariable, "/home/me/ros:/opt/ros/share", 1);
+  EXPECT_NE(keyOf(robot, "/data"), one);
+  EXPECT_EQ(keyOf(bake::SceneJob{}, "/data").find("ros"), std::string::npos);
+  ::unsetenv(kVariable);
 }
 
 TEST(JobKey, DependsNeitherOnThreadsNorOnWhereTheDataLie) {

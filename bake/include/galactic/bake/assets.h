@@ -34,6 +34,8 @@ class ReadLog {
   void noteRead(const std::filesystem::path& folder, const std::vector<SourceFile>& files);
   /// Remembers a file that was looked for and is not there.
   void noteAbsent(const std::filesystem::path& file) { absent_.push_back(file); }
+  /// `files` by their names below `folder`.
+  void noteAbsent(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
   [[nodiscard]] const std::vector<ReadFile>& files() const { return read_; }
   [[nodiscard]] const std::vector<std::filesystem::path>& absent() const { return absent_; }

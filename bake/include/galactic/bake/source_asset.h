@@ -90,6 +90,9 @@ struct SourceAsset {
   std::vector<SourceMaterial> materials;
   std::vector<EmbeddedTexture> textures;
   std::vector<SourceFile> files;
+  /// What was looked for and is not there, relative to the folder of the main input: once it is
+  /// there, another asset may be read.
+  std::vector<std::string> absent_files;
   /// One sentence each: missing textures, a doubtful unit and so on.
   std::vector<std::string> warnings;
 };

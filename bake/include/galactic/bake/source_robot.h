@@ -79,8 +79,10 @@ struct SourceRobot {
   std::vector<SourceLink> links;
   /// Each mesh file once.
   std::vector<SourceAsset> meshes;
-  /// The URDF and every mesh file.
+  /// The URDF and every mesh file, also those that do not load.
   std::vector<SourceFile> files;
+  /// Files and folders that were looked for and are not there, relative to the URDF's folder.
+  std::vector<std::string> absent_files;
   /// One sentence each.
   std::vector<std::string> warnings;
   /// References to meshes that were not found, as the URDF has them.

@@ -15,6 +15,9 @@ namespace galactic::bake {
 /// A URDF of more bytes is refused.
 inline constexpr std::uintmax_t kMaxUrdfBytes = std::uintmax_t{64} << 20U;
 
+/// The folders of the environment variable ROS_PACKAGE_PATH, separated by colons.
+[[nodiscard]] std::vector<std::filesystem::path> rosPackagePath();
+
 /// How to read a URDF.
 struct UrdfImportOptions {
   /// Folders of packages by name (--package NAME=DIR); these come first.
