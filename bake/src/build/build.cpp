@@ -89,9 +89,8 @@ class Build {
     parallelFor(at_once, order.size(), [&](std::size_t k) {
       const PackJob& pack = list_.assets[order[k]];
       if (!goesOn()) return;
-      budget_.take(memoryOf(pack));
+      const MemoryBudget::Share share(budget_, memoryOf(pack));
       outcome_.packs[order[k]] = makeOne(pack, jobs);
-      budget_.giveBack(memoryOf(pack));
     });
   }
 

@@ -10,7 +10,26 @@ class MemoryBudget {
  public:
   explicit MemoryBudget(std::uint64_t bytes) : bytes_(bytes) {}
 
-  /// Waits until `bytes` are free. What wants more than there is at all waits until it is alone.
+  /// A part of the budget, for as long as it lives: it comes back whatever ends a bake, as others
+  /// wait for it.
+  class Share {
+   public:
+    /// Waits until `bytes` are free. What wants more than there is at all waits until it is alone.
+    Share(MemoryBudget& budget, std::uint64_t bytes) : budget_(budget), bytes_(bytes) {
+      budget_.take(bytes_);
+    }
+    ~Share() { budget_.giveBack(bytes_); }
+    Share(const Share&) = delete;
+    Share& operator=(const Share&) = delete;
+    Share(Share&&) = delete;
+    Share& operator=(Share&&) = delete;
+
+   private:
+    MemoryBudget& budget_;
+    std::uint64_t bytes_;
+  };
+
+ private:
   void take(std::uint64_t bytes) {
     std::unique_lock lock(mutex_);
     freed_.wait(lock, [&] { return taken_ == 0 || taken_ + bytes <= bytes_; });
@@ -25,7 +44,6 @@ class MemoryBudget {
     freed_.notify_all();
   }
 
- private:
   std::mutex mutex_;
   std::condition_variable freed_;
   std::uint64_t bytes_;
