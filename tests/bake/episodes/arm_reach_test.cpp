@@ -41,6 +41,24 @@ TEST(ArmReach, SamplesAreForwardKinematicsWithinTheLimits) {
   EXPECT_GT(reach.farthest(), 0.79F);
 }
 
+TEST(ArmReach, StaysWithinWideLimitsOnOneSideOfZero) {
+  for (const auto& [lower, upper] : {std::pair(1.0F, 100.0F), std::pair(-30.0F, -2.0F)}) {
+    RobotPackFields fields = stickRobot();
+    ControlledJoint& lift = fields.controlled_joints.front();
+    fields.limits[lift.position] = {lower, upper};
+    fields.start_positions[lift.position] = lower;
+    lift.lower = lower;
+    lift.upper = upper;
+    const MemoryPack pack(buildPack(fields), "stick");
+    const ArmReach reach(robotOf(pack));
+    ASSERT_GT(reach.samples().size(), 1000U);
+    for (const ArmSample& sample : reach.samples()) {
+      ASSERT_GE(reach.positions(sample)[lift.position], lower);
+      ASSERT_LE(reach.positions(sample)[lift.position], upper);
+    }
+  }
+}
+
 TEST(ArmReach, CoversWhatIsInsideItsRangeAndNothingOutside) {
   const MemoryPack pack(buildPack(stickRobot()), "stick");
   const ArmReach reach(robotOf(pack));

@@ -15,12 +15,14 @@ constexpr std::size_t kSamples = 40000;
 constexpr std::uint64_t kSeed = 20231;
 constexpr float kCell = 0.05F;
 
-/// A position within the limits; a full turn where there are none.
+/// A position within the limits; of a full turn, that nearest to zero, where they are wide or there
+/// are none.
 float drawPosition(const ControlledJoint& joint, Random& random) {
   constexpr float kHalfTurn = std::numbers::pi_v<float>;
   const bool limited = joint.upper - joint.lower < 4 * kHalfTurn;
-  const float lower = limited ? joint.lower : -kHalfTurn;
-  const float upper = limited ? joint.upper : kHalfTurn;
+  const float lower =
+      limited ? joint.lower : std::clamp(-kHalfTurn, joint.lower, joint.upper - 2 * kHalfTurn);
+  const float upper = limited ? joint.upper : lower + 2 * kHalfTurn;
   return lower + static_cast<float>(random.unit()) * (upper - lower);
 }
 
