@@ -9,6 +9,7 @@
 #include "galactic/bake/parallel_for.h"
 #include "import/affine.h"
 #include "sphere_set/authored_spheres.h"
+#include "sphere_set/prepared_fit.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -237,9 +238,11 @@ class BudgetedCurves {
       chosen_ = budget.widest_gap ? spendBudgetWithin(points(), budget.most, *budget.widest_gap)
                                   : spendBudget(points(), budget.most);
       std::erase_if(wanted, [&](std::size_t n) {
-        return curves_[n]->complete() || chosen_[n] + kLookAhead < curves_[n]->points().size();
+        return !curves_[n] || curves_[n]->complete() ||
+               chosen_[n] + kLookAhead < curves_[n]->points().size();
       });
     }
+    std::erase_if(fitted_, [&](std::size_t n) { return !curves_[n]; });
     if (!budget.widest_gap) chosen_ = spendBudgetEvenly(points(), budget.most);
     return {};
   }
@@ -286,14 +289,18 @@ class BudgetedCurves {
       ASSIGN_OR_RETURN(auto curve, SphereCurve::begin(plans_[group].mesh, plans_[group].fit));
       curves_[group] = std::move(curve);
     }
-    return unlimited ? curves_[group]->finish(jobs) : curves_[group]->refine(jobs);
+    const auto refined = unlimited ? curves_[group]->finish(jobs) : curves_[group]->refine(jobs);
+    if (refined || !sphere_set::isNothingToCover(refined.error())) return refined;
+    // What reaches above the clip height is too little to be sampled.
+    curves_[group].reset();
+    return {};
   }
 
   const std::vector<GroupPlan>& plans_;
   const std::vector<RigidGroup>& groups_;
   const SphereTask& task_;
   std::vector<std::optional<SphereCurve>> curves_;
-  /// Groups that have a curve.
+  /// Groups that have a curve; without those that turned out to have nothing to cover.
   std::vector<std::size_t> fitted_;
   std::vector<std::size_t> chosen_;
 };
@@ -326,15 +333,15 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
     if (plans[n].authored) {
       RETURN_IF_ERROR(
           takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings));
-    } else if (plans[n].clipped) {
-      warnings.push_back(fmt::format(
-          "link '{}': all of it is lower than the clip height at the start pose, so it gets no "
-          "spheres; lower clip_height in the recipe if it needs some",
-          task.robot.links[baked[n].link].name));
     } else if (sets[n]) {
       baked[n].spheres = std::move(*sets[n]);
       baked[n].measured = true;
       fitted += baked[n].spheres.spheres.size();
+    } else if (!plans[n].mesh.triangles.empty()) {
+      warnings.push_back(fmt::format(
+          "link '{}': all of it is lower than the clip height at the start pose, so it gets no "
+          "spheres; lower clip_height in the recipe if it needs some",
+          task.robot.links[baked[n].link].name));
     }
   }
   if (!budget.widest_gap && budget.most != 0 && fitted > budget.most) {

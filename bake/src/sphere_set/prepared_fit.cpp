@@ -7,6 +7,8 @@
 namespace galactic::bake::sphere_set {
 namespace {
 
+constexpr const char* kSupport = "support";
+
 bool comesFirst(const SetSphere& a, const SetSphere& b) {
   if (a.radius_index != b.radius_index) return a.radius_index > b.radius_index;
   if (a.center.x != b.center.x) return a.center.x < b.center.x;
@@ -37,10 +39,12 @@ Result<PreparedFit> prepareFit(const TriangleMesh& mesh, const SphereSetOptions&
 }
 
 tl::unexpected<Error> nothingToCover() {
-  return fail(ErrorCode::kInvalidInput, "support",
+  return fail(ErrorCode::kInvalidInput, kSupport,
               "all of the reachable surface is beyond the plane, so there is nothing to cover; "
               "check its normal and offset");
 }
+
+bool isNothingToCover(const Error& error) { return error.where == kSupport; }
 
 SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick, const Cover& cover) {
   SphereSet set;

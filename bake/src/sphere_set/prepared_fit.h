@@ -22,6 +22,8 @@ struct PreparedFit {
 
 /// Why there is nothing to fit to: the surface is beyond the support's plane.
 [[nodiscard]] tl::unexpected<Error> nothingToCover();
+/// Whether an error is that one.
+[[nodiscard]] bool isNothingToCover(const Error& error);
 
 /// The cover as a sorted set, measured, but for volume and thin points, and judged by the
 /// tolerances of `task`, whichever the cover was made for.

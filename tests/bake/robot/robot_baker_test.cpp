@@ -391,6 +391,27 @@ TEST(RobotBaker, GivesALinkBelowTheClipHeightNoSpheresAndSaysSo) {
   }
 }
 
+TEST(RobotBaker, GivesALinkThatHardlyReachesTheClipHeightNoSpheres) {
+  // Wheels end anywhere, and in floats: 20.001 mm.
+  constexpr double kRadius = 0.0100005;
+  SourceRobot robot = RobotMaker()
+                          .link("base")
+                          .box({0.1, 0.1, 0.1}, shifted(0, 0.05, 0))
+                          .link("ball", 0, {.type = JointType::kContinuous})
+                          .robot();
+  robot.links[1].collisions.push_back(
+      {bake::SphereShape{kRadius}, shifted(0, kRadius, 0), std::nullopt});
+  for (const std::uint32_t most : {0U, 20U}) {
+    RobotBakeOptions options = coarse();
+    options.max_spheres = most;
+    const BakedRobot baked = bakeWell(robot, nullptr, options);
+    ASSERT_EQ(baked.groups.size(), 2U);
+    EXPECT_FALSE(baked.groups[0].spheres.spheres.empty());
+    EXPECT_TRUE(baked.groups[1].spheres.spheres.empty());
+    EXPECT_THAT(baked.warnings, ElementsAre(HasSubstr("link 'ball': all of it is lower")));
+  }
+}
+
 TEST(RobotBaker, KeepsSpheresAboveTheClipHeight) {
   RobotRecipe recipe = recipeFor("hand");
   recipe.spheres.clip_height = 0.03;
