@@ -13,6 +13,7 @@
 #include "simulation/phases/move.h"
 #include "support/homes/box_room.h"
 #include "support/packs/grid_builder.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::level_floors_test {
 namespace {
@@ -68,7 +69,7 @@ TEST(LevelFloors, SayOfSixteenBasesWhatTheySayOfEach) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const GroundOptions options;
   Tally all_known;
-  for (int round = 0; round < 200; ++round) {
+  for (int round = 0; round < (kIsSanitized ? 30 : 200); ++round) {
     const BoxRoom room = furnishedRoom(random, 1);
     const LevelFloors floors = levelFloors(room.scene(), options);
     const float height = heightOf(room.scene(), options);
