@@ -33,6 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr int kSteps = 8;
   const galactic::SensorOptions all_sensors{.bump = true,
                                             .target_goal = true,
+                                            .target_up = true,
                                             .laser = {.beams = 8, .second_height = 0.5F},
                                             .geodesic = true};
   const auto outcome = world.use(kSteps, all_sensors);

@@ -87,6 +87,9 @@ struct TaskOptions {
   float failure_penalty = 0.0F;
   /// Subtracted in each step in which an obstacle kept the robot where it was.
   float bump_penalty = 0.0F;
+  /// Subtracted in each step in which something is overlooked that fails unless `drop_fails` is off:
+  /// the hand would have released the target away from the goal, or holds another object.
+  float drop_penalty = 0.0F;
   /// Distance of target and goal that counts as success, meters.
   float success_distance = 0.1F;
   /// Steps after which an episode ends without success or failure; 0 for never.
@@ -133,6 +136,8 @@ struct SensorOptions {
   bool bump = false;
   /// The way from the target, where it is now, to the goal.
   bool target_goal = false;
+  /// How the target is tilted against how it stood when the episode began.
+  bool target_up = false;
   LaserOptions laser;
   /// Whether the ways along the floor to target and goal are observed.
   bool geodesic = false;

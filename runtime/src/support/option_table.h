@@ -116,6 +116,9 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
   v.real("slack-penalty", t.slack_penalty, kReward, "Penalty for each step");
   v.real("failure-penalty", t.failure_penalty, kReward, "Penalty for a failure");
   v.real("bump-penalty", t.bump_penalty, kReward, "Penalty for each step that something blocked");
+  v.real(
+      "drop-penalty", t.drop_penalty, kReward,
+      "Penalty for each step in which safe-drop ignores a release, or another object in the hand");
 }
 
 /// The same, of what the robot does and meets.
@@ -162,6 +165,8 @@ void visitSensorOptions(SensorOptions& s, Visitor& v) {
   v.flag("bump", Switch{s.bump, true}, "Observe whether something blocked the last step");
   v.flag("target-goal", Switch{s.target_goal, true},
          "Observe the way from the target, where it is now, to the goal");
+  v.flag("target-up", Switch{s.target_up, true},
+         "Observe where that side of the target points that was up when the episode began");
   v.whole("laser-beams", laser.beams, Within<std::uint32_t>{0, 1024},
           "Beams of a planar laser scan; 0: none");
   v.real("laser-fov", laser.fov_degrees, Within<float>{kOfRobot, 360},

@@ -21,6 +21,7 @@ SimulationOptions optionsOf(std::uint32_t envs) {
   options.task.most_steps = 120;
   options.sensors.bump = true;
   options.sensors.target_goal = true;
+  options.sensors.target_up = true;
   options.auto_reset = false;
   return options;
 }

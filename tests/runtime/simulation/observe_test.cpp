@@ -8,6 +8,7 @@
 
 #include "support/homes/small_home_actor.h"
 #include "support/homes/task_twins.h"
+#include "support/oracles/resting_oracle.h"
 #include "support/oracles/task_oracle.h"
 
 namespace galactic::test::observe_test {
@@ -196,6 +197,42 @@ TEST(Observation, TellsTheWayFromTheTargetWhereItIsToTheGoal) {
     simulator.step(actions);
   }
   expectBothSides(moved, static_cast<int>(kEnvs) * 200);
+}
+
+TEST(Observation, TellsHowTheTargetIsTilted) {
+  const SmallHome home;
+  SimulationOptions options = optionsOf({.kind = TaskKind::kNone});
+  options.sensors.target_up = true;
+  options.sensors.laser.beams = 3;
+  BatchSimulator simulator = simulatorOf(home.world(), options);
+  const ObservationPart part = simulator.observationParts().end()[-2];
+  ASSERT_EQ(part.name, "target_up");
+  const auto observed = [&](std::size_t env) {
+    return rowOf(simulator, simulator.observations(), env).subspan(part.first, part.size);
+  };
+  std::mt19937 random(kSeed);
+  std::vector<EnvState> states;
+  std::vector<FollowedState> followed;
+  std::vector<Double3> tops;
+  states.reserve(kEnvs);
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    EnvState& state = states.emplace_back(simulator.envState(env));
+    const Quat& facing = state.world_from_root.rotation;
+    expectObserved(observed(env), {0, 1, 0});
+    const Quat turn = randomQuat(random);
+    Quat& target = state.objects[state.target].rotation;
+    target = turn * target;
+    tops.push_back(turnedInto(facing, double3(rotate(turn, {0, 1, 0}))));
+    followed.push_back({.world_from_root = state.world_from_root,
+                        .joint_positions = state.joint_positions,
+                        .objects = state.objects,
+                        .held = env % 2 == 0 ? -1 : static_cast<std::int32_t>(state.target)});
+  }
+  simulator.follow(std::vector<float>(kEnvs * kSmallHomeActions), followed);
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    SCOPED_TRACE(env);
+    expectObserved(observed(env), {tops[env].begin(), tops[env].end()});
+  }
 }
 
 TEST(Observation, FeelsWhatWasInTheWayAndPaysForIt) {

@@ -205,6 +205,35 @@ TEST(Rearrange, GoesOnWithAnotherObjectInTheHandWithSafeDrop) {
   EXPECT_FALSE(player.done());
 }
 
+TEST(Rearrange, PaysForWhatSafeDropOverlooks) {
+  constexpr float kPenalty = 1000;
+  Player player({.drop_penalty = kPenalty, .drop_fails = false});
+  player.fetchTarget();
+  player.carryAway();
+  EXPECT_GT(player.reward(), -1) << "nothing was wrong yet";
+  for (int n = 0; n < 2; ++n) {
+    player.release();
+    EXPECT_NEAR(player.reward(), -kPenalty, 1) << "away from the goal";
+  }
+  player.carryToGoal();
+  EXPECT_GT(player.reward(), -1);
+  player.release();
+  EXPECT_GT(player.reward(), -1);
+  player.terminate();
+  EXPECT_GT(player.reward(), 9);
+
+  Player other({.drop_penalty = kPenalty, .drop_fails = false});
+  other.fetchObject(kOther);
+  EXPECT_NEAR(other.reward(), -kPenalty, 1);
+  other.release();
+  EXPECT_GT(other.reward(), -1);
+
+  Player strict({.drop_penalty = kPenalty});
+  strict.fetchObject(kOther);
+  EXPECT_TRUE(strict.failed());
+  EXPECT_GT(strict.reward(), -1) << "a failure is paid for by failure_penalty";
+}
+
 TEST(Rearrange, IsJudgedAtTheReleaseWithoutTerminate) {
   Player player({.needs_terminate = false});
   player.terminate();

@@ -59,7 +59,10 @@ void release(const ChunkStep& step, std::size_t e) {
       placeObject({step.model.world->scenes()[env.scene], resting}, object, released, random,
                   step.model.options.placement, step.chunk.placement());
   const Pose rest = landing.placed ? landing.pose : step.state.held(n).before;
-  if (!mayRestAt(step, n, rest)) return;
+  if (!mayRestAt(step, n, rest)) {
+    env.events.kept_target = true;
+    return;
+  }
   layDown(step, e, rest);
   ++(landing.placed ? counters.drops : counters.restored);
 }

@@ -1,6 +1,7 @@
 #include "simulation/phases/observe.h"
 
 #include <algorithm>
+#include <array>
 
 #include "simulation/phases/task.h"
 #include "simulation/state/grip_frame.h"
@@ -20,6 +21,34 @@ class Row {
   float* next_;
 };
 
+/// A direction along the floor in the robot's frame: ahead, and to the left.
+std::array<float, 2> seenByRobot(const GripFrame& grip, float x, float z) {
+  const float cosine = headingCosine(grip);
+  const float sine = headingSine(grip);
+  return {cosine * x - sine * z, -(sine * x + cosine * z)};
+}
+
+/// Where that side of the target points that was up when the episode began.
+Vec3 upOfTarget(const Model& model, const BatchState& state, std::size_t n) {
+  const Env& env = state.env(n);
+  const bool is_held = env.held == static_cast<std::int32_t>(env.target);
+  const Quat now = is_held ? (gripPose(state.grip(n)) * state.held(n).grip_from_object).rotation
+                           : state.objects(n)[env.target].rotation;
+  const Placement& start = model.placements(model.episodeOf(env.start))[env.target];
+  return rotate(now, rotate(conjugate(start.pose.rotation), {0, 1, 0}));
+}
+
+/// The same in the robot's frame, at the beginning of the row.
+void senseUp(const Model& model, const BatchState& state, std::size_t n, std::span<float> row) {
+  const Vec3 up = upOfTarget(model, state, n);
+  const auto [ahead, left] = seenByRobot(state.grip(n), up.x, up.z);
+  Row out(row.first(kTargetUpSize));
+  out.add(ahead);
+  out.add(up.y);
+  // The axes of the base: Z is to the right.
+  out.add(-left);
+}
+
 /// The ways to target and goal, at the end of the row.
 void senseWays(const Model& model, const BatchState& state, std::size_t n, std::span<float> row) {
   const Env& env = state.env(n);
@@ -27,9 +56,9 @@ void senseWays(const Model& model, const BatchState& state, std::size_t n, std::
   Row out(row.last(sensors::kGeodesicSize));
   const auto add = [&](const sensors::Way& way) {
     out.add(way.distance);
-    // In the robot's frame: ahead, and the sine of the angle to the left.
-    out.add(headingCosine(grip) * way.x - headingSine(grip) * way.z);
-    out.add(-(headingSine(grip) * way.x + headingCosine(grip) * way.z));
+    const auto [ahead, left] = seenByRobot(grip, way.x, way.z);
+    out.add(ahead);
+    out.add(left);
   };
   const Vec3 base = state.base(n);
   const bool is_held = env.held == static_cast<std::int32_t>(env.target);
@@ -57,6 +86,7 @@ std::vector<ObservationPart> observationParts(std::size_t joints, const SensorSi
   add("time", 3);
   if (sensors.bump != 0) add("bump", sensors.bump);
   if (sensors.target_goal != 0) add("target_goal", sensors.target_goal);
+  if (sensors.target_up != 0) add("target_up", sensors.target_up);
   if (sensors.laser != 0) add("laser", sensors.laser);
   if (sensors.geodesic != 0) add("geodesic", sensors.geodesic);
   return parts;
@@ -103,7 +133,11 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
   if (model.sensors_first == out.size()) return;
   const Env& env = state.env(env_number);
   const GripFrame grip = state.grip(env_number);
-  const std::span<float> row = out.subspan(model.sensors_first);
+  std::span<float> row = out.subspan(model.sensors_first);
+  if (model.options.sensors.target_up) {
+    senseUp(model, state, env_number, row);
+    row = row.subspan(kTargetUpSize);
+  }
   if (model.options.sensors.geodesic) senseWays(model, state, env_number, row);
   model.laser.scan(
       {.scene = env.scene,

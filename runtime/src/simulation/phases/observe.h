@@ -6,10 +6,14 @@
 
 namespace galactic::simulation {
 
+/// Elements of the part that tells the tilt of the target.
+inline constexpr std::size_t kTargetUpSize = 3;
+
 /// Elements of the optional parts of an observation; 0 for none.
 struct SensorSizes {
   std::size_t bump = 0;
   std::size_t target_goal = 0;
+  std::size_t target_up = 0;
   std::size_t laser = 0;
   std::size_t geodesic = 0;
 };

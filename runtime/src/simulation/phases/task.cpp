@@ -16,6 +16,8 @@ float distance(const Vec3& a, const Vec3& b) {
 
 bool isHeld(const Env& env) { return env.held == static_cast<std::int32_t>(env.target); }
 
+bool holdsAnother(const Env& env) { return env.held >= 0 && !isHeld(env); }
+
 EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transport) {
   const bool is_there = transport < task.success_distance && !isHeld(env);
   if (task.needs_terminate && env.events.terminates) {
@@ -28,7 +30,6 @@ EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transpo
 
 /// Small, and called from one loop: see endOf().
 inline EpisodeEnd findEnd(const TaskOptions& task, const Env& env, float transport) {
-  const bool holds_another = env.held >= 0 && !isHeld(env);
   EpisodeEnd end = EpisodeEnd::kNone;
   switch (task.kind) {
     case TaskKind::kRearrange:
@@ -40,7 +41,7 @@ inline EpisodeEnd findEnd(const TaskOptions& task, const Env& env, float transpo
     case TaskKind::kNone:
       break;
   }
-  const bool fails = task.kind != TaskKind::kNone && task.drop_fails && holds_another;
+  const bool fails = task.kind != TaskKind::kNone && task.drop_fails && holdsAnother(env);
   if (end == EpisodeEnd::kNone && fails) return EpisodeEnd::kWrongObject;
   const bool is_late = task.most_steps != 0 && env.step >= task.most_steps;
   return end == EpisodeEnd::kNone && is_late ? EpisodeEnd::kTimeOut : end;
@@ -50,10 +51,11 @@ float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& n
                float action_change) {
   if (task.kind == TaskKind::kNone) return 0;
   const float pick = env.events.picked ? task.pick_reward : 0;
+  const bool is_overlooked = !task.drop_fails && (env.events.kept_target || holdsAnother(env));
   return pick + task.reach_weight * (env.reach - now.reach) +
          task.transport_weight * (env.transport - now.transport) -
          task.action_weight * action_change - task.slack_penalty -
-         (env.refused ? task.bump_penalty : 0.0F);
+         (env.refused ? task.bump_penalty : 0.0F) - (is_overlooked ? task.drop_penalty : 0.0F);
 }
 
 /// For the part of the way along the floor that is behind now. A step in which the way began to

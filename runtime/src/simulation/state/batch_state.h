@@ -66,6 +66,8 @@ struct StepEvents {
   bool picked = false;
   /// The target was released, and rests.
   bool released_target = false;
+  /// The hand let go of the target and keeps it, as the task has it.
+  bool kept_target = false;
   bool terminates = false;
 };
 

@@ -276,11 +276,13 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   if (!laser) return tl::unexpected<Error>(laser.error());
   const SensorSizes sensors{.bump = options.sensors.bump ? 1U : 0U,
                             .target_goal = options.sensors.target_goal ? 3U : 0U,
+                            .target_up = options.sensors.target_up ? kTargetUpSize : 0,
                             .laser = laser->size(),
                             .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0};
   model.observation = observationParts(model.motion.controlled.size(), sensors);
   model.observation_size = model.observation.back().first + model.observation.back().size;
-  model.sensors_first = model.observation_size - sensors.laser - sensors.geodesic;
+  model.sensors_first =
+      model.observation_size - sensors.target_up - sensors.laser - sensors.geodesic;
   measure(world, model);
   model.groups = spheresByEights(model.motion.ranges);
   model.slices = FreeSlices(model.groups);

@@ -33,6 +33,7 @@ SimulationOptions unusualOptions() {
   options.ground = {.most_rise = 0.2F, .most_drop = 0.4F};
   options.sensors = {.bump = true,
                      .target_goal = true,
+                     .target_up = true,
                      .laser = {.beams = 24,
                                .fov_degrees = 220,
                                .height = 0.1F / 3,
@@ -52,6 +53,7 @@ SimulationOptions unusualOptions() {
                   .slack_penalty = 0.01F,
                   .failure_penalty = 3,
                   .bump_penalty = 0.05F,
+                  .drop_penalty = 0.02F,
                   .success_distance = 0.15F,
                   .most_steps = 0,
                   .needs_terminate = false,
