@@ -87,8 +87,8 @@ struct TaskOptions {
   float failure_penalty = 0.0F;
   /// Subtracted in each step in which an obstacle kept the robot where it was.
   float bump_penalty = 0.0F;
-  /// Subtracted in each step in which something is overlooked that fails unless `drop_fails` is off:
-  /// the hand would have released the target away from the goal, or holds another object.
+  /// Subtracted in each step in which something is overlooked that fails unless `drop_fails` is
+  /// off: the hand would have released the target away from the goal, or holds another object.
   float drop_penalty = 0.0F;
   /// Distance of target and goal that counts as success, meters.
   float success_distance = 0.1F;
