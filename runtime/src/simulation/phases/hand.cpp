@@ -53,7 +53,7 @@ void release(const ChunkStep& step, std::size_t e) {
   EnvCounters& counters = step.state.counters(n);
   RestingObjects& resting = step.state.resting(n);
   const ObjectModel& object = heldModel(step.model, env);
-  const Pose released = gripPose(step.state.grip(n)) * step.state.held(n).grip_from_object;
+  const Pose released = step.state.heldPose(n);
   RandomStream random(step.model.options.seed, step.model.globalEnv(n), counters.begun, env.step);
   const Landing landing =
       placeObject({step.model.world->scenes()[env.scene], resting}, object, released, random,

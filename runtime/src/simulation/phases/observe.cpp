@@ -32,8 +32,8 @@ std::array<float, 2> seenByRobot(const GripFrame& grip, float x, float z) {
 Vec3 upOfTarget(const Model& model, const BatchState& state, std::size_t n) {
   const Env& env = state.env(n);
   const bool is_held = env.held == static_cast<std::int32_t>(env.target);
-  const Quat now = is_held ? (gripPose(state.grip(n)) * state.held(n).grip_from_object).rotation
-                           : state.objects(n)[env.target].rotation;
+  const Pose& resting = state.objects(n)[env.target];
+  const Quat now = (is_held ? state.heldPose(n) : resting).rotation;
   const Placement& start = model.placements(model.episodeOf(env.start))[env.target];
   return rotate(now, rotate(conjugate(start.pose.rotation), {0, 1, 0}));
 }

@@ -74,8 +74,7 @@ TargetRows targetsNow(const BatchState& state, std::size_t first) noexcept {
   for (std::size_t e = 0; e < kChunk; ++e) {
     const Env& env = state.env(first + e);
     if (!isHeld(env)) continue;
-    const Vec3 target =
-        gripToWorld(state.grip(first + e), state.held(first + e).grip_from_object.translation);
+    const Vec3 target = state.heldOrigin(first + e);
     targets[0].values[e] = target.x;
     targets[1].values[e] = target.y;
     targets[2].values[e] = target.z;
@@ -85,10 +84,8 @@ TargetRows targetsNow(const BatchState& state, std::size_t first) noexcept {
 
 TargetDistances measureTarget(const BatchState& state, std::size_t n) noexcept {
   const Env& env = state.env(n);
-  const GripFrame grip = state.grip(n);
-  const Vec3 target = isHeld(env) ? gripToWorld(grip, state.held(n).grip_from_object.translation)
-                                  : state.objects(n)[env.target].translation;
-  return {distance(gripOrigin(grip), target), distance(target, state.goal(n))};
+  const Vec3 target = isHeld(env) ? state.heldOrigin(n) : state.objects(n)[env.target].translation;
+  return {distance(gripOrigin(state.grip(n)), target), distance(target, state.goal(n))};
 }
 
 EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept {

@@ -8,6 +8,7 @@
 
 #include "galactic/pose.h"
 #include "simulation/collision/resting_objects.h"
+#include "simulation/state/grip_frame.h"
 #include "simulation/state/model.h"
 #include "support/huge_pages.h"
 
@@ -132,6 +133,14 @@ class BatchState {
   /// Of the object in the hand of an env, which must hold one.
   [[nodiscard]] Held& held(std::size_t n) { return held_[n]; }
   [[nodiscard]] const Held& held(std::size_t n) const { return held_[n]; }
+  /// Where the object in the hand of an env is: world_from_object.
+  [[nodiscard]] Pose heldPose(std::size_t n) const {
+    return gripPose(grip(n)) * held_[n].grip_from_object;
+  }
+  /// Its origin alone.
+  [[nodiscard]] Vec3 heldOrigin(std::size_t n) const {
+    return gripToWorld(grip(n), held_[n].grip_from_object.translation);
+  }
   [[nodiscard]] RestingObjects& resting(std::size_t n) { return resting_[n]; }
   [[nodiscard]] const RestingObjects& resting(std::size_t n) const { return resting_[n]; }
   /// World poses of the episode's objects; that of a held one is where it was grasped.

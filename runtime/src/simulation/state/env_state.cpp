@@ -14,9 +14,7 @@ EnvObjects envObjectsOf(const Model& model, const BatchState& state, std::size_t
                     .objects = state.objects(n).first(env.objects),
                     .held = env.held,
                     .world_from_held = {}};
-  if (env.held >= 0) {
-    result.world_from_held = gripPose(state.grip(n)) * state.held(n).grip_from_object;
-  }
+  if (env.held >= 0) result.world_from_held = state.heldPose(n);
   return result;
 }
 
