@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Optional
 
@@ -66,6 +67,28 @@ def ppo_loss(outputs: Outputs, batch: Batch, settings: Settings, entropy_coeffic
     return Loss(total, sums)
 
 
+class PacedRate:
+    """The share of the scheduled learning rate that keeps the divergence of an update, which grows with
+    the square of the rate, at `target_kl`: PPO's adaptive penalty (Schulman et al. 2017, section 4)
+    with the rate in the penalty's place. Precise policies need it most: the less noise they act with,
+    the further a step of the same length leads away."""
+
+    FIRST = 0.01
+    """Adam's first steps are the longest it makes, and may lead a trained policy far away."""
+    LEAST = 1e-3
+
+    def __init__(self, target_kl: float):
+        self.target_kl = target_kl
+        self.share = 1.0 if target_kl == 0.0 else self.FIRST
+
+    def follow(self, kl: float) -> None:
+        """After an update of divergence `kl`. Falls at once, rises slowly."""
+        if self.target_kl == 0.0 or not math.isfinite(kl):
+            return
+        wanted = math.sqrt(self.target_kl / max(kl, 1e-12))
+        self.share = min(max(self.share * min(max(wanted, 0.5), 1.2), self.LEAST), 1.0)
+
+
 class Learner:
     """Improves a policy by the rollouts of all ranks. All ranks keep the same parameters, bit for
     bit: they start from the first rank's, and apply the same sum of gradients."""
@@ -76,6 +99,7 @@ class Learner:
         self.group = group
         self.precision = Precision(settings.precision, group.device)
         self.optimizer = FlatAdam(policy, settings.learning_rate, settings.adam_epsilon)
+        self.rate = PacedRate(settings.target_kl)
         group.copy_from_first(self.optimizer.parameters)
 
     def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
@@ -83,7 +107,7 @@ class Learner:
         that is done, for the schedules."""
         settings = self.settings
         steps, envs = rollout.steps, rollout.actions.shape[1]
-        self.optimizer.learning_rate = settings.learning_rate_at(progress)
+        self.optimizer.learning_rate = self.rate.share * settings.learning_rate_at(progress)
         entropy_coefficient = settings.entropy_at(progress)
         raw = advantages(
             rollout.rewards[:steps],
@@ -113,7 +137,9 @@ class Learner:
                 totals += self._step(rollout, chosen, batch, entropy_coefficient, per_mini_batch)
         self._limit_exploration(progress)
         self._absorb_observations(rollout)
-        return self._report(totals, raw, returns)
+        report = self._report(totals, raw, returns)
+        self.rate.follow(report["kl"])
+        return report
 
     def _step(self, rollout: Rollout, chosen: Tensor, batch: Batch, entropy_coefficient: float,
               steps_of_all: float) -> Tensor:  # fmt: skip

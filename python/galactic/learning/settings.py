@@ -125,6 +125,13 @@ class Settings:
     learning_rate_end: float = _setting(
         0.0, "PPO", "learning rate at the end; linear in between", low=0.0
     )
+    target_kl: float = _setting(
+        0.0,
+        "PPO",
+        "divergence of the policy in one update, nats: where it is larger, the learning rate goes down, "
+        "and up again to the schedule's where it is smaller; 0: always the schedule's",
+        low=0.0,
+    )
     adam_epsilon: float = _setting(1e-5, "PPO", "Adam's epsilon", low=0.0)
     horizon: int = _setting(64, "PPO", "steps per env in a rollout", low=1, high=1 << 20)
     epochs: int = _setting(1, "PPO", "how many times a rollout is used", low=1, high=1000)

@@ -270,8 +270,9 @@ class Trainer:
         file = folder / "trainer.pt"
         counters, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
-            # Checkpoints of before do not know who waits: as in Collector.load_state_dict().
-            counters = {"waiting": 0, **counters}
+            # Checkpoints of before do not know who waits, as in Collector.load_state_dict(), nor of a
+            # paced rate.
+            counters = {"waiting": 0, "rate_share": 1.0, **counters}
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
                 raise CheckpointError(
@@ -293,6 +294,7 @@ class Trainer:
 
     def _take_counters(self, counters: dict[str, Any]) -> None:
         self.updates, self.best = counters["updates"], counters["best"]
+        self.learner.rate.share = counters["rate_share"]
         self.curves.rows = _rows(counters, "rows", len(COLUMNS), (float, int, type(None)))
         width = len(dataclasses.fields(EpisodeSums))
         self._window = collections.deque(
@@ -310,6 +312,7 @@ class Trainer:
             "ranks": self.group.size,
             "updates": self.updates,
             "best": self.best,
+            "rate_share": self.learner.rate.share,
             "rows": self.curves.rows,
             "waiting": self._waiting,
             "window": [dataclasses.astuple(sums) for sums in self._window],
@@ -376,6 +379,7 @@ _COUNTERS = {
     "ranks": int,
     "updates": int,
     "best": (float, int, type(None)),
+    "rate_share": (float, int),
     "rows": list,
     "waiting": int,
     "window": list,

@@ -9,7 +9,7 @@ from galactic.learning.distributed import Group
 from galactic.learning.networks import Outputs, Policy, PolicyShape, make_policy
 from galactic.learning.noise import action_noise, mini_batch_envs
 from galactic.learning.distributions import ActionDistribution
-from galactic.learning.ppo import Batch, Learner, ppo_loss
+from galactic.learning.ppo import Batch, Learner, PacedRate, ppo_loss
 from galactic.learning.precision import Precision
 from galactic.learning.rollout import advantages
 from galactic.learning.settings import Settings
@@ -209,3 +209,54 @@ def test_exploration_is_limited_along_the_schedule() -> None:
     assert policy.action.log_std.tolist() == pytest.approx([-1.25, -1.25])
     # The optimizer's flat parameters are the same memory.
     assert -1.25 in learner.optimizer.parameters.tolist()
+
+
+def test_a_paced_rate_finds_the_one_whose_divergence_is_wanted() -> None:
+    for steepness in (1e4, 1e6):
+        rate = PacedRate(target_kl=0.01)
+        shares = [rate.share]
+        for _ in range(40):
+            rate.follow(steepness * (1e-2 * rate.share) ** 2)
+            shares.append(rate.share)
+        assert steepness * (1e-2 * shares[-1]) ** 2 == pytest.approx(0.01)
+        steps = np.divide(shares[1:], shares[:-1])
+        assert shares[0] < 0.05 and 0.5 <= steps.min() and steps.max() <= 1.2001
+    # Where nothing is too far, the schedule's rate; where everything is, hardly any.
+    for kl, end in ((1e-9, 1.0), (0.0, 1.0), (1e9, PacedRate.LEAST)):
+        rate = PacedRate(target_kl=0.01)
+        for _ in range(40):
+            rate.follow(kl)
+        assert rate.share == end
+    rate.follow(float("nan"))
+    assert rate.share == PacedRate.LEAST
+
+
+def test_without_a_wanted_divergence_the_rate_is_the_schedules() -> None:
+    rate = PacedRate(target_kl=0.0)
+    rate.follow(1.0)
+    assert rate.share == 1.0
+
+
+def test_a_policy_of_little_noise_stays_near_itself_where_the_rate_is_paced() -> None:
+    """A trained policy begins anew: Adam knows no gradient yet, and its first steps are the longest."""
+    divergences = {}
+    for target in (0.0, 0.01):
+        torch.manual_seed(1)
+        envs = ReachAndGrasp(64)
+        settings = Settings(envs=64, horizon=20, learning_rate=3e-3, target_kl=target, epochs=2,
+                            mini_batches=4, **TOY)  # fmt: skip
+        shape = PolicyShape(envs.state_size, envs.motions, False, settings.normalize)
+        policy = make_policy("state", shape, width=settings.width, initial_log_std=-3.0)
+        learner = Learner(policy, settings, Group.alone())
+        collector = Collector(envs, policy, CollectorOptions(settings.horizon, 1, settings.gamma),
+                              learner.precision, CPU)  # fmt: skip
+        collector.reset()
+        divergences[target] = [
+            learner.update(collector.collect(update), update, 0.0)["kl"] for update in range(40)
+        ]
+        rate = learner.optimizer.learning_rate
+    free, paced = divergences.values()
+    assert free[0] > 0.05 and max(paced) < 0.04, divergences
+    # From then on it is about what is wanted, where the schedule's rate leads further.
+    assert 0.005 < np.mean(paced[-20:]) < 0.02 < np.mean(free[-20:]), divergences
+    assert rate < 2e-3
