@@ -178,6 +178,14 @@ TEST_F(SimulateCli, RefusesWhatHasNoEffectUnlessTheWorldGivesItOne) {
             "galactic-run: command line: --laser-fov applies to a laser scan only; add "
             "--laser-beams N; see --help\n");
   EXPECT_THAT(refused.out, IsEmpty());
+  const ProgramRun unpaid = run({"--envs", "1", "--steps", "1", "--drop-penalty", "1"});
+  EXPECT_EQ(unpaid.exit_code, 1);
+  EXPECT_EQ(unpaid.err,
+            "galactic-run: command line: --drop-penalty applies to what safe drop overlooks only; "
+            "add --safe-drop; see --help\n");
+  const ProgramRun paid =
+      run({"--envs", "1", "--steps", "1", "--drop-penalty", "1", "--safe-drop"});
+  EXPECT_EQ(paid.exit_code, 0) << paid.err;
   test::WorldPackFields list = test::writePacks(folder_, test::smallHomeWorld());
   list.task = test::TaskTexts{{"laser-beams", "8"}};
   ASSERT_FALSE(folder_.write("world.pack", test::textOf(buildPack(list))).empty());
