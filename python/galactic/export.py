@@ -104,14 +104,18 @@ class Layers:
             normal = self.add("normalize", state, mean=mean, inverse_deviation=scale, limit=MOST)
         if policy.closeup is None:
             return normal
+        closeups = [self.closeup(scale, state, size) for scale in policy.closeup.scales]
+        return self.add("concatenate", normal, *closeups)
+
+    def closeup(self, scale: float, state: int, size: int) -> int:
         larger = self.add(
             "normalize",
             state,
             mean=np.zeros(size, np.float32),
-            inverse_deviation=np.full(size, 1.0 / policy.closeup.scale, np.float32),
+            inverse_deviation=np.full(size, 1.0 / scale, np.float32),
             limit=float(np.finfo(np.float32).max),
         )
-        return self.add("concatenate", normal, self.add("tanh", larger))
+        return self.add("tanh", larger)
 
     def encoder(self, encoder: Encoder, seen: int) -> int:
         if isinstance(encoder, StateEncoder):

@@ -115,6 +115,7 @@ _SHAPE = {
     "decides_terminate": bool,
     "normalize": bool,
     "closeup": (float, int),
+    "second_closeup": (float, int),
 }
 
 
@@ -192,11 +193,14 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
     theirs = {name: getattr(saved.settings, name) for name in _NETWORK}
     if ours["network"] != "state":
         ours = {"network": ours["network"]}
-    ours.update(
-        motions=shape.motions, normalize=shape.normalize, closeup=shape.closeup, parts=parts
-    )
-    theirs.update(motions=saved.shape.motions, normalize=saved.shape.normalize,
-                  closeup=saved.shape.closeup, parts=saved.parts)  # fmt: skip
+    for described, of, seen in ((ours, shape, parts), (theirs, saved.shape, saved.parts)):
+        described.update(
+            motions=of.motions,
+            normalize=of.normalize,
+            closeup=of.closeup,
+            second_closeup=of.second_closeup,
+            parts=seen,
+        )
     for name, wanted in ours.items():
         if theirs[name] != wanted:
             raise CheckpointError(

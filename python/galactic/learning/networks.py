@@ -65,12 +65,18 @@ class PolicyShape(NamedTuple):
     motions: int  # continuous actions
     decides_terminate: bool = True
     normalize: bool = False
-    closeup: float = 0.0  # scale of a Closeup of the state; 0: none
+    closeup: float = 0.0  # a scale of the Closeup of the state; 0: none
+    second_closeup: float = 0.0  # another one
+
+    @property
+    def closeups(self) -> tuple[float, ...]:
+        """The scales that there are."""
+        return tuple(scale for scale in (self.closeup, self.second_closeup) if scale > 0.0)
 
     @property
     def seen(self) -> int:
         """Numbers that the encoder reads."""
-        return self.state * (2 if self.closeup > 0.0 else 1)
+        return self.state * (1 + len(self.closeups))
 
 
 class HeadLinear(nn.Linear):
@@ -169,7 +175,7 @@ class Policy(nn.Module):
     def __init__(self, shape: PolicyShape):
         super().__init__()
         self.normalize = Normalizer(shape.state) if shape.normalize else None
-        self.closeup = Closeup(shape.closeup) if shape.closeup > 0.0 else None
+        self.closeup = Closeup(shape.closeups) if shape.closeups else None
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         """`hidden` [n, H] from before the first step; `starts` [T, n] bool: where an episode begins,

@@ -120,6 +120,12 @@ class Settings:
         "centimeters near zero count beside meters; 0: off",
         low=0.0,
     )
+    second_closeup: float = _setting(
+        0.0,
+        "Network",
+        "the same with another divisor, beside the first or alone; 0: off",
+        low=0.0,
+    )
 
     learning_rate: float = _setting(3.5e-4, "PPO", "Adam's learning rate at the start", low=0.0)
     learning_rate_end: float = _setting(

@@ -62,6 +62,7 @@ class Trainer:
             envs.decides_terminate,
             settings.normalize,
             settings.closeup,
+            settings.second_closeup,
         )
         self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
         self.policy = new_policy(settings, self.shape).to(group.device)

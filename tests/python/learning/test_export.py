@@ -33,6 +33,7 @@ def saved_policy(terminate: bool = True, **settings: Any) -> checkpoint.SavedPol
         decides_terminate=terminate,
         normalize=made.normalize,
         closeup=made.closeup,
+        second_closeup=made.second_closeup,
     )
     policy = checkpoint.new_policy(made, shape)
     policy.action.linear.weight.data.normal_(0.0, 0.1)
@@ -123,6 +124,7 @@ NETWORKS = {
     "state": {"network": "state"},
     "state_normalized": {"network": "state", "normalize": True, "closeup": 0.2},
     "state_closeup": {"network": "state", "closeup": 0.2, "activation": "relu"},
+    "state_closeups": {"network": "state", "closeup": 0.2, "second_closeup": 0.04},
     "state_recurrent": {"network": "state", "recurrent": True, "log_std": "parameter"},
     "simple_cnn": {"network": "simple_cnn", "normalize": True},
     "resnet9": {"network": "resnet9"},

@@ -224,15 +224,18 @@ def test_a_normalizer_stands_still_until_it_absorbs() -> None:
     assert "normalize.mean" in before
 
 
-def test_a_closeup_is_seen_beside_the_normalized_state() -> None:
-    shape = PolicyShape(state=26, motions=9, normalize=True, closeup=0.2)
-    for recurrent in (False, True):
-        policy = make_policy("state", shape, recurrent=recurrent)
-        state = torch.full((1, 1, 26), 0.05)
-        seen = policy._seen(state)
-        assert seen.shape == (1, 1, 52)
-        torch.testing.assert_close(seen[..., :26], policy.normalize(state))
-        torch.testing.assert_close(seen[..., 26:], torch.tanh(state * 5.0))
-        starts = torch.ones(1, 1, dtype=torch.bool)
-        hidden = policy.initial_hidden(1, torch.device("cpu"))
-        assert policy(Inputs(state), hidden, starts).actions.mean.shape == (1, 1, 9)
+@pytest.mark.parametrize("recurrent", [False, True])
+@pytest.mark.parametrize("scales", [(0.2, 0.0), (0.0, 0.04), (0.2, 0.04)])
+def test_closeups_are_seen_beside_the_normalized_state(
+    recurrent: bool, scales: tuple[float, float]
+) -> None:
+    shape = PolicyShape(26, 9, normalize=True, closeup=scales[0], second_closeup=scales[1])
+    policy = make_policy("state", shape, recurrent=recurrent)
+    state = torch.full((1, 1, 26), 0.05)
+    normal, *closeups = policy._seen(state).split(26, -1)
+    torch.testing.assert_close(normal, policy.normalize(state))
+    for closeup, scale in zip(closeups, filter(None, scales), strict=True):
+        torch.testing.assert_close(closeup, torch.tanh(state / scale))
+    starts = torch.ones(1, 1, dtype=torch.bool)
+    hidden = policy.initial_hidden(1, torch.device("cpu"))
+    assert policy(Inputs(state), hidden, starts).actions.mean.shape == (1, 1, 9)
