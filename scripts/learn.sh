@@ -1,16 +1,22 @@
 #!/usr/bin/env bash
-# learn.sh [SEED]: a robot learns to pick things up in the sample apartment, without a camera or a
-# graphics processor, and shows what it learned. After scripts/quickstart.sh; works from any folder.
-# What it makes is in build/release/learn; the worlds lie beside the packs that they list.
+# learn.sh [TASK] [SEED]: a robot learns to pick things up in the sample apartment, or to rearrange
+# them, without a camera or a graphics processor, and shows what it learned. After
+# scripts/quickstart.sh; works from any folder. What it makes is in build/release/learn; the worlds
+# lie beside the packs that they list.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
 cd "$galactic_root"
 
-seed=${1:-1}
+task=${1:-pick}
+seed=${2:-1}
+if [[ ! $task =~ ^(pick|rearrange)$ || ! $seed =~ ^[0-9]+$ || $# -gt 2 ]]; then
+  echo "learn: found \"$*\", wanted a task, which is pick or rearrange, and a seed, a whole number" >&2
+  exit 1
+fi
 bin=build/release/bin
 sample=build/release/sample
 out=build/release/learn
-run=$out/seed-$seed
+run=$out/$task-$seed
 packs=("$sample/apartment.pack" "$sample/objects.pack" "$sample/robot.pack")
 export PYTHONPATH=build/release/python
 
@@ -38,13 +44,46 @@ mkdir -p "$out"
 world homes 2000 101
 world unseen 400 202
 
-heading "Learning to pick (preset quick)"
-if [ -f "$run/settings.json" ]; then
-  # A run that was interrupted goes on; one that is complete stays as it is.
-  /usr/bin/python3 -m galactic.train -o "$run" --resume
+# learn RUN OPTION...: one that was interrupted goes on; one that is complete stays as it is.
+learn() {
+  local run=$1
+  shift
+  if [ -f "$run/settings.json" ]; then
+    /usr/bin/python3 -m galactic.train -o "$run" --resume
+  else
+    /usr/bin/python3 -m galactic.train "$sample/homes.pack" --preset quick --seed "$seed" \
+      --validation "$sample/unseen.pack" -o "$run" "$@"
+  fi
+}
+
+# Five runs: each begins with what the one before has learned, and the task gets stricter.
+learn_to_rearrange() {
+  local senses="laser-beams=24 laser-height=0.25 laser-second-height=0.8 laser-range=4 bump geodesic"
+  local pay="geodesic-weight=1 bump-penalty=0.03"
+  local rearrange="task=rearrange observe-current target-goal target-up $senses $pay"
+  heading "1 of 5: to carry. Away from the goal the hand keeps the target; to let go there costs little"
+  learn "$run/1" --second-closeup 0.04 --target-kl 0.01 --steps 16e6 \
+    --simulation "$rearrange no-terminate safe-drop drop-penalty=0.05"
+  heading "2 of 5: to say when it is done"
+  learn "$run/2" --start-from "$run/1/best.pt" --second-closeup 0.04 --target-kl 0.01 --steps 8e6 \
+    --initial-log-std -1.4 --final-log-std -1.7 --simulation "$rearrange safe-drop drop-penalty=0.5"
+  heading "3 of 5: to let go at the goal only. Elsewhere it costs much"
+  learn "$run/3" --start-from "$run/2/best.pt" --second-closeup 0.04 --target-kl 0.012 --steps 12e6 \
+    --initial-log-std -1.7 --final-log-std -2.1 --simulation "$rearrange safe-drop drop-penalty=3"
+  heading "4 of 5: the same, with a calmer hand"
+  learn "$run/4" --start-from "$run/3/best.pt" --second-closeup 0.04 --target-kl 0.012 --steps 24e6 \
+    --initial-log-std -2.0 --final-log-std -2.4 --simulation "$rearrange safe-drop drop-penalty=4"
+  heading "5 of 5: the paper's rules. Letting go elsewhere ends the episode"
+  learn "$run/5" --start-from "$run/4/best.pt" --second-closeup 0.04 --target-kl 0.012 --steps 14e6 \
+    --initial-log-std -2.2 --final-log-std -2.6 --simulation "$rearrange"
+  run=$run/5
+}
+
+if [ "$task" = pick ]; then
+  heading "Learning to pick (preset quick)"
+  learn "$run"
 else
-  /usr/bin/python3 -m galactic.train "$sample/homes.pack" --preset quick --seed "$seed" \
-    --validation "$sample/unseen.pack" -o "$run"
+  learn_to_rearrange
 fi
 
 heading "Playing each unseen episode once: sampled actions, then the likeliest"
@@ -54,10 +93,10 @@ heading "Playing each unseen episode once: sampled actions, then the likeliest"
   --report "$run/unseen-deterministic.json"
 
 heading "The same policy without Python: the likeliest actions in each unseen episode once"
-/usr/bin/python3 -m galactic.export "$run/best.pt" -o "$run/picker.pack"
-"$bin/galactic-run" "$sample/unseen.pack" --policy "$run/picker.pack" --deterministic \
+/usr/bin/python3 -m galactic.export "$run/best.pt" -o "$run/policy.pack"
+"$bin/galactic-run" "$sample/unseen.pack" --policy "$run/policy.pack" --deterministic \
   --order partition --envs 64 --steps 100000
-"$bin/galactic-run" "$sample/unseen.pack" --policy "$run/picker.pack" --envs 8 --steps 300 \
+"$bin/galactic-run" "$sample/unseen.pack" --policy "$run/policy.pack" --envs 8 --steps 300 \
   --view "$run/run.html" --view-envs 8 >"$run/run.txt"
 
 cat <<END
@@ -68,5 +107,5 @@ Look at these, in $run/:
   unseen.png     moments of episodes that it had never seen: successes and failures
   unseen.json    all 400 of them, with path and ending
   best.pt        the policy, for Python
-  picker.pack    the policy, for galactic-run
+  policy.pack    the policy, for galactic-run
 END
