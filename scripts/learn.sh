@@ -56,26 +56,30 @@ learn() {
   fi
 }
 
-# Five runs: each begins with what the one before has learned, and the task gets stricter.
+# stage NUMBER TITLE RULES OPTION...: one of five runs that learn to rearrange. Each begins with what the
+# one before has learned, and its rules are stricter.
+stage() {
+  local number=$1 title=$2 rules=$3 begin=()
+  shift 3
+  if [ "$number" -gt 1 ]; then begin=(--start-from "$run/$((number - 1))/best.pt"); fi
+  heading "$number of 5: $title"
+  learn "$run/$number" "${begin[@]}" --second-closeup 0.04 "$@" --simulation "$rearrange${rules:+ $rules}"
+}
+
 learn_to_rearrange() {
   local senses="laser-beams=24 laser-height=0.25 laser-second-height=0.8 laser-range=4 bump geodesic"
   local pay="geodesic-weight=1 bump-penalty=0.03"
   local rearrange="task=rearrange observe-current target-goal target-up $senses $pay"
-  heading "1 of 5: to carry. Away from the goal the hand keeps the target; to let go there costs little"
-  learn "$run/1" --second-closeup 0.04 --target-kl 0.01 --steps 16e6 \
-    --simulation "$rearrange no-terminate safe-drop drop-penalty=0.05"
-  heading "2 of 5: to say when it is done"
-  learn "$run/2" --start-from "$run/1/best.pt" --second-closeup 0.04 --target-kl 0.01 --steps 8e6 \
-    --initial-log-std -1.4 --final-log-std -1.7 --simulation "$rearrange safe-drop drop-penalty=0.5"
-  heading "3 of 5: to let go at the goal only. Elsewhere it costs much"
-  learn "$run/3" --start-from "$run/2/best.pt" --second-closeup 0.04 --target-kl 0.012 --steps 12e6 \
-    --initial-log-std -1.7 --final-log-std -2.1 --simulation "$rearrange safe-drop drop-penalty=3"
-  heading "4 of 5: the same, with a calmer hand"
-  learn "$run/4" --start-from "$run/3/best.pt" --second-closeup 0.04 --target-kl 0.012 --steps 24e6 \
-    --initial-log-std -2.0 --final-log-std -2.4 --simulation "$rearrange safe-drop drop-penalty=4"
-  heading "5 of 5: the paper's rules. Letting go elsewhere ends the episode"
-  learn "$run/5" --start-from "$run/4/best.pt" --second-closeup 0.04 --target-kl 0.012 --steps 14e6 \
-    --initial-log-std -2.2 --final-log-std -2.6 --simulation "$rearrange"
+  stage 1 "to carry. Away from the goal the hand keeps the target; to let go there costs little" \
+    "no-terminate safe-drop drop-penalty=0.05" --steps 16e6 --target-kl 0.01
+  stage 2 "to say when it is done" "safe-drop drop-penalty=0.5" --steps 8e6 --target-kl 0.01 \
+    --initial-log-std -1.4 --final-log-std -1.7
+  stage 3 "to let go at the goal only. Elsewhere it costs much" "safe-drop drop-penalty=3" \
+    --steps 12e6 --target-kl 0.012 --initial-log-std -1.7 --final-log-std -2.1
+  stage 4 "the same, with a calmer hand" "safe-drop drop-penalty=4" \
+    --steps 24e6 --target-kl 0.012 --initial-log-std -2.0 --final-log-std -2.4
+  stage 5 "the paper's rules. Letting go elsewhere ends the episode" "" \
+    --steps 14e6 --target-kl 0.012 --initial-log-std -2.2 --final-log-std -2.6
   run=$run/5
 }
 
