@@ -34,6 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const galactic::SensorOptions all_sensors{.bump = true,
                                             .target_goal = true,
                                             .target_up = true,
+                                            .near_objects = 2,
                                             .laser = {.beams = 8, .second_height = 0.5F},
                                             .geodesic = true};
   const auto outcome = world.use(kSteps, all_sensors);

@@ -163,9 +163,11 @@ class BatchSimulator {
   /// the steps that is left, as min(1, f), min(1, 5 f), min(1, 50 f). With SensorOptions also: bump
   /// (1): whether something was in the way of the last step; target_goal (3): from the target,
   /// where it is now, to the goal, along the axes of the base, meters; target_up (3): where that
-  /// side of the target points that was up when the episode began, along these axes; laser (beams,
-  /// for each of its planes): distances as shares of the range; geodesic (6): length, cosine and
-  /// sine of the way along the floor to the target, and to the goal. See docs/simulation.md.
+  /// side of the target points that was up when the episode began, along these axes; near_objects
+  /// (3 for each): from the grasp point to the nearest points of the nearest other objects, along
+  /// these axes, meters, (0, 1, 0) in place of those further away than 1 m; laser (beams, for each
+  /// of its planes): distances as shares of the range; geodesic (6): length, cosine and sine of the
+  /// way along the floor to the target, and to the goal. See docs/simulation.md.
   [[nodiscard]] const std::vector<ObservationPart>& observationParts() const;
 
   /// One step of all envs. `actions`: envCount() * actionCount(), env after env.

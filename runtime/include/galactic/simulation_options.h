@@ -130,6 +130,9 @@ struct LaserOptions {
   float noise = kOfRobot;
 };
 
+/// The most objects near the hand that an observation can tell of.
+inline constexpr std::uint32_t kMostNearObjects = 16;
+
 /// What the robot senses beside its own state; all off by default.
 struct SensorOptions {
   /// Whether an obstacle kept the robot where it was in the last step.
@@ -138,6 +141,9 @@ struct SensorOptions {
   bool target_goal = false;
   /// How the target is tilted against how it stood when the episode began.
   bool target_up = false;
+  /// Objects nearest to the hand that are observed beside the target; 0 for none, kMostNearObjects
+  /// at most.
+  std::uint32_t near_objects = 0;
   LaserOptions laser;
   /// Whether the ways along the floor to target and goal are observed.
   bool geodesic = false;

@@ -167,6 +167,8 @@ void visitSensorOptions(SensorOptions& s, Visitor& v) {
          "Observe the way from the target, where it is now, to the goal");
   v.flag("target-up", Switch{s.target_up, true},
          "Observe where that side of the target points that was up when the episode began");
+  v.whole("near-objects", s.near_objects, Within<std::uint32_t>{0, kMostNearObjects},
+          "Objects nearest to the hand to observe beside the target; 0: none");
   v.whole("laser-beams", laser.beams, Within<std::uint32_t>{0, 1024},
           "Beams of a planar laser scan; 0: none");
   v.real("laser-fov", laser.fov_degrees, Within<float>{kOfRobot, 360},

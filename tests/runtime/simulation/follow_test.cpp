@@ -22,6 +22,7 @@ SimulationOptions optionsOf(std::uint32_t envs) {
   options.sensors.bump = true;
   options.sensors.target_goal = true;
   options.sensors.target_up = true;
+  options.sensors.near_objects = 2;
   options.auto_reset = false;
   return options;
 }

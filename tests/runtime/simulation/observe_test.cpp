@@ -235,6 +235,88 @@ TEST(Observation, TellsHowTheTargetIsTilted) {
   }
 }
 
+/// The ways from the hand to the `count` nearest boxes, in the robot's frame, one after the other.
+std::vector<double> waysToNearest(const World& world, const EnvState& state, std::size_t count) {
+  constexpr double kFarthest = 1;
+  const Double3 hand = double3(state.world_from_grip.translation);
+  const auto placements = world.episodes().placements(world.episodes().episodes()[state.episode]);
+  std::vector<std::pair<double, Double3>> ways;
+  for (std::size_t n = 0; n < state.objects.size(); ++n) {
+    if (n == state.target || static_cast<std::int32_t>(n) == state.held) continue;
+    const BoxSolid box(world.objectOf(placements[n]).box, state.objects[n]);
+    const Double3 way = difference(box.nearestTo(hand), hand);
+    ways.emplace_back(std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]), way);
+  }
+  std::erase_if(ways, [&](const auto& way) { return way.first > kFarthest; });
+  std::ranges::sort(ways);
+  ways.resize(count, {kFarthest, {0, kFarthest, 0}});
+  std::vector<double> row;
+  for (const auto& [length, way] : ways) {
+    const Double3 seen = turnedInto(state.world_from_root.rotation, way);
+    row.insert(row.end(), seen.begin(), seen.end());
+  }
+  return row;
+}
+
+TEST(Observation, TellsTheWaysToTheObjectsNearTheHand) {
+  constexpr std::uint32_t kNear = 3;
+  const SmallHome home;
+  SimulationOptions options = optionsOf({.kind = TaskKind::kNone});
+  options.sensors.near_objects = kNear;
+  options.sensors.laser.beams = 3;
+  BatchSimulator simulator = simulatorOf(home.world(), options);
+  const ObservationPart part = simulator.observationParts().end()[-2];
+  ASSERT_EQ(part.name, "near_objects");
+  ASSERT_EQ(part.size, 3 * kNear);
+  std::mt19937 random(kSeed);
+  int there = 0;
+  int elements = 0;
+  for (int round = 0; round < 20; ++round) {
+    std::vector<EnvState> states;
+    std::vector<FollowedState> followed;
+    states.reserve(kEnvs);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      EnvState& state = states.emplace_back(simulator.envState(env));
+      for (Pose& object : state.objects) {
+        const auto away = [&] { return uniformIn(random, -1.2F, 1.2F); };
+        object = {state.world_from_grip.translation + Vec3{away(), away(), away()},
+                  randomQuat(random)};
+      }
+      const auto count = static_cast<std::int32_t>(state.objects.size());
+      followed.push_back({.world_from_root = state.world_from_root,
+                          .joint_positions = state.joint_positions,
+                          .objects = state.objects,
+                          .held = static_cast<std::int32_t>(env) % (count + 1) - 1});
+    }
+    simulator.follow(std::vector<float>(kEnvs * kSmallHomeActions), followed);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      SCOPED_TRACE(env);
+      const std::vector<double> wanted =
+          waysToNearest(home.world(), simulator.envState(env), kNear);
+      expectObserved(rowOf(simulator, simulator.observations(), env).subspan(part.first, part.size),
+                     wanted);
+      for (std::size_t n = 1; n < wanted.size(); n += 3) {
+        ++elements;
+        there += wanted[n] == 1 ? 0 : 1;
+      }
+    }
+  }
+  expectBothSides(there, elements);
+}
+
+TEST(Observation, TellsOfNoMoreObjectsNearTheHandThanItCan) {
+  const SmallHome home;
+  SimulationOptions options = optionsOf({});
+  options.sensors.near_objects = kMostNearObjects;
+  EXPECT_EQ(simulatorOf(home.world(), options).observationParts().back().size,
+            3 * kMostNearObjects);
+  options.sensors.near_objects = kMostNearObjects + 1;
+  const Result<BatchSimulator> more = BatchSimulator::create(home.world(), options);
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(more.error().message, "near-objects is 17, expected at most 16");
+}
+
 TEST(Observation, FeelsWhatWasInTheWayAndPaysForIt) {
   const SmallHome home;
   SimulationOptions options = optionsOf({.most_steps = 50});

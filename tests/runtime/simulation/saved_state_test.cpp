@@ -32,6 +32,7 @@ SimulationOptions homeOptions(std::uint32_t envs, std::uint32_t threads = 1) {
   options.sensors.bump = true;
   options.sensors.target_goal = true;
   options.sensors.target_up = true;
+  options.sensors.near_objects = 2;
   options.sensors.geodesic = true;
   options.task.geodesic_weight = 0.5F;
   options.sensors.laser.beams = 8;

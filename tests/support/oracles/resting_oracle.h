@@ -80,6 +80,12 @@ class BoxSolid {
     return std::sqrt(sum);
   }
 
+  [[nodiscard]] Point3 nearestTo(const Point3& point) const {
+    Point3 share = local(point);
+    for (std::size_t n = 0; n < 3; ++n) share[n] = std::clamp(share[n] / half_[n], -1.0, 1.0);
+    return at(share);
+  }
+
   /// A point of the box by its coordinates along the axes, each from -1 to 1.
   [[nodiscard]] Point3 at(const Point3& share) const {
     Point3 point = center_;

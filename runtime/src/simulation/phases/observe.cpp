@@ -49,6 +49,55 @@ void senseUp(const Model& model, const BatchState& state, std::size_t n, std::sp
   out.add(-left);
 }
 
+/// The resting objects nearest to a point, the nearest first: the ways from there to their boxes.
+class NearestWays {
+ public:
+  explicit NearestWays(std::size_t count) : count_(count) {}
+
+  void add(const Vec3& way) {
+    const float squared = dot(way, way);
+    if (!(squared < ways_[count_ - 1].squared)) return;
+    std::size_t at = count_ - 1;
+    for (; at > 0 && squared < ways_[at - 1].squared; --at) ways_[at] = ways_[at - 1];
+    ways_[at] = {squared, way};
+  }
+
+  [[nodiscard]] const Vec3& operator[](std::size_t n) const { return ways_[n].way; }
+
+ private:
+  struct Way {
+    float squared = kFarthestSeen * kFarthestSeen;
+    /// Where there is no object so near: above all of them.
+    Vec3 way{0, kFarthestSeen, 0};
+  };
+
+  std::size_t count_;
+  std::array<Way, kMostNearObjects> ways_{};
+};
+
+/// The ways from the hand to the objects nearest to it but the target, at the beginning of the row.
+void senseNearObjects(const Model& model, const BatchState& state, std::size_t n,
+                      std::span<float> row) {
+  const std::size_t count = model.options.sensors.near_objects;
+  const Env& env = state.env(n);
+  const GripFrame grip = state.grip(n);
+  const Vec3 hand = gripOrigin(grip);
+  const RestingObjects& resting = state.resting(n);
+  NearestWays nearest(count);
+  for (std::uint32_t object = 0; object < env.objects; ++object) {
+    if (object == env.target || !resting.isResting(object)) continue;
+    nearest.add(nearestPoint(resting.box(object), hand) - hand);
+  }
+  Row out(row.first(kWaySize * count));
+  for (std::size_t at = 0; at < count; ++at) {
+    const Vec3& way = nearest[at];
+    const auto [ahead, left] = seenByRobot(grip, way.x, way.z);
+    out.add(ahead);
+    out.add(way.y);
+    out.add(-left);
+  }
+}
+
 /// The ways to target and goal, at the end of the row.
 void senseWays(const Model& model, const BatchState& state, std::size_t n, std::span<float> row) {
   const Env& env = state.env(n);
@@ -87,6 +136,7 @@ std::vector<ObservationPart> observationParts(std::size_t joints, const SensorSi
   if (sensors.bump != 0) add("bump", sensors.bump);
   if (sensors.target_goal != 0) add("target_goal", sensors.target_goal);
   if (sensors.target_up != 0) add("target_up", sensors.target_up);
+  if (sensors.near_objects != 0) add("near_objects", sensors.near_objects);
   if (sensors.laser != 0) add("laser", sensors.laser);
   if (sensors.geodesic != 0) add("geodesic", sensors.geodesic);
   return parts;
@@ -137,6 +187,10 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
   if (model.options.sensors.target_up) {
     senseUp(model, state, env_number, row);
     row = row.subspan(kTargetUpSize);
+  }
+  if (model.options.sensors.near_objects != 0) {
+    senseNearObjects(model, state, env_number, row);
+    row = row.subspan(kWaySize * model.options.sensors.near_objects);
   }
   if (model.options.sensors.geodesic) senseWays(model, state, env_number, row);
   model.laser.scan(

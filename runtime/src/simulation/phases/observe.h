@@ -9,11 +9,17 @@ namespace galactic::simulation {
 /// Elements of the part that tells the tilt of the target.
 inline constexpr std::size_t kTargetUpSize = 3;
 
+/// Elements that tell of one object near the hand: the way to it.
+inline constexpr std::size_t kWaySize = 3;
+/// Objects that are further from the hand than this are not observed, meters.
+inline constexpr float kFarthestSeen = 1;
+
 /// Elements of the optional parts of an observation; 0 for none.
 struct SensorSizes {
   std::size_t bump = 0;
   std::size_t target_goal = 0;
   std::size_t target_up = 0;
+  std::size_t near_objects = 0;
   std::size_t laser = 0;
   std::size_t geodesic = 0;
 };

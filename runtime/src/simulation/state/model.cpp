@@ -263,6 +263,11 @@ std::optional<std::uint32_t> Model::startOf(std::int64_t episode) const noexcept
 }
 
 Result<Model> makeModel(const World& world, const SimulationOptions& options) {
+  if (options.sensors.near_objects > kMostNearObjects) {
+    return fail(ErrorCode::kInvalidInput, "simulation options",
+                "near-objects is " + std::to_string(options.sensors.near_objects) +
+                    ", expected at most " + std::to_string(kMostNearObjects));
+  }
   Model model;
   model.world = &world;
   model.options = options;
@@ -277,12 +282,13 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   const SensorSizes sensors{.bump = options.sensors.bump ? 1U : 0U,
                             .target_goal = options.sensors.target_goal ? 3U : 0U,
                             .target_up = options.sensors.target_up ? kTargetUpSize : 0,
+                            .near_objects = kWaySize * options.sensors.near_objects,
                             .laser = laser->size(),
                             .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0};
   model.observation = observationParts(model.motion.controlled.size(), sensors);
   model.observation_size = model.observation.back().first + model.observation.back().size;
-  model.sensors_first =
-      model.observation_size - sensors.target_up - sensors.laser - sensors.geodesic;
+  model.sensors_first = model.observation_size - sensors.target_up - sensors.near_objects -
+                        sensors.laser - sensors.geodesic;
   measure(world, model);
   model.groups = spheresByEights(model.motion.ranges);
   model.slices = FreeSlices(model.groups);

@@ -34,6 +34,7 @@ SimulationOptions unusualOptions() {
   options.sensors = {.bump = true,
                      .target_goal = true,
                      .target_up = true,
+                     .near_objects = 3,
                      .laser = {.beams = 24,
                                .fov_degrees = 220,
                                .height = 0.1F / 3,
