@@ -90,6 +90,9 @@ struct TaskOptions {
   /// Subtracted in each step in which something is overlooked that fails unless `drop_fails` is
   /// off: the hand would have released the target away from the goal, or holds another object.
   float drop_penalty = 0.0F;
+  /// Subtracted in each step in which the hand holds the target on its side; of a target that is
+  /// tilted by an angle a, 1 - cos(a) of it.
+  float tilt_penalty = 0.0F;
   /// Distance of target and goal that counts as success, meters.
   float success_distance = 0.1F;
   /// Steps after which an episode ends without success or failure; 0 for never.

@@ -119,6 +119,8 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
   v.real(
       "drop-penalty", t.drop_penalty, kReward,
       "Penalty for each step in which safe-drop ignores a release, or another object in the hand");
+  v.real("tilt-penalty", t.tilt_penalty, kReward,
+         "Penalty for each step in which the hand holds the target on its side");
 }
 
 /// The same, of what the robot does and meets.

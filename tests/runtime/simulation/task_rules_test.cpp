@@ -74,6 +74,7 @@ Case unusualCase() {
   task.action_weight = 0.25F;
   task.slack_penalty = 0.125F;
   task.failure_penalty = 1.5F;
+  task.tilt_penalty = 0.75F;
   task.success_distance = 0.25F;
   task.observes_current_target = true;
   Case unusual{.name = "UnusualNumbers", .options = optionsOf(task)};

@@ -72,6 +72,7 @@ class TaskOracle {
   [[nodiscard]] Judgement judge(const EnvState& before, const EnvState& after,
                                 std::span<const float> row) {
     ++steps_;
+    if (steps_ == 1) up_ = upOf(before);
     const auto target = static_cast<std::int32_t>(after.target);
     const bool picks = after.held == target && before.held != target && !has_picked_;
     has_picked_ = has_picked_ || picks;
@@ -83,6 +84,7 @@ class TaskOracle {
                     weight(task_.transport_weight) * (transportOf(before) - transportOf(after)) -
                     weight(task_.action_weight) * change - weight(task_.slack_penalty);
     if (picks) result.reward += weight(task_.pick_reward);
+    if (after.held == target) result.reward -= weight(task_.tilt_penalty) * (1 - tiltCosine(after));
     if (result.success) result.reward += weight(task_.success_reward);
     if (result.failure) result.reward -= weight(task_.failure_penalty);
     return result;
@@ -96,6 +98,17 @@ class TaskOracle {
   }
 
  private:
+  /// The world's up in the frame of the target.
+  static Double3 upOf(const EnvState& s) {
+    return turnedInto(s.objects[s.target].rotation, {0, 1, 0});
+  }
+
+  /// Of the angle by which the target is tilted since the episode began.
+  [[nodiscard]] double tiltCosine(const EnvState& s) const {
+    const Double3 up = upOf(s);
+    return up[0] * up_[0] + up[1] * up_[1] + up[2] * up_[2];
+  }
+
   static float valueOf(float action) {
     return std::isnan(action) ? 0.0F : std::fmin(std::fmax(action, -1.0F), 1.0F);
   }
@@ -153,6 +166,7 @@ class TaskOracle {
   /// Empty before the first step of an episode.
   std::vector<double> last_joints_;
   std::uint32_t steps_ = 0;
+  Double3 up_{};
 };
 
 /// The observation of an env in this state, part by part.

@@ -28,19 +28,10 @@ std::array<float, 2> seenByRobot(const GripFrame& grip, float x, float z) {
   return {cosine * x - sine * z, -(sine * x + cosine * z)};
 }
 
-/// Where that side of the target points that was up when the episode began.
-Vec3 upOfTarget(const Model& model, const BatchState& state, std::size_t n) {
-  const Env& env = state.env(n);
-  const bool is_held = env.held == static_cast<std::int32_t>(env.target);
-  const Pose& resting = state.objects(n)[env.target];
-  const Quat now = (is_held ? state.heldPose(n) : resting).rotation;
-  const Placement& start = model.placements(model.episodeOf(env.start))[env.target];
-  return rotate(now, rotate(conjugate(start.pose.rotation), {0, 1, 0}));
-}
-
-/// The same in the robot's frame, at the beginning of the row.
+/// Where that side of the target points that was up when the episode began, in the robot's frame,
+/// at the beginning of the row.
 void senseUp(const Model& model, const BatchState& state, std::size_t n, std::span<float> row) {
-  const Vec3 up = upOfTarget(model, state, n);
+  const Vec3 up = targetUp(model, state, n);
   const auto [ahead, left] = seenByRobot(state.grip(n), up.x, up.z);
   Row out(row.first(kTargetUpSize));
   out.add(ahead);

@@ -88,6 +88,14 @@ TargetDistances measureTarget(const BatchState& state, std::size_t n) noexcept {
   return {distance(gripOrigin(state.grip(n)), target), distance(target, state.goal(n))};
 }
 
+Vec3 targetUp(const Model& model, const BatchState& state, std::size_t n) noexcept {
+  const Env& env = state.env(n);
+  const Pose& resting = state.objects(n)[env.target];
+  const Quat now = (isHeld(env) ? state.heldPose(n) : resting).rotation;
+  const Placement& start = model.placements(model.episodeOf(env.start))[env.target];
+  return rotate(now, rotate(conjugate(start.pose.rotation), {0, 1, 0}));
+}
+
 EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept {
   return findEnd(task, env, transport);
 }
@@ -163,11 +171,18 @@ float earnOfWay(const ChunkStep& step, std::size_t n, Env& env) {
   return earned;
 }
 
+/// What a target that is carried tilted costs: nothing upright, the penalty on its side.
+float payForTilt(const ChunkStep& step, std::size_t n) {
+  if (!isHeld(step.state.env(n))) return 0;
+  return step.model.options.task.tilt_penalty * (1 - targetUp(step.model, step.state, n).y);
+}
+
 }  // namespace
 
 void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   const TaskOptions& task = step.model.options.task;
   const bool pays_for_ways = task.geodesic_weight != 0;
+  const bool pays_for_tilt = task.kind != TaskKind::kNone && task.tilt_penalty != 0;
   const std::uint8_t* idle = step.state.idle().data() + step.first;
   const Measured measured = measure(step);
   Outcomes outcomes;
@@ -186,6 +201,7 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     const EpisodeEnd end = findEnd(task, env, now.transport);
     float reward = rewardOf(task, env, now, change);
     if (pays_for_ways) reward += earnOfWay(step, n, env);
+    if (pays_for_tilt) reward -= payForTilt(step, n);
     if (end == EpisodeEnd::kSuccess) reward += task.success_reward;
     if (isFailure(end)) reward -= task.failure_penalty;
     env.reach = now.reach;

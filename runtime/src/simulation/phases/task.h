@@ -18,6 +18,9 @@ struct TargetDistances {
 };
 [[nodiscard]] TargetDistances measureTarget(const BatchState& state, std::size_t env) noexcept;
 
+/// Where that side of the target points that was up when the episode began, in the world frame.
+[[nodiscard]] Vec3 targetUp(const Model& model, const BatchState& state, std::size_t env) noexcept;
+
 /// The length of the way along the floor to what matters now, the target or once it is held the
 /// goal, meters; below 0 without a way, and where TaskOptions::geodesic_weight is 0.
 struct WayLeft {

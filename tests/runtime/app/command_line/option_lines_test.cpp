@@ -55,6 +55,7 @@ SimulationOptions unusualOptions() {
                   .failure_penalty = 3,
                   .bump_penalty = 0.05F,
                   .drop_penalty = 0.02F,
+                  .tilt_penalty = 0.03F,
                   .success_distance = 0.15F,
                   .most_steps = 0,
                   .needs_terminate = false,
