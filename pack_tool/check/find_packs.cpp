@@ -14,6 +14,11 @@ Result<std::vector<fs::path>> findPacks(const fs::path& folder) {
   fs::recursive_directory_iterator entry(folder, problem);
   for (; !problem && entry != fs::recursive_directory_iterator(); entry.increment(problem)) {
     std::error_code ignored;
+    // Such as the cache of bakes, which may be deleted at any time.
+    if (entry->path().filename().string().starts_with('.')) {
+      entry.disable_recursion_pending();
+      continue;
+    }
     if (extensionOf(entry->path()) == ".pack" && !entry->is_directory(ignored)) {
       packs.push_back(entry->path());
     }

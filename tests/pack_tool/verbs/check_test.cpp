@@ -157,6 +157,17 @@ TEST(FindingCodes, TellFilesThatAreNone) {
   EXPECT_EQ(code(folder.path()), "file/no-packs");
 }
 
+TEST(Folders, AreSearchedButForHiddenOnes) {
+  const ScratchFolder folder;
+  static_cast<void>(folder.write("home/scenes/kitchen.pack", goodBytes()));
+  static_cast<void>(folder.write("home/.cache/kept/half.pack", "GALA"));
+  static_cast<void>(folder.write(".half.pack", "GALA"));
+  const Outcome outcome = check({.packs = {folder.path()}});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::EndsWith("home/scenes/kitchen.pack: ok\n"));
+  EXPECT_THAT(outcome.out, testing::Not(HasSubstr("half.pack")));
+}
+
 /// The names of errors in all sources below a folder.
 std::set<std::string> namesIn(const std::filesystem::path& folder) {
   static const std::regex kName(R"re("((file|pack|world)/[a-z-]+)")re");
