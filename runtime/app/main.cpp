@@ -79,8 +79,9 @@ int describePacks(const RunOptions& options) {
     packs.push_back(std::move(*pack));
   }
   if (options.bench && scenes.empty()) {
-    return report(
-        {ErrorCode::kInvalidInput, "--bench", "needs a pack of a scene to query; name one"});
+    return report({ErrorCode::kInvalidInput, "--bench",
+                   "found no pack of a scene, whose grids are measured; name one, or one of those "
+                   "that a world lists (galactic-pack info WORLD)"});
   }
   if (options.bench) {
     const auto seed = static_cast<std::uint32_t>(options.simulation.seed);
