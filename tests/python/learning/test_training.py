@@ -27,6 +27,7 @@ SMALL_OF_ANY_RANKS = ["--preset", "quick", "--envs", "16", "--horizon", "8", "--
 SMALL = [*SMALL_OF_ANY_RANKS, "--ranks", "1"]
 UPDATE = 16 * 8
 PROGRAMS = {"train": train, "evaluate": evaluate}
+BLIND = "laser-beams=0 geodesic=false geodesic-weight=0 bump=false bump-penalty=0"
 SENSORS = "laser-beams=8 laser-noise=0.01 geodesic geodesic-weight=1 bump"
 TO_BE_CUT = [*SMALL, "--halves", "2", "--simulation", f"task=pick episode-steps=60 {SENSORS}",
              "--checkpoint-every", 10 * UPDATE, "--steps", 80 * UPDATE]  # fmt: skip
@@ -71,7 +72,7 @@ def test_a_policy_learns_what_chance_does_not(tmp_path: pathlib.Path) -> None:
     for what longer runs reach."""
     # Fewer envs than the preset, for more updates in fewer steps, and nothing that costs to sense.
     common = ["--preset", "quick", "--seed", "5", "--validation", HELD_OUT, "--envs", "128"]
-    common += ["--simulation", "task=pick episode-steps=200", "--final-log-std", "2"]
+    common += ["--simulation", BLIND, "--final-log-std", "2"]
     assert call("train", WORLD, "-o", tmp_path / "raw", *common, "--steps", "1").returncode == 0
     done = run("train", WORLD, "-o", tmp_path / "run", *common, "--steps", "800_000")
     assert done.returncode == 0, done.stderr
@@ -213,10 +214,12 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     pick, rearrange = tmp_path / "pick", tmp_path / "rearrange"
     small = [*SMALL, "--steps", UPDATE, "--learning-rate", "0"]
     assert call("train", WORLD, "-o", pick, *small).returncode == 0
-    sensors = checkpoint.load_policy(pick / "best.pt").settings.simulation.replace("task=pick ", "")
-    other = [*small, "--simulation", f"task=rearrange {sensors}", "--start-from", pick / "best.pt"]
+    other = [*small, "--simulation", "task=rearrange", "--start-from", pick / "best.pt"]
     done = call("train", WORLD, "-o", rearrange, *other)
     assert done.returncode == 0, done.stderr
+    told = [json.loads((one / "settings.json").read_text()) for one in (pick, rearrange)]
+    before, after = (one["settings"]["simulation"] for one in told)
+    assert "laser-beams=24" in before and after == before.replace("=pick", "=rearrange")
     learned, begun = (checkpoint.load_policy(one / "best.pt").policy for one in (pick, rearrange))
     head, begun_head = learned.action.linear, begun.action.linear
     assert torch.equal(begun.encoder[0].weight, learned.encoder[0].weight)
@@ -224,7 +227,7 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     # Nobody decided to terminate before: the decision starts rare instead of even.
     assert begun_head.weight[-2:].count_nonzero() == 0 and head.weight[-2:].count_nonzero() > 0
     assert begun_head.bias[-1] - begun_head.bias[-2] == checkpoint.NEW_TERMINATE_LOGIT
-    blind = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation", "task=pick",
+    blind = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation", BLIND,
                  "--start-from", pick / "best.pt")  # fmt: skip
     assert blind.returncode == 3 and "does not fit this run: parts: found" in blind.stderr
     wide = call("train", WORLD, "-o", tmp_path / "wide", *small, "--width", "64",
