@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import time
+from typing import Any
 
 import pytest
 import torch
@@ -160,15 +161,51 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
         ([WORLD, "--stepz", "5"], 1, "unrecognized arguments: --stepz 5; did you mean --steps?"),
         ([WORLD, "--stepz=5"], 1, "unrecognized arguments: --stepz=5; did you mean --steps?"),
         (["--resume"], 2, "holds no run"),
+        ([WORLD, "--device", "cuda"], 1, "--device: found cuda, but this torch has no CUDA device"),
     ],
 )
 def test_what_cannot_be_is_refused_with_a_sentence(
-    tmp_path: pathlib.Path, arguments: list[object], code: int, message: str
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: list[object],
+    code: int,
+    message: str,
 ) -> None:
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     done = call("train", "-o", tmp_path / "run", *arguments)
     assert message in done.stderr and "Traceback" not in done.stderr
     assert done.returncode == code
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    "place, message",
+    [
+        ("file", "is a file, expected a folder or nothing; give another -o"),
+        ("file/run", "cannot make the folder: Not a directory; give another -o"),
+    ],
+)
+def test_a_folder_that_cannot_be_is_refused_before_ranks_start(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: Any, place: str, message: str
+) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    monkeypatch.setattr(train, "launch", lambda *_: pytest.fail("ranks have started"))
+    assert train.main([str(WORLD), "-o", str(tmp_path / place), "--preset", "quick"]) == 2
+    assert capsys.readouterr().err == f"galactic.train: {tmp_path / place}: {message}\n"
+    # As a rank of torchrun, which has no such launcher.
+    done = call("train", WORLD, "-o", tmp_path / place, *SMALL, "--steps", UPDATE)
+    assert (
+        done.returncode == 2 and done.stderr == f"galactic.train: {tmp_path / place}: {message}\n"
+    )
+
+
+def test_the_folder_is_only_tried(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was there stays, what was not is not."""
+    monkeypatch.setattr(train, "launch", lambda *_: 0)
+    (tmp_path / "here").mkdir()
+    for place in ("here", "here/some/run"):
+        assert train.main([str(WORLD), "-o", str(tmp_path / place)]) == 0
+        assert [one.name for one in tmp_path.rglob("*")] == ["here"]
 
 
 def test_a_run_is_not_written_over_nor_turned_into_another(tmp_path: pathlib.Path) -> None:
@@ -229,7 +266,16 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     assert begun_head.bias[-1] - begun_head.bias[-2] == checkpoint.NEW_TERMINATE_LOGIT
     blind = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation", BLIND,
                  "--start-from", pick / "best.pt")  # fmt: skip
-    assert blind.returncode == 3 and "does not fit this run: parts: found" in blind.stderr
+    fault = (
+        "does not fit this run: observations: the run lacks bump, laser, geodesic; give this run"
+    )
+    assert blind.returncode == 3 and fault in blind.stderr
+    short = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation",
+                 "laser-beams=8 target-up bump=false", "--start-from", pick / "best.pt")  # fmt: skip
+    fault = (
+        "observations: the run lacks bump and the policy lacks target_up and laser has 48 numbers "
+    )
+    assert short.returncode == 3 and fault + "in the policy and 16 in the run;" in short.stderr
     wide = call("train", WORLD, "-o", tmp_path / "wide", *small, "--width", "64",
                 "--start-from", pick / "best.pt")  # fmt: skip
     assert wide.returncode == 3 and "width: found 128, expected 64" in wide.stderr
