@@ -36,4 +36,7 @@ namespace py = pybind11;
 /// The same options as keywords with their values, those of the option table.
 [[nodiscard]] py::dict keywordsOf(const SimulationOptions& options);
 
+/// Throws the TypeError of a keyword that is none of `known`, with the nearest of them.
+[[noreturn]] void refuseKeyword(const std::string& keyword, const std::vector<std::string>& known);
+
 }  // namespace galactic::python
