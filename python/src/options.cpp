@@ -158,6 +158,18 @@ std::vector<OptionText> taskTextsOf(const py::dict& keywords) {
   return texts;
 }
 
+py::dict keywordsOf(const std::vector<OptionText>& task_texts) {
+  SimulationOptions options;
+  (void)setOptions(task_texts, OptionScope::kTask, options);
+  const py::dict all = keywordsOf(options);
+  py::dict keywords;
+  for (const OptionText& text : task_texts) {
+    const py::str name(underscored(text.name));
+    keywords[name] = all[name];
+  }
+  return keywords;
+}
+
 py::dict keywordsOf(const SimulationOptions& options) {
   py::dict keywords;
   for (const OptionText& option : listOptions(options)) {

@@ -18,7 +18,8 @@ from typing import Any
 import pytest
 import torch
 
-from galactic import evaluate, train
+import galactic
+from galactic import evaluate, export, train
 from galactic.learning import checkpoint
 from galactic.learning.reports.curves import read_curves
 
@@ -282,6 +283,22 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     assert not (tmp_path / "blind").exists() and not (tmp_path / "wide").exists()
     resumed = call("train", "-o", rearrange, "--resume", "--start-from", pick / "best.pt")
     assert resumed.returncode == 1 and "leave them out" in resumed.stderr
+
+
+def test_a_policy_pack_knows_the_options_of_its_env(tmp_path: pathlib.Path) -> None:
+    assert call("train", WORLD, "-o", tmp_path / "run", *SMALL, "--steps", UPDATE).returncode == 0
+    pack = tmp_path / "policy.pack"
+    assert export.main([str(tmp_path / "run" / "best.pt"), "-o", str(pack)]) == 0
+    policy = galactic.LearnedPolicy(pack, 4, deterministic=True)
+    # Numbers, words and truth values.
+    some = {"task": "pick", "laser_beams": 24, "laser_range": 4, "bump": True, "episode_steps": 200}
+    assert some.items() <= policy.options.items()
+    homes = galactic.VectorEnv(HELD_OUT, 4, **policy.options)
+    observations, _ = homes.reset()
+    homes.step(policy.act(observations))
+    sizes = [(n, one.stop - one.start) for n, one in homes.simulators[0].observation_parts.items()]
+    assert policy.observation == sizes
+    assert policy.options.items() <= homes.simulators[0].options.items()
 
 
 def test_an_evaluation_repeats_itself(tmp_path: pathlib.Path) -> None:
