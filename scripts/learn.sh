@@ -67,9 +67,8 @@ stage() {
 }
 
 learn_to_rearrange() {
-  local senses="laser-beams=24 laser-height=0.25 laser-second-height=0.8 laser-range=4 bump geodesic"
-  local pay="geodesic-weight=1 bump-penalty=0.03"
-  local rearrange="task=rearrange observe-current target-goal target-up $senses $pay"
+  # The laser, the other senses and what they pay are the preset's.
+  local rearrange="task=rearrange episode-steps=500 observe-current target-goal target-up"
   stage 1 "to carry. Away from the goal the hand keeps the target; to let go there costs little" \
     "no-terminate safe-drop drop-penalty=0.05" --steps 16e6 --target-kl 0.01
   stage 2 "to say when it is done" "safe-drop drop-penalty=0.5" --steps 8e6 --target-kl 0.01 \

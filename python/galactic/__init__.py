@@ -2,22 +2,32 @@
 
 World opens packs, Simulator steps a batch of environments, Renderer draws them, VectorEnv is
 Gymnasium's vector environment over them, LearnedPolicy plays policy packs, PlanningScene answers
-planners. docs/python.md has the
-tour.
+planners. docs/python.md has the tour.
 """
 
-from galactic._core import (
-    EnvState,
-    EpisodeEnd,
-    ErrorCode,
-    LearnedPolicy,
-    PlanningScene,
-    Pose,
-    Renderer,
-    Simulator,
-    World,
-    __version__,
-)
+import sys
+
+try:
+    from galactic._core import (
+        EnvState,
+        EpisodeEnd,
+        ErrorCode,
+        LearnedPolicy,
+        PlanningScene,
+        Pose,
+        Renderer,
+        Simulator,
+        World,
+        __version__,
+    )
+except ModuleNotFoundError as error:
+    if error.name != "galactic._core":
+        raise
+    raise ModuleNotFoundError(
+        f"galactic has no compiled module for Python {sys.version_info[0]}.{sys.version_info[1]}; build "
+        "it: cmake --build --preset release --target galactic_python (docs/python.md)",
+        name=error.name,
+    ) from None
 from galactic.errors import Error
 from galactic.vector_env import VectorEnv
 

@@ -17,7 +17,7 @@ import galactic
 from galactic.learning import checkpoint, evaluation
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
-from galactic.learning.distributed import Group
+from galactic.learning.distributed import Group, require_device
 from galactic.learning.homes import Homes
 from galactic.learning.launch import launch
 from galactic.learning.networks import Policy
@@ -90,13 +90,15 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     options = make_parser().parse_args(given)
 
     def train() -> int:
+        require_device(options.device)
         run = _resumed_run(options) if options.resume else _new_run(options)
         if "RANK" not in os.environ:
+            checkpoint.require_folder(options.out)
             return launch(run.settings.ranks, [sys.executable, "-m", "galactic.train", *given])
         group = Group.join(options.device)
         try:
             work = functools.partial(_train, run, options, group)
-            return told("galactic.train", work, group.is_first_to_say)
+            return told("galactic.train", work, group.may_tell)
         finally:
             group.leave()
 
@@ -123,10 +125,7 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         )
     # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
     group.wait_for_all()
-    if group.rank == 0:
-        folder.mkdir(parents=True, exist_ok=True)
-        _write_run(run, folder)
-    group.wait_for_all()
+    group.raise_on_all(_begin_folder(run, folder) if group.rank == 0 else None)
     if options.resume:
         trainer.progress.say(f"going on after {trainer.steps:,} steps")
     else:
@@ -189,6 +188,17 @@ def _read_run(file: pathlib.Path) -> Run:
             Settings.from_dict(run["settings"]),
             pathlib.Path(run["start_from"]) if run["start_from"] else None,
         )
+
+
+def _begin_folder(run: Run, folder: pathlib.Path) -> Optional[Exception]:
+    """Makes the folder of a run; why that is impossible."""
+    try:
+        checkpoint.require_folder(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        _write_run(run, folder)
+    except (galactic.Error, OSError) as error:
+        return error
+    return None
 
 
 def _write_run(run: Run, folder: pathlib.Path) -> None:

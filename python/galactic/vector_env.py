@@ -39,6 +39,8 @@ Paths = Union[str, os.PathLike, Sequence[Union[str, os.PathLike]]]
 #: Places for the results of one step: see VectorEnv.step.
 Row = Mapping[str, NDArray[Any]]
 
+_OF_THE_PAPER = 'a dictionary of "continuous" and "discrete": actions="paper"'
+
 
 class VectorEnv(_Base):
     """`num_envs` environments of one world, stepped together: Gymnasium 1.x's vector API.
@@ -268,8 +270,7 @@ class VectorEnv(_Base):
 
         Raises as step() does, and nothing is under way then.
         """
-        if self._pending[half] is not None:
-            raise RuntimeError(f"half {half} is under way; call recv({half}) first")
+        self._require_idle(half)
         envs = self.num_envs // self.halves
         rows = self._action_rows(actions, envs)
         self._check_out(out, envs)
@@ -321,7 +322,8 @@ class VectorEnv(_Base):
             raise
 
     def close(self, **kwargs: Any) -> None:
-        """Waits for what is under way. What was returned stays valid."""
+        """Waits for what is under way, which recv() still returns. What was returned stays valid;
+        all else raises RuntimeError from now on."""
         if not self.closed:
             for thread in self._threads:
                 thread.shutdown()
@@ -332,8 +334,12 @@ class VectorEnv(_Base):
         self._pending[half] = step
         return step
 
-    def _require_idle(self) -> None:
-        busy = [half for half, pending in enumerate(self._pending) if pending is not None]
+    def _require_idle(self, *halves: int) -> None:
+        """Raises RuntimeError where these halves, or all, cannot begin anything."""
+        if self.closed:
+            raise RuntimeError("this env is closed; make another one")
+        asked = halves or range(self.halves)
+        busy = [half for half in asked if self._pending[half] is not None]
         if busy:
             raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
 
@@ -346,6 +352,12 @@ class VectorEnv(_Base):
         count = self._halves[0].simulator.action_count
         if self._actions == "box":
             return _rows_of("actions", actions, (envs, count))
+        if not isinstance(actions, Mapping):
+            raise TypeError(
+                f"actions has the type {type(actions).__name__}, expected {_OF_THE_PAPER}"
+            )
+        if not {"continuous", "discrete"} <= actions.keys():
+            raise ValueError(f"actions has {list(actions)}, expected {_OF_THE_PAPER}")
         moves = _rows_of("continuous", actions["continuous"], (envs, count - 2))
         return np.hstack([moves, _rows_of("discrete", actions["discrete"], (envs, 2))])
 

@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <optional>
@@ -25,9 +26,15 @@ std::string underscored(std::string name) {
   return name;
 }
 
+/// Numpy's truth values are no Python ones, but pass for whole numbers.
+bool isTruth(const py::handle& value) {
+  return py::isinstance<py::bool_>(value) ||
+         py::isinstance(value, py::module_::import("numpy").attr("bool_"));
+}
+
 /// A value as galactic-run reads it.
 std::string textOf(const std::string& keyword, const py::handle& value) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (isTruth(value)) return truthOf(keyword.c_str(), value) ? "true" : "false";
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (PyIndex_Check(value.ptr()) != 0) {
     return py::str(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())));
@@ -47,18 +54,14 @@ py::object valueOf(const OptionText& option) {
   return is_whole ? py::object(py::int_(text)) : py::object(py::float_(text));
 }
 
-[[noreturn]] void refuseKeyword(const std::string& keyword) {
-  py::list known;
-  for (const std::string& name : optionNames(OptionScope::kTyped)) known.append(underscored(name));
-  known.append("threads");
-  known.append("body_transforms");
-  known.append("auto_reset");
-  const py::list near = py::module_::import("difflib").attr("get_close_matches")(keyword, known, 1);
-  const std::string hint =
-      near.empty()
-          ? fmt::format("the options are {}", py::str(", ").attr("join")(known).cast<std::string>())
-          : fmt::format("did you mean {}?", near[0].cast<std::string>());
-  throw py::type_error(fmt::format("there is no option {}; {}", keyword, hint));
+/// The names that optionsOf() takes.
+std::vector<std::string> knownKeywords() {
+  std::vector<std::string> known;
+  for (const std::string& name : optionNames(OptionScope::kTyped)) {
+    known.push_back(underscored(name));
+  }
+  known.insert(known.end(), {"threads", "body_transforms", "auto_reset"});
+  return known;
 }
 
 [[noreturn]] void refuseValue(const char* name, const py::handle& value,
@@ -96,7 +99,7 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
   const std::optional<OptionFault> fault = setOptions(texts, OptionScope::kTyped, options);
   if (!fault) return texts;
   const OptionText& text = texts[fault->index];
-  if (fault->wanted.empty()) refuseKeyword(underscored(text.name));
+  if (fault->wanted.empty()) refuseKeyword(underscored(text.name), knownKeywords());
   throw Refusal{{ErrorCode::kInvalidInput, underscored(text.name),
                  fmt::format("is {}, expected {}", text.value, fault->wanted)}};
 }
@@ -155,12 +158,34 @@ std::vector<OptionText> taskTextsOf(const py::dict& keywords) {
   return texts;
 }
 
+py::dict keywordsOf(const std::vector<OptionText>& task_texts) {
+  SimulationOptions options;
+  (void)setOptions(task_texts, OptionScope::kTask, options);
+  const py::dict all = keywordsOf(options);
+  py::dict keywords;
+  for (const OptionText& text : task_texts) {
+    const py::str name(underscored(text.name));
+    keywords[name] = all[name];
+  }
+  return keywords;
+}
+
 py::dict keywordsOf(const SimulationOptions& options) {
   py::dict keywords;
   for (const OptionText& option : listOptions(options)) {
     keywords[underscored(option.name).c_str()] = valueOf(option);
   }
   return keywords;
+}
+
+void refuseKeyword(const std::string& keyword, const std::vector<std::string>& known) {
+  const py::list names = py::cast(known);
+  const py::list near = py::module_::import("difflib").attr("get_close_matches")(keyword, names, 1);
+  const std::string hint =
+      near.empty()
+          ? fmt::format("the options are {}", py::str(", ").attr("join")(names).cast<std::string>())
+          : fmt::format("did you mean {}?", near[0].cast<std::string>());
+  throw py::type_error(fmt::format("there is no option {}; {}", keyword, hint));
 }
 
 }  // namespace galactic::python

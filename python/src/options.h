@@ -33,7 +33,13 @@ namespace py = pybind11;
 /// another value than the default or name themselves, in the order of the table.
 [[nodiscard]] std::vector<OptionText> taskTextsOf(const py::dict& keywords);
 
-/// The same options as keywords with their values, those of the option table.
+/// Such texts as keywords with their values.
+[[nodiscard]] py::dict keywordsOf(const std::vector<OptionText>& task_texts);
+
+/// All options of the table as keywords with their values.
 [[nodiscard]] py::dict keywordsOf(const SimulationOptions& options);
+
+/// Throws the TypeError of a keyword that is none of `known`, with the nearest of them.
+[[noreturn]] void refuseKeyword(const std::string& keyword, const std::vector<std::string>& known);
 
 }  // namespace galactic::python

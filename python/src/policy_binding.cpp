@@ -295,6 +295,9 @@ depth         [envs, height, width] float32, meters)")
       .def_property_readonly(
           "robot", [](const PlayedPolicy& p) { return p.needs().robot; },
           "Name of the robot that it moves; empty: any.")
+      .def_property_readonly(
+          "options", [](const PlayedPolicy& p) { return keywordsOf(p.needs().options); },
+          "The options of its training's simulation, as keywords of Simulator and VectorEnv.")
       .def_property_readonly("observation", &observationOf,
                              "Names and sizes of the parts that it reads, in order.")
       .def_property_readonly("image_size", &imageSizeOf,

@@ -2,8 +2,13 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "bindings.h"
 #include "dlpack.h"
@@ -42,40 +47,44 @@ std::uint32_t edgeOf(const char* name, const py::handle& value) {
   return static_cast<std::uint32_t>(wholeOf(name, value, 1, kLargestImage));
 }
 
+using Keyword = std::pair<std::string_view, void (*)(CameraOptions&, const py::handle&)>;
+
+/// What takes the value of each keyword of Renderer.
+constexpr Keyword kKeywords[] = {
+    {"width", [](CameraOptions& o, const py::handle& v) { o.render.width = edgeOf("width", v); }},
+    {"height",
+     [](CameraOptions& o, const py::handle& v) { o.render.height = edgeOf("height", v); }},
+    {"color", [](CameraOptions& o, const py::handle& v) { o.render.color = colorOf(v); }},
+    {"depth", [](CameraOptions& o, const py::handle& v) { o.render.depth = truthOf("depth", v); }},
+    {"semantics",
+     [](CameraOptions& o, const py::handle& v) { o.render.semantics = truthOf("semantics", v); }},
+    {"camera",
+     [](CameraOptions& o, const py::handle& v) {
+       o.camera.name = wordOf("camera", v, "head, follow, top or a link");
+     }},
+    {"fov_degrees",
+     [](CameraOptions& o, const py::handle& v) {
+       o.camera.fov_degrees = static_cast<float>(numberOf("fov_degrees", v));
+     }},
+    {"backend", [](CameraOptions& o, const py::handle& v) { o.render.backend = backendOf(v); }},
+    {"device", [](CameraOptions& o, const py::handle& v) { o.render.device = deviceOf(v); }},
+    {"threads", [](CameraOptions& o, const py::handle& v) { o.render.threads = threadsOf(v); }},
+};
+
 /// The keywords of Renderer, with their defaults.
 CameraOptions optionsFrom(const py::kwargs& keywords) {
   CameraOptions options;
-  RenderOptions& render = options.render;
-  render.color = ColorFormat::kRgb8;
+  options.render.color = ColorFormat::kRgb8;
   options.camera = {.name = "head", .option = "camera", .fov_option = "fov_degrees"};
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
-    if (name == "width") {
-      render.width = edgeOf("width", value);
-    } else if (name == "height") {
-      render.height = edgeOf("height", value);
-    } else if (name == "color") {
-      render.color = colorOf(value);
-    } else if (name == "depth") {
-      render.depth = truthOf("depth", value);
-    } else if (name == "semantics") {
-      render.semantics = truthOf("semantics", value);
-    } else if (name == "camera") {
-      options.camera.name = wordOf("camera", value, "head, follow, top or a link");
-    } else if (name == "fov_degrees") {
-      options.camera.fov_degrees = static_cast<float>(numberOf("fov_degrees", value));
-    } else if (name == "backend") {
-      render.backend = backendOf(value);
-    } else if (name == "device") {
-      render.device = deviceOf(value);
-    } else if (name == "threads") {
-      render.threads = threadsOf(value);
-    } else {
-      throw py::type_error(fmt::format(
-          "there is no option {}; the options are width, height, color, depth, semantics, camera, "
-          "fov_degrees, backend, device and threads",
-          name));
+    const auto* known = std::ranges::find(kKeywords, std::string_view(name), &Keyword::first);
+    if (known == std::end(kKeywords)) {
+      std::vector<std::string> names;
+      for (const auto& [one, take] : kKeywords) names.emplace_back(one);
+      refuseKeyword(name, names);
     }
+    known->second(options, value);
   }
   return options;
 }

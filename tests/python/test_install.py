@@ -1,6 +1,7 @@
 """cmake --install puts the package where an interpreter of the prefix finds it."""
 
 import os
+import pathlib
 import subprocess
 import sys
 
@@ -21,3 +22,17 @@ def test_below_the_prefix(tmp_path, world_path):
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(str(package))
+
+
+def test_a_package_that_is_not_built_says_what_to_build(tmp_path):
+    """As CMake leaves it before the target is built."""
+    sources = pathlib.Path(os.environ["GALACTIC_SOURCE_DIR"]) / "python" / "galactic"
+    (tmp_path / "galactic").symlink_to(sources)
+    command = [sys.executable, "-B", "-c", "import galactic"]
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True)
+    version = "{}.{}".format(*sys.version_info)
+    assert done.stderr.splitlines()[-1] == (
+        f"ModuleNotFoundError: galactic has no compiled module for Python {version}; build it: "
+        "cmake --build --preset release --target galactic_python (docs/python.md)"
+    )

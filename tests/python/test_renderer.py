@@ -114,7 +114,8 @@ def test_two_threads_cannot_use_one_renderer_at_once(world):
 @pytest.mark.parametrize(
     "options, error, message",
     [
-        ({"widht": 3}, TypeError, "there is no option widht; the options are width"),
+        ({"widht": 3}, TypeError, "there is no option widht; did you mean width?"),
+        ({"xyzzy": 3}, TypeError, "there is no option xyzzy; the options are width, height"),
         ({"width": 0}, Error, "width: is 0, expected a whole number from 1 to 4096"),
         ({"width": 128.0}, Error, "width: is 128.0, expected a whole number from 1 to 4096"),
         ({"height": -3}, Error, "height: is -3, expected a whole number from 1 to 4096"),

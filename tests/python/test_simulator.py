@@ -241,6 +241,8 @@ def test_options_are_those_of_the_option_table(world):
         threads=1,
         task="pick",
         no_distractors=True,
+        safe_drop=np.bool_(True),
+        target_up=np.bool_(False),
         slide="published",
         slide_step=0.25,
         episode_steps=np.int64(9),
@@ -250,6 +252,7 @@ def test_options_are_those_of_the_option_table(world):
     options = simulator.options
     assert options["task"] == "pick"
     assert options["no_distractors"] is True
+    assert (options["safe_drop"], options["target_up"]) == (True, False)
     assert (options["slide_direction"], options["slide_attempts"]) == ("towards-base", 5)
     assert (options["slide_step"], options["episode_steps"]) == (0.25, 9)
     assert (options["success_reward"], options["order"]) == (2.5, "shuffled")

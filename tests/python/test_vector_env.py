@@ -388,7 +388,26 @@ def test_actions_of_the_paper_are_refused_in_other_shapes(world):
     for name, wrong in (("continuous", np.zeros(6)), ("discrete", np.zeros((ENVS, 1)))):
         with pytest.raises(ValueError, match=f"{name} has the shape"):
             env.step({**right, name: wrong})
+    wanted = 'expected a dictionary of "continuous" and "discrete": actions="paper"'
+    with pytest.raises(TypeError, match=f"actions has the type ndarray, {wanted}"):
+        env.step(np.zeros((ENVS, 8)))
+    with pytest.raises(ValueError, match=rf"actions has \['continuous'\], {wanted}"):
+        env.step({"continuous": right["continuous"]})
     env.step(right)
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_a_closed_env_says_so(world, draw_actions, halves):
+    env = VectorEnv(world, ENVS, halves=halves, **OPTIONS)
+    half = draw_actions(ENVS // halves, 8)
+    env.send(half, 0)
+    env.close()
+    # What was under way is done.
+    assert env.recv(0)[0].shape == (ENVS // halves, 23)
+    calls = [env.reset, env.observe, env.render, env.save_state, lambda: env.send(half, 0)]
+    for call in [*calls, lambda: env.step(draw_actions(ENVS, 8))]:
+        with pytest.raises(RuntimeError, match="this env is closed; make another one"):
+            call()
 
 
 def test_halves_are_idle_after_a_step_in_which_one_failed(world, draw_actions, monkeypatch):

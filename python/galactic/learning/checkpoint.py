@@ -202,14 +202,34 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
             parts=seen,
         )
     for name, wanted in ours.items():
-        if theirs[name] != wanted:
-            raise CheckpointError(
-                f"{file} does not fit this run: {name}: found {theirs[name]}, expected "
-                f"{wanted}; give this run the same network, simulation and robot, or start without it"
-            )
+        found = theirs[name]
+        if found == wanted:
+            continue
+        fault = f"{name}: found {found}, expected {wanted}"
+        if name == "parts":
+            fault = f"observations: {_difference(dict(found), dict(wanted))}"
+        raise CheckpointError(
+            f"{file} does not fit this run: {fault}; give this run the same network, simulation and "
+            "robot, or start without it"
+        )
     policy.load_state_dict(saved.policy.state_dict())
     if shape.decides_terminate and not saved.shape.decides_terminate:
         policy.action.start_terminate(NEW_TERMINATE_LOGIT)
+
+
+def _difference(policy: dict[str, int], run: dict[str, int]) -> str:
+    """What one observes and the other does not, by the sizes of the parts."""
+    faults = [
+        f"{who} lacks {', '.join(name for name in has if name not in lacks)}"
+        for who, lacks, has in (("the run", run, policy), ("the policy", policy, run))
+        if has.keys() - lacks.keys()
+    ]
+    faults += [
+        f"{name} has {size} numbers in the policy and {run[name]} in the run"
+        for name, size in policy.items()
+        if run.get(name, size) != size
+    ]
+    return " and ".join(faults) or "the same in another order"
 
 
 def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str, Any]]:
@@ -254,6 +274,27 @@ def require_writable(file: pathlib.Path) -> None:
             str(file),
             f"cannot write the file: {error.strerror}; an existing file is left as it was",
         ) from None
+
+
+def require_folder(folder: pathlib.Path) -> None:
+    """Raises galactic.Error where a run could not keep its files in `folder`, and leaves the disk as it
+    is: before there is work that would be lost."""
+    remedy = "give another -o"
+    missing: list[pathlib.Path] = []
+    try:
+        missing = [one for one in (folder, *folder.parents) if not one.exists()]
+        if not missing and not folder.is_dir():
+            message = f"is a file, expected a folder or nothing; {remedy}"
+            raise Error(ErrorCode.IO, str(folder), message)
+        folder.mkdir(parents=True, exist_ok=True)
+        require_writable(folder / "settings.json")
+    except OSError as error:
+        message = f"cannot make the folder: {error.strerror}; {remedy}"
+        raise Error(ErrorCode.IO, str(folder), message) from None
+    finally:
+        with contextlib.suppress(OSError):
+            for one in missing:
+                one.rmdir()
 
 
 def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: str = "wb") -> None:

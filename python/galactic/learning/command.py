@@ -78,24 +78,42 @@ def named_path(text: str) -> pathlib.Path:
 
 
 def told(
-    program: str, work: Callable[[], int], may_say: Callable[[str], bool] = lambda message: True
+    program: str,
+    work: Callable[[], int],
+    may_tell: Callable[[BaseException], bool] = lambda error: True,
 ) -> int:
     """Does `work` and returns its exit code; what it refuses becomes a line on stderr, unless it may
-    not be said, and a code."""
+    not be told, and a code."""
     try:
         return work()
-    except SettingsError as error:
-        code, message = COMMAND_LINE, f"command line: {error}"
-    except CheckpointError as error:
-        code, message = INVALID_INPUT, str(error)
-    except galactic.Error as error:
-        code, message = int(error.code), str(error)
-    except OSError as error:
-        code, message = INPUT_OUTPUT, str(error)
-    except (ArithmeticError, RankLost) as error:
-        code, message = INTERNAL, str(error)
-    except KeyboardInterrupt:
-        code, message = INTERRUPTED, "interrupted"
-    if may_say(message):
-        print(f"{program}: {message}", file=sys.stderr)
-    return code
+    except _REFUSALS as error:
+        code, message = _told_as(error)
+        if may_tell(error):
+            print(f"{program}: {message}", file=sys.stderr)
+        return code
+
+
+_REFUSALS = (
+    SettingsError,
+    CheckpointError,
+    galactic.Error,
+    OSError,
+    ArithmeticError,
+    RankLost,
+    KeyboardInterrupt,
+)
+
+
+def _told_as(error: BaseException) -> tuple[int, str]:
+    """Exit code and sentence."""
+    if isinstance(error, SettingsError):
+        return COMMAND_LINE, f"command line: {error}"
+    if isinstance(error, CheckpointError):
+        return INVALID_INPUT, str(error)
+    if isinstance(error, galactic.Error):
+        return int(error.code), str(error)
+    if isinstance(error, OSError):
+        return INPUT_OUTPUT, str(error)
+    if isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED, "interrupted"
+    return INTERNAL, str(error)

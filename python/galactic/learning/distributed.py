@@ -14,9 +14,17 @@ import torch.distributed
 from torch import Tensor
 from torch.distributed.rendezvous import rendezvous
 
+from galactic.learning.settings import SettingsError
+
 
 class RankLost(Exception):
     """Another rank has ended: what it said is above."""
+
+
+def require_device(name: str) -> None:
+    """Raises SettingsError where torch lacks the device: auto, cpu or cuda."""
+    if name == "cuda" and not torch.cuda.is_available():
+        raise SettingsError("--device: found cuda, but this torch has no CUDA device; take cpu")
 
 
 class Group:
@@ -94,14 +102,16 @@ class Group:
             if one is not None:
                 raise one
 
-    def is_first_to_say(self, text: str) -> bool:
-        """Whether no other rank has asked this of the same text: what all of them find out is said
-        once. True where the others cannot be asked."""
+    def may_tell(self, error: BaseException) -> bool:
+        """Whether this rank tells its user of `error`: what all of them find out is told once, and that
+        another rank has ended only where none has told why. True where the others cannot be asked.
+        """
         if self._store is None:
             return True
-        key = "said/" + hashlib.sha256(text.encode()).hexdigest()
+        key = "told/" + hashlib.sha256(str(error).encode()).hexdigest()
         try:
-            return int(self._store.add(key, 1)) == 1
+            is_first = int(self._store.add("told", 1)) == 1
+            return is_first if isinstance(error, RankLost) else int(self._store.add(key, 1)) == 1
         except RuntimeError:
             return True
 

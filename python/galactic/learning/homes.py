@@ -10,7 +10,7 @@ import torch
 import galactic
 from galactic.learning.environments import Observation, Step, Timeouts
 from galactic.learning.networks import IMAGE_SIZE
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.settings import Settings, SettingsError, simulation_keyword
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
 _CHOSEN_BY_TRAINER = ("envs", "seed", "rank", "ranks", "threads", "order")
@@ -21,8 +21,8 @@ def simulation_keywords(text: str) -> dict[str, Any]:
     {"task": "pick", "no_distractors": True}."""
     keywords: dict[str, Any] = {}
     for word in text.split():
-        name, equals, value = word.partition("=")
-        keyword = name.lstrip("-").replace("-", "_")
+        _, equals, value = word.partition("=")
+        keyword = simulation_keyword(word)
         if keyword in _CHOSEN_BY_TRAINER:
             raise SettingsError(
                 f"{keyword} is not for --simulation; the trainer chooses it (see --envs, --seed)"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any, Mapping
 
-from galactic.learning.settings import Settings, SettingsError, did_you_mean
+from galactic.learning.settings import Settings, SettingsError, did_you_mean, overriding
 
 PRESETS: Mapping[str, Mapping[str, Any]] = {
     # Table 3 of the paper, which are the defaults.
@@ -37,8 +37,9 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
 
 
 def preset(name: str, **changes: Any) -> Settings:
-    """The settings of a preset, with changes."""
+    """The settings of a preset, with changes: see overriding()."""
     if name not in PRESETS:
         hint = did_you_mean(name, PRESETS) or f"; the presets are {', '.join(PRESETS)}"
         raise SettingsError(f'"{name}" is not a preset{hint}')
-    return dataclasses.replace(Settings(), **{**PRESETS[name], **changes})
+    chosen = Settings(**PRESETS[name])
+    return dataclasses.replace(chosen, **overriding(chosen, changes))

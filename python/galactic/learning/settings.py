@@ -68,7 +68,8 @@ class Settings:
     simulation: str = _setting(
         "",
         "Run",
-        "options of the simulation, as NAME=VALUE separated by spaces (those of galactic-run)",
+        "options of the simulation, as NAME=VALUE separated by spaces (those of galactic-run); each "
+        "overrides the preset's of its name",
     )
     terminate: str = _setting(
         "auto",
@@ -379,8 +380,26 @@ def _real(text: str, wanted: str = "a number") -> float:
     raise argparse.ArgumentTypeError(f'found "{text}", expected {wanted}')
 
 
+def simulation_keyword(word: str) -> str:
+    """The keyword of galactic.Simulator that a word of Settings.simulation names: no_terminate of
+    "no-terminate" and of "no-terminate=false"."""
+    return word.partition("=")[0].lstrip("-").replace("-", "_")
+
+
+def overriding(before: Settings, given: Mapping[str, Any]) -> dict[str, Any]:
+    """What `given` sets over the settings `before`. Of the options of the simulation, too, it changes
+    those that it names."""
+    if "simulation" not in given:
+        return dict(given)
+    words = f"{before.simulation} {given['simulation']}".split()
+    # The last word of a name counts, where the first one stood.
+    latest = {simulation_keyword(word): word for word in words}
+    return {**given, "simulation": " ".join(latest.values())}
+
+
 def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
     """The settings of a resumed run. Rejects those that would make it another run."""
+    given = overriding(before, given)
     fields = {field.name: field for field in dataclasses.fields(Settings)}
     for name, value in given.items():
         old = getattr(before, name)

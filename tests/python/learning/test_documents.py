@@ -8,6 +8,7 @@ import pathlib
 
 import pytest
 
+from galactic.learning.homes import simulation_keywords
 from galactic.learning.presets import PRESETS, preset
 from galactic.learning.settings import (
     Settings,
@@ -66,8 +67,23 @@ def test_presets_are_settings_that_can_be() -> None:
         Settings.from_dict({"color": 1})
 
 
+def test_an_option_of_the_simulation_overrides_the_one_of_its_name() -> None:
+    chosen = preset("quick", simulation="--task=rearrange bump=false target-up target-up=false")
+    before, after = PRESETS["quick"]["simulation"].split(), chosen.simulation.split()
+    assert len(before) == 10 and before[0] == "task=pick" and before[8] == "bump"
+    assert after == ["--task=rearrange", *before[1:8], "bump=false", before[9], "target-up=false"]
+    assert simulation_keywords(chosen.simulation)["bump"] == "false"
+    # The settings of a run are complete, whatever a later version's preset has.
+    assert Settings.from_dict(chosen.to_dict()) == chosen
+    assert preset("quick", simulation="").simulation == PRESETS["quick"]["simulation"]
+    assert preset("paper", simulation="task=pick").simulation == "task=pick"
+
+
 def test_a_resumed_run_stays_what_it_is() -> None:
-    before = preset("quick")
+    before = preset("quick", simulation="task=rearrange")
+    assert resumed(before, {"simulation": "task=rearrange bump"}) == before
+    with pytest.raises(SettingsError, match="cannot continue with .* target-up; begin a new one"):
+        resumed(before, {"simulation": "target-up"})
     assert resumed(before, {"steps": 7, "gamma": before.gamma}).steps == 7
     with pytest.raises(SettingsError, match="cannot continue with 0.5; begin a new one"):
         resumed(before, {"gamma": 0.5})

@@ -182,6 +182,7 @@ def test_a_checkpoint_becomes_a_pack(tmp_path: pathlib.Path, capsys: Any) -> Non
     player = _core.LearnedPolicy(pack, 1)
     assert player.name == "picker"
     assert player.robot == ""
+    assert player.options == {"task": "pick", "no_distractors": True, "slide_attempts": 0}
     assert player.observation == PARTS
     assert player.image_size is None
     assert player.action_count == 11

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 import torch
+from torch.distributed import HashStore
 
 import galactic
 from galactic.learning import checkpoint
@@ -23,7 +24,7 @@ from galactic.learning.checkpoint import (
     load_policy,
     new_policy,
 )
-from galactic.learning.distributed import Group, Stragglers
+from galactic.learning.distributed import Group, RankLost, Stragglers
 from galactic.learning.launch import launch
 from galactic.learning.networks import PolicyShape
 from galactic.learning.reports.curves import read_curves
@@ -418,6 +419,21 @@ def test_the_page_of_the_curves_asks_for_nothing(tmp_path: pathlib.Path) -> None
     assert page.count("</script>") == 1 and "prefers-color-scheme: dark" in page
     with open(tmp_path / "curves.csv", encoding="utf-8") as file:
         assert len(list(csv.reader(file))) == 1 + 8
+
+
+def test_ranks_tell_once_what_went_wrong() -> None:
+    def ranks() -> list[Group]:
+        both, store = [Group(rank, 2, torch.device("cpu")) for rank in (0, 1)], HashStore()
+        for group in both:
+            group._store = store
+        return both
+
+    first, second = ranks()
+    assert first.may_tell(OSError("disk full")) and not second.may_tell(OSError("disk full"))
+    assert second.may_tell(OSError("no memory")) and not second.may_tell(RankLost("of the first"))
+    # One that ended without a word is missed, once.
+    first, second = ranks()
+    assert first.may_tell(RankLost("peer at 1")) and not second.may_tell(RankLost("peer at 2"))
 
 
 def run_ranks(ranks: int, *arguments: str) -> None:

@@ -13,11 +13,13 @@ import signal
 import subprocess
 import sys
 import time
+from typing import Any
 
 import pytest
 import torch
 
-from galactic import evaluate, train
+import galactic
+from galactic import evaluate, export, train
 from galactic.learning import checkpoint
 from galactic.learning.reports.curves import read_curves
 
@@ -27,6 +29,7 @@ SMALL_OF_ANY_RANKS = ["--preset", "quick", "--envs", "16", "--horizon", "8", "--
 SMALL = [*SMALL_OF_ANY_RANKS, "--ranks", "1"]
 UPDATE = 16 * 8
 PROGRAMS = {"train": train, "evaluate": evaluate}
+BLIND = "laser-beams=0 geodesic=false geodesic-weight=0 bump=false bump-penalty=0"
 SENSORS = "laser-beams=8 laser-noise=0.01 geodesic geodesic-weight=1 bump"
 TO_BE_CUT = [*SMALL, "--halves", "2", "--simulation", f"task=pick episode-steps=60 {SENSORS}",
              "--checkpoint-every", 10 * UPDATE, "--steps", 80 * UPDATE]  # fmt: skip
@@ -71,7 +74,7 @@ def test_a_policy_learns_what_chance_does_not(tmp_path: pathlib.Path) -> None:
     for what longer runs reach."""
     # Fewer envs than the preset, for more updates in fewer steps, and nothing that costs to sense.
     common = ["--preset", "quick", "--seed", "5", "--validation", HELD_OUT, "--envs", "128"]
-    common += ["--simulation", "task=pick episode-steps=200", "--final-log-std", "2"]
+    common += ["--simulation", BLIND, "--final-log-std", "2"]
     assert call("train", WORLD, "-o", tmp_path / "raw", *common, "--steps", "1").returncode == 0
     done = run("train", WORLD, "-o", tmp_path / "run", *common, "--steps", "800_000")
     assert done.returncode == 0, done.stderr
@@ -159,15 +162,51 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
         ([WORLD, "--stepz", "5"], 1, "unrecognized arguments: --stepz 5; did you mean --steps?"),
         ([WORLD, "--stepz=5"], 1, "unrecognized arguments: --stepz=5; did you mean --steps?"),
         (["--resume"], 2, "holds no run"),
+        ([WORLD, "--device", "cuda"], 1, "--device: found cuda, but this torch has no CUDA device"),
     ],
 )
 def test_what_cannot_be_is_refused_with_a_sentence(
-    tmp_path: pathlib.Path, arguments: list[object], code: int, message: str
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: list[object],
+    code: int,
+    message: str,
 ) -> None:
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     done = call("train", "-o", tmp_path / "run", *arguments)
     assert message in done.stderr and "Traceback" not in done.stderr
     assert done.returncode == code
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    "place, message",
+    [
+        ("file", "is a file, expected a folder or nothing; give another -o"),
+        ("file/run", "cannot make the folder: Not a directory; give another -o"),
+    ],
+)
+def test_a_folder_that_cannot_be_is_refused_before_ranks_start(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: Any, place: str, message: str
+) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    monkeypatch.setattr(train, "launch", lambda *_: pytest.fail("ranks have started"))
+    assert train.main([str(WORLD), "-o", str(tmp_path / place), "--preset", "quick"]) == 2
+    assert capsys.readouterr().err == f"galactic.train: {tmp_path / place}: {message}\n"
+    # As a rank of torchrun, which has no such launcher.
+    done = call("train", WORLD, "-o", tmp_path / place, *SMALL, "--steps", UPDATE)
+    assert (
+        done.returncode == 2 and done.stderr == f"galactic.train: {tmp_path / place}: {message}\n"
+    )
+
+
+def test_the_folder_is_only_tried(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was there stays, what was not is not."""
+    monkeypatch.setattr(train, "launch", lambda *_: 0)
+    (tmp_path / "here").mkdir()
+    for place in ("here", "here/some/run"):
+        assert train.main([str(WORLD), "-o", str(tmp_path / place)]) == 0
+        assert [one.name for one in tmp_path.rglob("*")] == ["here"]
 
 
 def test_a_run_is_not_written_over_nor_turned_into_another(tmp_path: pathlib.Path) -> None:
@@ -213,10 +252,12 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     pick, rearrange = tmp_path / "pick", tmp_path / "rearrange"
     small = [*SMALL, "--steps", UPDATE, "--learning-rate", "0"]
     assert call("train", WORLD, "-o", pick, *small).returncode == 0
-    sensors = checkpoint.load_policy(pick / "best.pt").settings.simulation.replace("task=pick ", "")
-    other = [*small, "--simulation", f"task=rearrange {sensors}", "--start-from", pick / "best.pt"]
+    other = [*small, "--simulation", "task=rearrange", "--start-from", pick / "best.pt"]
     done = call("train", WORLD, "-o", rearrange, *other)
     assert done.returncode == 0, done.stderr
+    told = [json.loads((one / "settings.json").read_text()) for one in (pick, rearrange)]
+    before, after = (one["settings"]["simulation"] for one in told)
+    assert "laser-beams=24" in before and after == before.replace("=pick", "=rearrange")
     learned, begun = (checkpoint.load_policy(one / "best.pt").policy for one in (pick, rearrange))
     head, begun_head = learned.action.linear, begun.action.linear
     assert torch.equal(begun.encoder[0].weight, learned.encoder[0].weight)
@@ -224,15 +265,40 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     # Nobody decided to terminate before: the decision starts rare instead of even.
     assert begun_head.weight[-2:].count_nonzero() == 0 and head.weight[-2:].count_nonzero() > 0
     assert begun_head.bias[-1] - begun_head.bias[-2] == checkpoint.NEW_TERMINATE_LOGIT
-    blind = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation", "task=pick",
+    blind = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation", BLIND,
                  "--start-from", pick / "best.pt")  # fmt: skip
-    assert blind.returncode == 3 and "does not fit this run: parts: found" in blind.stderr
+    fault = (
+        "does not fit this run: observations: the run lacks bump, laser, geodesic; give this run"
+    )
+    assert blind.returncode == 3 and fault in blind.stderr
+    short = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation",
+                 "laser-beams=8 target-up bump=false", "--start-from", pick / "best.pt")  # fmt: skip
+    fault = (
+        "observations: the run lacks bump and the policy lacks target_up and laser has 48 numbers "
+    )
+    assert short.returncode == 3 and fault + "in the policy and 16 in the run;" in short.stderr
     wide = call("train", WORLD, "-o", tmp_path / "wide", *small, "--width", "64",
                 "--start-from", pick / "best.pt")  # fmt: skip
     assert wide.returncode == 3 and "width: found 128, expected 64" in wide.stderr
     assert not (tmp_path / "blind").exists() and not (tmp_path / "wide").exists()
     resumed = call("train", "-o", rearrange, "--resume", "--start-from", pick / "best.pt")
     assert resumed.returncode == 1 and "leave them out" in resumed.stderr
+
+
+def test_a_policy_pack_knows_the_options_of_its_env(tmp_path: pathlib.Path) -> None:
+    assert call("train", WORLD, "-o", tmp_path / "run", *SMALL, "--steps", UPDATE).returncode == 0
+    pack = tmp_path / "policy.pack"
+    assert export.main([str(tmp_path / "run" / "best.pt"), "-o", str(pack)]) == 0
+    policy = galactic.LearnedPolicy(pack, 4, deterministic=True)
+    # Numbers, words and truth values.
+    some = {"task": "pick", "laser_beams": 24, "laser_range": 4, "bump": True, "episode_steps": 200}
+    assert some.items() <= policy.options.items()
+    homes = galactic.VectorEnv(HELD_OUT, 4, **policy.options)
+    observations, _ = homes.reset()
+    homes.step(policy.act(observations))
+    sizes = [(n, one.stop - one.start) for n, one in homes.simulators[0].observation_parts.items()]
+    assert policy.observation == sizes
+    assert policy.options.items() <= homes.simulators[0].options.items()
 
 
 def test_an_evaluation_repeats_itself(tmp_path: pathlib.Path) -> None:
