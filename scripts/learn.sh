@@ -68,7 +68,7 @@ stage() {
 
 learn_to_rearrange() {
   # The laser, the other senses and what they pay are the preset's.
-  local rearrange="task=rearrange episode-steps=500 observe-current target-goal target-up"
+  local rearrange="task=rearrange episode-steps=500 observe-current target-goal target-up tilt-penalty=0.03"
   stage 1 "to carry. Away from the goal the hand keeps the target; to let go there costs little" \
     "no-terminate safe-drop drop-penalty=0.05" --steps 16e6 --target-kl 0.01
   stage 2 "to say when it is done" "safe-drop drop-penalty=0.5" --steps 8e6 --target-kl 0.01 \
