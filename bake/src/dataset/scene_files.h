@@ -27,7 +27,8 @@ struct SceneFile {
 /// SCENE.glb, hidden folders, and links to folders. Habitat takes each GLB without attributes for
 /// Z up, against glTF, and for the three it is: these have up = kZ.
 ///
-/// Fails with kIo where the folder cannot be read, and with kInvalidInput where there is no scene.
+/// Fails with kIo where the folder cannot be read, and with kInvalidInput where there is no scene,
+/// or the configuration of a scene dataset.
 [[nodiscard]] Result<std::vector<SceneFile>> findSceneFiles(const std::filesystem::path& folder);
 
 }  // namespace galactic::bake
