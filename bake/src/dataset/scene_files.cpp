@@ -118,11 +118,6 @@ void nameAll(const std::vector<std::vector<std::string>>& parts, std::vector<Sce
 }  // namespace
 
 Result<std::vector<SceneFile>> findSceneFiles(const fs::path& folder) {
-  if (const auto configs = filesIn(folder, kDatasetSuffix); !configs.empty()) {
-    return fail(ErrorCode::kInvalidInput, folder.string(),
-                fmt::format("is no folder of scans but that of a scene dataset; give its {}",
-                            configs.front().string()));
-  }
   std::map<std::string, Candidate> found;
   std::error_code error;
   search(folder, 0, found, error);

@@ -27,8 +27,7 @@ struct SceneFile {
 /// SCENE.glb, hidden folders, and links to folders. Habitat takes each GLB without attributes for
 /// Z up, against glTF, and for the three it is: these have up = kZ.
 ///
-/// Fails with kIo where the folder cannot be read, and with kInvalidInput where there is no scene,
-/// or the configuration of a scene dataset.
+/// Fails with kIo where the folder cannot be read, and with kInvalidInput where there is no scene.
 [[nodiscard]] Result<std::vector<SceneFile>> findSceneFiles(const std::filesystem::path& folder);
 
 }  // namespace galactic::bake

@@ -63,18 +63,6 @@ TEST(SceneFiles, AreNamedAfterTheirFoldersWhereTheirNamesSayLittle) {
               ElementsAre("a=a/a.glb Z", "a_2=a.glb Z"));
 }
 
-TEST(SceneFiles, AreNotThePartsOfADataset) {
-  const ScratchFolder folder;
-  static_cast<void>(folder.write("objects/door.glb", "a door"));
-  const auto config = folder.write("flats.scene_dataset_config.json", "{}");
-  const auto scenes = bake::findSceneFiles(folder.path());
-  ASSERT_FALSE(scenes);
-  EXPECT_EQ(scenes.error().code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(scenes.error().where, folder.path().string());
-  EXPECT_EQ(scenes.error().message,
-            "is no folder of scans but that of a scene dataset; give its " + config.string());
-}
-
 TEST(SceneFiles, OfNothingAreAnError) {
   const ScratchFolder folder;
   static_cast<void>(folder.write("readme.txt", "no scans"));
