@@ -227,7 +227,7 @@ TEST_F(PlanFaults, RefusesOutputsThatAreInputsOrNoPack) {
       {{"data/home.scene_dataset_config.json", "-o", "data/home.scene_dataset_config.json"},
        3,
        "is also an input"},
-      {{"w.toml", "-o", "new"}, 3, "--out: is \"new\", expected NAME.pack or an existing folder"},
+      {{"w.toml", "-o", "new"}, 3, "--out: is \"new\", expected NAME.pack, an existing folder"},
   };
   for (const Refusal& refusal : refusals) {
     SCOPED_TRACE(testing::PrintToString(refusal.arguments));
@@ -239,6 +239,19 @@ TEST_F(PlanFaults, RefusesOutputsThatAreInputsOrNoPack) {
   EXPECT_TRUE(content("data/home.scene_dataset_config.json") == config);
   EXPECT_TRUE(content("data/meshes/apartment.glb") == mesh);
   EXPECT_TRUE(content("w.toml") == recipe);
+}
+
+TEST_F(PlanFaults, TakesNoPartsOfADatasetForScans) {
+  const ProgramRun refused = run({"data", "--as", "dataset", "--list"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(refused.err,
+            "galactic-bake: data: is no folder of scans but that of a scene dataset; give its "
+            "data/home.scene_dataset_config.json\n");
+  EXPECT_EQ(run({"data", "--as", "dataset", "-o", "scans.pack"}).exit_code, 3);
+  EXPECT_FALSE(has("scans.pack"));
+  // Published scans may have a configuration, which lists none.
+  fs::remove_all(path("data/scenes"));
+  EXPECT_THAT(run({"data", "--as", "dataset", "--list"}).out, HasSubstr("apartment\n"));
 }
 
 TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
