@@ -241,19 +241,6 @@ TEST_F(PlanFaults, RefusesOutputsThatAreInputsOrNoPack) {
   EXPECT_TRUE(content("w.toml") == recipe);
 }
 
-TEST_F(PlanFaults, TakesNoPartsOfADatasetForScans) {
-  const ProgramRun refused = run({"data", "--as", "dataset", "--list"});
-  EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_EQ(refused.err,
-            "galactic-bake: data: is no folder of scans but that of a scene dataset; give its "
-            "data/home.scene_dataset_config.json\n");
-  EXPECT_EQ(run({"data", "--as", "dataset", "-o", "scans.pack"}).exit_code, 3);
-  EXPECT_FALSE(has("scans.pack"));
-  // Published scans may have a configuration, which lists none.
-  fs::remove_all(path("data/scenes"));
-  EXPECT_THAT(run({"data", "--as", "dataset", "--list"}).out, HasSubstr("apartment\n"));
-}
-
 TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
   const std::string scene = "[[scenes]]\nfiles = \"data/meshes/apartment.glb\"\n";
   write("twice.toml", scene + scene);

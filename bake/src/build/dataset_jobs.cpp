@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "build/pack_list.h"
-#include "dataset/config/dataset_paths.h"
 #include "dataset/mesh_library.h"
 #include "dataset/scene_dataset.h"
 #include "dataset/scene_files.h"
@@ -73,21 +72,8 @@ void addObjects(const SceneSurvey& survey, const DatasetJobs& dataset, PackList&
   }
 }
 
-/// The scans in a folder. Matterport3D has a configuration beside them, but only that of a dataset
-/// has scenes of its own, whose parts are no scans.
-Result<std::vector<SceneFile>> scansOf(const DatasetJobs& dataset) {
-  for (const auto& config : filesIn(dataset.input, kDatasetSuffix)) {
-    const auto read = SceneDataset::read(config, {});
-    if (!read || read->scenes().empty()) continue;
-    return fail(ErrorCode::kInvalidInput, dataset.input.string(),
-                fmt::format("is no folder of scans but that of a scene dataset; give its {}",
-                            config.string()));
-  }
-  return findSceneFiles(dataset.input);
-}
-
 Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
-  ASSIGN_OR_RETURN(const auto files, scansOf(dataset));
+  ASSIGN_OR_RETURN(const auto files, findSceneFiles(dataset.input));
   ASSIGN_OR_RETURN(const auto names, wantedScenes(namesOf(files), dataset.scenes));
   for (const SceneFile& file : files) {
     if (!std::ranges::binary_search(names, file.name)) continue;
@@ -151,7 +137,7 @@ void visitOptions(DatasetJobs& dataset, OptionVisitor& v) {
 
 Result<std::vector<std::string>> sceneNames(const DatasetJobs& dataset) {
   if (isFolder(dataset.input)) {
-    ASSIGN_OR_RETURN(const auto files, scansOf(dataset));
+    ASSIGN_OR_RETURN(const auto files, findSceneFiles(dataset.input));
     return wantedScenes(namesOf(files), dataset.scenes);
   }
   ASSIGN_OR_RETURN(
