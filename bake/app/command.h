@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "galactic/error.h"
 
 namespace galactic::bake {
+
+/// How the name of a scene dataset's configuration ends.
+inline constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
 
 /// How much to print.
 enum class Verbosity { kQuiet, kNormal, kVerbose };

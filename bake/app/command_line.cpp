@@ -22,7 +22,6 @@
 namespace galactic::bake {
 namespace {
 
-constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
 constexpr std::string_view kRecipeSuffix = ".toml";
 
 constexpr const char* kFooter =

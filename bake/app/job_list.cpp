@@ -16,12 +16,20 @@ bool isFolder(const fs::path& path) {
   return fs::is_directory(path, unknown);
 }
 
+bool isThere(const fs::path& path) {
+  std::error_code unknown;
+  return fs::exists(path, unknown);
+}
+
 /// The path without dots, and without the slash at its end.
 fs::path wholePath(const fs::path& path) {
   std::error_code unknown;
   const fs::path whole = fs::absolute(path, unknown).lexically_normal();
   return whole.has_filename() ? whole : whole.parent_path();
 }
+
+/// Whether it is a folder, or is to be one.
+bool namesFolder(const fs::path& path) { return !path.has_filename() || isFolder(path); }
 
 /// The name of the pack that is made of `input`, without its extension.
 fs::path packName(const Job& job, const fs::path& input) {
@@ -53,17 +61,40 @@ bool makesOnePack(const Job& job) {
          std::holds_alternative<EpisodeGenerationJob>(job);
 }
 
-/// Packs are inputs of episodes and worlds alone.
-Result<void> checkNoPacks(const BakeCommand& command, const Job& job) {
-  if (std::holds_alternative<WorldJob>(job) || std::holds_alternative<EpisodeGenerationJob>(job)) {
-    return {};
+/// Refuses an input of which no such job can be made, and says what its user may have meant; others
+/// are left to their reader, which knows best what is wrong.
+Result<void> checkInput(const fs::path& input, const Job& job) {
+  constexpr std::string_view kSceneSuffix = ".scene_instance.json";
+  const std::string file = input.filename().string();
+  if (isFolder(input)) {
+    if (!std::holds_alternative<SceneJob>(job)) return {};
+    return fail(ErrorCode::kIo, input.string(),
+                "is a folder; give a mesh in it, or add `as` object to bake the meshes in it as "
+                "objects, or `as` dataset to bake them as scans");
   }
-  for (const fs::path& input : command.inputs) {
-    if (input.extension() != ".pack" || isFolder(input)) continue;
+  if (file.ends_with(".pack")) {
     return fail(ErrorCode::kInvalidInput, input.string(),
                 "is a pack already; add `as` episodes to generate episodes in packs, or `as` world "
                 "to link them");
   }
+  const bool is_of_meshes =
+      std::holds_alternative<SceneJob>(job) || std::holds_alternative<ObjectJob>(job);
+  if (!is_of_meshes || !file.ends_with(".json") || !isThere(input)) return {};
+  if (!file.ends_with(kSceneSuffix)) {
+    return fail(ErrorCode::kUnsupported, input.string(),
+                "is no mesh but JSON; add `as` episodes if it holds published episodes");
+  }
+  return fail(ErrorCode::kUnsupported, input.string(),
+              fmt::format("is a scene of a dataset; give the dataset's NAME{}, with `scenes` {}",
+                          kDatasetSuffix, file.substr(0, file.size() - kSceneSuffix.size())));
+}
+
+/// Packs are inputs of episodes and worlds alone.
+Result<void> checkInputs(const BakeCommand& command, const Job& job) {
+  if (std::holds_alternative<WorldJob>(job) || std::holds_alternative<EpisodeGenerationJob>(job)) {
+    return {};
+  }
+  for (const fs::path& input : command.inputs) RETURN_IF_ERROR(checkInput(input, job));
   return {};
 }
 
@@ -74,7 +105,7 @@ JobList jobsOfFiles(const BakeCommand& command, const Job& job) {
   const auto add = [&](const fs::path& first, const std::vector<fs::path>& inputs) {
     fs::path name = packName(job, first);
     name += ".pack";
-    const bool is_folder = !is_one || isFolder(out);
+    const bool is_folder = !is_one || namesFolder(out);
     PackJob pack{.name = name.string(), .job = job, .output = name};
     if (!out.empty()) pack.output = is_folder ? out / name : out;
     setInputs(pack.job, inputs);
@@ -90,7 +121,6 @@ JobList jobsOfFiles(const BakeCommand& command, const Job& job) {
 
 /// "home" of home.scene_dataset_config.json, of home.toml and of the folder home.
 std::string worldName(const fs::path& input) {
-  constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
   const fs::path whole = wholePath(input);
   std::string name = whole.filename().string();
   if (isFolder(input)) return name;
@@ -99,24 +129,19 @@ std::string worldName(const fs::path& input) {
 }
 
 /// NAME.pack, in the folder or under the name that the command gives.
-Result<fs::path> worldPack(const BakeCommand& command) {
-  const std::string name = worldName(command.inputs.front());
+fs::path worldPack(const BakeCommand& command) {
   const fs::path& out = command.run.out;
-  if (!out.has_filename() || isFolder(out)) return out / (name + ".pack");
-  if (out.has_extension()) return out;
-  // The other packs go into a folder of this name.
-  return fail(ErrorCode::kInvalidInput, "out",
-              fmt::format("is \"{}\", expected NAME.pack or an existing folder", out.string()));
+  return namesFolder(out) ? out / (worldName(command.inputs.front()) + ".pack") : out;
 }
 
 }  // namespace
 
 Result<JobList> jobsOf(const BakeCommand& command) {
   if (const auto* job = std::get_if<Job>(&command.what)) {
-    RETURN_IF_ERROR(checkNoPacks(command, *job));
+    RETURN_IF_ERROR(checkInputs(command, *job));
     return jobsOfFiles(command, *job);
   }
-  ASSIGN_OR_RETURN(auto world, worldPack(command));
+  const fs::path world = worldPack(command);
   if (const auto* recipe = std::get_if<RecipeCommand>(&command.what)) {
     return jobsOfRecipe({.recipe = command.inputs.front(),
                          .data = recipe->data,

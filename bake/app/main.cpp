@@ -20,6 +20,7 @@
 #include "report.h"
 #include "support/out_of_memory.h"
 #include "support/output_files.h"
+#include "support/try.h"
 #include "terminal.h"
 
 namespace galactic::bake {
@@ -40,36 +41,52 @@ ReadLog namedFiles(const BakeCommand& command, const JobList& list) {
   return named;
 }
 
-/// Two outputs must not be one file, and none may replace an input or the options' file.
+/// The packs that `out` stands for: the world, or one for each input or for all.
+std::vector<fs::path> packsOfOut(const JobList& list) {
+  if (list.world) return {list.world->output};
+  std::vector<fs::path> packs;
+  for (const PackJob& pack : list.assets) packs.push_back(pack.output);
+  return packs;
+}
+
+/// Two outputs must not be one file, none may replace an input or the options' file, and a pack's
+/// name says that it is one.
 Result<void> checkOutputs(const BakeCommand& command, const JobList& list) {
   const ReadLog named = namedFiles(command, list);
   std::set<fs::path> outputs;
   const fs::path& report = command.run.report;
   if (!report.empty()) outputs.insert(report.lexically_normal());
-  if (auto checked = named.checkNotRead(report); !checked) return checked;
-  if (list.world) return named.checkNotRead(list.world->output);
-  for (const PackJob& pack : list.assets) {
-    if (auto checked = named.checkNotRead(pack.output); !checked) return checked;
-    if (outputs.insert(pack.output.lexically_normal()).second) continue;
-    return fail(ErrorCode::kInvalidInput, pack.output.string(),
+  RETURN_IF_ERROR(named.checkNotRead(report));
+  for (const fs::path& pack : packsOfOut(list)) {
+    RETURN_IF_ERROR(named.checkNotRead(pack));
+    if (pack.extension() != ".pack") {
+      return fail(ErrorCode::kInvalidInput, "out",
+                  fmt::format("is \"{}\", expected NAME.pack, an existing folder or FOLDER/",
+                              command.run.out.string()));
+    }
+    if (outputs.insert(pack.lexically_normal()).second) continue;
+    return fail(ErrorCode::kInvalidInput, pack.string(),
                 "would be written twice: two inputs of one name, or the report; use -o");
   }
   return {};
 }
 
-/// Several packs go into a folder, which is made.
-Result<void> makeOutputFolder(const BakeCommand& command, const JobList& list) {
-  const fs::path& folder = list.world ? list.folder : command.run.out;
-  const bool is_one_pack = !list.world && list.assets.size() < 2;
-  if (is_one_pack || folder.empty() || command.run.dry_run) return {};
+Result<void> makeFolder(const fs::path& folder) {
   std::error_code problem;
-  fs::create_directories(folder, problem);
+  if (!folder.empty()) fs::create_directories(folder, problem);
   if (!problem) return {};
   return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
 }
 
-/// A bake may take hours: a report that cannot be written is found out before it.
-Result<void> tryReport(const BakeCommand& command) {
+/// A bake may take hours: files that cannot be written are found out before it. Makes the folders
+/// of the packs.
+Result<void> tryOutputs(const BakeCommand& command, const JobList& list) {
+  if (!command.run.dry_run) {
+    for (const fs::path& pack : packsOfOut(list)) {
+      RETURN_IF_ERROR(makeFolder(list.world ? list.folder : pack.parent_path()));
+      RETURN_IF_ERROR(tryFile(pack));
+    }
+  }
   return command.run.report.empty() ? Result<void>() : tryFile(command.run.report);
 }
 
@@ -150,8 +167,7 @@ Error incomplete(const JobList& list, const std::vector<LeftOut>& missing) {
 
 int bakeList(const BakeCommand& command, const JobList& list, Clock::time_point start) {
   if (auto checked = checkOutputs(command, list); !checked) return refuse(checked.error());
-  if (auto made = makeOutputFolder(command, list); !made) return refuse(made.error());
-  if (auto tried = tryReport(command); !tried) return refuse(tried.error());
+  if (auto tried = tryOutputs(command, list); !tried) return refuse(tried.error());
   BuildOutcome outcome = buildAll(command, list);
   int exit_code = exitCodeOf(outcome);
   if (outcome.world && !outcome.world->isThere()) return exit_code;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pack_tool/support/output_file.h"
+#include "support/output_files.h"
 
 namespace galactic::pack_tool {
 

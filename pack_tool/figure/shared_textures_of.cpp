@@ -1,8 +1,5 @@
 #include "pack_tool/figure/shared_textures_of.h"
 
-#include <fmt/format.h>
-
-#include <filesystem>
 #include <utility>
 #include <vector>
 
@@ -16,12 +13,6 @@ struct TexturedMeshes {
   std::vector<PackFile> texture_packs;
   RenderMeshes meshes;
 };
-
-std::filesystem::path texturePackBeside(const PackFile& pack, const MissingTexture& texture) {
-  const std::filesystem::path folder = std::filesystem::path(pack.where()).parent_path();
-  return folder / ".." / "textures" /
-         fmt::format("{:016x}{:016x}.pack", texture.hash_high, texture.hash_low);
-}
 
 }  // namespace
 

@@ -1,7 +1,5 @@
 #include "pack_tool/support/output_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <span>
 
 #include "support/atomic_file.h"
@@ -13,13 +11,6 @@ Result<void> checkOutput(const PackFile& pack, const std::filesystem::path& outp
   if (!isSameFile(pack.where(), output)) return {};
   return fail(ErrorCode::kInvalidInput, output.string(),
               "is the pack itself; write to another file");
-}
-
-std::string extensionOf(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 Result<void> writeOutput(const std::filesystem::path& output, const std::string& bytes) {

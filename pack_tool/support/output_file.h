@@ -10,9 +10,6 @@ namespace galactic::pack_tool {
 /// lose it.
 [[nodiscard]] Result<void> checkOutput(const PackFile& pack, const std::filesystem::path& output);
 
-/// The extension of a path in lower case, with its dot.
-[[nodiscard]] std::string extensionOf(const std::filesystem::path& path);
-
 /// Writes a text or the bytes of a file in one go, replacing an existing file.
 [[nodiscard]] Result<void> writeOutput(const std::filesystem::path& output,
                                        const std::string& bytes);

@@ -8,6 +8,7 @@
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
 #include "pictures/png_file.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {
@@ -66,10 +67,7 @@ Result<Image> draw(const PackFile& pack, const PictureOptions& options) {
 }
 
 Result<void> makePicture(const PictureOptions& options) {
-  if (extensionOf(options.output) != ".png") {
-    return fail(ErrorCode::kUnsupported, options.output.string(),
-                "pictures are PNG files; end the name with .png");
-  }
+  RETURN_IF_ERROR(checkExtension(options.output, {".png", "pictures are PNG files"}));
   ASSIGN_OR_RETURN(const auto pack, PackFile::open(options.pack, options.trust));
   ASSIGN_OR_RETURN(const auto image, draw(pack, options));
   if (auto checked = checkOutput(pack, options.output); !checked) return checked;

@@ -164,6 +164,72 @@ TEST_F(BakeCli, LeavesAnOldPackIntactWhenABakeFails) {
   EXPECT_EQ(content("room.pack"), "the old pack");
 }
 
+TEST_F(BakeCli, WritesPacksUnderNamesOfPacksOnly) {
+  write("mine.glb", "a mesh");
+  for (const char* name : {"mine.glb", "new", "new.PACK.gz", "folder.pack/room"}) {
+    const ProgramRun bake = run({"room.obj", "-o", name});
+    EXPECT_EQ(bake.exit_code, 3) << name;
+    EXPECT_EQ(bake.err, "galactic-bake: --out: is \"" + std::string(name) +
+                            "\", expected NAME.pack, an existing folder or FOLDER/\n");
+    EXPECT_EQ(run({"room.obj", "-o", name, "--dry-run"}).exit_code, 3) << name;
+  }
+  EXPECT_EQ(content("mine.glb"), "a mesh");
+  EXPECT_FALSE(has("new") || has("folder.pack"));
+}
+
+TEST_F(BakeCli, MakesTheFolderOfItsPack) {
+  const std::vector<std::pair<std::string, std::string>> outputs{
+      {"new/folder/one.pack", "new/folder/one.pack"}, {"slash/", "slash/room.pack"}};
+  for (const auto& [out, pack] : outputs) {
+    EXPECT_EQ(run({"room.obj", "--radii", "0.12", "--dry-run", "-o", out}).exit_code, 0) << out;
+    EXPECT_FALSE(std::filesystem::exists(path(pack).parent_path())) << "a dry run writes nothing";
+    const ProgramRun bake = run({"room.obj", "--radii", "0.12", "-o", out});
+    EXPECT_EQ(bake.exit_code, 0) << bake.err;
+    EXPECT_TRUE(has(pack)) << pack;
+  }
+}
+
+TEST_F(BakeCli, TriesItsPackBeforeItBakes) {
+  write("broken.obj", "v 0 0\n");
+  std::filesystem::create_symlink("/dev/null", path("null.pack"));
+  const std::vector<Refusal> refusals{
+      // Where nobody may write, root neither.
+      {{"broken.obj", "-o", "/proc/none/room.pack"}, 2, "/proc/none: cannot be made a folder"},
+      {{"broken.obj", "-o", "/proc/room.pack"}, 2, "/proc/room.pack: cannot write the file"},
+      {{"broken.obj", "-o", "null.pack"}, 2, "a device or pipe of this name is there"}};
+  for (const Refusal& refusal : refusals) {
+    const ProgramRun bake = run(refusal.arguments);
+    EXPECT_EQ(bake.exit_code, refusal.exit_code) << refusal.part;
+    EXPECT_THAT(bake.err, HasSubstr(refusal.part));
+  }
+  EXPECT_EQ(run({"broken.obj", "-o", "fine.pack"}).exit_code, 3);
+  EXPECT_FALSE(has("fine.pack"));
+}
+
+TEST_F(BakeCli, SaysHowFoldersAndJsonAreBaked) {
+  write("flats/flat.scene_instance.json", "{}");
+  write("flats/episodes.json", "{}");
+  const std::vector<Refusal> refusals{
+      {{"flats"},
+       2,
+       "flats: is a folder; give a mesh in it, or add --as object to bake the meshes in it as "
+       "objects, or --as dataset to bake them as scans"},
+      {{"flats/flat.scene_instance.json"},
+       5,
+       "flats/flat.scene_instance.json: is a scene of a dataset; give the dataset's "
+       "NAME.scene_dataset_config.json, with --scenes flat"},
+      {{"flats/episodes.json", "--as", "object"},
+       5,
+       "flats/episodes.json: is no mesh but JSON; add --as episodes if it holds published "
+       "episodes"}};
+  for (const Refusal& refusal : refusals) {
+    const ProgramRun bake = run(refusal.arguments);
+    EXPECT_EQ(bake.exit_code, refusal.exit_code);
+    EXPECT_EQ(bake.err, "galactic-bake: " + refusal.part + "\n");
+  }
+  EXPECT_THAT(run({"none.json"}).err, HasSubstr("there is no such file"));
+}
+
 TEST_F(BakeCli, RefusesToReplaceItsInput) {
   const std::string before = content("room.obj");
   const ProgramRun bake = run({"room.obj", "-o", "room.obj"});
@@ -207,7 +273,6 @@ TEST_F(BakeCli, NeverReplacesAnythingThatItReads) {
   write("bake.toml", "radii = [0.05]\n");
   const std::vector<std::pair<std::string, std::vector<std::string>>> attempts{
       {"room.obj", {"room.obj", "--report", "room.obj"}},
-      {"colors.mtl", {"textured.obj", "-o", "colors.mtl"}},
       {"colors.mtl", {"textured.obj", "--report", "colors.mtl"}},
       {"bake.toml", {"room.obj", "--config", "bake.toml", "--report", "bake.toml"}},
   };
@@ -257,13 +322,12 @@ TEST_F(BakeCli, ExplainsEveryRefusal) {
       {{"room.obj", "--threads", "4097"}, 1, "--threads"},
       {{"missing.obj"}, 2, "missing.obj"},
       {{"room.obj", "--config", "missing.toml"}, 2, "missing.toml"},
-      {{"room.obj", "-o", "/dev/null"}, 2, "a device or pipe of this name is there"},
+      {{"room.obj", "-o", "/dev/null"}, 3, "--out: is \"/dev/null\", expected NAME.pack"},
       {{"room.obj", "--radii", "0.01"}, 3, "--radii: radius 0.01 m is under half the spacing"},
       {{"room.obj", "--radii", "0.12,0.05"}, 3, "in ascending order"},
       {{"room.obj", "--spacing", "0"}, 1, "--spacing: found 0, expected a number above 0"},
       {{"room.obj", "--coverage", "cell", "--engine", "embree"}, 3, "--coverage: cell works with"},
       {{"room.obj", "--inside", "9,9,9"}, 3, "is outside the scene"},
-      {{"room.obj", "-o", "no/such/folder/room.pack"}, 2, "cannot write the file"},
   };
   for (const Refusal& refusal : refusals) {
     SCOPED_TRACE(testing::PrintToString(refusal.arguments));

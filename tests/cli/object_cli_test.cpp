@@ -214,7 +214,7 @@ TEST_F(ObjectCli, ExplainsEveryRefusal) {
 
 TEST_F(ObjectCli, NeverReplacesAMeshOfTheFolder) {
   write("set/mug.obj", brick());
-  const ProgramRun run = bake({"set", "-o", "set/mug.obj"});
+  const ProgramRun run = bake({"set", "--report", "set/mug.obj"});
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_THAT(run.err, HasSubstr("is also an input"));
   EXPECT_EQ(content("set/mug.obj"), brick());

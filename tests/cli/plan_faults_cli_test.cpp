@@ -227,7 +227,7 @@ TEST_F(PlanFaults, RefusesOutputsThatAreInputsOrNoPack) {
       {{"data/home.scene_dataset_config.json", "-o", "data/home.scene_dataset_config.json"},
        3,
        "is also an input"},
-      {{"w.toml", "-o", "new"}, 3, "--out: is \"new\", expected NAME.pack or an existing folder"},
+      {{"w.toml", "-o", "new"}, 3, "--out: is \"new\", expected NAME.pack, an existing folder"},
   };
   for (const Refusal& refusal : refusals) {
     SCOPED_TRACE(testing::PrintToString(refusal.arguments));

@@ -195,6 +195,22 @@ TEST_F(RenderCli, WhatCannotWorkIsRefusedBeforeTheRun) {
   }
 }
 
+TEST_F(RenderCli, NamesOfPicturesAndAnimationsSayWhatTheyAre) {
+  for (const char* name : {"sheet.jpg", "sheet", "sheet.png.bak"}) {
+    const ProgramRun sheet = run({"--render", "rgb", "--contact-sheet", name});
+    EXPECT_EQ(sheet.exit_code, 5) << name;
+    EXPECT_EQ(sheet.err, "galactic-run: " + std::string(name) +
+                             ": pictures are PNG files; end the name with .png\n");
+  }
+  for (const char* name : {"run.fbx", "run.gltf"}) {
+    const ProgramRun animation = run({"--render", "rgb", "--animation", name});
+    EXPECT_EQ(animation.exit_code, 5) << name;
+    EXPECT_EQ(animation.err, "galactic-run: " + std::string(name) +
+                                 ": animations are binary glTF files; end the name with .glb\n");
+  }
+  EXPECT_EQ(run({"--render", "rgb", "--animation", "run.GLB"}).exit_code, 0);
+}
+
 TEST_F(RenderCli, PicturesReplaceNothingThatIsReadOrWritten) {
   const std::string kitchen = "scenes/kitchen.pack";
   const std::string before = content(kitchen);

@@ -342,6 +342,7 @@ TEST_F(SimulateCli, EndsWithACodeForEachKindOfMistake) {
       {{"--steps", "1000001", "--envs", "2", "--animation", "run.glb"}, 1},
       {{"--envs", "1", "--steps", "1", "--animation", "missing/run.glb"}, 2},
       {{"--envs", "1", "--steps", "1", "--animation", "objects.pack"}, 3},
+      {{"--envs", "1", "--steps", "1", "--animation", "run.fbx"}, 5},
   };
   for (const auto& [arguments, code] : mistakes) {
     SCOPED_TRACE(testing::PrintToString(arguments));
@@ -411,9 +412,9 @@ TEST_F(SimulateCli, WritesNoFileTwice) {
 TEST_F(SimulateCli, TriesItsFilesBeforeItSteps) {
   for (const char* option : {"--record", "--report", "--view", "--animation"}) {
     // Of a run that began, the table would be there.
-    const ProgramRun result = run({"--envs", "1", "--steps", "1", option, "missing/file"});
+    const ProgramRun result = run({"--envs", "1", "--steps", "1", option, "missing/file.glb"});
     EXPECT_EQ(result.exit_code, 2) << option;
-    EXPECT_THAT(result.err, StartsWith("galactic-run: missing/file: cannot write the file"))
+    EXPECT_THAT(result.err, StartsWith("galactic-run: missing/file.glb: cannot write the file"))
         << option;
     EXPECT_THAT(result.out, IsEmpty()) << option;
   }

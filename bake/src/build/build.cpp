@@ -119,11 +119,7 @@ class Build {
   void linkPacksOfWorld() {
     std::set<fs::path> packs;
     for (const PackOutcome& pack : outcome_.packs) {
-      if (!pack.isThere()) continue;
-      packs.insert(list_.folder / pack.name);
-      for (const std::string& hash : sharedTexturesOf(*pack.figures)) {
-        packs.insert(list_.folder / "textures" / (hash + ".pack"));
-      }
+      if (pack.isThere()) packs.insert(list_.folder / pack.name);
     }
     PackJob world = *list_.world;
     std::get<WorldJob>(world.job).packs.assign(packs.begin(), packs.end());

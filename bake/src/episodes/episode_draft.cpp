@@ -338,17 +338,16 @@ class Draft {
 
 }  // namespace
 
-std::vector<ProvenPair> findProvenPairs(const DraftHome& home) {
+std::vector<ProvenPair> findProvenPairs(const DraftHome& home, RejectionCounts& rejections) {
   std::vector<ProvenPair> pairs;
   const auto count = static_cast<std::uint32_t>(home.supports.places().size());
-  // What is drawn here is told nowhere, and the stream is no episode's.
-  RejectionCounts untold;
+  // The stream is no episode's.
   Random random(~home.options.seed);
   const DraftEase anywhere;
   std::size_t tries = 0;
   while (tries < kSurveyTries && pairs.size() < kEnoughPairs) {
     ++tries;
-    Draft draft(home, anywhere, random, untold);
+    Draft draft(home, anywhere, random, rejections);
     draft.chooseTarget();
     const std::uint32_t target = random.below(count);
     if (!draft.tryTarget(home.supports.places()[target])) continue;

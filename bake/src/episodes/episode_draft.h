@@ -61,9 +61,10 @@ struct ProvenPair {
 };
 
 /// Looks for proven pairs in kSurveyTries tries, by going from places that held an object to all
-/// those at the right distance. None where the scene is all but hopeless. Depends on the home
-/// only.
-[[nodiscard]] std::vector<ProvenPair> findProvenPairs(const DraftHome& home);
+/// those at the right distance. None where the scene is all but hopeless. Adds up in `rejections`
+/// what was drawn and not taken. Depends on the home only.
+[[nodiscard]] std::vector<ProvenPair> findProvenPairs(const DraftHome& home,
+                                                      RejectionCounts& rejections);
 
 /// What a draft may make use of, and do without, after others have failed.
 struct DraftEase {

@@ -159,11 +159,12 @@ std::string whySkipped(const PendingEpisode& slot, const SceneTask& task,
   const GeneratedScene& scene = task.summary;
   return fmt::format(
       "episode {} found no place in any of {} drafts: {} ended at the target, {} at a "
-      "goal {} to {} m away{}, {} at {} to {} other objects, {} at the robot's start, {} "
+      "goal {} away{}, {} at {} to {} other objects, {} at the robot's start, {} "
       "in the replay; drawn and not taken: {}; there are {} support places on {} surfaces "
       "and {} floor places: ask for fewer objects, other distances or other heights",
       slot.number, slot.drafts, ended(DraftEnd::kTarget), ended(DraftEnd::kGoal),
-      scene.shortened_way.value_or(options.target_to_goal.least), options.target_to_goal.most,
+      textOf(DistanceRange{scene.shortened_way.value_or(options.target_to_goal.least),
+                           options.target_to_goal.most}),
       options.goal_on_other_support ? " on another surface" : "", ended(DraftEnd::kOthers),
       options.objects.least - 1, options.objects.most - 1, ended(DraftEnd::kStart),
       slot.replays_failed, textOf(slot.rejections), scene.support_places, scene.surfaces,

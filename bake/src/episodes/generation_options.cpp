@@ -64,4 +64,9 @@ bool isHeldOut(std::string_view scene, const SceneSplit& split) {
   return static_cast<double>(hash >> 11U) * 0x1p-53 < static_cast<double>(split.held_out);
 }
 
+std::string textOf(const DistanceRange& range) {
+  return std::isfinite(range.most) ? fmt::format("{} to {} m", range.least, range.most)
+                                   : fmt::format("{} m or more", range.least);
+}
+
 }  // namespace galactic::bake

@@ -27,6 +27,9 @@ constexpr std::array<std::string_view, 3> kLaserNames{"laser", "lidar", "scan"};
 /// Farthest moves of one action: the angle is the Galactic paper's.
 constexpr double kRevoluteStep = 0.196;
 constexpr double kPrismaticStep = 0.05;
+constexpr float kGraspRadius = 0.015F;
+/// How far the spheres stick out of a robot: the tau of a bake, meters.
+constexpr float kSphereMargin = 0.04F;
 /// Parts of the robot lower than this, above its lowest point, cover the ground. Meters.
 constexpr float kBaseHeight = 0.25F;
 
@@ -52,6 +55,9 @@ std::string lowerCase(std::string_view name) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return lower;
 }
+
+/// Rounded to whole millimeters, and never -0.
+float inMillimeters(float meters) { return std::round(meters * 1000) / 1000 + 0.0F; }
 
 /// Guesses what a robot's recipe says, and writes it down.
 class RecipeDraft {
@@ -147,11 +153,52 @@ class RecipeDraft {
     if (candidates_.size() > 1) {
       text_ += fmt::format("# Links that may be meant: {}\n", namesOf(candidates_));
     }
+    const Vec3 grasp = graspPoint();
     text_ += fmt::format(
         "[end_effector]\nlink = {}\n"
-        "grasp_point = [0.0, 0.0, 0.0]   # in the link's frame: between the fingers\n"
-        "grasp_radius = 0.015\n\n",
-        tomlText(robot_.links[end_effector_].name));
+        "# In the link's frame: between the fingers, but outside of the robot's spheres, where\n"
+        "# nothing can be grasped. Guess: the link's origin, or a little in front of its body.\n"
+        "grasp_point = [{:.3f}, {:.3f}, {:.3f}]\n"
+        "grasp_radius = {:.3f}\n\n",
+        tomlText(robot_.links[end_effector_].name), inMillimeters(grasp.x), inMillimeters(-grasp.z),
+        inMillimeters(grasp.y), kGraspRadius);
+  }
+
+  /// In front of everything that moves with the end effector, seen from where it is mounted; its
+  /// origin, where that is in front of all, or nothing says where the front is.
+  [[nodiscard]] Vec3 graspPoint() const {
+    const std::vector<Pose> poses = startPoses();
+    const Pose hand_from_root = inverse(poses[end_effector_]);
+    const Vec3 forward = forwardOf(hand_from_root, poses);
+    float front = std::numeric_limits<float>::lowest();
+    for (std::size_t n = 0; n < robot_.links.size(); ++n) {
+      if (bodyOf(n) != bodyOf(end_effector_)) continue;
+      for (const Vec3& p : surfaceOf(n)) {
+        front = std::max(front, dot(forward, hand_from_root * (poses[n] * p)));
+      }
+    }
+    return forward * std::max(front + kSphereMargin + kGraspRadius, 0.0F);
+  }
+
+  /// From the nearest link above the end effector that is not at the same place, to it: a unit
+  /// vector in the end effector's frame. Zero where there is none.
+  [[nodiscard]] Vec3 forwardOf(const Pose& hand_from_root, const std::vector<Pose>& poses) const {
+    constexpr float kSamePlace = 1e-3F;
+    for (int at = robot_.links[end_effector_].parent; at >= 0;
+         at = robot_.links[static_cast<std::size_t>(at)].parent) {
+      const Vec3 back = hand_from_root * poses[static_cast<std::size_t>(at)].translation;
+      const float length = std::sqrt(dot(back, back));
+      if (length > kSamePlace) return back * (-1 / length);
+    }
+    return {};
+  }
+
+  /// The link nearest to the root of those that fixed joints join to a link.
+  [[nodiscard]] std::size_t bodyOf(std::size_t link) const {
+    while (robot_.links[link].parent >= 0 && robot_.links[link].joint_type == JointType::kFixed) {
+      link = static_cast<std::size_t>(robot_.links[link].parent);
+    }
+    return link;
   }
 
   void addSensors() {
@@ -178,17 +225,26 @@ class RecipeDraft {
         tomlText(robot_.links[lasers.front()].name));
   }
 
-  /// Every surface point of the robot at the start pose, in the root's frame.
-  [[nodiscard]] std::vector<Vec3> surfacePoints() const {
+  /// root_from_link of each link at the start.
+  [[nodiscard]] std::vector<Pose> startPoses() const {
     std::vector<Pose> poses(robot_.links.size());
     forwardKinematics(flat_.links, {}, flat_.start_positions, poses);
+    return poses;
+  }
+
+  /// Every surface point of a link, in its frame.
+  [[nodiscard]] std::vector<Vec3> surfaceOf(std::size_t n) const {
+    const SourceLink& link = robot_.links[n];
+    return surfaceOfShapes(robot_, link.collisions.empty() ? link.visuals : link.collisions)
+        .positions;
+  }
+
+  /// Every surface point of the robot at the start pose, in the root's frame.
+  [[nodiscard]] std::vector<Vec3> surfacePoints() const {
+    const std::vector<Pose> poses = startPoses();
     std::vector<Vec3> points;
     for (std::size_t n = 0; n < robot_.links.size(); ++n) {
-      const SourceLink& link = robot_.links[n];
-      const auto& shapes = link.collisions.empty() ? link.visuals : link.collisions;
-      for (const Vec3& p : surfaceOfShapes(robot_, shapes).positions) {
-        points.push_back(poses[n] * p);
-      }
+      for (const Vec3& p : surfaceOf(n)) points.push_back(poses[n] * p);
     }
     return points;
   }

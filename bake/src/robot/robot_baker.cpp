@@ -210,6 +210,7 @@ class RobotBaker {
     baked_.end_effector =
         EndEffector{linkIndex(robot_, effector.link.name), vectorOf(effector.grasp_point),
                     static_cast<float>(effector.grasp_radius)};
+    warnOfGraspInside(*baked_.end_effector);
     if (recipe_->camera) {
       baked_.camera = RobotCamera{linkIndex(robot_, recipe_->camera->link.name),
                                   poseOf(recipe_->camera->link_from_camera),
@@ -219,6 +220,29 @@ class RobotBaker {
     baked_.base = baseOf(recipe_->base);
     for (const RecipeJoint& joint : recipe_->joints) {
       baked_.controlled_joints.push_back(controlledJoint(joint));
+    }
+  }
+
+  /// Where a sphere that moves with the hand is, no object can be grasped.
+  void warnOfGraspInside(const EndEffector& hand) {
+    const FlatKinematics& flat = baked_.kinematics;
+    std::vector<Pose> root_from_link(flat.links.size());
+    forwardKinematics(flat.links, {}, flat.start_positions, root_from_link);
+    const auto group = std::ranges::find_if(baked_.groups, [&](const BakedGroup& one) {
+      return std::ranges::find(one.links, hand.link) != one.links.end();
+    });
+    const Vec3 grasp_point =
+        inverse(root_from_link[group->link]) * root_from_link[hand.link] * hand.grasp_point;
+    for (const SetSphere& sphere : group->spheres.spheres) {
+      const Vec3 way = grasp_point - sphere.center;
+      const float radius = baked_.radii[sphere.radius_index];
+      if (dot(way, way) >= radius * radius) continue;
+      baked_.warnings.push_back(
+          fmt::format("[end_effector] grasp_point: it is {:.3f} m from the center of a sphere of "
+                      "{} m that moves with link '{}', where no object can be grasped; move it "
+                      "outside of the robot",
+                      std::sqrt(dot(way, way)), radius, robot_.links[hand.link].name));
+      return;
     }
   }
 

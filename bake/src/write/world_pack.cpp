@@ -9,6 +9,7 @@
 
 #include "galactic/bake/source_asset.h"
 #include "galactic/pack.h"
+#include "galactic/render_library.h"
 #include "galactic/world.h"
 #include "support/try.h"
 #include "write/pack_payload.h"
@@ -99,6 +100,38 @@ Offset<flatbuffers::Vector<Offset<schema::Option>>> taskVector(FlatBufferBuilder
   return builder.CreateVector(options);
 }
 
+Result<PackFile> openTexture(const PackFile& pack, const MissingTexture& texture) {
+  const fs::path beside = texturePackBeside(pack, texture).lexically_normal();
+  auto opened = PackFile::open(beside);
+  if (opened || opened.error().code != ErrorCode::kIo) return opened;
+  return fail(
+      ErrorCode::kIo, pack.where(),
+      fmt::format("shares the texture \"{}\", whose pack {} cannot be opened; put it there, "
+                  "or give its path, too",
+                  texture.name, beside.string()));
+}
+
+/// Adds the texture packs that the packs share and that are not among them.
+Result<void> addTextures(std::vector<PackFile>& packs) {
+  SharedTextures textures;
+  for (const PackFile& pack : packs) {
+    if (pack.kind() == PackKind::kTexture) RETURN_IF_ERROR(textures.add(pack));
+  }
+  const std::size_t given = packs.size();
+  for (std::size_t n = 0; n < given; ++n) {
+    const auto meshes = renderMeshesOf(packs[n], textures);
+    // A pack of another kind has none.
+    if (!meshes || !*meshes) continue;
+    for (const MissingTexture& missing : (*meshes)->missing_textures) {
+      if (textures.find(missing.hash_low, missing.hash_high) != nullptr) continue;
+      ASSIGN_OR_RETURN(auto texture, openTexture(packs[n], missing));
+      RETURN_IF_ERROR(textures.add(texture));
+      packs.push_back(std::move(texture));
+    }
+  }
+  return {};
+}
+
 bool comesBefore(const LinkedPack& a, const LinkedPack& b) { return a.path < b.path; }
 
 }  // namespace
@@ -108,20 +141,23 @@ Result<std::vector<LinkedPack>> linkPacks(std::span<const fs::path> paths,
   const fs::path folder = world_folder.empty() ? "." : world_folder;
   std::vector<LinkedPack> linked;
   std::vector<PackFile> opened;
-  linked.reserve(paths.size());
   opened.reserve(paths.size());
   for (const fs::path& path : paths) {
     ASSIGN_OR_RETURN(auto pack, PackFile::open(path));
-    const fs::path relative = relativeTo(path, folder);
+    opened.push_back(std::move(pack));
+  }
+  RETURN_IF_ERROR(addTextures(opened));
+  linked.reserve(opened.size());
+  for (const PackFile& pack : opened) {
+    const fs::path relative = relativeTo(pack.where(), folder);
     if (leadsUpwards(relative)) {
-      return fail(ErrorCode::kInvalidInput, path.string(),
+      return fail(ErrorCode::kInvalidInput, pack.where(),
                   fmt::format("does not lie in {} or below it, where the world pack is to be; put "
                               "the world pack above all its packs",
                               folder.string()));
     }
     const SourceFile file = describeBytes(relative.generic_string(), pack.bytes());
     linked.push_back({file.name, pack.kind(), file.bytes, file.hash_low, file.hash_high});
-    opened.push_back(std::move(pack));
   }
   std::sort(linked.begin(), linked.end(), comesBefore);
   RETURN_IF_ERROR(checkList(linked));

@@ -40,6 +40,14 @@ std::vector<OutputFile> filesOf(const RunOptions& options) {
   return files;
 }
 
+/// Whether the names of files of one kind say what they are.
+Result<void> checkExtensions(const RunOptions& options) {
+  const std::string& sheet = options.drawing.contact_sheet;
+  if (!sheet.empty()) RETURN_IF_ERROR(checkExtension(sheet, {".png", "pictures are PNG files"}));
+  if (options.animation.empty()) return {};
+  return checkExtension(options.animation, {".glb", "animations are binary glTF files"});
+}
+
 /// Of all frames those that could be another file of the run: by its name, or as a link to it.
 std::vector<OutputFile> doubtfulFrames(const fs::path& folder, const std::vector<fs::path>& inputs,
                                        const std::vector<OutputFile>& files) {
@@ -71,6 +79,7 @@ Result<void> tryOutputs(const World& world, const RunOptions& options) {
       outputs.push_back(std::move(frame));
   }
   RETURN_IF_ERROR(checkOutputs(outputs, inputs));
+  RETURN_IF_ERROR(checkExtensions(options));
   // Other files may go into the folder of the frames.
   if (!frames.empty()) RETURN_IF_ERROR(makeFrameFolder(frames));
   for (const OutputFile& output : files) RETURN_IF_ERROR(tryFile(output.file));

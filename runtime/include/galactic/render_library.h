@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <utility>
@@ -26,6 +27,12 @@ class SharedTextures {
  private:
   std::map<std::pair<std::uint64_t, std::uint64_t>, RenderTexture> by_hash_;
 };
+
+/// Where the pack of a texture lies that `pack` shares: HASH.pack in the folder "textures" beside
+/// the folder of `pack`. There galactic-bake puts it, and there all look for it who find no list of
+/// it.
+[[nodiscard]] std::filesystem::path texturePackBeside(const PackFile& pack,
+                                                      const MissingTexture& texture);
 
 /// The models of several packs under one numbering: what a renderer loads once for all envs.
 /// Movable; immutable once filled, so then safe to share between threads.

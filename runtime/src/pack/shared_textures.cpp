@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "galactic/render_library.h"
 #include "pack/schema_values.h"
 
@@ -21,6 +23,12 @@ Result<void> SharedTextures::add(const PackFile& pack) {
 const RenderTexture* SharedTextures::find(std::uint64_t hash_low, std::uint64_t hash_high) const {
   const auto found = by_hash_.find({hash_low, hash_high});
   return found == by_hash_.end() ? nullptr : &found->second;
+}
+
+std::filesystem::path texturePackBeside(const PackFile& pack, const MissingTexture& texture) {
+  const std::filesystem::path folder = std::filesystem::path(pack.where()).parent_path();
+  return folder / ".." / "textures" /
+         fmt::format("{:016x}{:016x}.pack", texture.hash_high, texture.hash_low);
 }
 
 }  // namespace galactic

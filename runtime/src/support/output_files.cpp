@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <system_error>
 
 #include "support/atomic_file.h"
@@ -39,6 +41,19 @@ Result<void> checkOutputs(std::span<const OutputFile> outputs, std::span<const f
     }
   }
   return {};
+}
+
+std::string extensionOf(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+Result<void> checkExtension(const fs::path& output, const FileKind& kind) {
+  if (extensionOf(output) == kind.extension) return {};
+  return fail(ErrorCode::kUnsupported, output.string(),
+              fmt::format("{}; end the name with {}", kind.sentence, kind.extension));
 }
 
 Result<void> tryFile(const fs::path& path) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "galactic/error.h"
@@ -24,6 +25,19 @@ struct OutputFile {
 /// Fails with kInvalidInput when one of the outputs is an input, or the output of another option.
 [[nodiscard]] Result<void> checkOutputs(std::span<const OutputFile> outputs,
                                         std::span<const std::filesystem::path> inputs);
+
+/// The extension of a path in lower case, with its dot.
+[[nodiscard]] std::string extensionOf(const std::filesystem::path& path);
+
+/// What a file is, as its name has to say: ".png", "pictures are PNG files".
+struct FileKind {
+  std::string_view extension;
+  std::string_view sentence;
+};
+
+/// Fails with kUnsupported when a file that will be of this kind has another extension.
+[[nodiscard]] Result<void> checkExtension(const std::filesystem::path& output,
+                                          const FileKind& kind);
 
 /// Fails with kIo when no file can be written under this name; leaves nothing behind and a file of
 /// the name as it is. Long work that ends with a file begins with this.

@@ -150,6 +150,24 @@ TEST(ScenesWithoutPlacesForGoals, AreLeftOutBeforeAnythingIsDrawn) {
                         "in 20000 tries on its"));
 }
 
+TEST(ScenesWithoutPlacesForGoals, SayWhatWasDrawnAndNotTaken) {
+  EpisodeGeneratorOptions options = optionsFor(10, 2);
+  options.target_to_goal = {0.95F, 1.05F};
+  EXPECT_THAT(refusal(generated(MadeWorld(tablesRoom(), stickRobot()), options)),
+              AllOf(HasSubstr("(drawn and not taken: distance "),
+                    HasSubstr("); ask for other distances, other heights or smaller objects")));
+  // Nothing comes near a grasp point that is in the middle of a sphere.
+  RobotPackFields robot = stickRobot();
+  robot.end_effector->grasp_point = robot.spheres.back().center;
+  robot.end_effector->grasp_radius = 0.01F;
+  options.target_to_goal = {.least = 0.3F};
+  EXPECT_THAT(refusal(generated(MadeWorld(tablesRoom(), robot), options)),
+              AllOf(HasSubstr("a target and its goal 0.3 m or more away in 20000 tries"),
+                    HasSubstr("not_reached "),
+                    HasSubstr("; the hand reached none of the targets that stood: see that the "
+                              "grasp point of the robot's recipe is outside of its spheres")));
+}
+
 TEST(SmallScenes, HaveTheirGoalsNearerWhereThatIsAllowed) {
   const MadeWorld world(closet(), stickRobot());
   EpisodeGeneratorOptions options = optionsFor(8, 2);
@@ -203,7 +221,8 @@ TEST(ProvenPlaces, LetMoreDraftsSucceed) {
       bake::PreparedScene::prepare(context, generation->scenes().front().scene, {});
   ASSERT_TRUE(prepared.has_value()) << prepared.error().message;
   const bake::DraftHome home = (*prepared)->draftHome();
-  const auto pairs = bake::findProvenPairs(home);
+  bake::RejectionCounts survey;
+  const auto pairs = bake::findProvenPairs(home, survey);
   EXPECT_FALSE(pairs.empty());
   const auto& places = home.supports.places();
   for (const bake::ProvenPair& pair : pairs) {

@@ -114,6 +114,40 @@ TEST(RecipeDraft, TakesTheLongestChainWhereNoNameHelps) {
   EXPECT_FALSE(recipe.camera.has_value());
 }
 
+TEST(RecipeDraft, GraspsInFrontOfAllThatMovesWithTheHand) {
+  const SourceRobot robot =
+      RobotMaker()
+          .link("base")
+          .box({0.2, 0.2, 0.2})
+          .link("flange", 0,
+                {.type = JointType::kContinuous, .parent_from_joint = shifted(0, 0, 0.5)})
+          .box({0.3, 0.3, 0.1}, shifted(0, 0, 0.05))
+          .link("tool", 1)
+          .link("cover", 2)
+          .box({0.1, 0.1, 0.1}, shifted(0, 0, 0.1))
+          .robot();
+  const RobotRecipe recipe = draftOf(robot);
+  EXPECT_EQ(recipe.end_effector.link.name, "tool");
+  // The cover ends at 0.15 m; spheres may stick out by 0.04 m, and what grasps is one of 0.015 m.
+  EXPECT_NEAR(recipe.end_effector.grasp_point[0], 0, 1e-6);
+  EXPECT_NEAR(recipe.end_effector.grasp_point[1], 0, 1e-6);
+  EXPECT_NEAR(recipe.end_effector.grasp_point[2], 0.205, 1e-6);
+}
+
+TEST(RecipeDraft, GraspsAtTheLinkWhereThatIsInFrontOfTheBody) {
+  const auto draftWith = [](const bake::Affine& hand_from_grasp) {
+    return draftOf(RobotMaker()
+                       .link("base")
+                       .link("hand", 0, {.type = JointType::kContinuous})
+                       .box({0.1, 0.1, 0.1}, shifted(0, 0.05, 0))
+                       .link("grasp", 1, {.parent_from_joint = hand_from_grasp})
+                       .robot());
+  };
+  EXPECT_THAT(draftWith(shifted(0, 0.2, 0)).end_effector.grasp_point, ElementsAre(0, 0, 0));
+  EXPECT_THAT(draftWith(kNoChange).end_effector.grasp_point, ElementsAre(0, 0, 0))
+      << "nothing says where the front is";
+}
+
 TEST(RecipeDraft, OfARobotThatCannotMoveHasNoJoints) {
   const RobotRecipe recipe = draftOf(RobotMaker().link("block").box({1, 1, 1}).robot());
   EXPECT_EQ(recipe.end_effector.link.name, "block");

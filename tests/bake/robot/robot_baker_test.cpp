@@ -124,6 +124,25 @@ TEST(RobotBaker, AppliesTheRecipe) {
   EXPECT_EQ(robot.base->footprint_radius, 0);
 }
 
+TEST(RobotBaker, WarnsOfAGraspPointInsideOfWhatMovesWithTheHand) {
+  RobotRecipe recipe = armRecipe();
+  EXPECT_THAT(bakeWell(smallArm(), &recipe, coarse()).warnings,
+              ElementsAre(HasSubstr("[end_effector] grasp_point: it is 0.0")));
+  recipe.end_effector.grasp_point = {0.08, 0, 0};
+  EXPECT_THAT(bakeWell(smallArm(), &recipe, coarse()).warnings, IsEmpty());
+  // The frame of the spheres is the hand's: here, of what is fixed to it.
+  SourceRobot robot = smallArm();
+  robot.links[3].joint_type = JointType::kFixed;
+  robot.links[3].mimic.reset();
+  recipe.end_effector.link.name = "finger";
+  recipe.end_effector.grasp_point = {-0.05, 0, 0};
+  EXPECT_THAT(bakeWell(robot, &recipe, coarse()).warnings,
+              ElementsAre(HasSubstr("of a sphere of 0.04 m that moves with link 'finger', where no "
+                                    "object can be grasped; move it outside of the robot")));
+  recipe.end_effector.grasp_point = {0.03, 0, 0};
+  EXPECT_THAT(bakeWell(robot, &recipe, coarse()).warnings, IsEmpty());
+}
+
 TEST(RobotBaker, WithoutARecipeHasNoHandCameraBaseOrActions) {
   const BakedRobot robot = bakeWell(smallArm(), nullptr, coarse());
   EXPECT_EQ(robot.name, "tiny");

@@ -68,6 +68,8 @@ inline bake::RobotRecipe recipeFor(const std::string& hand) {
   recipe.name = "tiny";
   recipe.source = "tiny.toml";
   recipe.end_effector.link = {hand, "tiny.toml:2"};
+  // Far from every sphere.
+  recipe.end_effector.grasp_point = {0, 1, 0};
   recipe.base.footprint = bake::FootprintCircle{0.3};
   return recipe;
 }

@@ -1,5 +1,6 @@
 #include "galactic/bake/world_pack.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,9 @@
 #include "galactic/pack_reference.h"
 #include "galactic/schema/pack_generated.h"
 #include "galactic/world.h"
+#include "galactic/world_models.h"
+#include "support/homes/small_home_models.h"
+#include "support/packs/texture_pack_builder.h"
 #include "support/packs/world_pack_builder.h"
 
 namespace galactic::test::world_pack_test {
@@ -168,6 +172,72 @@ TEST_F(WorldPack, RefusesPacksThatAreMissingOrBroken) {
   EXPECT_EQ(no_file.error().code, ErrorCode::kIo);
   static_cast<void>(folder_.write("objects.pack", "no pack"));
   expectRefused(linkPacks(paths_, folder_.path()), "objects.pack");
+}
+
+/// The packs of a home whose kitchen shows a texture that it shares with other scenes.
+class WorldPackWithTexture : public testing::Test {
+ protected:
+  void SetUp() override {
+    WorldFields home = smallHomeWorldWithModels();
+    RenderMeshesFields& meshes = *home.scene.render_meshes;
+    meshes.textures = {{.name = "oak.png", .shared = hashOf(texture_.texels)}};
+    meshes.texels.clear();
+    meshes.materials[0].texture = 0;
+    for (const ReferenceFields& one : writePacks(folder_, home).packs) {
+      paths_.push_back(folder_.path() / one.path);
+    }
+    const auto [low, high] = hashOf(texture_.texels);
+    name_ = fmt::format("textures/{:016x}{:016x}.pack", high, low);
+  }
+  /// Puts the texture's pack under this name.
+  void writeTexture(const std::string& name) {
+    static_cast<void>(folder_.write(name, textOf(buildPack(texture_))));
+  }
+
+  ScratchFolder folder_;
+  TexturePackFields texture_;
+  std::vector<fs::path> paths_;
+  /// Where scenes in a folder beside look for it.
+  std::string name_;
+};
+
+TEST_F(WorldPackWithTexture, ListsTheTexturePackBesideTheFolderOfTheScene) {
+  writeTexture(name_);
+  const auto linked = linkPacks(paths_, folder_.path());
+  ASSERT_TRUE(linked.has_value()) << linked.error().where << ": " << linked.error().message;
+  ASSERT_EQ(linked->size(), paths_.size() + 1);
+  EXPECT_EQ(linked->back().path, name_);
+  EXPECT_EQ(linked->back().kind, PackKind::kTexture);
+  const fs::path file = folder_.path() / "world.pack";
+  ASSERT_TRUE(writeWorldPack(file, *linked, provenance()).has_value());
+  const auto world = World::open(std::vector{file});
+  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  const auto models = WorldModels::from(*world);
+  EXPECT_TRUE(models.has_value()) << models.error().where << ": " << models.error().message;
+}
+
+TEST_F(WorldPackWithTexture, ListsATexturePackThatIsGivenOnce) {
+  writeTexture("oak.pack");
+  paths_.push_back(folder_.path() / "oak.pack");
+  const auto elsewhere = linkPacks(paths_, folder_.path());
+  ASSERT_TRUE(elsewhere.has_value()) << elsewhere.error().message;
+  EXPECT_EQ(elsewhere->size(), paths_.size());
+  writeTexture(name_);
+  paths_.back() = folder_.path() / name_;
+  const auto where_it_belongs = linkPacks(paths_, folder_.path());
+  ASSERT_TRUE(where_it_belongs.has_value()) << where_it_belongs.error().message;
+  EXPECT_EQ(where_it_belongs->size(), paths_.size());
+}
+
+TEST_F(WorldPackWithTexture, IsNotMadeWithoutIt) {
+  const auto linked = linkPacks(paths_, folder_.path());
+  ASSERT_FALSE(linked.has_value());
+  EXPECT_EQ(linked.error().code, ErrorCode::kIo);
+  EXPECT_EQ(linked.error().where, (folder_.path() / "scenes/kitchen.pack").string());
+  EXPECT_EQ(linked.error().message,
+            fmt::format("shares the texture \"oak.png\", whose pack {} cannot be opened; put it "
+                        "there, or give its path, too",
+                        (folder_.path() / name_).string()));
 }
 
 TEST(WorldPackLists, HoldPathsBelowTheirFolderOnly) {

@@ -27,9 +27,10 @@ struct LinkedPack {
 };
 
 /// Describes the packs in the files `paths`, in any order, for a world pack in `folder` (empty: the
-/// current one); ascending paths. Opens and verifies them and sees that they fit together:
-/// fails with the errors of PackFile::open and checkTogether, and with kInvalidInput when a file
-/// does not lie below `folder`, is listed twice or is a world itself.
+/// current one); ascending paths. Adds the packs of the textures that they share, found with
+/// texturePackBeside where they are not among `paths`. Opens and verifies all and sees that they
+/// fit together: fails with the errors of PackFile::open and checkTogether, and with kInvalidInput
+/// when a file does not lie below `folder`, is listed twice or is a world itself.
 [[nodiscard]] Result<std::vector<LinkedPack>> linkPacks(
     std::span<const std::filesystem::path> paths, const std::filesystem::path& folder);
 

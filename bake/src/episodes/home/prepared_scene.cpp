@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "episodes/generation_options.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -29,6 +30,18 @@ Bounds groundOf(const ColumnGrid& grid) {
 bool covers(const Bounds& mesh, const Bounds& grid) {
   return mesh.min.x <= grid.min.x + kGridMargin && mesh.min.z <= grid.min.z + kGridMargin &&
          mesh.max.x >= grid.max.x - kGridMargin && mesh.max.z >= grid.max.z - kGridMargin;
+}
+
+/// What to do where no goal was found. Of each target that stood and was reached, some place was
+/// too near for its goal or on its own surface.
+std::string_view adviceFor(const RejectionCounts& rejections) {
+  const bool reached =
+      rejections[EpisodeRejection::kDistance] > 0 || rejections[EpisodeRejection::kSameSupport] > 0;
+  if (reached || rejections[EpisodeRejection::kNotReached] == 0) {
+    return "ask for other distances, other heights or smaller objects";
+  }
+  return "the hand reached none of the targets that stood: see that the grasp point of the robot's "
+         "recipe is outside of its spheres, or ask for other heights or smaller objects";
 }
 
 }  // namespace
@@ -119,20 +132,22 @@ void PreparedScene::chooseWay() {
 void PreparedScene::survey() {
   // Goals nearer than that to their targets are hardly a task.
   constexpr float kLeastWay = 0.2F;
-  proven_ = findProvenPairs(draftHome());
+  RejectionCounts rejections;
+  proven_ = findProvenPairs(draftHome(), rejections);
   while (proven_.empty() && context_.options.shorten_way &&
          target_to_goal_.least / 2 >= kLeastWay) {
     target_to_goal_.least /= 2;
-    proven_ = findProvenPairs(draftHome());
+    rejections = {};
+    proven_ = findProvenPairs(draftHome(), rejections);
   }
   if (!proven_.empty()) return;
   unusable_ = fmt::format(
-      "no places were found for a target and its goal {} to {} m away{} in {} tries on its {} "
-      "support places, which are at most {:.2f} m apart; ask for other distances, other heights or "
-      "smaller objects",
-      target_to_goal_.least, target_to_goal_.most,
-      context_.options.goal_on_other_support ? " on another surface" : "", kSurveyTries,
-      supports_.places().size(), widestWay());
+      "no places were found for a target and its goal {} away{} in {} tries on its {} support "
+      "places, "
+      "which are at most {:.2f} m apart (drawn and not taken: {}); {}",
+      textOf(target_to_goal_), context_.options.goal_on_other_support ? " on another surface" : "",
+      kSurveyTries, supports_.places().size(), widestWay(), textOf(rejections),
+      adviceFor(rejections));
 }
 
 Result<void> PreparedScene::useMesh() {
