@@ -228,6 +228,7 @@ class RobotBaker {
     const FlatKinematics& flat = baked_.kinematics;
     std::vector<Pose> root_from_link(flat.links.size());
     forwardKinematics(flat.links, {}, flat.start_positions, root_from_link);
+    // Each link is in one.
     const auto group = std::ranges::find_if(baked_.groups, [&](const BakedGroup& one) {
       return std::ranges::find(one.links, hand.link) != one.links.end();
     });
