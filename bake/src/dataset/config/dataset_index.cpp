@@ -15,8 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr JsonFileKind kDatasetFile{
-    .what = "a scene dataset", .suffix = kDatasetSuffix, .max_bytes = std::size_t{64} << 20U};
+constexpr JsonFileKind kDatasetFile{.what = "a scene dataset",
+                                    .suffix = ".scene_dataset_config.json",
+                                    .max_bytes = std::size_t{64} << 20U};
 
 constexpr std::array<TemplateKindNames, kTemplateKinds> kNames{{
     {"stages", ".stage_config.json", "stage"},

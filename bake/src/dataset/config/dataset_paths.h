@@ -7,9 +7,6 @@
 
 namespace galactic::bake {
 
-/// How the name of a scene dataset's configuration ends.
-inline constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
-
 /// Whether `name` is what `pattern` describes: '*' is any text, '?' one byte, "[a-z]" and "[!a-z]"
 /// one of a set (a backslash is nothing special); a leading dot has to be stated. Takes no longer
 /// than the product of the lengths.

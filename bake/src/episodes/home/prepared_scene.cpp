@@ -143,8 +143,7 @@ void PreparedScene::survey() {
   if (!proven_.empty()) return;
   unusable_ = fmt::format(
       "no places were found for a target and its goal {} away{} in {} tries on its {} support "
-      "places, "
-      "which are at most {:.2f} m apart (drawn and not taken: {}); {}",
+      "places, which are at most {:.2f} m apart (drawn and not taken: {}); {}",
       textOf(target_to_goal_), context_.options.goal_on_other_support ? " on another surface" : "",
       kSurveyTries, supports_.places().size(), widestWay(), textOf(rejections),
       adviceFor(rejections));
