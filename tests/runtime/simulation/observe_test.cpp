@@ -199,13 +199,32 @@ TEST(Observation, TellsTheWayFromTheTargetWhereItIsToTheGoal) {
   expectBothSides(moved, static_cast<int>(kEnvs) * 200);
 }
 
+/// Something that follows in the row.
+constexpr LaserOptions kLaser{.beams = 3};
+
+SimulationOptions sensing(const SensorOptions& sensors) {
+  SimulationOptions options = optionsOf({.kind = TaskKind::kNone});
+  options.sensors = sensors;
+  return options;
+}
+
+ObservationPart partBeforeLaser(const BatchSimulator& simulator) {
+  return simulator.observationParts().end()[-2];
+}
+
+/// The same state with something else in the hand: a view of it.
+FollowedState followedFrom(const EnvState& state, std::int32_t held) {
+  return {.world_from_root = state.world_from_root,
+          .joint_positions = state.joint_positions,
+          .objects = state.objects,
+          .held = held};
+}
+
 TEST(Observation, TellsHowTheTargetIsTilted) {
   const SmallHome home;
-  SimulationOptions options = optionsOf({.kind = TaskKind::kNone});
-  options.sensors.target_up = true;
-  options.sensors.laser.beams = 3;
-  BatchSimulator simulator = simulatorOf(home.world(), options);
-  const ObservationPart part = simulator.observationParts().end()[-2];
+  BatchSimulator simulator =
+      simulatorOf(home.world(), sensing({.target_up = true, .laser = kLaser}));
+  const ObservationPart part = partBeforeLaser(simulator);
   ASSERT_EQ(part.name, "target_up");
   const auto observed = [&](std::size_t env) {
     return rowOf(simulator, simulator.observations(), env).subspan(part.first, part.size);
@@ -223,10 +242,8 @@ TEST(Observation, TellsHowTheTargetIsTilted) {
     Quat& target = state.objects[state.target].rotation;
     target = turn * target;
     tops.push_back(turnedInto(facing, double3(rotate(turn, {0, 1, 0}))));
-    followed.push_back({.world_from_root = state.world_from_root,
-                        .joint_positions = state.joint_positions,
-                        .objects = state.objects,
-                        .held = env % 2 == 0 ? -1 : static_cast<std::int32_t>(state.target)});
+    followed.push_back(
+        followedFrom(state, env % 2 == 0 ? -1 : static_cast<std::int32_t>(state.target)));
   }
   simulator.follow(std::vector<float>(kEnvs * kSmallHomeActions), followed);
   for (std::size_t env = 0; env < kEnvs; ++env) {
@@ -261,11 +278,9 @@ std::vector<double> waysToNearest(const World& world, const EnvState& state, std
 TEST(Observation, TellsTheWaysToTheObjectsNearTheHand) {
   constexpr std::uint32_t kNear = 3;
   const SmallHome home;
-  SimulationOptions options = optionsOf({.kind = TaskKind::kNone});
-  options.sensors.near_objects = kNear;
-  options.sensors.laser.beams = 3;
-  BatchSimulator simulator = simulatorOf(home.world(), options);
-  const ObservationPart part = simulator.observationParts().end()[-2];
+  BatchSimulator simulator =
+      simulatorOf(home.world(), sensing({.near_objects = kNear, .laser = kLaser}));
+  const ObservationPart part = partBeforeLaser(simulator);
   ASSERT_EQ(part.name, "near_objects");
   ASSERT_EQ(part.size, 3 * kNear);
   std::mt19937 random(kSeed);
@@ -283,10 +298,7 @@ TEST(Observation, TellsTheWaysToTheObjectsNearTheHand) {
                   randomQuat(random)};
       }
       const auto count = static_cast<std::int32_t>(state.objects.size());
-      followed.push_back({.world_from_root = state.world_from_root,
-                          .joint_positions = state.joint_positions,
-                          .objects = state.objects,
-                          .held = static_cast<std::int32_t>(env) % (count + 1) - 1});
+      followed.push_back(followedFrom(state, static_cast<std::int32_t>(env) % (count + 1) - 1));
     }
     simulator.follow(std::vector<float>(kEnvs * kSmallHomeActions), followed);
     for (std::size_t env = 0; env < kEnvs; ++env) {
