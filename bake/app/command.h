@@ -14,9 +14,6 @@
 
 namespace galactic::bake {
 
-/// How the name of a scene dataset's configuration ends.
-inline constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
-
 /// How much to print.
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 

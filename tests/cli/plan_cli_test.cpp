@@ -257,6 +257,8 @@ TEST_F(PlanCli, BakesAFolderOfScans) {
   for (const char* name : {"scans/hall/hall.glb", "scans/loft.glb"}) {
     write(name, fileContent(sampleFile("apartment.glb")));
   }
+  // As Matterport3D has it: it says how to read scans, and composes no scene.
+  write("scans/mp3d.scene_dataset_config.json", R"({"stages": {"paths": {".glb": ["*/*.glb"]}}})");
   const ProgramRun list = run({"scans/", "--as", "dataset", "--list"});
   EXPECT_EQ(list.out, "hall\nloft\n");
   const ProgramRun baked =

@@ -294,6 +294,17 @@ TEST_F(PlanFaults, RefusesWrongOptions) {
   EXPECT_FALSE(has("out"));
 }
 
+TEST_F(PlanFaults, RefusesTheFolderOfADatasetThatComposesScenes) {
+  for (const char* option : {"--list", "--dry-run"}) {
+    const ProgramRun refused = run({"data", "--as", "dataset", option});
+    EXPECT_EQ(refused.exit_code, 3) << option;
+    EXPECT_THAT(refused.err,
+                HasSubstr("data: found the folder of a dataset whose scenes are composed of its "
+                          "meshes, wanted one of scans; give data/home.scene_dataset_config.json"));
+  }
+  EXPECT_FALSE(has("data.pack"));
+}
+
 TEST_F(PlanFaults, GoesOnAfterAnErrorWhereTheUserWants) {
   write("data/meshes/objects/mug.glb", "no mesh");
   const ProgramRun stops = bake("out", {"-j", "1", "--missing", "skip"});

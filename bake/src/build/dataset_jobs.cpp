@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "build/pack_list.h"
+#include "dataset/config/dataset_index.h"
 #include "dataset/mesh_library.h"
 #include "dataset/scene_dataset.h"
 #include "dataset/scene_files.h"
@@ -23,6 +26,34 @@ constexpr std::array<Named<MissingPolicy>, 3> kMissingNames{{{"fail", MissingPol
 bool isFolder(const std::filesystem::path& path) {
   std::error_code unknown;
   return std::filesystem::is_directory(path, unknown);
+}
+
+/// The configuration of a dataset that composes scenes, the first by name, beside the files of a
+/// folder. One that only says how to read scans has no scenes of its own.
+std::optional<std::filesystem::path> composingDataset(const std::filesystem::path& folder) {
+  std::set<std::filesystem::path> configurations;
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(kDatasetSuffix)) configurations.insert(entry.path());
+  }
+  for (const std::filesystem::path& path : configurations) {
+    const auto index = readDatasetIndex(path, /*allow_outside=*/true);
+    if (index && !index->block(TemplateKind::kScene).templates.all().empty()) return path;
+  }
+  return std::nullopt;
+}
+
+/// The scans in a folder, which is not that of another dataset.
+Result<std::vector<SceneFile>> scansIn(const std::filesystem::path& folder) {
+  if (const auto dataset = composingDataset(folder)) {
+    return fail(
+        ErrorCode::kInvalidInput, folder.string(),
+        fmt::format("found the folder of a dataset whose scenes are composed of its meshes, "
+                    "wanted one of scans; give {}",
+                    dataset->string()));
+  }
+  return findSceneFiles(folder);
 }
 
 /// Ascending.
@@ -73,7 +104,7 @@ void addObjects(const SceneSurvey& survey, const DatasetJobs& dataset, PackList&
 }
 
 Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
-  ASSIGN_OR_RETURN(const auto files, findSceneFiles(dataset.input));
+  ASSIGN_OR_RETURN(const auto files, scansIn(dataset.input));
   ASSIGN_OR_RETURN(const auto names, wantedScenes(namesOf(files), dataset.scenes));
   for (const SceneFile& file : files) {
     if (!std::ranges::binary_search(names, file.name)) continue;
@@ -137,7 +168,7 @@ void visitOptions(DatasetJobs& dataset, OptionVisitor& v) {
 
 Result<std::vector<std::string>> sceneNames(const DatasetJobs& dataset) {
   if (isFolder(dataset.input)) {
-    ASSIGN_OR_RETURN(const auto files, findSceneFiles(dataset.input));
+    ASSIGN_OR_RETURN(const auto files, scansIn(dataset.input));
     return wantedScenes(namesOf(files), dataset.scenes);
   }
   ASSIGN_OR_RETURN(

@@ -12,6 +12,9 @@
 
 namespace galactic::bake {
 
+/// How the name of a scene dataset's configuration ends.
+inline constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
+
 /// What to do with a scene of a dataset of which something is missing. A scene without its stage is
 /// never baked.
 enum class MissingPolicy {
@@ -34,7 +37,8 @@ struct DatasetJobs {
 void visitOptions(DatasetJobs& dataset, OptionVisitor& visitor);
 
 /// The names of the scenes that are wanted, ascending. Fails with the errors of SceneDataset::read
-/// and findSceneFiles, and with kInvalidInput where a pattern fits none.
+/// and findSceneFiles, and with kInvalidInput where a pattern fits none, or where a folder is that
+/// of a dataset whose scenes are composed of meshes.
 [[nodiscard]] Result<std::vector<std::string>> sceneNames(const DatasetJobs& dataset);
 
 /// Everything that is baked for datasets, with a world at `world` that lists it; the other packs go
