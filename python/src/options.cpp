@@ -26,12 +26,6 @@ std::string underscored(std::string name) {
   return name;
 }
 
-/// Numpy's truth values are no Python ones, but pass for whole numbers.
-bool isTruth(const py::handle& value) {
-  return py::isinstance<py::bool_>(value) ||
-         py::isinstance(value, py::module_::import("numpy").attr("bool_"));
-}
-
 /// A value as galactic-run reads it.
 std::string textOf(const std::string& keyword, const py::handle& value) {
   if (isTruth(value)) return truthOf(keyword.c_str(), value) ? "true" : "false";
@@ -105,6 +99,11 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
 }
 
 }  // namespace
+
+bool isTruth(const py::handle& value) {
+  return py::isinstance<py::bool_>(value) ||
+         py::isinstance(value, py::module_::import("numpy").attr("bool_"));
+}
 
 std::uint64_t wholeOf(const char* name, const py::handle& value, std::uint64_t least,
                       std::uint64_t most) {

@@ -23,6 +23,9 @@ namespace py = pybind11;
 /// The same of `threads`.
 [[nodiscard]] std::uint32_t threadsOf(const py::handle& value);
 
+/// Whether it is a truth value, of Python or of numpy: those pass for whole numbers.
+[[nodiscard]] bool isTruth(const py::handle& value);
+
 /// The options that keywords name: those of the option table with '_' for '-', and `threads`,
 /// `body_transforms` and `auto_reset`. What they do not name is what the world says of its task,
 /// else the default. A value of None counts as not given. Throws a Refusal for a wrong value and

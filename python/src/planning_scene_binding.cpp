@@ -31,18 +31,14 @@ std::vector<float> finiteNumbers(const py::handle& given, const char* name, std:
 /// gives the interpreter's lock away, so calls of several threads come one after the other.
 class EnvScene {
  public:
-  EnvScene(Simulator& simulator, std::size_t env)
+  EnvScene(Simulator& simulator, const py::object& env)
       : simulator_(&simulator), scene_(simulator.world(), simulator.batch().options()) {
     update(env);
   }
 
-  void update(std::size_t env) {
-    if (env >= simulator_->batch().envCount()) {
-      throw py::index_error(fmt::format("there is no env {}, the last is {}", env,
-                                        simulator_->batch().envCount() - 1));
-    }
+  void update(const py::object& env) {
     const Confinement::Use use = simulator_->readState();
-    const EnvState state = simulator_->batch().envState(env);
+    const EnvState state = simulator_->batch().envState(simulator_->envNumber(env));
     scene_.update(state);
     scene_.setJoints(state.joint_positions);
     base_ = scene_.baseOf(state);
@@ -121,7 +117,7 @@ class EnvScene {
 
 void bindPlanningScene(py::module_& module) {
   py::class_<EnvScene> type(module, "PlanningScene");
-  type.def(py::init<Simulator&, std::size_t>(), py::arg("simulator"), py::arg("env") = 0,
+  type.def(py::init<Simulator&, const py::object&>(), py::arg("simulator"), py::arg("env") = 0,
            py::keep_alive<1, 2>(),
            "What a planner asks about one env: is a pose of the robot free, where is the hand,\n"
            "what would it grasp, where would an object land? By the rules of the simulation,\n"

@@ -124,16 +124,31 @@ void Simulator::restart(const py::object& seed) {
   batch_.restart(number);
 }
 
-std::vector<std::uint32_t> Simulator::envNumbers(const py::object& envs) const {
-  std::vector<std::uint32_t> numbers;
-  for (const py::handle one : envs) {
-    const auto env = one.cast<std::int64_t>();
-    if (env < 0 || env >= this->envs()) {
-      throw py::index_error(
-          fmt::format("there is no env {}, the last is {}", env, this->envs() - 1));
-    }
-    numbers.push_back(static_cast<std::uint32_t>(env));
+std::uint32_t Simulator::envNumber(const py::handle& env) const {
+  if (isTruth(env) || PyIndex_Check(env.ptr()) == 0) {
+    throw py::type_error(
+        fmt::format("an env is a {}, expected its number; numpy.flatnonzero(mask) has the numbers "
+                    "of a mask",
+                    typeName(env)));
   }
+  int is_too_large = 0;
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(env.ptr()));
+  if (!number) throw py::error_already_set();
+  const std::int64_t found = PyLong_AsLongLongAndOverflow(number.ptr(), &is_too_large);
+  if (is_too_large != 0 || found < 0 || found >= envs()) {
+    throw py::index_error(fmt::format("there is no env {}, the last is {}",
+                                      py::str(number).cast<std::string>(), envs() - 1));
+  }
+  return static_cast<std::uint32_t>(found);
+}
+
+std::vector<std::uint32_t> Simulator::envNumbers(const py::object& envs) const {
+  if (!py::isinstance<py::iterable>(envs)) {
+    throw py::type_error(
+        fmt::format("envs is a {}, expected numbers of envs, such as [0, 3]", typeName(envs)));
+  }
+  std::vector<std::uint32_t> numbers;
+  for (const py::handle one : envs) numbers.push_back(envNumber(one));
   return numbers;
 }
 

@@ -44,7 +44,9 @@ class Simulator {
   [[nodiscard]] const BatchSimulator& batch() const { return batch_; }
   [[nodiscard]] BatchSimulator& batch() { return batch_; }
 
-  /// What numbers of envs mean; IndexError for those that are not there.
+  /// What the number of an env means, and a list of numbers. TypeError for what is no number, also
+  /// for truth values: a mask is no list of 0 and 1. IndexError for those that are not there.
+  [[nodiscard]] std::uint32_t envNumber(const py::handle& env) const;
   [[nodiscard]] std::vector<std::uint32_t> envNumbers(const py::object& envs) const;
 
   /// For shapes.

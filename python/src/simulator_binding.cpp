@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "arrays.h"
@@ -43,17 +42,11 @@ py::dict observationParts(const Simulator& simulator) {
   return parts;
 }
 
-void requireEnv(const Simulator& simulator, std::size_t env) {
-  if (env < simulator.batch().envCount()) return;
-  throw py::index_error(
-      fmt::format("there is no env {}, the last is {}", env, simulator.batch().envCount() - 1));
-}
-
-py::dict statistics(Simulator& simulator, std::optional<std::size_t> env) {
-  if (env) requireEnv(simulator, *env);
+py::dict statistics(Simulator& simulator, const py::object& env) {
   const Confinement::Use use = simulator.readState();
   const BatchSimulator& batch = simulator.batch();
-  const SimulationStatistics sum = env ? batch.statistics(*env) : batch.statistics();
+  const SimulationStatistics sum =
+      env.is_none() ? batch.statistics() : batch.statistics(simulator.envNumber(env));
   py::dict figures;
   figures["steps"] = sum.steps;
   figures["refused"] = sum.refused;
@@ -78,10 +71,9 @@ py::dict phaseTimes(Simulator& simulator) {
   return times;
 }
 
-EnvState envState(Simulator& simulator, std::size_t env) {
-  requireEnv(simulator, env);
+EnvState envState(Simulator& simulator, const py::object& env) {
   const Confinement::Use use = simulator.readState();
-  return simulator.batch().envState(env);
+  return simulator.batch().envState(simulator.envNumber(env));
 }
 
 py::array_t<std::int32_t> episodes(Simulator& simulator, const py::object& envs) {
@@ -171,7 +163,8 @@ void bindStepping(py::class_<Simulator>& type) {
            "All envs stand at the start of their first episode, as if just made with this seed.");
   type.def("save_state", &Simulator::saveState, py::arg("envs") = py::none(),
            "The state of all envs as bytes, or of those with the numbers `envs`, in that order:\n"
-           "with what the last step returned, the statistics and the seed.");
+           "with what the last step returned, the statistics and the seed. A mask is no list of\n"
+           "numbers: numpy.flatnonzero(mask) is.");
   type.def(
       "restore_state", &Simulator::restoreState, py::arg("state"), py::arg("envs") = py::none(),
       "Goes on from a state that a simulator of the same world and options saved, bit for bit\n"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import galactic
-from galactic import EpisodeEnd, Error, ErrorCode, Simulator, World
+from galactic import EpisodeEnd, Error, ErrorCode, PlanningScene, Simulator, World
 
 ENVS = 20
 
@@ -204,6 +204,56 @@ def test_episodes_that_cannot_begin_are_refused_and_nothing_happens(
             call()
         assert message in str(caught.value)
         assert simulator.save_state() == before
+
+
+MASK = np.array([False, True] * (ENVS // 2))
+
+
+@pytest.mark.parametrize(
+    "env, error, message",
+    [
+        (ENVS, IndexError, "there is no env 20, the last is 19"),
+        (-1, IndexError, "there is no env -1, the last is 19"),
+        (2**70, IndexError, f"there is no env {2**70}, the last is 19"),
+        (1.5, TypeError, "an env is a float, expected its number"),
+        (True, TypeError, "an env is a bool, expected its number"),
+        (MASK[0], TypeError, "an env is a bool_, expected its number; numpy.flatnonzero(mask) has"),
+    ],
+)
+def test_what_is_no_number_of_an_env_is_refused_wherever_one_is_asked_for(
+    simulator, env, error, message
+):
+    state = simulator.save_state([0, 1])
+    planning = PlanningScene(simulator)
+    for call in (
+        lambda: simulator.env_state(env),
+        lambda: simulator.statistics(env),
+        lambda: simulator.episodes([env]),
+        lambda: simulator.save_state(envs=[0, env]),
+        lambda: simulator.restore_state(state, envs=[0, env]),
+        lambda: planning.update(env),
+        lambda: PlanningScene(simulator, env),
+    ):
+        with pytest.raises(error) as caught:
+            call()
+        assert message in str(caught.value)
+
+
+def test_envs_are_numbers_and_no_mask(simulator):
+    state = simulator.save_state(range(ENVS))
+    for call in (
+        simulator.episodes,
+        simulator.save_state,
+        lambda e: simulator.restore_state(state, e),
+    ):
+        with pytest.raises(TypeError, match="an env is a bool_, expected its number"):
+            call(MASK)
+        with pytest.raises(TypeError, match="envs is a int, expected numbers of envs"):
+            call(3)
+    chosen = np.flatnonzero(MASK)
+    for envs in (chosen, chosen.tolist(), chosen.astype(np.uint8), iter(chosen)):
+        np.testing.assert_array_equal(simulator.episodes(envs), simulator.episodes()[MASK])
+    assert len(simulator.episodes([])) == 0
 
 
 def test_the_next_episode_is_none_that_a_step_begins(simulator, draw_actions):
