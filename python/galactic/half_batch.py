@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,9 @@ from galactic._core import EpisodeTally, ErrorCode, Renderer, Simulator, World
 from galactic.errors import Error
 
 Array = NDArray[Any]
-Observations = Union[Array, dict[str, Array]]
+#: An array or a dictionary of arrays, as observation_space says. No Union: which one it is depends
+#: on options, so a type checker would refuse every use of either.
+Observations = Any
 #: Observations, rewards, terminations, truncations, infos.
 StepResult = tuple[Observations, Array, Array, Array, dict[str, Any]]
 

@@ -39,6 +39,12 @@ Paths = Union[str, os.PathLike, Sequence[Union[str, os.PathLike]]]
 #: Places for the results of one step: see VectorEnv.step.
 Row = Mapping[str, NDArray[Any]]
 
+#: Options of a Simulator that are none here, and what to do instead.
+_NO_OPTIONS = {
+    "envs": "give num_envs",
+    "auto_reset": "its envs begin the next episode by themselves, those of a Simulator need not",
+}
+
 _OF_THE_PAPER = 'a dictionary of "continuous" and "discrete": actions="paper"'
 
 
@@ -82,7 +88,8 @@ class VectorEnv(_Base):
         copy: whether results are arrays of their own. Else they are views, overwritten by the next
             step, unless they were written to `out`.
         render_mode: None, or "rgb_array" for render().
-        threads, seed, order, rank, ranks, options: of galactic.Simulator.
+        threads, seed, order, rank, ranks, options: of galactic.Simulator. body_transforms=True
+            lets you draw its `simulators` with a Renderer of your own, also without images.
     """
 
     metadata: dict[str, Any] = {
@@ -90,6 +97,8 @@ class VectorEnv(_Base):
         "autoreset_mode": AutoresetMode.SAME_STEP,
     }
     spec = None
+    #: Until it is made: Gymnasium closes what goes, also where making it failed.
+    closed = True
 
     def __init__(
         self,
@@ -122,14 +131,17 @@ class VectorEnv(_Base):
             'options of galactic.Renderer, such as {"width": 128}, or None for no images',
         )
         _require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
-        _require("envs" not in options, "envs", options.get("envs"), "num_envs instead")
+        for name, instead in _NO_OPTIONS.items():
+            if name in options:
+                raise TypeError(f"VectorEnv has no option {name}; {instead}")
         self.world = world if isinstance(world, World) else World(world)
         self.num_envs = num_envs
         self.render_mode = render_mode
-        self.closed = False
         self._actions = actions
         draws = images is not None or render_mode is not None
-        options |= {"threads": threads, "seed": seed, "order": order, "body_transforms": draws}
+        options |= {"threads": threads, "seed": seed, "order": order}
+        if draws:
+            options["body_transforms"] = True
         if images is not None:
             images = {"threads": threads, **images}
         # Half h of batch r is batch 2 r + h of twice as many: the same envs as undivided.
@@ -150,12 +162,17 @@ class VectorEnv(_Base):
         ]
         self._threads = [ThreadPoolExecutor(1, f"galactic-half-{n}") for n in range(halves)]
         self._pending: list[Future[StepResult] | None] = [None] * halves
+        self._process = os.getpid()
         self._onlookers: list[Renderer] = []
         first = self._halves[0]
         self.single_observation_space = first.observation_space
         self.observation_space = spaces.batch_space(first.observation_space, num_envs)
         self.single_action_space = _action_space(first.simulator.action_count, actions)
         self.action_space = spaces.batch_space(self.single_action_space, num_envs)
+        self.closed = False
+
+    def __repr__(self) -> str:
+        return f"<galactic.VectorEnv of {self.num_envs} envs>"
 
     @property
     def simulators(self) -> tuple[Simulator, ...]:
@@ -330,6 +347,8 @@ class VectorEnv(_Base):
         self.closed = True
 
     def _begin(self, half: int, rows: NDArray[np.float32], out: Row | None) -> Future[StepResult]:
+        if os.getpid() != self._process:
+            raise RuntimeError("the threads of this env are in another process; make one in each")
         step = self._threads[half].submit(self._halves[half].step, rows, out)
         self._pending[half] = step
         return step
@@ -385,7 +404,9 @@ def _reset_options(
     options = options or {}
     unknown = set(options) - {"reset_mask", "episodes"}
     if unknown:
-        raise ValueError(f"reset() has no option {unknown.pop()!r}: reset_mask and episodes")
+        raise ValueError(
+            f"reset() has no option {unknown.pop()!r}; expected reset_mask or episodes"
+        )
     mask = options.get("reset_mask")
     mask = np.ones(envs, np.bool_) if mask is None else np.asarray(mask)
     if mask.shape != (envs,) or mask.dtype != np.bool_:

@@ -1,5 +1,7 @@
 """VectorEnv step by step against the simulator, and what Gymnasium 1.x asks of it."""
 
+import multiprocessing
+
 import numpy as np
 import pytest
 
@@ -208,7 +210,6 @@ def test_wrong_resets_are_refused(world, options, message):
         {"halves": 3},
         {"num_envs": 7, "halves": 2},
         {"render_mode": "human"},
-        {"envs": 4},
     ],
 )
 def test_wrong_arguments_are_refused(world, arguments):
@@ -448,6 +449,58 @@ def test_natural_mistakes_are_told_what_was_wanted(world, options, message):
     with pytest.raises((ValueError, Error)) as caught:
         VectorEnv(world, **{"num_envs": 2, "threads": 1, **options})
     assert message in str(caught.value)
+
+
+def test_options_of_a_simulator_that_it_does_not_have_are_refused(world):
+    with pytest.raises(TypeError, match="VectorEnv has no option envs; give num_envs"):
+        VectorEnv(world, envs=4)
+    with pytest.raises(TypeError, match="VectorEnv has no option auto_reset; its envs begin"):
+        VectorEnv(world, 2, auto_reset=False)
+    with pytest.raises(ValueError, match="no option 'episode'; expected reset_mask or episodes"):
+        VectorEnv(world, 2).reset(options={"episode": 1})
+
+
+def test_body_transforms_let_others_draw_its_simulators(world):
+    env = VectorEnv(world, 2, threads=1, body_transforms=True)
+    assert Renderer(env.simulators[0], **IMAGES).render()["rgb"].shape == (2, 16, 24, 3)
+
+
+def test_an_env_that_could_not_be_made_can_be_closed(world):
+    """Gymnasium's class closes what goes, and would write a traceback beside the error."""
+    unmade = VectorEnv.__new__(VectorEnv)
+    with pytest.raises(TypeError, match="did you mean task"):
+        unmade.__init__(world, 2, tusk="pick")
+    assert unmade.closed
+    unmade.close()
+
+
+def in_a_forked_process(work):
+    """What `work` returns there, or the message of what it raises."""
+
+    def report(results):
+        try:
+            results.put(work())
+        except RuntimeError as error:
+            results.put(str(error))
+
+    context = multiprocessing.get_context("fork")
+    results = context.Queue()
+    process = context.Process(target=report, args=(results,))
+    process.start()
+    try:
+        return results.get(timeout=60)
+    finally:
+        process.kill()
+        process.join()
+
+
+def test_a_forked_process_is_told_to_make_its_own_halves(world, draw_actions):
+    actions = draw_actions(ENVS, 8)
+    halves = VectorEnv(world, ENVS, halves=2, **OPTIONS)
+    halves.step(actions)
+    for work in (lambda: halves.step(actions), lambda: halves.send(actions[:12], 1)):
+        assert "in another process; make one in each" in in_a_forked_process(work)
+    halves.step(actions)
 
 
 def test_a_seed_that_is_none_begins_nothing(world, draw_actions):
