@@ -9,6 +9,7 @@ import sys
 
 try:
     from galactic._core import (
+        Action,
         EnvState,
         EpisodeEnd,
         ErrorCode,
@@ -32,6 +33,7 @@ from galactic.errors import Error
 from galactic.vector_env import VectorEnv
 
 __all__ = [
+    "Action",
     "EnvState",
     "EpisodeEnd",
     "Error",

@@ -186,6 +186,7 @@ class VectorEnv(_Base):
 
     @property
     def unwrapped(self) -> VectorEnv:
+        """Itself, which wraps nothing."""
         return self
 
     def rows(self, half: int) -> slice:

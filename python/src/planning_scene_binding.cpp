@@ -31,8 +31,9 @@ std::vector<float> finiteNumbers(const py::handle& given, const char* name, std:
 /// gives the interpreter's lock away, so calls of several threads come one after the other.
 class EnvScene {
  public:
-  EnvScene(Simulator& simulator, const py::object& env)
-      : simulator_(&simulator), scene_(simulator.world(), simulator.batch().options()) {
+  EnvScene(const py::object& simulator, const py::object& env)
+      : simulator_(&simulatorOf(simulator)),
+        scene_(simulator_->world(), simulator_->batch().options()) {
     update(env);
   }
 
@@ -117,8 +118,8 @@ class EnvScene {
 
 void bindPlanningScene(py::module_& module) {
   py::class_<EnvScene> type(module, "PlanningScene");
-  type.def(py::init<Simulator&, const py::object&>(), py::arg("simulator"), py::arg("env") = 0,
-           py::keep_alive<1, 2>(),
+  type.def(py::init<const py::object&, const py::object&>(), py::arg("simulator"),
+           py::arg("env") = 0, py::keep_alive<1, 2>(),
            "What a planner asks about one env: is a pose of the robot free, where is the hand,\n"
            "what would it grasp, where would an object land? By the rules of the simulation,\n"
            "which is neither changed nor stepped.\n\n"
@@ -133,10 +134,11 @@ void bindPlanningScene(py::module_& module) {
       .def_property_readonly("base", &EnvScene::base,
                              "Where the base of the env was at the last update: float32 (4,).")
       .def_property_readonly("root_from_links", &EnvScene::rootFromLinks,
-                             "The poses of all links for these joints (forward kinematics).")
+                             "The poses of all links for these joints (forward kinematics), in\n"
+                             "the order of World.links.")
       .def_property_readonly("reach", &EnvScene::reach,
                              "How far the robot reaches from its root's vertical axis, meters.")
-      .def("world_from_root", &EnvScene::worldFromRoot, py::arg("base"))
+      .def("world_from_root", &EnvScene::worldFromRoot, py::arg("base"), "Pose of the root link.")
       .def("world_from_grip", &EnvScene::worldFromGrip, py::arg("base"),
            "Origin at the grasp point, axes of the end effector's link.")
       .def("is_free", &EnvScene::isFree, py::arg("base"),
@@ -149,7 +151,8 @@ void bindPlanningScene(py::module_& module) {
       .def("hold", &EnvScene::hold, py::arg("object"), py::arg("base"),
            "Holds an object as if it were grasped here.")
       .def("put_back", &EnvScene::putBack, "Puts what hold() took back to where it rested.")
-      .def_property_readonly("is_holding", &EnvScene::isHolding)
+      .def_property_readonly("is_holding", &EnvScene::isHolding,
+                             "Whether something is in the hand, in the env or by hold().")
       .def("landing", &EnvScene::landing, py::arg("base"),
            "Pose in which the held object comes to rest if it is released here, without random\n"
            "jitters, or None when it finds no place.");

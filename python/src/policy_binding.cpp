@@ -291,7 +291,8 @@ dones         [envs] bool or uint8: where an episode ended in the last step; Non
 rgb           [envs, height, width, 3] uint8, where the policy wants images
 depth         [envs, height, width] float32, meters)")
       .def("reset", &PlayedPolicy::reset, "All envs begin anew.")
-      .def_property_readonly("name", [](const PlayedPolicy& p) { return p.needs().name; })
+      .def_property_readonly(
+          "name", [](const PlayedPolicy& p) { return p.needs().name; }, "The policy's name.")
       .def_property_readonly(
           "robot", [](const PlayedPolicy& p) { return p.needs().robot; },
           "Name of the robot that it moves; empty: any.")
@@ -302,7 +303,7 @@ depth         [envs, height, width] float32, meters)")
                              "Names and sizes of the parts that it reads, in order.")
       .def_property_readonly("image_size", &imageSizeOf,
                              "(height, width) of the images that it wants, or None.")
-      .def_property_readonly("action_count", &PlayedPolicy::actionCount);
+      .def_property_readonly("action_count", &PlayedPolicy::actionCount, "Columns of the actions.");
   type.attr("__module__") = "galactic";
   refusePickling(type, "make one from the same pack");
 }

@@ -117,9 +117,7 @@ void bindRenderer(py::module_& module) {
   py::class_<Renderer> type(module, "Renderer");
   type.def(
       py::init([](const py::object& simulator, const py::kwargs& keywords) {
-        if (!py::isinstance<Simulator>(simulator)) {
-          throw py::type_error("simulator is not a galactic.Simulator");
-        }
+        (void)simulatorOf(simulator);
         return Renderer::create(simulator, optionsFrom(keywords));
       }),
       py::arg("simulator"),
@@ -151,10 +149,13 @@ void bindRenderer(py::module_& module) {
   type.def_property_readonly("shapes", &Renderer::shapes,
                              "Of one env's images, by name: shape and dtype.");
   type.def_property_readonly(
-      "backend", [](const Renderer& one) { return backendName(one.batch().backend()); });
-  type.def_property_readonly("description",
-                             [](const Renderer& one) { return one.batch().description(); });
-  type.def_property_readonly("semantic_names", &Renderer::semanticNames);
+      "backend", [](const Renderer& one) { return backendName(one.batch().backend()); },
+      "What draws: 'soft', 'gl' or 'cuda'.");
+  type.def_property_readonly(
+      "description", [](const Renderer& one) { return one.batch().description(); },
+      "The same in words, with the device.");
+  type.def_property_readonly("semantic_names", &Renderer::semanticNames,
+                             "What the numbers in 'semantics' stand for.");
   type.def("__repr__", [](const Renderer& one) {
     return fmt::format("<galactic.Renderer, {}>", one.batch().description());
   });

@@ -12,6 +12,13 @@
 
 namespace galactic::python {
 
+Simulator& simulatorOf(const py::object& given) {
+  if (py::isinstance<Simulator>(given)) return given.cast<Simulator&>();
+  throw py::type_error(fmt::format(
+      "simulator is a {}, expected a galactic.Simulator; VectorEnv.simulators has those of one",
+      typeName(given)));
+}
+
 std::span<const float> Simulator::StepInput::actionSpan() const {
   return {actions.data(), static_cast<std::size_t>(actions.size())};
 }

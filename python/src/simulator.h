@@ -13,6 +13,11 @@
 
 namespace galactic::python {
 
+class Simulator;
+
+/// What a caller gives as `simulator`. TypeError when it is none, such as a VectorEnv.
+[[nodiscard]] Simulator& simulatorOf(const py::object& given);
+
 /// galactic.Simulator: a BatchSimulator that keeps its world, is used by one thread at a time, and
 /// knows whether a step is under way. Every member needs the interpreter's lock; the long ones give
 /// it away while they work.

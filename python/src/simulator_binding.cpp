@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "arrays.h"
@@ -71,9 +73,27 @@ py::dict phaseTimes(Simulator& simulator) {
   return times;
 }
 
-EnvState envState(Simulator& simulator, const py::object& env) {
+/// galactic.EnvState: with what the objects are called.
+struct NamedEnvState : EnvState {
+  std::vector<std::string> object_names;
+};
+
+NamedEnvState envState(Simulator& simulator, const py::object& env) {
   const Confinement::Use use = simulator.readState();
-  return simulator.batch().envState(simulator.envNumber(env));
+  const std::uint32_t number = simulator.envNumber(env);
+  NamedEnvState state{simulator.batch().envState(number), {}};
+  const std::vector<std::string_view>& names = simulator.world().episodes().objectNames();
+  for (const Placement& placement : simulator.batch().envObjects(number).placements) {
+    state.object_names.emplace_back(names[placement.object]);
+  }
+  return state;
+}
+
+std::string envStateText(const NamedEnvState& state) {
+  const std::string held =
+      state.held < 0 ? "nothing" : state.object_names[static_cast<std::size_t>(state.held)];
+  return fmt::format("<galactic.EnvState of episode {} after {} steps, {} in the hand>",
+                     state.episode, state.step, held);
 }
 
 py::array_t<std::int32_t> episodes(Simulator& simulator, const py::object& envs) {
@@ -115,29 +135,38 @@ void bindPose(py::module_& module) {
 }
 
 void bindEnvState(py::module_& module) {
-  py::class_<EnvState> type(module, "EnvState");
+  py::class_<NamedEnvState> type(module, "EnvState");
   type.def_readonly("scene", &EnvState::scene)
       .def_readonly("episode", &EnvState::episode)
       .def_readonly("step", &EnvState::step)
       .def_readonly("world_from_root", &EnvState::world_from_root)
-      .def_property_readonly("joint_positions",
-                             [](const EnvState& state) { return arrayOf(state.joint_positions); })
+      .def_property_readonly(
+          "joint_positions",
+          [](const NamedEnvState& state) { return arrayOf(state.joint_positions); })
       .def_readonly("world_from_grip", &EnvState::world_from_grip)
       .def_readonly("objects", &EnvState::objects)
+      .def_property_readonly(
+          "object_names",
+          [](const NamedEnvState& state) { return py::tuple(py::cast(state.object_names)); })
       .def_property_readonly("held",
-                             [](const EnvState& state) -> py::object {
+                             [](const NamedEnvState& state) -> py::object {
                                if (state.held < 0) return py::none();
                                return py::int_(state.held);
                              })
       .def_readonly("target", &EnvState::target)
       .def_readonly("goal", &EnvState::goal);
+  type.def("__repr__", &envStateText);
   type.attr("__module__") = "galactic";
   type.doc() =
       "The state of one env: a copy.\n\n"
       "scene, episode: indices into the world's scenes and episodes. step: steps of the episode.\n"
-      "world_from_root, world_from_grip, goal: Pose. joint_positions: float32, the robot's whole\n"
-      "vector, radians or meters. objects: the world poses of the episode's objects. held: index\n"
-      "into objects, None with an empty hand. target: index into objects.";
+      "world_from_root, world_from_grip: Pose. joint_positions: float32, the robot's whole "
+      "vector,\n"
+      "radians or meters; World.actions says where in it the joints are that actions move.\n"
+      "objects: the world poses of the episode's objects; object_names: what they are. held: "
+      "index\n"
+      "into objects, None with an empty hand. target: index of the object to bring to the Pose\n"
+      "goal. PlanningScene has the poses of the links.";
 }
 
 void bindStepping(py::class_<Simulator>& type) {
@@ -208,18 +237,22 @@ void bindResults(py::class_<Simulator>& type) {
 }
 
 void bindQueries(py::class_<Simulator>& type) {
-  type.def_property_readonly("num_envs",
-                             [](const Simulator& one) { return one.batch().envCount(); });
-  type.def_property_readonly("action_count",
-                             [](const Simulator& one) { return one.batch().actionCount(); });
-  type.def_property_readonly("observation_size",
-                             [](const Simulator& one) { return one.batch().observationSize(); });
+  type.def_property_readonly(
+      "num_envs", [](const Simulator& one) { return one.batch().envCount(); }, "How many envs.");
+  type.def_property_readonly(
+      "action_count", [](const Simulator& one) { return one.batch().actionCount(); },
+      "Columns of the actions; World.actions says what they do.");
+  type.def_property_readonly(
+      "observation_size", [](const Simulator& one) { return one.batch().observationSize(); },
+      "Columns of the observations; observation_parts says what they are.");
   type.def_property_readonly("observation_parts", &observationParts,
                              "The parts of a row of the observations: name to slice, in order.");
-  type.def_property_readonly("thread_count",
-                             [](const Simulator& one) { return one.batch().threadCount(); });
   type.def_property_readonly(
-      "options", [](const Simulator& one) { return keywordsOf(one.batch().options()); });
+      "thread_count", [](const Simulator& one) { return one.batch().threadCount(); },
+      "Threads that step, the caller's among them.");
+  type.def_property_readonly(
+      "options", [](const Simulator& one) { return keywordsOf(one.batch().options()); },
+      "All options in force, as keywords of Simulator.");
   type.def_property_readonly(
       "skipped_episodes",
       [](const Simulator& one) {
@@ -227,8 +260,9 @@ void bindQueries(py::class_<Simulator>& type) {
         return std::vector<std::uint32_t>(skipped.begin(), skipped.end());
       },
       "Indices of the episodes in which the robot cannot start.");
-  type.def_property_readonly("memory_bytes",
-                             [](const Simulator& one) { return one.batch().memoryBytes(); });
+  type.def_property_readonly(
+      "memory_bytes", [](const Simulator& one) { return one.batch().memoryBytes(); },
+      "Memory of the envs and of what they share, without the packs.");
   type.def("episodes", &episodes, py::arg("envs") = py::none(),
            "The index of the episode that each env is in, or each of the numbers `envs`: int32,\n"
            "a copy.");
@@ -272,7 +306,7 @@ void bindSimulator(py::module_& module) {
       py::arg("world"), py::arg("envs") = py::none(),
       "N environments of one world, stepped together.\n\n"
       "Keywords: every option of galactic-run's simulation with '_' for '-' (envs=128, seed=1,\n"
-      "order='shuffled', task='pick', no_distractors=True, ...; docs/simulation.md has them),\n"
+      "order='shuffled', task='pick', no_distractors=True, ...; docs/tools.md has them),\n"
       "threads=0 (one per processor), body_transforms=False (rendering needs them) and\n"
       "auto_reset=True (False: envs whose episode ended wait for reset()). Options of the\n"
       "world's task apply where no keyword says otherwise.\n\n"

@@ -5,12 +5,18 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
-#include <variant>
+#include <utility>
 #include <vector>
 
+#include "arrays.h"
 #include "bindings.h"
 #include "errors.h"
 #include "options.h"
@@ -20,11 +26,17 @@ namespace {
 
 using Path = std::filesystem::path;
 
-std::shared_ptr<World> openWorld(const std::variant<Path, std::vector<Path>>& given,
-                                 bool is_trusted) {
-  const std::vector<Path> paths = std::holds_alternative<Path>(given)
-                                      ? std::vector{std::get<Path>(given)}
-                                      : std::get<std::vector<Path>>(given);
+std::shared_ptr<World> openWorld(const py::object& given, bool is_trusted) {
+  py::detail::make_caster<std::vector<Path>> list;
+  py::detail::make_caster<Path> one;
+  const bool is_path = one.load(given, true);
+  if (!is_path && !list.load(given, true)) {
+    throw py::type_error(
+        fmt::format("path is a {}, expected the path of a world pack, or a list of paths of packs",
+                    typeName(given)));
+  }
+  const std::vector<Path> paths = is_path ? std::vector{py::detail::cast_op<Path>(one)}
+                                          : py::detail::cast_op<std::vector<Path>>(std::move(list));
   const py::gil_scoped_release unlocked;
   return std::make_shared<World>(
       valueOf(World::open(paths, is_trusted ? Trust::kTrusted : Trust::kVerify)));
@@ -42,40 +54,138 @@ py::tuple objectNames(const World& world) {
   return py::tuple(names);
 }
 
-/// Of the joints that actions move, in their order.
-py::tuple jointNames(const World& world) {
+py::tuple linkNames(const World& world) {
   const Robot& robot = world.robot();
   py::list names;
-  for (const ControlledJoint& joint : robot.controlledJoints()) {
-    for (std::size_t link = 0; link < robot.links().size(); ++link) {
-      if (robot.links()[link].position != static_cast<std::int32_t>(joint.position)) continue;
-      names.append(py::str(robot.jointName(link)));
-      break;
-    }
+  for (std::size_t link = 0; link < robot.links().size(); ++link) {
+    names.append(py::str(robot.linkName(link)));
   }
   return py::tuple(names);
+}
+
+/// What a column of the actions does: galactic.Action.
+struct Action {
+  std::string name;
+  std::optional<float> step = std::nullopt;
+  std::optional<std::string> unit = std::nullopt;
+  std::optional<float> lower = std::nullopt;
+  std::optional<float> upper = std::nullopt;
+  std::optional<std::uint32_t> position = std::nullopt;
+};
+
+/// The largest floats stand for no limit.
+std::optional<float> limitOf(float limit) {
+  if (std::abs(limit) >= std::numeric_limits<float>::max()) return std::nullopt;
+  return limit;
+}
+
+Action actionOf(const Robot& robot, const ControlledJoint& joint) {
+  const std::span<const LinkFrame> links = robot.links();
+  const auto link =
+      std::ranges::find(links, static_cast<std::int32_t>(joint.position), &LinkFrame::position);
+  const auto number = static_cast<std::size_t>(link - links.begin());
+  return {.name = std::string(robot.jointName(number)),
+          .step = joint.step,
+          .unit = link->type == JointType::kPrismatic ? "m" : "rad",
+          .lower = limitOf(joint.lower),
+          .upper = limitOf(joint.upper),
+          .position = joint.position};
+}
+
+std::vector<Action> actionsOf(const World& world) {
+  const Robot& robot = world.robot();
+  std::vector<Action> actions;
+  for (const ControlledJoint& joint : robot.controlledJoints()) {
+    actions.push_back(actionOf(robot, joint));
+  }
+  const RobotBase base = robot.base().value_or(RobotBase());
+  actions.push_back({.name = "forward", .step = base.forward_step, .unit = "m"});
+  actions.push_back({.name = "turn", .step = base.turn_step, .unit = "rad"});
+  actions.push_back({.name = "hand"});
+  actions.push_back({.name = "terminate"});
+  return actions;
+}
+
+py::tuple jointNames(const World& world) {
+  py::list names;
+  for (const Action& action : actionsOf(world)) {
+    if (action.position) names.append(py::str(action.name));
+  }
+  return py::tuple(names);
+}
+
+std::string actionText(const Action& action) {
+  std::string text = fmt::format("<galactic.Action {}", action.name);
+  if (action.step) text += fmt::format(", {:.4g} {} a step", *action.step, *action.unit);
+  if (action.lower || action.upper) {
+    const auto limit = [](const std::optional<float>& one) {
+      return one ? fmt::format("{:.4g}", *one) : std::string("no limit");
+    };
+    text += fmt::format(", from {} to {}", limit(action.lower), limit(action.upper));
+  }
+  return text + ">";
+}
+
+void bindAction(py::module_& module) {
+  py::class_<Action> type(module, "Action");
+  type.def_readonly("name", &Action::name)
+      .def_readonly("step", &Action::step)
+      .def_readonly("unit", &Action::unit)
+      .def_readonly("lower", &Action::lower)
+      .def_readonly("upper", &Action::upper)
+      .def_readonly("position", &Action::position);
+  type.def("__repr__", &actionText);
+  type.attr("__module__") = "galactic";
+  type.doc() =
+      "What one column of the actions does: World.actions has one for each, in order.\n\n"
+      "name: the joint's, or 'forward', 'turn', 'hand' or 'terminate'. step: how far an action of\n"
+      "1 moves; unit: 'rad' or 'm'. Of a joint also lower and upper, its limits, and position, "
+      "its\n"
+      "index in EnvState.joint_positions. None for what there is not.";
 }
 
 }  // namespace
 
 void bindWorld(py::module_& module) {
+  bindAction(module);
   py::class_<World, std::shared_ptr<World>> type(module, "World");
-  type.def(py::init(&openWorld), py::arg("path"), py::arg("trusted") = false)
-      .def_property_readonly("scenes", &sceneNames)
-      .def_property_readonly("objects", &objectNames)
-      .def_property_readonly("robot",
-                             [](const World& world) { return py::str(world.robot().name()); })
-      .def_property_readonly("joints", &jointNames)
-      .def_property_readonly("episodes",
-                             [](const World& world) { return world.episodes().episodes().size(); })
+  type.doc() =
+      "Scenes, objects, one robot and episodes: all that simulators read. It never changes, and\n"
+      "any number of simulators may share it.";
+  type.def(
+          py::init(&openWorld), py::arg("path"), py::arg("trusted") = false,
+          "Opens packs, which are mapped into memory.\n\n"
+          "path: of a world pack, or a list of packs that make a world together. trusted: whether\n"
+          "to leave out the checks of what is in them, for packs that were checked before. Error\n"
+          "for packs that cannot be read, and for those that make no world.")
+      .def_property_readonly("scenes", &sceneNames, "Names; EnvState.scene is an index.")
+      .def_property_readonly("objects", &objectNames,
+                             "Names of all objects that episodes place, each once.")
+      .def_property_readonly(
+          "robot", [](const World& world) { return py::str(world.robot().name()); },
+          "Name of the robot.")
+      .def_property_readonly("links", &linkNames,
+                             "Names of the robot's links, the root's first: in the order of\n"
+                             "PlanningScene.root_from_links.")
+      .def_property_readonly("joints", &jointNames,
+                             "Names of the joints that actions move, in their order.")
+      .def_property_readonly(
+          "actions", [](const World& world) { return py::tuple(py::cast(actionsOf(world))); },
+          "What the columns of the actions do: an Action for each, joints first, then forward,\n"
+          "turn, hand and terminate.")
+      .def_property_readonly(
+          "episodes", [](const World& world) { return world.episodes().episodes().size(); },
+          "How many there are; their indices begin at 0.")
       .def_property_readonly(
           "radii",
           [](const World& world) {
             const std::span<const float> radii = world.radii();
             return py::tuple(py::cast(std::vector<float>(radii.begin(), radii.end())));
-          })
-      .def_property_readonly("options",
-                             [](const World& world) { return keywordsOf(world.withTask()); });
+          },
+          "Of the spheres that scenes answer for, meters, ascending.")
+      .def_property_readonly(
+          "options", [](const World& world) { return keywordsOf(world.withTask()); },
+          "Keywords of Simulator with the values that they have here unless you give others.");
   type.def("__repr__", [](const World& world) {
     return fmt::format("<galactic.World of {} scenes, {} episodes, robot {}>",
                        world.scenes().size(), world.episodes().episodes().size(),

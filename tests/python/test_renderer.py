@@ -167,7 +167,7 @@ def test_devices_may_be_numbers(simulator):
 def test_wrong_simulators_and_uses_are_refused(world, simulator):
     with pytest.raises(Error, match="without body_transforms"):
         Renderer(Simulator(world, envs=2, threads=1), **CAMERA)
-    with pytest.raises(TypeError, match="not a galactic.Simulator"):
+    with pytest.raises(TypeError, match="is a World, expected a galactic.Simulator"):
         Renderer(world)
     renderer = Renderer(simulator, **CAMERA)
     with pytest.raises(Error) as caught:

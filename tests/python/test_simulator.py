@@ -2,6 +2,7 @@
 
 import copy
 import gc
+import inspect
 import pickle
 import threading
 import weakref
@@ -89,6 +90,89 @@ def test_parts_of_an_observation_tile_its_row(simulator):
     ]
     covered = [n for part in parts.values() for n in range(part.start, part.stop)]
     assert covered == list(range(simulator.observation_size))
+
+
+def test_actions_do_what_the_world_says_of_them(world, draw_actions):
+    names = [action.name for action in world.actions]
+    assert names == [*world.joints, "forward", "turn", "hand", "terminate"]
+    simulator = Simulator(world, envs=1, threads=1, task="none", order="linear", slide="off")
+    assert len(names) == simulator.action_count
+    for column, action in enumerate(world.actions[: len(world.joints)]):
+        moved = clamped = 0
+        for sign in [1] * 12 + [-1] * 24:
+            before = simulator.env_state(0).joint_positions
+            actions = np.zeros((1, simulator.action_count), np.float32)
+            actions[0, column] = sign
+            simulator.step(actions)
+            after = simulator.env_state(0).joint_positions
+            other = np.delete(np.arange(len(before)), action.position)
+            np.testing.assert_array_equal(after[other], before[other])
+            way = after[action.position] - before[action.position]
+            at_limit = action.lower is not None and (
+                after[action.position] in (np.float32(action.lower), np.float32(action.upper))
+            )
+            if at_limit:
+                clamped += 1
+            elif way != 0:  # else it was refused
+                assert way == pytest.approx(sign * action.step, abs=1e-6)
+                moved += 1
+        assert moved > 0, action
+        assert (action.lower is None) == (action.upper is None) == (action.name == "elbow")
+        assert action.lower is None or clamped > 0, action
+    forward, turn, hand, terminate = world.actions[-4:]
+    before = simulator.env_state(0).world_from_root
+    actions = np.zeros((1, simulator.action_count), np.float32)
+    actions[0, -4] = -1
+    simulator.step(actions)
+    after = simulator.env_state(0).world_from_root
+    way = np.linalg.norm(after.translation - before.translation)
+    assert way == pytest.approx(forward.step, abs=1e-5)
+    assert [one.unit for one in world.actions[:6]] == ["m", "rad", "m", "rad", "m", "rad"]
+    assert turn.step == pytest.approx(0.05)
+    for one in (hand, terminate):
+        assert (one.step, one.unit, one.lower, one.upper, one.position) == (None,) * 5
+    assert repr(world.actions[0]) == "<galactic.Action lift, 0.05 m a step, from 0 to 0.8>"
+    assert repr(hand) == "<galactic.Action hand>"
+
+
+def test_links_and_objects_have_names(world):
+    simulator = Simulator(world, envs=8, threads=1)
+    assert len(world.links) == len(PlanningScene(simulator).root_from_links)
+    assert len(set(world.links)) == len(world.links)
+    seen = set()
+    for env in range(8):
+        state = simulator.env_state(env)
+        assert len(state.object_names) == len(state.objects)
+        seen |= set(state.object_names)
+    assert seen == set(world.objects)
+    assert repr(state) == (
+        f"<galactic.EnvState of episode {state.episode} after 0 steps, nothing in the hand>"
+    )
+    target = state.object_names[state.target]
+    alone = Simulator(world, envs=8, threads=1, no_distractors=True).env_state(7)
+    assert alone.object_names == (target,)
+
+
+def test_everything_has_words_that_help_shows():
+    for name in galactic.__all__:
+        one = getattr(galactic, name)
+        if not isinstance(one, type):
+            continue
+        assert one.__doc__ or one.__init__.__doc__, name
+        words = f"{one.__doc__} {one.__init__.__doc__}"
+        for member, value in vars(one).items():
+            is_shown = inspect.isroutine(value) or isinstance(value, property)
+            if is_shown and not member.startswith("_"):
+                assert value.__doc__ or member in words, f"{name}.{member}"
+
+
+def test_what_is_no_world_and_no_simulator_is_refused_in_our_words(world):
+    with pytest.raises(TypeError, match="path is a int, expected the path of a world pack, or"):
+        World(3)
+    env = galactic.VectorEnv(world, 2, threads=1)
+    for make in (PlanningScene, galactic.Renderer):
+        with pytest.raises(TypeError, match="is a VectorEnv, expected a galactic.Simulator; VectorEnv.sim"):
+            make(env)
 
 
 def test_arrays_are_views_that_follow_the_simulator(simulator, draw_actions):
