@@ -66,6 +66,8 @@ class Pose:
     def translation(self) -> NDArray[np.float32]: ...  # (3,)
     @property
     def rotation(self) -> NDArray[np.float32]: ...  # (4,): w, x, y, z
+    @property
+    def matrix(self) -> NDArray[np.float32]: ...  # (4, 4)
 
 class EnvState:
     @property

@@ -180,12 +180,23 @@ void writePack(const Path& path, const py::dict& content, const py::dict& traine
   require(writePolicyPack(path, native, provenance));
 }
 
+/// The pack at a path, where many have the checkpoint that it is made of.
+PackFile openPolicy(const Path& path) {
+  Result<PackFile> pack = PackFile::open(path);
+  if (!pack && pack.error().code == ErrorCode::kInvalidInput && path.extension() == ".pt") {
+    throw Refusal{{ErrorCode::kInvalidInput, path.string(),
+                   "is a checkpoint, expected a policy pack; python3 -m galactic.export makes one "
+                   "of it"}};
+  }
+  return valueOf(std::move(pack));
+}
+
 /// A policy pack that acts on arrays.
 class PlayedPolicy {
  public:
   PlayedPolicy(const Path& path, std::size_t envs, bool deterministic, std::uint64_t seed,
                std::uint32_t threads)
-      : PlayedPolicy(valueOf(PackFile::open(path)), envs,
+      : PlayedPolicy(openPolicy(path), envs,
                      {.samples = !deterministic, .seed = seed, .threads = threads}) {}
 
   py::array_t<float> act(const py::object& observations, const py::object& dones,

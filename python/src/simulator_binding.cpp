@@ -109,6 +109,19 @@ py::array_t<std::int32_t> episodes(Simulator& simulator, const py::object& envs)
   return numbers;
 }
 
+/// A transform of homogeneous coordinates, in rows.
+py::array matrixOf(const Pose& pose) {
+  const Vec3 x = rotate(pose.rotation, {1, 0, 0});
+  const Vec3 y = rotate(pose.rotation, {0, 1, 0});
+  const Vec3 z = rotate(pose.rotation, {0, 0, 1});
+  const Vec3& t = pose.translation;
+  return arrayOf(std::array{x.x, y.x, z.x, t.x,  //
+                            x.y, y.y, z.y, t.y,  //
+                            x.z, y.z, z.z, t.z,  //
+                            0.0F, 0.0F, 0.0F, 1.0F})
+      .reshape({4, 4});
+}
+
 void bindPose(py::module_& module) {
   py::class_<Pose> type(module, "Pose");
   type.def_property_readonly("translation",
@@ -116,10 +129,12 @@ void bindPose(py::module_& module) {
                                const Vec3& t = pose.translation;
                                return arrayOf(std::array{t.x, t.y, t.z});
                              })
-      .def_property_readonly("rotation", [](const Pose& pose) {
-        const Quat& q = pose.rotation;
-        return arrayOf(std::array{q.w, q.x, q.y, q.z});
-      });
+      .def_property_readonly("rotation",
+                             [](const Pose& pose) {
+                               const Quat& q = pose.rotation;
+                               return arrayOf(std::array{q.w, q.x, q.y, q.z});
+                             })
+      .def_property_readonly("matrix", &matrixOf);
   type.def("__repr__", [](const Pose& pose) {
     const auto& [t, q] = pose;
     return fmt::format(
@@ -131,7 +146,9 @@ void bindPose(py::module_& module) {
   type.doc() =
       "A rigid transform a_from_b: rotate, then translate.\n\n"
       "translation: float32 (3,), meters. rotation: float32 (4,), the unit quaternion (w, x, y, "
-      "z).";
+      "z).\n"
+      "matrix: the same as float32 (4, 4): a_from_b.matrix @ b_from_c.matrix is that of "
+      "a_from_c.";
 }
 
 void bindEnvState(py::module_& module) {

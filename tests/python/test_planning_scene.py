@@ -64,6 +64,27 @@ def test_joints_move_links_and_change_what_is_free(simulator):
     assert scene.reach > 0
 
 
+def test_matrices_of_poses_lead_from_link_to_world(simulator, draw_actions):
+    for _ in range(10):
+        simulator.step(draw_actions(2, ACTIONS))
+    scene = PlanningScene(simulator)
+    hand = scene.world_from_grip(scene.base)
+    w, x, y, z = hand.rotation.astype(float)
+    rotation = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    assert hand.matrix.dtype == np.float32
+    assert hand.matrix[:3, :3] == pytest.approx(np.array(rotation), abs=1e-6)
+    assert hand.matrix[:3, 3] == pytest.approx(hand.translation)
+    assert hand.matrix[3].tolist() == [0, 0, 0, 1]
+    # The hand has the axes of its link.
+    world_from_root = scene.world_from_root(scene.base).matrix
+    links = [world_from_root @ link.matrix for link in scene.root_from_links]
+    assert any(np.allclose(link[:3, :3], hand.matrix[:3, :3], atol=1e-5) for link in links[1:])
+
+
 def test_objects_are_held_put_back_and_land(simulator):
     scene = PlanningScene(simulator)
     state = simulator.env_state(0)

@@ -203,6 +203,8 @@ def test_errors_say_what_to_do(tmp_path: pathlib.Path, capsys: Any) -> None:
     checkpoint.save_policy(saved_policy(network="state"), tmp_path / "best.pt")
     assert export.main([str(tmp_path / "best.pt"), "-o", "/nowhere/p.pack"]) == 2
     assert "/nowhere" in capsys.readouterr().err
+    with pytest.raises(galactic.Error, match="best.pt: is a checkpoint, expected a policy pack; "):
+        galactic.LearnedPolicy(tmp_path / "best.pt", 1)
     infinite = saved_policy(network="state")
     infinite.policy.action.linear.weight.data[0, 0] = float("inf")
     checkpoint.save_policy(infinite, tmp_path / "bad.pt")
