@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 ROOT = pathlib.Path(os.environ["GALACTIC_SOURCE_DIR"])
 
@@ -21,11 +22,54 @@ def test_random_homes(world_path, tmp_path):
     assert np.load(tmp_path / "seen.npy").shape == (128, 512, 3)
 
 
-def test_the_lines_of_the_readme(world_path):
+def output_of(name, world_path):
+    script = ROOT / "python" / "examples" / name
+    done = subprocess.run(
+        [sys.executable, "-B", script, world_path], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_evaluate_policy(world_path):
+    """Of the four episodes, the robot cannot start in one."""
+    printed = output_of("evaluate_policy.py", world_path)
+    counts = [int(number) for number in re.findall(r": (\d) of 3 episodes", printed)]
+    assert sum(counts) == 3
+    assert "solved: [0, 1]" in printed
+
+
+def test_own_task(world_path):
+    steps = [
+        int(step) for step in re.findall(r"step (\d+): ", output_of("own_task.py", world_path))
+    ]
+    assert min(steps) < 200 <= max(steps)
+
+
+def test_type_checkers_accept_the_examples(tmp_path):
+    """What users write after them, theirs accept, too: galactic has types (py.typed)."""
+    pytest.importorskip("mypy")
+    (tmp_path / "readme.py").write_text("\n".join(readme_blocks()), encoding="utf-8")
+    examples = sorted((ROOT / "python" / "examples").glob("*.py"))
+    options = ["--check-untyped-defs", "--cache-dir", tmp_path / "cache"]
+    done = subprocess.run(
+        [sys.executable, "-B", "-m", "mypy", *options, tmp_path / "readme.py", *examples],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def readme_blocks():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     assert blocks
-    for block in blocks:
+    return blocks
+
+
+def test_the_lines_of_the_readme(world_path):
+    for block in readme_blocks():
         done = subprocess.run(
             [sys.executable, "-B", "-c", block],
             cwd=world_path.parent,

@@ -171,7 +171,9 @@ def test_what_is_no_world_and_no_simulator_is_refused_in_our_words(world):
         World(3)
     env = galactic.VectorEnv(world, 2, threads=1)
     for make in (PlanningScene, galactic.Renderer):
-        with pytest.raises(TypeError, match="is a VectorEnv, expected a galactic.Simulator; VectorEnv.sim"):
+        with pytest.raises(
+            TypeError, match="is a VectorEnv, expected a galactic.Simulator; VectorEnv.sim"
+        ):
             make(env)
 
 
