@@ -239,6 +239,10 @@ class Renderer:
     @property
     def shapes(self) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]: ...
     @property
+    def intrinsics(self) -> NDArray[np.float32]: ...  # (3, 3)
+    @property
+    def world_from_camera(self) -> NDArray[np.float32]: ...  # (num_envs, 4, 4)
+    @property
     def backend(self) -> Literal["soft", "gl", "cuda"]: ...
     @property
     def description(self) -> str: ...

@@ -42,8 +42,8 @@ class HalfBatch:
     ) -> None:
         # With images, envs wait where their episodes ended until that has been drawn.
         self.simulator = Simulator(world, **options, auto_reset=images is None)
-        self._renderer = None if images is None else Renderer(self.simulator, **images)
-        self._image_shapes = {} if self._renderer is None else self._renderer.shapes
+        self.renderer = None if images is None else Renderer(self.simulator, **images)
+        self._image_shapes = {} if self.renderer is None else self.renderer.shapes
         self._copy = copy
         self._parts = self.simulator.observation_parts if by_parts else None
         envs = self.simulator.num_envs
@@ -59,7 +59,7 @@ class HalfBatch:
     def observation_space(self) -> spaces.Space:
         """Of one env."""
         size = self.simulator.observation_size
-        if self._parts is None and self._renderer is None:
+        if self._parts is None and self.renderer is None:
             return _unbounded(size)
         parts = {"state": slice(0, size)} if self._parts is None else self._parts
         named = {name: _unbounded(part.stop - part.start) for name, part in parts.items()}
@@ -144,10 +144,10 @@ class HalfBatch:
 
     def _draw(self, out: Mapping[str, Array] | None) -> dict[str, Array]:
         """The images of all envs: in the caller's arrays, kept ones, or new ones."""
-        if self._renderer is None:
+        if self.renderer is None:
             return {}
         given = {name: out[name] for name in self._image_shapes if name in out} if out else {}
-        return self._renderer.render({**self._images, **given})
+        return self.renderer.render({**self._images, **given})
 
     def _observed(self, state: Array, images: Mapping[str, Array]) -> Observations:
         if self._parts is None:
@@ -157,7 +157,7 @@ class HalfBatch:
     def _renew(self, which: NDArray[np.int64], images: dict[str, Array]) -> Observations:
         """The last observations of the envs `which` ended an episode; they are in the next one then,
         in `images`, too."""
-        if self._renderer is None:
+        if self.renderer is None:
             return self._observed(self.simulator.final_observations[which], {})
         last = self._observed(
             self.simulator.observations[which], {name: all[which] for name, all in images.items()}
@@ -165,7 +165,7 @@ class HalfBatch:
         begins = np.full(self.simulator.num_envs, Simulator.STAYS, np.int32)
         begins[which] = Simulator.NEXT_EPISODE
         self.simulator.reset(begins)
-        for name, drawn in self._renderer.render(envs=which).items():
+        for name, drawn in self.renderer.render(envs=which).items():
             images[name][which] = drawn
         return last
 

@@ -180,6 +180,11 @@ class VectorEnv(_Base):
         return tuple(half.simulator for half in self._halves)
 
     @property
+    def renderers(self) -> tuple[Renderer, ...]:
+        """The renderer of each half's images, for its cameras and names; () without images."""
+        return tuple(half.renderer for half in self._halves if half.renderer is not None)
+
+    @property
     def halves(self) -> int:
         """1, or 2 when they take turns."""
         return len(self._halves)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace galactic::python {
@@ -90,6 +91,15 @@ std::span<T> outputOf(const py::handle& given, const char* name, const Shape& sh
 
 InputBytes::InputBytes(const py::handle& given) {
   if (PyObject_GetBuffer(given.ptr(), &view_, PyBUF_SIMPLE) != 0) throw py::error_already_set();
+}
+
+void writeMatrix(const RigidTransform& a_from_b, float* rows) {
+  const auto& [x, y, z, t] = a_from_b;
+  const std::array matrix{x.x,  y.x,  z.x,  t.x,  //
+                          x.y,  y.y,  z.y,  t.y,  //
+                          x.z,  y.z,  z.z,  t.z,  //
+                          0.0F, 0.0F, 0.0F, 1.0F};
+  std::ranges::copy(matrix, rows);
 }
 
 py::array_t<float> arrayOf(std::span<const float> values) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "galactic/pose.h"
+
 namespace galactic::python {
 
 namespace py = pybind11;
@@ -68,6 +70,9 @@ class InputBytes {
  private:
   Py_buffer view_{};
 };
+
+/// Writes a transform of homogeneous coordinates, four rows of four.
+void writeMatrix(const RigidTransform& a_from_b, float* rows);
 
 /// Three or four numbers as an array of its own.
 [[nodiscard]] py::array_t<float> arrayOf(std::span<const float> values);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -167,6 +169,33 @@ py::tuple Renderer::semanticNames() const {
   py::list names;
   for (const auto& name : models_.library().semanticNames()) names.append(py::str(name));
   return py::tuple(names);
+}
+
+py::array_t<float> Renderer::intrinsics() const {
+  const auto width = static_cast<float>(renderer_->options().width);
+  const auto height = static_cast<float>(renderer_->options().height);
+  const float focal = height / 2 / std::tan(views_->views().front().camera.vertical_fov / 2);
+  py::array_t<float> matrix({3, 3});
+  std::ranges::copy(std::array{focal, 0.0F, width / 2,   //
+                               0.0F, focal, height / 2,  //
+                               0.0F, 0.0F, 1.0F},
+                    matrix.mutable_data());
+  return matrix;
+}
+
+py::array_t<float> Renderer::worldFromCameras() {
+  const Confinement::Use use = confinement_.enter();
+  const std::span<const RenderView> views = views_->views();
+  py::array_t<float> matrices(
+      {static_cast<py::ssize_t>(views.size()), py::ssize_t{4}, py::ssize_t{4}});
+  float* to = matrices.mutable_data();
+  for (const RenderView& view : views) {
+    // Ours look along X, with Y up.
+    const auto& [ahead, up, right, origin] = view.camera.world_from_camera;
+    writeMatrix({right, up * -1.0F, ahead, origin}, to);
+    to += 16;
+  }
+  return matrices;
 }
 
 py::dict Renderer::shapes() const {

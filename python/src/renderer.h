@@ -50,6 +50,11 @@ class Renderer {
   [[nodiscard]] const BatchRenderer& batch() const { return *renderer_; }
   /// What the numbers of semantic images mean.
   [[nodiscard]] py::tuple semanticNames() const;
+  /// float32 (3, 3): from directions in the frames of worldFromCameras() to pixels.
+  [[nodiscard]] py::array_t<float> intrinsics() const;
+  /// float32 (envs, 4, 4): where the cameras were when images were drawn last, with the axes of
+  /// images: X to the right, Y down, Z ahead.
+  [[nodiscard]] py::array_t<float> worldFromCameras();
   /// Of the images of one env, by name: shape and type.
   [[nodiscard]] py::dict shapes() const;
 

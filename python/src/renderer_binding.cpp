@@ -149,6 +149,16 @@ void bindRenderer(py::module_& module) {
   type.def_property_readonly("shapes", &Renderer::shapes,
                              "Of one env's images, by name: shape and dtype.");
   type.def_property_readonly(
+      "intrinsics", &Renderer::intrinsics,
+      "The camera matrix of all images, float32 (3, 3), pixels: (column, row, 1) of a point is\n"
+      "intrinsics @ (x, y, z) / z, in the axes of world_from_camera. The first pixel's middle is\n"
+      "(0.5, 0.5).");
+  type.def_property_readonly(
+      "world_from_camera", &Renderer::worldFromCameras,
+      "Where the cameras of all envs were when images were drawn last: float32 (num_envs, 4, 4),\n"
+      "of a frame whose X leads to the right in the image, Y down, and Z ahead, which depth is\n"
+      "measured along.");
+  type.def_property_readonly(
       "backend", [](const Renderer& one) { return backendName(one.batch().backend()); },
       "What draws: 'soft', 'gl' or 'cuda'.");
   type.def_property_readonly(

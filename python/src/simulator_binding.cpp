@@ -109,19 +109,6 @@ py::array_t<std::int32_t> episodes(Simulator& simulator, const py::object& envs)
   return numbers;
 }
 
-/// A transform of homogeneous coordinates, in rows.
-py::array matrixOf(const Pose& pose) {
-  const Vec3 x = rotate(pose.rotation, {1, 0, 0});
-  const Vec3 y = rotate(pose.rotation, {0, 1, 0});
-  const Vec3 z = rotate(pose.rotation, {0, 0, 1});
-  const Vec3& t = pose.translation;
-  return arrayOf(std::array{x.x, y.x, z.x, t.x,  //
-                            x.y, y.y, z.y, t.y,  //
-                            x.z, y.z, z.z, t.z,  //
-                            0.0F, 0.0F, 0.0F, 1.0F})
-      .reshape({4, 4});
-}
-
 void bindPose(py::module_& module) {
   py::class_<Pose> type(module, "Pose");
   type.def_property_readonly("translation",
@@ -134,7 +121,11 @@ void bindPose(py::module_& module) {
                                const Quat& q = pose.rotation;
                                return arrayOf(std::array{q.w, q.x, q.y, q.z});
                              })
-      .def_property_readonly("matrix", &matrixOf);
+      .def_property_readonly("matrix", [](const Pose& pose) {
+        py::array_t<float> matrix({4, 4});
+        writeMatrix(rigidTransform(pose), matrix.mutable_data());
+        return matrix;
+      });
   type.def("__repr__", [](const Pose& pose) {
     const auto& [t, q] = pose;
     return fmt::format(

@@ -48,6 +48,31 @@ def test_images_are_drawn_where_the_caller_wants_them(simulator, draw_actions):
     assert not np.shares_memory(renderer.render()["rgb"], renderer.render()["rgb"])
 
 
+@pytest.mark.parametrize("camera", [{"camera": "head"}, {"camera": "follow", "fov_degrees": 40}])
+def test_cameras_project_objects_to_where_they_are_drawn(world, draw_actions, camera):
+    images = {**CAMERA, "width": 64, "height": 40, **camera}
+    env = VectorEnv(world, ENVS, images=images, threads=1, episode_steps=7)
+    env.reset()
+    (renderer,) = env.renderers
+    inside = drawn = 0
+    for _ in range(20):  # which end episodes: some images are drawn in renderings of their own
+        seen = env.step(draw_actions(ENVS, 8))[0]
+        for number, world_from_camera in enumerate(renderer.world_from_camera):
+            camera_from_world = np.linalg.inv(world_from_camera)
+            for pose in env.simulators[0].env_state(number).objects:
+                place = camera_from_world[:3] @ [*pose.translation, 1]
+                column, row, _ = renderer.intrinsics @ (place / place[2])
+                if place[2] < 0.1 or not (0 <= column < 64 and 0 <= row < 40):
+                    continue
+                depth = seen["depth"][number, int(row), int(column)]
+                # The object, or what hides it.
+                assert 0 < depth < place[2] + 0.02
+                inside += 1
+                drawn += depth > place[2] - 0.1
+    assert drawn > 20 and drawn > inside / 4
+    assert VectorEnv(world, 2, threads=1).renderers == ()
+
+
 def test_the_simulator_may_step_while_it_draws(simulator, draw_actions):
     renderer = Renderer(simulator, **CAMERA)
     for _ in range(5):
