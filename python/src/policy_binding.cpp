@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -194,10 +195,12 @@ PackFile openPolicy(const Path& path) {
 /// A policy pack that acts on arrays.
 class PlayedPolicy {
  public:
-  PlayedPolicy(const Path& path, std::size_t envs, bool deterministic, std::uint64_t seed,
-               std::uint32_t threads)
-      : PlayedPolicy(openPolicy(path), envs,
-                     {.samples = !deterministic, .seed = seed, .threads = threads}) {}
+  PlayedPolicy(const Path& path, const py::object& envs, const py::object& deterministic,
+               const py::object& seed, const py::object& threads)
+      : PlayedPolicy(openPolicy(path), wholeOf("envs", envs, 1, kMostEnvs),
+                     {.samples = !truthOf("deterministic", deterministic),
+                      .seed = wholeOf("seed", seed, 0, std::numeric_limits<std::uint64_t>::max()),
+                      .threads = threadsOf(threads)}) {}
 
   py::array_t<float> act(const py::object& observations, const py::object& dones,
                          const py::object& rgb, const py::object& depth) {
@@ -237,6 +240,9 @@ class PlayedPolicy {
   [[nodiscard]] std::size_t actionCount() const { return batch_.actions; }
 
  private:
+  /// As many as a simulator may have.
+  static constexpr std::uint64_t kMostEnvs = 1U << 20U;
+
   PlayedPolicy(const PackFile& pack, std::size_t envs, const LearnedPolicyOptions& options)
       : batch_(batchOf(valueOf(policyInterface(pack)), envs)),
         policy_(valueOf(LearnedPolicy::create(pack, batch_, options))) {}
@@ -290,7 +296,8 @@ void bindPolicy(py::module_& module) {
 It acts on `envs` environments at a time; their rows of observations hold the parts that
 `observation` names, one behind the other. Recurrent states and previous actions are kept for each
 row. The same actions for any number of threads and of other envs.)");
-  type.def(py::init<const Path&, std::size_t, bool, std::uint64_t, std::uint32_t>(),
+  type.def(py::init<const Path&, const py::object&, const py::object&, const py::object&,
+                    const py::object&>(),
            py::arg("path"), py::arg("envs"), py::kw_only(), py::arg("deterministic") = false,
            py::arg("seed") = 1, py::arg("threads") = 0)
       .def("act", &PlayedPolicy::act, py::arg("observations"), py::arg("dones") = py::none(),
@@ -314,6 +321,8 @@ depth         [envs, height, width] float32, meters)")
                              "Names and sizes of the parts that it reads, in order.")
       .def_property_readonly("image_size", &imageSizeOf,
                              "(height, width) of the images that it wants, or None.")
+      .def("__repr__",
+           [](const PlayedPolicy& p) { return "<galactic.LearnedPolicy " + p.needs().name + ">"; })
       .def_property_readonly("action_count", &PlayedPolicy::actionCount, "Columns of the actions.");
   type.attr("__module__") = "galactic";
   refusePickling(type, "make one from the same pack");

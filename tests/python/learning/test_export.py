@@ -248,3 +248,24 @@ def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
         player.act(state, None, None, depth)
     with pytest.raises(galactic.Error):
         _core.LearnedPolicy(tmp_path / "no.pack", 2)
+    assert repr(player) == "<galactic.LearnedPolicy p>"
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"envs": 0}, "envs: is 0, expected a whole number from 1 to 1048576"),
+        ({"envs": 2.0}, "envs: is 2.0, expected a whole number"),
+        ({"envs": 2**40}, "envs: is 1099511627776, expected"),
+        ({"deterministic": "yes"}, "deterministic: is 'yes', expected True or False"),
+        ({"seed": -1}, "seed: is -1, expected a whole number from 0"),
+        ({"threads": 99999}, "threads: is 99999, expected 0 to 4096"),
+    ],
+)
+def test_a_played_policy_checks_its_options(
+    tmp_path: pathlib.Path, options: dict[str, Any], message: str
+) -> None:
+    pack = write(export.content_of(saved_policy(network="state"), "p"), tmp_path / "p.pack")
+    with pytest.raises(galactic.Error) as caught:
+        galactic.LearnedPolicy(pack, **{"envs": 2, **options})
+    assert message in str(caught.value)
