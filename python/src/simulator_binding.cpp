@@ -206,8 +206,8 @@ void bindStepping(py::class_<Simulator>& type) {
       "restore_state", &Simulator::restoreState, py::arg("state"), py::arg("envs") = py::none(),
       "Goes on from a state that a simulator of the same world and options saved, bit for bit\n"
       "as that one would have; into all envs, or into those with the numbers `envs`, whose\n"
-      "random numbers and episodes to come stay their own. Error for bytes that are no such\n"
-      "state; nothing changes then.");
+      "random numbers and episodes to come stay their own; for that, the seed has to be the same.\n"
+      "Error for bytes that are no such state; nothing changes then.");
 }
 
 void bindResults(py::class_<Simulator>& type) {

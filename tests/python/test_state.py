@@ -43,6 +43,27 @@ def test_chosen_envs_are_put_into_chosen_envs(world, draw_actions):
             call()
 
 
+def test_many_plans_begin_where_one_env_is(world, draw_actions):
+    simulator = Simulator(world, envs=3, threads=1, task="pick")
+    planner = Simulator(world, envs=10, threads=1, task="pick")
+    for _ in range(12):
+        simulator.step(draw_actions(3, 8))
+    state = simulator.save_state([1])
+    for env in range(10):
+        planner.restore_state(state, [env])
+    plans = draw_actions(10, 8)
+    planner.step(plans)
+    assert len(np.unique(planner.observations, axis=0)) > 5
+    actions = draw_actions(3, 8)
+    actions[1] = plans[4]
+    simulator.step(actions)
+    np.testing.assert_array_equal(planner.observations[4], simulator.observations[1])
+    assert planner.rewards[4] == simulator.rewards[1]
+    planner.restart(5)
+    with pytest.raises(Error, match="saved with seed 1, and the simulator has 5; restart it with"):
+        planner.restore_state(state, [0])
+
+
 def test_bytes_that_are_no_state_are_refused_and_change_nothing(world, draw_actions):
     simulator = Simulator(world, envs=4, threads=1)
     simulator.step(draw_actions(4, 8))
