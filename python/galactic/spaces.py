@@ -70,6 +70,14 @@ except ImportError:
                 and bool(np.all(value >= self.low) and np.all(value <= self.high))
             )
 
+        def __eq__(self, other: object) -> bool:
+            return (
+                isinstance(other, Box)
+                and (self.shape, self.dtype) == (other.shape, other.dtype)
+                and np.array_equal(self.low, other.low)
+                and np.array_equal(self.high, other.high)
+            )
+
         def __repr__(self) -> str:
             return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
 
@@ -89,6 +97,13 @@ except ImportError:
                 and np.issubdtype(value.dtype, np.integer)
                 and value.shape == self.shape
                 and bool(np.all(value >= 0) and np.all(value < self.nvec))
+            )
+
+        def __eq__(self, other: object) -> bool:
+            return (
+                isinstance(other, MultiDiscrete)
+                and self.dtype == other.dtype
+                and np.array_equal(self.nvec, other.nvec)
             )
 
         def __repr__(self) -> str:
@@ -121,11 +136,17 @@ except ImportError:
         def __iter__(self) -> Any:
             return iter(self.spaces)
 
+        def __len__(self) -> int:
+            return len(self.spaces)
+
         def keys(self) -> Any:
             return self.spaces.keys()
 
         def items(self) -> Any:
             return self.spaces.items()
+
+        def __eq__(self, other: object) -> bool:
+            return isinstance(other, Dict) and self.spaces == other.spaces
 
         def __repr__(self) -> str:
             return f"Dict({self.spaces})"

@@ -76,6 +76,29 @@ def assert_equal(one, other):
         np.testing.assert_array_equal(one, other)
 
 
+def test_spaces_of_like_environments_are_equal(world):
+    kinds = (
+        {},
+        {"observation": "dict"},
+        {"actions": "paper"},
+        {"images": {"width": 8, "height": 8}},
+        {"images": {"width": 8, "height": 9}},
+    )
+    for n, options in enumerate(kinds):
+        env, other = made(world, **options), made(world, **options)
+        assert env.observation_space == other.observation_space
+        assert env.action_space == other.action_space
+        for unlike in kinds[n + 1 :]:
+            third = made(world, **unlike)
+            assert (env.observation_space, env.action_space) != (
+                third.observation_space,
+                third.action_space,
+            )
+    box = spaces.Box(-1.0, 1.0, (2,))
+    assert box != spaces.Box(-1.0, 2.0, (2,)) and box != spaces.Box(-1.0, 1.0, (2,), np.float64)
+    assert len(spaces.Dict({"a": box, "b": box})) == 2
+
+
 def test_samples_lie_in_their_spaces_and_follow_the_seed():
     for space in (
         spaces.Box(-1.0, 1.0, (3, 2), np.float32),
