@@ -213,6 +213,7 @@ class DeviceArray:
     def __dlpack_device__(self) -> tuple[int, int]: ...
 
 class Renderer:
+    OPTIONS: tuple[str, ...]  # what its keywords are called
     def __init__(
         self,
         simulator: Simulator,

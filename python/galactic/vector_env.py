@@ -131,8 +131,11 @@ class VectorEnv(_Base):
             'options of galactic.Renderer, such as {"width": 128}, or None for no images',
         )
         _require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
-        for name, instead in _NO_OPTIONS.items():
-            if name in options:
+        for name in options:
+            if name in _NO_OPTIONS:
+                raise TypeError(f"VectorEnv has no option {name}; {_NO_OPTIONS[name]}")
+            if name in Renderer.OPTIONS:
+                instead = f"give images={{{name!r}: {options[name]!r}}}"
                 raise TypeError(f"VectorEnv has no option {name}; {instead}")
         self.world = world if isinstance(world, World) else World(world)
         self.num_envs = num_envs

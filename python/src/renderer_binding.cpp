@@ -71,6 +71,12 @@ constexpr Keyword kKeywords[] = {
     {"threads", [](CameraOptions& o, const py::handle& v) { o.render.threads = threadsOf(v); }},
 };
 
+std::vector<std::string> keywordNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, take] : kKeywords) names.emplace_back(name);
+  return names;
+}
+
 /// The keywords of Renderer, with their defaults.
 CameraOptions optionsFrom(const py::kwargs& keywords) {
   CameraOptions options;
@@ -79,11 +85,7 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     const auto* known = std::ranges::find(kKeywords, std::string_view(name), &Keyword::first);
-    if (known == std::end(kKeywords)) {
-      std::vector<std::string> names;
-      for (const auto& [one, take] : kKeywords) names.emplace_back(one);
-      refuseKeyword(name, names);
-    }
+    if (known == std::end(kKeywords)) refuseKeyword(name, keywordNames());
     known->second(options, value);
   }
   return options;
@@ -130,6 +132,7 @@ void bindRenderer(py::module_& module) {
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
       "'semantics' uint32 (N, height, width), indices into semantic_names.");
+  type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"
            "out: arrays by name that are drawn to, of exactly the images' shape and type; what it\n"
