@@ -136,10 +136,8 @@ void bindPose(py::module_& module) {
   type.attr("__module__") = "galactic";
   type.doc() =
       "A rigid transform a_from_b: rotate, then translate.\n\n"
-      "translation: float32 (3,), meters. rotation: float32 (4,), the unit quaternion (w, x, y, "
-      "z).\n"
-      "matrix: the same as float32 (4, 4): a_from_b.matrix @ b_from_c.matrix is that of "
-      "a_from_c.";
+      "translation: float32 (3,), meters. rotation: float32 (4,), unit quaternion (w, x, y, z).\n"
+      "matrix: float32 (4, 4); a_from_b.matrix @ b_from_c.matrix is that of a_from_c.";
 }
 
 void bindEnvState(py::module_& module) {
@@ -168,13 +166,11 @@ void bindEnvState(py::module_& module) {
   type.doc() =
       "The state of one env: a copy.\n\n"
       "scene, episode: indices into the world's scenes and episodes. step: steps of the episode.\n"
-      "world_from_root, world_from_grip: Pose. joint_positions: float32, the robot's whole "
-      "vector,\n"
+      "world_from_root, world_from_grip: Pose. joint_positions: float32, of the whole robot,\n"
       "radians or meters; World.actions says where in it the joints are that actions move.\n"
-      "objects: the world poses of the episode's objects; object_names: what they are. held: "
-      "index\n"
-      "into objects, None with an empty hand. target: index of the object to bring to the Pose\n"
-      "goal. PlanningScene has the poses of the links.";
+      "objects: the world poses of the episode's objects; object_names: what they are. target,\n"
+      "held: indices into both, held None with an empty hand. goal: the Pose for the target.\n"
+      "PlanningScene has the poses of the links.";
 }
 
 void bindStepping(py::class_<Simulator>& type) {
@@ -257,7 +253,7 @@ void bindQueries(py::class_<Simulator>& type) {
                              "The parts of a row of the observations: name to slice, in order.");
   type.def_property_readonly(
       "thread_count", [](const Simulator& one) { return one.batch().threadCount(); },
-      "Threads that step, the caller's among them.");
+      "How many threads step.");
   type.def_property_readonly(
       "options", [](const Simulator& one) { return keywordsOf(one.batch().options()); },
       "All options in force, as keywords of Simulator.");
@@ -270,7 +266,7 @@ void bindQueries(py::class_<Simulator>& type) {
       "Indices of the episodes in which the robot cannot start.");
   type.def_property_readonly(
       "memory_bytes", [](const Simulator& one) { return one.batch().memoryBytes(); },
-      "Memory of the envs and of what they share, without the packs.");
+      "Memory of all envs together.");
   type.def("episodes", &episodes, py::arg("envs") = py::none(),
            "The index of the episode that each env is in, or each of the numbers `envs`: int32,\n"
            "a copy.");
