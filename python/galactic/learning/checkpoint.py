@@ -238,6 +238,8 @@ def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str
     try:
         handle = open(file, "rb")
     except OSError as error:
+        if isinstance(error, IsADirectoryError):
+            remedy = remedy or _ANOTHER_POLICY
         message = f"cannot open the file: {error.strerror}" + (remedy and f"; {remedy}")
         raise Error(ErrorCode.IO, str(file), message) from None
     with handle:
