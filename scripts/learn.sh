@@ -56,30 +56,26 @@ learn() {
   fi
 }
 
-# stage NUMBER TITLE RULES OPTION...: one of five runs that learn to rearrange. Each begins with what the
-# one before has learned, and its rules are stricter.
+# stage NUMBER TITLE RULES OPTION...: one of three runs that learn to rearrange. Each begins with what
+# the one before has learned, and its rules are stricter.
 stage() {
   local number=$1 title=$2 rules=$3 begin=()
   shift 3
   if [ "$number" -gt 1 ]; then begin=(--start-from "$run/$((number - 1))/best.pt"); fi
-  heading "$number of 5: $title"
+  heading "$number of 3: $title"
   learn "$run/$number" "${begin[@]}" --second-closeup 0.04 "$@" --simulation "$rearrange${rules:+ $rules}"
 }
 
 learn_to_rearrange() {
   # The laser, the other senses and what they pay are the preset's.
-  local rearrange="task=rearrange episode-steps=500 observe-current target-goal target-up tilt-penalty=0.03"
+  local rearrange="task=rearrange episode-steps=500 observe-current target-goal target-up tilt-penalty=0.1"
   stage 1 "to carry. Away from the goal the hand keeps the target; to let go there costs little" \
     "no-terminate safe-drop drop-penalty=0.05" --steps 16e6 --target-kl 0.01
-  stage 2 "to say when it is done" "safe-drop drop-penalty=0.5" --steps 8e6 --target-kl 0.01 \
+  stage 2 "to say when it is done" "safe-drop drop-penalty=0.5" --steps 8e6 --target-kl 0.03 \
     --initial-log-std -1.4 --final-log-std -1.7
-  stage 3 "to let go at the goal only. Elsewhere it costs much" "safe-drop drop-penalty=3" \
-    --steps 12e6 --target-kl 0.012 --initial-log-std -1.7 --final-log-std -2.1
-  stage 4 "the same, with a calmer hand" "safe-drop drop-penalty=4" \
-    --steps 24e6 --target-kl 0.012 --initial-log-std -2.0 --final-log-std -2.4
-  stage 5 "the paper's rules. Letting go elsewhere ends the episode" "" \
-    --steps 14e6 --target-kl 0.012 --initial-log-std -2.2 --final-log-std -2.6
-  run=$run/5
+  stage 3 "the paper's rules. Letting go elsewhere ends the episode" "" --steps 50e6 --target-kl 0.015 \
+    --initial-log-std -1.7 --final-log-std -2.6
+  run=$run/3
 }
 
 if [ "$task" = pick ]; then
