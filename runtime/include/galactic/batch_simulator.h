@@ -140,7 +140,7 @@ struct PhaseTime {
 /// as 0 and counted.
 class BatchSimulator {
  public:
-  /// `world` must outlive the simulator. All envs stand at the start of their first episode. Fails
+  /// All envs stand at the start of their first episode. Fails
   /// with kInvalidInput when no episode of the world can be started (the robot penetrates something
   /// in all of them) or a laser sees nothing, and with kUnsupported when an action moves a planar
   /// or floating joint, or the link that carries the laser.

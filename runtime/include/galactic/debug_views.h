@@ -66,7 +66,7 @@ class DebugModels {
 /// The debug view of the first envs of a batch: WorldViews of what the simulation knows.
 class DebugViews {
  public:
-  /// `world` and `models` must outlive the views. `simulator` must have been made with
+  /// `models` must outlive the views and stay where it is. `simulator` must have been made with
   /// SimulationOptions::body_transforms. Of the first `envs` envs, at most all.
   DebugViews(const World& world, const DebugModels& models, const BatchSimulator& simulator,
              const CameraMount& camera, std::size_t envs);
@@ -87,7 +87,7 @@ class DebugViews {
 
   void updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept;
 
-  const World* world_;
+  World world_;
   const DebugModels* models_;
   MountedCamera camera_;
   std::vector<PlacedSphere> spheres_;

@@ -36,7 +36,7 @@ struct BasePlace {
 /// the constructor, update() and hold(). Not safe to share between threads; use one for each.
 class PlanningScene {
  public:
-  /// `world` must outlive the scene. Of `options` it takes TaskOptions::distractors, the ground and
+  /// Of `options` it takes TaskOptions::distractors, the ground and
   /// the placement of released objects. Call update() and setJoints() before anything else.
   PlanningScene(const World& world, const SimulationOptions& options);
   ~PlanningScene();

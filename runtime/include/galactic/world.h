@@ -2,7 +2,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "galactic/episode_set.h"
@@ -22,7 +24,9 @@ namespace galactic {
 [[nodiscard]] Result<void> checkTogether(std::vector<PackFile> packs);
 
 /// Everything that a run reads and never writes: scenes, objects, robot and episodes, mapped.
-/// Immutable, so safe to share between threads; movable (the packs stay where they are mapped).
+/// Immutable, so safe to share between threads. Copies are cheap and share one world, whose packs
+/// stay mapped as long as one of them lives: simulators and the like keep a copy. What a World
+/// returns is valid as long.
 class World {
  public:
   /// Opens what `paths` name: either one world pack, whose list is followed, or the packs
@@ -44,52 +48,59 @@ class World {
   [[nodiscard]] static Result<World> from(std::vector<PackFile> packs);
 
   /// The working set of radii, meters, ascending: the same in all packs.
-  [[nodiscard]] std::span<const float> radii() const { return robot_.front().radii(); }
+  [[nodiscard]] std::span<const float> radii() const { return robot().radii(); }
   /// Ascending names, whatever the order of the packs.
-  [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
-  [[nodiscard]] const Robot& robot() const { return robot_.front(); }
-  [[nodiscard]] const EpisodeSet& episodes() const { return episodes_.front(); }
+  [[nodiscard]] const std::vector<Scene>& scenes() const { return content_->scenes; }
+  [[nodiscard]] const Robot& robot() const { return content_->robot.front(); }
+  [[nodiscard]] const EpisodeSet& episodes() const { return content_->episodes.front(); }
   /// The packs of the assets, without the world pack that listed them.
-  [[nodiscard]] const std::vector<PackFile>& packs() const { return packs_; }
+  [[nodiscard]] const std::vector<PackFile>& packs() const { return content_->packs; }
 
   [[nodiscard]] const Scene& sceneOf(const Episode& episode) const {
-    return scenes_[sceneIndexOf(episode)];
+    return content_->scenes[sceneIndexOf(episode)];
   }
   /// Index into scenes().
   [[nodiscard]] std::uint32_t sceneIndexOf(const Episode& episode) const {
-    return scene_of_name_[episode.scene];
+    return content_->scene_of_name[episode.scene];
   }
   [[nodiscard]] const ObjectModel& objectOf(const Placement& placement) const {
-    return object_of_name_[placement.object];
+    return content_->object_of_name[placement.object];
   }
   /// Index into the robot's joint positions of each of the episodes' startJoints().
   [[nodiscard]] std::span<const std::uint32_t> startPositionIndices() const {
-    return start_position_indices_;
+    return content_->start_position_indices;
   }
   /// The most objects that one episode has.
-  [[nodiscard]] std::size_t mostObjects() const { return most_objects_; }
+  [[nodiscard]] std::size_t mostObjects() const { return content_->most_objects; }
 
   /// What the world pack says of the task, in the order of the option table; empty where it says
   /// nothing, and where the packs were opened one by one.
-  [[nodiscard]] const std::vector<OptionText>& taskOptions() const { return task_options_; }
+  [[nodiscard]] const std::vector<OptionText>& taskOptions() const {
+    return content_->task_options;
+  }
   /// `base` with the options of the task that the world pack gives: what it does not say keeps its
   /// value. For BatchSimulator::create; only galactic-run does this by itself.
   [[nodiscard]] SimulationOptions withTask(SimulationOptions base = {}) const;
 
  private:
-  World() = default;
+  struct Content {
+    std::vector<PackFile> packs;
+    std::vector<Scene> scenes;
+    /// One each; vectors because neither can be made empty.
+    std::vector<Robot> robot;
+    std::vector<EpisodeSet> episodes;
+    /// By the episode set's indices.
+    std::vector<std::uint32_t> scene_of_name;
+    std::vector<ObjectModel> object_of_name;
+    std::vector<std::uint32_t> start_position_indices;
+    std::size_t most_objects = 0;
+    std::vector<OptionText> task_options;
+  };
 
-  std::vector<PackFile> packs_;
-  std::vector<Scene> scenes_;
-  /// One each; vectors because neither can be made empty.
-  std::vector<Robot> robot_;
-  std::vector<EpisodeSet> episodes_;
-  /// By the episode set's indices.
-  std::vector<std::uint32_t> scene_of_name_;
-  std::vector<ObjectModel> object_of_name_;
-  std::vector<std::uint32_t> start_position_indices_;
-  std::size_t most_objects_ = 0;
-  std::vector<OptionText> task_options_;
+  explicit World(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
+  static Result<World> make(std::vector<PackFile> packs, std::vector<OptionText> task_options);
+
+  std::shared_ptr<const Content> content_;
 };
 
 }  // namespace galactic

@@ -21,8 +21,7 @@ struct LinkModel {
 /// immutable, so safe to share between threads.
 class WorldModels {
  public:
-  /// `world` must outlive the result. Fails with kInvalidInput when a pack was baked without render
-  /// meshes.
+  /// Fails with kInvalidInput when a pack was baked without render meshes.
   [[nodiscard]] static Result<WorldModels> from(const World& world);
 
   [[nodiscard]] const RenderLibrary& library() const { return library_; }
@@ -38,8 +37,10 @@ class WorldModels {
   [[nodiscard]] const std::vector<LinkModel>& links() const { return links_; }
 
  private:
-  WorldModels() = default;
+  explicit WorldModels(const World& world) : world_(world) {}
 
+  /// What the library looks at.
+  World world_;
   RenderLibrary library_;
   std::vector<std::optional<std::uint32_t>> scenes_;
   std::vector<std::optional<std::uint32_t>> objects_;

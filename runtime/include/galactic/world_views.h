@@ -42,7 +42,6 @@ struct CameraMount {
 /// A camera on the robot of a batch.
 class MountedCamera {
  public:
-  /// `world` must outlive the result.
   MountedCamera(const World& world, const BatchSimulator& simulator, const CameraMount& mount);
 
   /// `bodies`: BatchSimulator::bodyTransforms() of one env, which is in World::scenes()[scene].
@@ -50,7 +49,7 @@ class MountedCamera {
                                 std::uint32_t scene) const noexcept;
 
  private:
-  const World* world_;
+  World world_;
   CameraFrame frame_;
   bool keeps_sight_;
   /// The camera's link; the root for kBase.
@@ -65,7 +64,7 @@ class MountedCamera {
 /// while that changes, so that a renderer can draw one step while the next is simulated.
 class WorldViews {
  public:
-  /// `models` must outlive the views. `simulator` must have been made with
+  /// `models` must outlive the views and stay where it is. `simulator` must have been made with
   /// SimulationOptions::body_transforms.
   WorldViews(const World& world, const WorldModels& models, const BatchSimulator& simulator,
              const CameraMount& camera);

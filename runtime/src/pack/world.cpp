@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -333,27 +334,28 @@ Result<World> World::open(std::span<const std::filesystem::path> paths, Trust tr
   if (!listed) return tl::unexpected<Error>(std::move(listed.error()));
   auto task_options = galactic::taskOptions(packs.front());
   if (!task_options) return tl::unexpected<Error>(std::move(task_options.error()));
-  Result<World> world = from(std::move(*listed));
-  if (world) world->task_options_ = std::move(*task_options);
-  return world;
+  return make(std::move(*listed), std::move(*task_options));
 }
 
 SimulationOptions World::withTask(SimulationOptions base) const {
   // They were read when the world was opened: none is at fault.
-  (void)setOptions(task_options_, OptionScope::kTask, base);
+  (void)setOptions(taskOptions(), OptionScope::kTask, base);
   return base;
 }
 
-Result<World> World::from(std::vector<PackFile> packs) {
-  World world;
+Result<World> World::from(std::vector<PackFile> packs) { return make(std::move(packs), {}); }
+
+Result<World> World::make(std::vector<PackFile> packs, std::vector<OptionText> task_options) {
+  Content world;
   // First of all: what follows points to the packs.
-  world.packs_ = std::move(packs);
-  Result<Parts> parts = sortByKind(world.packs_);
+  world.packs = std::move(packs);
+  world.task_options = std::move(task_options);
+  Result<Parts> parts = sortByKind(world.packs);
   if (!parts) return tl::unexpected<Error>(std::move(parts.error()));
   if (auto complete = checkComplete(*parts); !complete) {
     return tl::unexpected<Error>(std::move(complete.error()));
   }
-  if (auto sound = checkParts(world.packs_, *parts); !sound) {
+  if (auto sound = checkParts(world.packs, *parts); !sound) {
     return tl::unexpected<Error>(std::move(sound.error()));
   }
   auto scenes = findScenes(*parts);
@@ -362,17 +364,17 @@ Result<World> World::from(std::vector<PackFile> packs) {
   if (!objects) return tl::unexpected<Error>(std::move(objects.error()));
   auto positions = findStartPositions(*parts);
   if (!positions) return tl::unexpected<Error>(std::move(positions.error()));
-  world.scene_of_name_ = std::move(*scenes);
-  world.object_of_name_ = std::move(*objects);
-  world.start_position_indices_ = std::move(*positions);
-  world.scenes_.reserve(parts->scenes.size());
-  for (auto& [name, scene] : parts->scenes) world.scenes_.push_back(std::move(scene.content));
-  world.robot_.push_back(std::move(parts->robot->content));
-  world.episodes_.push_back(std::move(parts->episodes->content));
-  for (const Episode& episode : world.episodes().episodes()) {
-    world.most_objects_ = std::max<std::size_t>(world.most_objects_, episode.placement_count);
+  world.scene_of_name = std::move(*scenes);
+  world.object_of_name = std::move(*objects);
+  world.start_position_indices = std::move(*positions);
+  world.scenes.reserve(parts->scenes.size());
+  for (auto& [name, scene] : parts->scenes) world.scenes.push_back(std::move(scene.content));
+  world.robot.push_back(std::move(parts->robot->content));
+  world.episodes.push_back(std::move(parts->episodes->content));
+  for (const Episode& episode : world.episodes.front().episodes()) {
+    world.most_objects = std::max<std::size_t>(world.most_objects, episode.placement_count);
   }
-  return world;
+  return World(std::make_shared<const Content>(std::move(world)));
 }
 
 }  // namespace galactic

@@ -28,7 +28,7 @@ std::size_t mostHeldSpheres(const World& world) {
 
 DebugViews::DebugViews(const World& world, const DebugModels& models,
                        const BatchSimulator& simulator, const CameraMount& camera, std::size_t envs)
-    : world_(&world), models_(&models), camera_(world, simulator, camera) {
+    : world_(world), models_(&models), camera_(world, simulator, camera) {
   assert(!simulator.bodyTransforms().empty() && envs <= simulator.envCount());
   const Robot& robot = world.robot();
   spheres_.reserve(robot.spheres().size());
@@ -55,7 +55,7 @@ void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
   const EnvObjects state = simulator.envObjects(env);
   const std::span<const RigidTransform> bodies =
       simulator.bodyTransforms().subspan(env * simulator.bodyCount(), simulator.bodyCount());
-  const EpisodeSet& episodes = world_->episodes();
+  const EpisodeSet& episodes = world_.episodes();
   const Episode& episode = episodes.episodes()[state.episode];
   const Placement& target = episodes.placements(episode)[episode.target];
   std::size_t count = 0;
@@ -71,7 +71,7 @@ void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
   }
   if (state.held >= 0) {
     const Placement& held = state.placements[static_cast<std::size_t>(state.held)];
-    for (const SetSphere& sphere : world_->objectOf(held).spheres) {
+    for (const SetSphere& sphere : world_.objectOf(held).spheres) {
       room[count++] = {models_->sphereModel(DebugSpheres::kHeld, sphere.radius_index),
                        sphereAt(state.world_from_held * sphere.center)};
     }

@@ -64,7 +64,7 @@ std::optional<std::uint32_t> find(const ModelOfName& models, std::string_view na
 }  // namespace
 
 Result<WorldModels> WorldModels::from(const World& world) {
-  WorldModels models;
+  WorldModels models(world);
   ModelOfName scenes;
   ModelOfName objects;
   const Result<SharedTextures> textures = texturesOf(world);

@@ -30,7 +30,7 @@ std::optional<CameraMount> robotCamera(const Robot& robot) {
 
 MountedCamera::MountedCamera(const World& world, const BatchSimulator& simulator,
                              const CameraMount& mount)
-    : world_(&world),
+    : world_(world),
       frame_(mount.frame),
       keeps_sight_(mount.frame == CameraFrame::kBase && mount.keeps_sight),
       on_body_(simulator.linkOnBody(mount.frame == CameraFrame::kLink ? mount.link : 0)),
@@ -47,7 +47,7 @@ RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies,
   camera.world_from_camera = frame * frame_from_camera_;
   if (keeps_sight_) {
     camera.world_from_camera =
-        inSight(world_->scenes()[scene], frame.origin, camera.world_from_camera).world_from_camera;
+        inSight(world_.scenes()[scene], frame.origin, camera.world_from_camera).world_from_camera;
   }
   return camera;
 }

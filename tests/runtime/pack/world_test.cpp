@@ -122,6 +122,16 @@ TEST(World, StaysValidWhenItIsMoved) {
   expectSmallWorld(again);
 }
 
+TEST(World, StaysMappedAsLongAsACopyOfItLives) {
+  const ScratchFolder folder;
+  Result<World> world = openWorld(writeWorld(folder, WorldFields{}));
+  ASSERT_TRUE(world.has_value());
+  const World copy = *world;
+  EXPECT_EQ(&copy.scenes(), &world->scenes());
+  world = fail(ErrorCode::kInternal, "", "");
+  expectSmallWorld(copy);
+}
+
 TEST(World, SortsItsScenesByNameWhateverTheOrderOfThePacks) {
   WorldFields fields;
   fields.episodes.scenes = {"attic", "kitchen"};

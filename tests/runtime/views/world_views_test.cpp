@@ -11,6 +11,7 @@
 #include "galactic/batch_simulator.h"
 #include "galactic/debug_views.h"
 #include "galactic/kinematics.h"
+#include "galactic/planning_scene.h"
 #include "render/render_engine.h"
 #include "support/homes/small_home_actor.h"
 #include "support/homes/small_home_models.h"
@@ -121,6 +122,38 @@ TEST_F(WorldViewsOfAHome, TheCameraOfALinkFollowsTheForwardKinematics) {
                 kPlaceTolerance);
     }
   }
+}
+
+TEST_F(WorldViewsOfAHome, AllThatWasMadeOfAWorldLivesOnWithoutIt) {
+  const CameraMount mount = robotCamera(world_->robot()).value();
+  WorldViews views(*world_, *models_, *simulator_, mount);
+  DebugModels debug_models = DebugModels::from(*world_, {}).value();
+  DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
+  PlanningScene planning(*world_, simulator_->options());
+  const auto look = [&] {
+    std::vector<float> seen;
+    step();
+    views.update(*simulator_);
+    debug_views.update(*simulator_);
+    for (const RenderView& view : views.views()) {
+      seen.push_back(view.camera.world_from_camera.origin.x);
+      seen.push_back(static_cast<float>(view.posed.size()));
+    }
+    for (const RenderView& view : debug_views.views()) {
+      seen.push_back(static_cast<float>(view.instances.size()));
+    }
+    const EnvState state = simulator_->envState(0);
+    planning.update(state);
+    planning.setJoints(state.joint_positions);
+    seen.push_back(planning.isFree(planning.baseOf(state)) ? 1 : 0);
+    seen.push_back(planning.rootFromGrip().translation.x);
+    return seen;
+  };
+  const std::vector<std::byte> start = simulator_->saveState();
+  const std::vector<float> with_world = look();
+  world_.reset();
+  ASSERT_TRUE(simulator_->restoreState(start));
+  EXPECT_EQ(look(), with_world);
 }
 
 TEST_F(WorldViewsOfAHome, TheCameraOfTheBaseStandsOnTheFloor) {

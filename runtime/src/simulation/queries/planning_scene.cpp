@@ -47,7 +47,7 @@ Vec3 headingOf(float yaw) { return {std::cos(yaw), 0, -std::sin(yaw)}; }
 class PlanningScene::Impl {
  public:
   Impl(const World& world, const SimulationOptions& options)
-      : world_(&world),
+      : world_(world),
         options_(options),
         root_height_(world.robot().base()->root_height),
         links_(world.robot().links().size()),
@@ -67,7 +67,7 @@ class PlanningScene::Impl {
   void putBack();
 
   [[nodiscard]] Pose rootFromGrip() const {
-    const EndEffector& hand = *world_->robot().endEffector();
+    const EndEffector& hand = *world_.robot().endEffector();
     return links_[hand.link] * Pose{hand.grasp_point, {}};
   }
   [[nodiscard]] Pose worldFromRoot(const BasePlace& base) const {
@@ -86,7 +86,7 @@ class PlanningScene::Impl {
 
   [[nodiscard]] std::optional<Pose> landing(const BasePlace& base);
 
-  [[nodiscard]] const World& world() const { return *world_; }
+  [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const SimulationOptions& options() const { return options_; }
   [[nodiscard]] float rootHeight() const { return root_height_; }
   [[nodiscard]] const Scene& scene() const { return *scene_; }
@@ -106,7 +106,7 @@ class PlanningScene::Impl {
   void assembleHeld();
   [[nodiscard]] bool isHeldFree(const BasePlace& base);
 
-  const World* world_;
+  World world_;
   SimulationOptions options_;
   float root_height_ = 0;
   /// root_from_link for the current joints.
@@ -132,15 +132,15 @@ class PlanningScene::Impl {
 };
 
 void PlanningScene::Impl::update(const EnvState& state) {
-  const Episode& episode = world_->episodes().episodes()[state.episode];
-  std::span<const Placement> placements = world_->episodes().placements(episode);
+  const Episode& episode = world_.episodes().episodes()[state.episode];
+  std::span<const Placement> placements = world_.episodes().placements(episode);
   if (!options_.task.distractors) placements = placements.subspan(episode.target, 1);
-  scene_ = &world_->scenes()[state.scene];
+  scene_ = &world_.scenes()[state.scene];
   models_.clear();
   resting_.clear();
   held_ = nullptr;
   for (std::uint32_t n = 0; n < placements.size(); ++n) {
-    models_.push_back(&world_->objectOf(placements[n]));
+    models_.push_back(&world_.objectOf(placements[n]));
     if (static_cast<std::int32_t>(n) == state.held) continue;
     resting_.insert(n, simulation::restingBox(models_[n]->box, state.objects[n]));
   }
@@ -151,7 +151,7 @@ void PlanningScene::Impl::update(const EnvState& state) {
 }
 
 void PlanningScene::Impl::setJoints(std::span<const float> positions) {
-  forwardKinematics(world_->robot().links(), {}, positions, links_);
+  forwardKinematics(world_.robot().links(), {}, positions, links_);
   robot_.assemble(links_);
   reach_ = robot_.reach();
   if (held_ != nullptr) assembleHeld();
@@ -164,7 +164,7 @@ void PlanningScene::Impl::take(std::uint32_t object, const Pose& grip_from_objec
   std::vector<SphereCloud::Sphere> spheres;
   spheres.reserve(held_->spheres.size());
   for (const SetSphere& sphere : held_->spheres) spheres.push_back({0, sphere});
-  held_spheres_ = SphereCloud(spheres, world_->radii());
+  held_spheres_ = SphereCloud(spheres, world_.radii());
   const std::size_t words = (held_spheres_.paddedCount() + kBitsPerWord - 1) / kBitsPerWord;
   penetrating_.assign(words, 0);
   ignored_.assign(words, 0);

@@ -269,7 +269,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
                     ", expected at most " + std::to_string(kMostNearObjects));
   }
   Model model;
-  model.world = &world;
+  model.world = world;
   model.options = options;
   Result<MotionModel> motion = makeMotionModel(world.robot(), world.startPositionIndices());
   if (!motion) return tl::unexpected<Error>(motion.error());

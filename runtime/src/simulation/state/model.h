@@ -38,7 +38,7 @@ struct EpisodeStart {
 
 /// What never changes in a run: computed once, shared by all threads.
 struct Model {
-  const World* world = nullptr;
+  std::optional<World> world;
   SimulationOptions options;
   MotionModel motion;
   MotionKernels kernels;
