@@ -141,9 +141,10 @@ struct PhaseTime {
 class BatchSimulator {
  public:
   /// All envs stand at the start of their first episode. Fails
-  /// with kInvalidInput when no episode of the world can be started (the robot penetrates something
-  /// in all of them) or a laser sees nothing, and with kUnsupported when an action moves a planar
-  /// or floating joint, or the link that carries the laser.
+  /// with kInvalidInput on options out of their ranges (checkOptions), when no episode of the world
+  /// can be started (the robot penetrates something in all of them) or a laser sees nothing, and
+  /// with kUnsupported when an action moves a planar or floating joint, or the link that carries
+  /// the laser.
   [[nodiscard]] static Result<BatchSimulator> create(const World& world,
                                                      const SimulationOptions& options);
   ~BatchSimulator();

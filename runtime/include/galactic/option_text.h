@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "galactic/error.h"
 #include "galactic/simulation_options.h"
 
 namespace galactic {
@@ -53,5 +54,10 @@ struct OptionFault {
 /// unspecified.
 [[nodiscard]] std::optional<OptionFault> setOptions(std::span<const OptionText> texts,
                                                     OptionScope scope, SimulationOptions& options);
+
+/// Whether every value lies in the range of the table and every enumeration has one of its values:
+/// what BatchSimulator::create asks first. Fails with kInvalidInput; the message names the option,
+/// its value and the range.
+[[nodiscard]] Result<void> checkOptions(const SimulationOptions& options);
 
 }  // namespace galactic

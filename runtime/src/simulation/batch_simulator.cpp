@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "galactic/option_text.h"
 #include "simulation/phases/chunk.h"
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/follow.h"
@@ -227,6 +228,7 @@ Result<BatchSimulator> BatchSimulator::create(const World& world,
                     std::to_string(options.rank) + " of " + std::to_string(options.ranks) +
                     "; expected at least one env and a rank below the number of ranks");
   }
+  RETURN_IF_ERROR(checkOptions(options));
   Result<Model> model = simulation::makeModel(world, options);
   if (!model) return tl::unexpected<Error>(model.error());
   const auto bytes = static_cast<double>(simulation::stateBytes(*model, options.envs));

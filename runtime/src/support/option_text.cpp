@@ -175,6 +175,47 @@ class Setter {
   std::optional<OptionFault> fault_;
 };
 
+/// Finds the first value that is out of its range.
+class Checker {
+ public:
+  void group(std::string_view) {}
+  void whole(std::string_view name, std::uint32_t value, Within<std::uint32_t> within,
+             std::string_view) {
+    number(name, value, within);
+  }
+  void seed(std::string_view, std::uint64_t, std::string_view) {}
+  void real(std::string_view name, float value, Within<float> within, std::string_view) {
+    number(name, value, within);
+  }
+  void flag(std::string_view, const Switch&, std::string_view) {}
+  template <class T, std::size_t N>
+  void choice(std::string_view name, T value, const std::array<Named<T>, N>& names,
+              std::string_view) {
+    const bool is_good =
+        std::ranges::any_of(names, [&](const Named<T>& one) { return one.value == value; });
+    if (!is_good) refuse(name, static_cast<unsigned>(value), namesOf<T>(names));
+  }
+  /// Its parts have the values.
+  template <class T>
+  void preset(std::string_view, const T&, const Preset<T>&, std::string_view) {}
+
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+
+ private:
+  template <class T>
+  void number(std::string_view name, T value, Within<T> within) {
+    // Whatever is not a number is not within.
+    const bool is_good = value >= within.least && value <= within.most;
+    if (!is_good) refuse(name, value, fmt::format("{} to {}", within.least, within.most));
+  }
+  template <class T>
+  void refuse(std::string_view name, T value, std::string_view wanted) {
+    if (fault_.empty()) fault_ = fmt::format("{} is {}, expected {}", name, value, wanted);
+  }
+
+  std::string fault_;
+};
+
 template <class Visitor>
 void visit(SimulationOptions& options, OptionScope scope, Visitor& visitor) {
   if (scope == OptionScope::kTask) {
@@ -207,6 +248,14 @@ std::optional<OptionFault> setOptions(std::span<const OptionText> texts, OptionS
   Setter setter(texts, scope == OptionScope::kTyped);
   visit(options, scope, setter);
   return setter.fault();
+}
+
+Result<void> checkOptions(const SimulationOptions& options) {
+  SimulationOptions copy = options;
+  Checker checker;
+  visitOptions(copy, checker);
+  if (checker.fault().empty()) return {};
+  return fail(ErrorCode::kInvalidInput, "simulation options", checker.fault());
 }
 
 }  // namespace galactic

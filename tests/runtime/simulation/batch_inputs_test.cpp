@@ -75,6 +75,23 @@ TEST(Actions, ThatAreNotANumberAreCounted) {
   for (const float value : simulator.observations()) ASSERT_TRUE(std::isfinite(value));
 }
 
+TEST(Options, OutOfTheirRangesMakeNoSimulator) {
+  const BoxWorld world = furnishedWorld();
+  const auto refusal = [&](const auto& change) {
+    SimulationOptions options = optionsFor(2);
+    change(options);
+    const Result<BatchSimulator> simulator = BatchSimulator::create(world.world(), options);
+    return simulator ? "made" : simulator.error().where + ": " + simulator.error().message;
+  };
+  EXPECT_EQ(refusal([](SimulationOptions&) {}), "made");
+  EXPECT_EQ(refusal([](SimulationOptions& options) { options.slide.step = kNan; }),
+            "simulation options: slide-step is nan, expected 0 to 1000");
+  EXPECT_EQ(refusal([](SimulationOptions& options) { options.task.success_distance = -1; }),
+            "simulation options: success-distance is -1, expected 0 to 1000");
+  EXPECT_EQ(refusal([](SimulationOptions& options) { options.order = EpisodeOrder{9}; }),
+            "simulation options: order is 9, expected shuffled, linear or partition");
+}
+
 TEST(Resets, BeginTheEpisodeThatIsAskedFor) {
   const BoxWorld world = furnishedWorld();
   BatchSimulator simulator = made(world, optionsFor(20));

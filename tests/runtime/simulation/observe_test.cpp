@@ -326,7 +326,7 @@ TEST(Observation, TellsOfNoMoreObjectsNearTheHandThanItCan) {
   const Result<BatchSimulator> more = BatchSimulator::create(home.world(), options);
   ASSERT_FALSE(more);
   EXPECT_EQ(more.error().code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(more.error().message, "near-objects is 17, expected at most 16");
+  EXPECT_EQ(more.error().message, "near-objects is 17, expected 0 to 16");
 }
 
 TEST(Observation, FeelsWhatWasInTheWayAndPaysForIt) {

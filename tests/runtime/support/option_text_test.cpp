@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/option_table.h"
@@ -137,6 +140,7 @@ class RangeProbe {
     SimulationOptions options;
     const auto fault = setOptions(std::span(&text, 1), OptionScope::kTask, options);
     EXPECT_EQ(!fault, is_good) << name << " = " << value;
+    EXPECT_TRUE(checkOptions(options)) << name << " = " << value;
     ++probes_;
     accepted_ += fault ? 0U : 1U;
     if (fault) return;
@@ -159,6 +163,55 @@ TEST(OptionTexts, AreTakenWithinTheirRangeAndNotOutside) {
   visitWorldTask(options, probe);
   EXPECT_GT(probe.acceptedShare(), 0.1);
   EXPECT_LT(probe.acceptedShare(), 0.9);
+}
+
+/// Gives the fields of `options`, one after the other, values just out of their ranges.
+class FieldProbe {
+ public:
+  explicit FieldProbe(SimulationOptions& options) : options_(options) {}
+
+  void group(std::string_view) {}
+  void seed(std::string_view, std::uint64_t&, std::string_view) {}
+  void flag(std::string_view, const Switch&, std::string_view) {}
+  void whole(std::string_view name, std::uint32_t& field, Within<std::uint32_t> within,
+             std::string_view) {
+    probe(name, field, within.most + 1);
+    if (within.least > 0) probe(name, field, within.least - 1);
+  }
+  void real(std::string_view name, float& field, Within<float> within, std::string_view) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const float wrong : {std::nextafter(within.least, -kInfinity),
+                              std::nextafter(within.most, kInfinity), kInfinity, std::nanf("")}) {
+      probe(name, field, wrong);
+    }
+  }
+  template <class T, std::size_t N>
+  void choice(std::string_view name, T& field, const std::array<Named<T>, N>&, std::string_view) {
+    probe(name, field, T{N});
+  }
+  template <class T>
+  void preset(std::string_view, const T&, const Preset<T>&, std::string_view) {}
+
+ private:
+  template <class T>
+  void probe(std::string_view name, T& field, T wrong) {
+    const T right = std::exchange(field, wrong);
+    const Result<void> checked = checkOptions(options_);
+    field = right;
+    ASSERT_FALSE(checked) << name;
+    EXPECT_EQ(checked.error().code, ErrorCode::kInvalidInput);
+    EXPECT_EQ(checked.error().message.find(fmt::format("{} is ", name)), 0U)
+        << checked.error().message;
+    EXPECT_TRUE(checkOptions(options_)) << name;
+  }
+
+  SimulationOptions& options_;
+};
+
+TEST(Options, AreRefusedOutsideTheirRange) {
+  SimulationOptions options;
+  FieldProbe probe(options);
+  visitOptions(options, probe);
 }
 
 }  // namespace

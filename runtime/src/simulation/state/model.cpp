@@ -263,11 +263,6 @@ std::optional<std::uint32_t> Model::startOf(std::int64_t episode) const noexcept
 }
 
 Result<Model> makeModel(const World& world, const SimulationOptions& options) {
-  if (options.sensors.near_objects > kMostNearObjects) {
-    return fail(ErrorCode::kInvalidInput, "simulation options",
-                "near-objects is " + std::to_string(options.sensors.near_objects) +
-                    ", expected at most " + std::to_string(kMostNearObjects));
-  }
   Model model;
   model.world = world;
   model.options = options;
