@@ -105,6 +105,9 @@ class Robot {
   [[nodiscard]] std::string_view jointName(std::size_t link) const { return joint_names_[link]; }
   [[nodiscard]] std::optional<std::uint32_t> findLink(std::string_view name) const;
 
+  /// The link that the joint of this name moves: links()[it].position is where the joint's values
+  /// begin in the vector of joint positions.
+  [[nodiscard]] std::optional<std::uint32_t> findJoint(std::string_view name) const;
   /// One entry per joint position.
   [[nodiscard]] std::span<const PositionLimits> limits() const { return limits_; }
   /// The joint positions in which an episode starts.

@@ -87,4 +87,11 @@ std::optional<std::uint32_t> Robot::findLink(std::string_view name) const {
   return static_cast<std::uint32_t>(found - link_names_.begin());
 }
 
+std::optional<std::uint32_t> Robot::findJoint(std::string_view name) const {
+  // The root has none.
+  const auto found = std::find(joint_names_.begin() + 1, joint_names_.end(), name);
+  if (found == joint_names_.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - joint_names_.begin());
+}
+
 }  // namespace galactic

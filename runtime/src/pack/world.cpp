@@ -246,14 +246,6 @@ Result<std::vector<ObjectModel>> findObjects(const Parts& parts) {
   return objects;
 }
 
-/// The link whose joint has this name.
-std::optional<std::size_t> findJoint(const Robot& robot, std::string_view name) {
-  for (std::size_t link = 1; link < robot.links().size(); ++link) {
-    if (robot.jointName(link) == name) return link;
-  }
-  return std::nullopt;
-}
-
 /// For each start joint its place in the vector of joint positions.
 Result<std::vector<std::uint32_t>> findStartPositions(const Parts& parts) {
   const Robot& robot = parts.robot->content;
@@ -267,7 +259,7 @@ Result<std::vector<std::uint32_t>> findStartPositions(const Parts& parts) {
                                  "episodes were made for",
                                  names[n], fault, robot.name()));
     };
-    const std::optional<std::size_t> joint = findJoint(robot, names[n]);
+    const std::optional<std::uint32_t> joint = robot.findJoint(names[n]);
     if (!joint) return refuse("is not a joint");
     const LinkFrame& link = robot.links()[*joint];
     if (positionCount(link.type) != 1) return refuse("is not a joint with one position");

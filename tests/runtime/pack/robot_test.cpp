@@ -31,8 +31,11 @@ TEST(Robot, ShowsTheTreeThatThePackHolds) {
     EXPECT_EQ(robot->linkName(n), fields.link_names[n]);
     EXPECT_EQ(robot->jointName(n), fields.joint_names[n]);
     EXPECT_EQ(robot->findLink(fields.link_names[n]), n);
+    // The root hangs on no joint.
+    EXPECT_EQ(robot->findJoint(fields.joint_names[n]), n == 0 ? std::nullopt : std::optional(n));
   }
   EXPECT_EQ(robot->findLink("nobody"), std::nullopt);
+  EXPECT_EQ(robot->findJoint("nobody"), std::nullopt);
   ASSERT_EQ(robot->positionCount(), fields.limits.size());
   EXPECT_EQ(robot->limits()[1].lower, -1);
   EXPECT_EQ(robot->limits()[1].upper, 2);
