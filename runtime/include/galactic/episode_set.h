@@ -44,6 +44,7 @@ class EpisodeSet {
   /// The episodes in `pack`, which must outlive the result. Fails with kInvalidInput on another
   /// kind of pack.
   [[nodiscard]] static Result<EpisodeSet> from(const PackFile& pack);
+  static Result<EpisodeSet> from(const PackFile&& pack) = delete;
 
   [[nodiscard]] std::string_view name() const { return name_; }
   /// Ascending.

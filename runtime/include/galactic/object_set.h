@@ -31,6 +31,7 @@ class ObjectSet {
   /// The objects in `pack`, which must outlive the result. Fails with kInvalidInput on another kind
   /// of pack.
   [[nodiscard]] static Result<ObjectSet> from(const PackFile& pack);
+  static Result<ObjectSet> from(const PackFile&& pack) = delete;
 
   /// The working set, meters, ascending: SetSphere::radius_index counts in it.
   [[nodiscard]] std::span<const float> radii() const { return radii_; }

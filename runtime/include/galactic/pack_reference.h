@@ -25,6 +25,7 @@ struct PackReference {
 /// The list of the world pack `world`, which must outlive it; ascending paths. Fails with
 /// kInvalidInput on another kind of pack.
 [[nodiscard]] Result<std::vector<PackReference>> packReferences(const PackFile& world);
+Result<std::vector<PackReference>> packReferences(const PackFile&& world) = delete;
 
 /// What the world pack `world` says of the task: options of OptionScope::kTask in the order of the
 /// option table, each at most once, with values that setOptions takes. Fails with kInvalidInput on

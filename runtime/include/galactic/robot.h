@@ -93,6 +93,7 @@ class Robot {
   /// The robot in `pack`, which must outlive the result. Fails with kInvalidInput on another kind
   /// of pack.
   [[nodiscard]] static Result<Robot> from(const PackFile& pack);
+  static Result<Robot> from(const PackFile&& pack) = delete;
 
   [[nodiscard]] std::string_view name() const { return name_; }
   /// The working set, meters, ascending.
@@ -104,10 +105,10 @@ class Robot {
   /// Name of the joint to the parent; empty for the root.
   [[nodiscard]] std::string_view jointName(std::size_t link) const { return joint_names_[link]; }
   [[nodiscard]] std::optional<std::uint32_t> findLink(std::string_view name) const;
-
   /// The link that the joint of this name moves: links()[it].position is where the joint's values
   /// begin in the vector of joint positions.
   [[nodiscard]] std::optional<std::uint32_t> findJoint(std::string_view name) const;
+
   /// One entry per joint position.
   [[nodiscard]] std::span<const PositionLimits> limits() const { return limits_; }
   /// The joint positions in which an episode starts.

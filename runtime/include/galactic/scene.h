@@ -14,6 +14,7 @@ class Scene {
  public:
   /// The scene in `pack`, which must outlive it. Fails with kInvalidInput on another kind of pack.
   [[nodiscard]] static Result<Scene> from(const PackFile& pack);
+  static Result<Scene> from(const PackFile&& pack) = delete;
 
   [[nodiscard]] std::string_view name() const { return name_; }
 

@@ -10,6 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "galactic/episode_set.h"
+#include "galactic/object_set.h"
+#include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
 #include "layout/column_cell.h"
@@ -20,6 +23,16 @@ namespace galactic::test::pack_test {
 namespace {
 
 using testing::HasSubstr;
+
+// What points into a pack cannot be made of one that ends with the statement.
+template <class T, class Pack>
+concept MadeOf = requires(Pack&& pack) {
+  T::from(std::forward<Pack>(pack));
+};
+static_assert(MadeOf<Scene, const PackFile&> && !MadeOf<Scene, PackFile>);
+static_assert(MadeOf<Robot, const PackFile&> && !MadeOf<Robot, PackFile>);
+static_assert(MadeOf<ObjectSet, const PackFile&> && !MadeOf<ObjectSet, PackFile>);
+static_assert(MadeOf<EpisodeSet, const PackFile&> && !MadeOf<EpisodeSet, PackFile>);
 
 /// A file in the test's folder for scratch files, gone at the end.
 class PackOnDisk {

@@ -452,7 +452,8 @@ TEST(PackReferences, ShowTheListOfAWorldPackOnly) {
   EXPECT_EQ(pathOf((*references)[2], world), "homes/robots/helper.pack");
 
   const AlignedBytes robot = buildPack(smallRobotPack());
-  const auto none = packReferences(viewed(robot, "helper.pack"));
+  const PackFile helper = viewed(robot, "helper.pack");
+  const auto none = packReferences(helper);
   ASSERT_FALSE(none.has_value());
   EXPECT_EQ(none.error().message,
             "is a pack of kind RBOT, expected a world (WRLD); give a world pack");
