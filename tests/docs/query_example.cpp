@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   const std::array<float, 3> y{1.2F, 0.0F, 1.2F};
   const std::array<float, 3> z{-2.0F, -2.0F, -2.0F};
   std::array<galactic::Clearance, 3> clearance{};
-  grid.contact({.x = x, .y = y, .z = z}, {.clearance = clearance, .down = {}, .up = {}});
+  grid.contact({.x = x, .y = y, .z = z}, {.clearance = clearance});
   for (const galactic::Clearance answer : clearance) {
     switch (answer) {
       case galactic::Clearance::kFree:

@@ -52,7 +52,7 @@ struct RenderOptions {
   RenderBackend backend = RenderBackend::kAuto;
   /// For `gl` and `cuda`: index of the device, "cuda:N", a UUID, or empty for the first one. `gl`
   /// also takes "software", for a driver without a graphics processor (an error otherwise).
-  std::string device;
+  std::string device{};
   /// Threads of `soft`; 0: one per core. The images do not depend on it.
   std::uint32_t threads = 0;
   /// Whether to cull what cannot be seen. The images do not depend on it.
@@ -107,11 +107,11 @@ struct RenderView {
 /// span empty if the options do not ask for its image.
 struct RenderTargets {
   /// Shape: views x height x width x 3 or 4. sRGB; alpha is 255 where something is drawn.
-  std::span<std::uint8_t> color;
+  std::span<std::uint8_t> color{};
   /// Shape: views x height x width. Meters along the camera's axis; 0 where nothing is drawn.
-  std::span<float> depth;
+  std::span<float> depth{};
   /// Shape: views x height x width. Indices into RenderLibrary::semanticNames().
-  std::span<std::uint32_t> semantics;
+  std::span<std::uint32_t> semantics{};
 };
 
 /// What the last rendering did, summed over its views.

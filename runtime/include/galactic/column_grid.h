@@ -35,8 +35,8 @@ struct SphereCenters {
 /// be empty when only the clearance is wanted.
 struct ContactArrays {
   std::span<Clearance> clearance;
-  std::span<float> down;
-  std::span<float> up;
+  std::span<float> down{};
+  std::span<float> up{};
 };
 
 /// Where a grid's cells lie and how their codes translate; plain data, pointing into a pack.
