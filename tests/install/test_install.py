@@ -4,6 +4,7 @@ completions, Debian packages."""
 from __future__ import annotations
 
 import argparse
+import json
 import pathlib
 import re
 import shutil
@@ -73,6 +74,24 @@ class Install(unittest.TestCase):
             f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_CXX_COMPILER={OPTIONS.compiler}")  # fmt: skip
         run(OPTIONS.cmake, "--build", build)
         self.assertEqual(run(build / "spans", OPTIONS.packs / "room-column.pack"), "2 grids\n")
+
+    def test_another_project_has_the_sources_as_a_part(self) -> None:
+        build = pathlib.Path(self.folder.name, "embedding")
+        run(OPTIONS.cmake, "-S", HERE / "embedding", "-B", build, "-G", "Ninja",
+            f"-DGALACTIC_SOURCE={OPTIONS.source}", f"-DCMAKE_CXX_COMPILER={OPTIONS.compiler}")  # fmt: skip
+        # Of galactic, it builds the library, a static one, and neither installs nor packs anything.
+        built = run("ninja", "-C", build, "-t", "inputs", "all")
+        self.assertIn("galactic/runtime/libgalactic.a", built)
+        self.assertNotIn("galactic-run", built)
+        self.assertFalse((build / "CPackConfig.cmake").exists())
+        installs = (build / "galactic/cmake_install.cmake").read_text(encoding="utf-8")
+        self.assertNotIn("file(INSTALL", installs)
+        # It sees the headers alone, and its compiler may warn of what ours does not.
+        commands = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
+        command = {pathlib.Path(one["file"]).name: one["command"] for one in commands}
+        self.assertIn(f"-I{OPTIONS.source}/runtime/include", command["spans.cpp"])
+        self.assertNotIn(f"{OPTIONS.source}/runtime/src", command["spans.cpp"].split(" -o ")[0])
+        self.assertNotIn("-Werror", command["column_grid.cpp"])
 
     def test_the_library_names_nothing_of_the_build(self) -> None:
         for file in (self.prefix / "lib").rglob("*.cmake"):
