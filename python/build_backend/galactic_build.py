@@ -112,11 +112,11 @@ def _project() -> dict:
 
 
 def _version() -> str:
-    """That of the project, which CMakeLists.txt says."""
-    text = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
-    found = re.search(r"project\(galactic VERSION ([\d.]+)", text)
-    assert found, "CMakeLists.txt names no version"
-    return found.group(1)
+    """That of the project, which a header says."""
+    text = (ROOT / "runtime/include/galactic/version.h").read_text(encoding="utf-8")
+    numbers = re.findall(r"#define GALACTIC_VERSION_\w+ (\d+)", text)
+    assert len(numbers) == 3, "version.h names no version"
+    return ".".join(numbers)
 
 
 def _metadata() -> str:
