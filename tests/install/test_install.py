@@ -77,6 +77,18 @@ class Install(unittest.TestCase):
         said = run(build / "spans", OPTIONS.packs / "room-column.pack")
         self.assertEqual(said, f"2 grids, galactic {version}\n")
 
+    def test_another_project_learns_that_there_is_no_such_component(self) -> None:
+        source = pathlib.Path(self.folder.name, "component")
+        source.mkdir()
+        (source / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(component LANGUAGES CXX)\n"
+            "find_package(galactic REQUIRED COMPONENTS runtime ${WANTED})\n", encoding="utf-8")  # fmt: skip
+        configure = (OPTIONS.cmake, "-S", source, "-B", source / "build", "-G", "Ninja",
+                     f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_CXX_COMPILER={OPTIONS.compiler}")  # fmt: skip
+        run(*configure)
+        with self.assertRaisesRegex(AssertionError, "none\\s+called\\s+bake;"):
+            run(*configure, "-DWANTED=bake")
+
     def test_another_project_has_the_sources_as_a_part(self) -> None:
         build = pathlib.Path(self.folder.name, "embedding")
         run(OPTIONS.cmake, "-S", HERE / "embedding", "-B", build, "-G", "Ninja",
