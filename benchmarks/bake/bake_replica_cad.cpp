@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "galactic/bake/mesh_import.h"
+#include "galactic/bake/packs.h"
 #include "galactic/bake/scene_baker.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

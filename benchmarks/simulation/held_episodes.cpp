@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "galactic/bake/episode_set_import.h"
+#include "galactic/bake/packs.h"
 #include "galactic/batch_simulator.h"
 #include "galactic/world.h"
-#include "write/packs.h"
 
 namespace {
 

@@ -6,11 +6,11 @@
 
 #include "finding.h"
 #include "galactic/bake/episode_set_import.h"
+#include "galactic/bake/packs.h"
 #include "galactic/episode_set.h"
 #include "galactic/pack.h"
 #include "support/packs/pack_parts.h"
 #include "support/scratch_folder.h"
-#include "write/packs.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 
 #include "bake/episodes/made_world.h"
 #include "galactic/bake/episode_generator.h"
+#include "galactic/bake/packs.h"
 #include "galactic/world.h"
-#include "write/packs.h"
 
 namespace galactic::test {
 

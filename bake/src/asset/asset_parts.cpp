@@ -3,10 +3,10 @@
 #include <system_error>
 #include <utility>
 
+#include "galactic/bake/packs.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/pack.h"
 #include "support/try.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

@@ -3,9 +3,9 @@
 #include <chrono>
 #include <utility>
 
+#include "galactic/bake/packs.h"
 #include "support/output_files.h"
 #include "support/try.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

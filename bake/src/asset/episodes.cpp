@@ -10,12 +10,12 @@
 
 #include "asset/asset_parts.h"
 #include "galactic/bake/mesh_import.h"
+#include "galactic/bake/packs.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
 #include "support/try.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

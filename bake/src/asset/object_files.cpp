@@ -8,10 +8,10 @@
 #include "asset/asset_parts.h"
 #include "common/stage_timer.h"
 #include "galactic/bake/mesh_import.h"
+#include "galactic/bake/packs.h"
 #include "galactic/bake/parallel_for.h"
 #include "recipe/collection_shape.h"
 #include "support/try.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

@@ -4,11 +4,11 @@
 
 #include "asset/asset_parts.h"
 #include "common/stage_timer.h"
+#include "galactic/bake/packs.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
 #include "recipe/collection_import.h"
 #include "support/try.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

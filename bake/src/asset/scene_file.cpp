@@ -4,8 +4,8 @@
 #include "common/stage_timer.h"
 #include "dataset/scene_dataset.h"
 #include "galactic/bake/mesh_import.h"
+#include "galactic/bake/packs.h"
 #include "support/try.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include "galactic/bake/packs.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "support/try.h"
 #include "write/pack_payload.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 namespace {

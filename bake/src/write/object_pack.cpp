@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "galactic/bake/packs.h"
 #include "support/try.h"
 #include "write/pack_payload.h"
-#include "write/packs.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

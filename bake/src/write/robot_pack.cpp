@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "galactic/bake/packs.h"
 #include "support/try.h"
 #include "write/pack_payload.h"
-#include "write/packs.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

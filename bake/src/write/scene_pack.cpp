@@ -3,12 +3,12 @@
 #include <cstring>
 #include <span>
 
+#include "galactic/bake/packs.h"
 #include "galactic/pack_header.h"
 #include "galactic/schema/pack_generated.h"
 #include "layout/column_cell.h"
 #include "support/try.h"
 #include "write/pack_payload.h"
-#include "write/packs.h"
 #include "write/render_meshes.h"
 
 namespace galactic::bake {

@@ -2,8 +2,8 @@
 
 #include <span>
 
+#include "galactic/bake/packs.h"
 #include "write/pack_payload.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
+#include "galactic/bake/packs.h"
 #include "galactic/object_set.h"
 #include "galactic/pack.h"
 #include "support/packs/pack_parts.h"
 #include "support/scratch_folder.h"
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
-#include "write/packs.h"
 
 namespace galactic::test::object_pack_test {
 namespace {

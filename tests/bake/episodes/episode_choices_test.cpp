@@ -9,9 +9,9 @@
 
 #include "episodes/home/support_places.h"
 #include "episodes/trial/episode_replay.h"
+#include "galactic/bake/packs.h"
 #include "made_world.h"
 #include "support/oracles/box_oracle.h"
-#include "write/packs.h"
 
 namespace galactic::test::episode_choices_test {
 namespace {

@@ -6,8 +6,8 @@
 #include "episodes/episode_draft.h"
 #include "episodes/generation_world.h"
 #include "episodes/home/prepared_scene.h"
+#include "galactic/bake/packs.h"
 #include "made_world.h"
-#include "write/packs.h"
 
 namespace galactic::test::episode_degrading_test {
 namespace {

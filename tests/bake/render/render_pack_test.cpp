@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/render/render_helpers.h"
+#include "galactic/bake/packs.h"
 #include "galactic/pack.h"
 #include "render/render_source.h"
 #include "support/aligned_bytes.h"
@@ -10,7 +11,6 @@
 #include "support/packs/scene_pack_builder.h"
 #include "support/source_asset.h"
 #include "support/test_meshes.h"
-#include "write/packs.h"
 
 namespace galactic::test::render_pack_test {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "bake/robot/tiny_robots.h"
+#include "galactic/bake/packs.h"
 #include "galactic/robot.h"
 #include "support/packs/pack_parts.h"
-#include "write/packs.h"
 
 namespace galactic::test::robot_baker_test {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "galactic/bake/episode_generator.h"
 #include "galactic/bake/episode_set_import.h"
+#include "galactic/bake/packs.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/batch_simulator.h"
 #include "support/homes/sample_world.h"
-#include "write/packs.h"
 
 namespace galactic::test {
 

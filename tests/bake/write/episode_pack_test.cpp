@@ -6,11 +6,11 @@
 #include <functional>
 #include <limits>
 
+#include "galactic/bake/packs.h"
 #include "galactic/episode_set.h"
 #include "galactic/pack.h"
 #include "support/packs/episode_pack_builder.h"
 #include "support/scratch_folder.h"
-#include "write/packs.h"
 
 namespace galactic::test::episode_pack_test {
 namespace {

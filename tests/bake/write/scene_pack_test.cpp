@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "galactic/bake/packs.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
@@ -17,7 +18,6 @@
 #include "support/scene_meshes.h"
 #include "support/scratch_folder.h"
 #include "support/source_asset.h"
-#include "write/packs.h"
 
 namespace galactic::bake::scene_pack_test {
 namespace {

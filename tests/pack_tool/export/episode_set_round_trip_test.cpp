@@ -8,12 +8,12 @@
 #include <sstream>
 
 #include "galactic/bake/episode_set_import.h"
+#include "galactic/bake/packs.h"
 #include "pack_tool/export/episode_set_text.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/asset_mesh.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/pack_parts.h"
-#include "write/packs.h"
 
 namespace galactic::pack_tool::episode_set_round_trip_test {
 namespace {

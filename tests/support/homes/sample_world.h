@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "galactic/bake/mesh_import.h"
+#include "galactic/bake/packs.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/urdf_import.h"
 #include "galactic/object_set.h"
@@ -18,7 +19,6 @@
 #include "support/packs/pack_parts.h"
 #include "support/packs/scene_pack_builder.h"
 #include "support/source_folder.h"
-#include "write/packs.h"
 
 namespace galactic::test {
 

@@ -81,8 +81,8 @@ struct SourceFile {
 struct SourceAsset {
   /// Main input's file name without its extension.
   std::string name;
-  /// Format as recognized, for example "glTF 2.0".
-  std::string format;
+  /// Format as recognized, for example "glTF 2.0". Packs want a name.
+  std::string format = "memory";
   /// How axes and unit were read, for the closing table: for example "Z up (file), unit 0.01 m".
   std::string convention;
   std::vector<SourceMesh> meshes;

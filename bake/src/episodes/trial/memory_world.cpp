@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
+#include "galactic/bake/packs.h"
 #include "galactic/pack_header.h"
 #include "support/try.h"
-#include "write/packs.h"
 
 namespace galactic::bake {
 

@@ -15,6 +15,9 @@
 
 namespace galactic::bake {
 
+// What the bakers return, written as packs: for meshes and robots that a program has in memory.
+// assets.h makes packs of files.
+
 /// The bytes of a scene pack's FlatBuffer, without the file header. The same scene and provenance
 /// give the same bytes. Fails with kUnsupported when it would reach 2 GiB, the limit of one pack.
 [[nodiscard]] Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
