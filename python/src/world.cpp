@@ -65,7 +65,7 @@ py::tuple linkNames(const World& world) {
 
 /// What a column of the actions does: galactic.Action.
 struct Action {
-  std::string name;
+  std::string name{};
   std::optional<float> step = std::nullopt;
   std::optional<std::string> unit = std::nullopt;
   std::optional<float> lower = std::nullopt;
@@ -79,17 +79,26 @@ std::optional<float> limitOf(float limit) {
   return limit;
 }
 
+/// What one position of a planar or floating joint is has no unit here: simulators refuse it.
+std::optional<std::string> unitOf(JointType type) {
+  if (positionCount(type) != 1) return std::nullopt;
+  return type == JointType::kPrismatic ? "m" : "rad";
+}
+
 Action actionOf(const Robot& robot, const ControlledJoint& joint) {
-  const std::span<const LinkFrame> links = robot.links();
-  const auto link =
-      std::ranges::find(links, static_cast<std::int32_t>(joint.position), &LinkFrame::position);
-  const auto number = static_cast<std::size_t>(link - links.begin());
-  return {.name = std::string(robot.jointName(number)),
-          .step = joint.step,
-          .unit = link->type == JointType::kPrismatic ? "m" : "rad",
-          .lower = limitOf(joint.lower),
-          .upper = limitOf(joint.upper),
-          .position = joint.position};
+  Action action{.step = joint.step,
+                .lower = limitOf(joint.lower),
+                .upper = limitOf(joint.upper),
+                .position = joint.position};
+  for (std::size_t link = 0; link < robot.links().size(); ++link) {
+    const LinkFrame& frame = robot.links()[link];
+    const std::int64_t place = static_cast<std::int64_t>(joint.position) - frame.position;
+    if (frame.position < 0 || place < 0 || place >= positionCount(frame.type)) continue;
+    action.name = robot.jointName(link);
+    action.unit = unitOf(frame.type);
+    break;
+  }
+  return action;
 }
 
 std::vector<Action> actionsOf(const World& world) {
@@ -116,7 +125,9 @@ py::tuple jointNames(const World& world) {
 
 std::string actionText(const Action& action) {
   std::string text = fmt::format("<galactic.Action {}", action.name);
-  if (action.step) text += fmt::format(", {:.4g} {} a step", *action.step, *action.unit);
+  if (action.step && action.unit) {
+    text += fmt::format(", {:.4g} {} a step", *action.step, *action.unit);
+  }
   if (action.lower || action.upper) {
     const auto limit = [](const std::optional<float>& one) {
       return one ? fmt::format("{:.4g}", *one) : std::string("no limit");

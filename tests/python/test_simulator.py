@@ -135,6 +135,25 @@ def test_actions_do_what_the_world_says_of_them(world, draw_actions):
     assert repr(hand) == "<galactic.Action hand>"
 
 
+def test_actions_of_joints_that_cannot_be_simulated_have_no_unit(world_path):
+    world = World(world_path.parent / "planar" / "world.pack")
+    assert world.joints == ("lift", "elbow", "reach", "wrist", "")
+    assert [action.unit for action in world.actions] == [
+        "m",
+        "rad",
+        "m",
+        None,
+        None,
+        "m",
+        "rad",
+        None,
+        None,
+    ]
+    assert repr(world.actions[3]) == "<galactic.Action wrist, from -1 to 1>"
+    with pytest.raises(Error, match="planar or floating, and an action or an episode moves it"):
+        Simulator(world, envs=1)
+
+
 def test_links_and_objects_have_names(world):
     simulator = Simulator(world, envs=8, threads=1)
     assert len(world.links) == len(PlanningScene(simulator).root_from_links)

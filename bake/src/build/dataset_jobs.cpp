@@ -32,10 +32,11 @@ bool isFolder(const std::filesystem::path& path) {
 /// folder. One that only says how to read scans has no scenes of its own.
 std::optional<std::filesystem::path> composingDataset(const std::filesystem::path& folder) {
   std::set<std::filesystem::path> configurations;
-  std::error_code unreadable;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
-    const std::string name = entry.path().filename().string();
-    if (name.ends_with(kDatasetSuffix)) configurations.insert(entry.path());
+  std::error_code error;
+  std::filesystem::directory_iterator entry(folder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.ends_with(kDatasetSuffix)) configurations.insert(entry->path());
   }
   for (const std::filesystem::path& path : configurations) {
     const auto index = readDatasetIndex(path, /*allow_outside=*/true);
