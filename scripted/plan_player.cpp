@@ -28,6 +28,23 @@ float planeDistance(const Vec3& a, const Vec3& b) {
   return std::sqrt(x * x + z * z);
 }
 
+/// Sets what a step that moves nothing decides. Whether it is one.
+bool decides(PlanStep::Kind kind, const ActionRow& row) {
+  switch (kind) {
+    case PlanStep::Kind::kGrasp:
+      row.grasp = 1;
+      return true;
+    case PlanStep::Kind::kRelease:
+      row.grasp = -1;
+      return true;
+    case PlanStep::Kind::kTerminate:
+      row.terminate = 1;
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 ActionRow rowOf(std::span<float> actions) {
@@ -89,29 +106,27 @@ bool PlanPlayer::waitsFor(float lag, bool is_arm_next) {
   return true;
 }
 
+bool PlanPlayer::isHeldBack(float lag, bool is_arm_next) const {
+  return waits_ > 0 && lag > (is_arm_next ? kFarBehind : kHeldBack);
+}
+
 PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_base,
                                       const EnvState& state, std::span<const float> asked,
                                       const ActionRow& row) {
   const Quat& q = state.world_from_root.rotation;
   const BasePlace at{state.world_from_root.translation, 2 * std::atan2(q.y, q.w)};
   const float lag = arm.actionsBetween(state.joint_positions, asked);
-  for (; next_ < plan_.steps.size(); ++next_, remaining_ = -1) {
+  for (; next_ < plan_.steps.size(); goOn()) {
     const PlanStep& step = plan_.steps[next_];
     const bool is_arm_next = step.kind == PlanStep::Kind::kMoveArm;
     if (is_arm_next || !has_settled_) {
       if (waitsFor(lag, is_arm_next)) return Progress::kActs;
-      if (waits_ > 0 && lag > (is_arm_next ? kFarBehind : kHeldBack)) return Progress::kStuck;
+      if (isHeldBack(lag, is_arm_next)) return Progress::kStuck;
       waits_ = idle_waits_ = 0;
       has_settled_ = !is_arm_next;
     }
-    if (step.kind == PlanStep::Kind::kGrasp || step.kind == PlanStep::Kind::kRelease ||
-        step.kind == PlanStep::Kind::kTerminate) {
-      if (step.kind == PlanStep::Kind::kTerminate) row.terminate = 1;
-      if (step.kind != PlanStep::Kind::kTerminate) {
-        row.grasp = step.kind == PlanStep::Kind::kGrasp ? 1.0F : -1.0F;
-      }
-      ++next_;
-      remaining_ = -1;
+    if (decides(step.kind, row)) {
+      goOn();
       return Progress::kActs;
     }
     const Way way = is_arm_next ? moveArm(arm, at, asked, row) : moveBase(robot_base, at, row);
@@ -122,6 +137,11 @@ PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_bas
     return moved ? Progress::kActs : Progress::kStuck;
   }
   return Progress::kDone;
+}
+
+void PlanPlayer::goOn() {
+  ++next_;
+  remaining_ = -1;
 }
 
 }  // namespace galactic::scripted

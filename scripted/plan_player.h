@@ -51,6 +51,10 @@ class PlanPlayer {
                             const ActionRow& row) const;
   /// Whether to wait for joints that are `lag` actions from where they were asked to be.
   [[nodiscard]] bool waitsFor(float lag, bool is_arm_next);
+  /// Whether something holds the joints back, after all this waiting.
+  [[nodiscard]] bool isHeldBack(float lag, bool is_arm_next) const;
+  /// To the next step.
+  void goOn();
 
   Plan plan_;
   std::size_t next_ = 0;

@@ -151,6 +151,7 @@ class SideBySide {
 
   Result<void> play(std::size_t comparison, const std::vector<std::size_t>& moments) {
     std::vector<std::uint32_t> steps;
+    steps.reserve(moments.size());
     for (const std::size_t n : moments) steps.push_back(worst()[n].step);
     const World& world = parts_.worlds.world;
     Onlooker here(world, best_.get(), steps);

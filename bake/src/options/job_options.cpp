@@ -131,6 +131,7 @@ template <class Length, class Count>
 void visitSpheres(SphereFields<Length, Count> fields, OptionVisitor& v) {
   v.group("Spheres and boxes (objects, robots)");
   std::vector<std::string_view> names;
+  names.reserve(std::size(kProfiles));
   for (const Named<Tolerances>& one : kProfiles) names.push_back(one.name);
   v.option({"profile", "object|robot|tight|coarse",
             "Tolerances of the spheres by name (default: by the kind)"},

@@ -43,6 +43,7 @@ class RecipeCheck {
   [[nodiscard]] Result<void> checkLimits(const RecipeLimits& given) const;
   [[nodiscard]] Result<void> checkStart(const RecipeStart& start) const;
   [[nodiscard]] Result<void> checkSpheres(const RecipeLinkSpheres& spheres) const;
+  [[nodiscard]] Result<void> checkPair(const RecipeName& a, const RecipeName& b) const;
 
   const RobotRecipe& recipe_;
   const SourceRobot& robot_;
@@ -137,6 +138,13 @@ Result<void> RecipeCheck::checkSpheres(const RecipeLinkSpheres& spheres) const {
   return {};
 }
 
+Result<void> RecipeCheck::checkPair(const RecipeName& a, const RecipeName& b) const {
+  if (auto checked = checkLink(a); !checked) return checked;
+  if (auto checked = checkLink(b); !checked) return checked;
+  if (a.name != b.name) return {};
+  return invalid(a.where, fmt::format("link '{}' is paired with itself; name two links", a.name));
+}
+
 Result<void> RecipeCheck::run() const {
   if (auto checked = checkLink(recipe_.end_effector.link); !checked) return checked;
   if (recipe_.camera) {
@@ -158,12 +166,7 @@ Result<void> RecipeCheck::run() const {
     if (auto checked = checkSpheres(spheres); !checked) return checked;
   }
   for (const auto& [a, b] : recipe_.ignored_pairs) {
-    if (auto checked = checkLink(a); !checked) return checked;
-    if (auto checked = checkLink(b); !checked) return checked;
-    if (a.name == b.name) {
-      return invalid(a.where,
-                     fmt::format("link '{}' is paired with itself; name two links", a.name));
-    }
+    if (auto checked = checkPair(a, b); !checked) return checked;
   }
   return {};
 }

@@ -289,7 +289,7 @@ class BudgetedCurves {
       ASSIGN_OR_RETURN(auto curve, SphereCurve::begin(plans_[group].mesh, plans_[group].fit));
       curves_[group] = std::move(curve);
     }
-    const auto refined = unlimited ? curves_[group]->finish(jobs) : curves_[group]->refine(jobs);
+    auto refined = unlimited ? curves_[group]->finish(jobs) : curves_[group]->refine(jobs);
     if (refined || !sphere_set::isNothingToCover(refined.error())) return refined;
     // What reaches above the clip height is too little to be sampled.
     curves_[group].reset();

@@ -73,6 +73,7 @@ std::vector<Vec3d> neighborsTogether(std::span<const Vec3d> points) {
   }
   std::ranges::sort(order);
   std::vector<Vec3d> sorted;
+  sorted.reserve(points.size());
   for (const auto& [place, at] : order) sorted.push_back(points[at]);
   return sorted;
 }

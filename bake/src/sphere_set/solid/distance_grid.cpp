@@ -27,9 +27,10 @@ DistanceGrid::DistanceGrid(const ExteriorSolid& solid, double margin, double mos
 }
 
 Vec3d DistanceGrid::position(std::size_t node) const {
-  return origin_ + Vec3d{static_cast<double>(node % size_[0]),
-                         static_cast<double>(node / size_[0] % size_[1]),
-                         static_cast<double>(node / size_[0] / size_[1])} *
+  const std::size_t row = node / size_[0];
+  const std::size_t plane = row / size_[1];
+  return origin_ + Vec3d{static_cast<double>(node % size_[0]), static_cast<double>(row % size_[1]),
+                         static_cast<double>(plane)} *
                        step_;
 }
 
