@@ -29,18 +29,21 @@ except ModuleNotFoundError as error:
         "it: cmake --build --preset release --target galactic_python (docs/python.md)",
         name=error.name,
     ) from None
+from galactic.env_states import EnvStates, Poses
 from galactic.errors import Error
 from galactic.vector_env import VectorEnv
 
 __all__ = [
     "Action",
     "EnvState",
+    "EnvStates",
     "EpisodeEnd",
     "Error",
     "ErrorCode",
     "LearnedPolicy",
     "PlanningScene",
     "Pose",
+    "Poses",
     "Renderer",
     "Simulator",
     "VectorEnv",

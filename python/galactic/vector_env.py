@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from galactic import spaces
 from galactic._core import ErrorCode, Renderer, Simulator, World
+from galactic.env_states import EnvStates, joined
 from galactic.errors import Error
 from galactic.half_batch import HalfBatch, Observations, StepResult, check_places
 
@@ -196,6 +197,13 @@ class VectorEnv(_Base):
     def unwrapped(self) -> VectorEnv:
         """Itself, which wraps nothing."""
         return self
+
+    def env_states(self) -> EnvStates:
+        """The states of all envs in arrays, as copies: for rewards and observations of one's own.
+
+        Where an episode ended in the last step, it is the state in which the next one begins."""
+        self._require_idle()
+        return joined([simulator.env_states() for simulator in self.simulators])
 
     def rows(self, half: int) -> slice:
         """The envs of a half."""

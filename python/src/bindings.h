@@ -11,6 +11,7 @@ namespace py = pybind11;
 /// What the module holds, in the order in which it has to be made.
 void bindErrors(py::module_& module);
 void bindWorld(py::module_& module);
+void bindEnvState(py::module_& module);
 void bindSimulator(py::module_& module);
 void bindPlanningScene(py::module_& module);
 void bindEpisodeTally(py::module_& module);

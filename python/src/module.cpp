@@ -34,6 +34,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("__version__") = GALACTIC_VERSION;
   galactic::python::bindErrors(module);
   galactic::python::bindWorld(module);
+  galactic::python::bindEnvState(module);
   galactic::python::bindSimulator(module);
   galactic::python::bindPlanningScene(module);
   galactic::python::bindEpisodeTally(module);

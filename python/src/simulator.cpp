@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -19,6 +20,19 @@ Simulator& simulatorOf(const py::object& given) {
       typeName(given)));
 }
 
+namespace {
+
+std::size_t mostObjectsOf(const World& world, const SimulationOptions& options) {
+  if (!options.task.distractors) return 1;
+  std::size_t most = 0;
+  for (const Episode& episode : world.episodes().episodes()) {
+    most = std::max<std::size_t>(most, episode.placement_count);
+  }
+  return most;
+}
+
+}  // namespace
+
 std::span<const float> Simulator::StepInput::actionSpan() const {
   return {actions.data(), static_cast<std::size_t>(actions.size())};
 }
@@ -28,7 +42,9 @@ std::span<const std::int32_t> Simulator::StepInput::resetSpan() const {
 }
 
 Simulator::Simulator(std::shared_ptr<const World> world, BatchSimulator batch)
-    : world_(std::move(world)), batch_(std::move(batch)) {}
+    : world_(std::move(world)),
+      batch_(std::move(batch)),
+      most_objects_(mostObjectsOf(*world_, batch_.options())) {}
 
 std::unique_ptr<Simulator> Simulator::create(std::shared_ptr<const World> world,
                                              const py::dict& keywords) {
@@ -156,6 +172,13 @@ std::vector<std::uint32_t> Simulator::envNumbers(const py::object& envs) const {
   }
   std::vector<std::uint32_t> numbers;
   for (const py::handle one : envs) numbers.push_back(envNumber(one));
+  return numbers;
+}
+
+std::vector<std::uint32_t> Simulator::allOrThose(const py::object& envs) const {
+  if (!envs.is_none()) return envNumbers(envs);
+  std::vector<std::uint32_t> numbers(batch_.envCount());
+  std::iota(numbers.begin(), numbers.end(), 0U);
   return numbers;
 }
 

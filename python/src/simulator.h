@@ -53,6 +53,11 @@ class Simulator {
   /// for truth values: a mask is no list of 0 and 1. IndexError for those that are not there.
   [[nodiscard]] std::uint32_t envNumber(const py::handle& env) const;
   [[nodiscard]] std::vector<std::uint32_t> envNumbers(const py::object& envs) const;
+  /// The same, or the numbers of all envs for None.
+  [[nodiscard]] std::vector<std::uint32_t> allOrThose(const py::object& envs) const;
+
+  /// The most objects that an env can have.
+  [[nodiscard]] std::size_t mostObjects() const { return most_objects_; }
 
   /// For shapes.
   [[nodiscard]] py::ssize_t envs() const { return static_cast<py::ssize_t>(batch_.envCount()); }
@@ -84,6 +89,7 @@ class Simulator {
   StepInput input_;
   bool is_stepping_ = false;
   BatchSimulator batch_;
+  std::size_t most_objects_ = 0;
 };
 
 }  // namespace galactic::python

@@ -11,6 +11,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "env_states.h"
 #include "galactic/batch_simulator.h"
 #include "options.h"
 #include "simulator.h"
@@ -73,104 +74,15 @@ py::dict phaseTimes(Simulator& simulator) {
   return times;
 }
 
-/// galactic.EnvState: with what the objects are called.
-struct NamedEnvState : EnvState {
-  std::vector<std::string> object_names;
-};
-
-NamedEnvState envState(Simulator& simulator, const py::object& env) {
-  const Confinement::Use use = simulator.readState();
-  const std::uint32_t number = simulator.envNumber(env);
-  NamedEnvState state{simulator.batch().envState(number), {}};
-  const std::vector<std::string_view>& names = simulator.world().episodes().objectNames();
-  for (const Placement& placement : simulator.batch().envObjects(number).placements) {
-    state.object_names.emplace_back(names[placement.object]);
-  }
-  return state;
-}
-
-std::string envStateText(const NamedEnvState& state) {
-  const std::string held =
-      state.held < 0 ? "nothing" : state.object_names[static_cast<std::size_t>(state.held)];
-  return fmt::format("<galactic.EnvState of episode {} after {} steps, {} in the hand>",
-                     state.episode, state.step, held);
-}
-
 py::array_t<std::int32_t> episodes(Simulator& simulator, const py::object& envs) {
   const Confinement::Use use = simulator.readState();
-  const std::vector<std::uint32_t> chosen =
-      envs.is_none() ? std::vector<std::uint32_t>() : simulator.envNumbers(envs);
-  const std::size_t count = envs.is_none() ? simulator.batch().envCount() : chosen.size();
-  py::array_t<std::int32_t> numbers(static_cast<py::ssize_t>(count));
-  for (std::size_t n = 0; n < count; ++n) {
-    const EnvObjects objects = simulator.batch().envObjects(envs.is_none() ? n : chosen[n]);
+  const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
+  py::array_t<std::int32_t> numbers(static_cast<py::ssize_t>(chosen.size()));
+  for (std::size_t n = 0; n < chosen.size(); ++n) {
+    const EnvObjects objects = simulator.batch().envObjects(chosen[n]);
     numbers.mutable_data()[n] = static_cast<std::int32_t>(objects.episode);
   }
   return numbers;
-}
-
-void bindPose(py::module_& module) {
-  py::class_<Pose> type(module, "Pose");
-  type.def_property_readonly("translation",
-                             [](const Pose& pose) {
-                               const Vec3& t = pose.translation;
-                               return arrayOf(std::array{t.x, t.y, t.z});
-                             })
-      .def_property_readonly("rotation",
-                             [](const Pose& pose) {
-                               const Quat& q = pose.rotation;
-                               return arrayOf(std::array{q.w, q.x, q.y, q.z});
-                             })
-      .def_property_readonly("matrix", [](const Pose& pose) {
-        py::array_t<float> matrix({4, 4});
-        writeMatrix(rigidTransform(pose), matrix.mutable_data());
-        return matrix;
-      });
-  type.def("__repr__", [](const Pose& pose) {
-    const auto& [t, q] = pose;
-    return fmt::format(
-        "Pose(translation=({:.4g}, {:.4g}, {:.4g}), rotation=({:.4g}, {:.4g}, {:.4g}, "
-        "{:.4g}))",
-        t.x, t.y, t.z, q.w, q.x, q.y, q.z);
-  });
-  type.attr("__module__") = "galactic";
-  type.doc() =
-      "A rigid transform a_from_b: rotate, then translate.\n\n"
-      "translation: float32 (3,), meters. rotation: float32 (4,), unit quaternion (w, x, y, z).\n"
-      "matrix: float32 (4, 4); a_from_b.matrix @ b_from_c.matrix is that of a_from_c.";
-}
-
-void bindEnvState(py::module_& module) {
-  py::class_<NamedEnvState> type(module, "EnvState");
-  type.def_readonly("scene", &EnvState::scene)
-      .def_readonly("episode", &EnvState::episode)
-      .def_readonly("step", &EnvState::step)
-      .def_readonly("world_from_root", &EnvState::world_from_root)
-      .def_property_readonly(
-          "joint_positions",
-          [](const NamedEnvState& state) { return arrayOf(state.joint_positions); })
-      .def_readonly("world_from_grip", &EnvState::world_from_grip)
-      .def_readonly("objects", &EnvState::objects)
-      .def_property_readonly(
-          "object_names",
-          [](const NamedEnvState& state) { return py::tuple(py::cast(state.object_names)); })
-      .def_property_readonly("held",
-                             [](const NamedEnvState& state) -> py::object {
-                               if (state.held < 0) return py::none();
-                               return py::int_(state.held);
-                             })
-      .def_readonly("target", &EnvState::target)
-      .def_readonly("goal", &EnvState::goal);
-  type.def("__repr__", &envStateText);
-  type.attr("__module__") = "galactic";
-  type.doc() =
-      "The state of one env: a copy.\n\n"
-      "scene, episode: indices into the world's scenes and episodes. step: steps of the episode.\n"
-      "world_from_root, world_from_grip: Pose. joint_positions: float32, of the whole robot,\n"
-      "radians or meters; World.actions says where in it the joints are that actions move.\n"
-      "objects: the world poses of the episode's objects; object_names: what they are. target,\n"
-      "held: indices into both, held None with an empty hand. goal: the Pose for the target.\n"
-      "PlanningScene has the poses of the links.";
 }
 
 void bindStepping(py::class_<Simulator>& type) {
@@ -271,6 +183,9 @@ void bindQueries(py::class_<Simulator>& type) {
            "The index of the episode that each env is in, or each of the numbers `envs`: int32,\n"
            "a copy.");
   type.def("env_state", &envState, py::arg("env"), "The state of one env, as a copy.");
+  type.def("env_states", &envStates, py::arg("envs") = py::none(),
+           "The states of all envs in arrays, or of those with the numbers `envs`: EnvStates, a\n"
+           "copy.");
   type.def("statistics", &statistics, py::arg("env") = py::none(),
            "What happened in all envs since they were made, added up; or in one of them.");
   type.def(
@@ -295,8 +210,6 @@ void bindSimulator(py::module_& module) {
             {"WRONG_OBJECT", static_cast<int>(EpisodeEnd::kWrongObject)},
             {"TIME_OUT", static_cast<int>(EpisodeEnd::kTimeOut)}},
            "How an episode ended. TIME_OUT is a truncation, all behind NONE but it terminations.");
-  bindPose(module);
-  bindEnvState(module);
   py::class_<Simulator> type(module, "Simulator");
   type.def(
       py::init([](const py::object& world, const py::object& envs, const py::kwargs& options) {

@@ -1,0 +1,217 @@
+#include "env_states.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "arrays.h"
+#include "bindings.h"
+
+namespace galactic::python {
+namespace {
+
+using Floats = py::array_t<float>;
+using Numbers = py::array_t<std::int32_t>;
+
+std::array<float, 3> numbersOf(const Vec3& v) { return {v.x, v.y, v.z}; }
+std::array<float, 4> numbersOf(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
+
+/// An array that is written from its first element on.
+template <class T>
+class Filled {
+ public:
+  explicit Filled(const Shape& shape) : array_(shape), next_(array_.mutable_data()) {}
+
+  void put(T value) { *next_++ = value; }
+  void put(std::span<const T> values) { next_ = std::ranges::copy(values, next_).out; }
+  [[nodiscard]] const py::array_t<T>& array() const { return array_; }
+
+ private:
+  py::array_t<T> array_;
+  T* next_;
+};
+
+/// galactic.Poses of some shape.
+class FilledPoses {
+ public:
+  explicit FilledPoses(const Shape& shape)
+      : translation_(with(shape, 3)), rotation_(with(shape, 4)) {}
+
+  void put(const Pose& pose) {
+    translation_.put(numbersOf(pose.translation));
+    rotation_.put(numbersOf(pose.rotation));
+  }
+  [[nodiscard]] py::object poses(const py::module_& types) const {
+    return types.attr("Poses")(translation_.array(), rotation_.array());
+  }
+
+ private:
+  static Shape with(Shape shape, py::ssize_t last) {
+    shape.push_back(last);
+    return shape;
+  }
+
+  Filled<float> translation_;
+  Filled<float> rotation_;
+};
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+/// In place of the objects that an env does not have.
+constexpr Pose kNoPose{{kNan, kNan, kNan}, {kNan, kNan, kNan, kNan}};
+constexpr std::int32_t kNoObject = -1;
+
+void bindPose(py::module_& module) {
+  py::class_<Pose> type(module, "Pose");
+  type.def_property_readonly("translation",
+                             [](const Pose& pose) { return arrayOf(numbersOf(pose.translation)); })
+      .def_property_readonly("rotation",
+                             [](const Pose& pose) { return arrayOf(numbersOf(pose.rotation)); })
+      .def_property_readonly("matrix", [](const Pose& pose) {
+        Floats matrix({4, 4});
+        writeMatrix(rigidTransform(pose), matrix.mutable_data());
+        return matrix;
+      });
+  type.def("__repr__", [](const Pose& pose) {
+    const auto& [t, q] = pose;
+    return fmt::format(
+        "Pose(translation=({:.4g}, {:.4g}, {:.4g}), rotation=({:.4g}, {:.4g}, {:.4g}, "
+        "{:.4g}))",
+        t.x, t.y, t.z, q.w, q.x, q.y, q.z);
+  });
+  type.def(py::pickle(
+      [](const Pose& pose) {
+        return py::make_tuple(numbersOf(pose.translation), numbersOf(pose.rotation));
+      },
+      [](const py::tuple& state) {
+        const auto t = state[0].cast<std::array<float, 3>>();
+        const auto q = state[1].cast<std::array<float, 4>>();
+        return Pose{{t[0], t[1], t[2]}, {.x = q[1], .y = q[2], .z = q[3], .w = q[0]}};
+      }));
+  type.attr("__module__") = "galactic";
+  type.doc() =
+      "A rigid transform a_from_b: rotate, then translate.\n\n"
+      "translation: float32 (3,), meters. rotation: float32 (4,), unit quaternion (w, x, y, z).\n"
+      "matrix: float32 (4, 4); a_from_b.matrix @ b_from_c.matrix is that of a_from_c.";
+}
+
+std::string textOf(const NamedEnvState& state) {
+  const std::string held =
+      state.held < 0 ? "nothing" : state.object_names[static_cast<std::size_t>(state.held)];
+  return fmt::format("<galactic.EnvState of episode {} after {} steps, {} in the hand>",
+                     state.episode, state.step, held);
+}
+
+py::tuple pickled(const NamedEnvState& state) {
+  return py::make_tuple(state.scene, state.episode, state.step, state.world_from_root,
+                        state.joint_positions, state.world_from_grip, state.objects, state.held,
+                        state.target, state.goal, state.object_names);
+}
+
+NamedEnvState unpickled(const py::tuple& state) {
+  return {{.scene = state[0].cast<std::uint32_t>(),
+           .episode = state[1].cast<std::uint32_t>(),
+           .step = state[2].cast<std::uint32_t>(),
+           .world_from_root = state[3].cast<Pose>(),
+           .joint_positions = state[4].cast<std::vector<float>>(),
+           .world_from_grip = state[5].cast<Pose>(),
+           .objects = state[6].cast<std::vector<Pose>>(),
+           .held = state[7].cast<std::int32_t>(),
+           .target = state[8].cast<std::uint32_t>(),
+           .goal = state[9].cast<Pose>()},
+          state[10].cast<std::vector<std::string>>()};
+}
+
+}  // namespace
+
+NamedEnvState envState(Simulator& simulator, const py::object& env) {
+  const Confinement::Use use = simulator.readState();
+  const std::uint32_t number = simulator.envNumber(env);
+  NamedEnvState state{simulator.batch().envState(number), {}};
+  const std::vector<std::string_view>& names = simulator.world().episodes().objectNames();
+  for (const Placement& placement : simulator.batch().envObjects(number).placements) {
+    state.object_names.emplace_back(names[placement.object]);
+  }
+  return state;
+}
+
+py::object envStates(Simulator& simulator, const py::object& envs) {
+  const Confinement::Use use = simulator.readState();
+  const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
+  const auto count = static_cast<py::ssize_t>(chosen.size());
+  const auto joints = static_cast<py::ssize_t>(simulator.world().robot().startPositions().size());
+  const std::size_t most = simulator.mostObjects();
+  const Shape each_object{count, static_cast<py::ssize_t>(most)};
+  Filled<std::int32_t> scene({count}), episode({count}), step({count}), held({count}),
+      target({count}), object_kinds(each_object);
+  Filled<float> joint_positions({count, joints});
+  FilledPoses roots({count}), grips({count}), goals({count}), objects(each_object);
+  for (const std::uint32_t env : chosen) {
+    const EnvState state = simulator.batch().envState(env);
+    scene.put(static_cast<std::int32_t>(state.scene));
+    episode.put(static_cast<std::int32_t>(state.episode));
+    step.put(static_cast<std::int32_t>(state.step));
+    roots.put(state.world_from_root);
+    joint_positions.put(state.joint_positions);
+    grips.put(state.world_from_grip);
+    const std::span<const Placement> placements = simulator.batch().envObjects(env).placements;
+    for (std::size_t n = 0; n < most; ++n) {
+      const bool is_there = n < placements.size();
+      objects.put(is_there ? state.objects[n] : kNoPose);
+      object_kinds.put(is_there ? static_cast<std::int32_t>(placements[n].object) : kNoObject);
+    }
+    held.put(state.held);
+    target.put(static_cast<std::int32_t>(state.target));
+    goals.put(state.goal);
+  }
+  const auto types = py::module_::import("galactic.env_states");
+  using namespace py::literals;
+  return types.attr("EnvStates")(
+      "scene"_a = scene.array(), "episode"_a = episode.array(), "step"_a = step.array(),
+      "world_from_root"_a = roots.poses(types), "joint_positions"_a = joint_positions.array(),
+      "world_from_grip"_a = grips.poses(types), "objects"_a = objects.poses(types),
+      "object_kinds"_a = object_kinds.array(), "held"_a = held.array(), "target"_a = target.array(),
+      "goal"_a = goals.poses(types));
+}
+
+void bindEnvState(py::module_& module) {
+  bindPose(module);
+  py::class_<NamedEnvState> type(module, "EnvState");
+  type.def_readonly("scene", &EnvState::scene)
+      .def_readonly("episode", &EnvState::episode)
+      .def_readonly("step", &EnvState::step)
+      .def_readonly("world_from_root", &EnvState::world_from_root)
+      .def_property_readonly(
+          "joint_positions",
+          [](const NamedEnvState& state) { return arrayOf(state.joint_positions); })
+      .def_readonly("world_from_grip", &EnvState::world_from_grip)
+      .def_readonly("objects", &EnvState::objects)
+      .def_property_readonly(
+          "object_names",
+          [](const NamedEnvState& state) { return py::tuple(py::cast(state.object_names)); })
+      .def_property_readonly("held",
+                             [](const NamedEnvState& state) -> py::object {
+                               if (state.held < 0) return py::none();
+                               return py::int_(state.held);
+                             })
+      .def_readonly("target", &EnvState::target)
+      .def_readonly("goal", &EnvState::goal);
+  type.def("__repr__", &textOf);
+  type.def(py::pickle(&pickled, &unpickled));
+  type.attr("__module__") = "galactic";
+  type.doc() =
+      "The state of one env: a copy.\n\n"
+      "scene, episode: indices into the world's scenes and episodes. step: steps of the episode.\n"
+      "world_from_root, world_from_grip: Pose. joint_positions: float32, of the whole robot,\n"
+      "radians or meters; World.actions says where in it the joints are that actions move.\n"
+      "objects: the world poses of the episode's objects; object_names: what they are. target,\n"
+      "held: indices into both, held None with an empty hand. goal: the Pose for the target.\n"
+      "PlanningScene has the poses of the links.";
+}
+
+}  // namespace galactic::python

@@ -1,0 +1,23 @@
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <vector>
+
+#include "galactic/batch_simulator.h"
+#include "simulator.h"
+
+namespace galactic::python {
+
+/// galactic.EnvState: with what the objects are called.
+struct NamedEnvState : EnvState {
+  std::vector<std::string> object_names;
+};
+
+/// Of one env.
+[[nodiscard]] NamedEnvState envState(Simulator& simulator, const py::object& env);
+
+/// The galactic.EnvStates of all envs, for None, or of a list of them.
+[[nodiscard]] py::object envStates(Simulator& simulator, const py::object& envs);
+
+}  // namespace galactic::python
