@@ -17,10 +17,12 @@
 namespace galactic {
 namespace {
 
-/// Plans per episode, after which a robot that is stuck or misses gives up.
-constexpr std::uint32_t kMostPlans = 8;
+constexpr std::uint32_t kNoEpisode = 0xffff'ffff;
 
 struct EnvPlan {
+  /// What it was asked about last.
+  std::uint32_t episode = kNoEpisode;
+  std::uint32_t step = 0;
   /// Where motors were asked to bring the joints; empty where joints are where they were asked to
   /// be.
   scripted::Joints asked;
@@ -69,6 +71,7 @@ class ScriptedPolicy::Impl {
   }
 
   void expectLag(bool lags) { lags_ = lags; }
+  void allowPlans(std::uint32_t most) { most_plans_ = most; }
 
   [[nodiscard]] const EnvPlan& env(std::size_t n) const { return envs_[n]; }
 
@@ -94,7 +97,9 @@ class ScriptedPolicy::Impl {
   }
 
   void act(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
-    if (state.step == 0) begin(state, env, thread);
+    if (isAnotherEpisode(state, env)) begin(state, env, thread);
+    env.episode = state.episode;
+    env.step = state.step;
     playOn(state, env, actions, thread);
     if (env.asked.empty()) return;
     const std::span<const ControlledJoint> joints = world_.robot().controlledJoints();
@@ -124,15 +129,15 @@ class ScriptedPolicy::Impl {
     }
   }
 
-  /// An episode begins.
+  [[nodiscard]] static bool isAnotherEpisode(const EnvState& state, const EnvPlan& env) {
+    return state.step == 0 || state.episode != env.episode || state.step < env.step;
+  }
+
+  /// An episode begins, or is met on its way.
   void begin(const EnvState& state, EnvPlan& env, std::size_t thread) {
     env = {};
     if (lags_) env.asked = state.joint_positions;
-    if (isAtGoal(state)) {
-      finish(env);
-    } else {
-      use(env, planner(thread).planPick(state, env.plans));
-    }
+    plan(state, env, thread);
   }
 
   [[nodiscard]] bool isAtGoal(const EnvState& state) const {
@@ -170,22 +175,28 @@ class ScriptedPolicy::Impl {
   /// The plan is played to its end, or the robot is stuck in it.
   void planNext(const EnvState& state, EnvPlan& env, bool is_done, std::size_t thread) {
     const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
-    const bool holds_another = state.held >= 0 && !holds_target;
-    const bool missed = is_done && !holds_target && !isAtGoal(state);
-    if (missed || holds_another) env.trouble = ScriptedTrouble::kMissed;
+    if (is_done && !holds_target && !isAtGoal(state)) env.trouble = ScriptedTrouble::kMissed;
     ++env.plans;
+    plan(planned(state, env, is_done), env, thread);
+  }
+
+  /// From where the env is.
+  void plan(const EnvState& state, EnvPlan& env, std::size_t thread) {
+    const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
+    const bool holds_another = state.held >= 0 && !holds_target;
+    if (holds_another) env.trouble = ScriptedTrouble::kMissed;
     if (isAtGoal(state)) {
       // Another time would change nothing: the simulation wants something else.
       env.phase == ScriptedPhase::kFinish ? giveUp(env) : finish(env);
-    } else if (holds_another || env.plans >= kMostPlans ||
+    } else if (holds_another || env.plans >= most_plans_ ||
                (holds_target && options_.task.kind == TaskKind::kMobilePick)) {
       giveUp(env);
     } else if (holds_target) {
       env.phase = ScriptedPhase::kPlace;
-      use(env, planner(thread).planPlace(planned(state, env, is_done), env.plans));
+      use(env, planner(thread).planPlace(state, env.plans));
     } else {
       env.phase = ScriptedPhase::kPick;
-      use(env, planner(thread).planPick(planned(state, env, is_done), env.plans));
+      use(env, planner(thread).planPick(state, env.plans));
     }
   }
 
@@ -193,6 +204,7 @@ class ScriptedPolicy::Impl {
   SimulationOptions options_;
   scripted::Arm arm_;
   bool lags_ = false;
+  std::uint32_t most_plans_ = kMostPlans;
   std::vector<EnvPlan> envs_;
   /// One for each thread, made when it plans for the first time.
   std::vector<std::optional<scripted::Planner>> planners_;
@@ -224,6 +236,8 @@ void ScriptedPolicy::act(const BatchSimulator& simulator, std::span<float> actio
 }
 
 void ScriptedPolicy::expectLag(bool lags) { impl_->expectLag(lags); }
+
+void ScriptedPolicy::allowPlans(std::uint32_t most) { impl_->allowPlans(most); }
 
 ScriptedPhase ScriptedPolicy::phase(std::size_t env) const { return impl_->env(env).phase; }
 

@@ -71,8 +71,13 @@ class ScriptedPolicy {
   ScriptedPolicy& operator=(ScriptedPolicy&&) noexcept;
 
   /// The actions of the next step of all envs. Shape of `actions`: envs * actionCount(), as
-  /// BatchSimulator::step takes them. Call it once before each step.
+  /// BatchSimulator::step takes them. Call it once before each step. Where others act meanwhile, or
+  /// have acted before, it plans from where the robot is then.
   void act(const BatchSimulator& simulator, std::span<float> actions);
+
+  /// How often it plans in an episode before it gives up.
+  void allowPlans(std::uint32_t most);
+  static constexpr std::uint32_t kMostPlans = 8;
 
   /// Whether motors move the joints, so that they get later to where actions ask them to be, or not
   /// quite; in episodes that begin from now on. Each joint action moves what its joint is asked to

@@ -1,8 +1,8 @@
 """Thousands of simulated homes at once, for learning.
 
 World opens packs, Simulator steps a batch of environments, Renderer draws them, VectorEnv is
-Gymnasium's vector environment over them, LearnedPolicy plays policy packs, PlanningScene answers
-planners. docs/python.md has the tour.
+Gymnasium's vector environment over them, LearnedPolicy plays policy packs, ScriptedPolicy is an
+expert to imitate, PlanningScene answers planners. docs/python.md has the tour.
 """
 
 import sys
@@ -17,6 +17,9 @@ try:
         PlanningScene,
         Pose,
         Renderer,
+        ScriptedPhase,
+        ScriptedPolicy,
+        ScriptedTrouble,
         Simulator,
         World,
         __version__,
@@ -45,6 +48,9 @@ __all__ = [
     "Pose",
     "Poses",
     "Renderer",
+    "ScriptedPhase",
+    "ScriptedPolicy",
+    "ScriptedTrouble",
     "Simulator",
     "VectorEnv",
     "World",

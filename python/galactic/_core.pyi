@@ -26,6 +26,22 @@ class EpisodeEnd(IntEnum):
     WRONG_OBJECT = 4
     TIME_OUT = 5
 
+class ScriptedPhase(IntEnum):
+    PICK = 0
+    PLACE = 1
+    FINISH = 2
+    GAVE_UP = 3
+
+class ScriptedTrouble(IntEnum):
+    NONE = 0
+    NO_WAY_TO_TARGET = 1
+    NO_WAY_TO_GOAL = 2
+    NO_GRASP = 3
+    NO_PLACEMENT = 4
+    NO_FOLD = 5
+    STUCK = 6
+    MISSED = 7
+
 _Path = str | os.PathLike[str]
 
 class Action:
@@ -283,6 +299,14 @@ class LearnedPolicy:
     def image_size(self) -> tuple[int, int] | None: ...
     @property
     def action_count(self) -> int: ...
+
+class ScriptedPolicy:
+    def __init__(self, simulator: Simulator, *, most_plans: int = 8) -> None: ...
+    def act(self) -> NDArray[np.float32]: ...  # (num_envs, action_count)
+    @property
+    def phases(self) -> NDArray[np.uint8]: ...  # (num_envs,), of ScriptedPhase
+    @property
+    def troubles(self) -> NDArray[np.uint8]: ...  # (num_envs,), of ScriptedTrouble
 
 def write_policy_pack(
     path: _Path, content: Any, trained_with: Any, source_name: str, source: Any

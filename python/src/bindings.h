@@ -16,6 +16,7 @@ void bindSimulator(py::module_& module);
 void bindPlanningScene(py::module_& module);
 void bindEpisodeTally(py::module_& module);
 void bindPolicy(py::module_& module);
+void bindScriptedPolicy(py::module_& module);
 void bindRenderer(py::module_& module);
 
 /// An enum.IntEnum, whose values are the numbers that arrays hold.

@@ -39,5 +39,6 @@ PYBIND11_MODULE(_core, module) {
   galactic::python::bindPlanningScene(module);
   galactic::python::bindEpisodeTally(module);
   galactic::python::bindPolicy(module);
+  galactic::python::bindScriptedPolicy(module);
   galactic::python::bindRenderer(module);
 }

@@ -100,7 +100,7 @@ RULES = (
     # The policy is a user of the library: its interface alone, beside threads and random numbers.
     Rule("scripted", ("runtime/include", "."), frozenset(), schema=False, shared=True),
     Rule("view", ("runtime/include", "runtime", "."), LEAN, shared=True),
-    Rule("python", ("runtime/include", "python/src"), LEAN, schema=False),
+    Rule("python", ("runtime/include", "python/src", "."), LEAN, schema=False),
     Rule("pack_tool", ("runtime/include", "runtime", "."), LEAN | {"CLI", "nlohmann"}, shared=True),
     Rule("bake/include", ("runtime/include", "bake/include"), frozenset({"tl"}), schema=False, shared=True),
     Rule("bake/src", ("runtime/include", "bake/include", "bake/src", "."),
@@ -118,7 +118,8 @@ FORBIDDEN_TARGETS = {"runtime": ("bake", "dynamics", "pack_tool", "tests", "benc
                      "runtime/app": ("runtime/src",),
                      "scripted": ("bake", "dynamics", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "view": ("bake", "dynamics", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
-                     "python": ("bake", "dynamics", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
+                     "python": ("bake", "dynamics", "pack_tool", "view", "tests", "benchmarks", "runtime/src",
+                                "runtime/app"),
                      "pack_tool": ("bake", "dynamics", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "bake": ("dynamics", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "dynamics": ("pack_tool", "tests", "benchmarks", "runtime/src", "bake/src")}

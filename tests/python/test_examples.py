@@ -9,6 +9,8 @@ import sys
 import numpy as np
 import pytest
 
+from galactic import Simulator, World
+
 ROOT = pathlib.Path(os.environ["GALACTIC_SOURCE_DIR"])
 
 
@@ -22,10 +24,10 @@ def test_random_homes(world_path, tmp_path):
     assert np.load(tmp_path / "seen.npy").shape == (128, 512, 3)
 
 
-def output_of(name, world_path):
+def output_of(name, world_path, folder=None):
     script = ROOT / "python" / "examples" / name
     done = subprocess.run(
-        [sys.executable, "-B", script, world_path], capture_output=True, text=True
+        [sys.executable, "-B", script, world_path], cwd=folder, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -44,6 +46,21 @@ def test_own_task(world_path):
         int(step) for step in re.findall(r"step (\d+): ", output_of("own_task.py", world_path))
     ]
     assert min(steps) < 200 <= max(steps)
+
+
+def test_demonstrations(world_path, tmp_path):
+    """Played again, they solve the episodes."""
+    printed = output_of("demonstrations.py", world_path, tmp_path)
+    assert "3 of 3 episodes solved" in printed
+    saved = np.load(tmp_path / "demonstrations.npz")
+    simulator = Simulator(World(world_path), envs=1, task="rearrange")
+    for episode in (0, 1, 3):
+        rows = saved["episodes"] == episode
+        simulator.reset([episode])
+        for seen, actions in zip(saved["observations"][rows], saved["actions"][rows]):
+            np.testing.assert_array_equal(simulator.observations[0], seen)
+            simulator.step(actions[np.newaxis])
+        assert simulator.successes[0]
 
 
 def test_type_checkers_accept_the_examples(tmp_path):

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "errors.h"
+#include "scripted/scripted_policy.h"
+#include "simulator.h"
+
+namespace galactic::python {
+namespace {
+
+/// galactic.ScriptedPolicy: one that acts in the envs of a simulator, which it keeps.
+class Expert {
+ public:
+  Expert(const py::object& simulator, std::uint32_t most_plans)
+      : simulator_(&simulatorOf(simulator)),
+        policy_(
+            valueOf(ScriptedPolicy::create(simulator_->world(), simulator_->batch().options()))) {
+    policy_.allowPlans(most_plans);
+  }
+
+  py::array_t<float> act() {
+    const Confinement::Use use = confinement_.enter();
+    const Confinement::Use reading = simulator_->readState();
+    const BatchSimulator& batch = simulator_->batch();
+    py::array_t<float> actions({batch.envCount(), batch.actionCount()});
+    const std::span<float> rows(actions.mutable_data(), static_cast<std::size_t>(actions.size()));
+    std::ranges::fill(rows, 0.0F);
+    const py::gil_scoped_release unlocked;
+    policy_.act(batch, rows);
+    return actions;
+  }
+
+  [[nodiscard]] std::size_t envs() const { return simulator_->batch().envCount(); }
+  [[nodiscard]] py::array_t<std::uint8_t> phases() const {
+    return perEnv([&](std::size_t env) { return policy_.phase(env); });
+  }
+  [[nodiscard]] py::array_t<std::uint8_t> troubles() const {
+    return perEnv([&](std::size_t env) { return policy_.trouble(env); });
+  }
+
+ private:
+  template <class Value>
+  [[nodiscard]] py::array_t<std::uint8_t> perEnv(const Value& value) const {
+    py::array_t<std::uint8_t> numbers(simulator_->envs());
+    for (std::size_t env = 0; env < envs(); ++env) {
+      numbers.mutable_data()[env] = static_cast<std::uint8_t>(value(env));
+    }
+    return numbers;
+  }
+
+  Simulator* simulator_;
+  Confinement confinement_{"ScriptedPolicy"};
+  ScriptedPolicy policy_;
+};
+
+}  // namespace
+
+void bindScriptedPolicy(py::module_& module) {
+  bindEnum(module, "ScriptedPhase",
+           {{"PICK", static_cast<int>(ScriptedPhase::kPick)},
+            {"PLACE", static_cast<int>(ScriptedPhase::kPlace)},
+            {"FINISH", static_cast<int>(ScriptedPhase::kFinish)},
+            {"GAVE_UP", static_cast<int>(ScriptedPhase::kGaveUp)}},
+           "What a ScriptedPolicy is about in an env.");
+  bindEnum(module, "ScriptedTrouble",
+           {{"NONE", static_cast<int>(ScriptedTrouble::kNone)},
+            {"NO_WAY_TO_TARGET", static_cast<int>(ScriptedTrouble::kNoWayToTarget)},
+            {"NO_WAY_TO_GOAL", static_cast<int>(ScriptedTrouble::kNoWayToGoal)},
+            {"NO_GRASP", static_cast<int>(ScriptedTrouble::kNoGrasp)},
+            {"NO_PLACEMENT", static_cast<int>(ScriptedTrouble::kNoPlacement)},
+            {"NO_FOLD", static_cast<int>(ScriptedTrouble::kNoFold)},
+            {"STUCK", static_cast<int>(ScriptedTrouble::kStuck)},
+            {"MISSED", static_cast<int>(ScriptedTrouble::kMissed)}},
+           "Why a ScriptedPolicy gave up, or planned anew.");
+  py::class_<Expert> type(module, "ScriptedPolicy");
+  type.def(
+      py::init<const py::object&, std::uint32_t>(), py::arg("simulator"), py::kw_only(),
+      py::arg("most_plans") = ScriptedPolicy::kMostPlans, py::keep_alive<1, 2>(),
+      "Solves Rearrange and Mobile Pick by a plan, made from the whole state of each env: an\n"
+      "expert to imitate or to compare with. galactic-run's --policy scripted is the same.\n\n"
+      "simulator: in whose envs it acts; Error when its task is 'none'. most_plans: how often\n"
+      "it plans in an episode before it gives up. A plan takes some tens of milliseconds; as\n"
+      "many threads as the simulator has make them.");
+  type.def("act", &Expert::act,
+           "The actions of the next step of all envs: float32 (num_envs, action_count), for\n"
+           "Simulator.step. You may step with others, such as those of a policy that learns from\n"
+           "it: where the robot is not on the planned way, it plans anew from there. Where it has\n"
+           "given up, or an env is idle, actions are 0, but for a hand that keeps what it holds.");
+  type.def_property_readonly("phases", &Expert::phases,
+                             "What the last act() was about, as numbers of ScriptedPhase: uint8\n"
+                             "(num_envs,), a copy.");
+  type.def_property_readonly(
+      "troubles", &Expert::troubles,
+      "Why it gave up or planned anew, as numbers of ScriptedTrouble: uint8\n"
+      "(num_envs,), a copy.");
+  type.def("__repr__", [](const Expert& one) {
+    return fmt::format("<galactic.ScriptedPolicy in {} envs>", one.envs());
+  });
+  type.attr("__module__") = "galactic";
+  refusePickling(type, "make one from its simulator");
+}
+
+}  // namespace galactic::python
