@@ -39,9 +39,10 @@ phase learn-configure "Configuring (preset release)" cmake --preset release
 phase learn-build "Building the Python package" \
   cmake --build --preset release --target galactic-bake galactic-run galactic_python
 
-heading "Drawing episodes: 2000 to learn from, 400 that it never sees"
+heading "Drawing episodes: 2000 to learn from, 200 to choose the best policy by, 400 that it never sees"
 mkdir -p "$out"
 world homes 2000 101
+world validation 200 303
 world unseen 400 202
 
 # learn RUN OPTION...: one that was interrupted goes on; one that is complete stays as it is.
@@ -52,7 +53,7 @@ learn() {
     /usr/bin/python3 -m galactic.train -o "$run" --resume
   else
     /usr/bin/python3 -m galactic.train "$sample/homes.pack" --preset quick --seed "$seed" \
-      --validation "$sample/unseen.pack" -o "$run" "$@"
+      --validation "$sample/validation.pack" -o "$run" "$@"
   fi
 }
 
