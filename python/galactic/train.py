@@ -17,7 +17,7 @@ import galactic
 from galactic.learning import checkpoint, evaluation
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
-from galactic.learning.distributed import Group, require_device
+from galactic.learning.distributed import Group, device_of, local_ranks
 from galactic.learning.homes import Homes
 from galactic.learning.launch import launch
 from galactic.learning.networks import Policy
@@ -79,7 +79,7 @@ def make_parser() -> argparse.ArgumentParser:
         "--device",
         default="auto",
         choices=("auto", "cpu", "cuda"),
-        help="where the networks run (auto)",
+        help="where the networks run; auto: on CUDA devices, if there is one for each rank (auto)",
     )
     add_options(parser)
     return parser
@@ -90,9 +90,9 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     options = make_parser().parse_args(given)
 
     def train() -> int:
-        require_device(options.device)
         run = _resumed_run(options) if options.resume else _new_run(options)
         if "RANK" not in os.environ:
+            device_of(options.device, 0, run.settings.ranks)
             checkpoint.require_folder(options.out)
             return launch(run.settings.ranks, [sys.executable, "-m", "galactic.train", *given])
         group = Group.join(options.device)
@@ -108,10 +108,9 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     folder: pathlib.Path = options.out
     settings = run.settings
-    local_ranks = int(os.environ.get("LOCAL_WORLD_SIZE", "1"))
-    threads = threads_of(settings.simulation_threads, local_ranks)
+    threads = threads_of(settings.simulation_threads, local_ranks())
     sharing = 1 if settings.network == "state" else 0
-    torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks))
+    torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
     envs = Homes(galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size)
     validation = _validation(run, threads, group)
     trainer = Trainer(

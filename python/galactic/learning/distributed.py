@@ -21,10 +21,26 @@ class RankLost(Exception):
     """Another rank has ended: what it said is above."""
 
 
-def require_device(name: str) -> None:
-    """Raises SettingsError where torch lacks the device: auto, cpu or cuda."""
-    if name == "cuda" and not torch.cuda.is_available():
+def device_of(name: str, local_rank: int, local_ranks: int) -> torch.device:
+    """Where the networks of a rank run, one of so many on this machine: on a CUDA device of its own, or
+    on the processor. `name`: cpu, cuda, or auto, which takes CUDA devices if there is one for each rank.
+    SettingsError where cuda asks for more than torch has."""
+    devices = torch.cuda.device_count() if torch.cuda.is_available() else 0
+    if name == "cuda" and devices == 0:
         raise SettingsError("--device: found cuda, but this torch has no CUDA device; take cpu")
+    if name == "cuda" and devices < local_ranks:
+        raise SettingsError(
+            f"--ranks: found {local_ranks}, each of which needs a CUDA device of its own, of which this "
+            f"machine has {devices}; take --ranks {devices} or --device cpu"
+        )
+    if name == "cpu" or devices < local_ranks:
+        return torch.device("cpu")
+    return torch.device("cuda", local_rank)
+
+
+def local_ranks() -> int:
+    """How many ranks of the run are on this machine."""
+    return int(os.environ.get("LOCAL_WORLD_SIZE", "1"))
 
 
 class Group:
@@ -47,18 +63,18 @@ class Group:
 
     @classmethod
     def join(cls, device: str = "auto") -> "Group":
-        """The group that the environment describes. `device`: auto, cpu or cuda."""
+        """The group that the environment describes. `device`: as device_of() takes it."""
         size = int(os.environ.get("WORLD_SIZE", "1"))
         rank = int(os.environ.get("RANK", "0"))
         local_rank = int(os.environ.get("LOCAL_RANK", "0"))
-        cuda = device == "cuda" or (device == "auto" and torch.cuda.is_available())
-        if cuda:
-            torch.cuda.set_device(local_rank)
-        group = cls(rank, size, torch.device("cuda", local_rank) if cuda else torch.device("cpu"))
+        group = cls(rank, size, device_of(device, local_rank, local_ranks()))
+        is_cuda = group.device.type == "cuda"
+        if is_cuda:
+            torch.cuda.set_device(group.device)
         if size > 1:
             store = next(rendezvous("env://"))[0]
             torch.distributed.init_process_group(
-                "nccl" if cuda else "gloo",
+                "nccl" if is_cuda else "gloo",
                 store=torch.distributed.PrefixStore("group", store),
                 rank=rank,
                 world_size=size,

@@ -21,6 +21,7 @@ import torch
 import galactic
 from galactic import evaluate, export, train
 from galactic.learning import checkpoint
+from galactic.learning.distributed import device_of
 from galactic.learning.reports.curves import read_curves
 
 WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
@@ -177,6 +178,31 @@ def test_what_cannot_be_is_refused_with_a_sentence(
     assert message in done.stderr and "Traceback" not in done.stderr
     assert done.returncode == code
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("devices, ranks, wanted", [(0, 1, "cpu"), (1, 2, "cpu"), (2, 2, "cuda")])
+def test_each_rank_has_a_cuda_device_of_its_own_or_none_has(
+    monkeypatch: pytest.MonkeyPatch, devices: int, ranks: int, wanted: str
+) -> None:
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: devices > 0)
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: devices)
+    assert device_of("cpu", 1, ranks) == torch.device("cpu")
+    for rank in range(ranks):
+        device = torch.device("cuda", rank) if wanted == "cuda" else torch.device("cpu")
+        assert device_of("auto", rank, ranks) == device
+        if wanted == "cuda":
+            assert device_of("cuda", rank, ranks) == device
+
+
+def test_a_gpu_for_two_ranks_is_refused_before_they_start(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: True)
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: 1)
+    monkeypatch.setattr(train, "launch", lambda *_: pytest.fail("ranks have started"))
+    run = [str(WORLD), "-o", str(tmp_path / "run"), "--preset", "quick", "--device", "cuda"]
+    assert train.main(run) == 1
+    assert "--ranks: found 2, each of which needs a CUDA device" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
