@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "arrays.h"
 #include "bindings.h"
 #include "errors.h"
+#include "options.h"
 #include "scripted/scripted_policy.h"
 #include "simulator.h"
 
@@ -18,11 +20,12 @@ namespace {
 /// galactic.ScriptedPolicy: one that acts in the envs of a simulator, which it keeps.
 class Expert {
  public:
-  Expert(const py::object& simulator, std::uint32_t most_plans)
+  Expert(const py::object& simulator, const py::object& most_plans)
       : simulator_(&simulatorOf(simulator)),
         policy_(
             valueOf(ScriptedPolicy::create(simulator_->world(), simulator_->batch().options()))) {
-    policy_.allowPlans(most_plans);
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+    policy_.allowPlans(static_cast<std::uint32_t>(wholeOf("most_plans", most_plans, 1, kMost)));
   }
 
   py::array_t<float> act() {
@@ -81,7 +84,7 @@ void bindScriptedPolicy(py::module_& module) {
            "Why a ScriptedPolicy gave up, or planned anew.");
   py::class_<Expert> type(module, "ScriptedPolicy");
   type.def(
-      py::init<const py::object&, std::uint32_t>(), py::arg("simulator"), py::kw_only(),
+      py::init<const py::object&, const py::object&>(), py::arg("simulator"), py::kw_only(),
       py::arg("most_plans") = ScriptedPolicy::kMostPlans, py::keep_alive<1, 2>(),
       "Solves Rearrange and Mobile Pick by a plan, made from the whole state of each env: an\n"
       "expert to imitate or to compare with. galactic-run's --policy scripted is the same.\n\n"

@@ -100,6 +100,9 @@ def test_refuses_what_it_cannot_solve(world, simulator):
         ScriptedPolicy(Simulator(world, envs=2, task="none"))
     with pytest.raises(TypeError, match="is a VectorEnv, expected a galactic.Simulator"):
         ScriptedPolicy(VectorEnv(world, 2))
+    for most_plans in (0, -1, 2.5, "many"):
+        with pytest.raises(Error, match="most_plans: is .*, expected a whole number from 1"):
+            ScriptedPolicy(simulator, most_plans=most_plans)
     expert = ScriptedPolicy(simulator)
     simulator.begin_step(np.zeros((3, simulator.action_count), np.float32))
     with pytest.raises(RuntimeError, match="a step is under way"):
