@@ -35,7 +35,7 @@ bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
 
 Obstacles obstaclesOf(const ChunkStep& step, std::size_t e) noexcept {
   const Env& env = step.state.env(step.first + e);
-  return {step.model.world->scenes()[env.scene], step.state.resting(step.first + e)};
+  return {step.model.scenes[env.scene], step.state.resting(step.first + e)};
 }
 
 SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
@@ -112,7 +112,7 @@ unsigned noGroups(std::size_t) { return 0; }
 template <class Look, class Free>
 bool findBlockedBy(const Look& look, const Free& free, const ChunkStep& step, std::size_t e) {
   const Env& env = step.state.env(step.first + e);
-  const Scene& scene = step.model.world->scenes()[env.scene];
+  const Scene& scene = step.model.scenes[env.scene];
   const std::span<const EightSpheres> groups = step.model.groups;
   std::uint64_t any = 0;
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {

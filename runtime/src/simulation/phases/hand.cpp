@@ -55,9 +55,8 @@ void release(const ChunkStep& step, std::size_t e) {
   const ObjectModel& object = heldModel(step.model, env);
   const Pose released = step.state.heldPose(n);
   RandomStream random(step.model.options.seed, step.model.globalEnv(n), counters.begun, env.step);
-  const Landing landing =
-      placeObject({step.model.world->scenes()[env.scene], resting}, object, released, random,
-                  step.model.options.placement, step.chunk.placement());
+  const Landing landing = placeObject({step.model.scenes[env.scene], resting}, object, released,
+                                      random, step.model.options.placement, step.chunk.placement());
   const Pose rest = landing.placed ? landing.pose : step.state.held(n).before;
   if (!mayRestAt(step, n, rest)) {
     env.events.kept_target = true;
@@ -86,7 +85,7 @@ void takeInHand(const ChunkStep& step, std::size_t e, std::uint32_t object) noex
   std::ranges::fill(leaving, 0U);
   const SphereBatch spheres =
       holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
-  penetrating({step.model.world->scenes()[env.scene], resting}, spheres, step.chunk.collision(),
+  penetrating({step.model.scenes[env.scene], resting}, spheres, step.chunk.collision(),
               step.state.ignored(n));
   ++step.state.counters(n).grasps;
   env.events.picked = object == env.target && !env.has_picked;

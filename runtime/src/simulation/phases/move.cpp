@@ -164,7 +164,7 @@ FloorUnder floorUnder(const ChunkStep& step, std::size_t e, const Vec3& base) no
   const Env& env = step.state.env(step.first + e);
   const auto height = step.model.level_floors.heightUnder(env.clearance_map, base);
   if (height) return {Floor::kCarries, *height};
-  return floorUnder(step.model.world->scenes()[env.scene], base, step.model.options.ground);
+  return floorUnder(step.model.scenes[env.scene], base, step.model.options.ground);
 }
 
 void proposePoses(const ChunkStep& step) noexcept {
@@ -177,7 +177,7 @@ void proposePoses(const ChunkStep& step) noexcept {
 
 void followFloor(const ChunkStep& step) noexcept {
   const auto scene_of = [&](std::size_t e) -> const Scene& {
-    return step.model.world->scenes()[step.state.env(step.first + e).scene];
+    return step.model.scenes[step.state.env(step.first + e).scene];
   };
   if (followLevelFloors(step, 0, kChunk)) return;
   if (areInOneScene(step, 0, kChunk)) return followFloor(step, scene_of(0), 0, kChunk);

@@ -11,7 +11,7 @@ SceneExit::SceneExit(const ChunkStep& step, std::size_t e)
     : step_(step),
       e_(e),
       env_(step.state.env(step.first + e)),
-      scene_(step.model.world->scenes()[env_.scene]),
+      scene_(step.model.scenes[env_.scene]),
       scratch_(step.chunk.sceneExit()) {
   begin();
 }

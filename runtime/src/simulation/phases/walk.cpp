@@ -43,7 +43,7 @@ class Walker {
   Walker(const ChunkStep& step, std::size_t e)
       : step_(step),
         e_(e),
-        scene_(step.model.world->scenes()[step.state.env(step.first + e).scene]),
+        scene_(step.model.scenes[step.state.env(step.first + e).scene]),
         from_(step.state.poses(step.first + e)),
         to_(step.chunk.candidates(e)),
         turn_(std::remainder(*to_.yaw - *from_.yaw, kTurn)) {

@@ -193,12 +193,12 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
   for (std::size_t n = 0; n < order.size();) {
     const std::uint32_t scene = scene_of(order[n]);
     const float floor = model.starts[order[n]].base.y;
-    const std::uint32_t map = model.clearance.add(model.world->scenes()[scene], floor, kUnevenness,
-                                                  raised, lowest_of_radius);
+    const std::uint32_t map =
+        model.clearance.add(model.scenes[scene], floor, kUnevenness, raised, lowest_of_radius);
     // Where the maps have no room left, robots ask the columns themselves.
     if (map != kNoClearanceMap) {
-      model.slices.add(model.world->scenes()[scene], floor, sliced, lowest_of_radius);
-      addLevelFloor(model.world->scenes()[scene], model.starts[order[n]].base, model);
+      model.slices.add(model.scenes[scene], floor, sliced, lowest_of_radius);
+      addLevelFloor(model.scenes[scene], model.starts[order[n]].base, model);
     }
     for (; n < order.size() && scene_of(order[n]) == scene &&
            model.starts[order[n]].base.y <= floor + kUnevenness;
@@ -265,6 +265,7 @@ std::optional<std::uint32_t> Model::startOf(std::int64_t episode) const noexcept
 Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   Model model;
   model.world = world;
+  model.scenes = model.world->scenes();
   model.options = options;
   Result<MotionModel> motion = makeMotionModel(world.robot(), world.startPositionIndices());
   if (!motion) return tl::unexpected<Error>(motion.error());

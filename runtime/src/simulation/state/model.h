@@ -39,6 +39,8 @@ struct EpisodeStart {
 /// What never changes in a run: computed once, shared by all threads.
 struct Model {
   std::optional<World> world;
+  /// The world's, at hand: each step asks for that of an env.
+  std::span<const Scene> scenes;
   SimulationOptions options;
   MotionModel motion;
   MotionKernels kernels;
