@@ -71,7 +71,7 @@ class VectorEnv(_Base):
 
     - rgb: uint8 (num_envs, height, width, 3),
     - depth: float32 (num_envs, height, width), meters, 0 where nothing is seen,
-    - semantics: uint32 (num_envs, height, width).
+    - semantics: int32 (num_envs, height, width).
 
     Two halves of the batch can take turns, each working on threads of its own while the other's
     results are used: `halves=2`, `send()` and `recv()`. Which envs do what does not depend on it.

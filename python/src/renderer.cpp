@@ -96,8 +96,9 @@ RenderTargets Renderer::targetsFor(std::size_t count, const py::object& out) {
     targets.depth = targetOf<float>(given, "depth", imageShape(count, options), images);
   }
   if (options.semantics) {
-    targets.semantics =
-        targetOf<std::uint32_t>(given, "semantics", imageShape(count, options), images);
+    // Of signed numbers, because torch had no others of 32 bits before 2.3.
+    const auto ids = targetOf<std::int32_t>(given, "semantics", imageShape(count, options), images);
+    targets.semantics = {reinterpret_cast<std::uint32_t*>(ids.data()), ids.size()};
   }
   for (const auto& [name, array] : given) {
     if (images.contains(name)) continue;
@@ -161,7 +162,7 @@ py::dict Renderer::renderToDevice(std::uintptr_t stream) {
   add(colorName(options.color), images.color, colorShape(views.size(), options),
       ElementType::kUint8);
   add("depth", images.depth, imageShape(views.size(), options), ElementType::kFloat32);
-  add("semantics", images.semantics, imageShape(views.size(), options), ElementType::kUint32);
+  add("semantics", images.semantics, imageShape(views.size(), options), ElementType::kInt32);
   return arrays;
 }
 
@@ -213,7 +214,7 @@ py::dict Renderer::shapes() const {
   }
   if (options.semantics) {
     shapes["semantics"] =
-        py::make_tuple(py::make_tuple(height, width), py::dtype::of<std::uint32_t>());
+        py::make_tuple(py::make_tuple(height, width), py::dtype::of<std::int32_t>());
   }
   return shapes;
 }

@@ -131,7 +131,7 @@ void bindRenderer(py::module_& module) {
       "threads=0.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
-      "'semantics' uint32 (N, height, width), indices into semantic_names.");
+      "'semantics' int32 (N, height, width), indices into semantic_names.");
   type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"

@@ -23,7 +23,7 @@ def test_images_have_the_shapes_and_types_that_they_promise(simulator):
         ({}, {"rgb": ((ENVS, 20, 32, 3), np.uint8), "depth": ((ENVS, 20, 32), np.float32)}),
         ({"color": "rgba", "depth": False}, {"rgba": ((ENVS, 20, 32, 4), np.uint8)}),
         ({"color": None, "semantics": True, "depth": False},
-         {"semantics": ((ENVS, 20, 32), np.uint32)}),
+         {"semantics": ((ENVS, 20, 32), np.int32)}),
     ):  # fmt: skip
         renderer = Renderer(simulator, **CAMERA, **options)
         images = renderer.render()
@@ -201,7 +201,7 @@ def test_wrong_simulators_and_uses_are_refused(world, simulator):
     with pytest.raises(IndexError, match="there is no env 6"):
         renderer.render(envs=[ENVS])
     with pytest.raises(ValueError, match="out has 'semantics', which this renderer does not draw"):
-        renderer.render(out={"semantics": np.zeros((ENVS, 20, 32), np.uint32)})
+        renderer.render(out={"semantics": np.zeros((ENVS, 20, 32), np.int32)})
     with pytest.raises(TypeError, match="depth is a list, expected a numpy array"):
         renderer.render(out={"depth": [0]})
     frozen = np.zeros((ENVS, 20, 32), np.float32)

@@ -251,7 +251,7 @@ def test_spaces_have_what_comes_and_goes(world):
     assert single["state"].shape == (23,)
     assert batch["rgb"].shape == (ENVS, 16, 24, 3) and batch["rgb"].dtype == np.uint8
     assert batch["depth"].shape == (ENVS, 16, 24) and batch["depth"].dtype == np.float32
-    assert batch["semantics"].dtype == np.uint32
+    assert batch["semantics"].dtype == np.int32
     assert env.single_action_space.shape == (8,)
     assert env.action_space.shape == (ENVS, 8)
     observations = env.reset()[0]
