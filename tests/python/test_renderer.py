@@ -73,6 +73,34 @@ def test_cameras_project_objects_to_where_they_are_drawn(world, draw_actions, ca
     assert VectorEnv(world, 2, threads=1).renderers == ()
 
 
+def test_cameras_stand_where_their_position_and_turn_say(simulator):
+    place = {"position": (0.1, 0.2, 0.3), "rpy_degrees": np.array([0, 30, 90])}
+    for camera in ("head", "hand", "top"):
+        plain = Renderer(simulator, **{**CAMERA, "camera": camera})
+        moved = Renderer(simulator, **{**CAMERA, "camera": camera}, **place)
+        moved.render()
+        # Of an image: to the right, down, ahead. The place: ahead, to the left, up.
+        half, root = 0.5, np.sqrt(0.75)
+        wanted = np.eye(4)
+        wanted[:3, 3] = -0.2, -0.3, 0.1
+        wanted[:3, 0] = 0, 0, 1  # its right is what was ahead
+        wanted[:3, 1] = half, root, 0
+        wanted[:3, 2] = -root, half, 0
+        np.testing.assert_allclose(
+            moved.world_from_camera, plain.world_from_camera @ wanted, atol=1e-5
+        )
+
+
+def test_what_is_too_near_is_not_drawn(simulator):
+    depth = Renderer(simulator, **CAMERA).render()["depth"]
+    middle = np.float32(np.median(depth[depth > 0]))
+    behind = Renderer(simulator, **CAMERA, near=middle).render()["depth"]
+    assert behind[behind > 0].min() >= middle * (1 - 1e-5)
+    is_far = depth > middle + 0.01
+    # Cut triangles have edges of their own, along which pixels may show the neighbor.
+    assert np.mean(np.abs(behind[is_far] - depth[is_far]) < 0.01) > 0.99
+
+
 def test_the_simulator_may_step_while_it_draws(simulator, draw_actions):
     renderer = Renderer(simulator, **CAMERA)
     for _ in range(5):
@@ -153,6 +181,11 @@ def test_two_threads_cannot_use_one_renderer_at_once(world):
         ({"backend": "cuda", "device": -1}, Error, "device: is -1, expected a whole number"),
         ({"backend": "cuda", "device": 1.5}, Error, "device: is 1.5, expected an index or a name"),
         ({"fov_degrees": "wide"}, Error, "fov_degrees: is 'wide', expected a number"),
+        ({"near": -1}, Error, "near: found -1 m, expected 0.01 to 100, or 0 for what belongs"),
+        ({"position": (0, 0, np.inf)}, Error, "position: found inf m, expected -100 to 100"),
+        ({"position": (0, 1)}, ValueError, "position has the shape (2,), expected (3,)"),
+        ({"rpy_degrees": (0, 0, 400)}, Error, "rpy_degrees: found 400 degrees, expected -360"),
+        ({"rpy_degrees": "up"}, TypeError, "rpy_degrees is a str"),
         ({"color": "bgr"}, Error, "color: is bgr, expected rgb, rgba or None"),
         ({"backend": "vulkan"}, Error, "backend: is vulkan, expected auto, soft, gl or cuda"),
         ({"color": None, "depth": False}, Error, "found no image to make"),

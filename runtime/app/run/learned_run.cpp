@@ -27,8 +27,7 @@ class PolicyEyes {
     const Result<ChosenCamera> camera =
         chooseCamera(world.robot(), {.name = image.camera,
                                      .fov_degrees = image.vertical_fov * kDegreesPerRadian,
-                                     .option = run.policy,
-                                     .fov_option = run.policy});
+                                     .options = {.camera = run.policy, .fov = run.policy}});
     if (!camera) return tl::unexpected<Error>(camera.error());
     Result<WorldModels> models = WorldModels::from(world);
     if (!models) return tl::unexpected<Error>(models.error());
