@@ -222,7 +222,7 @@ class Renderer:
         height: int = 128,
         color: Literal["rgb", "rgba"] | None = "rgb",
         depth: bool = True,
-        semantics: bool = False,
+        semantics: bool | Literal["objects"] = False,
         camera: str = "head",
         fov_degrees: float = 0,
         position: ArrayLike = (0, 0, 0),

@@ -64,7 +64,11 @@ constexpr Keyword kKeywords[] = {
     {"color", [](CameraOptions& o, const py::handle& v) { o.render.color = colorOf(v); }},
     {"depth", [](CameraOptions& o, const py::handle& v) { o.render.depth = truthOf("depth", v); }},
     {"semantics",
-     [](CameraOptions& o, const py::handle& v) { o.render.semantics = truthOf("semantics", v); }},
+     [](CameraOptions& o, const py::handle& v) {
+       const bool of_objects = py::isinstance<py::str>(v) && v.cast<std::string>() == "objects";
+       o.ids = of_objects ? ObjectIds::kObjects : ObjectIds::kNames;
+       o.render.semantics = of_objects || truthOf("semantics", v, "True, False or objects");
+     }},
     {"camera",
      [](CameraOptions& o, const py::handle& v) {
        o.camera.name = wordOf("camera", v, "head, follow, top or a link");
@@ -143,8 +147,9 @@ void bindRenderer(py::module_& module) {
       py::arg("simulator"),
       "Draws what cameras on the robots of a simulator see, all envs together.\n\n"
       "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
-      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False;\n"
-      "camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 1 to 175, or 0 for\n"
+      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False,\n"
+      "True or 'objects'; camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 1 to "
+      "175, or 0 for\n"
       "the camera's own; position=(0, 0, 0), meters ahead, to the left and up of where the\n"
       "camera or link is, and rpy_degrees=(0, 0, 0), roll, pitch (down is positive) and yaw by\n"
       "which it is turned there, as in the [camera] of a robot's recipe; near, meters: what is\n"
@@ -152,7 +157,8 @@ void bindRenderer(py::module_& module) {
       "'gl' or 'cuda'; device='', or an index; threads=0.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
-      "'semantics' int32 (N, height, width), indices into semantic_names.");
+      "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
+      "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.");
   type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"

@@ -91,6 +91,37 @@ def test_cameras_stand_where_their_position_and_turn_say(simulator):
         )
 
 
+def test_objects_may_have_ids_of_their_own(world, draw_actions):
+    simulator = Simulator(world, envs=ENVS, threads=1, body_transforms=True)
+    options = {**CAMERA, "width": 64, "height": 64, "camera": "head"}
+    plain = Renderer(simulator, **options, semantics=True)
+    renderer = Renderer(simulator, **options, semantics="objects")
+    names = renderer.semantic_names
+    rays = np.linalg.inv(renderer.intrinsics)
+    pixels_of_objects = 0
+    for _ in range(30):
+        simulator.step(draw_actions(ENVS, 8))
+        by_name, seen = plain.render(), renderer.render()
+        for image in ("rgb", "depth"):
+            np.testing.assert_array_equal(seen[image], by_name[image])
+        is_object = seen["semantics"] >= len(names)
+        np.testing.assert_array_equal(
+            seen["semantics"][~is_object], by_name["semantics"][~is_object]
+        )
+        for env, row, column in np.argwhere(is_object):
+            state = simulator.env_state(env)
+            number = seen["semantics"][env, row, column] - len(names)
+            ray = rays @ [column + 0.5, row + 0.5, 1] * seen["depth"][env, row, column]
+            point = renderer.world_from_camera[env] @ [*ray, 1]
+            # Of objects of one name, the one that is there.
+            distances = [np.linalg.norm(point[:3] - one.translation) for one in state.objects]
+            assert distances[number] < 0.15
+            pixels_of_objects += 1
+        # All objects, and nothing else.
+        np.testing.assert_array_equal(is_object, by_name["semantics"] == names.index("thing"))
+    assert pixels_of_objects > 100
+
+
 def test_what_is_too_near_is_not_drawn(simulator):
     depth = Renderer(simulator, **CAMERA).render()["depth"]
     middle = np.float32(np.median(depth[depth > 0]))
@@ -181,6 +212,7 @@ def test_two_threads_cannot_use_one_renderer_at_once(world):
         ({"backend": "cuda", "device": -1}, Error, "device: is -1, expected a whole number"),
         ({"backend": "cuda", "device": 1.5}, Error, "device: is 1.5, expected an index or a name"),
         ({"fov_degrees": "wide"}, Error, "fov_degrees: is 'wide', expected a number"),
+        ({"semantics": "names"}, Error, "semantics: is 'names', expected True, False or objects"),
         ({"near": -1}, Error, "near: found -1 m, expected 0.01 to 100, or 0 for what belongs"),
         ({"position": (0, 0, np.inf)}, Error, "position: found inf m, expected -100 to 100"),
         ({"position": (0, 1)}, ValueError, "position has the shape (2,), expected (3,)"),

@@ -79,6 +79,8 @@ struct PosedModel {
   /// Number in the RenderLibrary.
   std::uint32_t model = 0;
   Pose world_from_model;
+  /// Semantic id of all of it.
+  std::uint32_t semantic = kSemanticsOfPack;
 };
 
 /// A model on a body that moves, such as a link of a robot.
@@ -110,7 +112,8 @@ struct RenderTargets {
   std::span<std::uint8_t> color{};
   /// Shape: views x height x width. Meters along the camera's axis; 0 where nothing is drawn.
   std::span<float> depth{};
-  /// Shape: views x height x width. Indices into RenderLibrary::semanticNames().
+  /// Shape: views x height x width. Indices into RenderLibrary::semanticNames(), or what
+  /// PosedModel::semantic says.
   std::span<std::uint32_t> semantics{};
 };
 

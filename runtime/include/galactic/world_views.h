@@ -61,6 +61,12 @@ class MountedCamera {
   float root_height_;
 };
 
+/// What the semantic ids of objects tell apart.
+enum class ObjectIds : std::uint8_t {
+  kNames,    ///< Objects of one name have one id: an index into RenderLibrary::semanticNames().
+  kObjects,  ///< Object n of an env has the id n above all of these.
+};
+
 /// What the cameras of a batch see: one view per env, filled from the simulator's state and valid
 /// while that changes, so that a renderer can draw one step while the next is simulated.
 class WorldViews {
@@ -68,7 +74,7 @@ class WorldViews {
   /// `models` must outlive the views and stay where it is. `simulator` must have been made with
   /// SimulationOptions::body_transforms.
   WorldViews(const World& world, const WorldModels& models, const BatchSimulator& simulator,
-             const CameraMount& camera);
+             const CameraMount& camera, ObjectIds ids = ObjectIds::kNames);
 
   /// Copies the state after the last step. Does not allocate.
   void update(const BatchSimulator& simulator) noexcept;
@@ -81,6 +87,7 @@ class WorldViews {
 
   const WorldModels* models_;
   MountedCamera camera_;
+  ObjectIds ids_;
   /// By scene: its model, if it has one.
   std::vector<std::vector<RenderInstance>> scenes_;
   /// Of all views.

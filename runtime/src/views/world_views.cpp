@@ -53,9 +53,10 @@ RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies,
 }
 
 WorldViews::WorldViews(const World& world, const WorldModels& models,
-                       const BatchSimulator& simulator, const CameraMount& camera)
+                       const BatchSimulator& simulator, const CameraMount& camera, ObjectIds ids)
     : models_(&models),
       camera_(world, simulator, camera),
+      ids_(ids),
       stride_(world.mostObjects()),
       posed_(simulator.envCount() * stride_),
       bodies_(simulator.bodyTransforms().size()),
@@ -86,12 +87,15 @@ void WorldViews::update(const BatchSimulator& simulator) noexcept {
 void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept {
   const std::span<PosedModel> room = std::span(posed_).subspan(env * stride_, stride_);
   const EnvObjects state = simulator.envObjects(env);
+  const std::size_t names = models_->library().semanticNames().size();
   std::size_t count = 0;
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
     const auto model = models_->objectModel(state.placements[n].object);
     if (!model) continue;
     const bool is_held = static_cast<std::int32_t>(n) == state.held;
-    room[count++] = {*model, is_held ? state.world_from_held : state.objects[n]};
+    room[count] = {*model, is_held ? state.world_from_held : state.objects[n]};
+    if (ids_ == ObjectIds::kObjects) room[count].semantic = static_cast<std::uint32_t>(names + n);
+    ++count;
   }
   RenderView& view = views_[env];
   view.instances = scenes_[state.scene];

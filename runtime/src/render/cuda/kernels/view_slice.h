@@ -26,6 +26,7 @@ struct DeviceInstance {
 struct DevicePosed {
   std::uint32_t model;
   Pose world_from_model;
+  std::uint32_t semantic;
 };
 
 /// As AttachedModel.
