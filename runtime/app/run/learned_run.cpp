@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,10 +22,9 @@ class PolicyEyes {
   static Result<std::unique_ptr<PolicyEyes>> create(const PolicyImage& image, const World& world,
                                                     const BatchSimulator& simulator,
                                                     const RunOptions& run) {
-    constexpr float kDegreesPerRadian = 180 / std::numbers::pi_v<float>;
     const Result<ChosenCamera> camera =
         chooseCamera(world.robot(), {.name = image.camera,
-                                     .fov_degrees = image.vertical_fov * kDegreesPerRadian,
+                                     .fov_degrees = image.fovDegrees(),
                                      .options = {.camera = run.policy, .fov = run.policy}});
     if (!camera) return tl::unexpected<Error>(camera.error());
     Result<WorldModels> models = WorldModels::from(world);
