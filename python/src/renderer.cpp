@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -174,13 +172,9 @@ py::tuple Renderer::semanticNames() const {
 }
 
 py::array_t<float> Renderer::intrinsics() const {
-  const auto width = static_cast<float>(renderer_->options().width);
-  const auto height = static_cast<float>(renderer_->options().height);
-  const float focal = height / 2 / std::tan(views_->views().front().camera.vertical_fov / 2);
+  const RenderOptions& options = renderer_->options();
   py::array_t<float> matrix({3, 3});
-  std::ranges::copy(std::array{focal, 0.0F, width / 2,   //
-                               0.0F, focal, height / 2,  //
-                               0.0F, 0.0F, 1.0F},
+  std::ranges::copy(cameraMatrix(views_->views().front().camera, options.width, options.height),
                     matrix.mutable_data());
   return matrix;
 }
@@ -192,9 +186,7 @@ py::array_t<float> Renderer::worldFromCameras() {
       {static_cast<py::ssize_t>(views.size()), py::ssize_t{4}, py::ssize_t{4}});
   float* to = matrices.mutable_data();
   for (const RenderView& view : views) {
-    // Ours look along X, with Y up.
-    const auto& [ahead, up, right, origin] = view.camera.world_from_camera;
-    writeMatrix({right, up * -1.0F, ahead, origin}, to);
+    writeMatrix(worldFromImageAxes(view.camera), to);
     to += 16;
   }
   return matrices;

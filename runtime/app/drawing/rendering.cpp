@@ -175,6 +175,7 @@ std::span<const EnvFrame> Rendering::frames() {
   for (std::size_t env = 0; env < parts_->frames.size(); ++env) {
     EnvFrame& frame = parts_->frames[env];
     frame.camera = parts_->images->image(env);
+    frame.seen_from = parts_->views->views()[env].camera;
     if (parts_->debug) frame.debug = parts_->debug->image(env);
   }
   return parts_->frames;

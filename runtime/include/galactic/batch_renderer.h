@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -66,6 +67,14 @@ struct RenderCamera {
   /// view follows from the image's shape.
   float vertical_fov = 1.57079633F;
 };
+
+/// The same camera with the axes of images: X to the right, Y down, Z ahead.
+[[nodiscard]] RigidTransform worldFromImageAxes(const RenderCamera& camera) noexcept;
+
+/// Its camera matrix K, row by row, for images of this size: (column, row, 1) of a point is
+/// K (x, y, z) / z in the axes of images; the middle of the first pixel is (0.5, 0.5).
+[[nodiscard]] std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t width,
+                                                std::uint32_t height) noexcept;
 
 /// A model, placed.
 struct RenderInstance {

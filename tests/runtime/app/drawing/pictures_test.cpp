@@ -176,14 +176,20 @@ TEST_F(Pictures, FramesAreNamedByEnvAndStep) {
   EXPECT_TRUE(output->wants(120));
   const SmallImage small;
   EnvFrame with_debug = small.frame();
+  with_debug.seen_from.world_from_camera.origin = {4, 5, 6};
   with_debug.debug = DrawnImage{2, 1, ColorFormat::kRgba8, small.color, {}, {}};
   ASSERT_TRUE(output->add(120, std::vector{small.frame(), with_debug}));
   ASSERT_TRUE(output->finish());
   EXPECT_THAT(files("deep/frames"),
-              ElementsAre("env_0000_step_000120_depth.png", "env_0000_step_000120_rgb.png",
-                          "env_0000_step_000120_semantic.png", "env_0001_step_000120_debug.png",
+              ElementsAre("env_0000_step_000120_camera.json", "env_0000_step_000120_depth.png",
+                          "env_0000_step_000120_rgb.png", "env_0000_step_000120_semantic.png",
+                          "env_0001_step_000120_camera.json", "env_0001_step_000120_debug.png",
                           "env_0001_step_000120_depth.png", "env_0001_step_000120_rgb.png",
                           "env_0001_step_000120_semantic.png"));
+  EXPECT_EQ(test::fileContent(options.frames + "/env_0001_step_000120_camera.json"),
+            "{\n  \"intrinsics\": [[0.5, 0, 1], [0, 0.5, 0.5], [0, 0, 1]],\n"
+            "  \"world_from_camera\": "
+            "[[0, -0, 1, 4], [0, -1, 0, 5], [1, -0, 0, 6], [0, 0, 0, 1]]\n}\n");
 }
 
 TEST_F(Pictures, ASheetShowsSixMomentsFromTheFirstToTheLast) {
