@@ -46,6 +46,27 @@ def test_own_task(world_path):
     assert min(steps) < 200 <= max(steps)
 
 
+def test_draw_data_set(world_path, tmp_path):
+    script = ROOT / "python" / "examples" / "draw_data_set.py"
+    done = subprocess.run(
+        [sys.executable, "-B", script, world_path], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    images, with_target = map(int, re.findall(r"\d+", done.stdout.splitlines()[0]))
+    assert images == 640 and with_target > 300
+    # The points of a target are within it.
+    assert 0 < float(re.findall(r"at most (\S+) m", done.stdout)[0]) < 0.15
+    with np.load(tmp_path / "images.npz") as data:
+        shapes = {name: array.shape[1:] for name, array in data.items()}
+    assert shapes == {
+        "rgb": (72, 96, 3),
+        "depth": (72, 96),
+        "is_target": (72, 96),
+        "world_from_camera": (4, 4),
+        "intrinsics": (3, 3),
+    }
+
+
 def test_type_checkers_accept_the_examples(tmp_path):
     """What users write after them, theirs accept, too: galactic has types (py.typed)."""
     pytest.importorskip("mypy")
