@@ -88,8 +88,6 @@ struct PosedModel {
   /// Number in the RenderLibrary.
   std::uint32_t model = 0;
   Pose world_from_model;
-  /// Semantic id of all of it.
-  std::uint32_t semantic = kSemanticsOfPack;
 };
 
 /// A model on a body that moves, such as a link of a robot.
@@ -108,6 +106,8 @@ struct RenderView {
   RenderCamera camera;
   std::span<const RenderInstance> instances = {};
   std::span<const PosedModel> posed = {};
+  /// A semantic id for each posed model; empty: they have those of their packs.
+  std::span<const std::uint32_t> posed_semantics = {};
   /// Views of the same robot share one list, and only their bodies move.
   std::span<const AttachedModel> attached = {};
   /// world_from_body.
@@ -121,8 +121,8 @@ struct RenderTargets {
   std::span<std::uint8_t> color{};
   /// Shape: views x height x width. Meters along the camera's axis; 0 where nothing is drawn.
   std::span<float> depth{};
-  /// Shape: views x height x width. Indices into RenderLibrary::semanticNames(), or what
-  /// PosedModel::semantic says.
+  /// Shape: views x height x width. Indices into RenderLibrary::semanticNames(), or ids of
+  /// RenderView::posed_semantics.
   std::span<std::uint32_t> semantics{};
 };
 

@@ -87,7 +87,6 @@ class WorldViews {
 
   const WorldModels* models_;
   MountedCamera camera_;
-  ObjectIds ids_;
   /// By scene: its model, if it has one.
   std::vector<std::vector<RenderInstance>> scenes_;
   /// Of all views.
@@ -95,6 +94,8 @@ class WorldViews {
   /// Room for the objects of one env.
   std::size_t stride_ = 0;
   std::vector<PosedModel> posed_;
+  /// Their ids; empty with ObjectIds::kNames.
+  std::vector<std::uint32_t> posed_semantics_;
   /// Shape: envs * bodies of the simulator.
   std::vector<RigidTransform> bodies_;
   std::vector<RenderView> views_;

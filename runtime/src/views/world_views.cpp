@@ -56,9 +56,9 @@ WorldViews::WorldViews(const World& world, const WorldModels& models,
                        const BatchSimulator& simulator, const CameraMount& camera, ObjectIds ids)
     : models_(&models),
       camera_(world, simulator, camera),
-      ids_(ids),
       stride_(world.mostObjects()),
       posed_(simulator.envCount() * stride_),
+      posed_semantics_(ids == ObjectIds::kObjects ? posed_.size() : 0),
       bodies_(simulator.bodyTransforms().size()),
       views_(simulator.envCount()) {
   assert(!simulator.bodyTransforms().empty());
@@ -86,6 +86,9 @@ void WorldViews::update(const BatchSimulator& simulator) noexcept {
 
 void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept {
   const std::span<PosedModel> room = std::span(posed_).subspan(env * stride_, stride_);
+  const std::span<std::uint32_t> ids =
+      posed_semantics_.empty() ? std::span<std::uint32_t>()
+                               : std::span(posed_semantics_).subspan(env * stride_, stride_);
   const EnvObjects state = simulator.envObjects(env);
   const std::size_t names = models_->library().semanticNames().size();
   std::size_t count = 0;
@@ -93,13 +96,13 @@ void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
     const auto model = models_->objectModel(state.placements[n].object);
     if (!model) continue;
     const bool is_held = static_cast<std::int32_t>(n) == state.held;
-    room[count] = {*model, is_held ? state.world_from_held : state.objects[n]};
-    if (ids_ == ObjectIds::kObjects) room[count].semantic = static_cast<std::uint32_t>(names + n);
-    ++count;
+    if (!ids.empty()) ids[count] = static_cast<std::uint32_t>(names + n);
+    room[count++] = {*model, is_held ? state.world_from_held : state.objects[n]};
   }
   RenderView& view = views_[env];
   view.instances = scenes_[state.scene];
   view.posed = room.first(count);
+  view.posed_semantics = ids.first(ids.empty() ? 0 : count);
   view.camera = camera_.at(view.bodies, state.scene);
 }
 

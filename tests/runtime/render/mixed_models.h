@@ -64,11 +64,9 @@ class MixedModels {
             {attached.model, lists.bodies[attached.body] * attached.body_from_model});
       }
       mixed_.push_back(mixed);
-      lists.numbered = lists.posed;
-      for (std::size_t n = 0; n < lists.numbered.size(); ++n)
-        lists.numbered[n].semantic = number(n);
+      for (std::size_t n = 0; n < lists.posed.size(); ++n) lists.numbers.push_back(number(n));
       numbered_.push_back(mixed);
-      numbered_.back().posed = lists.numbered;
+      numbered_.back().posed_semantics = lists.numbers;
       as_instances_.push_back({.camera = views[v].camera, .instances = lists.all});
     }
   }
@@ -93,7 +91,8 @@ class MixedModels {
  private:
   struct Lists {
     std::vector<RenderInstance> instances, all;
-    std::vector<PosedModel> posed, numbered;
+    std::vector<PosedModel> posed;
+    std::vector<std::uint32_t> numbers;
     std::vector<RigidTransform> bodies;
   };
 

@@ -186,10 +186,11 @@ TEST_F(WorldViewsOfAHome, ObjectsHaveIdsOfTheirNamesOrOfTheirOwn) {
     const auto objects = of_objects.views()[env].posed;
     ASSERT_EQ(objects.size(), simulator_->envObjects(env).objects.size());
     for (std::size_t n = 0; n < objects.size(); ++n) {
-      EXPECT_EQ(objects[n].semantic, names + n);
+      EXPECT_EQ(of_objects.views()[env].posed_semantics[n], names + n);
       EXPECT_EQ(objects[n].model, objectModel(env, n));
-      EXPECT_EQ(of_names.views()[env].posed[n].semantic, kSemanticsOfPack);
     }
+    EXPECT_EQ(of_objects.views()[env].posed_semantics.size(), objects.size());
+    EXPECT_TRUE(of_names.views()[env].posed_semantics.empty());
   }
 }
 

@@ -36,7 +36,10 @@ GALACTIC_EVERYWHERE inline ShownModel shownAs(const ViewSlice& slice, const Devi
   number -= view.instances.count;
   if (number < view.posed.count) {
     const DevicePosed& posed = slice.posed[view.posed.first + number];
-    return {{posed.model, rigidTransform(posed.world_from_model)}, posed.semantic};
+    return {{posed.model, rigidTransform(posed.world_from_model)},
+            view.posed_semantics.count == 0
+                ? kSemanticsOfPack
+                : slice.posed_semantics[view.posed_semantics.first + number]};
   }
   number -= view.posed.count;
   const DeviceAttached& attached = slice.attached[view.attached.first + number];
