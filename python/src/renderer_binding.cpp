@@ -110,6 +110,12 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
     if (known == std::end(kKeywords)) refuseKeyword(name, keywordNames());
     known->second(options, value);
   }
+  if (options.render.backend == RenderBackend::kSoft && !options.render.device.empty()) {
+    throw Refusal{{ErrorCode::kInvalidInput, "device",
+                   "is " + options.render.device +
+                       ", but the soft backend draws on the processor; leave it out, or take the "
+                       "backend cuda or gl"}};
+  }
   return options;
 }
 

@@ -211,6 +211,7 @@ def test_two_threads_cannot_use_one_renderer_at_once(world):
         ({"threads": -1}, Error, "threads: is -1, expected 0 to 4096; 0 takes one per processor"),
         ({"backend": "cuda", "device": -1}, Error, "device: is -1, expected a whole number"),
         ({"backend": "cuda", "device": 1.5}, Error, "device: is 1.5, expected an index or a name"),
+        ({"device": 0}, Error, "device: is 0, but the soft backend draws on the processor"),
         ({"fov_degrees": "wide"}, Error, "fov_degrees: is 'wide', expected a number"),
         ({"semantics": "names"}, Error, "semantics: is 'names', expected True, False or objects"),
         ({"near": -1}, Error, "near: found -1 m, expected 0.01 to 100, or 0 for what belongs"),
