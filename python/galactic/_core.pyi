@@ -241,9 +241,12 @@ class Renderer:
         height: int = 128,
         color: Literal["rgb", "rgba"] | None = "rgb",
         depth: bool = True,
-        semantics: bool = False,
+        semantics: bool | Literal["objects"] = False,
         camera: str = "head",
         fov_degrees: float = 0,
+        position: ArrayLike = (0, 0, 0),
+        rpy_degrees: ArrayLike = (0, 0, 0),
+        near: float = 0,
         backend: Literal["auto", "soft", "gl", "cuda"] = "auto",
         device: str | int = "",
         threads: int = 0,
@@ -296,7 +299,7 @@ class LearnedPolicy:
     @property
     def observation(self) -> Any: ...
     @property
-    def image_size(self) -> tuple[int, int] | None: ...
+    def images(self) -> dict[str, Any] | None: ...
     @property
     def action_count(self) -> int: ...
 

@@ -7,6 +7,7 @@ galactic.LearnedPolicy. docs/policies.md tells what is in it.
 from __future__ import annotations
 
 import argparse
+import math
 import pathlib
 import sys
 from typing import Any, Optional, Sequence
@@ -20,10 +21,9 @@ from galactic import _core
 from galactic.learning import checkpoint
 from galactic.learning.command import Parser, named_path
 from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
-from galactic.learning.homes import simulation_keywords
+from galactic.learning.homes import camera_options, simulation_keywords
 from galactic.learning.networks import (
     FARTHEST,
-    IMAGE_SIZE,
     ActorHead,
     Encoder,
     Policy,
@@ -36,7 +36,7 @@ from galactic.learning.networks import (
     StatePolicy,
 )
 from galactic.learning.normalization import MOST
-from galactic.learning.settings import SettingsError
+from galactic.learning.settings import Settings, SettingsError
 
 
 class ExportError(Exception):
@@ -183,7 +183,7 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
         "robot": robot,
         "options": simulation_keywords(saved.settings.simulation),
         "observation": saved.parts,
-        "image": _image() if policy.needs_images else None,
+        "image": _image(saved.settings) if policy.needs_images else None,
         "layers": layers.list,
         **actions,
     }
@@ -209,17 +209,18 @@ def _actions(layers: Layers, head: ActorHead, features: int) -> dict[str, Any]:
     return {"continuous": continuous, "discrete": discrete}
 
 
-def _image() -> dict[str, Any]:
+def _image(settings: Settings) -> dict[str, Any]:
+    seen = camera_options(settings)
     return {
-        "width": IMAGE_SIZE,
-        "height": IMAGE_SIZE,
+        "width": seen["width"],
+        "height": seen["height"],
         "color": True,
         "color_scale": 1.0 / 255.0,
         "depth": True,
         "depth_limit": FARTHEST,
         "depth_scale": 1.0 / FARTHEST,
-        "camera": "head",
-        "vertical_fov": 0.0,
+        "camera": seen["camera"],
+        "vertical_fov": math.radians(seen["fov_degrees"]),
     }
 
 

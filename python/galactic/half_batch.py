@@ -27,7 +27,8 @@ class HalfBatch:
         world: where they are.
         options: of their Simulator.
         by_parts: whether the state is observed part by part.
-        images: options of their Renderer, None for no images.
+        cameras: options of a Renderer for each camera, by its name, which begins those of its images;
+            one called "" has images by their own names.
         copy: whether results are arrays of their own, and no views.
     """
 
@@ -37,13 +38,17 @@ class HalfBatch:
         options: dict[str, Any],
         *,
         by_parts: bool,
-        images: Mapping[str, Any] | None,
+        cameras: Mapping[str, Mapping[str, Any]],
         copy: bool,
     ) -> None:
         # With images, envs wait where their episodes ended until that has been drawn.
-        self.simulator = Simulator(world, **options, auto_reset=images is None)
-        self.renderer = None if images is None else Renderer(self.simulator, **images)
-        self._image_shapes = {} if self.renderer is None else self.renderer.shapes
+        self.simulator = Simulator(world, **options, auto_reset=not cameras)
+        self.renderers = {name: Renderer(self.simulator, **cameras[name]) for name in cameras}
+        self._image_shapes = {
+            _image_name(camera, image): shape
+            for camera, renderer in self.renderers.items()
+            for image, shape in renderer.shapes.items()
+        }
         self._copy = copy
         self._parts = self.simulator.observation_parts if by_parts else None
         envs = self.simulator.num_envs
@@ -59,7 +64,7 @@ class HalfBatch:
     def observation_space(self) -> spaces.Space:
         """Of one env."""
         size = self.simulator.observation_size
-        if self._parts is None and self.renderer is None:
+        if self._parts is None and not self.renderers:
             return _unbounded(size)
         parts = {"state": slice(0, size)} if self._parts is None else self._parts
         named = {name: _unbounded(part.stop - part.start) for name, part in parts.items()}
@@ -144,10 +149,14 @@ class HalfBatch:
 
     def _draw(self, out: Mapping[str, Array] | None) -> dict[str, Array]:
         """The images of all envs: in the caller's arrays, kept ones, or new ones."""
-        if self.renderer is None:
-            return {}
-        given = {name: out[name] for name in self._image_shapes if name in out} if out else {}
-        return self.renderer.render({**self._images, **given})
+        given = {**self._images, **(out or {})}
+        images = {}
+        for camera, renderer in self.renderers.items():
+            names = {image: _image_name(camera, image) for image in renderer.shapes}
+            places = {image: given[name] for image, name in names.items() if name in given}
+            for image, drawn in renderer.render(places).items():
+                images[names[image]] = drawn
+        return images
 
     def _observed(self, state: Array, images: Mapping[str, Array]) -> Observations:
         if self._parts is None:
@@ -157,7 +166,7 @@ class HalfBatch:
     def _renew(self, which: NDArray[np.int64], images: dict[str, Array]) -> Observations:
         """The last observations of the envs `which` ended an episode; they are in the next one then,
         in `images`, too."""
-        if self.renderer is None:
+        if not self.renderers:
             return self._observed(self.simulator.final_observations[which], {})
         last = self._observed(
             self.simulator.observations[which], {name: all[which] for name, all in images.items()}
@@ -165,8 +174,9 @@ class HalfBatch:
         begins = np.full(self.simulator.num_envs, Simulator.STAYS, np.int32)
         begins[which] = Simulator.NEXT_EPISODE
         self.simulator.reset(begins)
-        for name, drawn in self.renderer.render(envs=which).items():
-            images[name][which] = drawn
+        for camera, renderer in self.renderers.items():
+            for image, drawn in renderer.render(envs=which).items():
+                images[_image_name(camera, image)][which] = drawn
         return last
 
     def _finish(self, which: NDArray[np.int64], images: dict[str, Array]) -> dict[str, Any]:
@@ -190,6 +200,10 @@ class HalfBatch:
             "episode": episode,
             "_episode": ended,
         }
+
+
+def _image_name(camera: str, image: str) -> str:
+    return f"{camera}_{image}" if camera else image
 
 
 def _unbounded(size: int) -> spaces.Space:

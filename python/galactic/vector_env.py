@@ -72,7 +72,9 @@ class VectorEnv(_Base):
 
     - rgb: uint8 (num_envs, height, width, 3),
     - depth: float32 (num_envs, height, width), meters, 0 where nothing is seen,
-    - semantics: uint32 (num_envs, height, width).
+    - semantics: int32 (num_envs, height, width),
+
+    or, of several cameras, each of them behind its camera's name: hand_rgb, hand_depth and so on.
 
     Two halves of the batch can take turns, each working on threads of its own while the other's
     results are used: `halves=2`, `send()` and `recv()`. Which envs do what does not depend on it.
@@ -81,7 +83,9 @@ class VectorEnv(_Base):
         world: a World, or the path or paths of its packs.
         num_envs: environments; with two halves an even number.
         observation: "flat" or "dict".
-        images: options of galactic.Renderer, such as {"width": 128, "height": 128}; None for none.
+        images: options of galactic.Renderer, such as {"width": 128, "height": 128}; or those of
+            several cameras by name, such as {"head": {}, "hand": {"camera": "gripper_link"}}, where
+            a name is the Renderer's `camera` unless that is given; or None for no images.
         actions: "box": one float32 array in [-1, 1], (num_envs, action_count). "paper": a
             dictionary of "continuous", float32 (num_envs, action_count - 2) for joints, forward and
             turn, and "discrete", 0 or 1, (num_envs, 2) for hand and terminate.
@@ -125,12 +129,7 @@ class VectorEnv(_Base):
         is_count = isinstance(num_envs, numbers.Integral) and num_envs > 0
         _require(is_count, "num_envs", num_envs, "a whole number above 0")
         _require(num_envs % halves == 0, "num_envs", num_envs, "an even number for two halves")
-        _require(
-            images is None or isinstance(images, Mapping),
-            "images",
-            images,
-            'options of galactic.Renderer, such as {"width": 128}, or None for no images',
-        )
+        cameras = _cameras_of(images)
         _require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
         for name in options:
             if name in _NO_OPTIONS:
@@ -142,12 +141,11 @@ class VectorEnv(_Base):
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._actions = actions
-        draws = images is not None or render_mode is not None
+        draws = bool(cameras) or render_mode is not None
         options |= {"threads": threads, "seed": seed, "order": order}
         if draws:
             options["body_transforms"] = True
-        if images is not None:
-            images = {"threads": threads, **images}
+        cameras = {name: {"threads": threads, **camera} for name, camera in cameras.items()}
         # Half h of batch r is batch 2 r + h of twice as many: the same envs as undivided.
         self._halves = [
             HalfBatch(
@@ -159,7 +157,7 @@ class VectorEnv(_Base):
                     "ranks": halves * ranks,
                 },
                 by_parts=observation == "dict",
-                images=images,
+                cameras=cameras,
                 copy=copy,
             )
             for half in range(halves)
@@ -184,9 +182,11 @@ class VectorEnv(_Base):
         return tuple(half.simulator for half in self._halves)
 
     @property
-    def renderers(self) -> tuple[Renderer, ...]:
-        """The renderer of each half's images, for its cameras and names; () without images."""
-        return tuple(half.renderer for half in self._halves if half.renderer is not None)
+    def renderers(self) -> tuple[Any, ...]:
+        """What draws each half's images, for its cameras and names: a Renderer, or with several
+        cameras a dictionary of them by the cameras' names; () without images."""
+        drawing = [half.renderers for half in self._halves if half.renderers]
+        return tuple(one.get("", one) for one in drawing)
 
     @property
     def halves(self) -> int:
@@ -401,6 +401,22 @@ class VectorEnv(_Base):
 def _require(holds: bool, name: str, found: object, wanted: str) -> None:
     if not holds:
         raise ValueError(f"{name} is {found!r}, expected {wanted}")
+
+
+def _cameras_of(images: Any) -> dict[str, Mapping[str, Any]]:
+    """The cameras of VectorEnv(images=...) by name: "" for a single one, none for None."""
+    if images is None:
+        return {}
+    wanted = "options of galactic.Renderer, those of each camera by its name, or None for no images"
+    _require(isinstance(images, Mapping), "images", images, wanted)
+    named = {name for name, value in images.items() if isinstance(value, Mapping)}
+    if not named:
+        return {"": images}
+    for name, value in images.items():
+        _require(name in named, f"images[{name!r}]", value, "options, as the other cameras have")
+        is_name = isinstance(name, str) and name.isidentifier()
+        _require(is_name, "a camera of images", name, "a name, such as hand")
+    return {name: {"camera": name, **value} for name, value in images.items()}
 
 
 def _action_space(count: int, kind: str) -> spaces.Space:

@@ -121,7 +121,7 @@ template py::array_t<std::int32_t, py::array::c_style | py::array::forcecast> in
 template std::span<float> outputOf<float>(const py::handle&, const char*, const Shape&);
 template std::span<std::uint8_t> outputOf<std::uint8_t>(const py::handle&, const char*,
                                                         const Shape&);
-template std::span<std::uint32_t> outputOf<std::uint32_t>(const py::handle&, const char*,
-                                                          const Shape&);
+template std::span<std::int32_t> outputOf<std::int32_t>(const py::handle&, const char*,
+                                                        const Shape&);
 
 }  // namespace galactic::python

@@ -60,11 +60,12 @@ void release(DlManagedTensor* managed) {
 }
 
 DlType typeOf(ElementType type) {
+  constexpr std::uint8_t kSigned = 0;
   constexpr std::uint8_t kUnsigned = 1;
   constexpr std::uint8_t kFloat = 2;
   if (type == ElementType::kFloat32) return {.code = kFloat, .bits = 32};
-  const bool is_byte = type == ElementType::kUint8;
-  return {.code = kUnsigned, .bits = static_cast<std::uint8_t>(is_byte ? 8 : 32)};
+  if (type == ElementType::kInt32) return {.code = kSigned, .bits = 32};
+  return {.code = kUnsigned, .bits = 8};
 }
 
 /// A function of CUDA's driver, which is loaded already when there are device images.

@@ -7,7 +7,7 @@
 
 namespace galactic::python {
 
-enum class ElementType : std::uint8_t { kUint8, kUint32, kFloat32 };
+enum class ElementType : std::uint8_t { kUint8, kInt32, kFloat32 };
 
 /// Memory of a CUDA device as Python's array libraries take it over: DLPack (v0.8, the unversioned
 /// capsule that all of them know), without a copy. Rows without gaps.

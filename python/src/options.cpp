@@ -121,9 +121,9 @@ double numberOf(const char* name, const py::handle& value) {
   return found;
 }
 
-bool truthOf(const char* name, const py::handle& value) {
+bool truthOf(const char* name, const py::handle& value, const char* wanted) {
   py::detail::make_caster<bool> truth;
-  if (!truth.load(value, true)) refuseValue(name, value, "True or False");
+  if (!truth.load(value, true)) refuseValue(name, value, wanted);
   return py::detail::cast_op<bool>(truth);
 }
 

@@ -18,7 +18,8 @@ namespace py = pybind11;
 [[nodiscard]] std::uint64_t wholeOf(const char* name, const py::handle& value, std::uint64_t least,
                                     std::uint64_t most);
 [[nodiscard]] double numberOf(const char* name, const py::handle& value);
-[[nodiscard]] bool truthOf(const char* name, const py::handle& value);
+[[nodiscard]] bool truthOf(const char* name, const py::handle& value,
+                           const char* wanted = "True or False");
 [[nodiscard]] std::string wordOf(const char* name, const py::handle& value, const char* wanted);
 /// The same of `threads`.
 [[nodiscard]] std::uint32_t threadsOf(const py::handle& value);

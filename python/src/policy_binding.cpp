@@ -277,10 +277,17 @@ py::list observationOf(const PlayedPolicy& policy) {
   return parts;
 }
 
-py::object imageSizeOf(const PlayedPolicy& policy) {
+py::object imagesOf(const PlayedPolicy& policy) {
   const auto& image = policy.needs().image;
   if (!image) return py::none();
-  return py::make_tuple(image->height, image->width);
+  py::dict options;
+  options["width"] = image->width;
+  options["height"] = image->height;
+  options["color"] = image->color ? py::object(py::str("rgb")) : py::object(py::none());
+  options["depth"] = image->depth;
+  options["camera"] = image->camera;
+  options["fov_degrees"] = image->fovDegrees();
+  return options;
 }
 
 }  // namespace
@@ -319,8 +326,9 @@ depth         [envs, height, width] float32, meters)")
           "The options of its training's simulation, as keywords of Simulator and VectorEnv.")
       .def_property_readonly("observation", &observationOf,
                              "Names and sizes of the parts that it reads, in order.")
-      .def_property_readonly("image_size", &imageSizeOf,
-                             "(height, width) of the images that it wants, or None.")
+      .def_property_readonly("images", &imagesOf,
+                             "The options of a Renderer that draws what it wants to see, as\n"
+                             "VectorEnv takes them; None where it needs no images.")
       .def("__repr__",
            [](const PlayedPolicy& p) { return "<galactic.LearnedPolicy " + p.needs().name + ">"; })
       .def_property_readonly("action_count", &PlayedPolicy::actionCount, "Columns of the actions.");

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -63,7 +61,8 @@ std::unique_ptr<Renderer> Renderer::create(const py::object& simulator,
   const Confinement::Use use = shown.readState();
   const py::gil_scoped_release unlocked;
   renderer->renderer_.emplace(valueOf(BatchRenderer::create(renderer->models_.library(), render)));
-  renderer->views_.emplace(shown.world(), renderer->models_, shown.batch(), camera.mount);
+  renderer->views_.emplace(shown.world(), renderer->models_, shown.batch(), camera.mount,
+                           options.ids);
   return renderer;
 }
 
@@ -96,8 +95,9 @@ RenderTargets Renderer::targetsFor(std::size_t count, const py::object& out) {
     targets.depth = targetOf<float>(given, "depth", imageShape(count, options), images);
   }
   if (options.semantics) {
-    targets.semantics =
-        targetOf<std::uint32_t>(given, "semantics", imageShape(count, options), images);
+    // Of signed numbers, because torch had no others of 32 bits before 2.3.
+    const auto ids = targetOf<std::int32_t>(given, "semantics", imageShape(count, options), images);
+    targets.semantics = {reinterpret_cast<std::uint32_t*>(ids.data()), ids.size()};
   }
   for (const auto& [name, array] : given) {
     if (images.contains(name)) continue;
@@ -161,7 +161,7 @@ py::dict Renderer::renderToDevice(std::uintptr_t stream) {
   add(colorName(options.color), images.color, colorShape(views.size(), options),
       ElementType::kUint8);
   add("depth", images.depth, imageShape(views.size(), options), ElementType::kFloat32);
-  add("semantics", images.semantics, imageShape(views.size(), options), ElementType::kUint32);
+  add("semantics", images.semantics, imageShape(views.size(), options), ElementType::kInt32);
   return arrays;
 }
 
@@ -172,13 +172,9 @@ py::tuple Renderer::semanticNames() const {
 }
 
 py::array_t<float> Renderer::intrinsics() const {
-  const auto width = static_cast<float>(renderer_->options().width);
-  const auto height = static_cast<float>(renderer_->options().height);
-  const float focal = height / 2 / std::tan(views_->views().front().camera.vertical_fov / 2);
+  const RenderOptions& options = renderer_->options();
   py::array_t<float> matrix({3, 3});
-  std::ranges::copy(std::array{focal, 0.0F, width / 2,   //
-                               0.0F, focal, height / 2,  //
-                               0.0F, 0.0F, 1.0F},
+  std::ranges::copy(cameraMatrix(views_->views().front().camera, options.width, options.height),
                     matrix.mutable_data());
   return matrix;
 }
@@ -190,9 +186,7 @@ py::array_t<float> Renderer::worldFromCameras() {
       {static_cast<py::ssize_t>(views.size()), py::ssize_t{4}, py::ssize_t{4}});
   float* to = matrices.mutable_data();
   for (const RenderView& view : views) {
-    // Ours look along X, with Y up.
-    const auto& [ahead, up, right, origin] = view.camera.world_from_camera;
-    writeMatrix({right, up * -1.0F, ahead, origin}, to);
+    writeMatrix(worldFromImageAxes(view.camera), to);
     to += 16;
   }
   return matrices;
@@ -213,7 +207,7 @@ py::dict Renderer::shapes() const {
   }
   if (options.semantics) {
     shapes["semantics"] =
-        py::make_tuple(py::make_tuple(height, width), py::dtype::of<std::uint32_t>());
+        py::make_tuple(py::make_tuple(height, width), py::dtype::of<std::int32_t>());
   }
   return shapes;
 }

@@ -21,6 +21,7 @@ namespace galactic::python {
 struct CameraOptions {
   RenderOptions render;
   CameraWish camera;
+  ObjectIds ids = ObjectIds::kNames;
 };
 
 /// galactic.Renderer: the cameras of a simulator's envs, and the renderer that draws what they see.

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.h"
 #include "bindings.h"
 #include "dlpack.h"
 #include "errors.h"
@@ -47,6 +49,11 @@ std::uint32_t edgeOf(const char* name, const py::handle& value) {
   return static_cast<std::uint32_t>(wholeOf(name, value, 1, kLargestImage));
 }
 
+std::array<float, 3> threeOf(const char* name, const py::handle& value) {
+  const auto given = inputOf<float>(value, name, {3});
+  return {given.at(0), given.at(1), given.at(2)};
+}
+
 using Keyword = std::pair<std::string_view, void (*)(CameraOptions&, const py::handle&)>;
 
 /// What takes the value of each keyword of Renderer.
@@ -57,7 +64,11 @@ constexpr Keyword kKeywords[] = {
     {"color", [](CameraOptions& o, const py::handle& v) { o.render.color = colorOf(v); }},
     {"depth", [](CameraOptions& o, const py::handle& v) { o.render.depth = truthOf("depth", v); }},
     {"semantics",
-     [](CameraOptions& o, const py::handle& v) { o.render.semantics = truthOf("semantics", v); }},
+     [](CameraOptions& o, const py::handle& v) {
+       const bool of_objects = py::isinstance<py::str>(v) && v.cast<std::string>() == "objects";
+       o.ids = of_objects ? ObjectIds::kObjects : ObjectIds::kNames;
+       o.render.semantics = of_objects || truthOf("semantics", v, "True, False or objects");
+     }},
     {"camera",
      [](CameraOptions& o, const py::handle& v) {
        o.camera.name = wordOf("camera", v, "head, follow, top or a link");
@@ -66,6 +77,12 @@ constexpr Keyword kKeywords[] = {
      [](CameraOptions& o, const py::handle& v) {
        o.camera.fov_degrees = static_cast<float>(numberOf("fov_degrees", v));
      }},
+    {"position",
+     [](CameraOptions& o, const py::handle& v) { o.camera.position = threeOf("position", v); }},
+    {"rpy_degrees", [](CameraOptions& o,
+                       const py::handle& v) { o.camera.rpy_degrees = threeOf("rpy_degrees", v); }},
+    {"near", [](CameraOptions& o,
+                const py::handle& v) { o.camera.near = static_cast<float>(numberOf("near", v)); }},
     {"backend", [](CameraOptions& o, const py::handle& v) { o.render.backend = backendOf(v); }},
     {"device", [](CameraOptions& o, const py::handle& v) { o.render.device = deviceOf(v); }},
     {"threads", [](CameraOptions& o, const py::handle& v) { o.render.threads = threadsOf(v); }},
@@ -81,12 +98,23 @@ std::vector<std::string> keywordNames() {
 CameraOptions optionsFrom(const py::kwargs& keywords) {
   CameraOptions options;
   options.render.color = ColorFormat::kRgb8;
-  options.camera = {.name = "head", .option = "camera", .fov_option = "fov_degrees"};
+  options.camera = {.name = "head",
+                    .options = {.camera = "camera",
+                                .fov = "fov_degrees",
+                                .position = "position",
+                                .rpy = "rpy_degrees",
+                                .near = "near"}};
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     const auto* known = std::ranges::find(kKeywords, std::string_view(name), &Keyword::first);
     if (known == std::end(kKeywords)) refuseKeyword(name, keywordNames());
     known->second(options, value);
+  }
+  if (options.render.backend == RenderBackend::kSoft && !options.render.device.empty()) {
+    throw Refusal{{ErrorCode::kInvalidInput, "device",
+                   "is " + options.render.device +
+                       ", but the soft backend draws on the processor; leave it out, or take the "
+                       "backend cuda or gl"}};
   }
   return options;
 }
@@ -125,13 +153,18 @@ void bindRenderer(py::module_& module) {
       py::arg("simulator"),
       "Draws what cameras on the robots of a simulator see, all envs together.\n\n"
       "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
-      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False;\n"
-      "camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 1 to 175, or 0 for\n"
-      "the camera's own; backend='auto', 'soft', 'gl' or 'cuda'; device='', or an index; "
-      "threads=0.\n\n"
+      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False,\n"
+      "True or 'objects'; camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 1 to "
+      "175, or 0 for\n"
+      "the camera's own; position=(0, 0, 0), meters ahead, to the left and up of where the\n"
+      "camera or link is, and rpy_degrees=(0, 0, 0), roll, pitch (down is positive) and yaw by\n"
+      "which it is turned there, as in the [camera] of a robot's recipe; near, meters: what is\n"
+      "nearer is not drawn, 0.01 to 100, or 0 for the camera's own; backend='auto', 'soft',\n"
+      "'gl' or 'cuda'; device='', or an index; threads=0.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
-      "'semantics' uint32 (N, height, width), indices into semantic_names.");
+      "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
+      "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.");
   type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"

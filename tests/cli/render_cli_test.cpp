@@ -109,8 +109,15 @@ TEST_F(RenderCli, WritesFramesAndASheetThatDependOnNothingElse) {
   ASSERT_EQ(one.exit_code, 0) << one.err;
   ASSERT_EQ(with("three", "3").exit_code, 0);
   const std::vector<std::string> names = files("one");
-  // States 0, 8 and 16 of two envs, four images each.
-  EXPECT_EQ(names.size(), 3U * 2 * 4 + 1) << "and the legend of the semantic ids";
+  // States 0, 8 and 16 of two envs, four images and a camera each.
+  EXPECT_EQ(names.size(), 3U * 2 * 5 + 1) << "and the legend of the semantic ids";
+  const json camera = json::parse(content("one/env_0001_step_000016_camera.json"));
+  EXPECT_EQ(camera["intrinsics"][0][2], 12);
+  EXPECT_EQ(camera["intrinsics"][1][2], 8);
+  EXPECT_EQ(camera["intrinsics"][0][0], camera["intrinsics"][1][1]);
+  EXPECT_EQ(camera["world_from_camera"].size(), 4U);
+  EXPECT_NE(content("one/env_0001_step_000016_camera.json"),
+            content("one/env_0001_step_000000_camera.json"));
   EXPECT_THAT(names, AllOf(testing::Contains("env_0001_step_000016_rgb.png"),
                            testing::Contains("env_0000_step_000008_depth.png"),
                            testing::Contains("env_0000_step_000000_semantic.png"),

@@ -63,6 +63,23 @@ def test_demonstrations(world_path, tmp_path):
         assert simulator.successes[0]
 
 
+def test_draw_data_set(world_path, tmp_path):
+    printed = output_of("draw_data_set.py", world_path, tmp_path)
+    images, with_target = map(int, re.findall(r"\d+", printed.splitlines()[0]))
+    assert images == 640 and with_target > 300
+    # The points of a target are within it.
+    assert 0 < float(re.findall(r"at most (\S+) m", printed)[0]) < 0.15
+    with np.load(tmp_path / "images.npz") as data:
+        shapes = {name: array.shape[1:] for name, array in data.items()}
+    assert shapes == {
+        "rgb": (72, 96, 3),
+        "depth": (72, 96),
+        "is_target": (72, 96),
+        "world_from_camera": (4, 4),
+        "intrinsics": (3, 3),
+    }
+
+
 def test_type_checkers_accept_the_examples(tmp_path):
     """What users write after them, theirs accept, too: galactic has types (py.typed)."""
     pytest.importorskip("mypy")

@@ -23,7 +23,7 @@ def test_images_have_the_shapes_and_types_that_they_promise(simulator):
         ({}, {"rgb": ((ENVS, 20, 32, 3), np.uint8), "depth": ((ENVS, 20, 32), np.float32)}),
         ({"color": "rgba", "depth": False}, {"rgba": ((ENVS, 20, 32, 4), np.uint8)}),
         ({"color": None, "semantics": True, "depth": False},
-         {"semantics": ((ENVS, 20, 32), np.uint32)}),
+         {"semantics": ((ENVS, 20, 32), np.int32)}),
     ):  # fmt: skip
         renderer = Renderer(simulator, **CAMERA, **options)
         images = renderer.render()
@@ -71,6 +71,65 @@ def test_cameras_project_objects_to_where_they_are_drawn(world, draw_actions, ca
                 drawn += depth > place[2] - 0.1
     assert drawn > 20 and drawn > inside / 4
     assert VectorEnv(world, 2, threads=1).renderers == ()
+
+
+def test_cameras_stand_where_their_position_and_turn_say(simulator):
+    place = {"position": (0.1, 0.2, 0.3), "rpy_degrees": np.array([0, 30, 90])}
+    for camera in ("head", "hand", "top"):
+        plain = Renderer(simulator, **{**CAMERA, "camera": camera})
+        moved = Renderer(simulator, **{**CAMERA, "camera": camera}, **place)
+        moved.render()
+        # Of an image: to the right, down, ahead. The place: ahead, to the left, up.
+        half, root = 0.5, np.sqrt(0.75)
+        wanted = np.eye(4)
+        wanted[:3, 3] = -0.2, -0.3, 0.1
+        wanted[:3, 0] = 0, 0, 1  # its right is what was ahead
+        wanted[:3, 1] = half, root, 0
+        wanted[:3, 2] = -root, half, 0
+        np.testing.assert_allclose(
+            moved.world_from_camera, plain.world_from_camera @ wanted, atol=1e-5
+        )
+
+
+def test_objects_may_have_ids_of_their_own(world, draw_actions):
+    simulator = Simulator(world, envs=ENVS, threads=1, body_transforms=True)
+    options = {**CAMERA, "width": 64, "height": 64, "camera": "head"}
+    plain = Renderer(simulator, **options, semantics=True)
+    renderer = Renderer(simulator, **options, semantics="objects")
+    names = renderer.semantic_names
+    rays = np.linalg.inv(renderer.intrinsics)
+    pixels_of_objects = 0
+    for _ in range(30):
+        simulator.step(draw_actions(ENVS, 8))
+        by_name, seen = plain.render(), renderer.render()
+        for image in ("rgb", "depth"):
+            np.testing.assert_array_equal(seen[image], by_name[image])
+        is_object = seen["semantics"] >= len(names)
+        np.testing.assert_array_equal(
+            seen["semantics"][~is_object], by_name["semantics"][~is_object]
+        )
+        for env, row, column in np.argwhere(is_object):
+            state = simulator.env_state(env)
+            number = seen["semantics"][env, row, column] - len(names)
+            ray = rays @ [column + 0.5, row + 0.5, 1] * seen["depth"][env, row, column]
+            point = renderer.world_from_camera[env] @ [*ray, 1]
+            # Of objects of one name, the one that is there.
+            distances = [np.linalg.norm(point[:3] - one.translation) for one in state.objects]
+            assert distances[number] < 0.15
+            pixels_of_objects += 1
+        # All objects, and nothing else.
+        np.testing.assert_array_equal(is_object, by_name["semantics"] == names.index("thing"))
+    assert pixels_of_objects > 100
+
+
+def test_what_is_too_near_is_not_drawn(simulator):
+    depth = Renderer(simulator, **CAMERA).render()["depth"]
+    middle = np.float32(np.median(depth[depth > 0]))
+    behind = Renderer(simulator, **CAMERA, near=middle).render()["depth"]
+    assert behind[behind > 0].min() >= middle * (1 - 1e-5)
+    is_far = depth > middle + 0.01
+    # Cut triangles have edges of their own, along which pixels may show the neighbor.
+    assert np.mean(np.abs(behind[is_far] - depth[is_far]) < 0.01) > 0.99
 
 
 def test_the_simulator_may_step_while_it_draws(simulator, draw_actions):
@@ -152,7 +211,14 @@ def test_two_threads_cannot_use_one_renderer_at_once(world):
         ({"threads": -1}, Error, "threads: is -1, expected 0 to 4096; 0 takes one per processor"),
         ({"backend": "cuda", "device": -1}, Error, "device: is -1, expected a whole number"),
         ({"backend": "cuda", "device": 1.5}, Error, "device: is 1.5, expected an index or a name"),
+        ({"device": 0}, Error, "device: is 0, but the soft backend draws on the processor"),
         ({"fov_degrees": "wide"}, Error, "fov_degrees: is 'wide', expected a number"),
+        ({"semantics": "names"}, Error, "semantics: is 'names', expected True, False or objects"),
+        ({"near": -1}, Error, "near: found -1 m, expected 0.01 to 100, or 0 for what belongs"),
+        ({"position": (0, 0, np.inf)}, Error, "position: found inf m, expected -100 to 100"),
+        ({"position": (0, 1)}, ValueError, "position has the shape (2,), expected (3,)"),
+        ({"rpy_degrees": (0, 0, 400)}, Error, "rpy_degrees: found 400 degrees, expected -360"),
+        ({"rpy_degrees": "up"}, TypeError, "rpy_degrees is a str"),
         ({"color": "bgr"}, Error, "color: is bgr, expected rgb, rgba or None"),
         ({"backend": "vulkan"}, Error, "backend: is vulkan, expected auto, soft, gl or cuda"),
         ({"color": None, "depth": False}, Error, "found no image to make"),
@@ -201,7 +267,7 @@ def test_wrong_simulators_and_uses_are_refused(world, simulator):
     with pytest.raises(IndexError, match="there is no env 6"):
         renderer.render(envs=[ENVS])
     with pytest.raises(ValueError, match="out has 'semantics', which this renderer does not draw"):
-        renderer.render(out={"semantics": np.zeros((ENVS, 20, 32), np.uint32)})
+        renderer.render(out={"semantics": np.zeros((ENVS, 20, 32), np.int32)})
     with pytest.raises(TypeError, match="depth is a list, expected a numpy array"):
         renderer.render(out={"depth": [0]})
     frozen = np.zeros((ENVS, 20, 32), np.float32)

@@ -251,7 +251,7 @@ def test_spaces_have_what_comes_and_goes(world):
     assert single["state"].shape == (23,)
     assert batch["rgb"].shape == (ENVS, 16, 24, 3) and batch["rgb"].dtype == np.uint8
     assert batch["depth"].shape == (ENVS, 16, 24) and batch["depth"].dtype == np.float32
-    assert batch["semantics"].dtype == np.uint32
+    assert batch["semantics"].dtype == np.int32
     assert env.single_action_space.shape == (8,)
     assert env.action_space.shape == (ENVS, 8)
     observations = env.reset()[0]
@@ -287,6 +287,44 @@ def test_images_show_what_the_state_says(world, draw_actions, halves, copy):
     assert ends > 20
     assert len(np.unique(observations["rgb"])) > 5
     assert observations["depth"].max() > 0.5
+
+
+@pytest.mark.parametrize("copy", [True, False])
+@pytest.mark.parametrize("halves", [1, 2])
+def test_each_of_several_cameras_sees_what_it_sees_alone(world, draw_actions, halves, copy):
+    cameras = {
+        "hand": {"width": 16, "height": 12, "backend": "soft", "near": 0.02},
+        "behind": {**IMAGES, "camera": "follow"},
+    }
+    both = VectorEnv(world, ENVS, images=cameras, halves=halves, copy=copy, **OPTIONS)
+    alone = {
+        name: VectorEnv(world, ENVS, images={"camera": name, **options}, **OPTIONS)
+        for name, options in cameras.items()
+    }
+    assert [set(half) for half in both.renderers] == [set(cameras)] * halves
+    names = {"state", "hand_rgb", "hand_depth", "behind_rgb", "behind_depth", "behind_semantics"}
+    assert set(both.single_observation_space.spaces) == names
+    assert both.single_observation_space["hand_rgb"].shape == (12, 16, 3)
+    row = {name: both.buffers(1)[name][0] for name in names}
+    ends = 0
+    both.reset()
+    for env in alone.values():
+        env.reset()
+    for _ in range(40):
+        actions = draw_actions(ENVS, 8)
+        seen, _, _, _, infos = both.step(actions, row)
+        for camera, env in alone.items():
+            wanted, _, _, _, last = env.step(actions)
+            for name, image in wanted.items():
+                full_name = name if name == "state" else f"{camera}_{name}"
+                np.testing.assert_array_equal(seen[full_name], image)
+                np.testing.assert_array_equal(row[full_name], image)
+                for number in np.flatnonzero(infos.get("_final_obs", [])):
+                    mine, theirs = infos["final_obs"][number], last["final_obs"][number]
+                    np.testing.assert_array_equal(mine[full_name], theirs[name])
+        if infos:
+            ends += int(infos["_final_obs"].sum())
+    assert ends >= ENVS
 
 
 @pytest.mark.parametrize("images", [None, IMAGES])
@@ -440,7 +478,9 @@ def test_pictures_are_drawn_for_those_who_ask(world):
         ({"num_envs": "8"}, "num_envs is '8', expected a whole number above 0"),
         ({"num_envs": 0}, "num_envs is 0, expected a whole number above 0"),
         ({"num_envs": 3, "halves": 2}, "num_envs is 3, expected an even number for two halves"),
-        ({"images": True}, "images is True, expected options of galactic.Renderer, such as"),
+        ({"images": True}, "images is True, expected options of galactic.Renderer, those of"),
+        ({"images": {"hand": {}, "width": 9}}, "images['width'] is 9, expected options, as the"),
+        ({"images": {"a b": {}}}, "a camera of images is 'a b', expected a name, such as hand"),
         ({"images": {"device": 1.5}}, "device: is 1.5, expected an index or a name"),
         ({"images": {"width": 128.0}}, "width: is 128.0, expected a whole number"),
     ],

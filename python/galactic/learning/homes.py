@@ -31,6 +31,16 @@ def simulation_keywords(text: str) -> dict[str, Any]:
     return keywords
 
 
+def camera_options(settings: Settings) -> dict[str, Any]:
+    """What the network sees, as options of galactic.Renderer."""
+    return {
+        "width": IMAGE_SIZE,
+        "height": IMAGE_SIZE,
+        "camera": settings.camera,
+        "fov_degrees": settings.fov,
+    }
+
+
 class Homes:
     """A galactic.VectorEnv as the trainer wants it. Observations land in the rollout: on a processor
     they are written there by the simulator's threads, on a GPU they come by pinned memory."""
@@ -38,9 +48,7 @@ class Homes:
     def __init__(self, world: "galactic.World", settings: Settings, threads: int, *,
                  rank: int = 0, ranks: int = 1, order: str = "shuffled"):  # fmt: skip
         keywords = simulation_keywords(settings.simulation)
-        images: Optional[Mapping[str, Any]] = None
-        if settings.network != "state":
-            images = {"width": IMAGE_SIZE, "height": IMAGE_SIZE}
+        images = None if settings.network == "state" else camera_options(settings)
         self.image_size = (IMAGE_SIZE, IMAGE_SIZE) if images else None
         try:
             self.env = galactic.VectorEnv(

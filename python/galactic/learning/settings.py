@@ -85,6 +85,14 @@ class Settings:
         "`state` sees no images; the others are the paper's (table 4)",
         choices=("state", "simple_cnn", "resnet9", "resnet18"),
     )
+    camera: str = _setting(
+        "head",
+        "Network",
+        "what the network sees: the recipe's camera (`head`), `follow`, `top`, or a link",
+    )
+    fov: float = _setting(
+        0.0, "Network", "vertical field of view, degrees; 0: the camera's", low=0.0, high=175.0
+    )
     recurrent: bool = _setting(
         False, "Network", "put a GRU into the network `state`; the others always have one"
     )

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -49,6 +52,40 @@ void addSize(CLI::App& app, DrawingOptions& drawing) {
   app.add_option_function<std::string>("--size", set, "Pixels of an image")
       ->check(is_size)
       ->option_text("N|WxH [128]");
+}
+
+/// "0.1,0,-2": three numbers of -most to most.
+std::optional<std::array<float, 3>> threeOf(std::string_view text, double most) {
+  std::array<float, 3> numbers{};
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    const std::size_t end = n + 1 < numbers.size() ? text.find(',') : text.size();
+    if (end == std::string_view::npos) return {};
+    const std::string_view one = text.substr(0, end);
+    if (!numberFault(one, -most, most).empty()) return {};
+    std::from_chars(one.data(), one.data() + one.size(), numbers[n]);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return numbers;
+}
+
+struct NameAndText {
+  const char* name;
+  const char* text;
+};
+
+CLI::Option* addThree(CLI::App& app, const NameAndText& option, double most,
+                      std::array<float, 3>& numbers) {
+  const CLI::Validator are_three(
+      [most](const std::string& text) {
+        if (threeOf(text, most)) return std::string();
+        return fmt::format("found {}, expected three numbers from {} to {} with commas between",
+                           text, -most, most);
+      },
+      "", "three");
+  const auto set = [&numbers, most](const std::string& text) {
+    if (const auto three = threeOf(text, most)) numbers = *three;
+  };
+  return app.add_option_function<std::string>(option.name, set, option.text)->check(are_three);
 }
 
 void addBackend(CLI::App& app, DrawingOptions& drawing) {
@@ -114,6 +151,15 @@ void addDrawingOptions(CLI::App& app, DrawingOptions& drawing) {
       ->check(
           numberCheck(static_cast<double>(kLeastFovDegrees), static_cast<double>(kMostFovDegrees)))
       ->option_text("DEGREES");
+  addThree(app, {"--camera-position", "The camera's place there: ahead, left, up, meters"},
+           static_cast<double>(kFarthestCamera), drawing.camera_position)
+      ->option_text("X,Y,Z [0,0,0]");
+  addThree(app, {"--camera-rpy", "How it is turned there: roll, pitch, yaw, degrees"}, 360,
+           drawing.camera_rpy_degrees)
+      ->option_text("R,P,Y [0,0,0]");
+  app.add_option("--near", drawing.near, "What is nearer than this is not drawn, meters")
+      ->check(numberCheck(static_cast<double>(kLeastNear), static_cast<double>(kMostNear)))
+      ->option_text("METERS");
   addPictures(app, drawing);
   addDebug(app, drawing);
   app.option_defaults()->group("Options");

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -20,6 +21,10 @@ struct DrawingOptions {
   std::string camera = "head";
   /// Between the lower and the upper edge; 0: what belongs to the camera.
   float fov_degrees = 0;
+  /// CameraWish has the rest.
+  std::array<float, 3> camera_position{};
+  std::array<float, 3> camera_rpy_degrees{};
+  float near = 0;
 
   /// Whether a policy pack is played, which may want images: then backend and device count, whether
   /// or not anything else is drawn.

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -24,8 +27,21 @@ constexpr int kTileGap = 2;
 /// Beside the frames: what semantic ids mean.
 constexpr std::string_view kLegendName = "semantics.json";
 
-std::string frameName(std::size_t env, std::uint64_t step, const char* what) {
-  return fmt::format("env_{:04}_step_{:06}_{}.png", env, step, what);
+std::string frameName(std::size_t env, std::uint64_t step, std::string_view what) {
+  return fmt::format("env_{:04}_step_{:06}_{}", env, step, what);
+}
+
+/// Where the camera of a frame stood and how it makes an image, for programs that read frames.
+std::string cameraText(const EnvFrame& frame) {
+  const std::array<float, 9> k =
+      cameraMatrix(frame.seen_from, frame.camera.width, frame.camera.height);
+  const auto& [x, y, z, t] = worldFromImageAxes(frame.seen_from);
+  return fmt::format(
+      "{{\n  \"intrinsics\": [[{}, {}, {}], [{}, {}, {}], [{}, {}, {}]],\n"
+      "  \"world_from_camera\": [[{}, {}, {}, {}], [{}, {}, {}, {}], [{}, {}, {}, {}], "
+      "[0, 0, 0, 1]]\n}}\n",
+      k[0], k[1], k[2], k[3], k[4], k[5], k[6], k[7], k[8],  //
+      x.x, y.x, z.x, t.x, x.y, y.y, z.y, t.y, x.z, y.z, z.z, t.z);
 }
 
 /// The moments that a sheet shows of `frames` frames, evenly spread, first and last among them.
@@ -57,7 +73,8 @@ Image emptyTile(const DrawingOptions& options) {
 }  // namespace
 
 bool isFrameName(std::string_view name) {
-  return name == kLegendName || (name.starts_with("env_") && name.ends_with(".png"));
+  return name == kLegendName ||
+         (name.starts_with("env_") && (name.ends_with(".png") || name.ends_with(".json")));
 }
 
 Result<void> makeFrameFolder(const std::filesystem::path& folder) {
@@ -66,7 +83,7 @@ Result<void> makeFrameFolder(const std::filesystem::path& folder) {
   if (error) {
     return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + error.message());
   }
-  return tryFile(folder / frameName(0, 0, "rgb"));
+  return tryFile(folder / frameName(0, 0, "rgb.png"));
 }
 
 Image tileOf(const EnvFrame& frame) {
@@ -149,15 +166,19 @@ bool PictureOutput::isOnSheet(std::uint64_t step) const {
 Result<void> PictureOutput::writeFrame(std::uint64_t step, std::size_t env,
                                        const EnvFrame& frame) const {
   const std::filesystem::path folder = options_.frames;
-  const auto write = [&](const char* what, const auto& picture) {
+  const auto write = [&](std::string_view what, const auto& picture) {
     return pictures::writePng(folder / frameName(env, step, what), picture);
   };
-  Result<void> written;
+  const std::string text = cameraText(frame);
+  Result<void> written = writeFileAtomically(folder / frameName(env, step, "camera.json"),
+                                             {std::as_bytes(std::span(text))});
   const DrawnImage& camera = frame.camera;
-  if (!camera.color.empty()) written = write("rgb", colorPicture(camera));
-  if (written && !camera.depth.empty()) written = write("depth", depthNumbers(camera));
-  if (written && !camera.semantics.empty()) written = write("semantic", semanticNumbers(camera));
-  if (written && frame.debug) written = write("debug", colorPicture(*frame.debug));
+  if (written && !camera.color.empty()) written = write("rgb.png", colorPicture(camera));
+  if (written && !camera.depth.empty()) written = write("depth.png", depthNumbers(camera));
+  if (written && !camera.semantics.empty()) {
+    written = write("semantic.png", semanticNumbers(camera));
+  }
+  if (written && frame.debug) written = write("debug.png", colorPicture(*frame.debug));
   return written;
 }
 

@@ -11,6 +11,7 @@
 #include "drawing/contact_sheet.h"
 #include "drawing/frame_images.h"
 #include "drawing/video_pipe.h"
+#include "galactic/batch_renderer.h"
 #include "galactic/error.h"
 
 namespace galactic {
@@ -20,6 +21,7 @@ namespace galactic {
 struct EnvFrame {
   DrawnImage camera;
   std::optional<DrawnImage> debug;
+  RenderCamera seen_from = {};
 };
 
 /// How long the run is that pictures are made of.

@@ -87,8 +87,8 @@ class DebugBatch {
   static Result<std::unique_ptr<DebugBatch>> create(const World& world,
                                                     const BatchSimulator& simulator,
                                                     const RunOptions& run, std::size_t shown) {
-    const Result<ChosenCamera> camera =
-        chooseCamera(world.robot(), {.name = run.drawing.debug_camera, .option = "--debug-camera"});
+    const Result<ChosenCamera> camera = chooseCamera(
+        world.robot(), {.name = run.drawing.debug_camera, .options = {.camera = "--debug-camera"}});
     if (!camera) return tl::unexpected<Error>(camera.error());
     Result<DebugModels> models = DebugModels::from(world, {.radius = run.drawing.debug_radius});
     if (!models) return tl::unexpected<Error>(models.error());
@@ -141,7 +141,11 @@ Result<Rendering> Rendering::create(const World& world, const BatchSimulator& si
                                     const RunOptions& options, std::size_t shown) {
   const DrawingOptions& drawing = options.drawing;
   const Result<ChosenCamera> camera =
-      chooseCamera(world.robot(), {.name = drawing.camera, .fov_degrees = drawing.fov_degrees});
+      chooseCamera(world.robot(), {.name = drawing.camera,
+                                   .fov_degrees = drawing.fov_degrees,
+                                   .position = drawing.camera_position,
+                                   .rpy_degrees = drawing.camera_rpy_degrees,
+                                   .near = drawing.near});
   if (!camera) return tl::unexpected<Error>(camera.error());
   Result<WorldModels> models = WorldModels::from(world);
   if (!models) return tl::unexpected<Error>(models.error());
@@ -171,6 +175,7 @@ std::span<const EnvFrame> Rendering::frames() {
   for (std::size_t env = 0; env < parts_->frames.size(); ++env) {
     EnvFrame& frame = parts_->frames[env];
     frame.camera = parts_->images->image(env);
+    frame.seen_from = parts_->views->views()[env].camera;
     if (parts_->debug) frame.debug = parts_->debug->image(env);
   }
   return parts_->frames;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -23,12 +22,10 @@ class PolicyEyes {
   static Result<std::unique_ptr<PolicyEyes>> create(const PolicyImage& image, const World& world,
                                                     const BatchSimulator& simulator,
                                                     const RunOptions& run) {
-    constexpr float kDegreesPerRadian = 180 / std::numbers::pi_v<float>;
     const Result<ChosenCamera> camera =
         chooseCamera(world.robot(), {.name = image.camera,
-                                     .fov_degrees = image.vertical_fov * kDegreesPerRadian,
-                                     .option = run.policy,
-                                     .fov_option = run.policy});
+                                     .fov_degrees = image.fovDegrees(),
+                                     .options = {.camera = run.policy, .fov = run.policy}});
     if (!camera) return tl::unexpected<Error>(camera.error());
     Result<WorldModels> models = WorldModels::from(world);
     if (!models) return tl::unexpected<Error>(models.error());

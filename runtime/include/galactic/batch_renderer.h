@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -67,6 +68,14 @@ struct RenderCamera {
   float vertical_fov = 1.57079633F;
 };
 
+/// The same camera with the axes of images: X to the right, Y down, Z ahead.
+[[nodiscard]] RigidTransform worldFromImageAxes(const RenderCamera& camera) noexcept;
+
+/// Its camera matrix K, row by row, for images of this size: (column, row, 1) of a point is
+/// K (x, y, z) / z in the axes of images; the middle of the first pixel is (0.5, 0.5).
+[[nodiscard]] std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t width,
+                                                std::uint32_t height) noexcept;
+
 /// A model, placed.
 struct RenderInstance {
   /// Number in the RenderLibrary.
@@ -97,6 +106,8 @@ struct RenderView {
   RenderCamera camera;
   std::span<const RenderInstance> instances = {};
   std::span<const PosedModel> posed = {};
+  /// A semantic id for each posed model; empty: they have those of their packs.
+  std::span<const std::uint32_t> posed_semantics = {};
   /// Views of the same robot share one list, and only their bodies move.
   std::span<const AttachedModel> attached = {};
   /// world_from_body.
@@ -110,7 +121,8 @@ struct RenderTargets {
   std::span<std::uint8_t> color{};
   /// Shape: views x height x width. Meters along the camera's axis; 0 where nothing is drawn.
   std::span<float> depth{};
-  /// Shape: views x height x width. Indices into RenderLibrary::semanticNames().
+  /// Shape: views x height x width. Indices into RenderLibrary::semanticNames(), or ids of
+  /// RenderView::posed_semantics.
   std::span<std::uint32_t> semantics{};
 };
 

@@ -1,7 +1,9 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <variant>
@@ -119,6 +121,11 @@ struct PolicyImage {
   /// Radians; 0: that of the camera.
   float vertical_fov = 0;
 
+  /// As CameraWish has it: rounded to thousandths, so that it is what somebody asked for.
+  [[nodiscard]] float fovDegrees() const {
+    constexpr double kThousandths = 180'000 / std::numbers::pi;
+    return static_cast<float>(std::round(static_cast<double>(vertical_fov) * kThousandths) / 1000);
+  }
   [[nodiscard]] std::uint32_t channels() const { return (color ? 3U : 0U) + (depth ? 1U : 0U); }
 };
 

@@ -42,6 +42,9 @@ struct RenderMaterial {
   float alpha_cutoff = 0;
 };
 
+/// In place of a semantic id: each cluster of a model has the one that its pack gives it.
+inline constexpr std::uint32_t kSemanticsOfPack = 0xFFFFFFFF;
+
 /// Up to kMostInCluster vertices and triangles of one material that are drawn or left out together.
 /// The memory layout is that of a pack.
 struct RenderCluster {

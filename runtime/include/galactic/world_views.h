@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -60,6 +61,12 @@ class MountedCamera {
   float root_height_;
 };
 
+/// What the semantic ids of objects tell apart.
+enum class ObjectIds : std::uint8_t {
+  kNames,    ///< Objects of one name have one id: an index into RenderLibrary::semanticNames().
+  kObjects,  ///< Object n of an env has the id n above all of these.
+};
+
 /// What the cameras of a batch see: one view per env, filled from the simulator's state and valid
 /// while that changes, so that a renderer can draw one step while the next is simulated.
 class WorldViews {
@@ -67,7 +74,7 @@ class WorldViews {
   /// `models` must outlive the views and stay where it is. `simulator` must have been made with
   /// SimulationOptions::body_transforms.
   WorldViews(const World& world, const WorldModels& models, const BatchSimulator& simulator,
-             const CameraMount& camera);
+             const CameraMount& camera, ObjectIds ids = ObjectIds::kNames);
 
   /// Copies the state after the last step. Does not allocate.
   void update(const BatchSimulator& simulator) noexcept;
@@ -87,6 +94,8 @@ class WorldViews {
   /// Room for the objects of one env.
   std::size_t stride_ = 0;
   std::vector<PosedModel> posed_;
+  /// Their ids; empty with ObjectIds::kNames.
+  std::vector<std::uint32_t> posed_semantics_;
   /// Shape: envs * bodies of the simulator.
   std::vector<RigidTransform> bodies_;
   std::vector<RenderView> views_;
@@ -99,6 +108,15 @@ struct ChosenCamera {
   float near = 0.05F;
 };
 
+/// What errors call the options of a CameraWish.
+struct CameraOptionNames {
+  std::string camera = "--camera";
+  std::string fov = "--fov";
+  std::string position = "--camera-position";
+  std::string rpy = "--camera-rpy";
+  std::string near = "--near";
+};
+
 /// A camera as a user asks for it.
 struct CameraWish {
   /// "head": that of the robot's recipe. "follow": behind and above the base, moved to where
@@ -109,16 +127,26 @@ struct CameraWish {
   /// Between the lower and the upper edge, kLeastFovDegrees to kMostFovDegrees; 0: what belongs to
   /// the camera.
   float fov_degrees = 0;
-  /// What errors call the options.
-  std::string option = "--camera";
-  std::string fov_option = "--fov";
+  /// Where it is, seen from where that camera or link has it: meters ahead, to the left and up, as
+  /// in a robot's recipe.
+  std::array<float, 3> position{};
+  /// How it is turned there, degrees: roll, pitch (down is positive), yaw, each -360 to 360.
+  std::array<float, 3> rpy_degrees{};
+  /// Meters in front of it that are cut off, kLeastNear to kMostNear; 0: what belongs to the
+  /// camera.
+  float near = 0;
+  CameraOptionNames options = {};
 };
 /// Narrower views than these show next to nothing, wider ones little but their edges.
 inline constexpr float kLeastFovDegrees = 1;
 inline constexpr float kMostFovDegrees = 175;
+/// Of camera positions, in any direction, meters.
+inline constexpr float kFarthestCamera = 100;
+inline constexpr float kLeastNear = 0.01F;
+inline constexpr float kMostNear = 100;
 
-/// Fails with kInvalidInput when the robot has no such link, or its recipe no camera, and when the
-/// field of view is out of range.
+/// Fails with kInvalidInput when the robot has no such link, or its recipe no camera, and when a
+/// number is out of range.
 [[nodiscard]] Result<ChosenCamera> chooseCamera(const Robot& robot, const CameraWish& wish);
 
 }  // namespace galactic

@@ -68,6 +68,21 @@ Made makeEngine(const RenderLibrary& library, const RenderOptions& options) {
 
 }  // namespace
 
+RigidTransform worldFromImageAxes(const RenderCamera& camera) noexcept {
+  const auto& [ahead, up, right, origin] = camera.world_from_camera;
+  return {right, up * -1.0F, ahead, origin};
+}
+
+std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t width,
+                                  std::uint32_t height) noexcept {
+  const float half_width = static_cast<float>(width) / 2;
+  const float half_height = static_cast<float>(height) / 2;
+  const float focal = half_height / std::tan(camera.vertical_fov / 2);
+  return {focal, 0,     half_width,   //
+          0,     focal, half_height,  //
+          0,     0,     1};
+}
+
 const char* backendName(RenderBackend backend) noexcept {
   switch (backend) {
     case RenderBackend::kSoft:

@@ -53,17 +53,19 @@ class RenderEngine {
   return view.instances.size() + view.posed.size() + view.attached.size();
 }
 
-/// Calls use(model, world_from_model) for all that a view shows, in the order of drawing.
+/// Calls use(model, world_from_model, semantic) for all that a view shows, in the order of drawing.
 template <class Use>
 void forModels(const RenderView& view, const Use& use) {
   for (const RenderInstance& instance : view.instances) {
-    use(instance.model, instance.world_from_model);
+    use(instance.model, instance.world_from_model, kSemanticsOfPack);
   }
-  for (const PosedModel& posed : view.posed) {
-    use(posed.model, rigidTransform(posed.world_from_model));
+  for (std::size_t n = 0; n < view.posed.size(); ++n) {
+    const PosedModel& posed = view.posed[n];
+    use(posed.model, rigidTransform(posed.world_from_model),
+        view.posed_semantics.empty() ? kSemanticsOfPack : view.posed_semantics[n]);
   }
   for (const AttachedModel& attached : view.attached) {
-    use(attached.model, view.bodies[attached.body] * attached.body_from_model);
+    use(attached.model, view.bodies[attached.body] * attached.body_from_model, kSemanticsOfPack);
   }
 }
 

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "galactic/world_views.h"
@@ -56,7 +59,7 @@ Result<ChosenCamera> cameraOf(const Robot& robot, const CameraWish& wish) {
   if (name == "top") return topCamera();
   if (name == "head") {
     if (const std::optional<CameraMount> mount = robotCamera(robot)) return ChosenCamera{*mount};
-    return fail(ErrorCode::kInvalidInput, wish.option,
+    return fail(ErrorCode::kInvalidInput, wish.options.camera,
                 fmt::format("head is the camera of the robot's recipe, and that of {} has none; "
                             "take follow, top or one of its links",
                             robot.name()));
@@ -66,26 +69,69 @@ Result<ChosenCamera> cameraOf(const Robot& robot, const CameraWish& wish) {
       name.starts_with(kLinkPrefix) ? name.substr(kLinkPrefix.size()) : name;
   const std::optional<std::uint32_t> link = robot.findLink(link_name);
   if (!link) {
-    return fail(ErrorCode::kInvalidInput, wish.option,
+    return fail(ErrorCode::kInvalidInput, wish.options.camera,
                 fmt::format("found no link {} in {}; expected head, follow, top or one of {}",
                             link_name, robot.name(), linkNames(robot)));
   }
   return ChosenCamera{{.frame = CameraFrame::kLink, .link = *link, .frame_from_camera = {}}};
 }
 
+/// Roll, pitch and yaw about axes ahead, to the left and up, in that order.
+Quat turned(const std::array<float, 3>& rpy_degrees) {
+  const auto half = [&](std::size_t n) { return rpy_degrees[n] * kRadiansPerDegree / 2; };
+  const Quat roll{.x = std::sin(half(0)), .y = 0, .z = 0, .w = std::cos(half(0))};
+  const Quat pitch{.x = 0, .y = 0, .z = -std::sin(half(1)), .w = std::cos(half(1))};
+  const Quat yaw{.x = 0, .y = std::sin(half(2)), .z = 0, .w = std::cos(half(2))};
+  return yaw * pitch * roll;
+}
+
+/// Where the wish has the camera, in the frame that it would have otherwise.
+Pose offsetOf(const CameraWish& wish) {
+  const auto& [ahead, left, up] = wish.position;
+  return {{ahead, up, -left}, turned(wish.rpy_degrees)};
+}
+
+/// A comparison with NaN is false.
+bool isWithin(float value, float least, float most) { return value >= least && value <= most; }
+
+Result<void> checkNumbers(const CameraWish& wish) {
+  const auto refuse = [](const std::string& option, const std::string& message) {
+    return fail(ErrorCode::kInvalidInput, option, message);
+  };
+  if (wish.fov_degrees != 0 && !isWithin(wish.fov_degrees, kLeastFovDegrees, kMostFovDegrees)) {
+    return refuse(wish.options.fov,
+                  fmt::format("found a vertical field of view of {} degrees, expected {} to {}, or "
+                              "0 for that of the camera",
+                              wish.fov_degrees, kLeastFovDegrees, kMostFovDegrees));
+  }
+  if (wish.near != 0 && !isWithin(wish.near, kLeastNear, kMostNear)) {
+    return refuse(wish.options.near, fmt::format("found {} m, expected {} to {}, or 0 for what "
+                                                 "belongs to the camera",
+                                                 wish.near, kLeastNear, kMostNear));
+  }
+  for (const float meters : wish.position) {
+    if (isWithin(meters, -kFarthestCamera, kFarthestCamera)) continue;
+    return refuse(wish.options.position, fmt::format("found {} m, expected {} to {}", meters,
+                                                     -kFarthestCamera, kFarthestCamera));
+  }
+  for (const float degrees : wish.rpy_degrees) {
+    if (isWithin(degrees, -360, 360)) continue;
+    return refuse(wish.options.rpy, fmt::format("found {} degrees, expected -360 to 360", degrees));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<ChosenCamera> chooseCamera(const Robot& robot, const CameraWish& wish) {
   Result<ChosenCamera> camera = cameraOf(robot, wish);
-  if (!camera || wish.fov_degrees == 0) return camera;
-  // A comparison with NaN is false.
-  if (!(wish.fov_degrees >= kLeastFovDegrees && wish.fov_degrees <= kMostFovDegrees)) {
-    return fail(ErrorCode::kInvalidInput, wish.fov_option,
-                fmt::format("found a vertical field of view of {} degrees, expected {} to {}, or 0 "
-                            "for that of the camera",
-                            wish.fov_degrees, kLeastFovDegrees, kMostFovDegrees));
+  if (!camera) return camera;
+  if (const Result<void> checked = checkNumbers(wish); !checked) {
+    return tl::unexpected<Error>(checked.error());
   }
-  camera->mount.vertical_fov = wish.fov_degrees * kRadiansPerDegree;
+  camera->mount.frame_from_camera = camera->mount.frame_from_camera * offsetOf(wish);
+  if (wish.fov_degrees != 0) camera->mount.vertical_fov = wish.fov_degrees * kRadiansPerDegree;
+  if (wish.near != 0) camera->near = wish.near;
   return camera;
 }
 

@@ -53,11 +53,12 @@ RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies,
 }
 
 WorldViews::WorldViews(const World& world, const WorldModels& models,
-                       const BatchSimulator& simulator, const CameraMount& camera)
+                       const BatchSimulator& simulator, const CameraMount& camera, ObjectIds ids)
     : models_(&models),
       camera_(world, simulator, camera),
       stride_(world.mostObjects()),
       posed_(simulator.envCount() * stride_),
+      posed_semantics_(ids == ObjectIds::kObjects ? posed_.size() : 0),
       bodies_(simulator.bodyTransforms().size()),
       views_(simulator.envCount()) {
   assert(!simulator.bodyTransforms().empty());
@@ -85,17 +86,23 @@ void WorldViews::update(const BatchSimulator& simulator) noexcept {
 
 void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept {
   const std::span<PosedModel> room = std::span(posed_).subspan(env * stride_, stride_);
+  const std::span<std::uint32_t> ids =
+      posed_semantics_.empty() ? std::span<std::uint32_t>()
+                               : std::span(posed_semantics_).subspan(env * stride_, stride_);
   const EnvObjects state = simulator.envObjects(env);
+  const std::size_t names = models_->library().semanticNames().size();
   std::size_t count = 0;
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
     const auto model = models_->objectModel(state.placements[n].object);
     if (!model) continue;
     const bool is_held = static_cast<std::int32_t>(n) == state.held;
+    if (!ids.empty()) ids[count] = static_cast<std::uint32_t>(names + n);
     room[count++] = {*model, is_held ? state.world_from_held : state.objects[n]};
   }
   RenderView& view = views_[env];
   view.instances = scenes_[state.scene];
   view.posed = room.first(count);
+  view.posed_semantics = ids.first(ids.empty() ? 0 : count);
   view.camera = camera_.at(view.bodies, state.scene);
 }
 

@@ -184,7 +184,7 @@ def test_a_checkpoint_becomes_a_pack(tmp_path: pathlib.Path, capsys: Any) -> Non
     assert player.robot == ""
     assert player.options == {"task": "pick", "no_distractors": True, "slide_attempts": 0}
     assert player.observation == PARTS
-    assert player.image_size is None
+    assert player.images is None
     assert player.action_count == 11
     # The same checkpoint gives the same bytes.
     again = tmp_path / "again" / "picker.pack"
@@ -232,7 +232,8 @@ def test_modules_that_no_layer_can_say_are_refused() -> None:
 def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
     pack = write(export.content_of(saved_policy(network="simple_cnn"), "p"), tmp_path / "p.pack")
     player = _core.LearnedPolicy(pack, 2)
-    assert player.image_size == (128, 128)
+    images = {"width": 128, "height": 128, "color": "rgb", "depth": True}
+    assert player.images == {**images, "camera": "head", "fov_degrees": 0}
     state = np.zeros((2, STATE), np.float32)
     rgb, depth = np.zeros((2, 128, 128, 3), np.uint8), np.zeros((2, 128, 128), np.float32)
     assert player.act(state, None, rgb, depth).shape == (2, 11)
@@ -249,6 +250,15 @@ def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
     with pytest.raises(galactic.Error):
         _core.LearnedPolicy(tmp_path / "no.pack", 2)
     assert repr(player) == "<galactic.LearnedPolicy p>"
+
+
+@pytest.mark.parametrize("fov", [1, 33.3, 60, 175])
+def test_a_policy_says_with_which_camera_it_was_trained(tmp_path: pathlib.Path, fov: float) -> None:
+    saved = saved_policy(network="simple_cnn", camera="top", fov=fov)
+    pack = write(export.content_of(saved, "p"), tmp_path / "p.pack")
+    images = _core.LearnedPolicy(pack, 2).images
+    assert images is not None
+    assert (images["camera"], images["fov_degrees"]) == ("top", np.float32(fov))
 
 
 @pytest.mark.parametrize(

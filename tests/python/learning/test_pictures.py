@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pathlib
 import shutil
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,10 +32,10 @@ def result(episode: int, success: bool) -> EpisodeResult:
     return EpisodeResult(episode, success, "", 0.0, 1, 0.0, 0.0, 0, 0)
 
 
-def untrained(network: str) -> tuple[Settings, Homes, checkpoint.SavedPolicy]:
+def untrained(network: str, **more: Any) -> tuple[Settings, Homes, checkpoint.SavedPolicy]:
     """A policy that moves about, and the homes that it is for."""
     settings = Settings(
-        envs=6, halves=1, mini_batches=1, network=network, width=16, simulation=SIMULATION
+        envs=6, halves=1, mini_batches=1, network=network, width=16, simulation=SIMULATION, **more
     )
     homes = Homes(galactic.World(WORLD), settings, 1)
     shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
@@ -60,9 +61,17 @@ def test_half_of_the_episodes_shown_are_successes(
 
 
 @needs_world
-@pytest.mark.parametrize("network", ["state", "simple_cnn", "resnet9"])
-def test_what_is_filmed_is_what_was_played(network: str) -> None:
-    settings, homes, saved = untrained(network)
+@pytest.mark.parametrize(
+    "network, more",
+    [
+        ("state", {}),
+        ("simple_cnn", {}),
+        ("simple_cnn", {"camera": "follow", "fov": 90.0}),
+        ("resnet9", {}),
+    ],
+)
+def test_what_is_filmed_is_what_was_played(network: str, more: dict[str, Any]) -> None:
+    settings, homes, saved = untrained(network, **more)
     actor = Actor(saved.policy, deterministic=False)
     episodes = homes.playable_episodes()[:6]
     played = Evaluator(homes, actor).play(episodes)
@@ -77,6 +86,16 @@ def test_what_is_filmed_is_what_was_played(network: str) -> None:
         assert not np.array_equal(film.frames[0], film.frames[-1])
     # They are told apart by what they were paid.
     assert len({round(one.reward, 3) for one in played}) == len(played)
+
+
+@needs_world
+def test_a_network_sees_through_the_camera_of_its_settings() -> None:
+    _, homes, _ = untrained("simple_cnn", camera="follow", fov=90.0)
+    drawn = homes.env.reset()[0]["rgb"]
+    wanted = galactic.Renderer(homes.env.simulators[0], camera="follow", fov_degrees=90)
+    np.testing.assert_array_equal(drawn, wanted.render()["rgb"])
+    with pytest.raises(galactic.Error, match="camera: found no link nose"):
+        untrained("simple_cnn", camera="nose")
 
 
 @needs_world

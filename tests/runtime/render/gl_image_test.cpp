@@ -185,6 +185,17 @@ TEST_F(GlImage, PosedAndAttachedModelsAreDrawnAsInstances) {
   EXPECT_EQ(renderViews(home.library(), glOptions(), models.mixed()), images);
 }
 
+TEST_F(GlImage, PosedModelsThatHaveNumbersShowThem) {
+  GlHome home;
+  std::mt19937 random(32);
+  const MixedModels models(random, 5, home.views(10));
+  RenderOptions options = glOptions();
+  options.semantics = true;
+  expectNumbers(models, [&](const std::vector<RenderView>& views) {
+    return renderViews(home.library(), options, views);
+  });
+}
+
 TEST_F(GlImage, ABatchIsItsViewsOneByOne) {
   GlHome home;
   const std::vector<RenderView> views = home.views(7);

@@ -1,4 +1,7 @@
 #pragma once
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -61,6 +64,9 @@ class MixedModels {
             {attached.model, lists.bodies[attached.body] * attached.body_from_model});
       }
       mixed_.push_back(mixed);
+      for (std::size_t n = 0; n < lists.posed.size(); ++n) lists.numbers.push_back(number(n));
+      numbered_.push_back(mixed);
+      numbered_.back().posed_semantics = lists.numbers;
       as_instances_.push_back({.camera = views[v].camera, .instances = lists.all});
     }
   }
@@ -68,16 +74,63 @@ class MixedModels {
   [[nodiscard]] const std::vector<RenderView>& mixed() const { return mixed_; }
   [[nodiscard]] const std::vector<RenderView>& asInstances() const { return as_instances_; }
 
+  /// mixed(), where the posed model n of a view has the semantic id number(n).
+  [[nodiscard]] const std::vector<RenderView>& numbered() const { return numbered_; }
+  static std::uint32_t number(std::size_t n) { return 1000 + static_cast<std::uint32_t>(n); }
+
+  /// The posed model n of each view, and nothing else.
+  [[nodiscard]] std::vector<RenderView> posedAlone(std::size_t n) const {
+    std::vector<RenderView> alone;
+    for (const RenderView& view : mixed_) {
+      alone.push_back({.camera = view.camera});
+      if (n < view.posed.size()) alone.back().posed = view.posed.subspan(n, 1);
+    }
+    return alone;
+  }
+
  private:
   struct Lists {
     std::vector<RenderInstance> instances, all;
     std::vector<PosedModel> posed;
+    std::vector<std::uint32_t> numbers;
     std::vector<RigidTransform> bodies;
   };
 
   std::array<std::vector<AttachedModel>, 2> robots_;
   std::vector<Lists> lists_;
-  std::vector<RenderView> mixed_, as_instances_;
+  std::vector<RenderView> mixed_, as_instances_, numbered_;
 };
+
+/// Expects images of MixedModels::numbered() to be those of mixed() but for the numbers, which are
+/// where a posed model is in front of all else. `draw` makes images of views.
+template <class Draw>
+void expectNumbers(const MixedModels& models, const Draw& draw) {
+  const RenderImages plain = draw(models.mixed());
+  const RenderImages numbered = draw(models.numbered());
+  EXPECT_EQ(numbered.color, plain.color);
+  EXPECT_EQ(numbered.depth, plain.depth);
+  // Those of the pack, unless a posed model is at this distance; if several are, any of their
+  // numbers.
+  std::vector<std::vector<std::uint32_t>> wanted(plain.semantics.size());
+  for (std::size_t n = 0; n < MixedModels::kOfEach; ++n) {
+    const RenderImages alone = draw(models.posedAlone(n));
+    for (std::size_t pixel = 0; pixel < wanted.size(); ++pixel) {
+      const bool is_seen = alone.depth[pixel] > 0 && alone.depth[pixel] == plain.depth[pixel];
+      if (is_seen) wanted[pixel].push_back(MixedModels::number(n));
+    }
+  }
+  std::size_t with_number = 0;
+  for (std::size_t pixel = 0; pixel < wanted.size(); ++pixel) {
+    const std::uint32_t found = numbered.semantics[pixel];
+    if (wanted[pixel].empty()) {
+      ASSERT_EQ(found, plain.semantics[pixel]) << pixel;
+    } else {
+      ++with_number;
+      ASSERT_THAT(wanted[pixel], testing::Contains(found)) << pixel;
+    }
+  }
+  EXPECT_GT(with_number, wanted.size() / 20);
+  EXPECT_LT(with_number, wanted.size() * 19 / 20);
+}
 
 }  // namespace galactic::test

@@ -171,6 +171,13 @@ TEST_F(SoftBatch, DrawsPosedAndAttachedModelsAsInstances) {
   EXPECT_EQ(renderViews(library_, options, models.mixed()), images);
 }
 
+TEST_F(SoftBatch, NumbersPosedModelsThatHaveNumbers) {
+  const MixedModels models(random_, 4, views_);
+  expectNumbers(models, [this](const std::vector<RenderView>& views) {
+    return renderViews(library_, batchOptions(96, 80), views);
+  });
+}
+
 TEST_F(SoftBatch, DrawsWithoutCullingTheSameImages) {
   RenderOptions options = batchOptions(128, 128);
   const RenderImages with = renderViews(library_, options, views_);

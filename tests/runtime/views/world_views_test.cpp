@@ -38,9 +38,10 @@ float difference(const RigidTransform& a, const RigidTransform& b) {
 /// All that a view shows, as instances.
 std::vector<RenderInstance> shownIn(const RenderView& view) {
   std::vector<RenderInstance> shown;
-  render::forModels(view, [&](std::uint32_t model, const RigidTransform& world_from_model) {
-    shown.push_back({model, world_from_model});
-  });
+  render::forModels(
+      view, [&](std::uint32_t model, const RigidTransform& world_from_model, std::uint32_t) {
+        shown.push_back({model, world_from_model});
+      });
   return shown;
 }
 
@@ -168,6 +169,28 @@ TEST_F(WorldViewsOfAHome, TheCameraOfTheBaseStandsOnTheFloor) {
     EXPECT_LT(difference(views.views()[env].camera.world_from_camera,
                          rigidTransform(base * mount.frame_from_camera)),
               kPlaceTolerance);
+  }
+}
+
+TEST_F(WorldViewsOfAHome, ObjectsHaveIdsOfTheirNamesOrOfTheirOwn) {
+  const CameraMount mount = robotCamera(world_->robot()).value();
+  WorldViews of_names(*world_, *models_, *simulator_, mount);
+  WorldViews of_objects(*world_, *models_, *simulator_, mount, ObjectIds::kObjects);
+  const std::size_t names = models_->library().semanticNames().size();
+  for (int n = 0; n < 20; ++n) {  // with one in the hand at last
+    step();
+    of_names.update(*simulator_);
+    of_objects.update(*simulator_);
+  }
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    const auto objects = of_objects.views()[env].posed;
+    ASSERT_EQ(objects.size(), simulator_->envObjects(env).objects.size());
+    for (std::size_t n = 0; n < objects.size(); ++n) {
+      EXPECT_EQ(of_objects.views()[env].posed_semantics[n], names + n);
+      EXPECT_EQ(objects[n].model, objectModel(env, n));
+    }
+    EXPECT_EQ(of_objects.views()[env].posed_semantics.size(), objects.size());
+    EXPECT_TRUE(of_names.views()[env].posed_semantics.empty());
   }
 }
 

@@ -19,8 +19,7 @@ import galactic
 from galactic.learning.checkpoint import write_atomically
 from galactic.learning.environments import Observation
 from galactic.learning.evaluation import Actor, EpisodeResult
-from galactic.learning.homes import SUCCESS, simulation_keywords
-from galactic.learning.networks import IMAGE_SIZE
+from galactic.learning.homes import SUCCESS, camera_options, simulation_keywords
 from galactic.learning.settings import Settings
 
 WIDTH, HEIGHT = 256, 192
@@ -89,7 +88,7 @@ def film(world: "galactic.World", settings: Settings, actor: Actor, episodes: Se
     )
     eyes = None
     if actor.policy.needs_images:
-        eyes = galactic.Renderer(simulator, width=IMAGE_SIZE, height=IMAGE_SIZE, threads=threads)
+        eyes = galactic.Renderer(simulator, **camera_options(settings), threads=threads)
     films = [Film(episode) for episode in episodes]
     playing = np.arange(envs)
     actor.begin(envs)

@@ -94,6 +94,7 @@ bool isSame(std::span<const AttachedModel> a, std::span<const AttachedModel> b) 
 struct ListSizes {
   std::size_t instances = 0;
   std::size_t posed = 0;
+  std::size_t posed_semantics = 0;
   std::size_t attached = 0;
   std::size_t bodies = 0;
   /// What is placed in front of cameras.
@@ -106,6 +107,7 @@ ListSizes listSizes(std::span<const RenderView> views) {
   for (const RenderView& view : views) {
     sizes.instances += view.instances.size();
     sizes.posed += view.posed.size();
+    sizes.posed_semantics += view.posed_semantics.size();
     sizes.bodies += view.bodies.size();
     sizes.models += modelCount(view);
     if (isSame(view.attached, last)) continue;
@@ -290,6 +292,7 @@ Result<void> CudaEngine::stage(std::span<const RenderView> views, const Upload& 
   auto* device_views = reinterpret_cast<DeviceView*>(bytes + at_bytes.views);
   StagedList<DeviceInstance> instances(bytes + at_bytes.instances);
   StagedList<DevicePosed> posed(bytes + at_bytes.posed);
+  StagedList<std::uint32_t> posed_semantics(bytes + at_bytes.posed_semantics);
   StagedList<DeviceAttached> attached(bytes + at_bytes.attached);
   StagedList<RigidTransform> bodies(bytes + at_bytes.bodies);
   std::memcpy(bytes + at_bytes.panes, panes_.data(), panes_.size() * sizeof(PaneRectangle));
@@ -341,6 +344,7 @@ Result<void> CudaEngine::stage(std::span<const RenderView> views, const Upload& 
                        instances.add(view.instances),
                        posed.add(view.posed),
                        attached_part,
+                       posed_semantics.add(view.posed_semantics),
                        bodies.add(view.bodies).first};
   }
   return {};
@@ -422,7 +426,9 @@ Result<void> CudaEngine::draw(std::span<const RenderView> views) {
   Upload at_bytes{};
   at_bytes.instances = aligned(views.size() * sizeof(DeviceView));
   at_bytes.posed = aligned(at_bytes.instances + sizes.instances * sizeof(DeviceInstance));
-  at_bytes.attached = aligned(at_bytes.posed + sizes.posed * sizeof(DevicePosed));
+  at_bytes.posed_semantics = aligned(at_bytes.posed + sizes.posed * sizeof(DevicePosed));
+  at_bytes.attached =
+      aligned(at_bytes.posed_semantics + sizes.posed_semantics * sizeof(std::uint32_t));
   at_bytes.bodies = aligned(at_bytes.attached + sizes.attached * sizeof(DeviceAttached));
   at_bytes.panes = aligned(at_bytes.bodies + sizes.bodies * sizeof(RigidTransform));
   at_bytes.first_clusters = aligned(at_bytes.panes + panes_.size() * sizeof(PaneRectangle));
@@ -461,6 +467,7 @@ ViewSlice CudaEngine::sliceOf(const ViewRange& range, std::size_t number,
   slice.views = at<DeviceView>(uploaded_, at_bytes.views) + range.first;
   slice.instances = at<DeviceInstance>(uploaded_, at_bytes.instances);
   slice.posed = at<DevicePosed>(uploaded_, at_bytes.posed);
+  slice.posed_semantics = at<std::uint32_t>(uploaded_, at_bytes.posed_semantics);
   slice.attached = at<DeviceAttached>(uploaded_, at_bytes.attached);
   slice.bodies = at<RigidTransform>(uploaded_, at_bytes.bodies);
   slice.placed = at<PlacedModel>(placed_);

@@ -87,7 +87,8 @@ class CudaEngine final : public RenderEngine {
   };
   /// Where arrays lie in `staged_` and in its copy on the device.
   struct Upload {
-    std::size_t views, instances, posed, attached, bodies, panes, first_clusters, bytes;
+    std::size_t views, instances, posed, posed_semantics, attached, bodies, panes, first_clusters,
+        bytes;
   };
   /// Room for one slice on the device.
   struct SliceMemory {

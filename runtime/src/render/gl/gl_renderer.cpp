@@ -43,12 +43,13 @@ constexpr std::array<Attribute, 4> kVertexAttributes{
      {3, 2, GL_UNSIGNED_INT, offsetof(GpuVertex, texture)},
      {4, 1, GL_FLOAT, offsetof(GpuVertex, alpha_cutoff)}}};
 constexpr GLuint kColorLocation = 2;
-constexpr std::array<Attribute, 5> kInstanceAttributes{
+constexpr std::array<Attribute, 6> kInstanceAttributes{
     {{5, 4, GL_FLOAT, offsetof(GpuInstance, rows)},
      {6, 4, GL_FLOAT, offsetof(GpuInstance, rows) + 4 * sizeof(float)},
      {7, 4, GL_FLOAT, offsetof(GpuInstance, rows) + 8 * sizeof(float)},
      {8, 2, GL_FLOAT, offsetof(GpuInstance, scale_x)},
-     {9, 1, GL_UNSIGNED_INT, offsetof(GpuInstance, layer)}}};
+     {9, 1, GL_UNSIGNED_INT, offsetof(GpuInstance, layer)},
+     {10, 1, GL_UNSIGNED_INT, offsetof(GpuInstance, semantic)}}};
 /// Bindings of the vertex array.
 constexpr GLuint kPerVertex = 0;
 constexpr GLuint kPerInstance = 1;

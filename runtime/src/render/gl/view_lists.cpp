@@ -23,9 +23,10 @@ bool isFinite(const RigidTransform& transform) {
 template <class Use>
 void forInstances(const RenderView& view, std::span<const ModelClusters> models, Use use) {
   if (!canSee(view.camera)) return;
-  forModels(view, [&](std::uint32_t model, const RigidTransform& world_from_model) {
+  forModels(view, [&](std::uint32_t model, const RigidTransform& world_from_model,
+                      std::uint32_t semantic) {
     if (model >= models.size() || models[model].count() == 0) return;
-    if (isFinite(world_from_model)) use(world_from_model, models[model]);
+    if (isFinite(world_from_model)) use(world_from_model, models[model], semantic);
   });
 }
 
@@ -51,16 +52,17 @@ std::uint32_t SliceCounts::allDraws() const {
 SliceCounts countSlice(std::span<const RenderView> views, std::span<const ModelClusters> models) {
   SliceCounts counts;
   for (const RenderView& view : views) {
-    forInstances(view, models, [&](const RigidTransform&, const ModelClusters& model) {
-      ++counts.instances;
-      counts.clusters += model.count();
-      for (std::size_t kind = 0; kind < kDrawClasses; ++kind) {
-        const std::uint32_t clusters = model.first[kind + 1] - model.first[kind];
-        counts.chunks[kind] += chunksOf(clusters);
-        const std::uint32_t full = clusters / kChunkClusters;
-        counts.draws[kind] += full * (kChunkClusters / 2) + (clusters % kChunkClusters + 1) / 2;
-      }
-    });
+    forInstances(
+        view, models, [&](const RigidTransform&, const ModelClusters& model, std::uint32_t) {
+          ++counts.instances;
+          counts.clusters += model.count();
+          for (std::size_t kind = 0; kind < kDrawClasses; ++kind) {
+            const std::uint32_t clusters = model.first[kind + 1] - model.first[kind];
+            counts.chunks[kind] += chunksOf(clusters);
+            const std::uint32_t full = clusters / kChunkClusters;
+            counts.draws[kind] += full * (kChunkClusters / 2) + (clusters % kChunkClusters + 1) / 2;
+          }
+        });
   }
   return counts;
 }
@@ -76,11 +78,13 @@ void listSlice(std::span<const RenderView> views, std::span<const ModelClusters>
     const RigidTransform camera_from_world = inverse(camera.world_from_camera);
     const float scale_y = 1.0F / std::tan(camera.vertical_fov / 2);
     forInstances(views[layer], models,
-                 [&](const RigidTransform& world_from_model, const ModelClusters& model) {
+                 [&](const RigidTransform& world_from_model, const ModelClusters& model,
+                     std::uint32_t semantic) {
                    lists.instances[number] = {.rows = rowsOf(camera_from_world * world_from_model),
                                               .scale_x = scale_y / aspect,
                                               .scale_y = scale_y,
-                                              .layer = static_cast<std::uint32_t>(layer)};
+                                              .layer = static_cast<std::uint32_t>(layer),
+                                              .semantic = semantic};
                    for (std::size_t kind = 0; kind < kDrawClasses; ++kind) {
                      const std::uint32_t end = model.first[kind + 1];
                      for (std::uint32_t first = model.first[kind]; first < end;

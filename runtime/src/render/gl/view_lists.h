@@ -17,7 +17,8 @@ struct GpuInstance {
   float scale_x = 0;
   float scale_y = 0;
   std::uint32_t layer = 0;
-  std::uint32_t unused = 0;
+  /// Of all of it, or kSemanticsOfPack.
+  std::uint32_t semantic = 0;
 };
 static_assert(sizeof(GpuInstance) == 64);
 

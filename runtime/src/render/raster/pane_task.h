@@ -78,6 +78,8 @@ struct PlacedModel {
   float w[4] = {};
   float x[4] = {};
   float y[4] = {};
+  /// In images, of all its clusters; or kSemanticsOfPack.
+  std::uint32_t semantic = kSemanticsOfPack;
 };
 
 /// One pane of one image.

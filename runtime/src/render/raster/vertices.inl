@@ -51,14 +51,17 @@ struct ClusterFacts {
   GALACTIC_EVERYWHERE bool isTextured() const { return (surface.kind & 0xFFU) != kFlatSurface; }
 };
 
-GALACTIC_EVERYWHERE inline ClusterFacts clusterFacts(const ModelTables& model,
+GALACTIC_EVERYWHERE inline ClusterFacts clusterFacts(const PlacedModel& placed,
                                                      std::uint32_t number) {
+  const ModelTables& model = *placed.model;
   const PackTables& pack = *model.pack;
   const RenderCluster* cluster = pack.clusters + model.first_cluster + number;
   const std::uint32_t kind =
       pack.color_kinds == nullptr ? 0 : pack.color_kinds[model.first_cluster + number];
-  return {&pack, cluster, pack.surfaces[cluster->material], kind,
-          pack.first_semantic + cluster->semantic};
+  const std::uint32_t semantic = placed.semantic == kSemanticsOfPack
+                                     ? pack.first_semantic + cluster->semantic
+                                     : placed.semantic;
+  return {&pack, cluster, pack.surfaces[cluster->material], kind, semantic};
 }
 
 /// Of its vertices; not to be read where color_kind is 0.

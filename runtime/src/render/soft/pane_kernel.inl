@@ -107,11 +107,10 @@ void drawTriangles(Pane& pane, ClusterState& state, const Survivors& survivors) 
 
 void drawCluster(Pane& pane, const SeenCluster& seen) {
   const PlacedModel& placed = pane.task->models[seen.model];
-  const ModelTables& model = *placed.model;
   const VertexFrame frame = vertexFrame(*pane.task, placed);
   ClusterState state;
   state.has_coordinates = false;
-  state.facts = clusterFacts(model, seen.cluster);
+  state.facts = clusterFacts(placed, seen.cluster);
   state.frame = &frame;
   state.colors = clusterColors(state.facts);
   const float farthest = placeVertices(state);

@@ -37,7 +37,7 @@ void SoftEngine::begin(std::span<const RenderView> views, const RenderTargets& t
   statistics_ = {};
   for (const RenderView& view : views) {
     std::size_t clusters = 0;
-    forModels(view, [&](std::uint32_t model, const RigidTransform&) {
+    forModels(view, [&](std::uint32_t model, const RigidTransform&, std::uint32_t) {
       clusters += scene_.models()[model].cluster_count;
     });
     most_models = std::max(most_models, modelCount(view));
@@ -108,11 +108,13 @@ std::uint32_t SoftEngine::placeModels(const RenderView& view, PlacedModel* place
   const float focal = focalLength(options_, view.camera);
   const RigidTransform camera_from_world = inverse(view.camera.world_from_camera);
   std::uint32_t count = 0;
-  forModels(view, [&](std::uint32_t number, const RigidTransform& world_from_model) {
+  forModels(view, [&](std::uint32_t number, const RigidTransform& world_from_model,
+                      std::uint32_t semantic) {
     const ModelTables& model = scene_.models()[number];
     if (model.cluster_count == 0) return;
     PlacedModel& next = placed[count];
     next.model = &model;
+    next.semantic = semantic;
     if (placeModel(camera_from_world, focal, world_from_model, next)) ++count;
   });
   return count;

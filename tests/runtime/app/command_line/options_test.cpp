@@ -238,9 +238,26 @@ TEST(RunCommandLine, DrawsWhenTold) {
   EXPECT_TRUE(plain.drawing.hasColor() && plain.drawing.hasDepth());
   EXPECT_FALSE(plain.drawing.hasSemantics() || plain.drawing.makesPictures());
   EXPECT_EQ(plain.drawing.width, 128U);
-  const DrawingOptions all = parsed({"--render", "depth", "--size", "160x96", "--backend", "soft",
-                                     "--camera", "top", "--fov", "75.5", "--contact-sheet", "a.png",
-                                     "--debug-view", "--debug-radius", "0.05"})
+  const DrawingOptions all = parsed({"--render",
+                                     "depth",
+                                     "--size",
+                                     "160x96",
+                                     "--backend",
+                                     "soft",
+                                     "--camera",
+                                     "top",
+                                     "--fov",
+                                     "75.5",
+                                     "--contact-sheet",
+                                     "a.png",
+                                     "--debug-view",
+                                     "--debug-radius",
+                                     "0.05",
+                                     "--near",
+                                     "0.2",
+                                     "--camera-position",
+                                     "-0.1,0,0.2",
+                                     "--camera-rpy=0,-20,90"})
                                  .drawing;
   EXPECT_FALSE(all.hasColor());
   EXPECT_TRUE(all.hasDepth() && all.makesPictures());
@@ -249,6 +266,9 @@ TEST(RunCommandLine, DrawsWhenTold) {
   EXPECT_EQ(all.backend, RenderBackend::kSoft);
   EXPECT_EQ(all.fov_degrees, 75.5F);
   EXPECT_EQ(all.debug_radius, 0.05F);
+  EXPECT_EQ(all.near, 0.2F);
+  EXPECT_EQ(all.camera_position, (std::array{-0.1F, 0.0F, 0.2F}));
+  EXPECT_EQ(all.camera_rpy_degrees, (std::array{0.0F, -20.0F, 90.0F}));
   EXPECT_EQ(parsed({"--render", "rgb", "--size", "64"}).drawing.height, 64U);
 }
 
@@ -261,6 +281,12 @@ TEST(RunCommandLine, RefusesWhatMakesNoSense) {
       {"--render", "rgb", "--size", "12x12x12"},
       {"--render", "rgb", "--fov", "180"},
       {"--render", "rgb", "--backend", "vulkan"},
+      {"--render", "rgb", "--near", "0"},
+      {"--render", "rgb", "--camera-position", "1,2"},
+      {"--render", "rgb", "--camera-position", "1,2,x"},
+      {"--render", "rgb", "--camera-position", "1,2,3,4"},
+      {"--render", "rgb", "--camera-rpy", "0,0,361"},
+      {"--camera-rpy", "0,0,90"},
       {"--render", "rgb", "--debug-view"},
       {"--render", "rgb", "--frame-every", "5"},
       {"--render", "rgb", "--frames", "f", "--debug-camera", "top"},

@@ -176,14 +176,20 @@ TEST_F(Pictures, FramesAreNamedByEnvAndStep) {
   EXPECT_TRUE(output->wants(120));
   const SmallImage small;
   EnvFrame with_debug = small.frame();
+  with_debug.seen_from.world_from_camera.origin = {4, 5, 6};
   with_debug.debug = DrawnImage{2, 1, ColorFormat::kRgba8, small.color, {}, {}};
   ASSERT_TRUE(output->add(120, std::vector{small.frame(), with_debug}));
   ASSERT_TRUE(output->finish());
   EXPECT_THAT(files("deep/frames"),
-              ElementsAre("env_0000_step_000120_depth.png", "env_0000_step_000120_rgb.png",
-                          "env_0000_step_000120_semantic.png", "env_0001_step_000120_debug.png",
+              ElementsAre("env_0000_step_000120_camera.json", "env_0000_step_000120_depth.png",
+                          "env_0000_step_000120_rgb.png", "env_0000_step_000120_semantic.png",
+                          "env_0001_step_000120_camera.json", "env_0001_step_000120_debug.png",
                           "env_0001_step_000120_depth.png", "env_0001_step_000120_rgb.png",
                           "env_0001_step_000120_semantic.png"));
+  EXPECT_EQ(test::fileContent(options.frames + "/env_0001_step_000120_camera.json"),
+            "{\n  \"intrinsics\": [[0.5, 0, 1], [0, 0.5, 0.5], [0, 0, 1]],\n"
+            "  \"world_from_camera\": "
+            "[[0, -0, 1, 4], [0, -1, 0, 5], [1, -0, 0, 6], [0, 0, 0, 1]]\n}\n");
 }
 
 TEST_F(Pictures, ASheetShowsSixMomentsFromTheFirstToTheLast) {
@@ -325,6 +331,54 @@ TEST(CameraChoice, FromAboveAheadIsUpInTheImageAndCeilingsAreCutOff) {
   EXPECT_NEAR(pose.translation.y - top->near, 2.1F, 1e-5F);
 }
 
+TEST(CameraChoice, StandsAndLooksAsARecipeWouldHaveIt) {
+  const test::SmallHome home;
+  const Robot& robot = home.world().robot();
+  const auto expect_near = [](const Vec3& found, const Vec3& wanted) {
+    EXPECT_NEAR(found.x, wanted.x, 1e-6F);
+    EXPECT_NEAR(found.y, wanted.y, 1e-6F);
+    EXPECT_NEAR(found.z, wanted.z, 1e-6F);
+  };
+  const auto hand = chooseCamera(
+      robot, {.name = "hand", .position = {0.1F, 0.2F, 0.3F}, .rpy_degrees = {90, 0, 0}});
+  ASSERT_TRUE(hand);
+  const Pose& rolled = hand->mount.frame_from_camera;
+  // Ahead, up and to the right, where a recipe has ahead, to the left and up.
+  expect_near(rolled.translation, {0.1F, 0.3F, -0.2F});
+  expect_near(rotate(rolled.rotation, {1, 0, 0}), {1, 0, 0});
+  expect_near(rotate(rolled.rotation, {0, 1, 0}), {0, 0, 1});
+  const auto turned =
+      chooseCamera(robot, {.name = "hand", .rpy_degrees = {0, 30, 90}})->mount.frame_from_camera;
+  // Pitched down first, then turned to the left.
+  const float down = std::sqrt(3.0F) / 2;
+  expect_near(rotate(turned.rotation, {1, 0, 0}), {0, -0.5F, -down});
+  expect_near(rotate(turned.rotation, {0, 1, 0}), {0, down, -0.5F});
+  // Of a camera that has a place of its own, in its own axes: 5 m down from above.
+  const auto top = chooseCamera(robot, {.name = "top", .position = {5, 0, 0}, .near = 0.2F});
+  expect_near(top->mount.frame_from_camera.translation, {0, 1, 0});
+  EXPECT_EQ(top->near, 0.2F);
+}
+
+TEST(CameraChoice, RefusesPlacesThatAreNone) {
+  const test::SmallHome home;
+  const auto refusal = [&](const CameraWish& wish) {
+    const auto none = chooseCamera(home.world().robot(), wish);
+    return none ? "" : none.error().where + ": " + none.error().message;
+  };
+  EXPECT_EQ(refusal({.name = "hand", .position = {-100, 0, 100}, .rpy_degrees = {-360, 0, 360}}),
+            "");
+  EXPECT_EQ(refusal({.name = "hand", .position = {0, 0, 101}}),
+            "--camera-position: found 101 m, expected -100 to 100");
+  EXPECT_EQ(refusal({.name = "hand", .position = {std::nanf(""), 0, 0}}),
+            "--camera-position: found nan m, expected -100 to 100");
+  EXPECT_EQ(refusal({.name = "hand", .rpy_degrees = {0, -361, 0}}),
+            "--camera-rpy: found -361 degrees, expected -360 to 360");
+  for (const float near : {-1.0F, 0.009F, 101.0F, std::nanf("")}) {
+    EXPECT_THAT(refusal({.name = "hand", .near = near}),
+                EndsWith(" m, expected 0.01 to 100, or 0 for what belongs to the camera"));
+  }
+}
+
 TEST(CameraChoice, RefusesFieldsOfViewThatShowNothing) {
   const test::SmallHome home;
   const Robot& robot = home.world().robot();
@@ -344,7 +398,7 @@ TEST(CameraChoice, RefusesFieldsOfViewThatShowNothing) {
 TEST(CameraChoice, AnUnknownLinkIsRefusedWithThoseThereAre) {
   const test::SmallHome home;
   const auto none =
-      chooseCamera(home.world().robot(), {.name = "nose", .option = "--debug-camera"});
+      chooseCamera(home.world().robot(), {.name = "nose", .options = {.camera = "--debug-camera"}});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(none.error().where, "--debug-camera");

@@ -163,6 +163,12 @@ TEST_F(CudaImages, OfPosedAndAttachedModelsEqualThoseOfInstances) {
   EXPECT_EQ(drawWithKernels(library_, options, models.mixed()), soft);
   // Slices of few views.
   EXPECT_EQ(drawWithKernels(library_, options, models.mixed(), 200'000), soft);
+  const RenderImages numbered = drawWithSoft(library_, options, models.numbered());
+  EXPECT_NE(numbered, soft);
+  EXPECT_EQ(drawWithKernels(library_, options, models.numbered()), numbered);
+  RenderOptions ids_alone = options;
+  ids_alone.color = ColorFormat::kNone;
+  EXPECT_EQ(drawWithKernels(library_, ids_alone, models.numbered()).semantics, numbered.semantics);
 }
 
 TEST_F(CudaImages, DoNotDependOnBlocksThreadsAndTheirOrder) {

@@ -23,17 +23,29 @@ GALACTIC_EVERYWHERE inline PaneTask paneTask(const ViewSlice& slice, std::uint32
 }
 
 /// What a view shows as `number`, in the order of forModels().
-GALACTIC_EVERYWHERE inline DeviceInstance instanceOf(const ViewSlice& slice, const DeviceView& view,
-                                                     std::uint32_t number) {
-  if (number < view.instances.count) return slice.instances[view.instances.first + number];
+struct ShownModel {
+  DeviceInstance instance;
+  std::uint32_t semantic;
+};
+
+GALACTIC_EVERYWHERE inline ShownModel shownAs(const ViewSlice& slice, const DeviceView& view,
+                                              std::uint32_t number) {
+  if (number < view.instances.count) {
+    return {slice.instances[view.instances.first + number], kSemanticsOfPack};
+  }
   number -= view.instances.count;
   if (number < view.posed.count) {
     const DevicePosed& posed = slice.posed[view.posed.first + number];
-    return {posed.model, rigidTransform(posed.world_from_model)};
+    return {{posed.model, rigidTransform(posed.world_from_model)},
+            view.posed_semantics.count == 0
+                ? kSemanticsOfPack
+                : slice.posed_semantics[view.posed_semantics.first + number]};
   }
   number -= view.posed.count;
   const DeviceAttached& attached = slice.attached[view.attached.first + number];
-  return {attached.model, slice.bodies[view.first_body + attached.body] * attached.body_from_model};
+  return {
+      {attached.model, slice.bodies[view.first_body + attached.body] * attached.body_from_model},
+      kSemanticsOfPack};
 }
 
 /// Places the instances of the view that the block stands for, and says what its panes show.
@@ -44,12 +56,13 @@ GALACTIC_EVERYWHERE inline void placeInstances(const Block& block, const ViewSli
       slice.tasks[block.index * slice.panes_of_view + n] = paneTask(slice, block.index, n);
     }
     for (std::uint32_t n = thread; n < view.placed.count; n += block.threads) {
-      const DeviceInstance instance = instanceOf(slice, view, n);
+      const ShownModel shown = shownAs(slice, view, n);
       PlacedModel& placed = slice.placed[view.placed.first + n];
-      const ModelTables& model = slice.models[instance.model];
+      const ModelTables& model = slice.models[shown.instance.model];
       placed.model = nullptr;
+      placed.semantic = shown.semantic;
       if (model.cluster_count != 0 &&
-          placeModel(view.camera_from_world, view.focal, instance.world_from_model, placed)) {
+          placeModel(view.camera_from_world, view.focal, shown.instance.world_from_model, placed)) {
         placed.model = &model;
       }
     }

@@ -163,7 +163,7 @@ GALACTIC_EVERYWHERE inline void beginCluster(const Block& block, const DrawPlace
     const PlacedModel& placed = place.task->models[place.seen->model];
     shared.frame = vertexFrame(*place.task, placed);
     ClusterState& state = shared.state;
-    state.facts = clusterFacts(*placed.model, place.seen->cluster);
+    state.facts = clusterFacts(placed, place.seen->cluster);
     state.frame = &shared.frame;
     state.colors = clusterColors(state.facts);
     shared.state.any_bad = false;

@@ -100,7 +100,7 @@ GALACTIC_EVERYWHERE inline void recordSeen(const PaneLists& lists, std::uint32_t
   const SeenCluster& cluster = lists.seen[lists.order[order >> kPieceBits]];
   const PlacedModel& placed = task.models[cluster.model];
   TriangleState state;
-  state.facts = clusterFacts(*placed.model, cluster.cluster);
+  state.facts = clusterFacts(placed, cluster.cluster);
   const VertexFrame frame = vertexFrame(task, placed);
   readTriangle(frame, triangleOf(piece), state);
   recordPiece(task, state, piece, to);
@@ -109,7 +109,7 @@ GALACTIC_EVERYWHERE inline void recordSeen(const PaneLists& lists, std::uint32_t
 /// The semantic id alone.
 GALACTIC_EVERYWHERE inline std::uint32_t semanticSeen(const PaneLists& lists, std::uint32_t order) {
   const SeenCluster& cluster = lists.seen[lists.order[order >> kPieceBits]];
-  return clusterFacts(*lists.task->models[cluster.model].model, cluster.cluster).semantic;
+  return clusterFacts(lists.task->models[cluster.model], cluster.cluster).semantic;
 }
 
 constexpr std::uint32_t kSquarePixels = kResolveEdge * kResolveEdge;

@@ -48,6 +48,8 @@ struct DeviceView {
   /// All of the three lists below.
   ListPart placed;
   ListPart instances, posed, attached;
+  /// Of the posed models; none: they have those of their packs.
+  ListPart posed_semantics;
   std::uint32_t first_body;
 };
 
@@ -80,6 +82,7 @@ struct ViewSlice {
   const DeviceView* views;
   const DeviceInstance* instances;
   const DevicePosed* posed;
+  const std::uint32_t* posed_semantics;
   const DeviceAttached* attached;
   /// world_from_body.
   const RigidTransform* bodies;

@@ -1,7 +1,7 @@
 // As GpuInstance, GpuBounds, GpuChunk, ChunkResult, DrawCommand and DrawTotals in C++.
 struct Instance {
   vec4 row_x; vec4 row_y; vec4 row_z;
-  float scale_x; float scale_y; uint layer; uint unused;
+  float scale_x; float scale_y; uint layer; uint semantic;
 };
 struct Bounds {
   float center_x; float center_y; float center_z; float half_x; float half_y; float half_z;

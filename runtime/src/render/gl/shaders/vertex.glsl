@@ -10,6 +10,7 @@ layout(location = 6) in vec4 a_row_y;
 layout(location = 7) in vec4 a_row_z;
 layout(location = 8) in vec2 a_scale;
 layout(location = 9) in uint a_layer;
+layout(location = 10) in uint a_semantic;
 layout(location = 0) uniform float u_near;
 
 // The same corner of two triangles must come out the same.
@@ -28,6 +29,6 @@ void main() {
   to.texture_place = a_texture_place;
   to.color = a_color;
   to.slot = a_texture.x;
-  to.semantic = a_texture.y;
+  to.semantic = a_semantic == 0xFFFFFFFFu ? a_texture.y : a_semantic;
   to.cutoff = a_cutoff;
 }
