@@ -142,19 +142,28 @@ TEST_F(BakeCli, TellsAFullDiskBehindItsOutput) {
   EXPECT_TRUE(has("room.pack"));
 }
 
-TEST_F(BakeCli, TellsThatARoomIsOpen) {
-  // The ceiling of the box is left out.
+/// The box without the triangles at its ceiling or its floor.
+template <typename Chosen>
+test::MeshContent openBox(const Chosen& is_open_height) {
   test::MeshContent box = test::unevenBox();
   std::erase_if(box.triangles, [&](const auto& triangle) {
-    return std::all_of(triangle.begin(), triangle.end(),
-                       [&](std::uint32_t corner) { return box.positions[corner][1] > 2; });
+    return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
+      return is_open_height(box.positions[corner][1]);
+    });
   });
-  write("open.obj", test::objFile(box));
-  const ProgramRun open = run({"open.obj", "--radii", "0.05"});
-  EXPECT_EQ(open.exit_code, 0);
-  EXPECT_THAT(
-      open.out,
-      HasSubstr("radius 0.05 m: the room is one with the outside, and all of it is stored: "));
+  return box;
+}
+
+TEST_F(BakeCli, TellsThatARoomIsOpen) {
+  const std::string open =
+      "radius 0.05 m: the room is one with the outside, and all of it is stored: ";
+  write("no_ceiling.obj", test::objFile(openBox([](double y) { return y > 2; })));
+  write("no_floor.obj", test::objFile(openBox([](double y) { return y < 0.5; })));
+  const ProgramRun no_ceiling = run({"no_ceiling.obj", "--radii", "0.05"});
+  EXPECT_EQ(no_ceiling.exit_code, 0);
+  EXPECT_THAT(no_ceiling.out, HasSubstr(open + "it leads over the walls, there is no ceiling"));
+  const ProgramRun no_floor = run({"no_floor.obj", "--radii", "0.05"});
+  EXPECT_THAT(no_floor.out, HasSubstr(open + "it leads under the walls, there is no floor"));
   EXPECT_THAT(run({"room.obj", "--radii", "0.05"}).out, Not(HasSubstr("one with the outside")));
 }
 
