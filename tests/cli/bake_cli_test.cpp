@@ -142,6 +142,20 @@ TEST_F(BakeCli, TellsAFullDiskBehindItsOutput) {
   EXPECT_TRUE(has("room.pack"));
 }
 
+TEST_F(BakeCli, RefusesASceneThatIsHigherThanHomesUnlessItsUnitIsStated) {
+  test::MeshContent box = test::unevenBox();
+  for (auto& p : box.positions) p[1] *= 100;
+  write("tower.obj", test::objFile(box));
+  const ProgramRun refused = run({"tower.obj", "--radii", "0.05"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(
+      refused.err,
+      "galactic-bake: tower.obj: the scene is 200 m high (Y up (OBJ convention), 1 m per unit "
+      "(OBJ convention)), and homes are lower than 60 m; give meters per unit with --scale: "
+      "0.01 for centimeters, 0.001 for millimeters, 1 if it is right in meters\n");
+  EXPECT_EQ(run({"tower.obj", "--radii", "0.05", "--scale", "1"}).exit_code, 0);
+}
+
 /// The box without the triangles at its ceiling or its floor.
 template <typename Chosen>
 test::MeshContent openBox(const Chosen& is_open_height) {
