@@ -42,7 +42,8 @@ TEST_F(BakeCli, WritesAPackNamedAfterItsInputWithTheOptionsAsUsersTypeThem) {
   const ProgramRun bake = run({"room.obj", "--radii", "0.015,0.05,0.12"});
   EXPECT_EQ(bake.exit_code, 0) << bake.err;
   EXPECT_THAT(bake.out, AllOf(HasSubstr("room.obj -> room.pack"), HasSubstr("12 triangles"),
-                              HasSubstr("0.015"), HasSubstr("columns checked, none wrong")));
+                              HasSubstr("1.00 x 3.00 m and 2.00 m high"), HasSubstr("0.015"),
+                              HasSubstr("columns checked, none wrong")));
   EXPECT_THAT(bake.err, IsEmpty());
   EXPECT_TRUE(has("room.pack"));
   const ProgramRun options_first = run({"--radii", "0.015,0.05,0.12", "-o", "b.pack", "room.obj"});
