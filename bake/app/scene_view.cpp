@@ -62,10 +62,10 @@ void printTable(const SceneFigures& scene, const PackFigures& pack, Verbosity ve
   fmt::print("  {}, {}; {} meshes, {} instances\n", scene.imported.format,
              withFlags(scene.convention), scene.imported.meshes, scene.imported.instances);
   fmt::print(
-      "  {} triangles ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} x {:.2f} m, "
-      "y from {:.3f} to {:.3f} m\n",
+      "  {} triangles ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} m and {:.2f} m "
+      "high, y from {:.3f} to {:.3f} m\n",
       scene.imported.triangles, scene.imported.counts.degenerate, scene.imported.counts.duplicate,
-      bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z,
+      bounds.max.x - bounds.min.x, bounds.max.z - bounds.min.z, bounds.max.y - bounds.min.y,
       bounds.min.y, bounds.max.y);
   printGrids(scene);
   printRenderMeshes(scene.render_meshes);

@@ -42,7 +42,8 @@ TEST_F(BakeCli, WritesAPackNamedAfterItsInputWithTheOptionsAsUsersTypeThem) {
   const ProgramRun bake = run({"room.obj", "--radii", "0.015,0.05,0.12"});
   EXPECT_EQ(bake.exit_code, 0) << bake.err;
   EXPECT_THAT(bake.out, AllOf(HasSubstr("room.obj -> room.pack"), HasSubstr("12 triangles"),
-                              HasSubstr("0.015"), HasSubstr("columns checked, none wrong")));
+                              HasSubstr("1.00 x 3.00 m and 2.00 m high"), HasSubstr("0.015"),
+                              HasSubstr("columns checked, none wrong")));
   EXPECT_THAT(bake.err, IsEmpty());
   EXPECT_TRUE(has("room.pack"));
   const ProgramRun options_first = run({"--radii", "0.015,0.05,0.12", "-o", "b.pack", "room.obj"});
@@ -142,19 +143,42 @@ TEST_F(BakeCli, TellsAFullDiskBehindItsOutput) {
   EXPECT_TRUE(has("room.pack"));
 }
 
-TEST_F(BakeCli, TellsThatARoomIsOpen) {
-  // The ceiling of the box is left out.
+TEST_F(BakeCli, RefusesASceneThatIsHigherThanHomesUnlessItsUnitIsStated) {
+  test::MeshContent box = test::unevenBox();
+  for (auto& p : box.positions) p[1] *= 100;
+  write("tower.obj", test::objFile(box));
+  const ProgramRun refused = run({"tower.obj", "--radii", "0.05"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(
+      refused.err,
+      "galactic-bake: tower.obj: the scene is 200 m high (Y up (OBJ convention), 1 m per unit "
+      "(OBJ convention)), and homes are lower than 60 m; give meters per unit with --scale: "
+      "0.01 for centimeters, 0.001 for millimeters, 1 if it is right in meters\n");
+  EXPECT_EQ(run({"tower.obj", "--radii", "0.05", "--scale", "1"}).exit_code, 0);
+}
+
+/// The box without the triangles at its ceiling or its floor.
+template <typename Chosen>
+test::MeshContent openBox(const Chosen& is_open_height) {
   test::MeshContent box = test::unevenBox();
   std::erase_if(box.triangles, [&](const auto& triangle) {
-    return std::all_of(triangle.begin(), triangle.end(),
-                       [&](std::uint32_t corner) { return box.positions[corner][1] > 2; });
+    return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t corner) {
+      return is_open_height(box.positions[corner][1]);
+    });
   });
-  write("open.obj", test::objFile(box));
-  const ProgramRun open = run({"open.obj", "--radii", "0.05"});
-  EXPECT_EQ(open.exit_code, 0);
-  EXPECT_THAT(
-      open.out,
-      HasSubstr("radius 0.05 m: the room is one with the outside, and all of it is stored: "));
+  return box;
+}
+
+TEST_F(BakeCli, TellsThatARoomIsOpen) {
+  const std::string open =
+      "radius 0.05 m: the room is one with the outside, and all of it is stored: ";
+  write("no_ceiling.obj", test::objFile(openBox([](double y) { return y > 2; })));
+  write("no_floor.obj", test::objFile(openBox([](double y) { return y < 0.5; })));
+  const ProgramRun no_ceiling = run({"no_ceiling.obj", "--radii", "0.05"});
+  EXPECT_EQ(no_ceiling.exit_code, 0);
+  EXPECT_THAT(no_ceiling.out, HasSubstr(open + "it leads over the walls, there is no ceiling"));
+  const ProgramRun no_floor = run({"no_floor.obj", "--radii", "0.05"});
+  EXPECT_THAT(no_floor.out, HasSubstr(open + "it leads under the walls, there is no floor"));
   EXPECT_THAT(run({"room.obj", "--radii", "0.05"}).out, Not(HasSubstr("one with the outside")));
 }
 

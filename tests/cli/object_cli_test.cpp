@@ -158,7 +158,7 @@ TEST_F(ObjectCli, AsksAboutUnits) {
   const ProgramRun huge = run({"mug.obj", "--as", "object", "--scale", "30"});
   EXPECT_EQ(huge.exit_code, 5);
   EXPECT_THAT(huge.err, AllOf(StartsWith("galactic-bake: mug.obj: mesh: its extents are"),
-                              HasSubstr("is its unit the millimeter?")));
+                              HasSubstr("is its unit the centimeter or the millimeter?")));
 }
 
 TEST_F(ObjectCli, UnderstandsEveryOptionOfObjects) {

@@ -13,9 +13,10 @@
 namespace galactic::bake {
 namespace {
 
-/// A movable object smaller than this probably has another unit, meters; too large ones are refused
-/// by the sphere fitter with the same question.
+/// A movable object smaller or larger than this probably has another unit, meters; much larger ones
+/// are refused by the sphere fitter with the same question.
 constexpr float kDoubtfulSmallness = 0.002F;
+constexpr float kDoubtfulLargeness = 3;
 
 float largestExtent(const Bounds& bounds) {
   return std::max(
@@ -29,6 +30,10 @@ void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
         fmt::format("is only {:.4g} mm large; is the unit right? `scale` sets meters "
                     "per unit",
                     1000 * size));
+  }
+  if (size > kDoubtfulLargeness) {
+    warnings.push_back(
+        fmt::format("is {:.3g} m large; is the unit right? `scale` sets meters per unit", size));
   }
 }
 

@@ -128,7 +128,11 @@ class SceneBaker {
 
 /// Where a room that reaches the grid's border leaves the scene.
 std::string wayOut(const Component& room) {
-  if (room.columns_at_edge == 0) return "it leads over the walls, there is no ceiling";
+  if (room.columns_at_edge == 0) {
+    return room.volume_open_above >= room.volume_open_below
+               ? "it leads over the walls, there is no ceiling"
+               : "it leads under the walls, there is no floor";
+  }
   return fmt::format(
       "it reaches the edge of the scene in {} columns, first at ({:.2f}, {:.2f}, {:.2f})",
       room.columns_at_edge, room.first_at_edge.x, room.first_at_edge.y, room.first_at_edge.z);

@@ -5,6 +5,7 @@
 #include "dataset/scene_dataset.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/packs.h"
+#include "import/checks/asset_check.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -29,6 +30,7 @@ Result<ReadScene> readInstance(const InstancedScene& scene, ReadLog& log) {
 Result<ReadScene> readScene(const SceneJob& job, ReadLog& log) {
   if (job.instance) return readInstance(*job.instance, log);
   ASSIGN_OR_RETURN(auto asset, importMesh(job.input, job.import));
+  if (!job.import.scale) RETURN_IF_ERROR(checkHeight(asset, job.input.string()));
   log.noteAbsent(job.input.parent_path(), asset.absent_files);
   return ReadScene{job.input, std::move(asset)};
 }

@@ -114,7 +114,10 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
         ++component.spans;
         component.volume +=
             area * (static_cast<double>(heights.hi) - static_cast<double>(heights.lo));
-        if (in_scene) component.volume_inside += area * overlap(heights, scene);
+        const double inside = in_scene ? area * overlap(heights, scene) : 0;
+        component.volume_inside += inside;
+        if (heights.hi > scene.max.y) component.volume_open_above += inside;
+        if (heights.lo < scene.min.y) component.volume_open_below += inside;
         if (at_edge && overlap(heights, scene) > 0 && component.columns_at_edge++ == 0) {
           component.first_at_edge = {x, std::max(heights.lo, scene.min.y), z};
         }

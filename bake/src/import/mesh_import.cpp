@@ -39,6 +39,9 @@ Result<void> checkOptions(const MeshImportOptions& options) {
 }
 
 std::string unknownExtension(const fs::path& path) {
+  if (path.extension() == ".xacro") {
+    return "it is a xacro file; expand it with the xacro tool and give the resulting .urdf";
+  }
   return fmt::format("no reader knows the extension '{}'; expected one of {}",
                      path.extension().string(), readableExtensions());
 }

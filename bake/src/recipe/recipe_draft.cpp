@@ -21,6 +21,8 @@ namespace {
 /// Parts of names by which people tell what grasps and what sees, the surest first.
 constexpr std::array<std::string_view, 9> kGraspingNames{
     "grasp", "tcp", "tool", "end_effector", "eef", "ee_", "gripper", "hand", "palm"};
+/// What closes around an object, and is not the hand that carries it.
+constexpr std::array<std::string_view, 4> kFingerNames{"finger", "fngr", "knuckle", "jaw"};
 constexpr std::array<std::string_view, 4> kCameraNames{"color_optical", "rgb_optical", "optical",
                                                        "camera"};
 constexpr std::array<std::string_view, 3> kLaserNames{"laser", "lidar", "scan"};
@@ -90,6 +92,26 @@ class RecipeDraft {
     return found;
   }
 
+  /// Whether a link is a finger, or hangs from one.
+  [[nodiscard]] bool isFinger(std::size_t link) const {
+    for (auto at = static_cast<int>(link); at >= 0;
+         at = robot_.links[static_cast<std::size_t>(at)].parent) {
+      const std::string name = lowerCase(robot_.links[static_cast<std::size_t>(at)].name);
+      const auto names = [&](std::string_view part) {
+        return name.find(part) != std::string::npos;
+      };
+      if (std::any_of(kFingerNames.begin(), kFingerNames.end(), names)) return true;
+    }
+    return false;
+  }
+
+  /// Whether `carrier` is a link or one above it.
+  [[nodiscard]] bool carries(std::size_t carrier, std::size_t link) const {
+    auto at = static_cast<int>(link);
+    while (at > static_cast<int>(carrier)) at = robot_.links[static_cast<std::size_t>(at)].parent;
+    return at == static_cast<int>(carrier);
+  }
+
   /// Whether an action may move the joint above a link.
   [[nodiscard]] bool canMove(const SourceLink& link) const {
     const bool has_position = link.joint_type == JointType::kRevolute ||
@@ -120,12 +142,14 @@ class RecipeDraft {
 
   void chooseEndEffector() {
     candidates_ = linksNamed(kGraspingNames);
+    std::erase_if(candidates_, [&](std::size_t n) { return isFinger(n); });
     const auto moves = [&](std::size_t n) { return !movingChain(n).empty(); };
     std::stable_partition(candidates_.begin(), candidates_.end(), moves);
     if (!candidates_.empty() && moves(candidates_.front())) {
       end_effector_ = candidates_.front();
     } else {
       for (std::size_t n = 0; n < robot_.links.size(); ++n) {
+        if (isFinger(n)) continue;
         if (movingChain(n).size() > movingChain(end_effector_).size()) end_effector_ = n;
       }
     }
@@ -202,7 +226,11 @@ class RecipeDraft {
   }
 
   void addSensors() {
-    const std::vector<std::size_t> cameras = linksNamed(kCameraNames);
+    std::vector<std::size_t> cameras = linksNamed(kCameraNames);
+    // A camera in the hand sees little of the room.
+    std::stable_partition(cameras.begin(), cameras.end(), [&](std::size_t n) {
+      return joints_.empty() || !carries(joints_.back(), n);
+    });
     if (cameras.empty()) {
       text_ += "# No link is named like a camera. Name the one that carries it, or it has none.\n";
       text_ += fmt::format("# [camera]\n# link = {}\n# rpy_degrees = [0, 20, 0]\n",
@@ -239,18 +267,21 @@ class RecipeDraft {
         .positions;
   }
 
-  /// Every surface point of the robot at the start pose, in the root's frame.
-  [[nodiscard]] std::vector<Vec3> surfacePoints() const {
+  /// Every surface point of what no action moves, or of the robot if that has none, at the start
+  /// pose, in the root's frame.
+  [[nodiscard]] std::vector<Vec3> basePoints() const {
     const std::vector<Pose> poses = startPoses();
-    std::vector<Vec3> points;
+    std::vector<Vec3> base;
+    std::vector<Vec3> arm;
     for (std::size_t n = 0; n < robot_.links.size(); ++n) {
-      for (const Vec3& p : surfaceOf(n)) points.push_back(poses[n] * p);
+      const bool is_arm = !joints_.empty() && carries(joints_.front(), n);
+      for (const Vec3& p : surfaceOf(n)) (is_arm ? arm : base).push_back(poses[n] * p);
     }
-    return points;
+    return base.empty() ? arm : base;
   }
 
   void addBase() {
-    const std::vector<Vec3> points = surfacePoints();
+    const std::vector<Vec3> points = basePoints();
     float lowest = std::numeric_limits<float>::max();
     for (const Vec3& p : points) lowest = std::min(lowest, p.y);
     float radius = 0;
@@ -264,7 +295,8 @@ class RecipeDraft {
     text_ += fmt::format(
         "# The base: the root link, '{}', which drives and turns on the ground. Guess: what is "
         "near\n"
-        "# the ground stands for the footprint, and the lowest point touches the ground.\n"
+        "# the ground, but for the arm, stands for the footprint, and its lowest point touches the "
+        "ground.\n"
         "[base]\nfootprint_radius = {:.3f}\nroot_height = {:.3f}\n"
         "forward_step = 0.1\nturn_step_degrees = 5.0\n\n",
         printable(robot_.links.front().name), footprint, root_height);
@@ -305,17 +337,44 @@ class RecipeDraft {
     if (any) text_ += "\n";
   }
 
-  void addStartPose() {
-    if (joints_.empty()) return;
-    text_ +=
-        "# Where joints start, controlled or not: folded, and away from the limits, is best.\n";
-    text_ += "[start_pose]\n";
-    for (const std::size_t n : joints_) {
+  /// The links below joints that stay where they start: a head, another arm, fingers. Wheels look
+  /// the same however they turn.
+  [[nodiscard]] std::vector<std::size_t> restingJoints() const {
+    std::vector<std::size_t> resting;
+    for (std::size_t n = 0; n < robot_.links.size(); ++n) {
+      const std::vector<std::size_t> chain = movingChain(n);
+      const bool is_last = !chain.empty() && chain.back() == n;
+      const bool is_controlled = std::find(joints_.begin(), joints_.end(), n) != joints_.end();
+      const bool turns_freely = robot_.links[n].joint_type == JointType::kContinuous;
+      if (is_last && !is_controlled && !turns_freely) resting.push_back(n);
+    }
+    return resting;
+  }
+
+  void addStarts(const std::vector<std::size_t>& links) {
+    for (const std::size_t n : links) {
       const SourceLink& link = robot_.links[n];
       const double start =
           link.limits ? std::clamp(0.0, link.limits->lower, link.limits->upper) : 0;
-      text_ += fmt::format("{} = {}\n", tomlText(link.joint_name), start);
+      text_ += fmt::format("{} = {}", tomlText(link.joint_name), start);
+      if (link.limits) {
+        text_ += fmt::format("   # from {:.4g} to {:.4g}", link.limits->lower, link.limits->upper);
+      }
+      text_ += '\n';
     }
+  }
+
+  void addStartPose() {
+    const std::vector<std::size_t> resting = restingJoints();
+    if (joints_.empty() && resting.empty()) return;
+    text_ +=
+        "# Where joints start, controlled or not: folded, and away from the limits, is best.\n";
+    text_ += "[start_pose]\n";
+    addStarts(joints_);
+    if (!resting.empty()) {
+      text_ += "# No action moves these: fold other arms and open the hand here.\n";
+    }
+    addStarts(resting);
     text_ += "\n";
   }
 

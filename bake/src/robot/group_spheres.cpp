@@ -235,8 +235,9 @@ class BudgetedCurves {
     fitted_ = wanted;
     while (!wanted.empty()) {
       if (auto refined = refine(wanted, budget); !refined) return refined;
-      chosen_ = budget.widest_gap ? spendBudgetWithin(points(), budget.most, *budget.widest_gap)
-                                  : spendBudget(points(), budget.most);
+      chosen_ = budget.widest_gap
+                    ? spendBudgetWithin(likelyPoints(), budget.most, *budget.widest_gap)
+                    : spendBudget(points(), budget.most);
       std::erase_if(wanted, [&](std::size_t n) {
         return !curves_[n] || curves_[n]->complete() ||
                chosen_[n] + kLookAhead < curves_[n]->points().size();
@@ -267,6 +268,17 @@ class BudgetedCurves {
     std::vector<CurvePoints> points;
     for (const auto& curve : curves_) points.push_back(curve ? curve->points() : CurvePoints());
     return points;
+  }
+
+  /// The curves with the widest gaps that are likely. On a large body the points of the search are
+  /// far apart: if all that may lie between them counted, only its finest set would do.
+  [[nodiscard]] std::vector<CurvePoints> likelyPoints() const {
+    constexpr double kUnlikely = 0.5;
+    std::vector<CurvePoints> likely = points();
+    for (CurvePoints& curve : likely) {
+      for (CurvePoint& point : curve) point.widest_gap -= kUnlikely * point.unseen_gap;
+    }
+    return likely;
   }
 
   Result<void> refine(const std::vector<std::size_t>& groups, const SphereBudget& budget) {

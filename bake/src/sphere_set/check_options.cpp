@@ -90,10 +90,12 @@ Result<void> checkMesh(const TriangleMesh& mesh) {
   const Vec3 size{bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y,
                   bounds.max.z - bounds.min.z};
   if (!(std::max({size.x, size.y, size.z}) <= kGreatestExtent)) {
-    return fail(ErrorCode::kUnsupported, "mesh",
-                fmt::format("its extents are {:.3g} x {:.3g} x {:.3g} m, and sphere sets are made "
-                            "for up to {} m; is its unit the millimeter? Give the scale, or cut it",
-                            size.x, size.y, size.z, kGreatestExtent));
+    return fail(
+        ErrorCode::kUnsupported, "mesh",
+        fmt::format("its extents are {:.3g} x {:.3g} x {:.3g} m, and sphere sets are made "
+                    "for up to {} m; is its unit the centimeter or the millimeter? Give the "
+                    "scale, or cut it",
+                    size.x, size.y, size.z, kGreatestExtent));
   }
   return {};
 }

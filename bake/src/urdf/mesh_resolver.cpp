@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -25,6 +26,27 @@ constexpr std::size_t kPackageFileBytes = 65'536;
 bool isFile(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);
+}
+
+std::string lowerCase(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
+}
+
+/// The first file by name in the folder of `path` that has its name but for upper and lower case;
+/// empty where there is none.
+std::string fileInOtherCase(const fs::path& path) {
+  const std::string wanted = path.filename().string();
+  std::string found;
+  std::error_code error;
+  for (fs::directory_iterator entry(path.parent_path(), error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const bool differs_in_case = name != wanted && lowerCase(name) == lowerCase(wanted);
+    if (differs_in_case && (found.empty() || name < found)) found = name;
+  }
+  return found;
 }
 
 /// The <name> of a package.xml, without a parser: the first one counts.
@@ -136,11 +158,18 @@ MeshResolution MeshResolver::notFound(const std::vector<fs::path>& tried) const 
     const bool is_new = std::find(places.begin(), places.end(), place) == places.end();
     if (is_new) places.push_back(std::move(place));
   }
+  std::string other_case;
+  for (const fs::path& path : tried) {
+    if (other_case.empty()) other_case = fileInOtherCase(path);
+  }
+  if (!other_case.empty()) {
+    other_case = fmt::format(", where '{}' differs in upper and lower case", other_case);
+  }
   const std::size_t left = places.size() - std::min(places.size(), kMostNamed);
   places.resize(places.size() - left);
   return {.file = {},
-          .how = fmt::format("{}{} (from the URDF's folder)", fmt::join(places, ", "),
-                             left == 0 ? "" : fmt::format(" and {} more", left)),
+          .how = fmt::format("{}{} (from the URDF's folder){}", fmt::join(places, ", "),
+                             left == 0 ? "" : fmt::format(" and {} more", left), other_case),
           .guessed = false};
 }
 

@@ -238,26 +238,6 @@ Result<urdf::ModelInterfaceSharedPtr> parsedModel(const std::string& text, const
   return parsed;
 }
 
-/// `count` numbers, or none when there are not so many.
-std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count) {
-  if (text == nullptr) return std::nullopt;
-  std::vector<double> numbers;
-  std::string_view left(text);
-  constexpr std::string_view kBlanks = " \t\r\n";
-  while (true) {
-    left.remove_prefix(std::min(left.find_first_not_of(kBlanks), left.size()));
-    if (left.empty()) break;
-    double number = 0;
-    if (left.front() == '+') left.remove_prefix(1);
-    const auto [end, error] = std::from_chars(left.data(), left.data() + left.size(), number);
-    if (error != std::errc{}) return std::nullopt;
-    numbers.push_back(number);
-    left.remove_prefix(static_cast<std::size_t>(end - left.data()));
-  }
-  if (numbers.size() != count) return std::nullopt;
-  return numbers;
-}
-
 }  // namespace
 
 Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {

@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
 #include <string_view>
+#include <tuple>
 
 namespace galactic::bake {
 namespace {
@@ -129,7 +133,82 @@ bool declareWorld(TiXmlElement& robot, std::vector<std::string>& warnings) {
   return false;
 }
 
+/// What stands for the <visual> or <collision> of a capsule: copies of it with a cylinder and two
+/// spheres at its ends. None where the text makes no sense; the parser then says so.
+std::vector<TiXmlElement> partsOfCapsule(const TiXmlElement& element, const TiXmlElement& capsule) {
+  const auto radius = numbersOf(capsule.Attribute("radius"), 1);
+  const auto length = numbersOf(capsule.Attribute("length"), 1);
+  const TiXmlElement* origin = element.FirstChildElement("origin");
+  const auto numbersOfOrigin = [&](const char* attribute) {
+    const bool stated = origin != nullptr && origin->Attribute(attribute) != nullptr;
+    return numbersOf(stated ? origin->Attribute(attribute) : "0 0 0", 3);
+  };
+  const auto xyz = numbersOfOrigin("xyz");
+  const auto rpy = numbersOfOrigin("rpy");
+  if (!radius || !length || !xyz || !rpy) return {};
+  const auto part = [&](const char* shape, double along) {
+    TiXmlElement copy(element);
+    // Where Z of the shape points: the last column of Rz(yaw) Ry(pitch) Rx(roll).
+    const auto [roll, pitch, yaw] = std::tuple((*rpy)[0], (*rpy)[1], (*rpy)[2]);
+    const std::array<double, 3> axis{
+        std::cos(roll) * std::sin(pitch) * std::cos(yaw) + std::sin(roll) * std::sin(yaw),
+        std::cos(roll) * std::sin(pitch) * std::sin(yaw) - std::sin(roll) * std::cos(yaw),
+        std::cos(roll) * std::cos(pitch)};
+    TiXmlElement* moved = copy.FirstChildElement("origin");
+    if (moved == nullptr) moved = copy.LinkEndChild(new TiXmlElement("origin"))->ToElement();
+    moved->SetAttribute(
+        "xyz", fmt::format("{} {} {}", (*xyz)[0] + along * axis[0], (*xyz)[1] + along * axis[1],
+                           (*xyz)[2] + along * axis[2]));
+    TiXmlElement* renamed = copy.FirstChildElement("geometry")->FirstChildElement("capsule");
+    renamed->SetValue(shape);
+    return copy;
+  };
+  return {part("cylinder", 0), part("sphere", -(*length)[0] / 2), part("sphere", (*length)[0] / 2)};
+}
+
+/// Takes capsules apart, which the parser's library does not know: a cylinder as long as the
+/// capsule states, and a sphere at each end. Returns whether anything changed.
+bool replaceCapsules(TiXmlElement& robot) {
+  bool changed = false;
+  for (auto* link = robot.FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link")) {
+    TiXmlElement* next = nullptr;
+    for (auto* element = link->FirstChildElement(); element != nullptr; element = next) {
+      next = element->NextSiblingElement();
+      const TiXmlElement* geometry = element->FirstChildElement("geometry");
+      const TiXmlElement* capsule =
+          geometry == nullptr ? nullptr : geometry->FirstChildElement("capsule");
+      if (capsule == nullptr) continue;
+      const std::vector<TiXmlElement> parts = partsOfCapsule(*element, *capsule);
+      if (parts.empty()) continue;
+      for (const TiXmlElement& part : parts) link->InsertBeforeChild(element, part);
+      link->RemoveChild(element);
+      changed = true;
+    }
+  }
+  return changed;
+}
+
 }  // namespace
+
+std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count) {
+  if (text == nullptr) return std::nullopt;
+  std::vector<double> numbers;
+  std::string_view left(text);
+  constexpr std::string_view kBlanks = " \t\r\n";
+  while (true) {
+    left.remove_prefix(std::min(left.find_first_not_of(kBlanks), left.size()));
+    if (left.empty()) break;
+    double number = 0;
+    if (left.front() == '+') left.remove_prefix(1);
+    const auto [end, error] = std::from_chars(left.data(), left.data() + left.size(), number);
+    if (error != std::errc{}) return std::nullopt;
+    numbers.push_back(number);
+    left.remove_prefix(static_cast<std::size_t>(end - left.data()));
+  }
+  if (numbers.size() != count) return std::nullopt;
+  return numbers;
+}
 
 ParserText textForParser(TiXmlDocument& document, const std::string& text,
                          std::vector<std::string>& warnings) {
@@ -138,6 +217,7 @@ ParserText textForParser(TiXmlDocument& document, const std::string& text,
   TiXmlElement& robot = *document.FirstChildElement("robot");
   changed = completeLimits(robot, prepared.without_limits) || changed;
   changed = declareWorld(robot, warnings) || changed;
+  changed = replaceCapsules(robot) || changed;
   if (!changed) {
     prepared.text = text;
     return prepared;

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -6,6 +8,9 @@
 class TiXmlDocument;
 
 namespace galactic::bake {
+
+/// `count` numbers, or none when there are not so many.
+[[nodiscard]] std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count);
 
 /// The text of a URDF as urdfdom takes it.
 struct ParserText {
@@ -16,9 +21,9 @@ struct ParserText {
 
 /// Makes up for what other readers of URDFs accept and urdfdom does not: commas, tabs and line ends
 /// between numbers, joints without <limit>, limits without effort and velocity (which nobody here
-/// uses), and a link "world" to which joints are attached although nothing declares it. `document`
-/// is `text`, parsed, with a <robot> element; both stay as they are where nothing lacks. What is
-/// worth knowing is added to `warnings`.
+/// uses), a link "world" to which joints are attached although nothing declares it, and capsules.
+/// `document` is `text`, parsed, with a <robot> element; both stay as they are where nothing lacks.
+/// What is worth knowing is added to `warnings`.
 [[nodiscard]] ParserText textForParser(TiXmlDocument& document, const std::string& text,
                                        std::vector<std::string>& warnings);
 

@@ -103,7 +103,7 @@ TEST(ObjectBaker, SaysWhenTheTolerancesCannotBeMet) {
               HasSubstr("expected 20.0 and 30.0 mm; allow more with `max-spheres`"));
 }
 
-TEST(ObjectBaker, AsksAboutTheUnitOfTinyObjectsAndRefusesHugeOnes) {
+TEST(ObjectBaker, AsksAboutTheUnitOfTinyAndLargeObjectsAndRefusesHugeOnes) {
   bake::SourceAsset tiny = brick();
   for (Vec3& p : tiny.meshes[0].positions) p = p * 0.01F;
   ObjectBakeOptions options = coarse();
@@ -111,13 +111,19 @@ TEST(ObjectBaker, AsksAboutTheUnitOfTinyObjectsAndRefusesHugeOnes) {
   EXPECT_THAT(bakeWell(tiny, options).warnings,
               testing::Contains("is only 1 mm large; is the unit right? `scale` sets meters per "
                                 "unit"));
+  bake::SourceAsset large = brick();
+  for (Vec3& p : large.meshes[0].positions) p = p * 40;
+  options.spheres.radii = {2};
+  EXPECT_THAT(bakeWell(large, options).warnings,
+              testing::Contains(testing::MatchesRegex(
+                  "is [0-9.]+ m large; is the unit right\\? `scale` sets meters per unit")));
   bake::SourceAsset huge = brick();
   for (Vec3& p : huge.meshes[0].positions) p = p * 1000;
   const auto refused = bakeObject(huge, coarse());
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(refused.error().where, "mesh");
-  EXPECT_THAT(refused.error().message, HasSubstr("is its unit the millimeter?"));
+  EXPECT_THAT(refused.error().message, HasSubstr("is its unit the centimeter or the millimeter?"));
 }
 
 TEST(ObjectBaker, KeepsTheWarningsOfTheImport) {

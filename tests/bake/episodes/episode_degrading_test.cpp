@@ -29,6 +29,16 @@ bake::TriangleMesh tablesRoom() {
   return room.build();
 }
 
+/// A table of slats as wide as three columns, every second one 4 mm higher.
+bake::TriangleMesh slattedRoom() {
+  MeshBuilder room = madeRoom(3, 3);
+  for (int n = 0; n < 12; ++n) {
+    const float z = 1 + 0.09F * static_cast<float>(n);
+    room.box({1, 0.6F, z}, {2, n % 2 == 0 ? 0.65F : 0.654F, z + 0.09F});
+  }
+  return room.build();
+}
+
 /// One table in a room, at most 0.9 m across.
 bake::TriangleMesh closet() {
   MeshBuilder room = madeRoom(1.8F, 1.8F);
@@ -156,6 +166,11 @@ TEST(ScenesWithoutPlacesForGoals, SayWhatWasDrawnAndNotTaken) {
   EXPECT_THAT(refusal(generated(MadeWorld(tablesRoom(), stickRobot()), options)),
               AllOf(HasSubstr("(drawn and not taken: distance "),
                     HasSubstr("); ask for other distances, other heights or smaller objects")));
+  // No cube stands flat on the slats of a tray.
+  EXPECT_THAT(refusal(generated(MadeWorld(slattedRoom(), stickRobot()), optionsFor(10, 2))),
+              AllOf(HasSubstr("(drawn and not taken: no_room "),
+                    HasSubstr("); hardly any place is flat to 0.002 m under an object and free "
+                              "over it: give scans `flatness` 0.01")));
   // Nothing comes near a grasp point that is in the middle of a sphere.
   RobotPackFields robot = stickRobot();
   robot.end_effector->grasp_point = robot.spheres.back().center;

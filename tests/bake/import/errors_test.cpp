@@ -55,6 +55,13 @@ TEST(MeshErrors, ListTheFormatsWhenNoneFits) {
   }
 }
 
+TEST(MeshErrors, SayWhatToDoWithXacroFiles) {
+  const Error error = importError("arm.urdf.xacro", "<robot/>");
+  EXPECT_EQ(error.code, ErrorCode::kUnsupported);
+  EXPECT_EQ(error.message,
+            "it is a xacro file; expand it with the xacro tool and give the resulting .urdf");
+}
+
 TEST(MeshErrors, SayThatContentIsNoMesh) {
   for (const char* name : {"a.glb", "a.gltf", "a.ply", "a.dae", "a.fbx"}) {
     const Error error =

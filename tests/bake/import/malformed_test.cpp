@@ -198,6 +198,9 @@ TEST(StatedCounts, AreWhatIsThere) {
   expect_refused("b.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendsolid\n",
                  "it has 1 facets, 0 of which are closed, and 1 vertices");
   expect_refused("a.obj", objFile(mesh) + "f 1 2 5\n", "line 9 uses vertex 5, and it has 4");
+  expect_refused("a.obj", objFile(mesh) + "v 1 .5 0\nf -1 -2 -3\n",
+                 "line 9 has the number '.5', which the reader of .obj files does not take; write "
+                 "it as '0.5'");
   expect_refused("a.obj", objFile(mesh) + "f 1/1 2/2 3", "it ends inside line 9");
   expect_refused("a.obj", objFile(mesh) + "v 1 2", "it ends inside line 9");
   expect_refused("a.obj", objFile(mesh) + "usemtl re", "it ends inside line 9");

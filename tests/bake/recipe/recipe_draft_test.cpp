@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/recipe/recipe_helpers.h"
@@ -21,6 +23,7 @@ using bake::SourceRobot;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::UnorderedElementsAre;
 
 /// The draft of a robot, read back; it fits.
 RobotRecipe draftOf(const SourceRobot& robot) {
@@ -112,6 +115,65 @@ TEST(RecipeDraft, TakesTheLongestChainWhereNoNameHelps) {
   EXPECT_EQ(recipe.end_effector.link.name, "d");
   EXPECT_THAT(namesOf(recipe.joints), ElementsAre("c_joint", "d_joint"));
   EXPECT_FALSE(recipe.camera.has_value());
+}
+
+/// A base with a head, a left arm with a hand of two fingers, a right arm and a wheel.
+SourceRobot twoArms(const std::string& left_finger, const std::string& right_finger) {
+  const JointFields hinge{.type = JointType::kRevolute, .limits = JointLimits{-1, 1}};
+  const JointFields slide{.type = JointType::kPrismatic,
+                          .parent_from_joint = shifted(0, 0, 0.2),
+                          .limits = JointLimits{0, 0.04}};
+  return RobotMaker("two arms")
+      .link("base")
+      .box({0.6, 0.2, 0.4})
+      .link("left_arm", 0, hinge)
+      .box({2, 0.1, 0.1})
+      .link("palm", 1, hinge)
+      .box({0.1, 0.1, 0.1})
+      .link(left_finger, 2, slide)
+      .box({0.02, 0.1, 0.02})
+      .link(right_finger, 2, slide)
+      .mimic(3, 1, 0)
+      .link("palm_camera", 2)
+      .link("right_arm", 0, hinge)
+      .link("wheel", 0, {.type = JointType::kContinuous})
+      .link("head", 0, hinge)
+      .link("head_camera", 8)
+      .robot();
+}
+
+TEST(RecipeDraft, GraspsWithTheHandAndNotWithAFinger) {
+  for (const auto& [left, right] :
+       {std::pair{"left_finger", "right_finger"}, {"gripper_jaw_1", "gripper_jaw_2"}}) {
+    const RobotRecipe recipe = draftOf(twoArms(left, right));
+    EXPECT_EQ(recipe.end_effector.link.name, "palm");
+    EXPECT_THAT(namesOf(recipe.joints), ElementsAre("left_arm_joint", "palm_joint"))
+        << "no action opens the hand";
+  }
+}
+
+TEST(RecipeDraft, PrefersACameraThatTheHandDoesNotCarry) {
+  const SourceRobot robot = twoArms("left_finger", "right_finger");
+  EXPECT_EQ(draftOf(robot).camera->link.name, "head_camera");
+  SourceRobot headless = robot;
+  headless.links.pop_back();
+  EXPECT_EQ(draftOf(headless).camera->link.name, "palm_camera");
+}
+
+TEST(RecipeDraft, LeavesTheArmOutOfTheFootprint) {
+  const RobotRecipe recipe = draftOf(twoArms("left_finger", "right_finger"));
+  const auto* circle = std::get_if<bake::FootprintCircle>(&recipe.base.footprint);
+  ASSERT_NE(circle, nullptr);
+  EXPECT_NEAR(circle->radius, std::hypot(0.3, 0.2), 1e-3) << "the arm is as low, and 1 m long";
+}
+
+TEST(RecipeDraft, StartsAllThatStaysWhereItIsPut) {
+  const RobotRecipe recipe = draftOf(twoArms("left_finger", "right_finger"));
+  std::vector<std::string> names;
+  for (const bake::RecipeStart& start : recipe.start_pose) names.push_back(start.joint.name);
+  EXPECT_THAT(names, UnorderedElementsAre("left_arm_joint", "palm_joint", "left_finger_joint",
+                                          "right_arm_joint", "head_joint"))
+      << "neither wheels nor the finger that follows";
 }
 
 TEST(RecipeDraft, GraspsInFrontOfAllThatMovesWithTheHand) {

@@ -278,6 +278,15 @@ TEST(RobotBaker, WarnsOfAssumedLimitsUntilTheRecipeStatesThem) {
   EXPECT_EQ(stated.kinematics.start_positions[position], 0.25F);
 }
 
+TEST(RobotBaker, SpendsNoMoreThanTheUsualNumberOnALargeBody) {
+  const SourceRobot robot = RobotMaker("cabinet").link("base").box({0.6, 0.6, 0.6}).robot();
+  RobotBakeOptions options;
+  options.radii = {0.015F, 0.05F, 0.12F};
+  const BakedRobot baked = bakeWell(robot, nullptr, options);
+  EXPECT_LE(spheresOf(baked), 100U);
+  EXPECT_LE(baked.groups[0].spheres.quality.gap.max, bake::RecipeSpheres().max_gap);
+}
+
 TEST(RobotBaker, SpendsMoreThanTheUsualNumberWhereGapsWouldBeWide) {
   // Spheres made by hand use up most of the usual number: what is left would leave holes.
   const SourceRobot robot = RobotMaker("rod")

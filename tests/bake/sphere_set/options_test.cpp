@@ -106,7 +106,7 @@ TEST(SphereSetOptions, MeshesThatCannotBeCoveredAreRefused) {
   EXPECT_EQ(large.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(large.error().message,
             "its extents are 100 x 60 x 200 m, and sphere sets are made for up to 10 m; is its "
-            "unit the millimeter? Give the scale, or cut it");
+            "unit the centimeter or the millimeter? Give the scale, or cut it");
 }
 
 TEST(MeasureSphereSet, RefusesSpheresThatAreNoneOfTheWorkingSet) {

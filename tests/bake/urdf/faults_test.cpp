@@ -180,8 +180,8 @@ std::vector<Fault> geometryFaults() {
   return {
       {"NoGeometry", robotText("<link name=\"a\"><collision/></link>"), "r.urdf",
        "the URDF parser refuses it: Could not parse collision element for Link [a]"},
-      {"UnknownShape", robotText(linkText("a", "<capsule radius=\"1\" length=\"1\"/>")), "r.urdf",
-       "the URDF parser refuses it: Unknown geometry type 'capsule'; Could not parse collision "
+      {"UnknownShape", robotText(linkText("a", "<cone radius=\"1\" length=\"1\"/>")), "r.urdf",
+       "the URDF parser refuses it: Unknown geometry type 'cone'; Could not parse collision "
        "element for Link [a]"},
       {"BoxWithoutSize", robotText(linkText("a", "<box/>")), "r.urdf",
        "the URDF parser refuses it: Box shape has no size attribute; Could not parse collision "

@@ -222,6 +222,36 @@ TEST(UrdfGeometry, WithoutSizeIsLeftOutWithAWarning) {
   EXPECT_THAT(robot->links[0].collisions, IsEmpty());
 }
 
+TEST(UrdfGeometry, OfACapsuleIsACylinderWithASphereAtEachEnd) {
+  const ScratchFolder folder;
+  const auto robot = importText(
+      folder, robotText("<link name=\"a\"><visual><geometry><capsule radius=\"0.1\" "
+                        "length=\"0.4\"/></geometry></visual><collision><origin xyz=\"1 2 3\" "
+                        "rpy=\"0.3 0.7 -1.1\"/><geometry><capsule radius=\"0.1\" "
+                        "length=\"0.4\"/></geometry></collision></link>"));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  EXPECT_THAT(robot->warnings, IsEmpty());
+  for (const auto& shapes : {robot->links[0].visuals, robot->links[0].collisions}) {
+    ASSERT_EQ(shapes.size(), 3U);
+    const auto& cylinder = std::get<bake::CylinderShape>(shapes[0].geometry);
+    EXPECT_EQ(cylinder.radius, 0.1);
+    EXPECT_EQ(cylinder.length, 0.4);
+    for (const std::size_t n : {1U, 2U}) {
+      EXPECT_EQ(std::get<bake::SphereShape>(shapes[n].geometry).radius, 0.1);
+      // The cylinder's axis is Y of its frame: the second column.
+      const bake::Affine& rod = shapes[0].link_from_shape;
+      const double along = n == 1 ? -0.2 : 0.2;
+      for (const std::size_t row : {0U, 4U, 8U}) {
+        EXPECT_NEAR(shapes[n].link_from_shape[row + 3], rod[row + 3] + along * rod[row + 1], 1e-12);
+      }
+    }
+  }
+  const auto refused =
+      importText(folder, robotText(linkText("a", "<capsule radius=\"0.1\" length=\"x\"/>")));
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+}
+
 TEST(UrdfGeometry, MayHaveCommasTabsAndLineEndsBetweenNumbers) {
   const ScratchFolder folder;
   const auto robot = importText(folder, robotText(linkText("a", "<box size=\"1,\t2,\n3\"/>")));

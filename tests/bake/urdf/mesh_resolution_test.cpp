@@ -12,6 +12,7 @@ using bake::MeshResolution;
 using bake::MeshResolver;
 using bake::UrdfImportOptions;
 using testing::HasSubstr;
+using testing::Not;
 
 /// A folder with a URDF at ws/src/pkg_description/robots/r.urdf.
 class MeshReferences : public testing::Test {
@@ -47,6 +48,16 @@ TEST_F(MeshReferences, ToPackagesGoOnWhenTheFileIsNotInThePackage) {
   const fs::path above = put("ws/src/pkg/meshes/m.stl");
   options_.packages["pkg"] = folder_.path() / "elsewhere";
   EXPECT_EQ(resolve("package://pkg/meshes/m.stl").file, above);
+}
+
+TEST_F(MeshReferences, ThatDifferInCaseAreNotFoundButNamed) {
+  (void)put("ws/src/pkg_description/meshes/Arm.STL");
+  for (const char* reference : {"package://pkg_description/meshes/arm.stl", "../meshes/arm.stl"}) {
+    const MeshResolution missing = resolve(reference);
+    EXPECT_EQ(missing.file, "");
+    EXPECT_THAT(missing.how, HasSubstr("where 'Arm.STL' differs in upper and lower case"));
+  }
+  EXPECT_THAT(resolve("../meshes/leg.stl").how, Not(HasSubstr("differs")));
 }
 
 TEST_F(MeshReferences, ToThePackageOfTheUrdfAreFoundByFolderName) {

@@ -89,6 +89,9 @@ struct Component {
   /// The part of it within the scene's bounds: what makes a component the room. The padding around
   /// a small scene can hold more than the scene.
   double volume_inside = 0;
+  /// The shares of that in spans that end above and below these bounds.
+  double volume_open_above = 0;
+  double volume_open_below = 0;
   /// Bounds of its columns and spans.
   Bounds bounds;
 };

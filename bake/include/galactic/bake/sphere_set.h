@@ -98,6 +98,8 @@ struct CurvePoint {
   double error = 0;
   /// Meters: no gap is wider before the set is settled.
   double widest_gap = 0;
+  /// How much of that is the distance between the points at which gaps were looked for, meters.
+  double unseen_gap = 0;
 };
 
 /// The trade-off of a mesh: sphere sets of 1, 2, 3... spheres, each with a small error, so that a

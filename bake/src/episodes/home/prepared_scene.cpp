@@ -34,7 +34,18 @@ bool covers(const Bounds& mesh, const Bounds& grid) {
 
 /// What to do where no goal was found. Of each target that stood and was reached, some place was
 /// too near for its goal or on its own surface.
-std::string_view adviceFor(const RejectionCounts& rejections) {
+std::string adviceFor(const RejectionCounts& rejections, float flatness) {
+  // Scanned surfaces bend by that, and nearly every try fails where they have to be flatter.
+  constexpr float kScanFlatness = 0.01F;
+  constexpr double kNearlyAll = 0.98;
+  const std::uint64_t bumpy =
+      rejections[EpisodeRejection::kNoRoom] + rejections[EpisodeRejection::kUneven];
+  if (flatness < kScanFlatness && static_cast<double>(bumpy) >= kNearlyAll * kSurveyTries) {
+    return fmt::format(
+        "hardly any place is flat to {} m under an object and free over it: give scans `flatness` "
+        "{}, or ask for other heights or smaller objects",
+        flatness, kScanFlatness);
+  }
   const bool reached =
       rejections[EpisodeRejection::kDistance] > 0 || rejections[EpisodeRejection::kSameSupport] > 0;
   if (reached || rejections[EpisodeRejection::kNotReached] == 0) {
@@ -92,9 +103,10 @@ std::string PreparedScene::whyUnusable() const {
   const DistanceRange& heights = context_.options.heights;
   return fmt::format(
       "no flat surface {}between {} and {} m over the floor is within reach of the {} places to "
-      "which the robot {} can drive; change the heights or the robot's start pose",
+      "which the robot {} can drive; change `heights`, `flatness` ({} m; scans need some 0.01) or "
+      "the robot's start pose, and see that the scene is the right way up",
       in_receptacles ? "in its receptacles " : "", heights.least, heights.most,
-      floor_.places().size(), robot.name());
+      floor_.places().size(), robot.name(), context_.options.flatness);
 }
 
 float PreparedScene::widestWay() const {
@@ -146,7 +158,7 @@ void PreparedScene::survey() {
       "places, which are at most {:.2f} m apart (drawn and not taken: {}); {}",
       textOf(target_to_goal_), context_.options.goal_on_other_support ? " on another surface" : "",
       kSurveyTries, supports_.places().size(), widestWay(), textOf(rejections),
-      adviceFor(rejections));
+      adviceFor(rejections, context_.options.flatness));
 }
 
 Result<void> PreparedScene::useMesh() {

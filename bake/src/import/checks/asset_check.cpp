@@ -141,4 +141,26 @@ void warnAboutSize(SourceAsset& asset, double smallest_size) {
       high[0] - low[0], high[1] - low[1], high[2] - low[2]));
 }
 
+Result<void> checkHeight(const SourceAsset& asset, const std::string& where) {
+  // A room of 2.5 m is 98 inches or 250 cm high, a house of three storeys 10 m.
+  constexpr double kGreatestHeight = 60;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const SourceInstance& instance : asset.instances) {
+    const SourceMesh& mesh = asset.meshes[instance.mesh];
+    for (const Triangle& triangle : mesh.triangles) {
+      for (const std::uint32_t vertex : triangle) {
+        const double y = transformed(instance.world_from_mesh, mesh.positions[vertex])[1];
+        low = std::min(low, y);
+        high = std::max(high, y);
+      }
+    }
+  }
+  if (high - low <= kGreatestHeight) return {};
+  return invalid(where, fmt::format("the scene is {:.4g} m high ({}), and homes are lower than {} "
+                                    "m; give meters per unit with `scale`: 0.01 for centimeters, "
+                                    "0.001 for millimeters, 1 if it is right in meters",
+                                    high - low, asset.convention, kGreatestHeight));
+}
+
 }  // namespace galactic::bake

@@ -15,4 +15,9 @@ namespace galactic::bake {
 /// its unit is then in doubt. 0: never. `asset` has passed checkAsset.
 void warnAboutSize(SourceAsset& asset, double smallest_size);
 
+/// Refuses a scene that is higher than any home: its unit is not the meter, and its grid would take
+/// all memory there is. For scenes whose unit the user has not stated. kInvalidInput; `asset` has
+/// passed checkAsset.
+[[nodiscard]] Result<void> checkHeight(const SourceAsset& asset, const std::string& where);
+
 }  // namespace galactic::bake

@@ -58,6 +58,16 @@ std::uint64_t largestVertex(Words corners) {
   return largest;
 }
 
+/// A number like .5 among `numbers`; empty where there is none. The reader ends a line there, and
+/// a vertex that it drops moves all later ones.
+std::string_view numberWithoutDigit(Words numbers) {
+  for (std::string_view n = numbers.next(); !n.empty(); n = numbers.next()) {
+    if (n.front() == '#') break;
+    if (n.front() == '.') return n;
+  }
+  return {};
+}
+
 bool isStlText(std::string_view file) {
   constexpr std::string_view kSolid = "solid";
   constexpr std::size_t kLookedAt = 500;
@@ -179,6 +189,15 @@ Result<void> checkObj(std::string_view file, const std::string& where) {
     Words words(lines.line());
     const std::string_view keyword = words.next();
     if (keyword == "v") ++vertices;
+    if (keyword == "v" || keyword == "vt" || keyword == "vn") {
+      const std::string_view number = numberWithoutDigit(words);
+      if (!number.empty()) {
+        return fail(ErrorCode::kInvalidInput, where,
+                    fmt::format("line {} has the number '{}', which the reader of .obj files does "
+                                "not take; write it as '0{}', or convert it to GLB",
+                                lines.number(), number, number));
+      }
+    }
     if (keyword == "mtllib" && ++libraries > kMostLibraries) {
       return fail(ErrorCode::kInvalidInput, where,
                   fmt::format("it names more than {} material files, at most so many are read; "

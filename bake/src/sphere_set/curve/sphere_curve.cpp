@@ -106,7 +106,7 @@ class SphereCurve::Fitter {
     if (cover.spheres.empty()) return sphere_set::nothingToCover();
     steps_.clear();
     sets_.clear();
-    add(cover.spheres, 0, cover.guaranteed_gap);
+    add(cover.spheres, {.widest_gap = cover.guaranteed_gap, .unseen_gap = cover.slack});
     cover_ = std::move(cover);
     complete_ = true;
     return {};
@@ -132,7 +132,9 @@ class SphereCurve::Fitter {
         const double error =
             steps_.empty() ? search_->error() : steps_.back().error - before + search_->error();
         // Between the points a gap can only be wider by their spacing.
-        add(search_->spheres(), error, search_->widestGap() + spacing_);
+        add(search_->spheres(), {.error = error,
+                                 .widest_gap = search_->widestGap() + spacing_,
+                                 .unseen_gap = spacing_});
         return true;
       }
       search_->cheapenProtrusion(kCheaper);
@@ -140,8 +142,9 @@ class SphereCurve::Fitter {
     return false;
   }
 
-  void add(std::vector<Candidate> spheres, double error, double widest_gap) {
-    steps_.push_back({static_cast<std::uint32_t>(spheres.size()), error, widest_gap});
+  void add(std::vector<Candidate> spheres, CurvePoint point) {
+    point.spheres = static_cast<std::uint32_t>(spheres.size());
+    steps_.push_back(point);
     sets_.push_back(std::move(spheres));
   }
 
