@@ -16,9 +16,6 @@
 namespace galactic::python {
 namespace {
 
-using Floats = py::array_t<float>;
-using Numbers = py::array_t<std::int32_t>;
-
 std::array<float, 3> numbersOf(const Vec3& v) { return {v.x, v.y, v.z}; }
 std::array<float, 4> numbersOf(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
 
@@ -73,7 +70,7 @@ void bindPose(py::module_& module) {
       .def_property_readonly("rotation",
                              [](const Pose& pose) { return arrayOf(numbersOf(pose.rotation)); })
       .def_property_readonly("matrix", [](const Pose& pose) {
-        Floats matrix({4, 4});
+        py::array_t<float> matrix({4, 4});
         writeMatrix(rigidTransform(pose), matrix.mutable_data());
         return matrix;
       });
@@ -113,7 +110,7 @@ py::tuple pickled(const NamedEnvState& state) {
                         state.target, state.goal, state.object_names);
 }
 
-NamedEnvState unpickled(const py::tuple& state) {
+NamedEnvState stateIn(const py::tuple& state) {
   return {{.scene = state[0].cast<std::uint32_t>(),
            .episode = state[1].cast<std::uint32_t>(),
            .step = state[2].cast<std::uint32_t>(),
@@ -125,6 +122,17 @@ NamedEnvState unpickled(const py::tuple& state) {
            .target = state[8].cast<std::uint32_t>(),
            .goal = state[9].cast<Pose>()},
           state[10].cast<std::vector<std::string>>()};
+}
+
+/// Whoever made the tuple: what its numbers point to is there.
+NamedEnvState unpickled(const py::tuple& tuple) {
+  NamedEnvState state = stateIn(tuple);
+  const std::size_t count = state.objects.size();
+  const bool holds_one = state.held < 0 || static_cast<std::size_t>(state.held) < count;
+  if (!holds_one || state.target >= count || state.object_names.size() != count) {
+    throw py::value_error("this is no EnvState: it lacks objects that it speaks of");
+  }
+  return state;
 }
 
 }  // namespace

@@ -108,3 +108,14 @@ def test_states_can_be_pickled_and_copied(simulator):
             np.testing.assert_array_equal(one.matrix, wanted.matrix)
     states = pickle.loads(pickle.dumps(simulator.env_states()))
     np.testing.assert_array_equal(states.goal.matrix, simulator.env_states().goal.matrix)
+
+
+def test_what_is_no_state_does_not_become_one(simulator):
+    kind, parts = type(simulator.env_state(0)), list(simulator.env_state(0).__getstate__())
+    made = kind.__new__(kind)
+    made.__setstate__(tuple(parts))
+    assert repr(made) == repr(simulator.env_state(0))
+    held, target, names = 7, 8, 10
+    for place, wrong in ((held, 99), (target, 99), (names, ["mug"] * 99)):
+        with pytest.raises(ValueError, match="this is no EnvState"):
+            kind.__new__(kind).__setstate__((*parts[:place], wrong, *parts[place + 1 :]))
