@@ -20,19 +20,6 @@ Simulator& simulatorOf(const py::object& given) {
       typeName(given)));
 }
 
-namespace {
-
-std::size_t mostObjectsOf(const World& world, const SimulationOptions& options) {
-  if (!options.task.distractors) return 1;
-  std::size_t most = 0;
-  for (const Episode& episode : world.episodes().episodes()) {
-    most = std::max<std::size_t>(most, episode.placement_count);
-  }
-  return most;
-}
-
-}  // namespace
-
 std::span<const float> Simulator::StepInput::actionSpan() const {
   return {actions.data(), static_cast<std::size_t>(actions.size())};
 }
@@ -42,9 +29,7 @@ std::span<const std::int32_t> Simulator::StepInput::resetSpan() const {
 }
 
 Simulator::Simulator(std::shared_ptr<const World> world, BatchSimulator batch)
-    : world_(std::move(world)),
-      batch_(std::move(batch)),
-      most_objects_(mostObjectsOf(*world_, batch_.options())) {}
+    : world_(std::move(world)), batch_(std::move(batch)) {}
 
 std::unique_ptr<Simulator> Simulator::create(std::shared_ptr<const World> world,
                                              const py::dict& keywords) {

@@ -57,7 +57,9 @@ class Simulator {
   [[nodiscard]] std::vector<std::uint32_t> allOrThose(const py::object& envs) const;
 
   /// The most objects that an env can have.
-  [[nodiscard]] std::size_t mostObjects() const { return most_objects_; }
+  [[nodiscard]] std::size_t mostObjects() const {
+    return batch_.options().task.distractors ? world_->mostObjects() : 1;
+  }
 
   /// For shapes.
   [[nodiscard]] py::ssize_t envs() const { return static_cast<py::ssize_t>(batch_.envCount()); }
@@ -89,7 +91,6 @@ class Simulator {
   StepInput input_;
   bool is_stepping_ = false;
   BatchSimulator batch_;
-  std::size_t most_objects_ = 0;
 };
 
 }  // namespace galactic::python

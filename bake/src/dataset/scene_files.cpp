@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/lower_case.h"
 #include "dataset/config/dataset_paths.h"
 
 namespace galactic::bake {

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
 
+#include "common/lower_case.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "robot/robot_parts.h"
@@ -49,13 +49,6 @@ std::string tomlText(std::string_view name) {
     }
   }
   return text + '"';
-}
-
-std::string lowerCase(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
 }
 
 /// Rounded to whole millimeters, and never -0.

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
+#include "common/lower_case.h"
 #include "import/source_files.h"
 
 namespace galactic::bake {
@@ -26,12 +26,6 @@ constexpr std::size_t kPackageFileBytes = 65'536;
 bool isFile(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);
-}
-
-std::string lowerCase(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name;
 }
 
 /// The first file by name in the folder of `path` that has its name but for upper and lower case;

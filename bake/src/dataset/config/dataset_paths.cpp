@@ -140,12 +140,4 @@ std::vector<fs::path> filesIn(const fs::path& folder, std::string_view suffix) {
   return files;
 }
 
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return lower;
-}
-
 }  // namespace galactic::bake

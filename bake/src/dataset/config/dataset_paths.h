@@ -25,7 +25,4 @@ inline constexpr std::size_t kMostMatches = 1'000'000;
 [[nodiscard]] std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder,
                                                          std::string_view suffix);
 
-/// `text` in lower case, ASCII only.
-[[nodiscard]] std::string lowerCase(std::string_view text);
-
 }  // namespace galactic::bake

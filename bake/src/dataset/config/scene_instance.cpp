@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/lower_case.h"
 #include "dataset/config/dataset_paths.h"
 #include "json/json_reader.h"
 #include "support/try.h"

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "common/lower_case.h"
 #include "dataset/config/dataset_paths.h"
 
 namespace galactic::bake {
