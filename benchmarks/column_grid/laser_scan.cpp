@@ -43,7 +43,7 @@ class Scenes {
  public:
   explicit Scenes(SceneSource source) : source_(std::move(source)) {
     std::mt19937 random(kSeed);
-    for (const auto& grids : source_.scenes()) planes_.emplace_back(grids.front(), kHeight);
+    for (const auto& grids : source_.scenes()) planes_.emplace_back(grids.front(), Span{kHeight, kHeight});
     while (places_.size() < kPlaces) tryPlace(random);
     for (std::size_t n = 0; n < kMostBeams; ++n) {
       constexpr double kTurn = 6.283185307179586;

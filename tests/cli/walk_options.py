@@ -33,7 +33,7 @@ NO_LIST = ("", ",", "nan", "inf", "1,nan", "1,,2", "1,", "nonsense", "1x", "1 2"
 NO_PART = ("", "0/0", "0/2", "3/2", "-1/2", "1/-2", "1", "1/", "/2", "nan/nan", f"1/{HUGE}", "nonsense")
 WHOLE = {"N", "PIXELS"}
 NUMBER = {"NUMBER", "METERS", "DEGREES", "RADIANS", "SHARE", "GIB", "X"}
-LIST = {"R,R,...", "N,N,...", "X,Y,Z", "LOW,HIGH", "LEAST[,MOST]", "N|LEAST,MOST"}
+LIST = {"R,R,...", "N,N,...", "X,Y,Z", "LOW,HIGH", "LEAST[,MOST]", "N|LEAST,MOST", "H,LOW-HIGH,..."}
 PATH = {"FILE", "FOLDER", "FILE.json", "FILE.html", "FILE.glb", "FILE.png"}
 # What may be below 0: rewards and penalties, thresholds of actions, and sensors, where it means the recipe's.
 BELOW_ZERO = re.compile(r"--(.*-(reward|weight|penalty)|grasp-from|release-below|terminate-from|laser-.*)$")

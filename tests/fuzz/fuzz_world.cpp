@@ -31,12 +31,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     world.setWord(change.pack, change.at, value);
   }
   constexpr int kSteps = 8;
-  const galactic::SensorOptions all_sensors{.bump = true,
-                                            .target_goal = true,
-                                            .target_up = true,
-                                            .near_objects = 2,
-                                            .laser = {.beams = 8, .second_height = 0.5F},
-                                            .geodesic = true};
+  const galactic::SensorOptions all_sensors{
+      .bump = true,
+      .target_goal = true,
+      .target_up = true,
+      .near_objects = 2,
+      .laser = {.beams = 8, .heights = {{0.25F, 0.25F}, {0.4F, 0.6F}}},
+      .geodesic = true};
   const auto outcome = world.use(kSteps, all_sensors);
   if (!outcome.finding.empty()) galactic::test::reportFinding(outcome.finding);
   for (std::size_t n = count; n-- > 0;) {

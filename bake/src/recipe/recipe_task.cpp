@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "support/height_text.h"
 #include "support/option_table.h"
 
 namespace galactic::bake {
@@ -52,6 +53,19 @@ class TaskReader {
       field = static_cast<float>(*number);
     } else {
       refuse(name, *value, fmt::format("a number from {} to {}", within.least, within.most));
+    }
+  }
+  void heights(std::string_view name, std::vector<Span>& field, const Span& within,
+               std::string_view) {
+    const TomlValue* value = take(name);
+    if (value == nullptr) return;
+    const auto* text = std::get_if<std::string>(&value->value);
+    std::optional<std::vector<Span>> heights;
+    if (text != nullptr) heights = heightsFrom(*text, within);
+    if (heights) {
+      field = std::move(*heights);
+    } else {
+      refuse(name, *value, wantedHeights(within));
     }
   }
   void flag(std::string_view name, const Switch& into, std::string_view) {

@@ -17,6 +17,7 @@
 #include "galactic/error.h"
 #include "run/policy.h"
 #include "run/tracked_run.h"
+#include "support/height_text.h"
 #include "support/nearest_name.h"
 #include "support/number_text.h"
 #include "support/option_table.h"
@@ -86,6 +87,20 @@ class CommandLineVisitor {
     add(name, field, help)
         ->check(numberCheck(static_cast<double>(within.least), static_cast<double>(within.most)))
         ->option_text(fmt::format("{} [{}]", placeholderOf(help), field));
+  }
+  void heights(std::string_view name, std::vector<Span>& field, const Span& within,
+               std::string_view help) {
+    const auto fault_of = [within](const std::string& text) {
+      if (heightsFrom(text, within)) return std::string();
+      return fmt::format("found {}, expected {}", text, wantedHeights(within));
+    };
+    const auto set = [&field, within](const std::string& text) {
+      field = *heightsFrom(text, within);
+    };
+    app_.add_option_function<std::string>(dashed(name), set, std::string(help))
+        ->check(fault_of)
+        ->group(heading_)
+        ->option_text(fmt::format("H,LOW-HIGH,... [{}]", heightText(field)));
   }
   void flag(std::string_view name, const Switch& value, std::string_view help) {
     // --NAME=false, too: a world may have switched it on.

@@ -1,5 +1,9 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <vector>
+
+#include "galactic/pose.h"
 
 namespace galactic {
 
@@ -114,17 +118,20 @@ struct TaskOptions {
 /// value.
 inline constexpr float kOfRobot = -1;
 
-/// A planar laser scan as a part of the observation: distances in horizontal planes around the
-/// robot. Values below 0 are those of the robot's recipe (kOfRobot).
+/// The most scans of one laser.
+inline constexpr std::size_t kMostLaserHeights = 16;
+
+/// Planar laser scans as a part of the observation: distances around the robot. Values below 0 are
+/// those of the robot's recipe (kOfRobot).
 struct LaserOptions {
-  /// Of one plane; 0: no laser.
+  /// Of one scan; 0: no laser.
   std::uint32_t beams = 0;
   /// Degrees, the middle straight ahead of the laser; by default 360.
   float fov_degrees = kOfRobot;
-  /// Of the plane above the floor, meters; by default 0.25.
-  float height = kOfRobot;
-  /// Of a second plane with as many beams, meters; 0 for none.
-  float second_height = 0;
+  /// Above the floor, meters, one for each scan, kMostLaserHeights at most: a single height, or a
+  /// range of heights, in which a beam ends at whatever is nearest at any of them, as where the
+  /// points of a depth camera are made a scan. Empty: that of the robot's recipe; by default 0.25.
+  std::vector<Span> heights = {};
   /// Farthest distance, meters; by default 10.
   float range = kOfRobot;
   /// Nearest distance, meters: what is nearer is measured as this. By default 0.

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "support/height_text.h"
 #include "support/workers.h"
 
 namespace galactic::sensors {
@@ -50,7 +51,8 @@ Result<void> mount(const Robot& robot, const simulation::MotionModel& motion,
   settings.ahead = origin.x;
   settings.right = origin.z;
   settings.yaw = std::atan2(-middle.z, middle.x);
-  settings.heights = {origin.y + motion.base.root_height};
+  const float height = origin.y + motion.base.root_height;
+  settings.heights = {{height, height}};
   settings.field_of_view = std::min(laser.field_of_view, kTurn);
   settings.range = laser.range;
   settings.least_range = laser.least_range;
@@ -92,7 +94,7 @@ float nearlyNormal(RandomStream& random) {
 
 Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& robot,
                                     const simulation::MotionModel& motion) {
-  LaserSettings settings{.heights = {kHeight}, .field_of_view = kTurn, .range = kRange};
+  LaserSettings settings{.heights = {{kHeight, kHeight}}, .field_of_view = kTurn, .range = kRange};
   settings.beams = options.beams;
   if (options.beams == 0) return settings;
   if (robot.laser()) {
@@ -100,8 +102,7 @@ Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& ro
       return tl::unexpected<Error>(mounted.error());
     }
   }
-  settings.heights.front() = orRobots(options.height, settings.heights.front());
-  if (options.second_height > 0) settings.heights.push_back(options.second_height);
+  if (!options.heights.empty()) settings.heights = options.heights;
   constexpr float kDegree = std::numbers::pi_v<float> / 180;
   settings.field_of_view =
       options.fov_degrees < 0 ? settings.field_of_view : options.fov_degrees * kDegree;
@@ -130,7 +131,8 @@ Result<Laser> Laser::make(const LaserSettings& settings, const World& world,
   const std::vector<Scene>& scenes = world.scenes();
   struct Cut {
     std::uint32_t scene;
-    float height;
+    float floor;
+    Span above;
     ScanPlane* plane;
   };
   std::vector<Cut> cuts;
@@ -142,21 +144,22 @@ Result<Laser> Laser::make(const LaserSettings& settings, const World& world,
     }
     for (Floor& floor : laser.floors_[scene]) {
       for (std::size_t n = 0; n < settings.heights.size(); ++n) {
-        cuts.push_back({scene, floor.height + settings.heights[n], &floor.planes[n]});
+        cuts.push_back({scene, floor.height, settings.heights[n], &floor.planes[n]});
       }
     }
   }
   detail::forEachPart(threads, cuts.size(), [&](std::size_t n) {
-    *cuts[n].plane = ScanPlane(scenes[cuts[n].scene].grids().front(), cuts[n].height);
+    const Cut& cut = cuts[n];
+    const Span cut_at{cut.floor + cut.above.lo, cut.floor + cut.above.hi};
+    *cut.plane = ScanPlane(scenes[cut.scene].grids().front(), cut_at);
   });
   for (const Cut& cut : cuts) {
     if (cut.plane->freeCells() != 0) continue;
     const Span known = scenes[cut.scene].grids().front().heights();
-    return refuse(
-        fmt::format("the laser scans scene {} at the height {:.3f} m, where nothing is free (its "
-                    "grids reach from "
-                    "{} to {} m); give another laser-height or laser-second-height",
-                    scenes[cut.scene].name(), cut.height, known.lo, known.hi));
+    return refuse(fmt::format(
+        "the laser scans scene {} {} m above the floor at {:.3f} m, where nothing is free "
+        "(its grids reach from {} to {} m); give other laser-heights",
+        scenes[cut.scene].name(), heightText({&cut.above, 1}), cut.floor, known.lo, known.hi));
   }
   return laser;
 }
@@ -195,29 +198,31 @@ void Laser::scan(const LaserView& view, std::span<float> out) const noexcept {
   RandomStream random = view.random;
   for (std::size_t n = 0; n < settings_.heights.size(); ++n) {
     const Vec3 origin{view.base.x + view.cosine * settings_.ahead + view.sine * settings_.right,
-                      view.base.y + settings_.heights[n],
+                      view.base.y,
                       view.base.z - view.sine * settings_.ahead + view.cosine * settings_.right};
     const std::span<float> distances = std::span(room).first(beams_ahead_.size());
-    scanPlane(view, floor.planes[n].view(), origin, distances);
+    scanPlane(view, floor.planes[n].view(), settings_.heights[n], origin, distances);
     finish(distances, random, out.subspan(n * settings_.beams, settings_.beams));
   }
 }
 
-void Laser::scanPlane(const LaserView& view, const ScanPlaneView& plane, const Vec3& origin,
-                      std::span<float> distances) const noexcept {
-  const BeamBatch beams{.origin = origin,
-                        .cosine = view.cosine,
-                        .sine = view.sine,
-                        .ahead = beams_ahead_.data(),
-                        .right = beams_right_.data(),
-                        .count = beams_ahead_.size(),
-                        .range = settings_.range};
+void Laser::scanPlane(const LaserView& view, const ScanPlaneView& plane, const Span& heights,
+                      const Vec3& origin, std::span<float> distances) const noexcept {
+  BeamBatch beams{.origin = origin,
+                  .cosine = view.cosine,
+                  .sine = view.sine,
+                  .ahead = beams_ahead_.data(),
+                  .right = beams_right_.data(),
+                  .count = beams_ahead_.size(),
+                  .range = settings_.range};
   kernels_.cast_scene(plane, beams, distances.data());
-  view.objects.forEachAtHeight(origin.y, [&](const RestingBox& box) {
+  const Span within{origin.y + heights.lo, origin.y + heights.hi};
+  view.objects.forEachBetween(within, [&](const RestingBox& box, float y) {
     const Vec3 half = simulation::halfBounds(box);
     const float reach = settings_.range + half.x + half.z;
     const Vec3 away = box.center - origin;
     if (std::fabs(away.x) > reach || std::fabs(away.z) > reach) return;
+    beams.origin.y = y;
     kernels_.cast_box(box, beams, distances.data());
   });
 }

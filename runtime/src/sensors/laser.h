@@ -20,8 +20,8 @@ namespace galactic::sensors {
 struct LaserSettings {
   /// Of one plane; 0: no laser.
   std::uint32_t beams = 0;
-  /// Of each plane above the floor, meters.
-  std::vector<float> heights;
+  /// Between which each scan looks, above the floor, meters.
+  std::vector<Span> heights;
   /// Radians.
   float field_of_view = 0;
   /// Meters.
@@ -95,8 +95,8 @@ class Laser {
 
   void aimBeams();
   [[nodiscard]] const Floor& floorAt(std::uint32_t scene, float height) const noexcept;
-  void scanPlane(const LaserView& view, const ScanPlaneView& plane, const Vec3& origin,
-                 std::span<float> distances) const noexcept;
+  void scanPlane(const LaserView& view, const ScanPlaneView& plane, const Span& heights,
+                 const Vec3& origin, std::span<float> distances) const noexcept;
   void finish(std::span<const float> distances, RandomStream& random,
               std::span<float> out) const noexcept;
 

@@ -17,24 +17,26 @@ struct Cells {
   std::size_t columns_z;
 };
 
-/// Marks the cells of the grid whose columns are free at `height` with 1.
-std::size_t markFree(const ColumnGrid& grid, float height, const Cells& cells) {
+/// Marks the cells of the grid whose columns are free between `heights` with 1.
+std::size_t markFree(const ColumnGrid& grid, const Span& heights, const Cells& cells) {
   const ColumnGridLayout& layout = grid.layout();
   const std::size_t count = grid.columnsX();
   std::vector<float> x(count);
   std::vector<float> z(count);
-  const std::vector<float> y(count, height);
+  const std::vector<float> y(count, heights.lo);
   std::vector<Clearance> answers(count);
+  std::vector<float> down(count);
+  std::vector<float> up(count);
   for (std::size_t i = 0; i < count; ++i) {
     x[i] = layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing;
   }
   std::size_t free = 0;
   for (std::size_t k = 0; k < grid.columnsZ(); ++k) {
     std::ranges::fill(z, layout.min_z + (static_cast<float>(k) + 0.5F) * layout.spacing);
-    grid.contact({x, y, z}, {answers, {}, {}});
+    grid.contact({x, y, z}, {answers, down, up});
     std::uint8_t* row = cells.bytes.data() + (k + kRing) * cells.columns_x + kRing;
     for (std::size_t i = 0; i < count; ++i) {
-      row[i] = answers[i] == Clearance::kFree ? 1 : 0;
+      row[i] = answers[i] == Clearance::kFree && heights.lo + up[i] >= heights.hi ? 1 : 0;
       free += row[i];
     }
   }
@@ -120,13 +122,13 @@ std::uint8_t promiseOf(std::int64_t squared) {
 
 }  // namespace
 
-ScanPlane::ScanPlane(const ColumnGrid& grid, float height) {
+ScanPlane::ScanPlane(const ColumnGrid& grid, const Span& heights) {
   const ColumnGridLayout& layout = grid.layout();
   const std::size_t nx = grid.columnsX() + std::size_t{2} * kRing;
   const std::size_t nz = grid.columnsZ() + std::size_t{2} * kRing;
   cells_.assign(nx * nz + kReadBeyond, 0);
   const Cells cells{cells_, nx, nz};
-  free_cells_ = markFree(grid, height, cells);
+  free_cells_ = markFree(grid, heights, cells);
   // The distance of two squares is that of their middles when one is grown by its eight neighbors:
   // columnDistances grows along x, and along z by taking one cell off.
   const std::vector<std::int32_t> steps = columnDistances(cells);

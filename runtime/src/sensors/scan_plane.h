@@ -16,8 +16,8 @@ class ScanPlane {
  public:
   /// Nothing.
   ScanPlane() = default;
-  /// The plane at `height` of the world frame, meters. O(cells).
-  ScanPlane(const ColumnGrid& grid, float height);
+  /// Of what is between `heights` of the world frame, meters. O(cells).
+  ScanPlane(const ColumnGrid& grid, const Span& heights);
 
   [[nodiscard]] ScanPlaneView view() const noexcept;
   /// Cells that block no beam.

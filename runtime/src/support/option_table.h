@@ -73,8 +73,8 @@ struct Switch {
 /// command line of galactic-run, recordings, reports, world packs and the recipes of worlds. Calls
 /// on `v`
 ///   group(heading), whole(name, field, Within, help), real(name, field, Within, help),
-///   choice(name, field, names, help), flag(name, Switch, help), seed(name, field, help),
-///   preset(name, field, Preset, help), before its parts.
+///   heights(name, field, within, help), choice(name, field, names, help), flag(name, Switch,
+///   help), seed(name, field, help), preset(name, field, Preset, help), before its parts.
 template <class Visitor>
 void visitBatchOptions(SimulationOptions& o, Visitor& v) {
   v.group("Simulation");
@@ -175,10 +175,8 @@ void visitSensorOptions(SensorOptions& s, Visitor& v) {
           "Beams of a planar laser scan; 0: none");
   v.real("laser-fov", laser.fov_degrees, Within<float>{kOfRobot, 360},
          "Field of view of the scan, degrees");
-  v.real("laser-height", laser.height, Within<float>{kOfRobot, 100},
-         "Height of the scan above the floor, meters");
-  v.real("laser-second-height", laser.second_height, Within<float>{0, 100},
-         "Height of a second scan, meters; 0: none");
+  v.heights("laser-heights", laser.heights, Span{0, 100},
+            "Heights of the scans above the floor, or ranges of them, meters");
   v.real("laser-range", laser.range, Within<float>{kOfRobot, 1000}, "Farthest distance, meters");
   v.real("laser-min-range", laser.least_range, Within<float>{kOfRobot, 1000},
          "Nearest distance, meters");

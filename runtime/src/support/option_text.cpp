@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "support/height_text.h"
 #include "support/option_table.h"
 
 namespace galactic {
@@ -32,6 +33,10 @@ class Namer {
   }
   template <class... Rest>
   void real(std::string_view name, const Rest&...) {
+    names_.emplace_back(name);
+  }
+  template <class... Rest>
+  void heights(std::string_view name, const Rest&...) {
     names_.emplace_back(name);
   }
   template <class... Rest>
@@ -66,6 +71,9 @@ class Lister {
   }
   void real(std::string_view name, float value, Within<float>, std::string_view) {
     add(name, fmt::format("{}", value), false);
+  }
+  void heights(std::string_view name, std::span<const Span> value, const Span&, std::string_view) {
+    add(name, heightText(value), true);
   }
   void flag(std::string_view name, const Switch& value, std::string_view) {
     add(name, value.field == value.when_typed ? "true" : "false", false);
@@ -105,6 +113,14 @@ class Setter {
   }
   void real(std::string_view name, float& field, Within<float> within, std::string_view) {
     number(name, field, within);
+  }
+  void heights(std::string_view name, std::vector<Span>& field, const Span& within,
+               std::string_view) {
+    const std::string* text = take(name);
+    if (text == nullptr) return;
+    std::optional<std::vector<Span>> heights = heightsFrom(*text, within);
+    require(heights.has_value(), wantedHeights(within));
+    if (heights) field = std::move(*heights);
   }
   void flag(std::string_view name, const Switch& value, std::string_view) {
     const std::string* text = take(name);
@@ -187,6 +203,10 @@ class Checker {
   void real(std::string_view name, float value, Within<float> within, std::string_view) {
     number(name, value, within);
   }
+  void heights(std::string_view name, std::span<const Span> value, const Span& within,
+               std::string_view) {
+    if (!areHeights(value, within)) refuse(name, heightText(value), wantedHeights(within));
+  }
   void flag(std::string_view, const Switch&, std::string_view) {}
   template <class T, std::size_t N>
   void choice(std::string_view name, T value, const std::array<Named<T>, N>& names,
@@ -209,7 +229,7 @@ class Checker {
     if (!is_good) refuse(name, value, fmt::format("{} to {}", within.least, within.most));
   }
   template <class T>
-  void refuse(std::string_view name, T value, std::string_view wanted) {
+  void refuse(std::string_view name, const T& value, std::string_view wanted) {
     if (fault_.empty()) fault_ = fmt::format("{} is {}, expected {}", name, value, wanted);
   }
 

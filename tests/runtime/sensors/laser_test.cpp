@@ -110,14 +110,45 @@ TEST(Laser, TurnsWithTheBase) {
   expectNear(scan[2], 2, 0.75F);
 }
 
-TEST(Laser, SeesASecondPlaneAfterTheFirst) {
+/// A single height.
+Span at(float height) { return {height, height}; }
+
+TEST(Laser, LooksAtOneHeightAfterTheOther) {
   const BoxWorld world(walls(), {{{1, 0, 1.5F}, 0, {{1.5F, 1.5F, 1.5F}}}});
   const BatchSimulator batch =
-      made(world, {.beams = 1, .height = 0.25F, .second_height = 0.55F, .range = 3});
+      made(world, {.beams = 1, .heights = {at(0.25F), at(0.55F), at(0.25F)}, .range = 3});
   const std::span<const float> scan = scanOf(batch);
-  ASSERT_EQ(scan.size(), 2U);
+  ASSERT_EQ(scan.size(), 3U);
   expectNear(scan[0], 3, 1.75F);
   expectNear(scan[1], 3, 1);
+  EXPECT_EQ(scan[2], scan[0]);
+}
+
+TEST(Laser, SeesWhatIsSomewhereInARangeOfHeights) {
+  const BoxWorld world(walls(), {{{1, 0, 1.5F}, 0, {{1.5F, 1.5F, 1.5F}}}});
+  const BatchSimulator batch = made(
+      world, {.beams = 1, .heights = {{0.1F, 0.45F}, {0.1F, 0.9F}, {0.65F, 0.9F}}, .range = 3});
+  const std::span<const float> scan = scanOf(batch);
+  expectNear(scan[0], 3, 1.75F);  // under the board
+  expectNear(scan[1], 3, 1);
+  expectNear(scan[2], 3, 1.75F);  // above it
+}
+
+TEST(Laser, SeesObjectsThatAreSomewhereInARangeOfHeights) {
+  // A cube of 20 cm whose face is 60 cm ahead, 20 to 40 cm above the floor.
+  Start start = middle();
+  start.objects = {{2.2F, 0.2F, 1.5F}};
+  const BoxWorld world(walls(), {start});
+  const BatchSimulator batch =
+      made(world, {.beams = 1,
+                   .heights = {{0.05F, 0.21F}, {0.05F, 0.9F}, {0.39F, 0.45F}, {0.41F, 0.45F}},
+                   .range = 2});
+  const std::span<const float> scan = scanOf(batch);
+  EXPECT_NEAR(scan[0] * 2, 0.6F, 1e-5F);
+  EXPECT_NEAR(scan[2] * 2, 0.6F, 1e-5F);
+  EXPECT_GT(scan[3] * 2, 1);
+  // The board is nearer.
+  expectNear(scan[1], 2, 0.5F);
 }
 
 TEST(Laser, KeepsBetweenItsRanges) {
@@ -167,7 +198,7 @@ TEST(Laser, SitsWhereTheRecipeSays) {
   expectNear(scan[1], 4, 1.75F);  // to the left
   expectNear(scan[2], 4, 1.5F);   // behind
   // Options count before it.
-  const BatchSimulator lower = made(world, {.beams = 3, .height = 0.25F, .range = 2});
+  const BatchSimulator lower = made(world, {.beams = 3, .heights = {at(0.25F)}, .range = 2});
   expectNear(scanOf(lower)[0], 2, 1);
 }
 
@@ -185,9 +216,10 @@ TEST(Laser, MustNotBeCarriedByAnArm) {
 TEST(Laser, IsRefusedWhereItSeesNothing) {
   const BoxWorld world(walls(), {middle()});
   EXPECT_THAT(
-      faultOf(world, {.beams = 3, .height = 5}),
-      HasSubstr("scans scene kitchen at the height 5.000 m, where nothing is free (its grids reach "
-                "from -0.5 to 3 m); give another laser-height"));
+      faultOf(world, {.beams = 3, .heights = {at(0.25F), {4, 5}}}),
+      HasSubstr(
+          "scans scene kitchen 4-5 m above the floor at 0.000 m, where nothing is free (its grids "
+          "reach from -0.5 to 3 m); give other laser-heights"));
   EXPECT_THAT(faultOf(world, {.beams = 3, .range = 1, .least_range = 1}),
               HasSubstr("laser-range is 1 m and laser-min-range 1 m, expected a range above"));
 }
@@ -198,7 +230,7 @@ TEST(Laser, LooksFromTheFloorOnWhichTheRobotStands) {
   blocks.push_back({{0, 0, 0}, {1.25F, 0.4F, 3}});
   const BoxWorld world(blocks, {{{1.75F, 0, 1.5F}, 0, {{1.5F, 1.5F, 1.5F}}},
                                 {{0.75F, 0.4F, 1.5F}, 0, {{1.5F, 1.5F, 1.5F}}}});
-  SimulationOptions options = withLaser({.beams = 1, .height = 0.15F, .range = 3});
+  SimulationOptions options = withLaser({.beams = 1, .heights = {at(0.15F)}, .range = 3});
   options.envs = 2;
   options.order = EpisodeOrder::kLinear;
   const BatchSimulator batch = BatchSimulator::create(world.world(), options).value();
@@ -242,7 +274,8 @@ TEST(Laser, HasNoiseOfTheGivenDeviation) {
 
 TEST(Laser, DependsOnTheEnvAlone) {
   const BoxWorld world(walls(), {middle(), middle(1), middle(2)});
-  SimulationOptions options = withLaser({.beams = 21, .second_height = 0.8F, .noise = 0.01F});
+  SimulationOptions options =
+      withLaser({.beams = 21, .heights = {at(0.25F), at(0.8F)}, .noise = 0.01F});
   options.envs = 70;
   options.task.most_steps = 5;
   const auto scansOf = [&](std::uint32_t threads, std::uint32_t envs, std::uint32_t rank) {

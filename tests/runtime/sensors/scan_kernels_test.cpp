@@ -85,7 +85,7 @@ TEST(ScanKernels, EndBeamsWhereMarchingMeetsABlockedCell) {
   int beams = 0;
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     const ScatteredGrid grid(seed, 60, 50);
-    const ScanPlane plane(grid.view(), kCutHeight);
+    const ScanPlane plane(grid.view(), {kCutHeight, kCutHeight});
     for (int place = 0; place < 12; ++place) {
       const Vec3 origin{uniformIn(random, -0.5F, 1.37F), kCutHeight,
                         uniformIn(random, 0.25F, 1.8F)};
@@ -244,7 +244,7 @@ TEST(ScanKernels, AgreeBitForBit) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (std::uint32_t seed = 1; seed <= 30; ++seed) {
     const ScatteredGrid grid(seed, 7 + 11 * (seed % 7), 50);
-    const ScanPlane plane(grid.view(), kCutHeight);
+    const ScanPlane plane(grid.view(), {kCutHeight, kCutHeight});
     for (int place = 0; place < 60; ++place) {
       Vec3 origin{uniformIn(random, -1, 3), kCutHeight, uniformIn(random, -0.5F, 2.5F)};
       // On a border of cells, outside, or nowhere.

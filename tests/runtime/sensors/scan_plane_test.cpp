@@ -43,7 +43,7 @@ TEST(ScanPlane, PromisesTheDistanceToTheNearestBlockedCell) {
   int all = 0;
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
     const ScatteredGrid grid(seed, 20 + 3 * seed, 37);
-    const ScanPlane plane(grid.view(), kCutHeight);
+    const ScanPlane plane(grid.view(), {kCutHeight, kCutHeight});
     const ScanPlaneView view = plane.view();
     for (std::int64_t k = 0; k < grid.columnsZ(); ++k) {
       for (std::int64_t i = 0; i < grid.columnsX(); ++i) {
@@ -66,7 +66,7 @@ TEST(ScanPlane, PromisesTheDistanceToTheNearestBlockedCell) {
 
 TEST(ScanPlane, IsBlockedAllAroundTheGrid) {
   const ScatteredGrid grid(3, 9, 5);
-  const ScanPlane plane(grid.view(), kCutHeight);
+  const ScanPlane plane(grid.view(), {kCutHeight, kCutHeight});
   const ScanPlaneView view = plane.view();
   ASSERT_EQ(view.columns_x, 11);
   ASSERT_EQ(view.columns_z, 7);
@@ -84,17 +84,28 @@ TEST(ScanPlane, IsBlockedAllAroundTheGrid) {
 
 TEST(ScanPlane, DependsOnTheHeight) {
   const ScatteredGrid grid(5, 40, 40);
-  const ScanPlane across(grid.view(), kCutHeight);
+  const ScanPlane across(grid.view(), {kCutHeight, kCutHeight});
   EXPECT_LT(across.freeCells(), 1600U);
   EXPECT_GT(across.freeCells(), 160U);
-  EXPECT_EQ(ScanPlane(grid.view(), 0.25F).freeCells(), 1600U);
-  EXPECT_EQ(ScanPlane(grid.view(), 1.75F).freeCells(), 1600U);
-  EXPECT_EQ(ScanPlane(grid.view(), 2.5F).freeCells(), 0U);
+  EXPECT_EQ(ScanPlane(grid.view(), {0.25F, 0.25F}).freeCells(), 1600U);
+  EXPECT_EQ(ScanPlane(grid.view(), {1.75F, 1.75F}).freeCells(), 1600U);
+  EXPECT_EQ(ScanPlane(grid.view(), {2.5F, 2.5F}).freeCells(), 0U);
+}
+
+TEST(ScanPlane, IsBlockedWhereAnyOfItsHeightsIs) {
+  const ScatteredGrid grid(5, 40, 40);
+  const std::size_t across = ScanPlane(grid.view(), {kCutHeight, kCutHeight}).freeCells();
+  for (const Span& heights :
+       {Span{0.25F, 1.75F}, Span{0.25F, kCutHeight}, Span{kCutHeight, 1.75F}}) {
+    EXPECT_EQ(ScanPlane(grid.view(), heights).freeCells(), across);
+  }
+  EXPECT_EQ(ScanPlane(grid.view(), {0.25F, 0.3F}).freeCells(), 1600U);
+  EXPECT_EQ(ScanPlane(grid.view(), {0.25F, 2.5F}).freeCells(), 0U);
 }
 
 TEST(ScanPlane, StopsPromisingWhereAByteEnds) {
   const ScatteredGrid grid(5, 400, 400);
-  const ScanPlane plane(grid.view(), 0.25F);
+  const ScanPlane plane(grid.view(), {0.25F, 0.25F});
   EXPECT_EQ(byteAt(plane.view(), 200, 200), 255);
 }
 

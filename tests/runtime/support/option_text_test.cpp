@@ -117,6 +117,15 @@ class RangeProbe {
     probe(name, fmt::format("{}", within.least), true);
     probe(name, fmt::format("{}", within.most), true);
   }
+  void heights(std::string_view name, std::vector<Span>&, const Span& within, std::string_view) {
+    const std::string most = fmt::format("{}", within.hi);
+    for (const std::string& good : {std::string("robot"), "0-" + most, "0," + most + ",0.5-1.5"}) {
+      probe(name, good, true);
+    }
+    for (const std::string& wrong : {most + ".5", "1-" + most + "1", std::string("1-0.5")}) {
+      probe(name, wrong, false);
+    }
+  }
   void flag(std::string_view, const Switch&, std::string_view) {}
   template <class T, std::size_t N>
   void choice(std::string_view name, T&, const std::array<Named<T>, N>& names, std::string_view) {
@@ -173,6 +182,14 @@ class FieldProbe {
   void group(std::string_view) {}
   void seed(std::string_view, std::uint64_t&, std::string_view) {}
   void flag(std::string_view, const Switch&, std::string_view) {}
+  void heights(std::string_view name, std::vector<Span>& field, const Span& within,
+               std::string_view) {
+    for (const Span& wrong : {Span{within.lo, within.hi + 1}, Span{within.lo - 1, within.hi},
+                              Span{within.hi, within.lo}, Span{within.lo, std::nanf("")}}) {
+      probe(name, field, std::vector<Span>{wrong});
+    }
+    probe(name, field, std::vector<Span>(kMostLaserHeights + 1, within));
+  }
   void whole(std::string_view name, std::uint32_t& field, Within<std::uint32_t> within,
              std::string_view) {
     probe(name, field, within.most + 1);

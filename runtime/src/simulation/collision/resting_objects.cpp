@@ -92,9 +92,9 @@ RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius,
       bounds_(packsFor(most_objects), bounds_memory),
       boxes_(most_objects, memory) {}
 
-std::uint32_t RestingObjects::atHeight(const PackedBounds& bounds, float y) noexcept {
+std::uint32_t RestingObjects::between(const PackedBounds& bounds, const Span& heights) noexcept {
   QueryBounds query;
-  query.bands = bandsOf(cellSpan(y, y, kBandHeight));
+  query.bands = bandsOf(cellSpan(heights.lo, heights.hi, kBandHeight));
   query.is_everywhere = true;
   return objectsNear(bounds, query);
 }

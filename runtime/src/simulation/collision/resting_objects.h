@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -79,13 +80,15 @@ class RestingObjects {
   /// rounding: the sphere sinks to where its center enters the box grown by the radius.
   [[nodiscard]] float fall(const Vec3& center, float radius) const noexcept;
 
-  /// Calls `visit(box)` for each resting object, ascending, whose box comes to the height `y`.
+  /// Calls `visit(box, y)` for each resting object, ascending, whose box is somewhere between
+  /// `heights`; `y`: the nearest of them to its center.
   template <class Visit>
-  void forEachAtHeight(float y, const Visit& visit) const {
-    forEachOf([&](const PackedBounds& bounds) { return atHeight(bounds, y); },
+  void forEachBetween(const Span& heights, const Visit& visit) const {
+    forEachOf([&](const PackedBounds& bounds) { return between(bounds, heights); },
               [&](std::uint32_t index) {
                 const RestingBox& box = boxes_[index];
-                if (std::fabs(y - box.center.y) < box.half_height) visit(box);
+                const float y = std::clamp(box.center.y, heights.lo, heights.hi);
+                if (std::fabs(y - box.center.y) < box.half_height) visit(box, y);
               });
   }
 
@@ -123,7 +126,8 @@ class RestingObjects {
     }
   }
   /// Of 32 objects, those that centers at a height, or at a place, may be near.
-  [[nodiscard]] static std::uint32_t atHeight(const PackedBounds& bounds, float y) noexcept;
+  [[nodiscard]] static std::uint32_t between(const PackedBounds& bounds,
+                                             const Span& heights) noexcept;
   [[nodiscard]] static std::uint32_t inColumnOf(const PackedBounds& bounds,
                                                 const Vec3& center) noexcept;
 

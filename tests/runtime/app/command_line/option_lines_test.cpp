@@ -37,8 +37,7 @@ SimulationOptions unusualOptions() {
                      .near_objects = 3,
                      .laser = {.beams = 24,
                                .fov_degrees = 220,
-                               .height = 0.1F / 3,
-                               .second_height = 0.8F,
+                               .heights = {{0.1F / 3, 0.1F / 3}, {1e-6F, 0.8F}},
                                .range = 4,
                                .least_range = 0.05F,
                                .noise = 0.01F},
@@ -75,6 +74,7 @@ TEST(OptionText, ReadsBackWhatItWrote) {
   EXPECT_EQ(read->action.terminate, options.action.terminate);
   EXPECT_EQ(read->placement.clearance, options.placement.clearance);
   EXPECT_EQ(read->placement.jitter, options.placement.jitter);
+  EXPECT_EQ(read->sensors.laser.heights, options.sensors.laser.heights);
   EXPECT_EQ(read->task.kind, TaskKind::kMobilePick);
   EXPECT_FALSE(read->task.distractors);
 }

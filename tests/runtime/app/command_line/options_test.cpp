@@ -108,8 +108,8 @@ TEST(RunCommandLine, FindsWhatHasNoEffect) {
   const auto without_effect = [](const std::vector<std::string>& arguments) {
     return parsed(arguments).without_effect;
   };
-  for (const char* option : {"--laser-fov", "--laser-height", "--laser-second-height",
-                             "--laser-range", "--laser-min-range", "--laser-noise"}) {
+  for (const char* option :
+       {"--laser-fov", "--laser-heights", "--laser-range", "--laser-min-range", "--laser-noise"}) {
     EXPECT_EQ(without_effect({option, "1"}),
               std::string(option) + " applies to a laser scan only; add --laser-beams N");
     EXPECT_NE(without_effect({option, "1", "--laser-beams", "0"}), "") << option;
