@@ -26,6 +26,10 @@ std::string underscored(std::string name) {
   return name;
 }
 
+bool isList(const py::handle& value) {
+  return py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value);
+}
+
 /// A value as galactic-run reads it.
 std::string textOf(const std::string& keyword, const py::handle& value) {
   if (isTruth(value)) return truthOf(keyword.c_str(), value) ? "true" : "false";
@@ -37,6 +41,17 @@ std::string textOf(const std::string& keyword, const py::handle& value) {
   throw py::type_error(
       fmt::format("the option {} is a {}, expected a number, a truth value or a word", keyword,
                   typeName(value)));
+}
+
+/// Of heights: numbers, and pairs of them, which are ranges.
+std::string listText(const std::string& keyword, const py::sequence& values, char between) {
+  std::string text;
+  for (const py::handle value : values) {
+    if (!text.empty()) text += between;
+    text +=
+        isList(value) ? listText(keyword, value.cast<py::sequence>(), '-') : textOf(keyword, value);
+  }
+  return text;
 }
 
 /// Of a listed option.
@@ -86,6 +101,8 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
     } else if (keyword == "body_transforms" || keyword == "auto_reset") {
       (keyword == "auto_reset" ? options.auto_reset : options.body_transforms) =
           truthOf(keyword.c_str(), value);
+    } else if (keyword == "laser_heights" && isList(value)) {
+      texts.push_back({dashed(keyword), listText(keyword, value.cast<py::sequence>(), ',')});
     } else {
       texts.push_back({dashed(keyword), textOf(keyword, value)});
     }

@@ -403,6 +403,8 @@ def test_options_are_those_of_the_option_table(world):
         episode_steps=np.int64(9),
         success_reward=np.float32(2.5),
         order=None,
+        laser_beams=4,
+        laser_heights=[0.25, (0.4, np.float32(0.75))],
     )
     options = simulator.options
     assert options["task"] == "pick"
@@ -411,6 +413,10 @@ def test_options_are_those_of_the_option_table(world):
     assert (options["slide_direction"], options["slide_attempts"]) == ("towards-base", 5)
     assert (options["slide_step"], options["episode_steps"]) == (0.25, 9)
     assert (options["success_reward"], options["order"]) == (2.5, "shuffled")
+    assert options["laser_heights"] == "0.25,0.4-0.75"
+    assert (
+        simulator.observation_parts["laser"].stop - simulator.observation_parts["laser"].start == 8
+    )
     again = Simulator(world, threads=1, **options)
     assert again.options == options
 
@@ -429,6 +435,13 @@ def test_options_are_those_of_the_option_table(world):
         ({"slide_step": float("nan")}, Error, "slide_step: is nan, expected 0 to 1000"),
         ({"slide_step": float("inf")}, Error, "slide_step: is inf, expected 0 to 1000"),
         ({"slide_step": [1]}, TypeError, "the option slide_step is a list"),
+        (
+            {"laser_heights": [0.25, (0.8, 0.4)]},
+            Error,
+            "laser_heights: is 0.25,0.8-0.4, expected robot",
+        ),
+        ({"laser_heights": []}, Error, "laser_heights: is , expected robot"),
+        ({"laser_heights": [None]}, TypeError, "the option laser_heights is a NoneType, expected"),
         ({"threads": -1}, Error, "threads: is -1, expected 0 to 4096"),
         ({"rank": 2, "ranks": 2}, Error, "rank 2 of 2"),
         ({"slide": "of"}, Error, "slide: is of, expected glide, published or off"),
