@@ -43,7 +43,8 @@ class Scenes {
  public:
   explicit Scenes(SceneSource source) : source_(std::move(source)) {
     std::mt19937 random(kSeed);
-    for (const auto& grids : source_.scenes()) planes_.emplace_back(grids.front(), Span{kHeight, kHeight});
+    for (const auto& grids : source_.scenes())
+      planes_.emplace_back(grids.front(), Span{kHeight, kHeight});
     while (places_.size() < kPlaces) tryPlace(random);
     for (std::size_t n = 0; n < kMostBeams; ++n) {
       constexpr double kTurn = 6.283185307179586;
@@ -137,7 +138,7 @@ void cut(benchmark::State& state, const Scenes& scenes) {
   std::size_t n = 0;
   std::size_t bytes = 0;
   for ([[maybe_unused]] auto _ : state) {
-    const ScanPlane plane(scenes.grid(n++ % scenes.count()), kHeight);
+    const ScanPlane plane(scenes.grid(n++ % scenes.count()), {kHeight, kHeight});
     bytes = plane.bytes();
     benchmark::DoNotOptimize(bytes);
   }

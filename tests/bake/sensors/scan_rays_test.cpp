@@ -78,7 +78,7 @@ TEST(Scans, EndWhereRaysMeetTheScene) {
   int unfounded = 0;
   int steep = 0;
   for (const float height : {0.25F, 0.8F}) {
-    const sensors::ScanPlane plane(grid, height);
+    const sensors::ScanPlane plane(grid, {height, height});
     for (int place = 0; place < 120;) {
       std::uniform_real_distribution<float> share(0, 1);
       const ColumnGridLayout& layout = grid.layout();
