@@ -134,7 +134,7 @@ class HalfBatch:
         if out is not None and "endings" in out:
             self._landed("endings", simulator.endings, out)
         images = self._draw(out)
-        infos = self._finish(ended, images) if len(ended) else {}
+        infos = self._infos(ended, self._renew(ended, images)) if len(ended) else {}
         observations = self._observed(self._landed("state", simulator.observations, out), images)
         return observations, rewards, terminations, truncations, infos
 
@@ -179,9 +179,13 @@ class HalfBatch:
                 images[_image_name(camera, image)][which] = drawn
         return last
 
-    def _finish(self, which: NDArray[np.int64], images: dict[str, Array]) -> dict[str, Any]:
-        """The infos of a step in which the episodes of the envs `which` ended; their sums begin anew."""
-        last = self._renew(which, images)
+    def blank_infos(self) -> dict[str, Any]:
+        """The infos of a step in which episodes ended, but none of these envs'."""
+        return self._infos(np.empty(0, np.int64), None)
+
+    def _infos(self, which: NDArray[np.int64], last: Observations) -> dict[str, Any]:
+        """The infos of a step in which the episodes of the envs `which` ended, with these last
+        observations; their sums begin anew."""
         sums = self._tally.take_ended()
         ended = sums.pop("ended")
         final_obs = np.full(len(ended), None, object)

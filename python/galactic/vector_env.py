@@ -292,7 +292,9 @@ class VectorEnv(_Base):
         # All have to be done, whatever one of them raises: else the others would stay under way.
         wait(under_way)
         self._pending = [None] * self.halves
-        return _joined_results([step.result() for step in under_way])
+        *arrays, infos = zip(*(step.result() for step in under_way))
+        observations, rewards, terminations, truncations = (_joined(list(each)) for each in arrays)
+        return observations, rewards, terminations, truncations, self._joined_infos(infos)
 
     def send(self, actions: Any, half: int = 0, out: Row | None = None) -> None:
         """Begins a step of one half, and returns at once.
@@ -369,6 +371,12 @@ class VectorEnv(_Base):
         step = self._threads[half].submit(self._halves[half].step, rows, out)
         self._pending[half] = step
         return step
+
+    def _joined_infos(self, infos: Sequence[dict[str, Any]]) -> dict[str, Any]:
+        """Of the batch: a half in which nothing ended says so with masks that are false everywhere."""
+        if not any(infos):
+            return {}
+        return _joined([info or half.blank_infos() for info, half in zip(infos, self._halves)])
 
     def _require_idle(self, *halves: int) -> None:
         """Raises RuntimeError where these halves, or all, cannot begin anything."""
@@ -496,28 +504,3 @@ def _joined(parts: list[Any]) -> Any:
     if isinstance(parts[0], dict):
         return {name: _joined([part[name] for part in parts]) for name in parts[0]}
     return np.concatenate(parts)
-
-
-def _joined_results(results: list[StepResult]) -> StepResult:
-    observations, rewards, terminations, truncations, infos = zip(*results)
-    ended = [info for info in infos if info]
-    info: dict[str, Any] = {}
-    if ended:
-        # A half in which nothing ended says so with masks that are false everywhere.
-        filled = [one or _blank(ended[0], len(rewards[n])) for n, one in enumerate(infos)]
-        info = _joined(filled)
-    return (
-        _joined(list(observations)),
-        _joined(list(rewards)),
-        _joined(list(terminations)),
-        _joined(list(truncations)),
-        info,
-    )
-
-
-def _blank(infos: Any, envs: int) -> Any:
-    if isinstance(infos, dict):
-        return {name: _blank(value, envs) for name, value in infos.items()}
-    if infos.dtype == object:
-        return np.full(envs, None, object)
-    return np.zeros(envs, infos.dtype)

@@ -86,6 +86,8 @@ def check_infos(infos, ended, simulator):
         assert final["ending"][env] == simulator.endings[env]
         assert final["success"][env] == simulator.successes[env]
         assert final["episode_index"][env] == episode
+    for name, nothing in {"ending": 0, "success": 0, "episode_index": -1}.items():
+        assert (final[name][~mask] == nothing).all()
 
 
 def test_results_stay_as_they_were(world, draw_actions):
