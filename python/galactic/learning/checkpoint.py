@@ -302,21 +302,27 @@ def require_folder(folder: pathlib.Path) -> None:
 def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: str = "wb") -> None:
     """Calls write(handle) on a temporary file that then takes the name `file`: readers, and whoever
     comes after a crash, find the old contents or the new ones."""
-    temporary = _temporary(file)
     encoding = None if "b" in mode else "utf-8"
+    with replacing(file) as temporary, open(temporary, mode, encoding=encoding) as handle:
+        write(handle)
+
+
+@contextlib.contextmanager
+def replacing(file: pathlib.Path) -> Iterator[pathlib.Path]:
+    """A place beside `file`, of the same extension, for what takes its name when the block has written
+    it; for programs that write files by themselves, see write_atomically()."""
+    temporary = _temporary(file)
     try:
-        with open(temporary, mode, encoding=encoding) as handle:
-            write(handle)
-            handle.flush()
-            os.fsync(handle.fileno())
+        yield temporary
+        _sync(temporary)
         os.replace(temporary, file)
     finally:
         temporary.unlink(missing_ok=True)
-    _sync_folder(file.parent)
+    _sync(file.parent)
 
 
 def _temporary(file: pathlib.Path) -> pathlib.Path:
-    return file.with_name(f".{file.name}.{os.getpid()}")
+    return file.with_name(f".{os.getpid()}.{file.name}")
 
 
 def save(file: pathlib.Path, values: dict[str, Any], tensors: dict[str, Any]) -> None:
@@ -348,7 +354,7 @@ class CheckpointFolder:
         final = self.folder / f"{steps:012d}"
         shutil.rmtree(final, ignore_errors=True)
         os.replace(self._unfinished(steps), final)
-        _sync_folder(self.folder)
+        _sync(self.folder)
         for old in self.complete()[: -self._keep]:
             shutil.rmtree(old, ignore_errors=True)
         return final
@@ -383,8 +389,9 @@ class CheckpointFolder:
         return self.folder / f".{steps:012d}.unfinished"
 
 
-def _sync_folder(folder: pathlib.Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY)
+def _sync(path: pathlib.Path) -> None:
+    """Puts a file, or the names in a folder, on the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
     finally:

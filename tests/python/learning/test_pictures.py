@@ -119,6 +119,32 @@ def test_an_evaluation_draws_a_contact_sheet_and_a_video(tmp_path: pathlib.Path)
     assert evaluate.main([*command, "--video", str(tmp_path / "film.none")]) == 2
 
 
+def test_a_video_appears_whole_or_not_at_all(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("PIL")
+    tool = tmp_path / "bin" / "ffmpeg"
+    tool.parent.mkdir()
+    monkeypatch.setenv("PATH", str(tool.parent), prepend=":")
+    (tmp_path / "runs").mkdir()
+    file = tmp_path / "runs" / "film.mp4"
+    frame = np.zeros((pictures.HEIGHT, pictures.WIDTH, 3), np.uint8)
+    films = [pictures.Film(0, [frame, frame])]
+
+    def write_with(script: str) -> None:
+        tool.write_text(f"#!/bin/sh\nfor last; do :; done\n{script}\n", encoding="utf-8")
+        tool.chmod(0o755)
+        pictures.write_video(films, file)
+
+    write_with('case "$last" in *.mp4) cat > "$last";; esac')
+    whole = file.read_bytes()
+    assert len(whole) == 2 * (pictures.HEIGHT + 16) * pictures.WIDTH * 3
+    with pytest.raises(galactic.Error, match=f"{file}: ffmpeg did not write it: disk full"):
+        write_with('echo half > "$last"; echo disk full >&2; exit 1')
+    assert file.read_bytes() == whole
+    assert list(file.parent.iterdir()) == [file]
+
+
 @needs_world
 def test_tools_that_are_missing_are_named(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

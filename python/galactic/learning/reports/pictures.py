@@ -10,13 +10,13 @@ import pathlib
 import shutil
 import subprocess
 from dataclasses import dataclass, field
-from typing import Any, Sequence
+from typing import Any, Optional, Sequence
 
 import numpy as np
 import torch
 
 import galactic
-from galactic.learning.checkpoint import write_atomically
+from galactic.learning.checkpoint import replacing, write_atomically
 from galactic.learning.environments import Observation
 from galactic.learning.evaluation import Actor, EpisodeResult
 from galactic.learning.homes import SUCCESS, camera_options, simulation_keywords
@@ -129,7 +129,17 @@ def write_contact_sheet(films: Sequence[Film], file: pathlib.Path) -> None:
 
 
 def write_video(films: Sequence[Film], file: pathlib.Path) -> None:
-    """All films at once, side by side, each until its end; in the format that the name says."""
+    """All films at once, side by side, each until its end; in the format that the name says. A file that
+    is there is replaced by the whole video, or stays."""
+    with replacing(file) as place:
+        said = _encode(films, place)
+        if said is not None:
+            message = f"ffmpeg did not write it: {said}"
+            raise galactic.Error(galactic.ErrorCode.IO, str(file), message)
+
+
+def _encode(films: Sequence[Film], file: pathlib.Path) -> Optional[str]:
+    """Why ffmpeg did not write the video, in its words; None where it did."""
     columns = min(4, len(films))
     rows = -(-len(films) // columns)
     height = HEIGHT + _LABEL_HEIGHT
@@ -152,8 +162,7 @@ def write_video(films: Sequence[Film], file: pathlib.Path) -> None:
                 process.stdin.write(canvas.tobytes())
             process.stdin.close()
         said = process.stderr.read().decode(errors="replace").strip()
-    if process.returncode:
-        raise galactic.Error(galactic.ErrorCode.IO, str(file), f"ffmpeg did not write it: {said}")
+    return said if process.returncode else None
 
 
 def _seen(simulator: "galactic.Simulator", eyes: Any) -> Observation:
