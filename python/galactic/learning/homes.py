@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import Any, Mapping, Optional, Sequence
 
 import numpy as np
@@ -13,7 +14,13 @@ from galactic.learning.networks import IMAGE_SIZE
 from galactic.learning.settings import Settings, SettingsError, simulation_keyword
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
-_CHOSEN_BY_TRAINER = ("envs", "seed", "rank", "ranks", "threads", "order")
+# What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
+_CHOSEN_BY_TRAINER = {
+    *inspect.signature(galactic.VectorEnv).parameters,
+    "envs",
+    "auto_reset",
+    "body_transforms",
+}
 
 
 def simulation_keywords(text: str) -> dict[str, Any]:
