@@ -27,7 +27,7 @@ from galactic.learning.checkpoint import (
 from galactic.learning.distributed import Group, RankLost, Stragglers
 from galactic.learning.launch import launch
 from galactic.learning.networks import PolicyShape
-from galactic.learning.reports.curves import read_curves
+from galactic.learning.reports.curves import Curves, read_curves
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
 from toys import ReachAndGrasp, Remember, Uneven
@@ -419,6 +419,16 @@ def test_the_page_of_the_curves_asks_for_nothing(tmp_path: pathlib.Path) -> None
     assert page.count("</script>") == 1 and "prefers-color-scheme: dark" in page
     with open(tmp_path / "curves.csv", encoding="utf-8") as file:
         assert len(list(csv.reader(file))) == 1 + 8
+
+
+def test_the_table_of_the_curves_keeps_every_digit_of_whole_numbers(tmp_path: pathlib.Path) -> None:
+    curves = Curves(tmp_path, "long run")
+    curves.add({"steps": 2_500_000_128, "seconds": 1 / 3, "success": 0.5})
+    curves.write({}, [])
+    (row,) = read_curves(tmp_path / "curves.csv")
+    assert row["steps"] == 2_500_000_128
+    assert row["seconds"] == pytest.approx(1 / 3, rel=1e-8)
+    assert row["success"] == 0.5 and row["return"] is None
 
 
 def test_ranks_tell_once_what_went_wrong() -> None:

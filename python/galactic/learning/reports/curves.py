@@ -59,11 +59,18 @@ class Curves:
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(COLUMNS)
         for row in self.rows:
-            writer.writerow(["" if value is None else f"{value:.9g}" for value in row])
+            writer.writerow([_cell(value) for value in row])
         table = text.getvalue()
         write_atomically(self._folder / "curves.csv", lambda file: file.write(table), "w")
         page = curves_page(self._title, COLUMNS, self.rows, settings, breakdown)
         write_atomically(self._folder / "curves.html", lambda file: file.write(page), "w")
+
+
+def _cell(value: Optional[float]) -> str:
+    """Whole numbers whole: nine digits do not hold the steps of a long run."""
+    if value is None:
+        return ""
+    return str(value) if isinstance(value, int) else f"{value:.9g}"
 
 
 def read_curves(file: pathlib.Path) -> list[dict[str, Optional[float]]]:
