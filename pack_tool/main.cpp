@@ -5,6 +5,7 @@
 
 #include "pack_tool/command_line.h"
 #include "support/out_of_memory.h"
+#include "support/standard_streams.h"
 
 namespace galactic::pack_tool {
 
@@ -39,6 +40,7 @@ int runTool(int argc, const char* const* argv, const Console& console) {
 
 int main(int argc, char** argv) {
   using galactic::ErrorCode;
+  galactic::reserveStandardStreams();
   const galactic::pack_tool::Console console{std::cout, std::cerr};
   try {
     return galactic::pack_tool::runTool(argc, argv, console);

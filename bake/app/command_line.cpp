@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <map>
 #include <set>
 #include <string_view>
@@ -16,6 +15,7 @@
 #include "support/nearest_name.h"
 #include "support/number_text.h"
 #include "support/printable.h"
+#include "support/standard_streams.h"
 #include "support/try.h"
 #include "terminal.h"
 
@@ -359,8 +359,8 @@ ParsedCommand parseCommandLine(int argc, const char* const* argv) {
   } catch (const CLI::Success& asked) {
     return line.answer(asked);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "galactic-bake: command line: {}; see --help\n",
-               printable(line.explain(error)));
+    printToStderr(fmt::format("galactic-bake: command line: {}; see --help\n",
+                              printable(line.explain(error))));
     return kExitUsage;
   }
   if (line.explainsRecipe()) {

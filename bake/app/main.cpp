@@ -20,6 +20,7 @@
 #include "report.h"
 #include "support/out_of_memory.h"
 #include "support/output_files.h"
+#include "support/standard_streams.h"
 #include "support/try.h"
 #include "terminal.h"
 
@@ -221,8 +222,9 @@ int bakeCommand(const BakeCommand& command) {
 /// A full disk behind a redirection must not look like success.
 int flushed(int exit_code) {
   if (std::fflush(stdout) == 0 && std::cout.flush() && std::ferror(stdout) == 0) return exit_code;
-  fmt::print(stderr, "galactic-bake: standard output: cannot be written; free some space\n");
-  return exit_code == kExitOk ? static_cast<int>(ErrorCode::kIo) : exit_code;
+  const int code =
+      refuse({ErrorCode::kIo, "standard output", "cannot be written; free some space"});
+  return exit_code == kExitOk ? code : exit_code;
 }
 
 int run(int argc, const char* const* argv) {
@@ -236,6 +238,7 @@ int run(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   namespace bake = galactic::bake;
+  galactic::reserveStandardStreams();
   // A file that grows beyond the limit of its size (ulimit -f) is an error of writing it.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
@@ -250,7 +253,7 @@ int main(int argc, char** argv) {
     if (galactic::isOutOfMemory(error)) return bake::refuse(galactic::outOfMemory());
     return bake::refuse({galactic::ErrorCode::kIo, "standard output", error.what()});
   } catch (const std::exception& error) {
-    fmt::print(stderr, "galactic-bake: internal error: {}; please report it\n", error.what());
-    return static_cast<int>(galactic::ErrorCode::kInternal);
+    return bake::refuse({galactic::ErrorCode::kInternal, "internal error",
+                         std::string(error.what()) + "; please report it"});
   }
 }

@@ -1,10 +1,10 @@
 #include "stop_request.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <ctime>
+
+#include "support/standard_streams.h"
 
 namespace galactic::bake {
 
@@ -30,8 +30,7 @@ void StopRequest::watch() {
     if (signal <= 0) continue;
     // Files appear only when they are whole, so that leaving at once loses nothing.
     if (came_.exchange(true)) ::_exit(kSignalBase + signal);
-    fmt::print(stderr, "\ngalactic-bake: finishing what has begun; once more to stop at once\n");
-    std::fflush(stderr);
+    printToStderr("\ngalactic-bake: finishing what has begun; once more to stop at once\n");
   }
 }
 

@@ -4,10 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "support/printable.h"
 #include "support/sentence_kinds.h"
+#include "support/standard_streams.h"
 
 namespace galactic::bake {
 namespace {
@@ -43,8 +43,8 @@ std::vector<std::string> withFlags(std::vector<std::string> messages) {
 
 void printError(const Error& error) {
   const std::string where = isOption(error.where) ? "--" + error.where : error.where;
-  fmt::print(stderr, "galactic-bake: {}: {}\n", printable(where),
-             printable(withFlags(error.message)));
+  printToStderr(fmt::format("galactic-bake: {}: {}\n", printable(where),
+                            printable(withFlags(error.message))));
 }
 
 int refuse(const Error& error) {
@@ -72,15 +72,13 @@ void ProgressLine::show(std::string_view item, std::string_view stage, double fr
   const int done = static_cast<int>(fraction * kWidth);
   const std::string bar = std::string(static_cast<std::size_t>(done), '=') +
                           std::string(static_cast<std::size_t>(kWidth - done), ' ');
-  fmt::print(stderr, "\r\033[K[{}] {}: {}", bar, item, stage);
-  std::fflush(stderr);
+  printToStderr(fmt::format("\r\033[K[{}] {}: {}", bar, item, stage));
   shown_ = true;
 }
 
 void ProgressLine::clear() {
   if (!shown_) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  printToStderr("\r\033[K");
   shown_ = false;
 }
 

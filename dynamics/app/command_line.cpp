@@ -12,6 +12,7 @@
 #include "support/nearest_name.h"
 #include "support/number_text.h"
 #include "support/printable.h"
+#include "support/standard_streams.h"
 
 namespace galactic::dynamics {
 namespace {
@@ -171,7 +172,7 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, Command& 
     fault = withSuggestions(error.what(), longNamesOf(app));
   }
   if (fault.empty()) return std::nullopt;
-  fmt::print(stderr, "galactic-dynamics: command line: {}; see --help\n", printable(fault));
+  printToStderr(fmt::format("galactic-dynamics: command line: {}; see --help\n", printable(fault)));
   return kExitUsage;
 }
 

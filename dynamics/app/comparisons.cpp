@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <span>
@@ -18,6 +17,7 @@
 #include "run/interrupt.h"
 #include "run/recording.h"
 #include "support/content_hash.h"
+#include "support/standard_streams.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
@@ -29,7 +29,7 @@ class Progress {
   Progress(std::size_t done, std::size_t all, bool is_quiet)
       : done_(done), all_(all), is_shown_(!is_quiet && ::isatty(STDERR_FILENO) != 0) {}
   ~Progress() {
-    if (is_shown_) fmt::print(stderr, "\r\x1b[K");
+    if (is_shown_) printToStderr("\r\x1b[K");
   }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -39,7 +39,7 @@ class Progress {
   void add() {
     const std::lock_guard lock(mutex_);
     ++done_;
-    if (is_shown_) fmt::print(stderr, "\rcompared {} of {} episodes", done_, all_);
+    if (is_shown_) printToStderr(fmt::format("\rcompared {} of {} episodes", done_, all_));
   }
 
  private:

@@ -27,6 +27,7 @@
 #include "support/output_files.h"
 #include "support/printable.h"
 #include "support/sentence_kinds.h"
+#include "support/standard_streams.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
@@ -41,8 +42,8 @@ std::string withFlags(std::string message) {
 }
 
 int refuse(const Error& error) {
-  fmt::print(stderr, "galactic-dynamics: {}: {}\n", printable(error.where),
-             printable(withFlags(error.message)));
+  printToStderr(fmt::format("galactic-dynamics: {}: {}\n", printable(error.where),
+                            printable(withFlags(error.message))));
   return static_cast<int>(error.code);
 }
 
@@ -99,8 +100,8 @@ Result<void> showBoth(const Command& command, const EpisodePlan& plan,
 int endInterrupted(const Command& command, std::size_t done, std::size_t all) {
   const std::string advice = command.report.empty() ? "--report FILE.json would keep what is done"
                                                     : "start it again to go on from there";
-  fmt::print(stderr, "galactic-dynamics: interrupted after {} of {} episodes; {}\n", done, all,
-             advice);
+  printToStderr(fmt::format("galactic-dynamics: interrupted after {} of {} episodes; {}\n", done,
+                            all, advice));
   return kExitInterrupted;
 }
 
@@ -114,7 +115,7 @@ Result<int> run(const Command& command) {
   // The report holds all of them.
   for (const std::string& warning : oneOfEachKind(sources.warnings, "--report lists them")) {
     if (command.is_quiet) break;
-    fmt::print(stderr, "galactic-dynamics: warning: {}\n", printable(warning));
+    printToStderr(fmt::format("galactic-dynamics: warning: {}\n", printable(warning)));
   }
   ASSIGN_OR_RETURN(const auto journal, openJournal(command, *plan));
   const ComparisonWorlds worlds{world, plan->options(), sources, command.world};
@@ -153,6 +154,7 @@ int start(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   namespace dynamics = galactic::dynamics;
+  galactic::reserveStandardStreams();
   try {
     return dynamics::start(argc, argv);
   } catch (const std::bad_alloc&) {

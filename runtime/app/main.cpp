@@ -27,6 +27,7 @@
 #include "support/atomic_file.h"
 #include "support/out_of_memory.h"
 #include "support/printable.h"
+#include "support/standard_streams.h"
 
 namespace {
 
@@ -40,8 +41,8 @@ using galactic::RunOptions;
 using galactic::RunSource;
 
 int report(const Error& error) {
-  fmt::print(stderr, "galactic-run: {}: {}\n", galactic::printable(error.where),
-             galactic::printable(error.message));
+  galactic::printToStderr(fmt::format("galactic-run: {}: {}\n", galactic::printable(error.where),
+                                      galactic::printable(error.message)));
   return static_cast<int>(error.code);
 }
 
@@ -104,10 +105,10 @@ int simulateWorld(const RunOptions& options, const OpenedWorld& world, const Run
   }
   if (run->is_interrupted) return galactic::kExitInterrupted;
   if (!run->first_difference) return galactic::kExitOk;
-  fmt::print(stderr,
-             "galactic-run: {}: step {} differs from the recording; "
-             "compare the versions of galactic-run and the processors\n",
-             galactic::printable(options.replayFile()), *run->first_difference);
+  galactic::printToStderr(
+      fmt::format("galactic-run: {}: step {} differs from the recording; "
+                  "compare the versions of galactic-run and the processors\n",
+                  galactic::printable(options.replayFile()), *run->first_difference));
   return galactic::kExitDiffers;
 }
 
@@ -159,6 +160,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  galactic::reserveStandardStreams();
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

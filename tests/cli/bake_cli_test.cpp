@@ -143,6 +143,22 @@ TEST_F(BakeCli, TellsAFullDiskBehindItsOutput) {
   EXPECT_TRUE(has("room.pack"));
 }
 
+TEST_F(BakeCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
+  for (const char* unheard : {"2>&-", "2>/dev/full"}) {
+    EXPECT_EQ(test::runRedirected(GALACTIC_BAKE, path(""), {"none.obj"}, unheard).exit_code, 2);
+    EXPECT_EQ(test::runRedirected(GALACTIC_BAKE, path(""), {"--nonsense"}, unheard).exit_code, 1);
+  }
+}
+
+TEST_F(BakeCli, BakesTheSameWithAllStandardStreamsClosed) {
+  ASSERT_EQ(run({"room.obj", "--radii", "0.12", "-q", "-o", "heard.pack"}).exit_code, 0);
+  const ProgramRun unheard = test::runRedirected(
+      GALACTIC_BAKE, path(""), {"room.obj", "--radii", "0.12", "-q", "-o", "unheard.pack"},
+      "<&- >&- 2>&-");
+  EXPECT_EQ(unheard.exit_code, 0);
+  EXPECT_EQ(test::fileContent(path("unheard.pack")), test::fileContent(path("heard.pack")));
+}
+
 TEST_F(BakeCli, RefusesASceneThatIsHigherThanHomesUnlessItsUnitIsStated) {
   test::MeshContent box = test::unevenBox();
   for (auto& p : box.positions) p[1] *= 100;

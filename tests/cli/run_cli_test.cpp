@@ -50,6 +50,16 @@ TEST_F(RunCli, SaysWhatIsInAPack) {
   EXPECT_THAT(result.err, IsEmpty());
 }
 
+TEST_F(RunCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
+  for (const char* unheard : {"2>&-", "2>/dev/full"}) {
+    const auto exit_code = [&](const char* argument) {
+      return test::runRedirected(GALACTIC_RUN, folder_.path(), {argument}, unheard).exit_code;
+    };
+    EXPECT_EQ(exit_code("text.pack"), 3) << unheard;
+    EXPECT_EQ(exit_code("--nonsense"), 1) << unheard;
+  }
+}
+
 TEST_F(RunCli, SaysWhatIsInEpisodesAndListsThePacksOfAWorld) {
   write("tidy.pack", test::textOf(test::buildPack(test::smallEpisodes())));
   write("world.pack", test::textOf(test::buildPack(test::smallWorldPack())));

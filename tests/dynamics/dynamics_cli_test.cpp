@@ -225,6 +225,14 @@ TEST_F(DynamicsCli, ReplacesNothingThatIsReadOrWritten) {
   EXPECT_FALSE(std::filesystem::exists(path("a")));
 }
 
+TEST_F(DynamicsCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
+  for (const char* unheard : {"2>&-", "2>/dev/full"}) {
+    const ProgramRun done =
+        runRedirected(GALACTIC_DYNAMICS, path("").parent_path(), {"--nonsense"}, unheard);
+    EXPECT_EQ(done.exit_code, kUsage) << unheard;
+  }
+}
+
 TEST_F(DynamicsCli, TriesItsOutputsBeforeTheWork) {
   for (const char* option : {"--view", "--pictures"}) {
     const ProgramRun done =

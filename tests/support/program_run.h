@@ -85,4 +85,12 @@ inline ProgramRun runProgram(const std::string& program, const std::filesystem::
   return StartedProgram(program, folder, std::move(arguments), out_path).wait();
 }
 
+/// The same with redirections as the shell reads them, such as "2>&-" for a closed stderr.
+inline ProgramRun runRedirected(const std::string& program, const std::filesystem::path& folder,
+                                std::vector<std::string> arguments,
+                                const std::string& redirections) {
+  arguments.insert(arguments.begin(), {"-c", "exec \"$0\" \"$@\" " + redirections, program});
+  return runProgram("/bin/sh", folder, std::move(arguments));
+}
+
 }  // namespace galactic::test

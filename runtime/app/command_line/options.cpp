@@ -22,6 +22,7 @@
 #include "support/number_text.h"
 #include "support/option_table.h"
 #include "support/printable.h"
+#include "support/standard_streams.h"
 
 namespace galactic {
 namespace {
@@ -278,7 +279,7 @@ std::string withoutEffect(const CLI::App& app, const SimulationOptions& simulati
 }  // namespace
 
 int refuseCommandLine(std::string_view message) {
-  fmt::print(stderr, "galactic-run: command line: {}; see --help\n", printable(message));
+  printToStderr(fmt::format("galactic-run: command line: {}; see --help\n", printable(message)));
   return kExitUsage;
 }
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include "support/standard_streams.h"
 
 namespace galactic {
 
@@ -12,8 +12,7 @@ LiveLine::LiveLine(std::uint64_t steps, std::uint64_t envs)
 
 LiveLine::~LiveLine() {
   if (!shown_) return;
-  std::fputs("\r\033[K", stderr);
-  std::fflush(stderr);
+  printToStderr("\r\033[K");
 }
 
 void LiveLine::show(std::uint64_t done, const SimulationStatistics& sum) {
@@ -23,9 +22,9 @@ void LiveLine::show(std::uint64_t done, const SimulationStatistics& sum) {
   const auto stepped = static_cast<double>((done - last_done_) * envs_);
   const double refused =
       sum.steps == 0 ? 0 : static_cast<double>(sum.refused) / static_cast<double>(sum.steps);
-  fmt::print(stderr, "\r\033[Kstep {} of {}  {:.0f} steps/s  {:.1f} % refused  {} successes", done,
-             steps_, seconds > 0 ? stepped / seconds : 0, 100 * refused, sum.successes);
-  std::fflush(stderr);
+  printToStderr(fmt::format("\r\033[Kstep {} of {}  {:.0f} steps/s  {:.1f} % refused  {} successes",
+                            done, steps_, seconds > 0 ? stepped / seconds : 0, 100 * refused,
+                            sum.successes));
   shown_ = true;
   last_done_ = done;
   last_time_ = now;
