@@ -16,10 +16,9 @@ import numpy as np
 import torch
 from torch import nn
 
-import galactic
 from galactic import _core
 from galactic.learning import checkpoint
-from galactic.learning.command import Parser, named_path
+from galactic.learning.command import EXIT_CODES, OK, Parser, named_path, told
 from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
 from galactic.learning.homes import camera_options, simulation_keywords
 from galactic.learning.networks import (
@@ -36,10 +35,10 @@ from galactic.learning.networks import (
     StatePolicy,
 )
 from galactic.learning.normalization import MOST
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.settings import Settings
 
 
-class ExportError(Exception):
+class ExportError(checkpoint.CheckpointError):
     """A module that no layer of a policy pack can express: names it and says what was expected."""
 
 
@@ -245,7 +244,8 @@ def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str =
     }
     trained_with["trained-steps"] = saved.steps
     trained_with["success"] = saved.success
-    content = content_of(saved, name or output.stem, robot)
+    with checkpoint.refusing(f"{file} cannot become a policy pack", "take another policy"):
+        content = content_of(saved, name or output.stem, robot)
     _core.write_policy_pack(output, content, trained_with, file.name, file.read_bytes())
 
 
@@ -253,7 +253,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser = Parser(
         prog="python3 -m galactic.export",
         description="Makes a policy pack of a trained policy, for galactic-run --policy.",
-        epilog="Exit codes: 0 ok, 1 command line, 2 file, 3 invalid input.",
+        epilog=EXIT_CODES,
     )
     parser.add_argument("policy", type=named_path, help="best.pt or policy.pt of a run")
     parser.add_argument(
@@ -277,20 +277,12 @@ def make_parser() -> argparse.ArgumentParser:
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:
     options = make_parser().parse_args(arguments)
-    try:
+
+    def export() -> int:
         write(options.policy, options.out, options.name, options.robot)
-    except galactic.Error as error:
-        return _refuse(error, int(error.code))
-    except (checkpoint.CheckpointError, ExportError, SettingsError) as error:
-        return _refuse(error, 3)
-    except OSError as error:
-        return _refuse(error, 2)
-    return 0
+        return OK
 
-
-def _refuse(error: Exception, code: int) -> int:
-    print(f"galactic.export: {error}", file=sys.stderr)
-    return code
+    return told("galactic.export", export)
 
 
 if __name__ == "__main__":

@@ -54,12 +54,7 @@ def play(run: DynamicsRun) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
         pack = pathlib.Path(folder) / f"{run.policy.stem}.pack"
         report = pathlib.Path(folder) / "report.json"
-        try:
-            export.write(run.policy, pack)
-        except export.ExportError as error:
-            raise galactic.Error(
-                galactic.ErrorCode.UNSUPPORTED, str(run.policy), str(error)
-            ) from error
+        export.write(run.policy, pack)
         command = [tool, str(run.recipe), str(run.world), "--policy", str(pack), "--arm", run.arm,
                    "--seed", str(run.seed), "--episodes", str(run.episodes),
                    "--threads", str(run.threads), "--report", str(report)]  # fmt: skip
