@@ -16,6 +16,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "confinement.h"
 #include "errors.h"
 #include "galactic/learned_policy.h"
 #include "galactic/option_text.h"
@@ -192,7 +193,7 @@ PackFile openPolicy(const Path& path) {
   return valueOf(std::move(pack));
 }
 
-/// A policy pack that acts on arrays.
+/// A policy pack that acts on arrays, used by one thread at a time.
 class PlayedPolicy {
  public:
   PlayedPolicy(const Path& path, const py::object& envs, const py::object& deterministic,
@@ -204,6 +205,7 @@ class PlayedPolicy {
 
   py::array_t<float> act(const py::object& observations, const py::object& dones,
                          const py::object& rgb, const py::object& depth) {
+    const Confinement::Use use = confinement_.enter();
     const auto envs = static_cast<py::ssize_t>(batch_.envs);
     const auto seen = inputOf<float>(observations, "observations",
                                      {envs, static_cast<py::ssize_t>(batch_.observation_size)});
@@ -235,7 +237,10 @@ class PlayedPolicy {
     return actions;
   }
 
-  void reset() { policy_.reset(); }
+  void reset() {
+    const Confinement::Use use = confinement_.enter();
+    policy_.reset();
+  }
   [[nodiscard]] const PolicyInterface& needs() const { return policy_.interface(); }
   [[nodiscard]] std::size_t actionCount() const { return batch_.actions; }
 
@@ -265,6 +270,7 @@ class PlayedPolicy {
     return batch;
   }
 
+  Confinement confinement_{"LearnedPolicy"};
   PolicyBatch batch_;
   LearnedPolicy policy_;
 };

@@ -41,16 +41,17 @@ class Expert {
   }
 
   [[nodiscard]] std::size_t envs() const { return simulator_->batch().envCount(); }
-  [[nodiscard]] py::array_t<std::uint8_t> phases() const {
+  [[nodiscard]] py::array_t<std::uint8_t> phases() {
     return perEnv([&](std::size_t env) { return policy_.phase(env); });
   }
-  [[nodiscard]] py::array_t<std::uint8_t> troubles() const {
+  [[nodiscard]] py::array_t<std::uint8_t> troubles() {
     return perEnv([&](std::size_t env) { return policy_.trouble(env); });
   }
 
  private:
   template <class Value>
-  [[nodiscard]] py::array_t<std::uint8_t> perEnv(const Value& value) const {
+  [[nodiscard]] py::array_t<std::uint8_t> perEnv(const Value& value) {
+    const Confinement::Use use = confinement_.enter();
     py::array_t<std::uint8_t> numbers(simulator_->envs());
     for (std::size_t env = 0; env < envs(); ++env) {
       numbers.mutable_data()[env] = static_cast<std::uint8_t>(value(env));

@@ -1,6 +1,7 @@
 """The scripted policy: solves what can be solved, also with another policy's steps in between."""
 
 import pickle
+import threading
 
 import numpy as np
 import pytest
@@ -33,6 +34,30 @@ def test_solves_each_episode(simulator):
     assert solved_by(expert, simulator) == SOLVABLE
     assert not expert.act().any()
     assert repr(expert) == "<galactic.ScriptedPolicy in 3 envs>"
+
+
+def test_two_threads_cannot_use_one_policy_at_once(simulator):
+    expert = ScriptedPolicy(simulator)
+    is_acting = threading.Event()
+
+    def act():
+        is_acting.set()
+        expert.act()
+
+    other = threading.Thread(target=act)
+    other.start()
+    is_acting.wait()
+    refusals = set()
+    while other.is_alive():
+        for look in (lambda: expert.phases, lambda: expert.troubles):
+            try:
+                look()
+            except RuntimeError as error:
+                refusals.add(str(error))
+    assert refusals == {
+        "another thread is using this galactic.ScriptedPolicy; give each thread its own"
+    }
+    assert (expert.phases == ScriptedPhase.PICK).all()
 
 
 def test_plans_again_where_others_act_in_between(world, draw_actions):

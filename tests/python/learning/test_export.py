@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pathlib
+import threading
 from typing import Any, Optional
 
 import numpy as np
@@ -250,6 +251,32 @@ def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
     with pytest.raises(galactic.Error):
         _core.LearnedPolicy(tmp_path / "no.pack", 2)
     assert repr(player) == "<galactic.LearnedPolicy p>"
+
+
+def test_two_threads_cannot_use_one_played_policy_at_once(tmp_path: pathlib.Path) -> None:
+    pack = write(export.content_of(saved_policy(network="state"), "p"), tmp_path / "p.pack")
+    player = _core.LearnedPolicy(pack, 1024, deterministic=True, threads=1)
+    state = np.random.default_rng(1).normal(size=(1024, STATE)).astype(np.float32)
+    wanted = player.act(state)
+    refusals: list[str] = []
+    begin = threading.Barrier(2)
+
+    def work() -> None:
+        begin.wait()
+        for _ in range(100):
+            try:
+                np.testing.assert_array_equal(player.act(state), wanted)
+            except RuntimeError as error:
+                refusals.append(str(error))
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert set(refusals) == {
+        "another thread is using this galactic.LearnedPolicy; give each thread its own"
+    }
 
 
 @pytest.mark.parametrize("fov", [1, 33.3, 60, 175])
