@@ -12,6 +12,8 @@ namespace galactic::pack_tool {
 [[nodiscard]] Json describeEpisodes(const PackFile& pack, Detail detail);
 [[nodiscard]] Json describeWorld(const PackFile& pack);
 [[nodiscard]] Json describePolicy(const PackFile& pack);
+/// A texture that scenes share.
+[[nodiscard]] Json describeTexture(const PackFile& pack);
 /// What batch rendering draws; null where the pack has none.
 [[nodiscard]] Json describeRenderMeshes(const PackFile& pack);
 

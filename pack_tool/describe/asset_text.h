@@ -13,6 +13,7 @@ namespace galactic::pack_tool {
 [[nodiscard]] std::string episodesText(const Json& set);
 [[nodiscard]] std::string worldText(const Json& world);
 [[nodiscard]] std::string policyText(const Json& policy);
+[[nodiscard]] std::string textureText(const Json& texture);
 /// Of scenes, objects and robots; null: there are none.
 [[nodiscard]] std::string renderMeshesText(const Json& render);
 

@@ -73,6 +73,7 @@ std::string infoText(const Json& description) {
   }
   if (description.contains("episode_set")) text += episodesText(description.at("episode_set"));
   if (description.contains("world")) text += worldText(description.at("world"));
+  if (description.contains("texture")) text += textureText(description.at("texture"));
   if (description.contains("policy")) text += policyText(description.at("policy"));
   return text;
 }

@@ -65,6 +65,9 @@ Json describePack(const PackFile& pack, Detail detail) {
     json["episode_set"] = std::move(set);
   }
   if (Json world = describeWorld(pack); !world.is_null()) json["world"] = std::move(world);
+  if (Json texture = describeTexture(pack); !texture.is_null()) {
+    json["texture"] = std::move(texture);
+  }
   if (Json policy = describePolicy(pack); !policy.is_null()) json["policy"] = std::move(policy);
   return json;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "galactic/render_meshes.h"
 #include "pack_tool/describe/asset_json.h"
@@ -54,7 +55,8 @@ Json describeModel(const PackFile& pack, const RenderMeshes& meshes, const Rende
   const ClusterSums sums(clustersOf(meshes, model));
   Json json;
   json["name"] = partName(pack, model.part);
-  json["bounds"] = {{"min", pointOf(model.bounds_min)}, {"max", pointOf(model.bounds_max)}};
+  json["bounds"] = {{"min", pointOf(model.bounds_min)},
+                    {"max", pointOf(model.bounds_max)}};
   json["step"] = jsonNumber(model.step);
   json["clusters"] = sums.clusters;
   json["two_sided_clusters"] = sums.two_sided;
@@ -65,25 +67,41 @@ Json describeModel(const PackFile& pack, const RenderMeshes& meshes, const Rende
   return json;
 }
 
-Json describeMaterial(const RenderMeshes& meshes, const RenderMaterial& material) {
+/// As the pack has them: RenderMeshes knows shared textures only where their packs are at hand.
+const schema::RenderMeshes* storedMeshes(const PackFile& pack) {
+  if (const schema::Scene* scene = pack.root().asset_as_Scene()) return scene->render_meshes();
+  if (const schema::ObjectSet* set = pack.root().asset_as_ObjectSet()) return set->render_meshes();
+  if (const schema::Robot* robot = pack.root().asset_as_Robot()) return robot->render_meshes();
+  return nullptr;
+}
+
+Json describeMaterial(const schema::RenderMeshes& stored, const schema::RenderMaterial& material) {
   Json json;
-  json["name"] = std::string(material.name);
-  json["color"] = colorText(material.color);
+  json["name"] = material.name()->str();
+  json["color"] = colorText(material.color());
   json["texture"] = nullptr;
-  const auto texture = static_cast<std::size_t>(material.texture);
-  if (material.texture >= 0 && texture < meshes.textures.size()) {
-    json["texture"] = std::string(meshes.textures[texture].name);
+  const auto texture = static_cast<flatbuffers::uoffset_t>(material.texture());
+  if (material.texture() >= 0 && texture < stored.textures()->size()) {
+    json["texture"] = stored.textures()->Get(texture)->name()->str();
   }
-  json["alpha_cutoff"] = jsonNumber(material.alpha_cutoff);
+  json["alpha_cutoff"] = jsonNumber(material.alpha_cutoff());
   return json;
 }
 
-Json describeTexture(const RenderTexture& texture) {
-  return {{"name", std::string(texture.name)},
-          {"size", texture.size},
-          {"format", formatName(texture.format)},
-          {"bytes", texture.texels.size()},
-          {"fnv1a_64", contentHash(std::as_bytes(texture.texels))}};
+/// The texels of a shared texture are in a pack of its own, which is named by their hash.
+Json describeTexture(const schema::RenderMeshes& stored, const schema::RenderTexture& texture) {
+  const auto format = static_cast<TexelFormat>(texture.format());
+  const std::span<const std::uint8_t> all(stored.texels()->data(), stored.texels()->size());
+  const bool is_shared = texture.shared() != nullptr;
+  const auto texels = is_shared
+                          ? std::span<const std::uint8_t>()
+                          : all.subspan(texture.first_byte(), textureBytes(texture.size(), format));
+  return {{"name", texture.name()->str()},
+          {"size", texture.size()},
+          {"format", formatName(format)},
+          {"bytes", texels.size()},
+          {"fnv1a_64", is_shared ? Json() : Json(contentHash(std::as_bytes(texels)))},
+          {"shared", describeHash(texture.shared())}};
 }
 
 }  // namespace
@@ -92,6 +110,7 @@ Json describeRenderMeshes(const PackFile& pack) {
   const auto stored = renderMeshesOf(pack);
   if (!stored || !*stored) return nullptr;
   const RenderMeshes& meshes = **stored;
+  const schema::RenderMeshes& tables = *storedMeshes(pack);
   const ClusterSums sums(meshes.clusters);
   Json json;
   json["clusters"] = sums.clusters;
@@ -110,26 +129,37 @@ Json describeRenderMeshes(const PackFile& pack) {
   json["geometry_bytes"] = meshes.clusters.size_bytes() + meshes.cluster_bounds.size_bytes() +
                            meshes.vertices.size_bytes() + meshes.colors.size_bytes() +
                            meshes.triangles.size_bytes();
+  Json textures = Json::array();
   std::uint64_t texture_bytes = 0;
-  for (const RenderTexture& texture : meshes.textures) texture_bytes += texture.texels.size();
+  for (const schema::RenderTexture* texture : *tables.textures()) {
+    textures.push_back(describeTexture(tables, *texture));
+    texture_bytes += textures.back().at("bytes").get<std::uint64_t>();
+  }
   json["texture_bytes"] = texture_bytes;
   json["models"] = Json::array();
   for (const RenderModel& model : meshes.models) {
     json["models"].push_back(describeModel(pack, meshes, model));
   }
   json["materials"] = Json::array();
-  for (const RenderMaterial& material : meshes.materials) {
-    json["materials"].push_back(describeMaterial(meshes, material));
+  for (const schema::RenderMaterial* material : *tables.materials()) {
+    json["materials"].push_back(describeMaterial(tables, *material));
   }
-  json["textures"] = Json::array();
-  for (const RenderTexture& texture : meshes.textures) {
-    json["textures"].push_back(describeTexture(texture));
-  }
+  json["textures"] = std::move(textures);
   json["semantics"] = Json::array();
   for (const std::string_view name : meshes.semantics) {
     json["semantics"].push_back(std::string(name));
   }
   return json;
+}
+
+Json describeTexture(const PackFile& pack) {
+  const schema::SharedTexture* texture = pack.root().asset_as_SharedTexture();
+  if (texture == nullptr) return nullptr;
+  return {{"name", texture->name()->str()},
+          {"size", texture->size()},
+          {"format", formatName(static_cast<TexelFormat>(texture->format()))},
+          {"bytes", texture->texels()->size()},
+          {"xxh3_128", describeHash(texture->hash())}};
 }
 
 }  // namespace galactic::pack_tool

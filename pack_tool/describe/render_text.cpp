@@ -40,8 +40,17 @@ std::string textureSizes(const Json& textures) {
   return text;
 }
 
-std::string appearanceText(const Json& render) {
+std::string texturesText(const Json& render) {
   const Json& textures = render.at("textures");
+  if (textures.empty()) return "none";
+  const auto shared = std::ranges::count_if(
+      textures, [](const Json& texture) { return !texture.at("shared").is_null(); });
+  return fmt::format("{}, {} bytes: {}{}", textures.size(), countOf(render.at("texture_bytes")),
+                     textureSizes(textures),
+                     shared == 0 ? "" : fmt::format("; {} in texture packs", shared));
+}
+
+std::string appearanceText(const Json& render) {
   const auto cut_out = std::ranges::count_if(render.at("materials"), [](const Json& material) {
     return numberOf(material.at("alpha_cutoff")) > 0;
   });
@@ -50,10 +59,7 @@ std::string appearanceText(const Json& render) {
               fmt::format("{}, {} with a cut-out shape; {}", render.at("materials").size(), cut_out,
                           render.at("colored").get<bool>() ? "vertices have colors"
                                                            : "vertices have no colors"));
-  text += labeled("textures", textures.empty() ? "none"
-                                               : fmt::format("{}, {} bytes: {}", textures.size(),
-                                                             countOf(render.at("texture_bytes")),
-                                                             textureSizes(textures)));
+  text += labeled("textures", texturesText(render));
   return text + labeled("semantics", fmt::format("{} names", render.at("semantics").size()));
 }
 
@@ -87,6 +93,13 @@ std::string renderMeshesText(const Json& render) {
   text += appearanceText(render);
   if (render.at("models").size() > 1) text += modelsText(render.at("models"));
   return text;
+}
+
+std::string textureText(const Json& texture) {
+  return labeled("texture", fmt::format("{}, {} texels ({}), {} bytes, XXH3-128 {}",
+                                        textOf(texture.at("name")), countOf(texture.at("size")),
+                                        textOf(texture.at("format")), countOf(texture.at("bytes")),
+                                        textOf(texture.at("xxh3_128"))));
 }
 
 }  // namespace galactic::pack_tool

@@ -153,13 +153,6 @@ Json namesAndCounts(const Json& description) {
   return json;
 }
 
-void compareProvenance(const Both<Json>& descriptions, const DiffOptions& options,
-                       PackDifference& difference) {
-  if (options.scope != DiffScope::kEverything) return;
-  difference.provenance =
-      compareFields(descriptions.a.at("provenance"), descriptions.b.at("provenance"), 0);
-}
-
 }  // namespace
 
 Result<void> compareEpisodes(const PackFile& a, const PackFile& b, const DiffOptions& options,
@@ -170,20 +163,15 @@ Result<void> compareEpisodes(const PackFile& a, const PackFile& b, const DiffOpt
   if (!set_b) return tl::unexpected<Error>(set_b.error());
   const Both<Json> descriptions{describePack(a, Detail::kSummary),
                                 describePack(b, Detail::kSummary)};
-  compareProvenance(descriptions, options, difference);
+  if (options.scope == DiffScope::kEverything) {
+    difference.provenance =
+        compareFields(descriptions.a.at("provenance"), descriptions.b.at("provenance"), 0);
+  }
   difference.content =
       compareFields(namesAndCounts(descriptions.a), namesAndCounts(descriptions.b), 0);
   const auto episodes = EpisodeComparison(*set_a, *set_b, options.tolerance).run();
   difference.content.insert(difference.content.end(), episodes.begin(), episodes.end());
   return {};
-}
-
-void compareLists(const PackFile& a, const PackFile& b, const DiffOptions& options,
-                  PackDifference& difference) {
-  const Both<Json> descriptions{describePack(a), describePack(b)};
-  compareProvenance(descriptions, options, difference);
-  const char* const asset = a.kind() == PackKind::kWorld ? "world" : "policy";
-  difference.content = compareFields(descriptions.a.at(asset), descriptions.b.at(asset), 0);
 }
 
 }  // namespace galactic::pack_tool

@@ -13,9 +13,4 @@ namespace galactic::pack_tool {
 [[nodiscard]] Result<void> compareEpisodes(const PackFile& a, const PackFile& b,
                                            const DiffOptions& options, PackDifference& difference);
 
-/// Compares two world packs by their lists, pack by pack, or two policies field by field, weights
-/// by their hashes.
-void compareLists(const PackFile& a, const PackFile& b, const DiffOptions& options,
-                  PackDifference& difference);
-
 }  // namespace galactic::pack_tool

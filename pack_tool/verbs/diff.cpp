@@ -89,6 +89,22 @@ Result<void> compareScenes(const PackFile& a, const PackFile& b, const DiffOptio
   return {};
 }
 
+/// The key under which a description says all that is in a pack of this kind: of weights and texels
+/// it has hashes. Null where there is more to compare.
+const char* whollyDescribedAs(PackKind kind) {
+  if (kind == PackKind::kWorld) return "world";
+  if (kind == PackKind::kPolicy) return "policy";
+  return kind == PackKind::kTexture ? "texture" : nullptr;
+}
+
+void compareDescriptions(const DescribedPair& packs, const char* asset, const DiffOptions& options,
+                         PackDifference& difference) {
+  if (options.scope == DiffScope::kEverything) {
+    difference.provenance = compareFields(packs.a.at("provenance"), packs.b.at("provenance"), 0);
+  }
+  difference.content = compareFields(packs.a.at(asset), packs.b.at(asset), 0);
+}
+
 Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
                                     const DiffOptions& options) {
   if (a.kind() != b.kind()) {
@@ -107,8 +123,8 @@ Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
     compareRenderMeshes({a, b}, descriptions, options, difference);
     return difference;
   }
-  if (a.kind() == PackKind::kWorld || a.kind() == PackKind::kPolicy) {
-    compareLists(a, b, options, difference);
+  if (const char* asset = whollyDescribedAs(a.kind())) {
+    compareDescriptions({describePack(a), describePack(b)}, asset, options, difference);
     return difference;
   }
   RETURN_IF_ERROR(a.kind() == PackKind::kEpisodes ? compareEpisodes(a, b, options, difference)

@@ -11,6 +11,7 @@
 #include "pack_tool/painted_meshes.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/pack_tool_fixture.h"
+#include "support/packs/texture_pack_builder.h"
 #include "view/render_surfaces.h"
 
 namespace galactic::pack_tool::render_meshes_test {
@@ -151,6 +152,65 @@ TEST(RenderDiff, ComparesTexturesByTheirTexels) {
   EXPECT_THAT(other.out, HasSubstr("  render_meshes.textures.wood.png.fnv1a_64: "));
   EXPECT_THAT(other.out, HasSubstr("  render_meshes.textures.leaf.png.fnv1a_64: "));
   EXPECT_THAT(other.out, Not(HasSubstr(".places")));
+}
+
+/// The painted meshes with the texture of the wood in a pack of its own.
+test::RenderMeshesFields withSharedWood(const test::TexelHash& hash) {
+  test::RenderMeshesFields meshes = *paintedMeshes();
+  meshes.textures[0].shared = hash;
+  meshes.textures[0].first_byte = 0;
+  meshes.texels.erase(meshes.texels.begin(), meshes.texels.begin() + meshes.textures[1].first_byte);
+  meshes.textures[1].first_byte = 0;
+  return meshes;
+}
+
+TEST(DescribeRenderMeshes, NamesTheTexturesThatAreInPacksOfTheirOwn) {
+  const ScratchFolder folder;
+  const auto path = writeScene(folder, "a.pack", withSharedWood({2, 1}));
+  const auto pack = PackFile::open(path, Trust::kVerify);
+  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  const Json description = describePack(*pack);
+  const Json& render = description.at("render_meshes");
+  EXPECT_EQ(render.at("materials").at(0).at("texture"), "wood.png");
+  EXPECT_EQ(render.at("textures").at(0).at("shared"), "00000000000000010000000000000002");
+  EXPECT_TRUE(render.at("textures").at(0).at("fnv1a_64").is_null());
+  EXPECT_TRUE(render.at("textures").at(1).at("shared").is_null());
+  EXPECT_EQ(render.at("texture_bytes"), 340);
+  EXPECT_THAT(infoText(description), HasSubstr("  textures     2, 340 bytes: 1 of 16 texels "
+                                               "(rgba8), 1 of 8 texels (rgba8); 1 in texture "
+                                               "packs\n"));
+}
+
+TEST(RenderDiff, ComparesTexturesInPacksOfTheirOwnByTheirHash) {
+  const Answer other =
+      diffOf(withSharedWood({2, 1}), withSharedWood({3, 1}), {.scope = DiffScope::kContent});
+  EXPECT_EQ(other.exit_code, kExitDiffers);
+  EXPECT_THAT(other.out, HasSubstr("  render_meshes.textures.wood.png.shared: "
+                                   "00000000000000010000000000000002 | "
+                                   "00000000000000010000000000000003\n"));
+}
+
+TEST(TexturePacks, AreDescribedAndCompared) {
+  const ScratchFolder folder;
+  const test::TexturePackFields oak;
+  test::TexturePackFields ash;
+  ash.name = "ash";
+  ash.texels.back() = 7;
+  const auto oak_pack = folder.write("oak.pack", test::textOf(buildPack(oak)));
+  const auto ash_pack = folder.write("ash.pack", test::textOf(buildPack(ash)));
+  InfoOptions of_oak;
+  of_oak.packs = {oak_pack};
+  const Answer info = answerOf(runInfo, of_oak);
+  const auto [low, high] = test::hashOf(oak.texels);
+  EXPECT_THAT(info.out, HasSubstr(fmt::format("  texture      oak, 2 texels (rgba8), 20 bytes, "
+                                              "XXH3-128 {:016x}{:016x}\n",
+                                              high, low)));
+  const Answer same = answerOf(runDiff, DiffOptions{.a = oak_pack, .b = oak_pack});
+  EXPECT_EQ(same.exit_code, kExitOk) << same.err;
+  const Answer other = answerOf(runDiff, DiffOptions{.a = oak_pack, .b = ash_pack});
+  EXPECT_EQ(other.exit_code, kExitDiffers) << other.err;
+  EXPECT_THAT(other.out, HasSubstr("content (A | B)\n  name: oak | ash\n"));
+  EXPECT_THAT(other.out, HasSubstr("  xxh3_128: "));
 }
 
 TEST(RenderDiff, TellsOtherMaterialsAndColors) {
