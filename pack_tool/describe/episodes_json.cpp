@@ -3,18 +3,15 @@
 
 #include "galactic/episode_set.h"
 #include "pack_tool/describe/asset_json.h"
+#include "pack_tool/describe/json_parts.h"
 
 namespace galactic::pack_tool {
 
 namespace {
 
-Json pointJson(const Vec3& point) {
-  return Json::array({jsonNumber(point.x), jsonNumber(point.y), jsonNumber(point.z)});
-}
-
 Json poseJson(const Pose& pose) {
   const Quat& q = pose.rotation;
-  return {{"translation", pointJson(pose.translation)},
+  return {{"translation", describePoint(pose.translation)},
           {"rotation_wxyz",
            Json::array({jsonNumber(q.w), jsonNumber(q.x), jsonNumber(q.y), jsonNumber(q.z)})}};
 }
@@ -81,7 +78,7 @@ Json describeEpisode(const EpisodeSet& set, std::size_t n) {
   const Episode& episode = set.episodes()[n];
   Json json;
   json["scene"] = set.sceneNames().at(episode.scene);
-  json["base_position"] = pointJson(episode.base_position);
+  json["base_position"] = describePoint(episode.base_position);
   json["base_yaw"] = jsonNumber(episode.base_yaw);
   json["start_positions"] = Json::array();
   for (const float position : set.startPositions(n)) {

@@ -22,6 +22,10 @@ std::uint64_t hashed(std::uint64_t hash, const std::uint8_t* bytes, std::size_t 
 
 }  // namespace
 
+Json describePoint(const Vec3& point) {
+  return Json::array({jsonNumber(point.x), jsonNumber(point.y), jsonNumber(point.z)});
+}
+
 Json describePoint(const schema::Vec3& point) {
   return Json::array({jsonNumber(point.x()), jsonNumber(point.y()), jsonNumber(point.z())});
 }

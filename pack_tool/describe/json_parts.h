@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "galactic/pose.h"
 #include "galactic/schema/pack_generated.h"
 #include "galactic/shapes.h"
 #include "pack_tool/describe/pack_description.h"
@@ -12,6 +13,7 @@ namespace galactic::pack_tool {
 // What the descriptions of several kinds of packs share.
 
 /// (x, y, z).
+[[nodiscard]] Json describePoint(const Vec3& point);
 [[nodiscard]] Json describePoint(const schema::Vec3& point);
 
 /// Translation (x, y, z) and rotation in the order of text, (w, x, y, z).

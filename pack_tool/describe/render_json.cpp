@@ -15,10 +15,6 @@ namespace galactic::pack_tool {
 
 namespace {
 
-Json pointOf(const Vec3& point) {
-  return Json::array({jsonNumber(point.x), jsonNumber(point.y), jsonNumber(point.z)});
-}
-
 /// "#rrggbbaa", as pages and image editors write it.
 std::string colorText(std::uint32_t color) {
   const auto channel = [color](unsigned shift) { return color >> shift & 0xffU; };
@@ -55,8 +51,8 @@ Json describeModel(const PackFile& pack, const RenderMeshes& meshes, const Rende
   const ClusterSums sums(clustersOf(meshes, model));
   Json json;
   json["name"] = partName(pack, model.part);
-  json["bounds"] = {{"min", pointOf(model.bounds_min)},
-                    {"max", pointOf(model.bounds_max)}};
+  json["bounds"] = {{"min", describePoint(model.bounds_min)},
+                    {"max", describePoint(model.bounds_max)}};
   json["step"] = jsonNumber(model.step);
   json["clusters"] = sums.clusters;
   json["two_sided_clusters"] = sums.two_sided;

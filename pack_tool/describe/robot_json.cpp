@@ -31,10 +31,6 @@ Json describeLimit(float limit) {
   return jsonNumber(limit);
 }
 
-Json describePoint(const Vec3& point) {
-  return Json::array({jsonNumber(point.x), jsonNumber(point.y), jsonNumber(point.z)});
-}
-
 /// Describes one robot; knows the names of links and positions.
 class RobotDescription {
  public:

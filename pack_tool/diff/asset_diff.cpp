@@ -149,10 +149,6 @@ void compareSphereLists(const char* list, DescribedPair& elements, const Describ
   }
 }
 
-void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
 }  // namespace
 
 void compareAssets(DescribedPair packs, const DiffOptions& options, PackDifference& difference) {

@@ -169,8 +169,7 @@ Result<void> compareEpisodes(const PackFile& a, const PackFile& b, const DiffOpt
   }
   difference.content =
       compareFields(namesAndCounts(descriptions.a), namesAndCounts(descriptions.b), 0);
-  const auto episodes = EpisodeComparison(*set_a, *set_b, options.tolerance).run();
-  difference.content.insert(difference.content.end(), episodes.begin(), episodes.end());
+  append(difference.content, EpisodeComparison(*set_a, *set_b, options.tolerance).run());
   return {};
 }
 

@@ -153,4 +153,8 @@ std::vector<FieldDifference> compareFields(const Json& a, const Json& b, double 
   });
 }
 
+void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
 }  // namespace galactic::pack_tool

@@ -150,10 +150,6 @@ Json under(const char* name, Json json) {
   return outer;
 }
 
-void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
 void compareGeometry(const PackPair& packs, double tolerance,
                      std::vector<FieldDifference>& differences) {
   const auto meshes_a = renderMeshesOf(packs.a);

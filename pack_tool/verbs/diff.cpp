@@ -39,10 +39,6 @@ Json coverageOf(const Json& description, std::size_t grid) {
   return {{gridField(described), {{"coverage", described.at("coverage")}}}};
 }
 
-void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from) {
-  to.insert(to.end(), from.begin(), from.end());
-}
-
 /// One side of the comparison of scenes.
 struct Side {
   Scene scene;
