@@ -1,10 +1,7 @@
-#include <exception>
 #include <iostream>
-#include <new>
-#include <stdexcept>
 
 #include "pack_tool/command_line.h"
-#include "support/out_of_memory.h"
+#include "support/exception_error.h"
 #include "support/standard_streams.h"
 
 namespace galactic::pack_tool {
@@ -39,18 +36,11 @@ int runTool(int argc, const char* const* argv, const Console& console) {
 }  // namespace galactic::pack_tool
 
 int main(int argc, char** argv) {
-  using galactic::ErrorCode;
   galactic::reserveStandardStreams();
   const galactic::pack_tool::Console console{std::cout, std::cerr};
   try {
     return galactic::pack_tool::runTool(argc, argv, console);
-  } catch (const std::bad_alloc&) {
-    return galactic::pack_tool::reportError(console, galactic::outOfMemory());
-  } catch (const std::length_error&) {  // a vector that no memory could hold
-    return galactic::pack_tool::reportError(console, galactic::outOfMemory());
-  } catch (const std::exception& error) {
-    return galactic::pack_tool::reportError(
-        console,
-        {ErrorCode::kInternal, "internal error", std::string(error.what()) + "; please report it"});
+  } catch (...) {
+    return galactic::pack_tool::reportError(console, galactic::errorOfException());
   }
 }

@@ -5,20 +5,17 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <new>
 #include <set>
-#include <stdexcept>
 #include <system_error>
 
 #include "command.h"
 #include "followers.h"
 #include "galactic/bake/robot_recipe.h"
 #include "report.h"
-#include "support/out_of_memory.h"
+#include "support/exception_error.h"
 #include "support/output_files.h"
 #include "support/standard_streams.h"
 #include "support/try.h"
@@ -243,17 +240,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return bake::flushed(bake::run(argc, argv));
-  } catch (const std::bad_alloc&) {
-    return bake::refuse(galactic::outOfMemory());
-  } catch (const std::length_error&) {  // a vector that no memory could hold
-    return bake::refuse(galactic::outOfMemory());
-  } catch (const std::filesystem::filesystem_error& error) {
-    return bake::refuse({galactic::ErrorCode::kIo, error.path1().string(), error.code().message()});
-  } catch (const std::system_error& error) {  // what printing throws
-    if (galactic::isOutOfMemory(error)) return bake::refuse(galactic::outOfMemory());
-    return bake::refuse({galactic::ErrorCode::kIo, "standard output", error.what()});
-  } catch (const std::exception& error) {
-    return bake::refuse({galactic::ErrorCode::kInternal, "internal error",
-                         std::string(error.what()) + "; please report it"});
+  } catch (...) {
+    return bake::refuse(galactic::errorOfException());
   }
 }

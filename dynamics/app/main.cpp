@@ -2,15 +2,11 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <memory>
-#include <new>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "command_line.h"
@@ -23,7 +19,7 @@
 #include "dynamics/sources/sources.h"
 #include "galactic/bake/assets.h"
 #include "support/atomic_file.h"
-#include "support/out_of_memory.h"
+#include "support/exception_error.h"
 #include "support/output_files.h"
 #include "support/printable.h"
 #include "support/sentence_kinds.h"
@@ -157,14 +153,7 @@ int main(int argc, char** argv) {
   galactic::reserveStandardStreams();
   try {
     return dynamics::start(argc, argv);
-  } catch (const std::bad_alloc&) {
-    return dynamics::refuse(galactic::outOfMemory());
-  } catch (const std::length_error&) {  // a vector that no memory could hold
-    return dynamics::refuse(galactic::outOfMemory());
-  } catch (const std::system_error& error) {  // what printing throws
-    if (galactic::isOutOfMemory(error)) return dynamics::refuse(galactic::outOfMemory());
-    return dynamics::refuse({galactic::ErrorCode::kIo, "standard output", error.what()});
-  } catch (const std::exception& error) {
-    return dynamics::refuse({galactic::ErrorCode::kInternal, "internal error", error.what()});
+  } catch (...) {
+    return dynamics::refuse(galactic::errorOfException());
   }
 }

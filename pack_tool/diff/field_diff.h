@@ -41,6 +41,7 @@ using ToleranceOf = std::function<FieldTolerance(std::string_view keys)>;
 [[nodiscard]] std::vector<FieldDifference> compareFields(const Json& a, const Json& b,
                                                          double tolerance);
 
+/// Adds `from` behind what `to` has.
 void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from);
 
 }  // namespace galactic::pack_tool

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <atomic>
+#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "pack_tool/check/find_packs.h"
 #include "pack_tool/check/junit.h"
@@ -11,7 +9,9 @@
 #include "pack_tool/describe/pack_description.h"
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
+#include "support/exception_error.h"
 #include "support/output_files.h"
+#include "support/workers.h"
 
 namespace galactic::pack_tool {
 
@@ -44,28 +44,19 @@ std::vector<Task> tasksOf(const std::vector<fs::path>& arguments) {
   return tasks;
 }
 
-/// Checks all packs on `jobs` threads. Each takes the next pack that nobody has begun; what becomes
-/// of a pack does not depend on who does it.
-std::vector<CheckedPack> checkAll(const std::vector<Task>& tasks, unsigned jobs) {
+/// What becomes of a pack does not depend on which thread checks it.
+std::vector<CheckedPack> checkAll(const std::vector<Task>& tasks, std::uint32_t threads) {
   std::vector<CheckedPack> checked(tasks.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t n = next++; n < tasks.size(); n = next++) {
-      try {
-        checked[n] = tasks[n].done ? *tasks[n].done : checkPack(tasks[n].pack);
-      } catch (const std::exception& error) {
-        checked[n] =
-            badPack(tasks[n].pack.string(), {ErrorCode::kInternal, tasks[n].pack.string(),
-                                             std::string(error.what()) + "; please report it"});
-      }
+  detail::forEachPart(threads, tasks.size(), [&](std::size_t n) {
+    const fs::path& pack = tasks[n].pack;
+    try {
+      checked[n] = tasks[n].done ? *tasks[n].done : checkPack(pack);
+    } catch (...) {
+      Error error = errorOfException();
+      if (error.code == ErrorCode::kInternal) error.where = pack.string();
+      checked[n] = badPack(pack.string(), error);
     }
-  };
-  std::vector<std::thread> helpers;
-  const std::size_t threads = std::min<std::size_t>(std::max(1U, jobs), tasks.size());
-  helpers.reserve(threads);
-  for (std::size_t n = 1; n < threads; ++n) helpers.emplace_back(work);
-  work();
-  for (std::thread& helper : helpers) helper.join();
+  });
   return checked;
 }
 
@@ -120,9 +111,8 @@ Result<void> writeJunit(const std::vector<CheckedPack>& packs, const fs::path& r
 }  // namespace
 
 int runCheck(const CheckOptions& options, const Console& console) {
-  const unsigned threads =
-      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
-  const std::vector<CheckedPack> packs = checkAll(tasksOf(options.packs), threads);
+  const std::vector<CheckedPack> packs =
+      checkAll(tasksOf(options.packs), detail::threadCount(options.threads));
   int exit_code = kExitOk;
   Json report = Json::array();
   for (const CheckedPack& pack : packs) {

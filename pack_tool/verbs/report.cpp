@@ -1,13 +1,12 @@
-#include <algorithm>
-#include <atomic>
-#include <thread>
 #include <utility>
+#include <vector>
 
 #include "pack_tool/report/html_page.h"
 #include "pack_tool/support/open_listed.h"
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/try.h"
+#include "support/workers.h"
 
 namespace galactic::pack_tool {
 
@@ -31,23 +30,12 @@ Result<PackEntry> entryOf(const PackFile& pack, const std::filesystem::path& fol
   return entry;
 }
 
-/// On all cores; what becomes of a pack does not depend on who draws it.
+/// On all cores; what becomes of a pack does not depend on which thread draws it.
 std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs,
                                          const std::filesystem::path& folder) {
   std::vector<Result<PackEntry>> entries(packs.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t n = next++; n < packs.size(); n = next++) {
-      entries[n] = entryOf(packs[n], folder);
-    }
-  };
-  std::vector<std::jthread> helpers;
-  const std::size_t threads =
-      std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), packs.size());
-  helpers.reserve(threads);
-  for (std::size_t n = 1; n < threads; ++n) helpers.emplace_back(work);
-  work();
-  helpers.clear();
+  detail::forEachPart(detail::threadCount(0), packs.size(),
+                      [&](std::size_t n) { entries[n] = entryOf(packs[n], folder); });
   return entries;
 }
 

@@ -4,13 +4,9 @@
 
 #include <chrono>
 #include <cstdio>
-#include <exception>
-#include <new>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -25,7 +21,7 @@
 #include "run/run_report.h"
 #include "run/simulate.h"
 #include "support/atomic_file.h"
-#include "support/out_of_memory.h"
+#include "support/exception_error.h"
 #include "support/printable.h"
 #include "support/standard_streams.h"
 
@@ -163,14 +159,7 @@ int main(int argc, char** argv) {
   galactic::reserveStandardStreams();
   try {
     return run(argc, argv);
-  } catch (const std::bad_alloc&) {
-    return report(galactic::outOfMemory());
-  } catch (const std::length_error&) {  // a vector that no memory could hold
-    return report(galactic::outOfMemory());
-  } catch (const std::system_error& failure) {  // what printing throws
-    if (galactic::isOutOfMemory(failure)) return report(galactic::outOfMemory());
-    return report({ErrorCode::kIo, "standard output", failure.what()});
-  } catch (const std::exception& exception) {
-    return report({ErrorCode::kInternal, "internal error", exception.what()});
+  } catch (...) {
+    return report(galactic::errorOfException());
   }
 }

@@ -22,6 +22,7 @@ import tempfile
 STEP = 1.25
 MEGABYTE = 1 << 20
 MOST = 16384 * MEGABYTE
+REPORTED = ("arm.pack", "crate.pack", "crate-older.pack", "policy.pack", "room-cell.pack", "room-column.pack")
 # A file that cannot be read or mapped, or what is not supported.
 CODES = (2, 5)
 
@@ -106,6 +107,7 @@ def main() -> int:
         ["envs", "galactic-run", world, "--envs", 65536, "--steps", 1, "--threads", 1],
         ["images of 2048 x 2048 pixels", "galactic-run", world, *images],
         ["", "galactic-pack", "picture", packs / "crate.pack", "--size", 2048, "-o", "crate.png"],
+        ["", "galactic-pack", "report", *[packs / name for name in REPORTED], "-o", "report.html"],
         ["columns", "galactic-bake", packs / "room.obj", "--spacing", 0.002, "--check-columns", 0, "-q", "-o", "room.pack"],
     ]
     with tempfile.TemporaryDirectory() as folder:

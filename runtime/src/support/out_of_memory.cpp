@@ -58,9 +58,4 @@ Result<void> checkMemory(double bytes, std::string_view what, std::string_view a
                           std::max(0.0, left) / kGigabyte, advice));
 }
 
-bool isOutOfMemory(const std::system_error& failure) {
-  return failure.code() == std::errc::resource_unavailable_try_again ||
-         failure.code() == std::errc::not_enough_memory;
-}
-
 }  // namespace galactic

@@ -1,6 +1,5 @@
 #pragma once
 #include <string_view>
-#include <system_error>
 
 #include "galactic/error.h"
 
@@ -16,8 +15,5 @@ namespace galactic {
 /// needs them, as the plural that begins the sentence; `advice` says what to do.
 [[nodiscard]] Result<void> checkMemory(double bytes, std::string_view what,
                                        std::string_view advice);
-
-/// Whether it is memory that was lacking: a thread that cannot start lacks room for its stack.
-[[nodiscard]] bool isOutOfMemory(const std::system_error& failure);
 
 }  // namespace galactic

@@ -1,6 +1,9 @@
 #include "support/workers.h"
 
 #include <algorithm>
+#include <exception>
+#include <mutex>
+#include <system_error>
 #include <utility>
 
 namespace galactic::detail {
@@ -21,6 +24,22 @@ void awaitChange(const std::atomic<Value>& value, Value old) noexcept {
   value.wait(old, std::memory_order_acquire);
 }
 
+/// The first exception of all threads.
+class FirstException {
+ public:
+  void remember() {
+    const std::lock_guard lock(mutex_);
+    if (!exception_) exception_ = std::current_exception();
+  }
+  void rethrow() const {
+    if (exception_) std::rethrow_exception(exception_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr exception_;
+};
+
 }  // namespace
 
 std::uint32_t threadCount(std::uint32_t wanted) noexcept {
@@ -30,14 +49,27 @@ std::uint32_t threadCount(std::uint32_t wanted) noexcept {
 void forEachPart(std::uint32_t threads, std::size_t count,
                  const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
+  FirstException failure;
   const auto help = [&]() noexcept {
-    for (std::size_t n = next++; n < count; n = next++) work(n);
+    try {
+      for (std::size_t n = next++; n < count; n = next++) work(n);
+    } catch (...) {
+      failure.remember();
+      next = count;
+    }
   };
-  std::vector<std::jthread> helpers;
-  for (std::size_t n = 1; n < std::min<std::size_t>(threads, count); ++n) {
-    helpers.emplace_back(help);
+  {
+    std::vector<std::jthread> helpers;
+    try {
+      for (std::size_t n = 1; n < std::min<std::size_t>(threads, count); ++n) {
+        helpers.emplace_back(help);
+      }
+    } catch (const std::system_error&) {
+      // The system has no more threads: those that started do the work.
+    }
+    help();
   }
-  help();
+  failure.rethrow();
 }
 
 Workers::Workers(std::size_t threads, std::size_t parts, Work work)

@@ -15,7 +15,8 @@ namespace galactic::detail {
 [[nodiscard]] std::uint32_t threadCount(std::uint32_t wanted) noexcept;
 
 /// Calls `work(n)` once for each n below `count`, in no particular order, on up to `threads`
-/// threads, the caller's included. `work` must not throw. For work that is done once.
+/// threads, the caller's included. If a call throws, those that nobody has begun are left out, and
+/// the caller gets the exception when all threads are done. For work that is done once.
 void forEachPart(std::uint32_t threads, std::size_t count,
                  const std::function<void(std::size_t)>& work);
 

@@ -7,6 +7,8 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -153,6 +155,34 @@ TEST(Workers, CanBeDestroyedWhileTheyWait) {
       workers.reset();
       for (const Slot& slot : slots) ASSERT_EQ(slot.rounds, static_cast<std::uint64_t>(n % 3));
     }
+  }
+}
+
+TEST(ForEachPart, DoesEachPartOnceOnAnyNumberOfThreads) {
+  for (const std::uint32_t threads : {0U, 1U, 2U, 7U}) {
+    std::vector<std::atomic<int>> done(50);
+    detail::forEachPart(threads, done.size(), [&](std::size_t n) { ++done[n]; });
+    for (const std::atomic<int>& times : done) EXPECT_EQ(times, 1) << threads;
+  }
+}
+
+TEST(ForEachPart, GivesTheCallerAnExceptionOnceAllThreadsAreDone) {
+  for (const std::uint32_t threads : {1U, 3U}) {
+    std::atomic<int> at_work = 0;
+    const auto work = [&](std::size_t n) {
+      ++at_work;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      --at_work;
+      if (n == 5) throw std::runtime_error("part 5");
+    };
+    std::string what;
+    try {
+      detail::forEachPart(threads, 100'000, work);
+    } catch (const std::runtime_error& error) {
+      what = error.what();
+    }
+    EXPECT_EQ(what, "part 5");
+    EXPECT_EQ(at_work, 0);
   }
 }
 
