@@ -47,14 +47,25 @@ std::vector<fs::path> packsOfOut(const JobList& list) {
   return packs;
 }
 
+/// Whatever name it goes by, the report is none of the packs, those in a world's folder among them.
+Result<void> checkReport(const fs::path& report, const JobList& list) {
+  if (report.empty()) return {};
+  std::vector<fs::path> packs = packsOfOut(list);
+  for (const PackJob& pack : list.assets) packs.push_back(pack.output);
+  if (list.episodes) packs.push_back(list.episodes->output);
+  const auto is_report = [&](const fs::path& pack) { return isSameFile(pack, report); };
+  if (std::ranges::none_of(packs, is_report)) return {};
+  return fail(ErrorCode::kInvalidInput, report.string(),
+              "is also a pack that is written; give `report` another name");
+}
+
 /// Two outputs must not be one file, none may replace an input or the options' file, and a pack's
 /// name says that it is one.
 Result<void> checkOutputs(const BakeCommand& command, const JobList& list) {
   const ReadLog named = namedFiles(command, list);
   std::set<fs::path> outputs;
-  const fs::path& report = command.run.report;
-  if (!report.empty()) outputs.insert(report.lexically_normal());
-  RETURN_IF_ERROR(named.checkNotRead(report));
+  RETURN_IF_ERROR(named.checkNotRead(command.run.report));
+  RETURN_IF_ERROR(checkReport(command.run.report, list));
   for (const fs::path& pack : packsOfOut(list)) {
     RETURN_IF_ERROR(named.checkNotRead(pack));
     if (pack.extension() != ".pack") {
@@ -64,7 +75,7 @@ Result<void> checkOutputs(const BakeCommand& command, const JobList& list) {
     }
     if (outputs.insert(pack.lexically_normal()).second) continue;
     return fail(ErrorCode::kInvalidInput, pack.string(),
-                "would be written twice: two inputs of one name, or the report; use -o");
+                "would be written twice: two inputs have one name; use -o");
   }
   return {};
 }

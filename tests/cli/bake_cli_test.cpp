@@ -328,6 +328,20 @@ TEST_F(BakeCli, NeverReplacesAnythingThatItReads) {
   EXPECT_FALSE(has("one.pack"));
 }
 
+TEST_F(BakeCli, KeepsItsReportApartFromThePackWhateverItIsCalled) {
+  ASSERT_EQ(run({"room.obj", "--radii", "0.12", "-o", "one.pack"}).exit_code, 0);
+  const std::string before = content("one.pack");
+  std::filesystem::create_symlink("one.pack", path("link.json"));
+  for (const std::string& report : {path("one.pack").string(), std::string("link.json")}) {
+    const ProgramRun bake =
+        run({"room.obj", "--radii", "0.12", "-o", "one.pack", "--report", report});
+    EXPECT_EQ(bake.exit_code, 3) << report;
+    EXPECT_EQ(bake.err, "galactic-bake: " + report +
+                            ": is also a pack that is written; give --report another name\n");
+    EXPECT_EQ(content("one.pack"), before) << report;
+  }
+}
+
 TEST_F(BakeCli, TriesItsReportBeforeItBakes) {
   const ProgramRun bake = run({"room.obj", "-o", "one.pack", "--report", "missing/report.json"});
   EXPECT_EQ(bake.exit_code, 2);
