@@ -190,4 +190,6 @@ class Learner:
         report["grad_norm"] = sums[-1] / (rounds * self.group.size)
         variance = second / steps - (first / steps) ** 2
         report["explained_variance"] = 1.0 - error / steps / max(variance, 1e-12)
+        if self.policy.action.log_std is not None:
+            report["log_std"] = float(self.policy.action.log_std.mean())
         return report

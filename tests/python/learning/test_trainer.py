@@ -431,6 +431,23 @@ def test_the_table_of_the_curves_keeps_every_digit_of_whole_numbers(tmp_path: pa
     assert row["success"] == 0.5 and row["return"] is None
 
 
+@pytest.mark.parametrize("log_std", ["parameter", "output"])
+def test_the_curves_show_standard_deviations_that_are_parameters(
+    tmp_path: pathlib.Path, log_std: str
+) -> None:
+    trainer = make_trainer(tmp_path, dataclasses.replace(SETTINGS, log_std=log_std))
+    trainer.begin()
+    trainer.train()
+    shown = [row["log_std"] for row in read_curves(tmp_path / "curves.csv")]
+    if log_std == "output":
+        assert shown == [None] * 8
+        return
+    parameter = trainer.policy.action.log_std
+    assert parameter is not None
+    assert shown[-1] == pytest.approx(parameter.mean().item())
+    assert shown[0] != shown[-1]
+
+
 def test_ranks_tell_once_what_went_wrong() -> None:
     def ranks() -> list[Group]:
         both, store = [Group(rank, 2, torch.device("cpu")) for rank in (0, 1)], HashStore()

@@ -35,7 +35,8 @@ COLUMNS = (
 )
 """Steps, seconds and updates since the run began, over all its parts; sps: steps per second since the
 row before. Success, return and length: means of the latest episodes of training, from when every env
-has finished one; `validation_...`: of the episodes for validation, in rows that have them."""
+has finished one; `validation_...`: of the episodes for validation, in rows that have them. Log_std:
+the mean of the policy's, where they are parameters."""
 
 
 class Curves:
