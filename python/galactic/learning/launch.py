@@ -18,6 +18,9 @@ from typing import Any, Sequence
 
 import torch.distributed
 
+import galactic
+from galactic.learning.command import INTERRUPTED
+
 GRACE = 30.0
 """Seconds that the other ranks have when one has failed, before they are killed."""
 
@@ -25,7 +28,8 @@ GRACE = 30.0
 def launch(ranks: int, command: Sequence[str]) -> int:
     """Runs `command` in `ranks` processes that find each other by torch.distributed's environment
     variables, and waits for them. Returns the first code that is not 0, else 0. Interrupts reach the
-    ranks, which end as they see fit."""
+    ranks, which end as they see fit. Raises galactic.Error where another signal has ended a rank, which
+    could not say so itself."""
     store = torch.distributed.TCPStore("127.0.0.1", 0, is_master=True, wait_for_workers=False)
     environment = {
         **os.environ,
@@ -55,10 +59,22 @@ def launch(ranks: int, command: Sequence[str]) -> int:
 
     before = {number: signal.signal(number, pass_on) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        return _wait(processes)
+        rank, code = _wait(processes)
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+    return code if code >= 0 else _ended_by(signal.Signals(-code), rank)
+
+
+def _ended_by(number: signal.Signals, rank: int) -> int:
+    """What there is to do about a rank that a signal has ended."""
+    if number in (signal.SIGINT, signal.SIGTERM):
+        return INTERRUPTED
+    advice = "please report it"
+    if number == signal.SIGKILL:
+        advice = "the system does that where memory is lacking: take fewer --envs or --ranks"
+    message = f"was ended by {number.name}; {advice}"
+    raise galactic.Error(galactic.ErrorCode.INTERNAL, f"rank {rank}", message)
 
 
 def _of_libraries() -> dict[str, str]:
@@ -77,15 +93,20 @@ def _of_libraries() -> dict[str, str]:
     return {name: value for name, value in chosen.items() if name not in os.environ}
 
 
-def _wait(processes: "Sequence[subprocess.Popen[bytes]]") -> int:
-    failure = 0
+def _wait(processes: "Sequence[subprocess.Popen[bytes]]") -> tuple[int, int]:
+    """Rank and code of the first that failed, a code of 0 where none has. Of several, the one that a
+    signal has ended: its end is what the others noticed."""
+    failure = (0, 0)
     deadline = float("inf")
-    while any(process.poll() is None for process in processes):
-        codes = [process.returncode for process in processes if process.returncode]
-        if codes and not failure:
-            failure, deadline = codes[0], time.monotonic() + GRACE
+    while True:
+        are_over = all(process.poll() is not None for process in processes)
+        failed = [(one.returncode, rank) for rank, one in enumerate(processes) if one.returncode]
+        if failed and failure == (0, 0):
+            failure, deadline = min(failed), time.monotonic() + GRACE
+        if are_over:
+            code, rank = failure
+            return rank, code
         if time.monotonic() > deadline:
             for process in processes:
                 process.kill()
         time.sleep(0.05)
-    return failure or next((p.returncode for p in processes if p.returncode), 0)

@@ -463,6 +463,29 @@ def test_ranks_tell_once_what_went_wrong() -> None:
     assert first.may_tell(RankLost("peer at 1")) and not second.may_tell(RankLost("peer at 2"))
 
 
+@pytest.mark.parametrize(
+    "number, advice",
+    [
+        (signal.SIGKILL, "memory is lacking: take fewer --envs"),
+        (signal.SIGSEGV, "please report it"),
+    ],
+)
+def test_a_rank_that_a_signal_ends_is_missed_in_words(number: signal.Signals, advice: str) -> None:
+    """The other one fails on its own account, as those do that lose a rank."""
+    work = (
+        "import os, time\n"
+        f"if os.environ['RANK'] == '1': os.kill(os.getpid(), {int(number)})\n"
+        "time.sleep(0.5)\n"
+        "exit(4)"
+    )
+    with pytest.raises(galactic.Error, match=f"^rank 1: was ended by {number.name}; .*{advice}"):
+        launch(2, [sys.executable, "-c", work])
+
+
+def test_a_rank_that_is_asked_to_end_was_interrupted() -> None:
+    assert launch(1, [sys.executable, "-c", "import os; os.kill(os.getpid(), 15)"]) == 130
+
+
 def run_ranks(ranks: int, *arguments: str) -> None:
     """Runs ranks.py in as many processes."""
     assert launch(ranks, [sys.executable, "-B", str(HERE / "ranks.py"), *arguments]) == 0
