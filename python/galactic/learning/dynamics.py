@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pathlib
 import shutil
+import signal
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -63,6 +64,9 @@ def play(run: DynamicsRun) -> dict[str, Any]:
         code = subprocess.run(command, check=False).returncode
         if code == INTERRUPTED:
             raise KeyboardInterrupt
+        if code < 0:
+            message = f"was ended by {signal.Signals(-code).name}, and could not say why"
+            raise galactic.Error(galactic.ErrorCode.INTERNAL, TOOL, message)
         if code != 0:
             raise galactic.Error(
                 _error_of(code), TOOL, f"ended with exit code {code}; it has said why"

@@ -69,6 +69,12 @@ def test_its_exit_codes_are_passed_on(tool: pathlib.Path) -> None:
         assert refused.value.code == wanted and f"exit code {code}" in str(refused.value)
 
 
+def test_a_tool_that_a_signal_ends_has_said_nothing(tool: pathlib.Path) -> None:
+    tool.write_text(f"#!{sys.executable}\nimport os\nos.kill(os.getpid(), 9)\n", encoding="utf-8")
+    with pytest.raises(galactic.Error, match="galactic-dynamics: was ended by SIGKILL, and could"):
+        dynamics.play(run_of())
+
+
 def test_an_interrupted_tool_interrupts_what_asked_for_it(
     tool: pathlib.Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
