@@ -95,8 +95,10 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
   std::vector<OptionText> texts;
   for (const auto& [key, value] : keywords) {
     const auto keyword = key.cast<std::string>();
-    if (value.is_none()) continue;
-    if (keyword == "threads") {
+    if (value.is_none()) {
+      const std::vector<std::string> known = knownKeywords();
+      if (std::ranges::find(known, keyword) == known.end()) refuseKeyword(keyword, known);
+    } else if (keyword == "threads") {
       options.threads = threadsOf(value);
     } else if (keyword == "body_transforms" || keyword == "auto_reset") {
       (keyword == "auto_reset" ? options.auto_reset : options.body_transforms) =

@@ -426,6 +426,7 @@ def test_options_are_those_of_the_option_table(world):
     [
         ({"tusk": "pick"}, TypeError, "there is no option tusk; did you mean task?"),
         ({"no_distractor": True}, TypeError, "did you mean no_distractors?"),
+        ({"tusk": None}, TypeError, "there is no option tusk; did you mean task?"),
         ({"xyzzy": 1}, TypeError, "there is no option xyzzy; the options are envs"),
         ({"task": "fly"}, Error, "task: is fly, expected rearrange, pick or none"),
         ({"envs": 0}, Error, "envs: is 0, expected 1 to 1048576"),
