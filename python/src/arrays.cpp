@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <type_traits>
 
 namespace galactic::python {
 namespace {
@@ -20,6 +21,18 @@ void requireShape(const py::array& array, const char* name, const Shape& wanted)
 }
 
 std::string typeText(const py::handle& type) { return py::str(type).cast<std::string>(); }
+
+[[noreturn]] void refuseNumbers(const char* name, const std::string& found) {
+  throw py::type_error(fmt::format("{} is {}, expected an array of whole numbers", name, found));
+}
+
+/// Throws for an array of numbers that whole ones would cut off.
+void requireNoFractions(const py::handle& given, const char* name) {
+  const py::array array = py::array::ensure(given);
+  if (!array) return PyErr_Clear();
+  const char kind = array.dtype().kind();
+  if (kind == 'f' || kind == 'c') refuseNumbers(name, typeText(array.dtype()) + " numbers");
+}
 
 }  // namespace
 
@@ -40,6 +53,7 @@ py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(const py::hand
                                                                   const char* name,
                                                                   const Shape& shape) {
   using Input = py::array_t<T, py::array::c_style | py::array::forcecast>;
+  if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) requireNoFractions(given, name);
   Input array = Input::ensure(given);
   if (!array) {
     PyErr_Clear();
@@ -56,8 +70,7 @@ py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumber
   if (!array) PyErr_Clear();
   const char kind = array ? array.dtype().kind() : '?';
   if (kind != 'i' && kind != 'u') {
-    const std::string type = array ? typeText(array.dtype()) + " numbers" : "a " + typeName(given);
-    throw py::type_error(fmt::format("{} is {}, expected an array of whole numbers", name, type));
+    refuseNumbers(name, array ? typeText(array.dtype()) + " numbers" : "a " + typeName(given));
   }
   auto numbers = inputOf<std::int64_t>(array, name, shape);
   if (kind == 'u' && array.itemsize() == sizeof(std::int64_t)) {
@@ -115,8 +128,6 @@ template py::array_t<double, py::array::c_style | py::array::forcecast> inputOf<
 template py::array_t<float, py::array::c_style | py::array::forcecast> inputOf<float>(
     const py::handle&, const char*, const Shape&);
 template py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast> inputOf<std::uint8_t>(
-    const py::handle&, const char*, const Shape&);
-template py::array_t<std::int32_t, py::array::c_style | py::array::forcecast> inputOf<std::int32_t>(
     const py::handle&, const char*, const Shape&);
 template std::span<float> outputOf<float>(const py::handle&, const char*, const Shape&);
 template std::span<std::uint8_t> outputOf<std::uint8_t>(const py::handle&, const char*,

@@ -36,7 +36,7 @@ template <class T>
 
 /// What a caller gives as `name`, as an array of T in rows without gaps: itself where it is one,
 /// else a converted copy. ValueError when it has another shape, TypeError when it is no array of
-/// numbers.
+/// numbers, or when they have fractions and T has none.
 template <class T>
 [[nodiscard]] py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(
     const py::handle& given, const char* name, const Shape& shape);

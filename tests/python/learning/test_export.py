@@ -248,6 +248,10 @@ def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
             player.act(*wrong)
     with pytest.raises(TypeError):
         player.act(state, None, None, depth)
+    # Colors from 0 to 1 would all be black, or nearly.
+    for floats in ((None, rgb / np.float32(255), depth), (np.zeros(2), rgb, depth)):
+        with pytest.raises(TypeError, match="numbers, expected an array of whole numbers"):
+            player.act(state, *floats)
     with pytest.raises(galactic.Error):
         _core.LearnedPolicy(tmp_path / "no.pack", 2)
     assert repr(player) == "<galactic.LearnedPolicy p>"
