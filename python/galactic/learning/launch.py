@@ -42,15 +42,7 @@ def launch(ranks: int, command: Sequence[str]) -> int:
         "LOCAL_WORLD_SIZE": str(ranks),
         **_of_libraries(),
     }
-    processes = [
-        subprocess.Popen(
-            command,
-            env={**environment, "RANK": str(rank), "LOCAL_RANK": str(rank)},
-            # Away from the terminal's group: an interrupt comes from here, once.
-            start_new_session=True,
-        )
-        for rank in range(ranks)
-    ]
+    processes: "list[subprocess.Popen[bytes]]" = []
 
     def pass_on(number: int, _: Any) -> None:
         for process in processes:
@@ -59,7 +51,16 @@ def launch(ranks: int, command: Sequence[str]) -> int:
 
     before = {number: signal.signal(number, pass_on) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
+        for rank in range(ranks):
+            own = {**environment, "RANK": str(rank), "LOCAL_RANK": str(rank)}
+            # Away from the terminal's group: an interrupt comes from here, once.
+            processes.append(subprocess.Popen(command, env=own, start_new_session=True))
         rank, code = _wait(processes)
+    except BaseException:
+        # Those that have started would wait for the others.
+        for process in processes:
+            process.kill()
+        raise
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -9,6 +9,7 @@ import os
 import pathlib
 import shutil
 import signal
+import subprocess
 import sys
 from typing import Any
 
@@ -480,6 +481,22 @@ def test_a_rank_that_a_signal_ends_is_missed_in_words(number: signal.Signals, ad
     )
     with pytest.raises(galactic.Error, match=f"^rank 1: was ended by {number.name}; .*{advice}"):
         launch(2, [sys.executable, "-c", work])
+
+
+def test_no_rank_is_left_behind_where_not_all_can_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[Any] = []
+    start = subprocess.Popen
+
+    def start_one(*arguments: Any, **keywords: Any) -> Any:
+        if started:
+            raise OSError("no more processes")
+        started.append(start(*arguments, **keywords))
+        return started[0]
+
+    monkeypatch.setattr(subprocess, "Popen", start_one)
+    with pytest.raises(OSError, match="no more processes"):
+        launch(2, [sys.executable, "-c", "import time; time.sleep(60)"])
+    assert started[0].wait(timeout=10) == -signal.SIGKILL
 
 
 def test_a_rank_that_is_asked_to_end_was_interrupted() -> None:
