@@ -349,7 +349,7 @@ TEST_F(PackCli, ReportsAFullDiskBehindStandardOutput) {
   const ProgramRun result =
       test::runProgram(GALACTIC_PACK, folder_.path(), {"info", "good.pack"}, full);
   EXPECT_EQ(result.exit_code, kIo);
-  EXPECT_THAT(result.err, HasSubstr("standard output: cannot be written to"));
+  EXPECT_THAT(result.err, HasSubstr("galactic-pack: standard output: cannot be written"));
 }
 
 }  // namespace
