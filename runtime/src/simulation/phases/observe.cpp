@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "simulation/phases/task.h"
 #include "simulation/state/grip_frame.h"
@@ -28,12 +29,11 @@ std::array<float, 2> seenByRobot(const GripFrame& grip, float x, float z) {
   return {cosine * x - sine * z, -(sine * x + cosine * z)};
 }
 
-/// Where that side of the target points that was up when the episode began, in the robot's frame,
-/// at the beginning of the row.
-void senseUp(const Model& model, const BatchState& state, std::size_t n, std::span<float> row) {
+/// Where that side of the target points that was up when the episode began, in the robot's frame.
+void senseUp(const Model& model, const BatchState& state, std::size_t n, std::span<float> part) {
   const Vec3 up = targetUp(model, state, n);
   const auto [ahead, left] = seenByRobot(state.grip(n), up.x, up.z);
-  Row out(row.first(kTargetUpSize));
+  Row out(part);
   out.add(ahead);
   out.add(up.y);
   // The axes of the base: Z is to the right.
@@ -66,9 +66,9 @@ class NearestWays {
   std::array<Way, kMostNearObjects> ways_{};
 };
 
-/// The ways from the hand to the objects nearest to it but the target, at the beginning of the row.
+/// The ways from the hand to the objects nearest to it but the target.
 void senseNearObjects(const Model& model, const BatchState& state, std::size_t n,
-                      std::span<float> row) {
+                      std::span<float> part) {
   const std::size_t count = model.options.sensors.near_objects;
   const Env& env = state.env(n);
   const GripFrame grip = state.grip(n);
@@ -79,7 +79,7 @@ void senseNearObjects(const Model& model, const BatchState& state, std::size_t n
     if (object == env.target || !resting.isResting(object)) continue;
     nearest.add(nearestPoint(resting.box(object), hand) - hand);
   }
-  Row out(row.first(kWaySize * count));
+  Row out(part);
   for (std::size_t at = 0; at < count; ++at) {
     const Vec3& way = nearest[at];
     const auto [ahead, left] = seenByRobot(grip, way.x, way.z);
@@ -89,11 +89,11 @@ void senseNearObjects(const Model& model, const BatchState& state, std::size_t n
   }
 }
 
-/// The ways to target and goal, at the end of the row.
-void senseWays(const Model& model, const BatchState& state, std::size_t n, std::span<float> row) {
+/// The ways to target and goal.
+void senseWays(const Model& model, const BatchState& state, std::size_t n, std::span<float> part) {
   const Env& env = state.env(n);
   const GripFrame grip = state.grip(n);
-  Row out(row.last(sensors::kGeodesicSize));
+  Row out(part);
   const auto add = [&](const sensors::Way& way) {
     out.add(way.distance);
     const auto [ahead, left] = seenByRobot(grip, way.x, way.z);
@@ -131,6 +131,10 @@ std::vector<ObservationPart> observationParts(std::size_t joints, const SensorSi
   if (sensors.laser != 0) add("laser", sensors.laser);
   if (sensors.geodesic != 0) add("geodesic", sensors.geodesic);
   return parts;
+}
+
+std::size_t sensedSize(const SensorSizes& sensors) {
+  return sensors.target_up + sensors.near_objects + sensors.laser + sensors.geodesic;
 }
 
 void observe(const Model& model, BatchState& state, std::size_t first) noexcept {
@@ -174,16 +178,18 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
   if (model.sensors_first == out.size()) return;
   const Env& env = state.env(env_number);
   const GripFrame grip = state.grip(env_number);
-  std::span<float> row = out.subspan(model.sensors_first);
-  if (model.options.sensors.target_up) {
-    senseUp(model, state, env_number, row);
-    row = row.subspan(kTargetUpSize);
+  std::span<float> rest = out.subspan(model.sensors_first);
+  // The parts in the order of observationParts.
+  const auto next = [&](std::size_t size) {
+    const std::span<float> part = rest.first(size);
+    rest = rest.subspan(size);
+    return part;
+  };
+  const SensorOptions& sensors = model.options.sensors;
+  if (sensors.target_up) senseUp(model, state, env_number, next(kTargetUpSize));
+  if (sensors.near_objects != 0) {
+    senseNearObjects(model, state, env_number, next(kWaySize * sensors.near_objects));
   }
-  if (model.options.sensors.near_objects != 0) {
-    senseNearObjects(model, state, env_number, row);
-    row = row.subspan(kWaySize * model.options.sensors.near_objects);
-  }
-  if (model.options.sensors.geodesic) senseWays(model, state, env_number, row);
   model.laser.scan(
       {.scene = env.scene,
        .base = state.base(env_number),
@@ -192,7 +198,9 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
        .objects = state.resting(env_number),
        .random = RandomStream(model.options.seed ^ kLaserSalt, model.globalEnv(env_number),
                               state.counters(env_number).begun, env.step)},
-      row.first(model.laser.size()));
+      next(model.laser.size()));
+  if (sensors.geodesic) senseWays(model, state, env_number, next(sensors::kGeodesicSize));
+  assert(rest.empty());
 }
 
 void senseAll(const ChunkStep& step) noexcept {

@@ -28,6 +28,9 @@ struct SensorSizes {
 [[nodiscard]] std::vector<ObservationPart> observationParts(std::size_t joints,
                                                             const SensorSizes& sensors);
 
+/// Elements of the parts that sense() writes, which are the last ones of a row.
+[[nodiscard]] std::size_t sensedSize(const SensorSizes& sensors);
+
 /// Writes the observations of the envs of a chunk, whose first one is `first`, but for their
 /// sensors.
 void observe(const Model& model, BatchState& state, std::size_t first) noexcept;

@@ -283,8 +283,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
                             .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0};
   model.observation = observationParts(model.motion.controlled.size(), sensors);
   model.observation_size = model.observation.back().first + model.observation.back().size;
-  model.sensors_first = model.observation_size - sensors.target_up - sensors.near_objects -
-                        sensors.laser - sensors.geodesic;
+  model.sensors_first = model.observation_size - sensedSize(sensors);
   measure(world, model);
   model.groups = spheresByEights(model.motion.ranges);
   model.slices = FreeSlices(model.groups);
