@@ -4,10 +4,12 @@
     check_documents.py code              blocks that quote a file equal it
     check_documents.py links             links to files lead to files
     check_documents.py commands --bin D  the commands of docs/ that call our tools do as they say
+    check_documents.py options --bin D   docs/tools.md lists the options of our tools, and no others
 
 A block quotes a file when the line before it is <!-- file: PATH -->. Commands are the lines of blocks
 marked "sh" that begin with one of RUN; a line that ends in "# exit 7" has to end with that code. All
-commands of one document run in one fresh folder, in which packs/ and schema/ are the project's.
+commands of one document run in one fresh folder, in which packs/ and schema/ are the project's. Options
+are what --help of a tool and its verbs begins a line with.
 """
 
 import argparse
@@ -25,6 +27,12 @@ LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 # Our tools, and what prepares or looks at their files.
 RUN = ("galactic-", "flatc ", "printf ", "tail ")
 EXPECTED_EXIT = re.compile(r"\s+# exit (\d+)$")
+TOOL_SECTION = re.compile(r"^## (galactic-\w+)\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
+VERB_HEADING = re.compile(r"^### (\w+)$", re.MULTILINE)
+HELP_OPTION = re.compile(r"^ +(?:-\w,)?(--[a-z0-9-]+)", re.MULTILINE)
+OPTION = re.compile(r"--[a-z][a-z0-9-]*")
+# Said once, for all tools.
+OF_ALL_TOOLS = {"--help", "--version"}
 
 
 def documents(root: pathlib.Path) -> list[pathlib.Path]:
@@ -92,10 +100,37 @@ def check_commands(root: pathlib.Path, programs: pathlib.Path) -> list[str]:
     return offences if total else ["no document has a command: nothing was run"]
 
 
+def options_of(tool: pathlib.Path, verbs: list[str]) -> set[str]:
+    texts = [subprocess.run([tool, *verb, "--help"], text=True, capture_output=True, check=True).stdout
+             for verb in ([], *([verb] for verb in verbs))]
+    return {option for text in texts for option in HELP_OPTION.findall(text)} - OF_ALL_TOOLS
+
+
+def options_in_tables(section: str) -> set[str]:
+    cells = [line.split("|")[1] for line in section.splitlines() if line.startswith("|")]
+    return {option for cell in cells for option in OPTION.findall(cell)}
+
+
+def check_options(root: pathlib.Path, programs: pathlib.Path) -> list[str]:
+    offences = []
+    total = 0
+    for tool, section in TOOL_SECTION.findall((root / "docs" / "tools.md").read_text(encoding="utf-8")):
+        if not (programs / tool).exists():
+            continue
+        options = options_of(programs / tool, VERB_HEADING.findall(section))
+        total += len(options)
+        offences += [f"docs/tools.md: does not list {tool} {option}"
+                     for option in sorted(options - set(OPTION.findall(section)))]
+        offences += [f"docs/tools.md: lists {option}, which {tool} does not have"
+                     for option in sorted(options_in_tables(section) - options)]
+    print(f"{total} options")
+    return offences if total else ["no tool has an option: nothing was compared"]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("code", "links", "commands"))
+    parser.add_argument("what", choices=("code", "links", "commands", "options"))
     parser.add_argument("--root", type=pathlib.Path, default=PROJECT)
     parser.add_argument("--bin", type=pathlib.Path, help="folder of the built tools")
     options = parser.parse_args()
@@ -104,7 +139,9 @@ def main() -> int:
     elif options.what == "links":
         offences = check_links(options.root)
     elif options.bin is None:
-        parser.error("commands needs --bin")
+        parser.error(f"{options.what} needs --bin")
+    elif options.what == "options":
+        offences = check_options(options.root, options.bin.resolve())
     else:
         offences = check_commands(options.root, options.bin.resolve())
     for offence in offences:

@@ -19,16 +19,37 @@ class CheckDocumentsTest(unittest.TestCase):
         self.plant("<!-- file: a.cpp -->\n```cpp\nint a;\n```\nSee [b](../a.cpp#x) and "
                    "[c](https://example.org).\n```sh\ngalactic-tool yes\n```\n")
         tool = self.root / "galactic-tool"
-        tool.write_text('#!/bin/sh\n[ "$1" = yes ] && exit 0\nexit 7\n')
+        tool.write_text('#!/bin/sh\n[ "$1" = yes ] && exit 0\n'
+                        'for last; do :; done; [ "$last" = --help ] || exit 7\n'
+                        'if [ $# = 1 ]; then echo "  -q,--quiet  Only errors"; else echo "  --slow N  Steps"; fi\n')
         tool.chmod(0o755)
 
     def plant(self, text: str):
         (self.root / "docs" / "page.md").write_text(text)
 
+    def plant_tools(self, text: str):
+        (self.root / "docs" / "tools.md").write_text(f"## galactic-tool\n\n`-q`, `--quiet`: only errors.\n\n{text}")
+
     def test_accepts_what_is_true(self):
         self.assertEqual(check_documents.check_code(self.root), [])
         self.assertEqual(check_documents.check_links(self.root), [])
         self.assertEqual(check_documents.check_commands(self.root, self.root), [])
+        self.plant_tools("### fall\n\n| option | what |\n|---|---|\n| `--slow N` | steps; not `--fast` |\n")
+        self.assertEqual(check_documents.check_options(self.root, self.root), [])
+
+    def test_refuses_an_option_of_a_verb_that_is_not_listed(self):
+        self.plant_tools("### fall\n\nIt falls.\n")
+        self.assertEqual(check_documents.check_options(self.root, self.root),
+                         ["docs/tools.md: does not list galactic-tool --slow"])
+
+    def test_refuses_an_option_that_no_tool_has(self):
+        self.plant_tools("| `--slow N` | steps |\n")
+        self.assertEqual(check_documents.check_options(self.root, self.root),
+                         ["docs/tools.md: lists --slow, which galactic-tool does not have"])
+
+    def test_refuses_options_of_no_tool(self):
+        (self.root / "docs" / "tools.md").write_text("Nothing.\n")
+        self.assertEqual(len(check_documents.check_options(self.root, self.root)), 1)
 
     def test_refuses_a_block_that_differs_from_its_file(self):
         self.plant("<!-- file: a.cpp -->\n```cpp\nint b;\n```\n")
