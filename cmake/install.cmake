@@ -76,4 +76,15 @@ foreach(tool IN LISTS GALACTIC_TOOLS)
     RENAME ${tool} COMPONENT ${component})
 endforeach()
 
+# The license, where Debian's packages have it; the Python package brings its own, also in a wheel.
+function(galactic_install_license component package)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${package} RENAME copyright
+    COMPONENT ${component})
+endfunction()
+galactic_install_license(run galactic)
+galactic_install_license(dev libgalactic-dev)
+if(TARGET galactic-bake)
+  galactic_install_license(bake galactic-bake)
+endif()
+
 include(cmake/packages.cmake)

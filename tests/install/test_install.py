@@ -112,6 +112,16 @@ class Install(unittest.TestCase):
             self.assertNotIn(str(OPTIONS.build), file.read_text(encoding="utf-8"), file)
             self.assertNotIn(str(OPTIONS.source), file.read_text(encoding="utf-8"), file)
 
+    def test_each_component_brings_its_license(self) -> None:
+        documents = self.prefix / "share/doc"
+        license = (OPTIONS.source / "LICENSE").read_text(encoding="utf-8")
+        packages = {"galactic", "libgalactic-dev"}
+        if self.tool("galactic-bake").exists():
+            packages.add("galactic-bake")
+        self.assertEqual({path.name for path in documents.iterdir()}, packages)
+        for package in packages:
+            self.assertEqual((documents / package / "copyright").read_text(encoding="utf-8"), license)
+
     def test_the_tools_run(self) -> None:
         self.assertLessEqual({"galactic-run", "galactic-pack"}, set(self.tools()))
         for tool in self.tools():

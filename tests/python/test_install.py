@@ -13,6 +13,7 @@ def test_below_the_prefix(tmp_path, world_path):
     assert done.returncode == 0, done.stderr
     (package,) = tmp_path.rglob("galactic/__init__.py")
     assert package.relative_to(tmp_path).parts[0] == "lib"
+    assert (package.parent / "LICENSE").read_text().startswith("MIT License")
     program = "import galactic, sys; print(galactic.__file__, galactic.World(sys.argv[1]))"
     done = subprocess.run(
         [sys.executable, "-B", "-c", program, world_path],
