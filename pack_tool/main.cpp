@@ -25,10 +25,7 @@ struct Runner {
 int runTool(int argc, const char* const* argv, const Console& console) {
   const auto request = parseCommandLine(argc, argv, console);
   const int exit_code = request ? std::visit(Runner{console}, *request) : request.error();
-  if (console.out.flush()) return exit_code;
-  // A full disk behind a redirection must not look like success.
-  return reportError(console, {ErrorCode::kIo, "standard output",
-                               "cannot be written to; check that the disk has room"});
+  return flushStandardOutput("galactic-pack", exit_code);
 }
 
 }  // namespace
@@ -36,7 +33,7 @@ int runTool(int argc, const char* const* argv, const Console& console) {
 }  // namespace galactic::pack_tool
 
 int main(int argc, char** argv) {
-  galactic::reserveStandardStreams();
+  galactic::prepareStandardStreams();
   const galactic::pack_tool::Console console{std::cout, std::cerr};
   try {
     return galactic::pack_tool::runTool(argc, argv, console);

@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <set>
 #include <system_error>
@@ -227,14 +224,6 @@ int bakeCommand(const BakeCommand& command) {
   return list ? bakeList(command, *list, start) : refuse(list.error());
 }
 
-/// A full disk behind a redirection must not look like success.
-int flushed(int exit_code) {
-  if (std::fflush(stdout) == 0 && std::cout.flush() && std::ferror(stdout) == 0) return exit_code;
-  const int code =
-      refuse({ErrorCode::kIo, "standard output", "cannot be written; free some space"});
-  return exit_code == kExitOk ? code : exit_code;
-}
-
 int run(int argc, const char* const* argv) {
   const ParsedCommand parsed = parseCommandLine(argc, argv);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
@@ -246,11 +235,9 @@ int run(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   namespace bake = galactic::bake;
-  galactic::reserveStandardStreams();
-  // A file that grows beyond the limit of its size (ulimit -f) is an error of writing it.
-  std::signal(SIGXFSZ, SIG_IGN);
+  galactic::prepareStandardStreams();
   try {
-    return bake::flushed(bake::run(argc, argv));
+    return galactic::flushStandardOutput("galactic-bake", bake::run(argc, argv));
   } catch (...) {
     return bake::refuse(galactic::errorOfException());
   }

@@ -1,7 +1,6 @@
 // galactic-dynamics: plays episodes of the simulation where things have mass.
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -127,9 +126,6 @@ Result<int> run(const Command& command) {
                               .options = command.world,
                               .warnings = sources.warnings};
   if (!command.is_quiet) fmt::print("{}", reportTable(comparisons, world, subject));
-  if (std::fflush(stdout) != 0) {
-    return fail(ErrorCode::kIo, "standard output", "cannot be written; free some space");
-  }
   RETURN_IF_ERROR(showBoth(command, *plan, comparisons, worlds, subject));
   if (command.report.empty()) return kExitOk;
   const std::string json = reportJson(comparisons, world, subject);
@@ -150,9 +146,9 @@ int start(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   namespace dynamics = galactic::dynamics;
-  galactic::reserveStandardStreams();
+  galactic::prepareStandardStreams();
   try {
-    return dynamics::start(argc, argv);
+    return galactic::flushStandardOutput("galactic-dynamics", dynamics::start(argc, argv));
   } catch (...) {
     return dynamics::refuse(galactic::errorOfException());
   }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
 #include <optional>
 #include <span>
 #include <string>
@@ -40,11 +39,6 @@ int report(const Error& error) {
   galactic::printToStderr(fmt::format("galactic-run: {}: {}\n", galactic::printable(error.where),
                                       galactic::printable(error.message)));
   return static_cast<int>(error.code);
-}
-
-int flushOutput() {
-  if (std::fflush(stdout) == 0) return galactic::kExitOk;
-  return report({ErrorCode::kIo, "standard output", "cannot be written; free some space"});
 }
 
 /// Opens one pack and prints its summary. Mapping and verifying are timed apart.
@@ -84,7 +78,7 @@ int describePacks(const RunOptions& options) {
     const auto seed = static_cast<std::uint32_t>(options.simulation.seed);
     fmt::print("{}", galactic::runQueryBenchmark(scenes, seed));
   }
-  return flushOutput();
+  return galactic::kExitOk;
 }
 
 int simulateWorld(const RunOptions& options, const OpenedWorld& world, const RunSource& source) {
@@ -92,7 +86,6 @@ int simulateWorld(const RunOptions& options, const OpenedWorld& world, const Run
   const Result<galactic::RunReport> run = galactic::simulate(options, world, source);
   if (!run) return report(run.error());
   if (!options.is_quiet) fmt::print("{}", galactic::tableOf(*run));
-  if (const int written = flushOutput(); written != galactic::kExitOk) return written;
   if (!options.report.empty()) {
     const std::string json = galactic::jsonOf(*run);
     const auto saved =
@@ -156,9 +149,9 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  galactic::reserveStandardStreams();
+  galactic::prepareStandardStreams();
   try {
-    return run(argc, argv);
+    return galactic::flushStandardOutput("galactic-run", run(argc, argv));
   } catch (...) {
     return report(galactic::errorOfException());
   }

@@ -32,12 +32,12 @@ TEST(StandardStreams, ThatAreClosedAreNotTheFileThatIsOpenedNext) {
     const auto next = [] { return ::open("/dev/null", O_RDWR | O_CLOEXEC); };
     EXPECT_TRUE(holdsWithout({stream}, [&] { return next() == stream; })) << "the danger";
     EXPECT_TRUE(holdsWithout({stream}, [&] {
-      reserveStandardStreams();
+      prepareStandardStreams();
       return next() > STDERR_FILENO;
     })) << stream;
   }
   EXPECT_TRUE(holdsWithout({STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}, [] {
-    reserveStandardStreams();
+    prepareStandardStreams();
     char byte = 0;
     return ::read(STDIN_FILENO, &byte, 1) == -1 && ::write(STDOUT_FILENO, "x", 1) == -1 &&
            ::write(STDERR_FILENO, "x", 1) == -1;
@@ -48,7 +48,7 @@ TEST(StandardStreams, ThatAreOpenStayAsTheyAre) {
   EXPECT_TRUE(holdsWithout({}, [] {
     std::array<int, 2> pipe{};
     if (::pipe(pipe.data()) != 0 || ::dup2(pipe[1], STDERR_FILENO) < 0) return false;
-    reserveStandardStreams();
+    prepareStandardStreams();
     printToStderr("said");
     std::array<char, 8> text{};
     return ::read(pipe[0], text.data(), text.size()) == 4;
