@@ -57,13 +57,13 @@ learn() {
   fi
 }
 
-# stage NUMBER TITLE RULES OPTION...: one of four runs that learn to rearrange. Each begins with what
+# stage NUMBER TITLE RULES OPTION...: one of three runs that learn to rearrange. Each begins with what
 # the one before has learned, and its rules are stricter.
 stage() {
   local number=$1 title=$2 rules=$3 begin=()
   shift 3
   if [ "$number" -gt 1 ]; then begin=(--start-from "$run/$((number - 1))/best.pt"); fi
-  heading "$number of 4: $title"
+  heading "$number of 3: $title"
   learn "$run/$number" "${begin[@]}" --second-closeup 0.04 "$@" --simulation "$rearrange${rules:+ $rules}"
 }
 
@@ -74,11 +74,9 @@ learn_to_rearrange() {
     "no-terminate safe-drop drop-penalty=0.05" --steps 16e6 --target-kl 0.01
   stage 2 "to say when it is done" "safe-drop drop-penalty=0.5" --steps 8e6 --target-kl 0.03 \
     --initial-log-std -1.4 --final-log-std -1.7
-  stage 3 "the paper's rules. Letting go elsewhere ends the episode" "" --steps 24e6 --target-kl 0.015 \
-    --initial-log-std -1.7 --final-log-std -2.4
-  stage 4 "to go on where giving up was cheaper: a failure costs something" "failure-penalty=3" --steps 16e6 \
-    --target-kl 0.015 --initial-log-std -2.4 --final-log-std -2.6
-  run=$run/4
+  stage 3 "the paper's rules. Letting go elsewhere ends the episode" "" --steps 50e6 --target-kl 0.015 \
+    --initial-log-std -1.7 --final-log-std -2.6
+  run=$run/3
 }
 
 if [ "$task" = pick ]; then

@@ -19,7 +19,7 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
         "envs": 512,
         "halves": 1,
         "simulation": "task=pick episode-steps=200 laser-beams=24 "
-        "laser-heights=0.25,0.4-0.8 laser-range=4 geodesic geodesic-weight=1 bump bump-penalty=0.03",
+        "laser-heights=0.25,0.8 laser-range=4 geodesic geodesic-weight=1 bump bump-penalty=0.03",
         "network": "state",
         "log_std": "parameter",
         "final_log_std": -1.5,
