@@ -93,7 +93,8 @@ class CommandLineVisitor {
                std::string_view help) {
     const auto fault_of = [within](const std::string& text) {
       if (heightsFrom(text, within)) return std::string();
-      return fmt::format("found {}, expected {}", text, wantedHeights(within));
+      return fmt::format("found {}, expected {}", text.empty() ? "nothing" : text,
+                         wantedHeights(within));
     };
     const auto set = [&field, within](const std::string& text) {
       field = *heightsFrom(text, within);

@@ -158,7 +158,7 @@ Result<Laser> Laser::make(const LaserSettings& settings, const World& world,
     const Span known = scenes[cut.scene].grids().front().heights();
     return refuse(fmt::format(
         "the laser scans scene {} {} m above the floor at {:.3f} m, where nothing is free "
-        "(its grids reach from {} to {} m); give other laser-heights",
+        "(its grids reach from {:.3g} to {:.3g} m); give other laser-heights",
         scenes[cut.scene].name(), heightText({&cut.above, 1}), cut.floor, known.lo, known.hi));
   }
   return laser;
