@@ -4,6 +4,7 @@
 
 #include "galactic/pack_reference.h"
 #include "pack_tool/support/output_file.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {
@@ -15,7 +16,10 @@ Result<std::vector<PackFile>> openListed(const ListedPacks& wanted) {
     if (pack.kind() == PackKind::kWorld) {
       ASSIGN_OR_RETURN(const auto references, packReferences(pack));
       for (const PackReference& reference : references) {
-        if (reference.kind == PackKind::kTexture) continue;
+        if (reference.kind == PackKind::kTexture) {
+          RETURN_IF_ERROR(checkNotInput(wanted.output, pathOf(reference, pack)));
+          continue;
+        }
         ASSIGN_OR_RETURN(auto listed, openReference(pack, reference, wanted.trust));
         packs.push_back(std::move(listed));
       }

@@ -15,7 +15,7 @@ struct ListedPacks {
 
 /// The packs, each behind those that it lists if it is a world; textures are left out, they are
 /// parts of what shows them. Fails with the errors of PackFile::open and openReference, and with
-/// kInvalidInput when the output is one of the packs.
+/// kInvalidInput when the output is one of the packs, or a texture.
 [[nodiscard]] Result<std::vector<PackFile>> openListed(const ListedPacks& wanted);
 
 }  // namespace galactic::pack_tool

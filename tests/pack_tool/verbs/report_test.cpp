@@ -10,6 +10,8 @@
 
 #include "pack_tool/verbs/verbs.h"
 #include "support/pack_tool_fixture.h"
+#include "support/packs/texture_pack_builder.h"
+#include "support/packs/world_pack_builder.h"
 #include "support/source_folder.h"
 
 namespace galactic::test::report_test {
@@ -103,6 +105,20 @@ TEST(Report, IsNotWrittenOverAPack) {
   const Ran ran = run({.packs = {pack}, .output = pack});
   EXPECT_EQ(ran.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_EQ(contentOf(pack), before);
+}
+
+TEST(Report, IsNotWrittenOverATextureThatAWorldLists) {
+  const ScratchFolder folder;
+  WorldPackFields world = writePacks(folder, {});
+  world.packs.push_back(writeListed(folder, "wood.pack", buildPack(TexturePackFields{})));
+  const fs::path pack = folder.write("world.pack", textOf(buildPack(world)));
+  const fs::path texture = folder.path() / "wood.pack";
+  const std::string before = contentOf(texture);
+  const Ran ran = run({.packs = {pack}, .output = texture});
+  EXPECT_EQ(ran.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
+  EXPECT_NE(ran.err.find("wood.pack: is also an input"), std::string::npos) << ran.err;
+  EXPECT_EQ(contentOf(texture), before);
+  EXPECT_EQ(run({.packs = {pack}, .output = folder.path() / "page.html"}).exit_code, kExitOk);
 }
 
 TEST(Report, OfAFileThatIsNoPackFailsAndLeavesNothing) {
