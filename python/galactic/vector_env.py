@@ -142,6 +142,7 @@ class VectorEnv(_Base):
         self.render_mode = render_mode
         self._actions = actions
         draws = bool(cameras) or render_mode is not None
+        self._render_threads = threads
         options |= {"threads": threads, "seed": seed, "order": order}
         if draws:
             options["body_transforms"] = True
@@ -328,7 +329,9 @@ class VectorEnv(_Base):
             return None
         if not self._onlookers:
             look: dict[str, Any] = {"width": 320, "height": 240, "depth": False, "camera": "follow"}
-            self._onlookers = [Renderer(one, **look) for one in self.simulators]
+            self._onlookers = [
+                Renderer(one, threads=self._render_threads, **look) for one in self.simulators
+            ]
         return tuple(frame for one in self._onlookers for frame in one.render()["rgb"])
 
     def save_state(self) -> bytes:

@@ -473,6 +473,21 @@ def test_pictures_are_drawn_for_those_who_ask(world):
     assert len(np.unique(frames[0])) > 5
 
 
+def test_pictures_are_drawn_by_as_many_threads_as_asked_for(world, monkeypatch):
+    made = []
+
+    def renderer(simulator, **options):
+        made.append(options["threads"])
+        return Renderer(simulator, **options)
+
+    options = {**OPTIONS, "threads": 2, "render_mode": "rgb_array"}
+    envs = [VectorEnv(world, 2, halves=halves, **options) for halves in (1, 2)]
+    monkeypatch.setattr("galactic.vector_env.Renderer", renderer)
+    for env in envs:
+        env.render()
+    assert made == [2, 2, 2]
+
+
 @pytest.mark.parametrize(
     "options, message",
     [
