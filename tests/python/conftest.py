@@ -2,6 +2,8 @@
 
 import os
 import pathlib
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -30,3 +32,28 @@ def draw_actions():
         return actions
 
     return draw
+
+
+@pytest.fixture
+def refused_at_once():
+    """A function that calls each of `calls` so many times, each in a thread of its own, all at once;
+    what the RuntimeErrors among them said."""
+
+    def run(*calls, times: int) -> list[str]:
+        begin = threading.Barrier(len(calls))
+        refusals: list[str] = []
+
+        def repeat(call) -> None:
+            begin.wait()
+            for _ in range(times):
+                try:
+                    call()
+                except RuntimeError as error:
+                    refusals.append(str(error))
+
+        with ThreadPoolExecutor(len(calls)) as threads:
+            for thread in [threads.submit(repeat, call) for call in calls]:
+                thread.result()
+        return refusals
+
+    return run

@@ -2,7 +2,6 @@
 
 import gc
 import pickle
-import threading
 
 import numpy as np
 import pytest
@@ -171,25 +170,10 @@ def test_what_is_drawn_to_stays_until_it_is_done(world):
         gc.collect()
 
 
-def test_two_threads_cannot_use_one_renderer_at_once(world):
+def test_two_threads_cannot_use_one_renderer_at_once(world, refused_at_once):
     simulator = Simulator(world, envs=256, threads=1, body_transforms=True)
     renderer = Renderer(simulator, **CAMERA)
-    refusals = []
-    begin = threading.Barrier(2)
-
-    def work():
-        begin.wait()
-        for _ in range(20):
-            try:
-                renderer.render()
-            except RuntimeError as error:
-                refusals.append(str(error))
-
-    threads = [threading.Thread(target=work) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    refusals = refused_at_once(*2 * [renderer.render], times=20)
     assert refusals
     assert all("another thread is using this galactic." in text for text in refusals)
     renderer.render()

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pathlib
-import threading
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
 import pytest
@@ -257,28 +256,18 @@ def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
     assert repr(player) == "<galactic.LearnedPolicy p>"
 
 
-def test_two_threads_cannot_use_one_played_policy_at_once(tmp_path: pathlib.Path) -> None:
+def test_two_threads_cannot_use_one_played_policy_at_once(
+    tmp_path: pathlib.Path, refused_at_once: Callable[..., list[str]]
+) -> None:
     pack = write(export.content_of(saved_policy(network="state"), "p"), tmp_path / "p.pack")
     player = _core.LearnedPolicy(pack, 1024, deterministic=True, threads=1)
     state = np.random.default_rng(1).normal(size=(1024, STATE)).astype(np.float32)
     wanted = player.act(state)
-    refusals: list[str] = []
-    begin = threading.Barrier(2)
 
-    def work() -> None:
-        begin.wait()
-        for _ in range(100):
-            try:
-                np.testing.assert_array_equal(player.act(state), wanted)
-            except RuntimeError as error:
-                refusals.append(str(error))
+    def act() -> None:
+        np.testing.assert_array_equal(player.act(state), wanted)
 
-    threads = [threading.Thread(target=work) for _ in range(2)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert set(refusals) == {
+    assert set(refused_at_once(act, act, times=100)) == {
         "another thread is using this galactic.LearnedPolicy; give each thread its own"
     }
 

@@ -1,0 +1,71 @@
+"""Options as keywords: those of the option table, with values of Python."""
+
+import numpy as np
+import pytest
+
+from galactic import Error, Simulator
+
+
+def test_options_are_those_of_the_option_table(world):
+    simulator = Simulator(
+        world,
+        envs=3,
+        threads=1,
+        task="pick",
+        no_distractors=True,
+        safe_drop=np.bool_(True),
+        target_up=np.bool_(False),
+        slide="published",
+        slide_step=0.25,
+        episode_steps=np.int64(9),
+        success_reward=np.float32(2.5),
+        order=None,
+        laser_beams=4,
+        laser_heights=[0.25, (0.4, np.float32(0.75))],
+    )
+    options = simulator.options
+    assert options["task"] == "pick"
+    assert options["no_distractors"] is True
+    assert (options["safe_drop"], options["target_up"]) == (True, False)
+    assert (options["slide_direction"], options["slide_attempts"]) == ("towards-base", 5)
+    assert (options["slide_step"], options["episode_steps"]) == (0.25, 9)
+    assert (options["success_reward"], options["order"]) == (2.5, "shuffled")
+    assert options["laser_heights"] == "0.25,0.4-0.75"
+    assert (
+        simulator.observation_parts["laser"].stop - simulator.observation_parts["laser"].start == 8
+    )
+    again = Simulator(world, threads=1, **options)
+    assert again.options == options
+
+
+@pytest.mark.parametrize(
+    "options, error, message",
+    [
+        ({"tusk": "pick"}, TypeError, "there is no option tusk; did you mean task?"),
+        ({"no_distractor": True}, TypeError, "did you mean no_distractors?"),
+        ({"tusk": None}, TypeError, "there is no option tusk; did you mean task?"),
+        ({"xyzzy": 1}, TypeError, "there is no option xyzzy; the options are envs"),
+        ({"task": "fly"}, Error, "task: is fly, expected rearrange, pick or none"),
+        ({"envs": 0}, Error, "envs: is 0, expected 1 to 1048576"),
+        ({"envs": -1}, Error, "envs: is -1, expected 1 to 1048576"),
+        ({"envs": 2.5}, Error, "envs: is 2.5, expected 1 to 1048576"),
+        ({"safe_drop": 1}, Error, "safe_drop: is 1, expected true or false"),
+        ({"slide_step": float("nan")}, Error, "slide_step: is nan, expected 0 to 1000"),
+        ({"slide_step": float("inf")}, Error, "slide_step: is inf, expected 0 to 1000"),
+        ({"slide_step": [1]}, TypeError, "the option slide_step is a list"),
+        (
+            {"laser_heights": [0.25, (0.8, 0.4)]},
+            Error,
+            "laser_heights: is 0.25,0.8-0.4, expected robot",
+        ),
+        ({"laser_heights": []}, Error, "laser_heights: is , expected robot"),
+        ({"laser_heights": [None]}, TypeError, "the option laser_heights is a NoneType, expected"),
+        ({"threads": -1}, Error, "threads: is -1, expected 0 to 4096"),
+        ({"rank": 2, "ranks": 2}, Error, "rank 2 of 2"),
+        ({"slide": "of"}, Error, "slide: is of, expected glide, published or off"),
+    ],
+)
+def test_wrong_options_are_refused(world, options, error, message):
+    with pytest.raises(error) as caught:
+        Simulator(world, **options)
+    assert message in str(caught.value)
