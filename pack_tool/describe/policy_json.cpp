@@ -89,15 +89,24 @@ Json describeLayer(const schema::PolicyLayer& layer) {
 
 Json describeImage(const schema::PolicyImage* image) {
   if (image == nullptr) return nullptr;
-  return {{"width", image->width()},
-          {"height", image->height()},
-          {"color", image->color()},
-          {"color_scale", jsonNumber(image->color_scale())},
-          {"depth", image->depth()},
-          {"depth_limit", jsonNumber(image->depth_limit())},
-          {"depth_scale", jsonNumber(image->depth_scale())},
-          {"camera", image->camera()->str()},
-          {"vertical_fov", jsonNumber(image->vertical_fov())}};
+  const schema::CameraPlace* place = image->place();
+  const schema::CameraPlace by_itself;
+  const schema::CameraPlace& at = place == nullptr ? by_itself : *place;
+  return {
+      {"width", image->width()},
+      {"height", image->height()},
+      {"color", image->color()},
+      {"color_scale", jsonNumber(image->color_scale())},
+      {"depth", image->depth()},
+      {"depth_limit", jsonNumber(image->depth_limit())},
+      {"depth_scale", jsonNumber(image->depth_scale())},
+      {"camera", image->camera()->str()},
+      {"vertical_fov", jsonNumber(image->vertical_fov())},
+      {"position",
+       Json::array({jsonNumber(at.ahead()), jsonNumber(at.left()), jsonNumber(at.up())})},
+      {"rpy_degrees", Json::array({jsonNumber(at.roll_degrees()), jsonNumber(at.pitch_degrees()),
+                                   jsonNumber(at.yaw_degrees())})},
+      {"near", jsonNumber(image->near())}};
 }
 
 /// All weights of the layers, as their descriptions count them.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -13,6 +14,13 @@ namespace galactic::pack_tool {
 
 namespace {
 
+/// "0.1, 0, -0.2 UNIT"; nothing where all three are 0.
+std::string threeText(const Json& three, const std::string& before, const std::string& unit) {
+  if (std::ranges::all_of(three, [](const Json& one) { return numberOf(one) == 0; })) return "";
+  return fmt::format("{}{:.4g}, {:.4g}, {:.4g} {}", before, numberOf(three.at(0)),
+                     numberOf(three.at(1)), numberOf(three.at(2)), unit);
+}
+
 std::string imageText(const Json& image) {
   if (image.is_null()) return "none";
   std::string channels = image.at("color").get<bool>() ? "color" : "";
@@ -24,6 +32,11 @@ std::string imageText(const Json& image) {
                                  countOf(image.at("height")), channels, textOf(image.at("camera")));
   const double fov = numberOf(image.at("vertical_fov"));
   if (fov > 0) text += fmt::format(", {:.4g} degrees", fov * 180 / std::numbers::pi);
+  text += threeText(image.at("position"), ", at ", "m ahead, left, up");
+  text += threeText(image.at("rpy_degrees"), ", turned by ", "degrees of roll, pitch, yaw");
+  if (const double near = numberOf(image.at("near")); near > 0) {
+    text += fmt::format(", drawn from {:.4g} m", near);
+  }
   return text;
 }
 

@@ -35,7 +35,7 @@ from galactic.learning.networks import (
     StatePolicy,
 )
 from galactic.learning.normalization import MOST
-from galactic.learning.settings import Settings
+from galactic.learning.settings import Settings, typed
 
 
 class ExportError(checkpoint.CheckpointError):
@@ -220,6 +220,9 @@ def _image(settings: Settings) -> dict[str, Any]:
         "depth_scale": 1.0 / FARTHEST,
         "camera": seen["camera"],
         "vertical_fov": math.radians(seen["fov_degrees"]),
+        "position": seen["position"],
+        "rpy_degrees": seen["rpy_degrees"],
+        "near": seen["near"],
     }
 
 
@@ -240,7 +243,7 @@ def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str =
     """Reads the checkpoint `file` and writes the policy pack `output`."""
     saved = checkpoint.load_policy(file)
     trained_with = {
-        field.replace("_", "-"): value for field, value in saved.settings.to_dict().items()
+        field.replace("_", "-"): typed(value) for field, value in saved.settings.to_dict().items()
     }
     trained_with["trained-steps"] = saved.steps
     trained_with["success"] = saved.success

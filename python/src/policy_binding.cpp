@@ -5,6 +5,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
@@ -129,7 +130,10 @@ PolicyImage imageOf(const Fields& fields) {
           .depth_limit = fields.number("depth_limit"),
           .depth_scale = fields.number("depth_scale"),
           .camera = fields.get<std::string>("camera"),
-          .vertical_fov = fields.number("vertical_fov")};
+          .vertical_fov = fields.number("vertical_fov"),
+          .position = fields.get<std::array<float, 3>>("position"),
+          .rpy_degrees = fields.get<std::array<float, 3>>("rpy_degrees"),
+          .near = fields.number("near")};
 }
 
 std::vector<OptionText> textsOf(const py::dict& dict) {
@@ -293,6 +297,9 @@ py::object imagesOf(const PlayedPolicy& policy) {
   options["depth"] = image->depth;
   options["camera"] = image->camera;
   options["fov_degrees"] = image->fovDegrees();
+  options["position"] = py::tuple(py::cast(image->position));
+  options["rpy_degrees"] = py::tuple(py::cast(image->rpy_degrees));
+  options["near"] = image->near;
   return options;
 }
 

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -120,6 +122,23 @@ TEST_F(PolicyCli, DrawsWhatThePolicyWantsToSee) {
       << "the same on any number of threads";
   EXPECT_THAT(runBare({"seeing.pack"}).out,
               AllOf(HasSubstr("policy \"wanderer\""), HasSubstr("image: 16 x 12, camera head")));
+}
+
+TEST_F(PolicyCli, SeesFromWhereThePolicyWasTrained) {
+  const auto seen = [&](const std::function<void(PolicyImage&)>& change) {
+    PolicyContent content = homePolicy(true);
+    change(*content.interface.image);
+    write("placed.pack", content);
+    return recordingOf({"--policy", "placed.pack", "--backend", "soft", "--deterministic"});
+  };
+  const std::vector<std::string> views{seen([](PolicyImage&) {}), seen([](PolicyImage& image) {
+                                         image.position = {0, 0, 0.3F};
+                                       }),
+                                       seen([](PolicyImage& image) {
+                                         image.rpy_degrees = {0, 0, 45};
+                                       }),
+                                       seen([](PolicyImage& image) { image.near = 1; })};
+  EXPECT_EQ(std::set<std::string>(views.begin(), views.end()).size(), views.size());
 }
 
 TEST_F(PolicyCli, DrawsActionsOrTakesTheLikeliest) {

@@ -28,6 +28,8 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, **keywords: Any) -> None:
         super().__init__(allow_abbrev=False, **keywords)
+        # What begins as a number does is a value: also -1e-3, and -0.1,0,0.2.
+        self._negative_number_matcher = re.compile(r"-[0-9.]")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         words = sys.argv[1:] if args is None else list(args)

@@ -45,6 +45,9 @@ def camera_options(settings: Settings) -> dict[str, Any]:
         "height": IMAGE_SIZE,
         "camera": settings.camera,
         "fov_degrees": settings.fov,
+        "position": settings.camera_position,
+        "rpy_degrees": settings.camera_rpy,
+        "near": settings.near,
     }
 
 

@@ -93,6 +93,28 @@ class Settings:
     fov: float = _setting(
         0.0, "Network", "vertical field of view, degrees; 0: the camera's", low=0.0, high=175.0
     )
+    camera_position: tuple[float, float, float] = _setting(
+        (0.0, 0.0, 0.0),
+        "Network",
+        "where the camera is, seen from where that camera or link has it: meters ahead, to the left "
+        "and up",
+        low=-100.0,
+        high=100.0,
+    )
+    camera_rpy: tuple[float, float, float] = _setting(
+        (0.0, 0.0, 0.0),
+        "Network",
+        "how it is turned there, degrees: roll, pitch (down is positive), yaw",
+        low=-360.0,
+        high=360.0,
+    )
+    near: float = _setting(
+        0.0,
+        "Network",
+        "meters along the camera's axis below which nothing is drawn, 0.01 at least; 0: the camera's",
+        low=0.0,
+        high=100.0,
+    )
     recurrent: bool = _setting(
         False, "Network", "put a GRU into the network `state`; the others always have one"
     )
@@ -302,16 +324,26 @@ class Settings:
         unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})
         if unknown:
             raise SettingsError(f"the settings {', '.join(unknown)} are unknown to this version")
-        return cls(**values)
+        # JSON knows no tuples.
+        known = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
+        return cls(**known)
 
 
-_KINDS = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
+_KINDS = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    str: "text",
+    tuple: "three numbers",
+}
 
 
 def _is_a(value: Any, kind: type) -> bool:
     """Whether a value, which may come from a file, is of a setting's type; a whole number is a number."""
     if isinstance(value, bool) or kind in (bool, str):
         return isinstance(value, kind)
+    if kind is tuple:
+        return isinstance(value, tuple) and len(value) == 3 and all(_is_a(v, float) for v in value)
     return isinstance(value, numbers.Integral if kind is int else numbers.Real)
 
 
@@ -323,11 +355,14 @@ def _check(field: "dataclasses.Field[Any]", value: Any) -> None:
         raise SettingsError(f"{field.name}: found {value!r}, expected {_KINDS[kind]}")
     if choices and value not in choices:
         raise SettingsError(f'{field.name} is "{value}"; it can be {", ".join(choices)}')
-    # A comparison with NaN is false.
-    if low is not None and high is not None and not low <= value <= high:
-        is_whole = isinstance(field.default, int)
-        wanted = f"from {low} to {high}" if is_whole else f"from {low:g} to {high:g}"
-        raise SettingsError(f"{field.name}: found {value}, expected a number {wanted}")
+    if low is None or high is None:
+        return
+    for number in value if kind is tuple else (value,):
+        # A comparison with NaN is false.
+        if not low <= number <= high:
+            is_whole = isinstance(field.default, int)
+            wanted = f"from {low} to {high}" if is_whole else f"from {low:g} to {high:g}"
+            raise SettingsError(f"{field.name}: found {number}, expected a number {wanted}")
 
 
 def _between(start: float, end: float, progress: float) -> float:
@@ -339,6 +374,11 @@ def option_name(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
+def typed(value: Any) -> Any:
+    """The value of a setting as one types it: three numbers with commas between, others as they are."""
+    return ",".join(f"{number:.9g}" for number in value) if isinstance(value, tuple) else value
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     """One option for each setting, without a default: what is not given stays as the preset has it."""
     groups: dict[str, Any] = {}
@@ -346,13 +386,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         title = field.metadata["group"]
         group = groups.setdefault(title, parser.add_argument_group(title))
         keywords: dict[str, Any] = {"default": argparse.SUPPRESS, "dest": "setting_" + field.name}
-        keywords["help"] = f"{field.metadata['text']} ({field.default!r})".replace("%", "%%")
+        keywords["help"] = f"{field.metadata['text']} ({typed(field.default)!r})".replace("%", "%%")
         if isinstance(field.default, bool):
             keywords["action"] = argparse.BooleanOptionalAction
         else:
-            readers = {int: _integer, float: _real, str: str}
+            readers = {int: _integer, float: _real, str: str, tuple: _three}
             keywords["type"] = readers[type(field.default)]
-            keywords["metavar"] = "|".join(field.metadata["choices"]) or field.name.upper()
+            name = "N,N,N" if isinstance(field.default, tuple) else field.name.upper()
+            keywords["metavar"] = "|".join(field.metadata["choices"]) or name
         group.add_argument(option_name(field.name), **keywords)
 
 
@@ -388,6 +429,15 @@ def _real(text: str, wanted: str = "a number") -> float:
     raise argparse.ArgumentTypeError(f'found "{text}", expected {wanted}')
 
 
+def _three(text: str) -> tuple[float, ...]:
+    """Numbers with commas between."""
+    wanted = "three numbers with commas between, such as 0.1,0,-0.2"
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f'found "{text}", expected {wanted}')
+    return tuple(_real(part, wanted) for part in parts)
+
+
 def simulation_keyword(word: str) -> str:
     """The keyword of galactic.Simulator that a word of Settings.simulation names: no_terminate of
     "no-terminate" and of "no-terminate=false"."""
@@ -413,7 +463,8 @@ def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
         old = getattr(before, name)
         if value != old and not fields[name].metadata["may_change"]:
             raise SettingsError(
-                f"the run began with {option_name(name)} {old}, and cannot continue with {value}; "
+                f"the run began with {option_name(name)} {typed(old)}, and cannot continue with "
+                f"{typed(value)}; "
                 "begin a new one"
             )
     return dataclasses.replace(before, **given)
@@ -428,6 +479,6 @@ def markdown_tables() -> str:
             group = field.metadata["group"]
             lines += [*([""] if lines else []), f"**{group}**", ""]
             lines += ["| option | default | what |", "|---|---|---|"]
-        default = f"`{field.default}`" if field.default != "" else ""
+        default = f"`{typed(field.default)}`" if field.default != "" else ""
         lines.append(f"| `{option_name(field.name)}` | {default} | {field.metadata['text']} |")
     return "\n".join(lines) + "\n"

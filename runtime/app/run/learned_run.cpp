@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,16 +17,23 @@
 namespace galactic {
 namespace {
 
+/// The camera that the policy in `pack` was trained with.
+CameraWish wishOf(const PolicyImage& image, const std::string& pack) {
+  return {.name = image.camera,
+          .fov_degrees = image.fovDegrees(),
+          .position = image.position,
+          .rpy_degrees = image.rpy_degrees,
+          .near = image.near,
+          .options = {.camera = pack, .fov = pack, .position = pack, .rpy = pack, .near = pack}};
+}
+
 /// Draws what a policy wants to see. Stays in one place: its parts look at each other.
 class PolicyEyes {
  public:
   static Result<std::unique_ptr<PolicyEyes>> create(const PolicyImage& image, const World& world,
                                                     const BatchSimulator& simulator,
                                                     const RunOptions& run) {
-    const Result<ChosenCamera> camera =
-        chooseCamera(world.robot(), {.name = image.camera,
-                                     .fov_degrees = image.fovDegrees(),
-                                     .options = {.camera = run.policy, .fov = run.policy}});
+    const Result<ChosenCamera> camera = chooseCamera(world.robot(), wishOf(image, run.policy));
     if (!camera) return tl::unexpected<Error>(camera.error());
     Result<WorldModels> models = WorldModels::from(world);
     if (!models) return tl::unexpected<Error>(models.error());

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -120,6 +121,11 @@ struct PolicyImage {
   std::string camera = "head";
   /// Radians; 0: that of the camera.
   float vertical_fov = 0;
+  /// Where the camera is and how it is turned there, as CameraWish has them.
+  std::array<float, 3> position{};
+  std::array<float, 3> rpy_degrees{};
+  /// Meters; 0: what belongs to the camera.
+  float near = 0;
 
   /// As CameraWish has it: rounded to thousandths, so that it is what somebody asked for.
   [[nodiscard]] float fovDegrees() const {

@@ -142,6 +142,8 @@ inline constexpr float kLeastFovDegrees = 1;
 inline constexpr float kMostFovDegrees = 175;
 /// Of camera positions, in any direction, meters.
 inline constexpr float kFarthestCamera = 100;
+/// Of roll, pitch and yaw, either way, degrees.
+inline constexpr float kMostCameraTurn = 360;
 inline constexpr float kLeastNear = 0.01F;
 inline constexpr float kMostNear = 100;
 

@@ -9,6 +9,7 @@
 #include "check/common_check.h"
 #include "check/offence.h"
 #include "check/world_check.h"
+#include "galactic/world_views.h"
 #include "policy/layer_shapes.h"
 
 namespace galactic::detail {
@@ -69,6 +70,24 @@ class PolicyChecker {
     offence_.require(image.vertical_fov() >= 0 && image.vertical_fov() < std::numbers::pi_v<float>,
                      "image.vertical_fov", "is {} rad, expected 0 or more, less than pi",
                      image.vertical_fov());
+    offence_.require(image.near() == 0 || (image.near() >= kLeastNear && image.near() <= kMostNear),
+                     "image.near", "is {} m, expected {} to {}, or 0", image.near(), kLeastNear,
+                     kMostNear);
+    if (image.place() != nullptr) checkPlace(*image.place());
+  }
+
+  /// A comparison with NaN is false.
+  void checkPlace(const schema::CameraPlace& place) {
+    for (const float meters : {place.ahead(), place.left(), place.up()}) {
+      offence_.require(std::abs(meters) <= kFarthestCamera, "image.place",
+                       "is {} m away, expected {} to {}", meters, -kFarthestCamera,
+                       kFarthestCamera);
+    }
+    for (const float degrees : {place.roll_degrees(), place.pitch_degrees(), place.yaw_degrees()}) {
+      offence_.require(std::abs(degrees) <= kMostCameraTurn, "image.place",
+                       "is turned by {} degrees, expected {} to {}", degrees, -kMostCameraTurn,
+                       kMostCameraTurn);
+    }
   }
 
   void checkActions(const std::vector<LayerShape>& shapes) {

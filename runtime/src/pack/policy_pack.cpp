@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -154,12 +156,23 @@ auto layerVector(Builder& builder, const std::vector<PolicyLayer>& layers) {
   return builder.CreateVector(stored);
 }
 
+/// Nothing where the camera is by itself.
+std::optional<schema::CameraPlace> placeOf(const PolicyImage& image) {
+  constexpr std::array<float, 3> kZeros{};
+  if (image.position == kZeros && image.rpy_degrees == kZeros) return {};
+  const auto& [ahead, left, up] = image.position;
+  const auto& [roll, pitch, yaw] = image.rpy_degrees;
+  return schema::CameraPlace(ahead, left, up, roll, pitch, yaw);
+}
+
 Offset<schema::PolicyImage> imageTable(Builder& builder, const std::optional<PolicyImage>& image) {
   if (!image) return {};
   const auto camera = builder.CreateString(image->camera);
+  const auto place = placeOf(*image);
   return schema::CreatePolicyImage(builder, image->width, image->height, image->color,
                                    image->color_scale, image->depth, image->depth_limit,
-                                   image->depth_scale, camera, image->vertical_fov);
+                                   image->depth_scale, camera, image->vertical_fov,
+                                   place ? &*place : nullptr, image->near);
 }
 
 Offset<schema::Policy> policyTable(Builder& builder, const PolicyContent& content) {
@@ -304,7 +317,13 @@ Result<PolicyInterface> policyInterface(const PackFile& pack) {
                               .depth_limit = image->depth_limit(),
                               .depth_scale = image->depth_scale(),
                               .camera = image->camera()->str(),
-                              .vertical_fov = image->vertical_fov()};
+                              .vertical_fov = image->vertical_fov(),
+                              .near = image->near()};
+    if (const schema::CameraPlace* place = image->place()) {
+      needs.image->position = {place->ahead(), place->left(), place->up()};
+      needs.image->rpy_degrees = {place->roll_degrees(), place->pitch_degrees(),
+                                  place->yaw_degrees()};
+    }
   }
   if (stored->continuous() != nullptr) needs.continuous_actions = stored->continuous()->count();
   needs.discrete_actions = stored->discrete()->size();

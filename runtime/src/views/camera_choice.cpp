@@ -115,8 +115,9 @@ Result<void> checkNumbers(const CameraWish& wish) {
                                                      -kFarthestCamera, kFarthestCamera));
   }
   for (const float degrees : wish.rpy_degrees) {
-    if (isWithin(degrees, -360, 360)) continue;
-    return refuse(wish.options.rpy, fmt::format("found {} degrees, expected -360 to 360", degrees));
+    if (isWithin(degrees, -kMostCameraTurn, kMostCameraTurn)) continue;
+    return refuse(wish.options.rpy, fmt::format("found {} degrees, expected {} to {}", degrees,
+                                                -kMostCameraTurn, kMostCameraTurn));
   }
   return {};
 }

@@ -64,6 +64,22 @@ TEST(InfoText, TellsAPolicyLayerByLayer) {
                           HasSubstr("857\n")));
 }
 
+TEST(InfoText, TellsWhereTheCameraOfAPolicyIs) {
+  PolicyPackFields fields;
+  PolicyImage& image = *fields.content.interface.image;
+  image.position = {-0.1F, 0, 0.25F};
+  image.near = 0.02F;
+  EXPECT_THAT(infoText(describe(fields)),
+              HasSubstr("camera head, at -0.1, 0, 0.25 m ahead, left, up, drawn from 0.02 m\n"));
+  image = {.width = 6, .height = 4, .rpy_degrees = {0, 25, -90}};
+  EXPECT_THAT(infoText(describe(fields)),
+              HasSubstr("camera head, turned by 0, 25, -90 degrees of roll, pitch, yaw\n"));
+  const Json json = describe(fields).at("policy").at("image");
+  EXPECT_EQ(json.at("rpy_degrees"), Json::parse("[0.0, 25.0, -90.0]"));
+  EXPECT_EQ(json.at("position"), Json::parse("[0.0, 0.0, 0.0]"));
+  EXPECT_EQ(json.at("near"), 0.0);
+}
+
 /// galactic-pack diff of two policies, and its exit code.
 std::pair<std::string, int> diffAfter(const std::function<void(PolicyContent&)>& change) {
   const ScratchFolder folder;
@@ -91,6 +107,10 @@ TEST(DiffOfPolicies, FindsWeightsSizesAndOptions) {
   const auto option =
       diffAfter([](PolicyContent& content) { content.interface.options[1].value = "400"; });
   EXPECT_EQ(option.second, kExitDiffers);
+  const auto camera =
+      diffAfter([](PolicyContent& content) { content.interface.image->position[2] = 0.5F; });
+  EXPECT_EQ(camera.second, kExitDiffers);
+  EXPECT_THAT(camera.first, HasSubstr("image.position.2"));
   EXPECT_THAT(option.first, AllOf(HasSubstr("episode-steps"), HasSubstr("300"), HasSubstr("400")));
 }
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import json
+import math
 import pathlib
+import re
 
 import pytest
 
@@ -17,6 +20,7 @@ from galactic.learning.settings import (
     given_options,
     markdown_tables,
     resumed,
+    typed,
 )
 
 MANUAL = pathlib.Path(__file__).parents[3] / "docs" / "learning.md"
@@ -44,16 +48,16 @@ def test_the_defaults_are_table_3_of_the_paper() -> None:
 def test_every_setting_can_be_typed() -> None:
     parser = argparse.ArgumentParser()
     add_options(parser)
-    typed, expected = [], {}
+    words, expected = [], {}
     for field in dataclasses.fields(Settings):
         name = "--" + field.name.replace("_", "-")
         if isinstance(field.default, bool):
-            typed.append(name if not field.default else "--no-" + name[2:])
+            words.append(name if not field.default else "--no-" + name[2:])
             expected[field.name] = not field.default
         else:
-            typed += [name, str(field.default)]
+            words += [name, str(typed(field.default))]
             expected[field.name] = field.default
-    assert given_options(parser.parse_args(typed)) == expected
+    assert given_options(parser.parse_args(words)) == expected
     assert given_options(parser.parse_args(["--steps", "2.5e6"])) == {"steps": 2_500_000}
     assert given_options(parser.parse_args([])) == {}
 
@@ -87,3 +91,19 @@ def test_a_resumed_run_stays_what_it_is() -> None:
     assert resumed(before, {"steps": 7, "gamma": before.gamma}).steps == 7
     with pytest.raises(SettingsError, match="cannot continue with 0.5; begin a new one"):
         resumed(before, {"gamma": 0.5})
+    with pytest.raises(SettingsError, match="began with --camera-position 0,0,0, and .* 0,0,0.5;"):
+        resumed(before, {"camera_position": (0.0, 0.0, 0.5)})
+
+
+def test_three_numbers_are_kept_and_checked() -> None:
+    placed = preset("paper", camera_position=(0.1, -2.0, 0.25), camera_rpy=(0, 30, 0))
+    assert Settings.from_dict(json.loads(json.dumps(placed.to_dict()))) == placed
+    for wrong, message in (
+        ((1.0, 2.0), "found (1.0, 2.0), expected three numbers"),
+        ((1.0, 2.0, "x"), "expected three numbers"),
+        (0.5, "found 0.5, expected three numbers"),
+        ((0.0, 101.0, 0.0), "found 101.0, expected a number from -100 to 100"),
+        ((0.0, math.nan, 0.0), "found nan, expected a number from -100 to 100"),
+    ):
+        with pytest.raises(SettingsError, match=re.escape(message)):
+            preset("paper", camera_position=wrong)

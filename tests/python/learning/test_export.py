@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
+import subprocess
 from typing import Any, Callable, Optional
 
 import numpy as np
@@ -14,9 +16,14 @@ _core = pytest.importorskip("galactic._core", reason="the compiled module is not
 import galactic  # noqa: E402
 from galactic import export  # noqa: E402
 from galactic.learning import checkpoint  # noqa: E402
+from galactic.learning.homes import Homes  # noqa: E402
 from galactic.learning.networks import Inputs, PolicyShape  # noqa: E402
 from galactic.learning.settings import Settings  # noqa: E402
 
+WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"
+needs_world = pytest.mark.skipif(
+    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
+)
 PARTS = [("robot_target", 3), ("joints", 7), ("laser", 16)]
 STATE = 26
 TOLERANCE = 1e-4
@@ -233,7 +240,9 @@ def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
     pack = write(export.content_of(saved_policy(network="simple_cnn"), "p"), tmp_path / "p.pack")
     player = _core.LearnedPolicy(pack, 2)
     images = {"width": 128, "height": 128, "color": "rgb", "depth": True}
-    assert player.images == {**images, "camera": "head", "fov_degrees": 0}
+    camera = {"camera": "head", "fov_degrees": 0, "near": 0}
+    place = {"position": (0, 0, 0), "rpy_degrees": (0, 0, 0)}
+    assert player.images == {**images, **camera, **place}
     state = np.zeros((2, STATE), np.float32)
     rgb, depth = np.zeros((2, 128, 128, 3), np.uint8), np.zeros((2, 128, 128), np.float32)
     assert player.act(state, None, rgb, depth).shape == (2, 11)
@@ -270,6 +279,62 @@ def test_two_threads_cannot_use_one_played_policy_at_once(
     assert set(refused_at_once(act, act, times=100)) == {
         "another thread is using this galactic.LearnedPolicy; give each thread its own"
     }
+
+
+PLACED = {"camera_position": (-0.1, 0.0, 0.35), "camera_rpy": (0.0, 25.0, -10.1), "near": 0.3}
+
+
+@needs_world
+@pytest.mark.skipif("GALACTIC_RUN" not in os.environ, reason="GALACTIC_RUN names no program")
+def test_galactic_run_sees_what_a_placed_camera_saw_in_training(tmp_path: pathlib.Path) -> None:
+    envs, steps, acted = 2, 3, []
+    for name, placed in (("placed", PLACED), ("head", {})):
+        settings = Settings(envs=envs, halves=1, mini_batches=1, network="simple_cnn",
+                            simulation="task=pick", **placed)  # fmt: skip
+        homes = Homes(galactic.World(WORLD), settings, 1)
+        torch.manual_seed(3)
+        shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
+        policy = checkpoint.new_policy(settings, shape)
+        policy.action.linear.weight.data.normal_(0.0, 0.2)
+        saved = checkpoint.SavedPolicy(policy, settings, shape, homes.parts, 0, None)
+        checkpoint.save_policy(saved, tmp_path / "best.pt")
+        pack = tmp_path / f"{name}.pack"
+        assert export.main([str(tmp_path / "best.pt"), "-o", str(pack)]) == 0
+        player = galactic.LearnedPolicy(pack, envs, deterministic=True)
+        env = galactic.VectorEnv(WORLD, envs, images=player.images, **player.options)
+        seen, trained = env.reset()[0], homes.env.reset()[0]
+        for image in ("rgb", "depth"):
+            np.testing.assert_array_equal(seen[image], trained[image])
+        for _ in range(steps):
+            acted.append(player.act(seen["state"], None, seen["rgb"], seen["depth"]))
+            seen = env.step(acted[-1])[0]
+        # After a head of its own length, a recording has the actions of each step and two hashes.
+        record = tmp_path / "run.rec"
+        run = [os.environ["GALACTIC_RUN"], str(WORLD), "--policy", str(pack), "--deterministic",
+               "--envs", str(envs), "--steps", str(steps), "--record", str(record)]  # fmt: skip
+        subprocess.run(run, check=True, stdout=subprocess.DEVNULL)
+        floats, hashes = acted[-1].size, 4
+        rows = np.frombuffer(record.read_bytes()[-steps * 4 * (floats + hashes) :], np.float32)
+        rows = rows.reshape(steps, floats + hashes)[:, :floats]
+        np.testing.assert_array_equal(rows.reshape(steps, envs, -1), np.stack(acted[-steps:]))
+    assert not np.array_equal(acted[0], acted[steps])
+
+
+def test_a_policy_says_where_its_camera_is(tmp_path: pathlib.Path, capsys: Any) -> None:
+    saved = saved_policy(network="simple_cnn", **PLACED)
+    checkpoint.save_policy(saved, tmp_path / "best.pt")
+    assert checkpoint.load_policy(tmp_path / "best.pt").settings == saved.settings
+    pack = tmp_path / "p.pack"
+    assert export.main([str(tmp_path / "best.pt"), "-o", str(pack)]) == 0
+    images = galactic.LearnedPolicy(pack, 2).images
+    assert images is not None
+    for name, wanted in (
+        ("position", PLACED["camera_position"]),
+        ("rpy_degrees", PLACED["camera_rpy"]),
+        ("near", PLACED["near"]),
+    ):
+        np.testing.assert_array_equal(images[name], np.float32(wanted))
+    assert b"-0.1,0,0.35" in pack.read_bytes()
 
 
 @pytest.mark.parametrize("fov", [1, 33.3, 60, 175])

@@ -14,6 +14,7 @@ from galactic import evaluate, export, train
 NO_NUMBER = ("", "nan", "-nan", "inf", "-inf", "1e300", "-1e300", "nonsense", "1x", " 1", "1,1")
 NO_WHOLE_NUMBER = (*NO_NUMBER, "-1", "1.5", "9" * 20)
 NO_CHOICE = ("", "nan", "-1", "0", "nonsense")
+NO_THREE = ("", "1", "1,2", "1,2,3,4", "1,,2", "nan,0,0", "0,0,inf", "0,0,1000", "a,b,c", "1, 2,3")
 # Numbers that may be below 0: logarithms, and where it says "no change".
 BELOW_ZERO = ("--initial-log-std", "--final-log-std", "--entropy-end")
 PROGRAMS: dict[str, tuple[Any, list[str]]] = {
@@ -51,6 +52,8 @@ def bad_values(action: argparse.Action) -> tuple[str, ...]:
         return ()  # a name or a text may be anything
     if action.type.__name__ == "named_path":
         return ("",)
+    if action.type.__name__ == "_three":
+        return NO_THREE
     if action.type.__name__ == "_real":
         return NO_NUMBER + (() if option in BELOW_ZERO else ("-1",))
     # What is not known here has to be a whole number.
@@ -105,6 +108,9 @@ def test_an_option_is_given_once(name: str, action: argparse.Action, run: Any) -
 def test_the_walk_reaches_options_that_are_taken(run: Any) -> None:
     words = [*PROGRAMS["train"][1], "--steps", "2e6", "--envs", "4", "--learning-rate", "1e-3"]
     assert run("train", [*words, "--entropy-end", "-1", "--no-normalize"]) == (0, "")
+    # Values that begin with a dash, too, and are no plain numbers.
+    words += ["--initial-log-std", "-5e-1", "--camera-position", "-0.1,0,.2", "--near", "0.1"]
+    assert run("train", [*words, "--camera-rpy", "-.5,0,1e1"]) == (0, "")
     # The policy that is missing is looked for after the options.
     assert run("evaluate", ["none.pt", "none.pack", "--seed", "7", "--shown", "1"])[0] == 2
     assert run("export", ["none.pt", "-o", "out.pack", "--name", "a"])[0] == 2

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 
 #include "galactic/schema/pack_generated.h"
@@ -55,6 +56,28 @@ TEST(PolicyPackWriter, WritesWhatIsReadBack) {
   EXPECT_EQ(provenance.options()->Get(0)->value()->str(), "state");
   EXPECT_EQ(provenance.sources()->Get(0)->name()->str(), "best.pt");
   EXPECT_EQ(provenance.sources()->Get(0)->bytes(), 12U);
+}
+
+TEST(PolicyPackWriter, KeepsWhereTheCameraIs) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder.path() / "picker.pack";
+  const auto imageOf = [&](const PolicyContent& content) {
+    EXPECT_TRUE(writePolicyPack(path, content, smallPolicyProvenance()).has_value());
+    return *policyInterface(*PackFile::open(path))->image;
+  };
+  PolicyContent content = smallPolicy();
+  EXPECT_EQ(imageOf(content).position, (std::array<float, 3>{}));
+  EXPECT_EQ(imageOf(content).rpy_degrees, (std::array<float, 3>{}));
+  EXPECT_EQ(imageOf(content).near, 0);
+  PolicyImage& image = *content.interface.image;
+  image.position = {-0.1F, 0.2F, 33.3F};
+  EXPECT_EQ(imageOf(content).position, image.position);
+  image.position = {};
+  image.rpy_degrees = {0.1F, -20, 359.9F};
+  image.near = 0.07F;
+  EXPECT_EQ(imageOf(content).position, image.position);
+  EXPECT_EQ(imageOf(content).rpy_degrees, image.rpy_degrees);
+  EXPECT_EQ(imageOf(content).near, image.near);
 }
 
 TEST(PolicyPackWriter, WritesNothingThatWouldBeRefused) {
