@@ -134,7 +134,10 @@ class HalfBatch:
         if out is not None and "endings" in out:
             self._landed("endings", simulator.endings, out)
         images = self._draw(out)
-        infos = self._infos(ended, self._renew(ended, images)) if len(ended) else {}
+        infos = {}
+        if len(ended):
+            cameras = self._cameras(ended)
+            infos = self._infos(ended, self._renew(ended, images), cameras)
         observations = self._observed(self._landed("state", simulator.observations, out), images)
         return observations, rewards, terminations, truncations, infos
 
@@ -179,13 +182,26 @@ class HalfBatch:
                 images[_image_name(camera, image)][which] = drawn
         return last
 
+    def _cameras(self, which: NDArray[np.int64]) -> dict[str, Array]:
+        """Where the images of the envs `which` were drawn from last, as Renderer.world_from_camera has
+        it; zeros for the others."""
+        places = {}
+        for camera, renderer in self.renderers.items():
+            place = np.zeros((self.simulator.num_envs, 4, 4), np.float32)
+            place[which] = renderer.world_from_camera[which]
+            places[_image_name(camera, "world_from_camera")] = place
+        return places
+
     def blank_infos(self) -> dict[str, Any]:
         """The infos of a step in which episodes ended, but none of these envs'."""
-        return self._infos(np.empty(0, np.int64), None)
+        nobody = np.empty(0, np.int64)
+        return self._infos(nobody, None, self._cameras(nobody))
 
-    def _infos(self, which: NDArray[np.int64], last: Observations) -> dict[str, Any]:
+    def _infos(
+        self, which: NDArray[np.int64], last: Observations, cameras: Mapping[str, Array]
+    ) -> dict[str, Any]:
         """The infos of a step in which the episodes of the envs `which` ended, with these last
-        observations; their sums begin anew."""
+        observations, drawn from there; their sums begin anew."""
         sums = self._tally.take_ended()
         ended = sums.pop("ended")
         final_obs = np.full(len(ended), None, object)
@@ -193,7 +209,7 @@ class HalfBatch:
             final_obs[env] = _row(last, row)
         episode = {"r": sums.pop("r"), "_r": ended, "l": sums.pop("l"), "_l": ended}
         final_info = {"episode": episode, "_episode": ended}
-        for name, values in sums.items():
+        for name, values in {**sums, **cameras}.items():
             final_info[name] = values
             final_info["_" + name] = ended
         return {

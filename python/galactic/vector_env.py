@@ -60,7 +60,8 @@ class VectorEnv(_Base):
     - final_obs: object array (num_envs,), the last observation of each env whose episode ended,
     - final_info: {"episode": {"r", "l"}, "ending", "success", "episode_index"}, arrays
       (num_envs,): return and length of the episode, how it ended (EpisodeEnd), and which one of
-      the world's it was,
+      the world's it was; with images also "world_from_camera", float32 (num_envs, 4, 4): where those
+      of final_obs were drawn from, as Renderer has it of the images of the step,
     - episode: the same {"r", "l"} again, as Gymnasium's RecordEpisodeStatistics has it,
 
     each beside a mask of its name with "_" in front, bool (num_envs,). In steps in which no episode
@@ -74,7 +75,8 @@ class VectorEnv(_Base):
     - depth: float32 (num_envs, height, width), meters, 0 where nothing is seen,
     - semantics: int32 (num_envs, height, width),
 
-    or, of several cameras, each of them behind its camera's name: hand_rgb, hand_depth and so on.
+    or, of several cameras, each of them behind its camera's name: hand_rgb, hand_depth and so on,
+    hand_world_from_camera, too.
 
     Two halves of the batch can take turns, each working on threads of its own while the other's
     results are used: `halves=2`, `send()` and `recv()`. Which envs do what does not depend on it.

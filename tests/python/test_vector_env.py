@@ -291,6 +291,39 @@ def test_images_show_what_the_state_says(world, draw_actions, halves, copy):
     assert observations["depth"].max() > 0.5
 
 
+@pytest.mark.parametrize("halves", [1, 2])
+@pytest.mark.parametrize("prefix, images", [("", IMAGES), ("head_", {"head": IMAGES})])
+def test_the_last_images_of_an_episode_come_with_their_cameras(
+    world, draw_actions, halves, prefix, images
+):
+    env = VectorEnv(world, ENVS, images=images, halves=halves, **OPTIONS)
+    plain = Simulator(world, envs=ENVS, body_transforms=True, auto_reset=False, **OPTIONS)
+    eye = Renderer(plain, **IMAGES)
+    name = f"{prefix}world_from_camera"
+    ends, others = 0, 0
+    env.reset()
+    for _ in range(80):
+        actions = draw_actions(ENVS, 8)
+        infos = env.step(actions)[4]
+        plain.step(actions)
+        eye.render()
+        last, done = eye.world_from_camera, plain.dones.copy()
+        plain.reset(np.where(done, Simulator.NEXT_EPISODE, Simulator.STAYS).astype(np.int32))
+        eye.render()
+        drawing = [half["head"] if prefix else half for half in env.renderers]
+        now = np.concatenate([one.world_from_camera for one in drawing])
+        np.testing.assert_array_equal(now, eye.world_from_camera)
+        if not done.any():
+            assert infos == {}
+            continue
+        final = infos["final_info"]
+        np.testing.assert_array_equal(final["_" + name], done)
+        np.testing.assert_array_equal(final[name], np.where(done[:, None, None], last, 0))
+        ends += int(done.sum())
+        others += int((now[done] != last[done]).any(axis=(1, 2)).sum())
+    assert ends > 20 and others == ends
+
+
 @pytest.mark.parametrize("copy", [True, False])
 @pytest.mark.parametrize("halves", [1, 2])
 def test_each_of_several_cameras_sees_what_it_sees_alone(world, draw_actions, halves, copy):
