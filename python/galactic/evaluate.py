@@ -12,10 +12,11 @@ import torch
 
 import galactic
 from galactic.learning import checkpoint, dynamics, evaluation
-from galactic.learning.command import EXIT_CODES, Parser, named_path, told, whole
+from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
 from galactic.learning.homes import Homes
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
+from galactic.learning.streams import put
 from galactic.learning.trainer import threads_of
 
 
@@ -136,8 +137,11 @@ def _evaluate(options: argparse.Namespace) -> int:
     results = evaluation.Evaluator(homes, actor).play(episodes)
     homes.close()
     summary = evaluation.summary(results)
-    print(_text(summary), flush=True)
-    there = _play_there(options) if options.dynamics else None
+    is_told = put(sys.stdout, _text(summary))
+    there = None
+    if options.dynamics:
+        there = _play_there(options)
+        is_told &= put(sys.stdout, _text(dict(dynamics.told(there))))
     if options.report:
         contents = {
             "policy": str(options.policy),
@@ -156,11 +160,13 @@ def _evaluate(options: argparse.Namespace) -> int:
             pictures.write_contact_sheet(films, options.contact_sheet)
         if options.video:
             pictures.write_video(films, options.video)
-    return 0
+    if not is_told:
+        raise lost_output()
+    return OK
 
 
 def _play_there(options: argparse.Namespace) -> dict[str, object]:
-    report = dynamics.play(
+    return dynamics.play(
         dynamics.DynamicsRun(
             policy=options.policy,
             world=options.world,
@@ -173,8 +179,6 @@ def _play_there(options: argparse.Namespace) -> dict[str, object]:
             threads=options.threads,
         )
     )
-    print(_text(dict(dynamics.told(report))))
-    return report
 
 
 def _sizes(parts: Sequence[tuple[str, int]]) -> str:
@@ -187,8 +191,8 @@ def _text(summary: dict[str, object]) -> str:
         if name == "each":
             continue
         shown = f"{value:.4g}" if isinstance(value, float) else json.dumps(value)
-        lines.append(f"{name:10} {shown}")
-    return "\n".join(lines)
+        lines.append(f"{name:10} {shown}\n")
+    return "".join(lines)
 
 
 if __name__ == "__main__":

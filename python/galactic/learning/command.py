@@ -6,12 +6,13 @@ import argparse
 import pathlib
 import re
 import sys
-from typing import Any, Callable, NoReturn
+from typing import Any, Callable, NoReturn, Optional
 
 import galactic
 from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.distributed import RankLost
 from galactic.learning.settings import SettingsError, did_you_mean
+from galactic.learning.streams import put
 
 # Those of all tools of the project.
 OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL = 0, 1, 2, 3, 4
@@ -50,8 +51,22 @@ class Parser(argparse.ArgumentParser):
             self.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
         return found
 
+    def print_help(self, file: Any = None) -> None:
+        if not put(sys.stdout, self.format_help()):
+            self.exit(INPUT_OUTPUT, f"{program_of(self.prog)}: {lost_output()}\n")
+
+    def exit(self, status: int = 0, message: Optional[str] = None) -> NoReturn:
+        put(sys.stderr, message or "")
+        sys.exit(status)
+
     def error(self, message: str) -> NoReturn:
         self.exit(COMMAND_LINE, f"{program_of(self.prog)}: command line: {message}; see --help\n")
+
+
+def lost_output() -> galactic.Error:
+    """What there is to say where standard output has not taken what a program printed."""
+    message = "cannot be written; check that it is open and that its disk has room"
+    return galactic.Error(galactic.ErrorCode.IO, "standard output", message)
 
 
 def program_of(prog: str) -> str:
@@ -91,7 +106,7 @@ def told(
     except _REFUSALS as error:
         code, message = _told_as(error)
         if may_tell(error):
-            print(f"{program}: {message}", file=sys.stderr)
+            put(sys.stderr, f"{program}: {message}\n")
         return code
 
 

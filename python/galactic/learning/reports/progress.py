@@ -6,6 +6,8 @@ import sys
 import time
 from typing import Optional, TextIO
 
+from galactic.learning.streams import put
+
 
 def duration(seconds: float) -> str:
     """73 as 1:13, 4000 as 1:06:40."""
@@ -30,7 +32,7 @@ class ProgressLine:
                  plain_every: float = 15.0):  # fmt: skip
         self._stream = stream or sys.stderr
         self._quiet = quiet
-        self._live = self._stream.isatty()
+        self._live = self._stream is not None and self._stream.isatty()
         self._plain_every = plain_every
         self._last = -1e9
         self._open = False
@@ -39,20 +41,19 @@ class ProgressLine:
         if self._quiet:
             return
         if self._live:
-            self._stream.write(f"\r\x1b[K{text}")
-            self._stream.flush()
+            put(self._stream, f"\r\x1b[K{text}")
             self._open = True
         elif time.monotonic() - self._last >= self._plain_every:
             self._last = time.monotonic()
-            print(text, file=self._stream, flush=True)
+            put(self._stream, f"{text}\n")
 
     def say(self, text: str) -> None:
         """A line that stays."""
         self.close()
         if not self._quiet:
-            print(text, file=self._stream, flush=True)
+            put(self._stream, f"{text}\n")
 
     def close(self) -> None:
         if self._open:
-            self._stream.write("\n")
+            put(self._stream, "\n")
             self._open = False

@@ -1,0 +1,63 @@
+"""The programs with standard streams that cannot be written, as tests/cli/lose_streams.py has them for the others."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import subprocess
+import sys
+from typing import Any, Sequence
+
+import pytest
+
+pytest.importorskip("torch", reason="torch is missing: the programs do not start")
+
+WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"
+LOST = "standard output: cannot be written; check that it is open and that its disk has room\n"
+
+needs_world = pytest.mark.skipif(
+    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
+)
+
+
+def run(program: str, words: Sequence[str], lost: str, kind: str) -> Any:
+    """Runs galactic.PROGRAM with `lost`, "stdout" or "stderr", "closed" or on a "full" disk."""
+    number = {"stdout": 1, "stderr": 2}[lost]
+    streams: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with open("/dev/full", "w", encoding="utf-8") as full:
+        if kind == "full":
+            streams[lost] = full
+        else:
+            streams["preexec_fn"] = lambda: os.close(number)
+        command = [sys.executable, "-B", "-m", f"galactic.{program}", *words]
+        return subprocess.run(command, text=True, timeout=300, check=False, **streams)
+
+
+@pytest.mark.parametrize("kind", ["closed", "full"])
+@pytest.mark.parametrize("program", ["train", "evaluate", "export"])
+def test_help_that_nobody_can_read_ends_with_a_line_about_it(program: str, kind: str) -> None:
+    done = run(program, ["--help"], "stdout", kind)
+    assert (done.returncode, done.stderr) == (2, f"galactic.{program}: {LOST}")
+
+
+@pytest.mark.parametrize("kind", ["closed", "full"])
+def test_a_message_that_nobody_can_read_changes_nothing(kind: str) -> None:
+    done = run("export", ["--no-such-option"], "stderr", kind)
+    assert (done.returncode, done.stdout) == (1, "")
+    done = run("export", ["none.pt", "-o", "none.pack"], "stderr", kind)
+    assert (done.returncode, done.stdout) == (2, "")
+
+
+@needs_world
+@pytest.mark.parametrize("kind", ["closed", "full"])
+def test_work_is_done_whoever_reads_of_it(kind: str, tmp_path: pathlib.Path) -> None:
+    out = str(tmp_path / "run")
+    words = [str(WORLD), "-o", out, "--preset", "quick", "--envs", "8", "--mini-batches", "1",
+             "--steps", "64", "--horizon", "4", "--width", "8", "--ranks", "1"]  # fmt: skip
+    done = run("train", words, "stderr", kind)
+    assert (done.returncode, done.stdout) == (0, "")
+    best, report = tmp_path / "run" / "best.pt", tmp_path / "report.json"
+    words = [str(best), str(WORLD), "--episodes", "2", "--report", str(report)]
+    done = run("evaluate", words, "stdout", kind)
+    assert (done.returncode, done.stderr) == (2, f"galactic.evaluate: {LOST}")
+    assert report.is_file()
