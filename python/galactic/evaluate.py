@@ -16,6 +16,7 @@ from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named
 from galactic.learning.homes import Homes
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
+from galactic.learning.settings import Settings, SettingsError
 from galactic.learning.streams import put
 from galactic.learning.trainer import threads_of
 
@@ -115,6 +116,10 @@ def _evaluate(options: argparse.Namespace) -> int:
     for file in (options.report, options.contact_sheet, options.video):
         if file:
             checkpoint.require_writable(file)
+    if options.contact_sheet:
+        pictures.require_png(options.contact_sheet)
+    if options.video:
+        pictures.require_video(options.video)
     saved = checkpoint.load_policy(options.policy)
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
@@ -126,7 +131,7 @@ def _evaluate(options: argparse.Namespace) -> int:
         mini_batches=1,
         seed=options.seed,
     )
-    homes = Homes(world, settings, threads)
+    homes = _homes(options, world, settings, threads)
     if homes.parts != saved.parts:
         raise checkpoint.CheckpointError(
             f"{options.policy} was trained on observations of {_sizes(saved.parts)}, and "
@@ -163,6 +168,22 @@ def _evaluate(options: argparse.Namespace) -> int:
     if not is_told:
         raise lost_output()
     return OK
+
+
+def _homes(
+    options: argparse.Namespace, world: galactic.World, settings: Settings, threads: int
+) -> Homes:
+    """The homes of the policy's training. Nobody has typed their options here."""
+    try:
+        return Homes(world, settings, threads)
+    except SettingsError as error:
+        raise checkpoint.CheckpointError(
+            f"{options.policy} was trained with options that this version does not have: {error}; "
+            "take another policy, or train one"
+        ) from error
+    except galactic.Error as error:
+        where = f"{options.policy} in {options.world}: {error.where}"
+        raise galactic.Error(error.code, where, error.message) from error
 
 
 def _play_there(options: argparse.Namespace) -> dict[str, object]:

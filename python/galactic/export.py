@@ -249,7 +249,7 @@ def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str =
     trained_with["success"] = saved.success
     with checkpoint.refusing(f"{file} cannot become a policy pack", "take another policy"):
         content = content_of(saved, name or output.stem, robot)
-    _core.write_policy_pack(output, content, trained_with, file.name, file.read_bytes())
+        _core.write_policy_pack(output, content, trained_with, file.name, file.read_bytes())
 
 
 def make_parser() -> argparse.ArgumentParser:

@@ -134,12 +134,15 @@ def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
 @contextlib.contextmanager
 def refusing(fault: str, remedy: str) -> Iterator[None]:
     """Around taking over what a file holds: whatever is raised, and torch raises whatever its readers
-    do, becomes a CheckpointError "FAULT: what was found; REMEDY"."""
+    do, becomes a CheckpointError "FAULT: what was found; REMEDY", unless it is a galactic.Error of a disk.
+    """
     try:
         yield
     except CheckpointError:
         raise
     except Exception as error:
+        if isinstance(error, Error) and error.code == ErrorCode.IO:
+            raise  # of a disk, which has nothing to do with what the file holds
         # Of layers that do not fit, torch has a line each; the first of them tells enough.
         found = " ".join(line.strip() for line in str(error).splitlines()[:2])
         raise CheckpointError(f"{fault}: {found}; {remedy}") from error

@@ -220,6 +220,25 @@ def test_errors_say_what_to_do(tmp_path: pathlib.Path, capsys: Any) -> None:
     assert not (tmp_path / "p.pack").exists()
 
 
+@pytest.mark.parametrize(
+    "simulation, fault",
+    [
+        ("task=pick hover=3", "there is no option hover; did you mean order?"),
+        ("task=cook", "task: is cook, expected rearrange, pick or none"),
+        ("envs=3", "envs is not for --simulation; the trainer chooses it"),
+    ],
+)
+def test_a_policy_of_other_options_is_named(
+    tmp_path: pathlib.Path, capsys: Any, simulation: str, fault: str
+) -> None:
+    file = tmp_path / "best.pt"
+    checkpoint.save_policy(saved_policy(network="state", simulation=simulation), file)
+    assert export.main([str(file), "-o", str(tmp_path / "p.pack")]) == 3
+    said = capsys.readouterr().err
+    assert said.startswith(f"galactic.export: {file} cannot become a policy pack: {fault}")
+    assert said.endswith("; take another policy\n") and said.count("\n") == 1
+
+
 def test_modules_that_no_layer_can_say_are_refused() -> None:
     layers = export.Layers()
     for module in (

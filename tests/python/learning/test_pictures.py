@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import pathlib
 import shutil
@@ -117,6 +118,56 @@ def test_an_evaluation_draws_a_contact_sheet_and_a_video(tmp_path: pathlib.Path)
     assert evaluate.main([*command, "--video", str(tmp_path / "film.mp4")]) == 0
     assert b"ftyp" in (tmp_path / "film.mp4").read_bytes()[:16]
     assert evaluate.main([*command, "--video", str(tmp_path / "film.none")]) == 2
+
+
+@needs_world
+def test_pictures_that_cannot_be_written_are_refused_before_anything_is_played(
+    tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("PIL")
+    command = ["none.pt", str(WORLD)]
+    for name in ("sheet.jpg", "sheet", "sheet.png.txt"):
+        file = tmp_path / name
+        assert evaluate.main([*command, "--contact-sheet", str(file)]) == 5
+        wanted = f"galactic.evaluate: {file}: pictures are PNG files; end the name with .png\n"
+        assert capsys.readouterr().err == wanted
+    tool = tmp_path / "bin" / "ffmpeg"
+    tool.parent.mkdir()
+    tool.write_text("#!/bin/sh\necho which format >&2; exit 1\n", encoding="utf-8")
+    tool.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tool.parent), prepend=":")
+    file = tmp_path / "film.none"
+    assert evaluate.main([*command, "--video", str(file)]) == 2
+    wanted = f"galactic.evaluate: {file}: ffmpeg did not write it: which format\n"
+    assert capsys.readouterr().err == wanted
+    assert list(tmp_path.iterdir()) == [tool.parent]
+
+
+@needs_world
+@pytest.mark.parametrize(
+    "changes, code, fault",
+    [
+        ({"simulation": "hover=3"}, 3, "--simulation: there is no option hover; did you mean"),
+        ({"simulation": "envs=3"}, 3, "envs is not for --simulation"),
+        ({"simulation": "task=cook"}, 3, "in {world}: task: is cook, expected rearrange"),
+        ({"network": "simple_cnn", "camera": "nose"}, 3, "in {world}: camera: found no link nose"),
+    ],
+)
+def test_a_policy_of_other_options_is_named(
+    tmp_path: pathlib.Path,
+    capsys: pytest.CaptureFixture[str],
+    changes: dict[str, Any],
+    code: int,
+    fault: str,
+) -> None:
+    _, _, saved = untrained(str(changes.get("network", "state")))
+    saved.settings = dataclasses.replace(saved.settings, **changes)
+    file = tmp_path / "policy.pt"
+    checkpoint.save_policy(saved, file)
+    assert evaluate.main([str(file), str(WORLD)]) == code
+    said = capsys.readouterr().err
+    assert said.startswith(f"galactic.evaluate: {file} ") and said.count("\n") == 1
+    assert fault.format(world=WORLD) in said
 
 
 def test_a_video_appears_whole_or_not_at_all(

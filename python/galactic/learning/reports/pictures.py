@@ -9,6 +9,7 @@ import contextlib
 import pathlib
 import shutil
 import subprocess
+import tempfile
 from dataclasses import dataclass, field
 from typing import Any, Optional, Sequence
 
@@ -57,6 +58,21 @@ def require_tools(video: bool) -> None:
         raise _unsupported("Pillow", "python3-pil") from None
     if video and not shutil.which("ffmpeg"):
         raise _unsupported("ffmpeg on the PATH", "ffmpeg")
+
+
+def require_png(file: pathlib.Path) -> None:
+    """Raises galactic.Error where the name says that a contact sheet would be something else."""
+    if file.suffix.lower() != ".png":
+        message = "pictures are PNG files; end the name with .png"
+        raise galactic.Error(galactic.ErrorCode.UNSUPPORTED, str(file), message)
+
+
+def require_video(file: pathlib.Path) -> None:
+    """Raises galactic.Error where ffmpeg knows no format by the name: it writes a frame to a file of that
+    name elsewhere."""
+    with tempfile.TemporaryDirectory(prefix="galactic-video-") as folder:
+        blank = Film(0, [np.zeros((HEIGHT, WIDTH, 3), np.uint8)])
+        _require_encoded(_encode([blank], pathlib.Path(folder) / file.name), file)
 
 
 def choose(results: Sequence[EpisodeResult], count: int) -> list[int]:
@@ -132,10 +148,13 @@ def write_video(films: Sequence[Film], file: pathlib.Path) -> None:
     """All films at once, side by side, each until its end; in the format that the name says. A file that
     is there is replaced by the whole video, or stays."""
     with replacing(file) as place:
-        said = _encode(films, place)
-        if said is not None:
-            message = f"ffmpeg did not write it: {said}"
-            raise galactic.Error(galactic.ErrorCode.IO, str(file), message)
+        _require_encoded(_encode(films, place), file)
+
+
+def _require_encoded(said: Optional[str], file: pathlib.Path) -> None:
+    if said is not None:
+        message = f"ffmpeg did not write it: {said}"
+        raise galactic.Error(galactic.ErrorCode.IO, str(file), message)
 
 
 def _encode(films: Sequence[Film], file: pathlib.Path) -> Optional[str]:
