@@ -3,6 +3,7 @@
 #include <string>
 
 #include "bindings.h"
+#include "calls.h"
 
 namespace galactic::python {
 
@@ -41,4 +42,5 @@ PYBIND11_MODULE(_core, module) {
   galactic::python::bindPolicy(module);
   galactic::python::bindScriptedPolicy(module);
   galactic::python::bindRenderer(module);
+  galactic::python::refuseOtherCalls(module);
 }

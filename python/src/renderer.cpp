@@ -83,6 +83,10 @@ std::span<const RenderView> Renderer::viewsOf(const py::object& envs) {
 }
 
 RenderTargets Renderer::targetsFor(std::size_t count, const py::object& out) {
+  if (!out.is_none() && !py::hasattr(out, "keys")) {
+    throw py::type_error(
+        fmt::format("out is a {}, expected a dictionary of arrays by name", typeName(out)));
+  }
   const py::dict given = out.is_none() ? py::dict() : py::dict(out);
   const RenderOptions& options = renderer_->options();
   py::dict images;

@@ -176,12 +176,18 @@ void bindRenderer(py::module_& module) {
       "The first half of render(): copies the state, so that the simulator may step meanwhile.");
   type.def("end_render", &Renderer::endRender,
            "The second half: waits, and returns the images by name.");
-  type.def("render_to_device", &Renderer::renderToDevice, py::arg("stream") = 0,
-           "Draws all envs and leaves the images on the CUDA device, as DeviceArrays by name.\n\n"
-           "stream: the number of the CUDA stream that uses them, as torch.cuda.current_stream()\n"
-           "has it in cuda_stream; 0 is the default stream. What it was told to do with earlier\n"
-           "images is done before they change.\n\n"
-           "Error (UNSUPPORTED) with the soft backend and without CUDA.");
+  type.def(
+      "render_to_device",
+      [](Renderer& one, const py::object& stream) {
+        return one.renderToDevice(
+            wholeOf("stream", stream, 0, std::numeric_limits<std::uintptr_t>::max()));
+      },
+      py::arg("stream") = 0,
+      "Draws all envs and leaves the images on the CUDA device, as DeviceArrays by name.\n\n"
+      "stream: the number of the CUDA stream that uses them, as torch.cuda.current_stream()\n"
+      "has it in cuda_stream; 0 is the default stream. What it was told to do with earlier\n"
+      "images is done before they change.\n\n"
+      "Error (UNSUPPORTED) with the soft backend and without CUDA.");
   type.def_property_readonly("shapes", &Renderer::shapes,
                              "Of one env's images, by name: shape and dtype.");
   type.def_property_readonly(

@@ -85,7 +85,12 @@ void Simulator::endStep() {
 }
 
 void Simulator::reset(const py::object& episodes) {
-  const EpisodeNumbers chosen = episodeNumbers(episodes, "episodes", BatchSimulator::kNextEpisode);
+  EpisodeNumbers chosen(envs());
+  if (episodes.is_none()) {
+    std::fill_n(chosen.mutable_data(), chosen.size(), BatchSimulator::kNextEpisode);
+  } else {
+    chosen = episodeNumbers(episodes, "episodes", BatchSimulator::kNextEpisode);
+  }
   const Confinement::Use use = readState();
   const std::span<const std::int32_t> values{chosen.data(),
                                              static_cast<std::size_t>(chosen.size())};

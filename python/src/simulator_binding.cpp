@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -97,11 +98,12 @@ void bindStepping(py::class_<Simulator>& type) {
            "end_step() returns.");
   type.def("end_step", &Simulator::endStep, "The second half: helps, and waits for the end.");
   type.def(
-      "reset", &Simulator::reset, py::arg("episodes"),
-      "Begins episodes between two steps.\n\n"
+      "reset", &Simulator::reset, py::arg("episodes") = py::none(),
+      "Begins episodes between two steps. A new simulator is at the start of the first ones.\n\n"
       "episodes: int32 (num_envs,), for each env the index of an episode, NEXT_EPISODE for the\n"
-      "one whose turn it is, or STAYS. Nothing begins if one is wrong: IndexError for those\n"
-      "that the world does not have, ValueError for skipped_episodes.");
+      "one whose turn it is, or STAYS; None: the next one in every env. Nothing begins if one is\n"
+      "wrong: IndexError for those that the world does not have, ValueError for\n"
+      "skipped_episodes.");
   type.def("check_episodes", &Simulator::checkEpisodes, py::arg("episodes"),
            "Raises what reset() would raise for these episodes, and does nothing else.");
   type.def("restart", &Simulator::restart, py::arg("seed"),
@@ -190,9 +192,10 @@ void bindQueries(py::class_<Simulator>& type) {
            "What happened in all envs since they were made, added up; or in one of them.");
   type.def(
       "sample_phases",
-      [](Simulator& one, std::uint32_t every) {
+      [](Simulator& one, const py::object& every) {
+        const auto steps = wholeOf("every", every, 0, std::numeric_limits<std::uint32_t>::max());
         const Confinement::Use use = one.readState();
-        one.batch().samplePhases(every);
+        one.batch().samplePhases(static_cast<std::uint32_t>(steps));
       },
       py::arg("every"), "Measures one step in `every` from now on; 0 switches it off.");
   type.def("phase_times", &phaseTimes,

@@ -369,6 +369,48 @@ def test_the_next_episode_is_none_that_a_step_begins(simulator, draw_actions):
     assert [simulator.env_state(n).step for n in range(ENVS)] == [0] * ENVS
 
 
+def test_a_reset_of_nothing_in_particular_begins_the_next_episodes(simulator, world):
+    twin = Simulator(world, envs=ENVS, threads=1, seed=7, episode_steps=30)
+    for one in (simulator, twin):
+        one.step(np.zeros((ENVS, 8), np.float32))
+    simulator.reset()
+    twin.reset(np.full(ENVS, Simulator.NEXT_EPISODE))
+    np.testing.assert_array_equal(simulator.episodes(), twin.episodes())
+    np.testing.assert_array_equal(simulator.observations, twin.observations)
+    assert [simulator.env_state(n).step for n in range(ENVS)] == [0] * ENVS
+
+
+def test_calls_that_fit_nothing_are_told_what_is_taken_and_what_was_found(world, simulator):
+    renderer = galactic.Renderer(Simulator(world, envs=1, body_transforms=True), backend="soft")
+    rows = np.zeros((ENVS, 8), np.float32)
+    for call, message in (
+        (World, "galactic.World() takes (path, trusted: bool=False), found nothing"),
+        (lambda: World("a.pack", "no"), "takes (path, trusted: bool=False), found (str, str)"),
+        (lambda: Simulator(world, 3, 4), "galactic.Simulator() takes (world, envs=None, **kwargs), "
+         "found (World, int, int)"),
+        (simulator.step, "Simulator.step() takes (actions, resets=None), found nothing"),
+        (lambda: simulator.step(rows, reset=1), "found (ndarray, reset=int)"),
+        (lambda: simulator.reset(seed=3), "Simulator.reset() takes (episodes=None), found (seed=int)"),
+        (lambda: simulator.end_step(3), "Simulator.end_step() takes nothing, found (int)"),
+        (lambda: galactic.LearnedPolicy("a.pack"), "galactic.LearnedPolicy() takes (path: "),
+        (lambda: renderer.render(3), "out is a int, expected a dictionary of arrays by name"),
+    ):  # fmt: skip
+        with pytest.raises(TypeError) as caught:
+            call()
+        assert message in str(caught.value) and "\n" not in str(caught.value)
+    with pytest.raises(Error, match="every: is -1, expected a whole number from 0"):
+        simulator.sample_phases(-1)
+    with pytest.raises(Error, match="stream: is -1, expected a whole number from 0"):
+        renderer.render_to_device(-1)
+    # What is converted still is, and what help() shows is what there was.
+    scene = PlanningScene(simulator)
+    assert scene.floor_at(1, np.float32(1), 1) == scene.floor_at(1.0, 1.0, 1.0)
+    assert Simulator.end_step.__doc__ == (
+        "end_step(self: galactic._core.Simulator) -> None\n\n"
+        "The second half: helps, and waits for the end.\n"
+    )
+
+
 def test_wrong_arguments_are_refused_in_our_words(world):
     assert Simulator(world, 3).num_envs == 3
     assert Simulator(world, envs=np.int64(2)).num_envs == 2

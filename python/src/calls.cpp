@@ -1,0 +1,114 @@
+#include "calls.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "arrays.h"
+
+namespace galactic::python {
+namespace {
+
+/// A first argument of any type, but only once conversions are tried: what takes one comes after
+/// all other signatures of its function.
+struct LastResort {
+  py::handle value;
+};
+
+/// Where nothing is given.
+py::ellipsis nothing() { return {}; }
+
+}  // namespace
+}  // namespace galactic::python
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<galactic::python::LastResort> {
+  PYBIND11_TYPE_CASTER(galactic::python::LastResort, const_name("object"));
+  bool load(handle given, bool convert) {
+    value.value = given;
+    return convert;
+  }
+};
+
+}  // namespace pybind11::detail
+
+namespace galactic::python {
+namespace {
+
+void replaceAll(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
+    text.replace(at, from.size(), to);
+    at += to.size();
+  }
+}
+
+/// "actions, resets=None" of pybind11's "step(self: galactic._core.Simulator, actions: object,
+/// resets: object = None) -> None".
+std::string parametersIn(std::string_view signature) {
+  const std::size_t first = signature.find('(') + 1;
+  std::string text(signature.substr(first, signature.rfind(") ->") - first));
+  const std::size_t behind_self = text.find(", ");
+  text = behind_self == std::string::npos ? "" : text.substr(behind_self + 2);
+  replaceAll(text, ": object", "");
+  replaceAll(text, "galactic._core.", "galactic.");
+  replaceAll(text, " = ", "=");
+  return text;
+}
+
+/// "ndarray, reset=int".
+std::string typesOf(const LastResort& first, const py::args& others, const py::kwargs& keywords) {
+  std::string text;
+  const auto add = [&text](const std::string& one) { text += (text.empty() ? "" : ", ") + one; };
+  if (!first.value.is(nothing())) add(typeName(first.value));
+  for (const auto& value : others) add(typeName(value));
+  for (const auto& [name, value] : keywords) add(name.cast<std::string>() + "=" + typeName(value));
+  return text;
+}
+
+std::string listed(const std::string& text) {
+  return text.empty() ? "nothing" : fmt::format("({})", text);
+}
+
+/// Gives a method a last signature, which says what it takes and what it was given. Its
+/// documentation stays.
+void refuseOtherCalls(const py::handle& type, const std::string& name, const py::handle& member) {
+  const auto method = py::reinterpret_borrow<py::object>(PyInstanceMethod_Function(member.ptr()));
+  const std::string documentation = py::str(method.attr("__doc__"));
+  const std::string parameters = parametersIn(documentation.substr(0, documentation.find('\n')));
+  const std::string of = py::str(type.attr("__name__"));
+  const std::string called = name == "__init__" ? "galactic." + of : of + "." + name;
+  const auto refuse = [called, parameters](const py::object&, const LastResort& first,
+                                           const py::args& others,
+                                           const py::kwargs& keywords) -> py::object {
+    throw py::type_error(fmt::format("{}() takes {}, found {}", called, listed(parameters),
+                                     listed(typesOf(first, others, keywords))));
+  };
+  const py::cpp_function added(refuse, py::name(name.c_str()), py::is_method(type),
+                               py::sibling(method), py::arg() = nothing());
+  // pybind11 has listed the new signature there, and allocates and frees the text like this.
+  PyMethodDef& definition = *reinterpret_cast<PyCFunctionObject*>(method.ptr())->m_ml;
+  std::free(const_cast<char*>(definition.ml_doc));
+  definition.ml_doc = strdup(documentation.c_str());
+}
+
+}  // namespace
+
+void refuseOtherCalls(const py::module_& module) {
+  for (const auto& [_, type] : py::dict(module.attr("__dict__"))) {
+    // Classes of pybind11, and no enums.
+    if (typeName(type) != "pybind11_type") continue;
+    for (const auto& [key, member] : py::dict(type.attr("__dict__"))) {
+      const auto name = key.cast<std::string>();
+      const bool is_called_by_name = name == "__init__" || name.front() != '_';
+      if (PyInstanceMethod_Check(member.ptr()) && is_called_by_name)
+        refuseOtherCalls(type, name, member);
+    }
+  }
+}
+
+}  // namespace galactic::python
