@@ -11,7 +11,13 @@ import torch
 import galactic
 from galactic.learning.environments import Observation, Step, Timeouts
 from galactic.learning.networks import IMAGE_SIZE
-from galactic.learning.settings import Settings, SettingsError, simulation_keyword
+from galactic.learning.settings import (
+    CAMERA,
+    Settings,
+    SettingsError,
+    option_name,
+    simulation_keyword,
+)
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
 # What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
@@ -30,6 +36,8 @@ def simulation_keywords(text: str) -> dict[str, Any]:
     for word in text.split():
         _, equals, value = word.partition("=")
         keyword = simulation_keyword(word)
+        if not keyword:
+            raise SettingsError(f'--simulation: found "{word}", expected NAME=VALUE or NAME')
         if keyword in _CHOSEN_BY_TRAINER:
             raise SettingsError(
                 f"{keyword} is not for --simulation; the trainer chooses it (see --envs, --seed)"
@@ -40,15 +48,18 @@ def simulation_keywords(text: str) -> dict[str, Any]:
 
 def camera_options(settings: Settings) -> dict[str, Any]:
     """What the network sees, as options of galactic.Renderer."""
-    return {
-        "width": IMAGE_SIZE,
-        "height": IMAGE_SIZE,
-        "camera": settings.camera,
-        "fov_degrees": settings.fov,
-        "position": settings.camera_position,
-        "rpy_degrees": settings.camera_rpy,
-        "near": settings.near,
-    }
+    chosen = {option: getattr(settings, name) for option, name in CAMERA.items()}
+    return {"width": IMAGE_SIZE, "height": IMAGE_SIZE, **chosen}
+
+
+def _as_typed(error: galactic.Error, keywords: Mapping[str, Any]) -> galactic.Error:
+    """Where it is about an option, the same error under the name that the trainer has for it."""
+    where = error.where
+    if where in CAMERA:
+        where = option_name(CAMERA[where])
+    elif where in keywords:
+        where = f"--simulation: {where}"
+    return galactic.Error(error.code, where, error.message)
 
 
 class Homes:
@@ -76,6 +87,8 @@ class Homes:
             )
         except (TypeError, ValueError) as problem:
             raise SettingsError(f"--simulation: {problem}") from problem
+        except galactic.Error as error:
+            raise _as_typed(error, keywords) from error
         first = self.env.simulators[0]
         self.count = settings.envs
         self.state_size = first.observation_size

@@ -47,6 +47,16 @@ def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None
     )
 
 
+# Options of galactic.Renderer, and the settings that they are taken from.
+CAMERA = {
+    "camera": "camera",
+    "fov_degrees": "fov",
+    "position": "camera_position",
+    "rpy_degrees": "camera_rpy",
+    "near": "near",
+}
+
+
 @dataclass(frozen=True)
 class Settings:
     """What defines a run. The defaults are those of the preset `paper`: table 3 of the paper, and of
@@ -299,6 +309,13 @@ class Settings:
             raise SettingsError(
                 "recurrent applies only to the network state; the paper's networks always have a GRU"
             )
+        for field in dataclasses.fields(self):
+            is_default = getattr(self, field.name) == field.default
+            if self.network == "state" and field.name in CAMERA.values() and not is_default:
+                raise SettingsError(
+                    f"{field.name} applies only to networks that see images, and the network state "
+                    "does not; choose another one, such as simple_cnn"
+                )
 
     def learning_rate_at(self, progress: float) -> float:
         """`progress`: share of the run that is done, 0 to 1."""

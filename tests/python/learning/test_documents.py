@@ -83,6 +83,24 @@ def test_an_option_of_the_simulation_overrides_the_one_of_its_name() -> None:
     assert preset("paper", simulation="task=pick").simulation == "task=pick"
 
 
+def test_a_network_that_sees_nothing_has_no_camera() -> None:
+    for camera in ({"camera": "top"}, {"fov": 60.0}, {"camera_rpy": (0.0, 30.0, 0.0)}):
+        (name,) = camera
+        with pytest.raises(
+            SettingsError, match=f"^{name} applies only to networks that see images"
+        ):
+            preset("quick", **camera)
+        assert getattr(preset("quick", network="resnet9", **camera), name) == camera[name]
+
+
+def test_a_word_of_the_simulation_has_a_name() -> None:
+    for word in ("=3", "--", "-"):
+        with pytest.raises(
+            SettingsError, match=f'--simulation: found "{word}", expected NAME=VALUE'
+        ):
+            simulation_keywords(f"task=pick {word}")
+
+
 def test_a_resumed_run_stays_what_it_is() -> None:
     before = preset("quick", simulation="task=rearrange")
     assert resumed(before, {"simulation": "task=rearrange bump"}) == before

@@ -95,8 +95,13 @@ def test_a_network_sees_through_the_camera_of_its_settings() -> None:
     drawn = homes.env.reset()[0]["rgb"]
     wanted = galactic.Renderer(homes.env.simulators[0], camera="follow", fov_degrees=90)
     np.testing.assert_array_equal(drawn, wanted.render()["rgb"])
-    with pytest.raises(galactic.Error, match="camera: found no link nose"):
-        untrained("simple_cnn", camera="nose")
+    for wrong, message in (
+        ({"camera": "nose"}, "^--camera: found no link nose"),
+        ({"near": 0.001}, "^--near: found 0.001 m, expected 0.01 to 100"),
+        ({"fov": 0.5}, "^--fov: found a vertical field of view of 0.5 degrees"),
+    ):
+        with pytest.raises(galactic.Error, match=message):
+            untrained("simple_cnn", **wrong)
 
 
 @needs_world
@@ -149,8 +154,12 @@ def test_pictures_that_cannot_be_written_are_refused_before_anything_is_played(
     [
         ({"simulation": "hover=3"}, 3, "--simulation: there is no option hover; did you mean"),
         ({"simulation": "envs=3"}, 3, "envs is not for --simulation"),
-        ({"simulation": "task=cook"}, 3, "in {world}: task: is cook, expected rearrange"),
-        ({"network": "simple_cnn", "camera": "nose"}, 3, "in {world}: camera: found no link nose"),
+        ({"simulation": "task=cook"}, 3, "in {world}: --simulation: task: is cook, expected"),
+        (
+            {"network": "simple_cnn", "camera": "nose"},
+            3,
+            "in {world}: --camera: found no link nose",
+        ),
     ],
 )
 def test_a_policy_of_other_options_is_named(
