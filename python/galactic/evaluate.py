@@ -113,7 +113,14 @@ def _evaluate(options: argparse.Namespace) -> int:
     if options.dynamics:
         dynamics.require_tool()
     # Playing may take long.
-    for file in (options.report, options.contact_sheet, options.video):
+    outputs = {
+        "--report": options.report,
+        "--contact-sheet": options.contact_sheet,
+        "--video": options.video,
+    }
+    recipe = [options.dynamics] if options.dynamics else []
+    checkpoint.require_apart(outputs, [options.policy, options.world, *recipe])
+    for file in outputs.values():
         if file:
             checkpoint.require_writable(file)
     if options.contact_sheet:

@@ -241,6 +241,7 @@ def _edge(size: Any) -> int:
 
 def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "") -> None:
     """Reads the checkpoint `file` and writes the policy pack `output`."""
+    checkpoint.require_apart({"--out": output}, [file])
     saved = checkpoint.load_policy(file)
     trained_with = {
         field.replace("_", "-"): typed(value) for field, value in saved.settings.to_dict().items()

@@ -31,7 +31,7 @@ import os
 import pathlib
 import shutil
 from dataclasses import dataclass
-from typing import Any, Callable, Iterator, Mapping, Optional
+from typing import Any, Callable, Iterable, Iterator, Mapping, Optional
 
 import torch
 from torch import Tensor
@@ -279,6 +279,27 @@ def require_writable(file: pathlib.Path) -> None:
             str(file),
             f"cannot write the file: {error.strerror}; an existing file is left as it was",
         ) from None
+
+
+def require_apart(
+    outputs: Mapping[str, Optional[pathlib.Path]], inputs: Iterable[pathlib.Path]
+) -> None:
+    """Raises galactic.Error where an output, by the option that names it, would replace one of the
+    inputs or another output. None: there is no such file."""
+    written: dict[pathlib.Path, str] = {}
+    read = {file.resolve() for file in inputs}
+    for option, file in outputs.items():
+        if file is None:
+            continue
+        place = file.resolve()
+        message = ""
+        if place in read:
+            message = "is also an input; write to another file"
+        elif place in written:
+            message = f"would be written twice: by {written[place]} and by {option}; give each its own name"
+        if message:
+            raise Error(ErrorCode.INVALID_INPUT, str(file), message)
+        written[place] = option
 
 
 def require_folder(folder: pathlib.Path) -> None:

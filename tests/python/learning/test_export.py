@@ -220,6 +220,18 @@ def test_errors_say_what_to_do(tmp_path: pathlib.Path, capsys: Any) -> None:
     assert not (tmp_path / "p.pack").exists()
 
 
+def test_a_checkpoint_is_not_replaced_by_its_pack(tmp_path: pathlib.Path, capsys: Any) -> None:
+    file, link = tmp_path / "best.pt", tmp_path / "link.pack"
+    checkpoint.save_policy(saved_policy(network="state"), file)
+    link.symlink_to(file)
+    before = file.read_bytes()
+    for output in (file, tmp_path / "." / "best.pt", link):
+        assert export.main([str(file), "-o", str(output)]) == 3
+        wanted = f"galactic.export: {output}: is also an input; write to another file\n"
+        assert capsys.readouterr().err == wanted
+    assert file.read_bytes() == before
+
+
 @pytest.mark.parametrize(
     "simulation, fault",
     [

@@ -148,6 +148,25 @@ def test_pictures_that_cannot_be_written_are_refused_before_anything_is_played(
     assert list(tmp_path.iterdir()) == [tool.parent]
 
 
+def test_an_evaluation_replaces_none_of_its_inputs_and_outputs(
+    tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("PIL")
+    policy, world = tmp_path / "best.pt", tmp_path / "world.pack"
+    for file in (policy, world):
+        file.write_text("precious", encoding="utf-8")
+        assert evaluate.main([str(policy), str(world), "--report", str(file)]) == 3
+        wanted = f"galactic.evaluate: {file}: is also an input; write to another file\n"
+        assert capsys.readouterr().err == wanted
+        assert file.read_text(encoding="utf-8") == "precious"
+    both = ["--report", str(tmp_path / "a.png"), "--contact-sheet", str(tmp_path / "a.png")]
+    assert evaluate.main([str(policy), str(world), *both]) == 3
+    said = capsys.readouterr().err
+    assert said.endswith(
+        "would be written twice: by --report and by --contact-sheet; give each its own name\n"
+    )
+
+
 @needs_world
 @pytest.mark.parametrize(
     "changes, code, fault",
