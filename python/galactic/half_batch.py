@@ -254,6 +254,8 @@ def check_places(
     out: Mapping[str, Array], known: Mapping[str, tuple[tuple[int, ...], Any]], envs: int
 ) -> None:
     """Refuses places that results cannot land in, before anything is done."""
+    if not isinstance(out, Mapping):
+        raise TypeError(f"out is a {type(out).__name__}, expected a dictionary of arrays by name")
     for name, place in out.items():
         if name not in known:
             raise ValueError(f"out has no place for {name!r}; expected any of {list(known)}")

@@ -128,9 +128,10 @@ class VectorEnv(_Base):
         _require(observation in ("flat", "dict"), "observation", observation, '"flat" or "dict"')
         _require(actions in ("box", "paper"), "actions", actions, '"box" or "paper"')
         _require(halves in (1, 2), "halves", halves, "1 or 2")
-        is_count = isinstance(num_envs, numbers.Integral) and num_envs > 0
-        _require(is_count, "num_envs", num_envs, "a whole number above 0")
+        is_whole = isinstance(num_envs, numbers.Integral) and not isinstance(num_envs, bool)
+        _require(is_whole and num_envs > 0, "num_envs", num_envs, "a whole number above 0")
         _require(num_envs % halves == 0, "num_envs", num_envs, "an even number for two halves")
+        _require(isinstance(copy, bool), "copy", copy, "True or False")
         cameras = _cameras_of(images)
         _require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
         for name in options:
@@ -262,6 +263,7 @@ class VectorEnv(_Base):
     def observe(self, out: Row | None = None) -> Observations:
         """What all envs see now, in `out` as in step()."""
         self._require_idle()
+        self._check_out(out, self.num_envs)
         parts = [_part(out, self.rows(number)) for number in range(self.halves)]
         seen = [half.observe(part) for half, part in zip(self._halves, parts)]
         return _joined(seen)

@@ -411,6 +411,12 @@ def test_wrong_buffers_are_refused(world, draw_actions):
         env.step(actions, out={"depth": np.zeros((ENVS, 16, 48), np.float32)[:, :, ::2]})
     with pytest.raises(ValueError, match="rgb has the shape"):
         env.step(actions, out={"rgb": np.zeros((ENVS, 24, 16, 3), np.uint8)})
+    with pytest.raises(
+        TypeError, match="out is a ndarray, expected a dictionary of arrays by name"
+    ):
+        env.step(actions, actions)
+    with pytest.raises(ValueError, match="state has the shape"):
+        env.observe(out={"state": np.zeros((2, ENVS, 23), np.float32)})
     assert env.simulators[0].statistics()["steps"] == 0
 
 
@@ -527,6 +533,8 @@ def test_pictures_are_drawn_by_as_many_threads_as_asked_for(world, monkeypatch):
         ({"num_envs": 4.5}, "num_envs is 4.5, expected a whole number above 0"),
         ({"num_envs": "8"}, "num_envs is '8', expected a whole number above 0"),
         ({"num_envs": 0}, "num_envs is 0, expected a whole number above 0"),
+        ({"num_envs": True}, "num_envs is True, expected a whole number above 0"),
+        ({"copy": "no"}, "copy is 'no', expected True or False"),
         ({"num_envs": 3, "halves": 2}, "num_envs is 3, expected an even number for two halves"),
         ({"images": True}, "images is True, expected options of galactic.Renderer, those of"),
         ({"images": {"hand": {}, "width": 9}}, "images['width'] is 9, expected options, as the"),
