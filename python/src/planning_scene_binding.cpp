@@ -78,11 +78,11 @@ class EnvScene {
   [[nodiscard]] std::optional<std::uint32_t> graspedAt(const py::object& base) const {
     return scene_.graspedAt(placeOf(base));
   }
-  void hold(std::size_t object, const py::object& base) {
+  void hold(std::int64_t object, const py::object& base) {
     if (scene_.isHolding()) throw py::value_error("the hand holds an object already");
-    if (object >= scene_.objectCount()) {
-      throw py::index_error(
-          fmt::format("there is no object {}, the last is {}", object, scene_.objectCount() - 1));
+    const auto last = static_cast<std::int64_t>(scene_.objectCount()) - 1;
+    if (object < 0 || object > last) {
+      throw py::index_error(fmt::format("there is no object {}, the last is {}", object, last));
     }
     scene_.hold(static_cast<std::uint32_t>(object), placeOf(base));
     is_pretended_ = true;

@@ -118,8 +118,9 @@ def test_what_makes_no_sense_is_refused(simulator):
         scene.landing(scene.base)
     with pytest.raises(ValueError, match="hold"):
         scene.put_back()
-    with pytest.raises(IndexError):
-        scene.hold(100, scene.base)
+    for wrong in (100, -1, np.int32(-1)):
+        with pytest.raises(IndexError, match=f"there is no object {wrong}, the last is"):
+            scene.hold(wrong, scene.base)
     with pytest.raises(IndexError):
         scene.update(2)
     with pytest.raises(TypeError):
