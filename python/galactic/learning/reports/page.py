@@ -7,6 +7,8 @@ import json
 import math
 from typing import Any, Mapping, Optional, Sequence
 
+from galactic.learning.settings import typed
+
 # Title, unit of the vertical axis, columns with their names in the legend.
 CHARTS: Sequence[tuple[str, str, Sequence[tuple[str, str]]]] = (
     (
@@ -56,7 +58,7 @@ def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[Opti
     return _PAGE.format(
         title=html.escape(title),
         data=text,
-        settings=_table([(name, str(value)) for name, value in settings.items()]),
+        settings=_table([(name, str(typed(value))) for name, value in settings.items()]),
         breakdown=_table([(name, f"{100.0 * share:.1f} %") for name, share in breakdown]),
     )
 
