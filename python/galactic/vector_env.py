@@ -211,6 +211,7 @@ class VectorEnv(_Base):
 
     def rows(self, half: int) -> slice:
         """The envs of a half."""
+        self._require_half(half)
         size = self.num_envs // self.halves
         return slice(half * size, (half + 1) * size)
 
@@ -311,6 +312,7 @@ class VectorEnv(_Base):
 
         Raises as step() does, and nothing is under way then.
         """
+        self._require_half(half)
         self._require_idle(half)
         envs = self.num_envs // self.halves
         rows = self._action_rows(actions, envs)
@@ -319,6 +321,7 @@ class VectorEnv(_Base):
 
     def recv(self, half: int = 0) -> StepResult:
         """Waits for the step that send() began, and returns its results for the half's envs."""
+        self._require_half(half)
         pending = self._pending[half]
         if pending is None:
             raise RuntimeError(f"half {half} has nothing under way; call send() first")
@@ -393,6 +396,10 @@ class VectorEnv(_Base):
         busy = [half for half in asked if self._pending[half] is not None]
         if busy:
             raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
+
+    def _require_half(self, half: int) -> None:
+        if half not in range(self.halves):
+            raise IndexError(f"there is no half {half}; the last is {self.halves - 1}")
 
     def _check_out(self, out: Row | None, envs: int) -> None:
         if out is not None:

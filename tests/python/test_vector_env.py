@@ -437,6 +437,9 @@ def test_halves_take_turns(world, draw_actions):
         env.send(actions[1:], 0)
     with pytest.raises(ValueError, match="rewards has the shape"):
         env.send(actions, 0, {"rewards": np.zeros(ENVS, np.float32)})
+    for call in (lambda: env.send(actions, 2), lambda: env.recv(2), lambda: env.rows(-1)):
+        with pytest.raises(IndexError, match="there is no half (2|-1); the last is 1"):
+            call()
     env.reset(seed=1)
     env.close()
     env.close()
