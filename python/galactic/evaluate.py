@@ -13,7 +13,7 @@ import torch
 import galactic
 from galactic.learning import checkpoint, dynamics, evaluation
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
-from galactic.learning.homes import Homes
+from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
 from galactic.learning.settings import Settings, SettingsError
@@ -141,8 +141,8 @@ def _evaluate(options: argparse.Namespace) -> int:
     homes = _homes(options, world, settings, threads)
     if homes.parts != saved.parts:
         raise checkpoint.CheckpointError(
-            f"{options.policy} was trained on observations of {_sizes(saved.parts)}, and "
-            f"{options.world} gives {_sizes(homes.parts)}; evaluate it on worlds with the same robot"
+            f"{options.policy} was trained on observations of {sizes_of(saved.parts)}, and "
+            f"{options.world} gives {sizes_of(homes.parts)}; evaluate it on worlds with the same robot"
         )
     episodes = homes.playable_episodes()[: options.episodes or None]
     actor = evaluation.Actor(saved.policy, deterministic=options.deterministic, seed=options.seed)
@@ -207,10 +207,6 @@ def _play_there(options: argparse.Namespace) -> dict[str, object]:
             threads=options.threads,
         )
     )
-
-
-def _sizes(parts: Sequence[tuple[str, int]]) -> str:
-    return ", ".join(f"{name} ({size})" for name, size in parts)
 
 
 def _text(summary: dict[str, object]) -> str:

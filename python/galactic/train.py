@@ -18,7 +18,7 @@ from galactic.learning import checkpoint, evaluation
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
 from galactic.learning.distributed import Group, device_of, local_ranks
-from galactic.learning.homes import Homes
+from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.launch import launch
 from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, preset
@@ -112,7 +112,7 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     sharing = 1 if settings.network == "state" else 0
     torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
     envs = Homes(galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size)
-    validation = _validation(run, threads, group)
+    validation = _validation(run, envs, threads, group)
     trainer = Trainer(
         settings, envs, group, folder, validation=validation, title=folder.resolve().name
     )
@@ -212,15 +212,27 @@ def _write_run(run: Run, folder: pathlib.Path) -> None:
     )
 
 
-def _validation(run: Run, threads: int, group: Group) -> Optional[Validation]:
-    """Plays the episodes held out, this rank's share of them, with sampled actions as in training."""
+def _validation(run: Run, trained: Homes, threads: int, group: Group) -> Optional[Validation]:
+    """Plays the episodes held out, this rank's share of them, with sampled actions as in training, which
+    is in the homes `trained`. Raises galactic.Error where a policy of these could not play there.
+    """
     settings = run.settings
     if run.validation is None or not settings.validate_every:
         return None
     envs = min(settings.envs, evaluation.MOST_ENVS)
     held_out = dataclasses.replace(settings, envs=envs, halves=1, mini_batches=1)
     homes = Homes(galactic.World(run.validation), held_out, threads)
+    if homes.parts != trained.parts:
+        raise galactic.Error(
+            galactic.ErrorCode.INVALID_INPUT,
+            str(run.validation),
+            f"gives observations of {sizes_of(homes.parts)}, and {run.world} of "
+            f"{sizes_of(trained.parts)}; validate in a world with the same robot",
+        )
     playable = homes.playable_episodes()
+    if not playable:
+        message = "has no episode in which the robot can start; validate in another world"
+        raise galactic.Error(galactic.ErrorCode.INVALID_INPUT, str(run.validation), message)
     episodes = playable[: settings.validation_episodes or None][group.rank :: group.size]
 
     def validate(policy: Policy) -> EpisodeSums:

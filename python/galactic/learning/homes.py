@@ -62,6 +62,11 @@ def _as_typed(error: galactic.Error, keywords: Mapping[str, Any]) -> galactic.Er
     return galactic.Error(error.code, where, error.message)
 
 
+def sizes_of(parts: Sequence[tuple[str, int]]) -> str:
+    """Names and sizes of the parts of an observation, for a sentence."""
+    return ", ".join(f"{name} ({size})" for name, size in parts)
+
+
 class Homes:
     """A galactic.VectorEnv as the trainer wants it. Observations land in the rollout: on a processor
     they are written there by the simulator's threads, on a GPU they come by pinned memory."""

@@ -22,6 +22,7 @@ import galactic
 from galactic import evaluate, export, train
 from galactic.learning import checkpoint
 from galactic.learning.distributed import device_of
+from galactic.learning.homes import Homes
 from galactic.learning.reports.curves import read_curves
 
 WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
@@ -180,6 +181,29 @@ def test_what_cannot_be_is_refused_with_a_sentence(
     done = call("train", "-o", tmp_path / "run", *arguments)
     assert message in done.stderr and "Traceback" not in done.stderr
     assert done.returncode == code
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    "name, value, message",
+    [
+        ("parts", [("joints", 4)], "gives observations of joints (4), and "),
+        ("playable_episodes", lambda: [], "has no episode in which the robot can start; validate"),
+    ],
+)
+def test_a_world_in_which_nothing_can_be_validated_is_refused_before_training(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, name: str, value: Any, message: str
+) -> None:
+    def make(world: galactic.World, *arguments: Any, **keywords: Any) -> Homes:
+        homes = Homes(world, *arguments, **keywords)
+        if world.episodes == galactic.World(HELD_OUT).episodes:
+            setattr(homes, name, value)
+        return homes
+
+    monkeypatch.setattr(train, "Homes", make)
+    done = call("train", "-o", tmp_path / "run", WORLD, *SMALL, "--validation", HELD_OUT)
+    assert done.returncode == 3
+    assert done.stderr.startswith(f"galactic.train: {HELD_OUT}: {message}")
     assert not (tmp_path / "run").exists()
 
 
