@@ -392,7 +392,7 @@ class CheckpointFolder:
     def latest(self) -> pathlib.Path:
         complete = self.complete()
         if not complete:
-            message = "holds no checkpoint to go on from; begin the run without --resume"
+            message = "holds no checkpoint to go on from; begin another run, in a folder of its own"
             raise Error(ErrorCode.IO, str(self.folder), message)
         return complete[-1]
 

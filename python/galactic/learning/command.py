@@ -15,7 +15,7 @@ from galactic.learning.settings import SettingsError, did_you_mean
 from galactic.learning.streams import put
 
 # Those of all tools of the project.
-OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL = 0, 1, 2, 3, 4
+OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL, UNSUPPORTED = 0, 1, 2, 3, 4, 5
 INTERRUPTED = 130
 EXIT_CODES = (
     "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, "
@@ -103,7 +103,9 @@ def told(
     not be told, and a code."""
     try:
         return work()
-    except _REFUSALS as error:
+    except BaseException as error:
+        if not isinstance(error, _REFUSALS) and not _is_lack_of_memory(error):
+            raise
         code, message = _told_as(error)
         if may_tell(error):
             put(sys.stderr, f"{program}: {message}\n")
@@ -121,6 +123,13 @@ _REFUSALS = (
 )
 
 
+def _is_lack_of_memory(error: BaseException) -> bool:
+    """Torch says it in words."""
+    words = ("allocate memory", "out of memory", "not enough memory")
+    is_torch = isinstance(error, RuntimeError) and any(word in str(error) for word in words)
+    return is_torch or isinstance(error, MemoryError)
+
+
 def _told_as(error: BaseException) -> tuple[int, str]:
     """Exit code and sentence."""
     if isinstance(error, SettingsError):
@@ -133,4 +142,11 @@ def _told_as(error: BaseException) -> tuple[int, str]:
         return INPUT_OUTPUT, str(error)
     if isinstance(error, KeyboardInterrupt):
         return INTERRUPTED, "interrupted"
+    if _is_lack_of_memory(error):
+        amount = re.search(r"allocate ([0-9.]+ ?(bytes|[KMGT]iB))", str(error))
+        asked = f", of which {amount[1]} more were asked for" if amount else ""
+        return (
+            UNSUPPORTED,
+            f"needs more memory than there is{asked}; take less, such as fewer --envs",
+        )
     return INTERNAL, str(error)

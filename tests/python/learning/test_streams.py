@@ -12,6 +12,8 @@ import pytest
 
 pytest.importorskip("torch", reason="torch is missing: the programs do not start")
 
+from galactic.learning.command import told  # noqa: E402
+
 WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"
 LOST = "standard output: cannot be written; check that it is open and that its disk has room\n"
 
@@ -46,6 +48,38 @@ def test_a_message_that_nobody_can_read_changes_nothing(kind: str) -> None:
     assert (done.returncode, done.stdout) == (1, "")
     done = run("export", ["none.pt", "-o", "none.pack"], "stderr", kind)
     assert (done.returncode, done.stdout) == (2, "")
+
+
+@pytest.mark.parametrize(
+    "error, asked",
+    [
+        (RuntimeError("[enforce fail at alloc_cpu.cpp:75] err == 0. DefaultCPUAllocator: can't "
+                      "allocate memory: you tried to allocate 1040 bytes. Error code 12"),
+         ", of which 1040 bytes more were asked for"),
+        (RuntimeError("CUDA out of memory. Tried to allocate 20.00 MiB (GPU 0; 79 GiB total)"),
+         ", of which 20.00 MiB more were asked for"),
+        (MemoryError("Unable to allocate 1.50 GiB for an array with shape (1048576, 64, 6)"),
+         ", of which 1.50 GiB more were asked for"),
+        (MemoryError(), ""),
+    ],
+)  # fmt: skip
+def test_a_lack_of_memory_is_a_sentence(
+    error: Exception, asked: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def work() -> int:
+        raise error
+
+    assert told("galactic.train", work) == 5
+    wanted = f"needs more memory than there is{asked}; take less, such as fewer --envs"
+    assert capsys.readouterr().err == f"galactic.train: {wanted}\n"
+
+
+def test_faults_of_the_program_are_not_told_as_such() -> None:
+    def work() -> int:
+        raise RuntimeError("The size of tensor a (78) must match the size of tensor b (81)")
+
+    with pytest.raises(RuntimeError, match="must match"):
+        told("galactic.train", work)
 
 
 @needs_world

@@ -180,7 +180,10 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
 
 
 def test_what_is_no_checkpoint_is_refused(tmp_path: pathlib.Path) -> None:
-    with pytest.raises(galactic.Error, match="holds no checkpoint to go on from"):
+    with pytest.raises(
+        galactic.Error,
+        match="holds no checkpoint to go on from; begin another run, in a folder of its own",
+    ):
         CheckpointFolder(tmp_path, 1).latest()
     (tmp_path / "policy.pt").write_bytes(b"nonsense")
     with pytest.raises(CheckpointError, match="cannot be read as a checkpoint"):
