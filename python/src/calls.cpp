@@ -105,8 +105,8 @@ void refuseOtherCalls(const py::module_& module) {
     for (const auto& [key, member] : py::dict(type.attr("__dict__"))) {
       const auto name = key.cast<std::string>();
       const bool is_called_by_name = name == "__init__" || name.front() != '_';
-      if (PyInstanceMethod_Check(member.ptr()) && is_called_by_name)
-        refuseOtherCalls(type, name, member);
+      const bool is_method = PyInstanceMethod_Check(member.ptr());
+      if (is_method && is_called_by_name) refuseOtherCalls(type, name, member);
     }
   }
 }
