@@ -144,6 +144,11 @@ def _evaluate(options: argparse.Namespace) -> int:
             f"{options.policy} was trained on observations of {sizes_of(saved.parts)}, and "
             f"{options.world} gives {sizes_of(homes.parts)}; evaluate it on worlds with the same robot"
         )
+    if not homes.are_limited:
+        raise checkpoint.CheckpointError(
+            f"{options.policy} was trained in episodes without a limit (episode-steps=0), of which an "
+            "evaluation may never end; export it, and play it with galactic-run --episode-steps N"
+        )
     episodes = homes.playable_episodes()[: options.episodes or None]
     actor = evaluation.Actor(saved.policy, deterministic=options.deterministic, seed=options.seed)
     results = evaluation.Evaluator(homes, actor).play(episodes)

@@ -229,6 +229,11 @@ def _validation(run: Run, trained: Homes, threads: int, group: Group) -> Optiona
             f"gives observations of {sizes_of(homes.parts)}, and {run.world} of "
             f"{sizes_of(trained.parts)}; validate in a world with the same robot",
         )
+    if not homes.are_limited:
+        raise SettingsError(
+            "--simulation: episode-steps is 0, and a validation of episodes without a limit may never "
+            "end; limit them, or leave out --validation"
+        )
     playable = homes.playable_episodes()
     if not playable:
         message = "has no episode in which the robot can start; validate in another world"

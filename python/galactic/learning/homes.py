@@ -149,6 +149,11 @@ class Homes:
         skipped = set(self.env.simulators[0].skipped_episodes)
         return [e for e in range(self.env.world.episodes) if e not in skipped]
 
+    @property
+    def are_limited(self) -> bool:
+        """Whether time ends an episode that nothing else ends."""
+        return bool(self.env.simulators[0].options["episode_steps"])
+
     def endings(self, half: int) -> np.ndarray:
         """How episodes ended in the last step, as numbers of EpisodeEnd; [n]."""
         return self._landings[half]["endings"]

@@ -173,6 +173,7 @@ def test_an_evaluation_replaces_none_of_its_inputs_and_outputs(
     [
         ({"simulation": "hover=3"}, 3, "--simulation: there is no option hover; did you mean"),
         ({"simulation": "envs=3"}, 3, "envs is not for --simulation"),
+        ({"simulation": "task=pick episode-steps=0"}, 3, "was trained in episodes without a limit"),
         ({"simulation": "task=cook"}, 3, "in {world}: --simulation: task: is cook, expected"),
         (
             {"network": "simple_cnn", "camera": "nose"},

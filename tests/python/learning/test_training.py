@@ -161,6 +161,11 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
         ([WORLD, *SMALL, "--simulation", "actions=paper"], 1, "actions is not for --simulation"),
         ([WORLD, *SMALL, "--simulation", "auto-reset"], 1, "auto_reset is not for --simulation"),
         (["nowhere.pack", *SMALL], 2, "nowhere.pack"),
+        (
+            [WORLD, *SMALL, "--validation", HELD_OUT, "--simulation", "episode-steps=0"],
+            1,
+            "--simulation: episode-steps is 0, and a validation of episodes without a limit may never",
+        ),
         ([WORLD, *SMALL, "--simulation", "no-such"], 1, "--simulation: there is no option no_such"),
         ([WORLD, *SMALL, "--simulation", "laser-range=nan"], 3, "laser_range: is nan, expected"),
         ([WORLD, "--preset", "quik"], 1, '"quik" is not a preset; did you mean quick?'),
