@@ -74,7 +74,6 @@ def make_parser() -> argparse.ArgumentParser:
     shown.add_argument(
         "--shown",
         type=whole(1, 1000),
-        default=8,
         metavar="N",
         help="how many episodes the pictures show (8)",
     )
@@ -95,7 +94,6 @@ def make_parser() -> argparse.ArgumentParser:
     massive.add_argument(
         "--arm",
         choices=("motors", "kinematic"),
-        default="motors",
         help="what moves the arm there (motors)",
     )
     return parser
@@ -106,7 +104,24 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     return told("galactic.evaluate", lambda: _evaluate(options))
 
 
+SHOWN = 8
+"""How many episodes pictures show, unless it is said."""
+
+
+def _require_uses(options: argparse.Namespace) -> None:
+    """Raises SettingsError for an option that nothing would come of."""
+    draws = options.contact_sheet or options.video
+    for option, value, user, what, remedy in (
+        ("--shown", options.shown, draws, "pictures", "--contact-sheet or --video"),
+        ("--arm", options.arm, options.dynamics, "dynamics", "--dynamics"),
+        ("--dynamics-data", options.dynamics_data, options.dynamics, "dynamics", "--dynamics"),
+    ):
+        if value is not None and not user:
+            raise SettingsError(f"{option} applies to {what} only; add {remedy}")
+
+
 def _evaluate(options: argparse.Namespace) -> int:
+    _require_uses(options)
     draws = options.contact_sheet or options.video
     if draws:
         pictures.require_tools(video=bool(options.video))
@@ -171,7 +186,7 @@ def _evaluate(options: argparse.Namespace) -> int:
         }
         write_json(options.report, contents)
     if draws and results:
-        chosen = pictures.choose(results, options.shown)
+        chosen = pictures.choose(results, options.shown or SHOWN)
         films = pictures.film(world, settings, actor, chosen, threads)
         if options.contact_sheet:
             pictures.write_contact_sheet(films, options.contact_sheet)
@@ -205,7 +220,7 @@ def _play_there(options: argparse.Namespace) -> dict[str, object]:
             world=options.world,
             recipe=options.dynamics,
             data=options.dynamics_data,
-            arm=options.arm,
+            arm=options.arm or "motors",
             deterministic=options.deterministic,
             seed=options.seed,
             episodes=options.episodes,

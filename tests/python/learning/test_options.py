@@ -112,5 +112,20 @@ def test_the_walk_reaches_options_that_are_taken(run: Any) -> None:
     words += ["--initial-log-std", "-5e-1", "--camera-position", "-0.1,0,.2", "--near", "0.1"]
     assert run("train", [*words, "--camera-rpy", "-.5,0,1e1"]) == (0, "")
     # The policy that is missing is looked for after the options.
-    assert run("evaluate", ["none.pt", "none.pack", "--seed", "7", "--shown", "1"])[0] == 2
+    assert run("evaluate", ["none.pt", "none.pack", "--seed", "7", "--episodes", "1"])[0] == 2
     assert run("export", ["none.pt", "-o", "out.pack", "--name", "a"])[0] == 2
+
+
+@pytest.mark.parametrize(
+    "words, what, remedy",
+    [
+        (["--shown", "3"], "pictures", "--contact-sheet or --video"),
+        (["--arm", "motors"], "dynamics", "--dynamics"),
+        (["--dynamics-data", "."], "dynamics", "--dynamics"),
+    ],
+)
+def test_an_option_that_nothing_would_come_of_is_refused(
+    run: Any, words: list[str], what: str, remedy: str
+) -> None:
+    said = f"command line: {words[0]} applies to {what} only; add {remedy}"
+    assert run("evaluate", ["none.pt", "none.pack", *words]) == (1, f"galactic.evaluate: {said}\n")
