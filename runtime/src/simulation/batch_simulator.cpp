@@ -88,7 +88,7 @@ class BatchSimulator::Impl {
     assert(episodes.size() == model_.options.envs);
     for (std::size_t env = 0; env < episodes.size(); ++env) {
       const bool is_next = episodes[env] == kNextEpisode;
-      const std::optional<std::uint32_t> start = model_.startOf(episodes[env]);
+      const OptionalIndex start = model_.startOf(episodes[env]);
       if (!is_next && !start) continue;
       // With auto_reset the step has kept it.
       if (!model_.options.auto_reset) state_.keepFinalObservation(env);

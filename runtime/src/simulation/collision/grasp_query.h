@@ -1,11 +1,11 @@
 #pragma once
 #include <cstdint>
-#include <optional>
 
 #include "galactic/object_set.h"
 #include "galactic/pose.h"
 #include "galactic/simulation_options.h"
 #include "simulation/collision/resting_objects.h"
+#include "support/optional_index.h"
 
 namespace galactic::simulation {
 
@@ -31,14 +31,12 @@ struct GraspSphere {
 /// largest) among those that it touches; the lower index when equally near. `model(index)` and
 /// `pose(index)` are those of an object.
 template <class Model, class ObjectPose>
-[[nodiscard]] std::optional<std::uint32_t> nearestToGrasp(const RestingObjects& resting,
-                                                          const GraspSphere& sphere,
-                                                          GraspShape shape, const Model& model,
-                                                          const ObjectPose& pose) {
+[[nodiscard]] OptionalIndex nearestToGrasp(const RestingObjects& resting, const GraspSphere& sphere,
+                                           GraspShape shape, const Model& model,
+                                           const ObjectPose& pose) {
   const Vec3& center = sphere.center;
   if (shape == GraspShape::kBox) return resting.nearest(center, sphere.radius);
-  constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  std::uint32_t best = kNone;
+  OptionalIndex best;
   float least = sphere.radius * sphere.radius;
   resting.forEachInColumnOf(center, [&](std::uint32_t index) {
     const RestingBox& box = resting.box(index);
@@ -49,7 +47,7 @@ template <class Model, class ObjectPose>
     least = squared;
     best = index;
   });
-  return best == kNone ? std::nullopt : std::optional(best);
+  return best;
 }
 
 }  // namespace galactic::simulation

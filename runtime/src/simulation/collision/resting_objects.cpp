@@ -179,10 +179,9 @@ std::size_t RestingObjects::hits(const SphereBatch& spheres,
   return written;
 }
 
-std::optional<std::uint32_t> RestingObjects::nearest(const Vec3& center,
-                                                     float radius) const noexcept {
+OptionalIndex RestingObjects::nearest(const Vec3& center, float radius) const noexcept {
   assert(radius <= largest_radius_);
-  std::optional<std::uint32_t> best;
+  OptionalIndex best;
   float least = radius * radius;
   forEachInColumnOf(center, [&](std::uint32_t index) {
     const float squared = squaredDistance(boxes_[index], center);

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "simulation/collision/resting_box.h"
 #include "simulation/collision/resting_objects_kernels.h"
 #include "simulation/collision/sphere_batch.h"
+#include "support/optional_index.h"
 
 namespace galactic::simulation {
 
@@ -72,8 +72,7 @@ class RestingObjects {
 
   /// The object whose box is nearest to `center` among those that a sphere of `radius` (at most the
   /// largest) overlaps; the lower index when equally near.
-  [[nodiscard]] std::optional<std::uint32_t> nearest(const Vec3& center,
-                                                     float radius) const noexcept;
+  [[nodiscard]] OptionalIndex nearest(const Vec3& center, float radius) const noexcept;
 
   /// How far a sphere (radius at most the largest) can sink from `center` before it touches an
   /// object: 0 when it overlaps one already, infinity when nothing is under it. Exact but for

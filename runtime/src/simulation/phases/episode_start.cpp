@@ -103,7 +103,7 @@ void renewEpisodes(const ChunkStep& step) noexcept {
 
 void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   for (std::size_t n = step.first; n < std::min(step.first + kChunk, resets.size()); ++n) {
-    const std::optional<std::uint32_t> start = step.model.startOf(resets[n]);
+    const OptionalIndex start = step.model.startOf(resets[n]);
     if (start) beginEpisode(step.model, step.state, n, *start);
   }
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <optional>
 
 #include "simulation/collision/grasp_query.h"
 #include "simulation/phases/object_placement.h"
@@ -16,7 +15,7 @@ namespace {
 void grasp(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   const std::uint32_t start = step.state.env(n).start;
-  const std::optional<std::uint32_t> object = nearestToGrasp(
+  const OptionalIndex object = nearestToGrasp(
       step.state.resting(n), {gripOrigin(step.state.grip(n)), step.model.motion.grasp_radius},
       step.model.options.action.grasp_shape,
       [&](std::uint32_t index) -> const ObjectModel& { return step.model.object(start, index); },

@@ -316,10 +316,11 @@ std::optional<std::uint32_t> PlanningScene::graspedAt(const BasePlace& base) con
     return *impl_->models()[index];
   };
   const auto pose_of = [this](std::uint32_t index) -> const Pose& { return impl_->poseOf(index); };
-  return simulation::nearestToGrasp(
+  const OptionalIndex grasped = simulation::nearestToGrasp(
       impl_->resting(),
       {world_from_grip.translation, impl_->world().robot().endEffector()->grasp_radius},
       impl_->options().action.grasp_shape, model_of, pose_of);
+  return grasped ? std::optional(*grasped) : std::nullopt;
 }
 
 void PlanningScene::hold(std::uint32_t object, const BasePlace& base) { impl_->hold(object, base); }

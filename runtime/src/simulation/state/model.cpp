@@ -253,12 +253,12 @@ Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
 
 }  // namespace
 
-std::optional<std::uint32_t> Model::startOf(std::int64_t episode) const noexcept {
-  if (episode < 0) return std::nullopt;
+OptionalIndex Model::startOf(std::int64_t episode) const noexcept {
+  if (episode < 0) return {};
   const auto start = std::ranges::lower_bound(starts, episode, {}, [](const EpisodeStart& one) {
     return static_cast<std::int64_t>(one.episode);
   });
-  if (start == starts.end() || start->episode != episode) return std::nullopt;
+  if (start == starts.end() || start->episode != episode) return {};
   return static_cast<std::uint32_t>(start - starts.begin());
 }
 

@@ -18,6 +18,7 @@
 #include "simulation/motion/motion_kernels.h"
 #include "simulation/motion/motion_model.h"
 #include "simulation/ways_out/free_slices.h"
+#include "support/optional_index.h"
 
 namespace galactic::simulation {
 
@@ -92,7 +93,7 @@ struct Model {
   }
   /// The index into `starts` of the episode of this index in the world; none for a number that is
   /// no episode's, and for an episode that is skipped.
-  [[nodiscard]] std::optional<std::uint32_t> startOf(std::int64_t episode) const noexcept;
+  [[nodiscard]] OptionalIndex startOf(std::int64_t episode) const noexcept;
   /// The objects of an episode that are there, and which of them is the target.
   [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
     const std::span<const Placement> all = world->episodes().placements(episode);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 #include <random>
 #include <vector>
 
@@ -76,7 +75,7 @@ TEST(AGraspQuery, FindsTheNearestByBoxAndPlanes) {
     for (int n = 0; n < 100; ++n) {
       const Vec3 center = randomCenter(things.bodies, room, random);
       const float radius = kRadii[random() % 3];
-      std::optional<std::uint32_t> expected;
+      OptionalIndex expected;
       auto least = static_cast<double>(radius);
       double second = least;
       for (std::uint32_t object = 0; object < things.bodies.size(); ++object) {
@@ -92,7 +91,7 @@ TEST(AGraspQuery, FindsTheNearestByBoxAndPlanes) {
       const auto found = nearestToGrasp(resting, {center, radius}, GraspShape::kHull, model, pose);
       const auto by_box = nearestToGrasp(resting, {center, radius}, GraspShape::kBox, model, pose);
       ASSERT_EQ(by_box, resting.nearest(center, radius)) << "the published rule";
-      found_any.add(found.has_value());
+      found_any.add(static_cast<bool>(found));
       if (by_box) same_as_box.add(found == by_box);
       if (second - least < kTies && least > 0) continue;
       ASSERT_EQ(found, expected) << least << " " << second;

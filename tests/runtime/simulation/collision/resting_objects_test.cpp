@@ -10,7 +10,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -176,7 +175,7 @@ TEST(RestingObjects, WithoutObjectsTouchNothing) {
   const OwnedBatch batch = randomBatch({}, room, random);
   EXPECT_FALSE(objects.touches(batch.view()));
   EXPECT_TRUE(hitsOf(objects, batch.view()).empty());
-  EXPECT_EQ(objects.nearest({1, 1, 1}, 0.1F), std::nullopt);
+  EXPECT_EQ(objects.nearest({1, 1, 1}, 0.1F), OptionalIndex());
   EXPECT_EQ(objects.fall({1, 1, 1}, 0.1F), std::numeric_limits<float>::infinity());
 }
 
@@ -203,7 +202,7 @@ TEST(RestingObjects, NumbersThatAreNoneTouchNothing) {
       const OwnedBatch batch = OwnedBatch().add(0, 0.1F, {center});
       EXPECT_FALSE(objects.touches(batch.view()));
       EXPECT_TRUE(hitsOf(objects, batch.view()).empty());
-      EXPECT_EQ(objects.nearest(center, 0.1F), std::nullopt);
+      EXPECT_EQ(objects.nearest(center, 0.1F), OptionalIndex());
       // One such sphere hides no other.
       EXPECT_TRUE(objects.touches(OwnedBatch().add(0, 0.1F, {center, {0, 0, 0}}).view()));
     }
@@ -459,7 +458,7 @@ TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
     for (int n = 0; n < 100; ++n) {
       const Vec3 center = randomCenter(bodies, room, random);
       const float radius = kRadii[random() % 3];
-      std::optional<std::uint32_t> expected;
+      OptionalIndex expected;
       double least = static_cast<double>(radius);
       double second = least;
       for (std::uint32_t object = 0; object < bodies.size(); ++object) {
@@ -472,8 +471,8 @@ TEST(RestingObjects, NearestIsTheOneOfBruteForce) {
           second = std::min(second, distance);
         }
       }
-      const std::optional<std::uint32_t> found = objects.nearest(center, radius);
-      tally.add(found.has_value());
+      const OptionalIndex found = objects.nearest(center, radius);
+      tally.add(static_cast<bool>(found));
       const bool is_tie = second - least < kTies && least > 0;
       if (is_tie) continue;
       ASSERT_EQ(found, expected) << least << " " << second;
