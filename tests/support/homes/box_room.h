@@ -33,7 +33,11 @@ class BoxRoom {
   static constexpr float kSize = kSpacing * kColumns;
   static constexpr Span kHeights{-0.5F, 3};
 
-  explicit BoxRoom(std::vector<Block> blocks) : blocks_(std::move(blocks)) {
+  /// `columns`: along each edge of the same room.
+  explicit BoxRoom(std::vector<Block> blocks, std::uint32_t columns = kColumns)
+      : blocks_(std::move(blocks)),
+        columns_(columns),
+        spacing_(kSize / static_cast<float>(columns)) {
     bytes_ = buildPack(fields());
     pack_ =
         std::make_unique<PackFile>(PackFile::view(bytes_.bytes(), "room", Trust::kTrusted).value());
@@ -56,9 +60,9 @@ class BoxRoom {
   [[nodiscard]] bool isBlocked(const Point3& center, double radius) const {
     Point3 at = center;
     for (const std::size_t axis : {0U, 2U}) {
-      const double cell = std::floor(center[axis] / static_cast<double>(kSpacing));
-      if (!(cell >= 0 && cell < kColumns)) return true;
-      at[axis] = (cell + 0.5) * static_cast<double>(kSpacing);
+      const double cell = std::floor(center[axis] / static_cast<double>(spacing_));
+      if (!(cell >= 0 && cell < columns_)) return true;
+      at[axis] = (cell + 0.5) * static_cast<double>(spacing_);
     }
     if (center[1] < static_cast<double>(kHeights.lo)) return true;
     return std::any_of(blocks_.begin(), blocks_.end(),
@@ -79,14 +83,14 @@ class BoxRoom {
  private:
   [[nodiscard]] TestGrid buildGrid(float radius) const {
     GridSpec spec{.radius = radius,
-                  .spacing = kSpacing,
+                  .spacing = spacing_,
                   .heights = kHeights,
                   .quantum = 0x1p-14F,
-                  .columns_x = kColumns,
-                  .columns_z = kColumns};
+                  .columns_x = columns_,
+                  .columns_z = columns_};
     GridBuilder builder(spec);
-    for (std::uint32_t k = 0; k < kColumns; ++k) {
-      for (std::uint32_t i = 0; i < kColumns; ++i) {
+    for (std::uint32_t k = 0; k < columns_; ++k) {
+      for (std::uint32_t i = 0; i < columns_; ++i) {
         builder.column(i, k, freeSpans(i, k, static_cast<double>(radius)));
       }
     }
@@ -94,8 +98,8 @@ class BoxRoom {
   }
 
   [[nodiscard]] std::vector<Span> freeSpans(std::uint32_t i, std::uint32_t k, double radius) const {
-    const double x = (i + 0.5) * static_cast<double>(kSpacing);
-    const double z = (k + 0.5) * static_cast<double>(kSpacing);
+    const double x = (i + 0.5) * static_cast<double>(spacing_);
+    const double z = (k + 0.5) * static_cast<double>(spacing_);
     std::vector<std::array<double, 2>> blocked;
     for (const Block& block : blocks_) {
       const double aside = distance({x, static_cast<double>(block.min.y), z}, block);
@@ -120,6 +124,8 @@ class BoxRoom {
   }
 
   std::vector<Block> blocks_;
+  std::uint32_t columns_;
+  float spacing_;
   AlignedBytes bytes_;
   std::unique_ptr<PackFile> pack_;
   std::unique_ptr<Scene> scene_;

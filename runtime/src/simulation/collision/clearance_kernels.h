@@ -11,39 +11,52 @@ inline constexpr std::uint32_t kClearanceBands = 4;
 /// The same, and what is lower.
 inline constexpr std::uint32_t kClearancePlanes = kClearanceBands + 1;
 
-/// Which of eight groups of spheres are surely free.
-struct alignas(64) SureGroups {
-  /// How far each can go along both axes and still be, meters; below 0 where it is not.
-  float slack[kLanes] = {-1, -1, -1, -1, -1, -1, -1, -1};
-  /// The same as bits.
-  unsigned free = 0;
-  /// Free or not: so low that a floor not much higher would block them.
-  unsigned low = 0;
+/// The room around a cell is counted in steps, of which a cell has so many along its edge.
+inline constexpr std::uint32_t kStepsPerCell = 2;
 
-  friend bool operator==(const SureGroups&, const SureGroups&) = default;
+/// Of eight groups of spheres, how many steps each can go one way along an axis and still be surely
+/// free; of those that are not, any number.
+struct alignas(32) SlackOfGroups {
+  float values[kLanes];
 };
 
-/// Columns of a grid along the edge of a cell. A power of two: no rounding tells a sphere's cell
-/// from its column's.
-inline constexpr std::uint32_t kColumnsPerCell = 2;
+/// Which of eight groups of spheres are surely free.
+struct alignas(64) SureGroups {
+  /// Down and up X, down and up Z.
+  SlackOfGroups down_x, up_x, down_z, up_z;
+  /// Those that are, as bits.
+  unsigned free = 0;
+};
 
-/// What the distance stored for a cell, in columns, has to exceed by what the spheres' bounds reach
-/// beyond the cell: its own columns count one, and the rest is more than any rounding.
-inline constexpr float kBeyondReach = 1.01F;
+/// What is free around a cell: a rectangle in which nothing stands higher than some height. Of each
+/// side four bits, how many steps it reaches beyond the cell, and one more; 0 where the cell itself
+/// is not free.
+using RoomAround = std::uint16_t;
+inline constexpr std::uint32_t kMostRoom = 15;
+/// The bits of a side, counted from the first.
+inline constexpr int kRoomBits = 4;
+inline constexpr int kRoomDownX = 0;
+inline constexpr int kRoomUpX = kRoomBits;
+inline constexpr int kRoomDownZ = 2 * kRoomBits;
+inline constexpr int kRoomUpZ = 3 * kRoomBits;
+
+/// What is taken from each slack after a move, in steps: more than any rounding.
+inline constexpr float kMoveRounding = 0.01F;
 
 /// What eight groups of spheres ask the maps of one floor: one lane for each group. Plain arrays,
 /// which the kernels load.
 struct alignas(32) ClearanceLanes {
   float min_x[kLanes], min_z[kLanes];
-  /// Cells for each meter, and the edge of a column, meters.
-  float inverse_cell[kLanes], column[kLanes];
-  float cells_x[kLanes], cells_z[kLanes];
-  /// Heights between which centers have to be, meters; below `low` they are low.
+  /// Steps for each meter, and of the whole map.
+  float inverse_step[kLanes];
+  float steps_x[kLanes], steps_z[kLanes];
+  /// Heights between which centers have to be, meters; below `low`, no band clears them.
   float lowest[kLanes], low[kLanes], highest[kLanes];
   /// The height of the lowest band, and bands for each meter.
   float band_from[kLanes], inverse_band[kLanes];
-  /// Bytes: of what is lower than all bands, and from there to the lowest band, from band to band.
-  std::int32_t first[kLanes], band_bytes[kLanes];
+  /// Cells: the first of what is lower than all bands, and from there to the lowest band, from band
+  /// to band.
+  std::int32_t first[kLanes], band_cells[kLanes];
   std::int32_t tiles_x[kLanes];
 };
 
@@ -56,12 +69,20 @@ struct ClearanceQuestion {
 /// The kernels of surelyFree(): the same answers on any processor and, eight lanes at a time, with
 /// AVX2. `stride`: from one bound to the next.
 void surelyFreePortable(const ClearanceQuestion* questions, std::size_t count,
-                        const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept;
-void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
-                    const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept;
+                        const RoomAround* cells, std::size_t stride, SureGroups* sure) noexcept;
+void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count, const RoomAround* cells,
+                    std::size_t stride, SureGroups* sure) noexcept;
 
-/// The groups, as bits, that can go so far along both axes, meters, and still be surely free.
-[[nodiscard]] unsigned freeWithinPortable(const SureGroups& sure, float reach) noexcept;
-[[nodiscard]] unsigned freeWithinAvx2(const SureGroups& sure, float reach) noexcept;
+/// As surelyFree() for eight groups that have the same bounds: those that are, as bits.
+[[nodiscard]] unsigned boxSurelyFreePortable(const ClearanceLanes& lanes, const RoomAround* cells,
+                                             const CenterBounds& bounds) noexcept;
+[[nodiscard]] unsigned boxSurelyFreeAvx2(const ClearanceLanes& lanes, const RoomAround* cells,
+                                         const CenterBounds& bounds) noexcept;
+
+/// The groups, as bits, that are surely free after a move along X and Z, too, meters.
+[[nodiscard]] unsigned freeAfterPortable(const ClearanceLanes& lanes, const SureGroups& sure,
+                                         float x, float z) noexcept;
+[[nodiscard]] unsigned freeAfterAvx2(const ClearanceLanes& lanes, const SureGroups& sure, float x,
+                                     float z) noexcept;
 
 }  // namespace galactic::simulation

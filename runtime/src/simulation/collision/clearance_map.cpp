@@ -11,7 +11,7 @@
 namespace galactic::simulation {
 namespace {
 
-/// Cells along the edge of a tile: 64 bytes.
+/// Cells along the edge of a tile.
 constexpr std::uint32_t kTileEdge = 8;
 /// What a band's height and the spheres that it clears differ by at least, meters: more than any
 /// rounding.
@@ -33,16 +33,30 @@ struct Heights {
   }
 };
 
+/// Columns along a step: enough to count room that reaches far, and a power of two, so that no
+/// rounding tells a sphere's cell from its column's.
+std::uint32_t columnsOfStep(float spacing) {
+  constexpr float kFar = 0.25F;
+  constexpr std::uint32_t kMost = 64;
+  std::uint32_t columns = 1;
+  while (columns < kMost && static_cast<float>(kMostRoom * columns) * spacing < kFar) columns *= 2;
+  return columns;
+}
+
 /// Cells of one radius, row by row.
 struct Cells {
   std::uint32_t x = 0;
   std::uint32_t z = 0;
+  /// Columns along a step.
+  std::uint32_t step = 1;
 
-  [[nodiscard]] std::uint32_t columnsX() const { return x * kColumnsPerCell; }
-  [[nodiscard]] std::uint32_t columnsZ() const { return z * kColumnsPerCell; }
+  /// Columns along the edge of a cell.
+  [[nodiscard]] std::uint32_t edge() const { return step * kStepsPerCell; }
+  [[nodiscard]] std::uint32_t columnsX() const { return x * edge(); }
+  [[nodiscard]] std::uint32_t columnsZ() const { return z * edge(); }
   [[nodiscard]] std::uint32_t tilesX() const { return (x + kTileEdge - 1) / kTileEdge; }
   [[nodiscard]] std::uint32_t tilesZ() const { return (z + kTileEdge - 1) / kTileEdge; }
-  [[nodiscard]] std::uint32_t bytes() const { return tilesX() * tilesZ() * kTileEdge * kTileEdge; }
+  [[nodiscard]] std::uint32_t count() const { return tilesX() * tilesZ() * kTileEdge * kTileEdge; }
   [[nodiscard]] std::size_t tiled(std::uint32_t i, std::uint32_t k) const {
     const std::uint32_t tile = k / kTileEdge * tilesX() + i / kTileEdge;
     return (std::size_t{tile} * kTileEdge + k % kTileEdge) * kTileEdge + i % kTileEdge;
@@ -50,8 +64,10 @@ struct Cells {
 };
 
 Cells cellsOf(const ColumnGrid& grid) {
-  return {(grid.columnsX() + kColumnsPerCell - 1) / kColumnsPerCell,
-          (grid.columnsZ() + kColumnsPerCell - 1) / kColumnsPerCell};
+  Cells cells{.step = columnsOfStep(grid.spacing())};
+  cells.x = (grid.columnsX() + cells.edge() - 1) / cells.edge();
+  cells.z = (grid.columnsZ() + cells.edge() - 1) / cells.edge();
+  return cells;
 }
 
 /// For each column of the cells the height from which on it is free up to `highest`; infinity where
@@ -81,45 +97,89 @@ std::vector<float> lowestFree(const ColumnGrid& grid, const Cells& cells, float 
   return lowest;
 }
 
-/// To each column the distance, in moves of a chess king, to the nearest that is not clear or
-/// outside; 255 where it is farther. One sweep down and one up (Rosenfeld and Pfaltz 1968).
-void spreadDistances(const Cells& cells, std::vector<std::uint8_t>& distance) {
-  // A border of zeros around the columns spares all questions about neighbors.
-  const std::size_t row = std::size_t{cells.columnsX()} + 2;
-  const auto sweep = [&](std::size_t n, std::ptrdiff_t sign) {
-    const auto step = static_cast<std::ptrdiff_t>(row);
-    std::uint8_t* at = distance.data() + n;
-    const int before =
-        std::min({at[-sign], at[-sign * step - 1], at[-sign * step], at[-sign * step + 1]});
-    *at = static_cast<std::uint8_t>(std::min(static_cast<int>(*at), std::min(before, 254) + 1));
-  };
-  for (std::size_t k = 1; k <= cells.columnsZ(); ++k) {
-    for (std::size_t i = 1; i <= cells.columnsX(); ++i) sweep(k * row + i, 1);
-  }
-  for (std::size_t k = cells.columnsZ(); k > 0; --k) {
-    for (std::size_t i = cells.columnsX(); i > 0; --i) sweep(k * row + i, -1);
-  }
-}
-
-/// The least distance of the columns of each cell in one plane, tile by tile, to `out`.
-void fillPlane(const Cells& cells, std::span<const float> lowest_free, float low,
-               std::span<std::uint8_t> out) {
-  const std::uint32_t columns = cells.columnsX();
-  const std::size_t row = std::size_t{columns} + 2;
-  std::vector<std::uint8_t> distance(row * (std::size_t{cells.columnsZ()} + 2));
-  const auto at = [row](std::uint32_t i, std::uint32_t k) { return (k + 1) * row + i + 1; };
-  for (std::uint32_t k = 0; k < cells.columnsZ(); ++k) {
-    for (std::uint32_t i = 0; i < columns; ++i) {
-      const bool is_clear = lowest_free[std::size_t{k} * columns + i] <= low - kSlack;
-      distance[at(i, k)] = is_clear ? std::uint8_t{255} : std::uint8_t{0};
+/// How many columns of a rectangle are not clear: sums over all columns before each, along both
+/// axes (Crow 1984). What lies outside of the grid is not clear.
+class NotClear {
+ public:
+  NotClear(const Cells& cells, std::span<const float> lowest_free, float low)
+      : columns_x_(cells.columnsX()),
+        columns_z_(cells.columnsZ()),
+        sums_(std::size_t{columns_x_ + 1} * (columns_z_ + 1)) {
+    for (std::uint32_t k = 0; k < columns_z_; ++k) {
+      std::uint32_t row = 0;
+      for (std::uint32_t i = 0; i < columns_x_; ++i) {
+        const bool is_clear = lowest_free[std::size_t{k} * columns_x_ + i] <= low - kSlack;
+        row += is_clear ? 0U : 1U;
+        sums_[at(i + 1, k + 1)] = sums_[at(i + 1, k)] + row;
+      }
     }
   }
-  spreadDistances(cells, distance);
-  std::ranges::fill(out, std::uint8_t{255});
-  for (std::uint32_t k = 0; k < cells.columnsZ(); ++k) {
-    for (std::uint32_t i = 0; i < columns; ++i) {
-      std::uint8_t& least = out[cells.tiled(i / kColumnsPerCell, k / kColumnsPerCell)];
-      least = std::min(least, distance[at(i, k)]);
+
+  /// Whether all columns from (x, z) up to (end_x, end_z) are clear.
+  [[nodiscard]] bool none(std::int64_t x, std::int64_t end_x, std::int64_t z,
+                          std::int64_t end_z) const {
+    if (x < 0 || z < 0 || end_x > columns_x_ || end_z > columns_z_) return false;
+    return sums_[at(end_x, end_z)] - sums_[at(x, end_z)] == sums_[at(end_x, z)] - sums_[at(x, z)];
+  }
+
+ private:
+  [[nodiscard]] std::size_t at(std::int64_t i, std::int64_t k) const {
+    return static_cast<std::size_t>(k) * (columns_x_ + 1) + static_cast<std::size_t>(i);
+  }
+
+  std::uint32_t columns_x_, columns_z_;
+  std::vector<std::uint32_t> sums_;
+};
+
+/// The largest square around a cell that is clear, which then grows by a step on each side after
+/// the other, where there is room beside it.
+RoomAround roomAround(const Cells& cells, const NotClear& not_clear, std::uint32_t i,
+                      std::uint32_t k) {
+  const std::int64_t step = cells.step;
+  std::int64_t x = std::int64_t{i} * cells.edge();
+  std::int64_t z = std::int64_t{k} * cells.edge();
+  std::int64_t end_x = x + cells.edge();
+  std::int64_t end_z = z + cells.edge();
+  const auto is_clear_around = [&](std::int64_t by) {
+    return not_clear.none(x - by, end_x + by, z - by, end_z + by);
+  };
+  if (!is_clear_around(0)) return 0;
+  std::int64_t square = 0;
+  for (std::int64_t blocked = kMostRoom; blocked - square > 1;) {
+    const std::int64_t between = (square + blocked) / 2;
+    (is_clear_around(between * step) ? square : blocked) = between;
+  }
+  x -= square * step;
+  z -= square * step;
+  end_x += square * step;
+  end_z += square * step;
+  RoomAround room = 0;
+  const auto add = [&](int side, std::int64_t steps) {
+    room = static_cast<RoomAround>(room + (steps << side));
+  };
+  for (const int side : {kRoomDownX, kRoomUpX, kRoomDownZ, kRoomUpZ}) add(side, square + 1);
+  const auto grow = [&](int side, bool is_clear, std::int64_t& border, std::int64_t by) {
+    if (!is_clear || (static_cast<unsigned>(room) >> side & kMostRoom) == kMostRoom) return false;
+    border += by;
+    add(side, 1);
+    return true;
+  };
+  for (bool grows = true; grows;) {
+    grows = grow(kRoomDownX, not_clear.none(x - step, x, z, end_z), x, -step);
+    grows |= grow(kRoomUpX, not_clear.none(end_x, end_x + step, z, end_z), end_x, step);
+    grows |= grow(kRoomDownZ, not_clear.none(x, end_x, z - step, z), z, -step);
+    grows |= grow(kRoomUpZ, not_clear.none(x, end_x, end_z, end_z + step), end_z, step);
+  }
+  return room;
+}
+
+/// The room around each cell in one plane, tile by tile, to `out`.
+void fillPlane(const Cells& cells, std::span<const float> lowest_free, float low,
+               std::span<RoomAround> out) {
+  const NotClear not_clear(cells, lowest_free, low);
+  for (std::uint32_t k = 0; k < cells.z; ++k) {
+    for (std::uint32_t i = 0; i < cells.x; ++i) {
+      out[cells.tiled(i, k)] = roomAround(cells, not_clear, i, k);
     }
   }
 }
@@ -140,7 +200,8 @@ std::size_t ClearanceMaps::bytesFor(const Scene& scene) const {
   std::size_t bytes = 0;
   for (std::uint32_t radius = 0; radius < scene.grids().size(); ++radius) {
     if (std::ranges::find(radius_of_lane_, radius) == radius_of_lane_.end()) continue;
-    bytes += std::size_t{kClearancePlanes} * cellsOf(scene.grids()[radius]).bytes();
+    bytes +=
+        std::size_t{kClearancePlanes} * cellsOf(scene.grids()[radius]).count() * sizeof(RoomAround);
   }
   return bytes;
 }
@@ -148,11 +209,11 @@ std::size_t ClearanceMaps::bytesFor(const Scene& scene) const {
 std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenness,
                                  const HeightsOverFloor& heights,
                                  std::span<const float> lowest_of_radius) {
-  if (cells_.size() + bytesFor(scene) > most_bytes_) return kNoClearanceMap;
+  if (cells_.size() * sizeof(RoomAround) + bytesFor(scene) > most_bytes_) return kNoClearanceMap;
   const std::size_t map = lanes_.size() / std::max<std::size_t>(eights_, 1);
   lanes_.resize(lanes_.size() + eights_);
   const std::span<ClearanceLanes> lanes = std::span(lanes_).last(eights_);
-  constexpr std::size_t kReadBeyond = 3;
+  constexpr std::size_t kReadBeyond = 1;
   for (std::uint32_t radius = 0; radius < scene.grids().size(); ++radius) {
     if (std::ranges::find(radius_of_lane_, radius) == radius_of_lane_.end()) continue;
     const ColumnGrid& grid = scene.grids()[radius];
@@ -169,11 +230,11 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
     const Cells cells = cellsOf(grid);
     const std::vector<float> lowest_free = lowestFree(grid, cells, highest);
     const std::size_t first = cells_.empty() ? 0 : cells_.size() - kReadBeyond;
-    cells_.resize(first + std::size_t{kClearancePlanes} * cells.bytes() + kReadBeyond);
+    cells_.resize(first + std::size_t{kClearancePlanes} * cells.count() + kReadBeyond);
     for (std::uint32_t plane = 0; plane < kClearancePlanes; ++plane) {
       fillPlane(
           cells, lowest_free, asked.lowOf(plane),
-          std::span(cells_).subspan(first + std::size_t{plane} * cells.bytes(), cells.bytes()));
+          std::span(cells_).subspan(first + std::size_t{plane} * cells.count(), cells.count()));
     }
     for (std::size_t n = 0; n < radius_of_lane_.size(); ++n) {
       if (radius_of_lane_[n] != radius) continue;
@@ -181,17 +242,16 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
       const std::size_t lane = n % kLanes;
       to.min_x[lane] = grid.layout().min_x;
       to.min_z[lane] = grid.layout().min_z;
-      to.inverse_cell[lane] = grid.layout().inverse_spacing / static_cast<float>(kColumnsPerCell);
-      to.column[lane] = grid.layout().spacing;
-      to.cells_x[lane] = static_cast<float>(cells.x);
-      to.cells_z[lane] = static_cast<float>(cells.z);
+      to.inverse_step[lane] = grid.layout().inverse_spacing / static_cast<float>(cells.step);
+      to.steps_x[lane] = static_cast<float>(cells.x * kStepsPerCell);
+      to.steps_z[lane] = static_cast<float>(cells.z * kStepsPerCell);
       to.lowest[lane] = asked.lowest;
       to.low[lane] = asked.low;
       to.highest[lane] = asked.highest;
       to.band_from[lane] = asked.band_from;
       to.inverse_band[lane] = 1 / asked.band_height;
       to.first[lane] = static_cast<std::int32_t>(first);
-      to.band_bytes[lane] = static_cast<std::int32_t>(cells.bytes());
+      to.band_cells[lane] = static_cast<std::int32_t>(cells.count());
       to.tiles_x[lane] = static_cast<std::int32_t>(cells.tilesX());
     }
   }
@@ -224,8 +284,20 @@ void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t 
   }
 }
 
-unsigned ClearanceMaps::freeWithin(const SureGroups& sure, float reach) noexcept {
-  return detail::hasAvx2() ? freeWithinAvx2(sure, reach) : freeWithinPortable(sure, reach);
+unsigned ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight,
+                                   const CenterBounds& bounds) const noexcept {
+  if (map == kNoClearanceMap) return 0;
+  const ClearanceLanes& lanes = lanes_[map * eights_ + eight];
+  return detail::hasAvx2() ? boxSurelyFreeAvx2(lanes, cells_.data(), bounds)
+                           : boxSurelyFreePortable(lanes, cells_.data(), bounds);
+}
+
+unsigned ClearanceMaps::freeAfter(std::uint32_t map, std::size_t eight, const SureGroups& sure,
+                                  float x, float z) const noexcept {
+  if (map == kNoClearanceMap) return 0;
+  const ClearanceLanes& lanes = lanes_[map * eights_ + eight];
+  return detail::hasAvx2() ? freeAfterAvx2(lanes, sure, x, z)
+                           : freeAfterPortable(lanes, sure, x, z);
 }
 
 void ClearanceMaps::answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
@@ -236,48 +308,55 @@ void ClearanceMaps::answer(std::span<const ClearanceQuestion> questions, std::si
 
 namespace {
 
-/// How many columns bounds reach beyond a cell along one axis. `edge`: theirs, in cells. `part`:
-/// where in its cell their middle is, 0 to 1.
-float reachBeyond(float edge, float part) {
-  constexpr auto kColumns = static_cast<float>(kColumnsPerCell);
-  const float to_border = 1 - part < part ? 1 - part : part;
-  return kColumns * (0.5F * edge - to_border);
+/// How far room reaches on one side, in steps from the middle of its cell.
+float roomOn(int side, RoomAround room) {
+  return static_cast<float>(static_cast<unsigned>(room) >> side & kMostRoom);
 }
 
-SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, const float* bounds,
+SureGroups surelyFree(const ClearanceLanes& lanes, const RoomAround* cells, const float* bounds,
                       std::size_t stride) {
   SureGroups sure;
   for (std::size_t n = 0; n < kLanes; ++n) {
-    const float* at = bounds + n;
-    const bool is_low = !(at[2 * stride] >= lanes.low[n]);
-    if (is_low) sure.low |= 1U << n;
-    const float x = (0.5F * (at[0] + at[stride]) - lanes.min_x[n]) * lanes.inverse_cell[n];
-    const float z =
-        (0.5F * (at[4 * stride] + at[5 * stride]) - lanes.min_z[n]) * lanes.inverse_cell[n];
-    const bool inside = x >= 0 && x < lanes.cells_x[n] && z >= 0 && z < lanes.cells_z[n] &&
-                        at[2 * stride] >= lanes.lowest[n] && at[3 * stride] <= lanes.highest[n];
+    const auto steps = [&](std::size_t bound, float from) {
+      return (bounds[bound * stride + n] - from) * lanes.inverse_step[n];
+    };
+    const float least_x = steps(0, lanes.min_x[n]);
+    const float most_x = steps(1, lanes.min_x[n]);
+    const float least_z = steps(4, lanes.min_z[n]);
+    const float most_z = steps(5, lanes.min_z[n]);
+    const float x = 0.5F * (least_x + most_x);
+    const float z = 0.5F * (least_z + most_z);
+    const float least_y = bounds[2 * stride + n];
+    const float most_y = bounds[3 * stride + n];
+    const bool inside = x >= 0 && x < lanes.steps_x[n] && z >= 0 && z < lanes.steps_z[n] &&
+                        least_y >= lanes.lowest[n] && most_y <= lanes.highest[n];
     if (!inside) continue;
-    const auto i = static_cast<std::uint32_t>(x);
-    const auto k = static_cast<std::uint32_t>(z);
-    const float above = (at[2 * stride] - lanes.band_from[n]) * lanes.inverse_band[n];
-    const std::int32_t plane = is_low ? 0
-                                      : std::min(static_cast<std::int32_t>(above) + 1,
-                                                 static_cast<std::int32_t>(kClearancePlanes) - 1);
+    const auto i = static_cast<std::uint32_t>(x) / kStepsPerCell;
+    const auto k = static_cast<std::uint32_t>(z) / kStepsPerCell;
+    const float above = (least_y - lanes.band_from[n]) * lanes.inverse_band[n];
+    const std::int32_t plane = least_y >= lanes.low[n]
+                                   ? std::min(static_cast<std::int32_t>(above) + 1,
+                                              static_cast<std::int32_t>(kClearancePlanes) - 1)
+                                   : 0;
     const std::uint32_t tile =
         k / kTileEdge * static_cast<std::uint32_t>(lanes.tiles_x[n]) + i / kTileEdge;
     const std::size_t cell =
         (std::size_t{tile} * kTileEdge + k % kTileEdge) * kTileEdge + i % kTileEdge;
-    const std::uint8_t distance =
-        cells[static_cast<std::size_t>(lanes.first[n] + plane * lanes.band_bytes[n]) + cell];
-    const float wide = (at[stride] - at[0]) * lanes.inverse_cell[n];
-    const float deep = (at[5 * stride] - at[4 * stride]) * lanes.inverse_cell[n];
-    const float along_x = reachBeyond(wide, x - static_cast<float>(i));
-    const float along_z = reachBeyond(deep, z - static_cast<float>(k));
-    const float reach = along_z > along_x ? along_z : along_x;
-    const float slack = static_cast<float>(distance) - (reach + kBeyondReach);
-    if (!(slack >= 0)) continue;
-    sure.free |= 1U << n;
-    sure.slack[n] = slack * lanes.column[n];
+    const RoomAround room =
+        cells[static_cast<std::size_t>(lanes.first[n] + plane * lanes.band_cells[n]) + cell];
+    // What room is counted from: a cell that is not free has none.
+    const auto middle_x = static_cast<float>(i * kStepsPerCell + 1);
+    const auto middle_z = static_cast<float>(k * kStepsPerCell + 1);
+    const float down_x = least_x - (middle_x - roomOn(kRoomDownX, room));
+    const float up_x = middle_x + roomOn(kRoomUpX, room) - most_x;
+    const float down_z = least_z - (middle_z - roomOn(kRoomDownZ, room));
+    const float up_z = middle_z + roomOn(kRoomUpZ, room) - most_z;
+    sure.down_x.values[n] = down_x;
+    sure.up_x.values[n] = up_x;
+    sure.down_z.values[n] = down_z;
+    sure.up_z.values[n] = up_z;
+    const bool is_free = down_x > 0 && up_x > 0 && down_z > 0 && up_z > 0;
+    sure.free |= (is_free ? 1U : 0U) << n;
   }
   return sure;
 }
@@ -285,16 +364,33 @@ SureGroups surelyFree(const ClearanceLanes& lanes, const std::uint8_t* cells, co
 }  // namespace
 
 void surelyFreePortable(const ClearanceQuestion* questions, std::size_t count,
-                        const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept {
+                        const RoomAround* cells, std::size_t stride, SureGroups* sure) noexcept {
   for (std::size_t n = 0; n < count; ++n) {
     sure[n] = surelyFree(*questions[n].lanes, cells, questions[n].bounds, stride);
   }
 }
 
-unsigned freeWithinPortable(const SureGroups& sure, float reach) noexcept {
+unsigned boxSurelyFreePortable(const ClearanceLanes& lanes, const RoomAround* cells,
+                               const CenterBounds& bounds) noexcept {
+  std::array<float, kBounds * kLanes> of_all;
+  for (std::size_t n = 0; n < of_all.size(); ++n) of_all[n] = bounds.values[n / kLanes];
+  return surelyFree(lanes, cells, of_all.data(), kLanes).free;
+}
+
+unsigned freeAfterPortable(const ClearanceLanes& lanes, const SureGroups& sure, float x,
+                           float z) noexcept {
   unsigned free = 0;
-  for (std::size_t n = 0; n < kLanes; ++n) free |= (sure.slack[n] >= reach ? 1U : 0U) << n;
-  return free;
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    const float by_x = x * lanes.inverse_step[n];
+    const float by_z = z * lanes.inverse_step[n];
+    const auto goes = [n](const SlackOfGroups& slack, float by) {
+      return slack.values[n] >= by + kMoveRounding;
+    };
+    const bool is_free = goes(sure.down_x, -by_x) && goes(sure.up_x, by_x) &&
+                         goes(sure.down_z, -by_z) && goes(sure.up_z, by_z);
+    free |= (is_free ? 1U : 0U) << n;
+  }
+  return free & sure.free;
 }
 
 }  // namespace galactic::simulation

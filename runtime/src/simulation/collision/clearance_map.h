@@ -12,13 +12,12 @@ namespace galactic::simulation {
 
 // How most spheres are known to be free without a look at their columns.
 //
-// Around each place of a scene's floor there is a square in which nothing stands higher than some
-// height. A map stores how many columns that square reaches beyond each cell, for a few heights
-// (bands) and each radius of the robot: one byte per cell and band, from a chessboard distance
-// transform of the columns (Rosenfeld and Pfaltz 1968). Eight spheres whose bounds lie within the
-// square, and between the band's height and the map's highest one, are free: one look-up answers
-// for eight columns. A map only ever says "surely free"; wherever it does not, the columns are
-// asked, so no answer depends on it.
+// Around each place of a scene's floor there is a rectangle in which nothing stands higher than
+// some height. A map stores how far that rectangle reaches beyond each cell on each side, for a few
+// heights (bands) and each radius of the robot: two bytes per cell and band. Eight spheres whose
+// bounds lie within the rectangle, and between the band's height and the map's highest one, are
+// free: one look-up answers for eight columns. A map only ever says "surely free"; wherever it does
+// not, the columns are asked.
 //
 // Floors differ by what lies on them: a rug. What is so low that a rug would block it gets a band
 // of its own, which is clear where there is none.
@@ -74,9 +73,14 @@ class ClearanceMaps {
                   std::size_t env_stride, std::span<SureGroups> sure) const noexcept;
   static constexpr std::size_t kMostAsked = 16;
 
-  /// The groups, as bits, that are surely free wherever they go no further than so far along both
-  /// axes, meters.
-  [[nodiscard]] static unsigned freeWithin(const SureGroups& sure, float reach) noexcept;
+  /// Which of eight groups are surely free that have the same bounds, as bits.
+  [[nodiscard]] unsigned surelyFree(std::uint32_t map, std::size_t eight,
+                                    const CenterBounds& bounds) const noexcept;
+
+  /// The groups, as bits, that are surely free after a move along X and Z, too, meters. `sure`:
+  /// what surelyFree() said of them.
+  [[nodiscard]] unsigned freeAfter(std::uint32_t map, std::size_t eight, const SureGroups& sure,
+                                   float x, float z) const noexcept;
 
   /// How many eights of lanes there are.
   [[nodiscard]] std::size_t eights() const { return eights_; }
@@ -93,8 +97,8 @@ class ClearanceMaps {
   std::size_t most_bytes_ = kMostBytes;
   /// Shape: maps x eights_.
   std::vector<ClearanceLanes> lanes_;
-  /// Of all maps, and three bytes more than that: look-ups read four at a time.
-  std::vector<std::uint8_t> cells_;
+  /// Of all maps, and one more: look-ups read two at a time.
+  std::vector<RoomAround> cells_;
 };
 
 }  // namespace galactic::simulation

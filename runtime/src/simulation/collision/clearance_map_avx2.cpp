@@ -9,24 +9,19 @@
 namespace galactic::simulation {
 namespace {
 
-__m256 half(__m256 a, __m256 b) { return _mm256_mul_ps(_mm256_set1_ps(0.5F), _mm256_add_ps(a, b)); }
-
 __m256 both(__m256 a, __m256 b) { return _mm256_and_ps(a, b); }
 
 __m256 atLeast(__m256 a, __m256 b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
-
-/// See reachBeyond() in clearance_map.cpp.
-__m256 reachBeyond(__m256 edge, __m256 part) {
-  const __m256 to_border = _mm256_min_ps(_mm256_sub_ps(_mm256_set1_ps(1), part), part);
-  return _mm256_mul_ps(_mm256_set1_ps(kColumnsPerCell),
-                       _mm256_sub_ps(_mm256_mul_ps(_mm256_set1_ps(0.5F), edge), to_border));
-}
 
 __m256i integers(const std::int32_t* from) {
   return _mm256_load_si256(reinterpret_cast<const __m256i*>(from));
 }
 
-/// Where the bytes of eight cells are, in tiles of eight by eight.
+void store(std::int32_t* to, __m256i value) {
+  _mm256_store_si256(reinterpret_cast<__m256i*>(to), value);
+}
+
+/// Where eight cells are, in tiles of eight by eight. `i`, `k`: theirs.
 __m256i cellIndex(__m256i i, __m256i k, __m256i tiles_x) {
   const __m256i in_tile = _mm256_set1_epi32(7);
   const __m256i tile = _mm256_add_epi32(_mm256_mullo_epi32(_mm256_srli_epi32(k, 3), tiles_x),
@@ -36,79 +31,121 @@ __m256i cellIndex(__m256i i, __m256i k, __m256i tiles_x) {
                          _mm256_or_si256(row, _mm256_and_si256(i, in_tile)));
 }
 
-/// Eight groups on the way to an answer.
+/// Eight groups on the way to an answer; all but the indices in steps.
 struct alignas(32) Asked {
-  /// Where the distances of their cells are; 0 for those elsewhere.
+  float least_x[kLanes], most_x[kLanes], least_z[kLanes], most_z[kLanes];
+  /// The middle of the cell of each.
+  std::int32_t middle_x[kLanes], middle_z[kLanes];
+  /// Their cells; 0 for those elsewhere.
   std::int32_t index[kLanes];
-  /// What the distance has to be at least, in columns.
-  float needed[kLanes];
   /// All bits of those inside of the map.
   float inside[kLanes];
 };
 
-[[gnu::always_inline]] inline void ask(const ClearanceLanes& lanes, const float* bounds,
-                                       std::size_t stride, Asked& asked, SureGroups& sure) {
-  const __m256 least_x = _mm256_loadu_ps(bounds);
-  const __m256 most_x = _mm256_loadu_ps(bounds + stride);
-  const __m256 least_y = _mm256_loadu_ps(bounds + 2 * stride);
-  const __m256 most_y = _mm256_loadu_ps(bounds + 3 * stride);
-  const __m256 least_z = _mm256_loadu_ps(bounds + 4 * stride);
-  const __m256 most_z = _mm256_loadu_ps(bounds + 5 * stride);
-  const __m256 inverse_cell = _mm256_load_ps(lanes.inverse_cell);
-  const __m256 x = _mm256_mul_ps(_mm256_sub_ps(half(least_x, most_x), _mm256_load_ps(lanes.min_x)),
-                                 inverse_cell);
-  const __m256 z = _mm256_mul_ps(_mm256_sub_ps(half(least_z, most_z), _mm256_load_ps(lanes.min_z)),
-                                 inverse_cell);
-  const __m256 zero = _mm256_setzero_ps();
-  const __m256 over =
-      both(both(atLeast(x, zero), _mm256_cmp_ps(x, _mm256_load_ps(lanes.cells_x), _CMP_LT_OQ)),
-           both(atLeast(z, zero), _mm256_cmp_ps(z, _mm256_load_ps(lanes.cells_z), _CMP_LT_OQ)));
-  const __m256 inside = both(over, both(atLeast(least_y, _mm256_load_ps(lanes.lowest)),
-                                        atLeast(_mm256_load_ps(lanes.highest), most_y)));
-  const __m256i mask = _mm256_castps_si256(inside);
-  // Lanes elsewhere read byte 0; their answer is no.
-  const __m256 above = _mm256_mul_ps(_mm256_sub_ps(least_y, _mm256_load_ps(lanes.band_from)),
+/// Bounds of eight groups.
+struct Bounds {
+  __m256 least_x, most_x, least_y, most_y, least_z, most_z;
+};
+
+[[gnu::always_inline]] inline Bounds boundsAt(const float* from, std::size_t stride) {
+  return {_mm256_loadu_ps(from),
+          _mm256_loadu_ps(from + stride),
+          _mm256_loadu_ps(from + 2 * stride),
+          _mm256_loadu_ps(from + 3 * stride),
+          _mm256_loadu_ps(from + 4 * stride),
+          _mm256_loadu_ps(from + 5 * stride)};
+}
+
+/// The same bounds for all.
+[[gnu::always_inline]] inline Bounds boundsOfAll(const float* from) {
+  return {_mm256_broadcast_ss(from),     _mm256_broadcast_ss(from + 1),
+          _mm256_broadcast_ss(from + 2), _mm256_broadcast_ss(from + 3),
+          _mm256_broadcast_ss(from + 4), _mm256_broadcast_ss(from + 5)};
+}
+
+[[gnu::always_inline]] inline __m256 steps(__m256 bound, __m256 from, __m256 inverse_step) {
+  return _mm256_mul_ps(_mm256_sub_ps(bound, from), inverse_step);
+}
+
+[[gnu::always_inline]] inline __m256 isWithin(__m256 value, const float* end) {
+  return both(atLeast(value, _mm256_setzero_ps()),
+              _mm256_cmp_ps(value, _mm256_load_ps(end), _CMP_LT_OQ));
+}
+
+[[gnu::always_inline]] inline void ask(const ClearanceLanes& lanes, const Bounds& bounds,
+                                       Asked& asked) {
+  const __m256 inverse_step = _mm256_load_ps(lanes.inverse_step);
+  const __m256 min_x = _mm256_load_ps(lanes.min_x);
+  const __m256 min_z = _mm256_load_ps(lanes.min_z);
+  const __m256 least_x = steps(bounds.least_x, min_x, inverse_step);
+  const __m256 most_x = steps(bounds.most_x, min_x, inverse_step);
+  const __m256 least_z = steps(bounds.least_z, min_z, inverse_step);
+  const __m256 most_z = steps(bounds.most_z, min_z, inverse_step);
+  _mm256_store_ps(asked.least_x, least_x);
+  _mm256_store_ps(asked.most_x, most_x);
+  _mm256_store_ps(asked.least_z, least_z);
+  _mm256_store_ps(asked.most_z, most_z);
+  const __m256 half = _mm256_set1_ps(0.5F);
+  const __m256 x = _mm256_mul_ps(half, _mm256_add_ps(least_x, most_x));
+  const __m256 z = _mm256_mul_ps(half, _mm256_add_ps(least_z, most_z));
+  const __m256 inside = both(both(isWithin(x, lanes.steps_x), isWithin(z, lanes.steps_z)),
+                             both(atLeast(bounds.least_y, _mm256_load_ps(lanes.lowest)),
+                                  atLeast(_mm256_load_ps(lanes.highest), bounds.most_y)));
+  _mm256_store_ps(asked.inside, inside);
+  const __m256 above = _mm256_mul_ps(_mm256_sub_ps(bounds.least_y, _mm256_load_ps(lanes.band_from)),
                                      _mm256_load_ps(lanes.inverse_band));
-  const __m256 is_high = atLeast(least_y, _mm256_load_ps(lanes.low));
+  const __m256 is_high = atLeast(bounds.least_y, _mm256_load_ps(lanes.low));
   const __m256i one = _mm256_set1_epi32(1);
   const __m256i number = _mm256_min_epi32(_mm256_add_epi32(_mm256_cvttps_epi32(above), one),
                                           _mm256_set1_epi32(kClearancePlanes - 1));
   const __m256i plane = _mm256_and_si256(number, _mm256_castps_si256(is_high));
-  const __m256i i = _mm256_cvttps_epi32(x);
-  const __m256i k = _mm256_cvttps_epi32(z);
-  const __m256i cell = cellIndex(i, k, integers(lanes.tiles_x));
+  static_assert(kStepsPerCell == 2);
+  const __m256i step_x = _mm256_cvttps_epi32(x);
+  const __m256i step_z = _mm256_cvttps_epi32(z);
+  store(asked.middle_x, _mm256_or_si256(step_x, one));
+  store(asked.middle_z, _mm256_or_si256(step_z, one));
+  const __m256i cell = cellIndex(_mm256_srli_epi32(step_x, 1), _mm256_srli_epi32(step_z, 1),
+                                 integers(lanes.tiles_x));
   const __m256i first = _mm256_add_epi32(integers(lanes.first),
-                                         _mm256_mullo_epi32(plane, integers(lanes.band_bytes)));
-  const __m256i index = _mm256_and_si256(_mm256_add_epi32(first, cell), mask);
-  const __m256 wide = _mm256_mul_ps(_mm256_sub_ps(most_x, least_x), inverse_cell);
-  const __m256 deep = _mm256_mul_ps(_mm256_sub_ps(most_z, least_z), inverse_cell);
-  const __m256 along_x = reachBeyond(wide, _mm256_sub_ps(x, _mm256_cvtepi32_ps(i)));
-  const __m256 along_z = reachBeyond(deep, _mm256_sub_ps(z, _mm256_cvtepi32_ps(k)));
-  _mm256_store_si256(reinterpret_cast<__m256i*>(asked.index), index);
-  _mm256_store_ps(asked.needed,
-                  _mm256_add_ps(_mm256_max_ps(along_z, along_x), _mm256_set1_ps(kBeyondReach)));
-  _mm256_store_ps(asked.inside, inside);
-  constexpr unsigned kAll = (1U << kLanes) - 1;
-  sure.low = static_cast<unsigned>(_mm256_movemask_ps(is_high)) ^ kAll;
+                                         _mm256_mullo_epi32(plane, integers(lanes.band_cells)));
+  // Lanes elsewhere read cell 0; their answer is no.
+  store(asked.index, _mm256_and_si256(_mm256_add_epi32(first, cell), _mm256_castps_si256(inside)));
 }
 
-[[gnu::always_inline]] inline void answer(const ClearanceLanes& lanes, const std::uint8_t* cells,
-                                          const Asked& asked, SureGroups& sure) {
-  const __m256i words = detail::gatherEight<sizeof(*cells)>(cells, detail::indicesAt(asked.index));
-  const __m256 distance = _mm256_cvtepi32_ps(_mm256_and_si256(words, _mm256_set1_epi32(0xff)));
-  // Apart, so that only the first has to wait for the words.
-  const __m256 slack = _mm256_sub_ps(distance, _mm256_load_ps(asked.needed));
-  const __m256 free = both(_mm256_load_ps(asked.inside), atLeast(slack, _mm256_setzero_ps()));
-  _mm256_store_ps(sure.slack,
-                  _mm256_blendv_ps(_mm256_set1_ps(-1),
-                                   _mm256_mul_ps(slack, _mm256_load_ps(lanes.column)), free));
+template <int kSide>
+[[gnu::always_inline]] inline __m256i roomOn(__m256i rooms) {
+  return _mm256_and_si256(_mm256_srli_epi32(rooms, kSide), _mm256_set1_epi32(kMostRoom));
+}
+
+[[gnu::always_inline]] inline void answer(const RoomAround* cells, const Asked& asked,
+                                          SureGroups& sure) {
+  const __m256i rooms = detail::gatherEight<sizeof(*cells)>(cells, detail::indicesAt(asked.index));
+  const __m256i middle_x = integers(asked.middle_x);
+  const __m256i middle_z = integers(asked.middle_z);
+  const auto down = [](const float* least, __m256i middle, __m256i room) {
+    return _mm256_sub_ps(_mm256_load_ps(least), _mm256_cvtepi32_ps(_mm256_sub_epi32(middle, room)));
+  };
+  const auto up = [](const float* most, __m256i middle, __m256i room) {
+    return _mm256_sub_ps(_mm256_cvtepi32_ps(_mm256_add_epi32(middle, room)), _mm256_load_ps(most));
+  };
+  const __m256 down_x = down(asked.least_x, middle_x, roomOn<kRoomDownX>(rooms));
+  const __m256 up_x = up(asked.most_x, middle_x, roomOn<kRoomUpX>(rooms));
+  const __m256 down_z = down(asked.least_z, middle_z, roomOn<kRoomDownZ>(rooms));
+  const __m256 up_z = up(asked.most_z, middle_z, roomOn<kRoomUpZ>(rooms));
+  const __m256 least = _mm256_min_ps(_mm256_min_ps(down_x, up_x), _mm256_min_ps(down_z, up_z));
+  const __m256 free =
+      both(_mm256_load_ps(asked.inside), _mm256_cmp_ps(least, _mm256_setzero_ps(), _CMP_GT_OQ));
+  _mm256_store_ps(sure.down_x.values, down_x);
+  _mm256_store_ps(sure.up_x.values, up_x);
+  _mm256_store_ps(sure.down_z.values, down_z);
+  _mm256_store_ps(sure.up_z.values, up_z);
   sure.free = static_cast<unsigned>(_mm256_movemask_ps(free));
 }
 
 }  // namespace
 
-void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
-                    const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept {
+void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count, const RoomAround* cells,
+                    std::size_t stride, SureGroups* sure) noexcept {
   // Each step for several: a core can hold back few loads whose addresses are not known yet.
   constexpr std::size_t kAtATime = 8;
   Asked asked[kAtATime];
@@ -116,17 +153,37 @@ void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
     const std::size_t here = count - first < kAtATime ? count - first : kAtATime;
     for (std::size_t n = 0; n < here; ++n) {
       const ClearanceQuestion& question = questions[first + n];
-      ask(*question.lanes, question.bounds, stride, asked[n], sure[first + n]);
+      ask(*question.lanes, boundsAt(question.bounds, stride), asked[n]);
     }
     for (std::size_t n = 0; n < here; ++n) {
-      answer(*questions[first + n].lanes, cells, asked[n], sure[first + n]);
+      answer(cells, asked[n], sure[first + n]);
     }
   }
 }
 
-unsigned freeWithinAvx2(const SureGroups& sure, float reach) noexcept {
-  return static_cast<unsigned>(
-      _mm256_movemask_ps(atLeast(_mm256_load_ps(sure.slack), _mm256_set1_ps(reach))));
+unsigned boxSurelyFreeAvx2(const ClearanceLanes& lanes, const RoomAround* cells,
+                           const CenterBounds& bounds) noexcept {
+  Asked asked;
+  ask(lanes, boundsOfAll(bounds.values), asked);
+  SureGroups sure;
+  answer(cells, asked, sure);
+  return sure.free;
+}
+
+unsigned freeAfterAvx2(const ClearanceLanes& lanes, const SureGroups& sure, float x,
+                       float z) noexcept {
+  const __m256 inverse_step = _mm256_load_ps(lanes.inverse_step);
+  const __m256 by_x = _mm256_mul_ps(_mm256_set1_ps(x), inverse_step);
+  const __m256 by_z = _mm256_mul_ps(_mm256_set1_ps(z), inverse_step);
+  const __m256 rounding = _mm256_set1_ps(kMoveRounding);
+  const auto goes = [rounding](const SlackOfGroups& slack, __m256 by) {
+    return atLeast(_mm256_load_ps(slack.values), _mm256_add_ps(by, rounding));
+  };
+  const __m256 zero = _mm256_setzero_ps();
+  const __m256 free =
+      both(both(goes(sure.down_x, _mm256_sub_ps(zero, by_x)), goes(sure.up_x, by_x)),
+           both(goes(sure.down_z, _mm256_sub_ps(zero, by_z)), goes(sure.up_z, by_z)));
+  return static_cast<unsigned>(_mm256_movemask_ps(free)) & sure.free;
 }
 
 }  // namespace galactic::simulation
@@ -136,13 +193,19 @@ unsigned freeWithinAvx2(const SureGroups& sure, float reach) noexcept {
 namespace galactic::simulation {
 
 // hasAvx2() is false on this architecture; the symbol exists so that callers need no condition.
-void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count,
-                    const std::uint8_t* cells, std::size_t stride, SureGroups* sure) noexcept {
+void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count, const RoomAround* cells,
+                    std::size_t stride, SureGroups* sure) noexcept {
   surelyFreePortable(questions, count, cells, stride, sure);
 }
 
-unsigned freeWithinAvx2(const SureGroups& sure, float reach) noexcept {
-  return freeWithinPortable(sure, reach);
+unsigned boxSurelyFreeAvx2(const ClearanceLanes& lanes, const RoomAround* cells,
+                           const CenterBounds& bounds) noexcept {
+  return boxSurelyFreePortable(lanes, cells, bounds);
+}
+
+unsigned freeAfterAvx2(const ClearanceLanes& lanes, const SureGroups& sure, float x,
+                       float z) noexcept {
+  return freeAfterPortable(lanes, sure, x, z);
 }
 
 }  // namespace galactic::simulation

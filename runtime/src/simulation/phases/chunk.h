@@ -30,8 +30,6 @@ enum class Floor : std::uint8_t {
 struct SeenGroups {
   /// Not free as a whole, as far as the maps know.
   unsigned unsure = 0;
-  /// Of these, those that are free and low: nobody has looked where their spheres are.
-  unsigned low = 0;
   /// One bit for each sphere that the scene blocks.
   std::uint64_t blocked = 0;
 };

@@ -118,10 +118,8 @@ bool findBlockedBy(const Look& look, const Free& free, const ChunkStep& step, st
   for (std::size_t eight = 0; eight * kLanes < groups.size(); ++eight) {
     const SureGroups& sure = step.chunk.sure(eight)[e];
     SeenGroups& seen = step.chunk.seen(eight);
-    const unsigned others = groupsOf(step.model, eight) & ~free(eight);
-    seen.unsure = others & ~(sure.free & ~sure.low);
-    seen.low = others & sure.free & sure.low;
-    const InSlices found = look(eight, others & ~sure.free);
+    seen.unsure = groupsOf(step.model, eight) & ~free(eight) & ~sure.free;
+    const InSlices found = look(eight, seen.unsure);
     seen.blocked = found.blocked;
     if (found.unknown != 0) {
       seen.blocked |=
@@ -156,13 +154,11 @@ bool findBlocked(const ChunkStep& step, std::size_t e, std::span<const unsigned>
 
 bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved,
                  std::span<const unsigned> free) noexcept {
-  // More than rounding, meters.
-  constexpr float kSlack = 1e-4F;
-  const float reach = std::max(std::abs(moved.x), std::abs(moved.z)) + kSlack;
   unsigned unsure = 0;
   for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
+    const SureGroups& sure = step.chunk.sure(eight)[e];
     const unsigned known =
-        free[eight] | ClearanceMaps::freeWithin(step.chunk.sure(eight)[e], reach);
+        free[eight] | step.model.clearance.freeAfter(mapOf(step, e), eight, sure, moved.x, moved.z);
     unsure |= groupsOf(step.model, eight) & ~known;
   }
   return unsure == 0;
@@ -178,14 +174,8 @@ bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
   const Vec3 most{center.x + reach, center.y + reach, center.z + reach};
   const CenterBounds each{{least.x, most.x, least.y, most.y, least.z, most.z, least.z, most.z}};
   if (step.state.resting(step.first + e).mayTouch(each)) return false;
-  alignas(32) std::array<float, kBounds * kLanes> bounds;
-  for (std::size_t b = 0; b < kBounds; ++b) {
-    std::fill_n(bounds.data() + b * kLanes, kLanes, each.values[b]);
-  }
   const ClearanceMaps& maps = step.model.clearance;
-  SureGroups sure;
-  maps.surelyFree(mapOf(step, e), maps.eights() - 1, {bounds.data(), kLanes}, sure);
-  return (held.radii & ~sure.free) == 0;
+  return (held.radii & ~maps.surelyFree(mapOf(step, e), maps.eights() - 1, each)) == 0;
 }
 
 namespace {

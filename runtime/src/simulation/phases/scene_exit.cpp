@@ -77,9 +77,6 @@ Vec3 SceneExit::floorProbeHere() const {
 /// those of which it is known where they are free.
 void SceneExit::addBody() {
   for (std::size_t eight = 0; eight * kLanes < step_.model.groups.size(); ++eight) {
-    const SeenGroups& seen = step_.chunk.seen(eight);
-    // Of those that are low, nobody has looked.
-    if ((seen.unsure & seen.low) != 0) findPlaces(step_, e_, eight, seen.unsure & seen.low);
     scratch_.suited[eight] |= isBegun() ? addFromBefore(eight) : addFromHere(eight);
   }
 }
@@ -209,7 +206,7 @@ bool SceneExit::isHopelessInSlices(Hindrance met) const {
     const GroupsToAdd groups{.rows = step_.model.slices.rows(),
                              .groups = step_.model.groups.data() + eight * kLanes,
                              .places = step_.chunk.places(e_, eight),
-                             .asked = seen.unsure & ~seen.low};
+                             .asked = seen.unsure};
     if (!scratch_.way.leaveUnblocked(groups, may_be_free)) return true;
   }
   return false;

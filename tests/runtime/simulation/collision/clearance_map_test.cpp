@@ -57,6 +57,20 @@ SureGroups sureOf(const ClearanceMaps& maps, std::uint32_t map, std::size_t eigh
   return sure;
 }
 
+bool isSure(const SureGroups& sure, std::uint32_t group) { return (sure.free >> group & 1U) != 0; }
+
+/// With the same slack of those that are free.
+void expectSame(const SureGroups& some, const SureGroups& others) {
+  ASSERT_EQ(some.free, others.free);
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    if ((some.free >> n & 1U) == 0) continue;
+    EXPECT_EQ(some.down_x.values[n], others.down_x.values[n]);
+    EXPECT_EQ(some.up_x.values[n], others.up_x.values[n]);
+    EXPECT_EQ(some.down_z.values[n], others.down_z.values[n]);
+    EXPECT_EQ(some.up_z.values[n], others.up_z.values[n]);
+  }
+}
+
 TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
   constexpr std::uint32_t kSeed = 1501;
   std::printf("seed %u\n", kSeed);
@@ -91,12 +105,12 @@ TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
   EXPECT_GT(sure, all_free / 3);
 }
 
-TEST(ClearanceMaps, CallLowWhatIsFreeAndWouldStandInAThickerFloor) {
+TEST(ClearanceMaps, KnowOfWhatIsFreeCloseOverABareFloor) {
   constexpr std::uint32_t kSeed = 1505;
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
-  std::size_t low = 0;
-  std::size_t all_free = 0;
+  Tally sure;
+  std::size_t free = 0;
   for (int round = 0; round < 20; ++round) {
     const BoxRoom room = furnishedRoom(random, 5);
     const auto radii = static_cast<std::uint32_t>(room.scene().grids().size());
@@ -105,21 +119,19 @@ TEST(ClearanceMaps, CallLowWhatIsFreeAndWouldStandInAThickerFloor) {
     for (std::uint32_t radius = 0; radius < radii; ++radius) {
       const ColumnGrid& grid = room.scene().grids()[radius];
       for (int n = 0; n < 1000; ++n) {
-        const Eight eight(random, grid.radius() + uniformIn(random, 0, 2 * kUnevenness));
-        const SureGroups sure = sureOf(maps, map, 0, eight.bounds.data());
+        // So low that a floor of this unevenness would block them.
+        const Eight eight(random, grid.radius() + uniformIn(random, 0, kUnevenness));
         const bool is_free = grid.firstNotFree({eight.x, eight.y, eight.z}) == kLanes;
-        const bool is_low = (sure.free & sure.low) >> radius & 1U;
-        ASSERT_TRUE(is_free || !is_low) << "radius " << radius << " at " << eight.x[0] << " "
-                                        << eight.y[0] << " " << eight.z[0];
-        const float lowest = *std::ranges::min_element(eight.y);
-        ASSERT_TRUE(!is_low || lowest < grid.radius() + 2 * kUnevenness);
-        all_free += is_free ? 1U : 0U;
-        low += is_low ? 1U : 0U;
+        const bool is_sure = isSure(sureOf(maps, map, 0, eight.bounds.data()), radius);
+        ASSERT_TRUE(is_free || !is_sure) << "radius " << radius << " at " << eight.x[0] << " "
+                                         << eight.y[0] << " " << eight.z[0];
+        sure.add(is_sure);
+        free += is_free ? 1U : 0U;
       }
     }
   }
-  EXPECT_GT(low, all_free / 10);
-  EXPECT_LT(low, all_free * 9 / 10);
+  sure.expectBothSides();
+  EXPECT_GT(sure.yes, free * 9 / 10);
 }
 
 TEST(ClearanceMaps, KnowThatSpheresThatAreNeverLowAreFreeOverARug) {
@@ -146,12 +158,11 @@ TEST(ClearanceMaps, KnowThatSpheresThatAreNeverLowAreFreeOverARug) {
     const SureGroups before = sureOf(any, 0, 0, eight.bounds.data());
     const SureGroups now = sureOf(never_low, 0, 0, eight.bounds.data());
     ASSERT_TRUE(is_free || (now.free & 1U) == 0);
-    // What is low decides which way robots slide: it stays what it was.
-    ASSERT_EQ(before.low, now.low);
-    const bool may_be_asked = *std::ranges::min_element(eight.y) >= lowest[2];
-    if (!may_be_asked) continue;
-    known += before.free & before.low & 1U;
-    known_more += now.free & now.low & 1U;
+    // Others are higher than the rug, as far as any map knows, or lower than what is ever asked.
+    const float over_floor = *std::ranges::min_element(eight.y);
+    if (over_floor < lowest[2] || over_floor >= grid.radius() + kUnevenness) continue;
+    known += before.free & 1U;
+    known_more += now.free & 1U;
   }
   EXPECT_GT(known_more, 2 * known);
 }
@@ -162,6 +173,7 @@ TEST(ClearanceMaps, SayHowFarWhatIsSurelyFreeMayGo) {
   std::mt19937 random(kSeed);
   std::size_t moved = 0;
   std::size_t far = 0;
+  std::size_t one_way = 0;
   for (int round = 0; round < 20; ++round) {
     const BoxRoom room = furnishedRoom(random, 5);
     ClearanceMaps maps({0, 1, 2});
@@ -169,83 +181,97 @@ TEST(ClearanceMaps, SayHowFarWhatIsSurelyFreeMayGo) {
     for (int n = 0; n < 2000; ++n) {
       const Eight eight(random);
       const SureGroups sure = sureOf(maps, map, 0, eight.bounds.data());
+      ASSERT_EQ(maps.freeAfter(map, 0, sure, 0, 0) & ~sure.free, 0U);
+      const float by_x = uniformIn(random, -0.2F, 0.2F);
+      const float by_z = uniformIn(random, -0.2F, 0.2F);
+      const unsigned free = maps.freeAfter(map, 0, sure, by_x, by_z);
+      ASSERT_EQ(free & ~sure.free, 0U);
       for (std::uint32_t radius = 0; radius < room.scene().grids().size(); ++radius) {
-        const float slack = sure.slack[radius];
-        ASSERT_EQ(slack >= 0, (sure.free >> radius & 1U) != 0);
-        if (slack < 0) continue;
-        // To a corner of the square: what is farthest.
+        if (!isSure(sure, radius)) continue;
+        ++moved;
+        const bool back = (maps.freeAfter(map, 0, sure, -by_x, -by_z) >> radius & 1U) != 0;
+        if ((free >> radius & 1U) == 0) continue;
         Eight other = eight;
-        const float by_x = random() % 2 == 0 ? slack : -slack;
-        const float by_z = random() % 2 == 0 ? slack : -slack;
         for (float& x : other.x) x += by_x;
         for (float& z : other.z) z += by_z;
         ASSERT_EQ(room.scene().grids()[radius].firstNotFree({other.x, other.y, other.z}), kLanes)
             << "radius " << radius << ", by " << by_x << " " << by_z;
-        ++moved;
-        far += slack > 0.06F ? 1U : 0U;
+        ++far;
+        one_way += back ? 0U : 1U;
       }
     }
   }
   EXPECT_GT(far, moved / 10);
   EXPECT_LT(far, moved * 9 / 10);
+  // Away from what is near there is more room than towards it.
+  EXPECT_GT(one_way, far / 10);
 }
 
-/// How many columns around a cell of a map are free on all sides, among blocks that are higher than
-/// all that is asked; less than none where one of its own is not.
-int freeColumnsAround(const ColumnGrid& grid, const Vec3& center) {
-  const auto cell_of = [](float at) {
-    return static_cast<int>(at / BoxRoom::kSpacing) / static_cast<int>(kColumnsPerCell);
+/// Whether all columns are free that some eight's bounds reach. `margin`: so much wider on all
+/// sides, meters.
+bool areColumnsFree(const ColumnGrid& grid, const Eight& eight, float margin) {
+  const auto column_of = [&](float at) {
+    return static_cast<int>(std::floor(at / grid.spacing()));
   };
-  const auto is_free = [&](int i, int k) {
-    const auto middle = [](int n) { return (static_cast<float>(n) + 0.5F) * BoxRoom::kSpacing; };
-    return grid.clearance({middle(i), center.y, middle(k)}) == Clearance::kFree;
+  const auto first = [&](std::size_t bound) {
+    return column_of(eight.bounds[bound * kLanes] - margin);
   };
-  const int columns = static_cast<int>(kColumnsPerCell);
-  const int first_i = columns * cell_of(center.x);
-  const int first_k = columns * cell_of(center.z);
-  int around = -1;
-  for (bool all = true; all; around += all ? 1 : 0) {
-    const int n = around + 1;
-    for (int i = first_i - n; all && i < first_i + columns + n; ++i) {
-      for (int k = first_k - n; all && k < first_k + columns + n; ++k) all = is_free(i, k);
+  const auto last = [&](std::size_t bound) {
+    return column_of(eight.bounds[bound * kLanes] + margin);
+  };
+  const auto middle = [&](int n) { return (static_cast<float>(n) + 0.5F) * grid.spacing(); };
+  for (int i = first(0); i <= last(1); ++i) {
+    for (int k = first(4); k <= last(5); ++k) {
+      if (grid.clearance({middle(i), 0.6F, middle(k)}) != Clearance::kFree) return false;
     }
   }
-  return around;
+  return true;
 }
 
-TEST(ClearanceMaps, KnowOfEachColumn) {
+/// In a room with blocks from the floor to far above the robot, so that a column is free at all
+/// heights that are asked about or at none. `columns`: along an edge of it. `step`: what room is
+/// counted in, meters.
+void expectToKnowOfEachColumn(std::uint32_t columns, float step) {
   constexpr std::uint32_t kSeed = 1508;
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
-  // From the floor to far above the robot.
   const BoxRoom room(
-      {{{1.2F, -1, 0.7F}, {1.6F, 2.9F, 1.1F}}, {{2.1F, -1, 2.2F}, {2.2F, 2.9F, 2.9F}}});
+      {{{1.2F, -1, 0.7F}, {1.6F, 2.9F, 1.1F}}, {{2.1F, -1, 2.2F}, {2.2F, 2.9F, 2.9F}}}, columns);
   ClearanceMaps maps({0, 1, 2});
   const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
-  Tally free;
-  int narrow = 0;
+  Tally sure_in_all;
+  std::size_t free = 0;
+  std::size_t unknown = 0;
   for (int n = 0; n < 4000; ++n) {
     const Eight eight(random, 0.5F);
     const SureGroups sure = sureOf(maps, map, 0, eight.bounds.data());
-    const float wide = eight.bounds[kLanes] - eight.bounds[0];
-    const float deep = eight.bounds[5 * kLanes] - eight.bounds[4 * kLanes];
-    const Vec3 middle{eight.bounds[0] + 0.5F * wide, 0.6F, eight.bounds[4 * kLanes] + 0.5F * deep};
-    if (middle.x < 0 || middle.z < 0) continue;
     for (std::uint32_t radius = 0; radius < room.scene().grids().size(); ++radius) {
-      const auto around =
-          static_cast<float>(freeColumnsAround(room.scene().grids()[radius], middle));
-      const float half = 0.5F * std::max(wide, deep) / BoxRoom::kSpacing;
-      const bool is_sure = (sure.free >> radius & 1U) != 0;
-      free.add(is_sure);
-      // With nothing lost to rounding to cells, but for the middle's place in its own.
-      ASSERT_TRUE(is_sure || around < half + 0.02F) << "radius " << radius;
-      ASSERT_TRUE(!is_sure || around > half - 1.02F) << "radius " << radius;
-      narrow += is_sure && around < half ? 1 : 0;
+      const ColumnGrid& grid = room.scene().grids()[radius];
+      const bool is_sure = isSure(sure, radius);
+      sure_in_all.add(is_sure);
+      ASSERT_TRUE(!is_sure || areColumnsFree(grid, eight, 0)) << "radius " << radius;
+      // A rectangle begins with a whole cell, and ends with a whole step.
+      const float lost = (kStepsPerCell + 1) * step;
+      if (!areColumnsFree(grid, eight, lost)) continue;
+      ++free;
+      unknown += is_sure ? 0U : 1U;
     }
   }
-  free.expectBothSides();
-  // Where the middle is in its cell counts, too.
-  EXPECT_GT(narrow, 20);
+  sure_in_all.expectBothSides();
+  // Not all that is free around a corner is in one rectangle.
+  EXPECT_LT(unknown, free / 50);
+}
+
+TEST(ClearanceMaps, KnowOfEachColumn) {
+  expectToKnowOfEachColumn(BoxRoom::kColumns, BoxRoom::kSpacing);
+}
+
+TEST(ClearanceMaps, CountSeveralColumnsOfAFineGridAsOne) {
+  constexpr float kFiner = 4;
+  static_assert(kMostRoom * BoxRoom::kSpacing / kFiner < 0.125F,
+                "room would be counted in columns");
+  expectToKnowOfEachColumn(BoxRoom::kColumns * static_cast<std::uint32_t>(kFiner),
+                           BoxRoom::kSpacing);
 }
 
 TEST(ClearanceMaps, AnswerSeveralEnvsAsTheyAnswerEach) {
@@ -265,7 +291,7 @@ TEST(ClearanceMaps, AnswerSeveralEnvsAsTheyAnswerEach) {
   std::array<SureGroups, kEnvs> sure;
   maps.surelyFree(map_of, 0, {bounds.data(), kLanes}, kStride, sure);
   for (std::size_t env = 0; env < kEnvs; ++env) {
-    EXPECT_EQ(sure[env], sureOf(maps, map_of[env], 0, bounds.data() + env * kStride));
+    expectSame(sure[env], sureOf(maps, map_of[env], 0, bounds.data() + env * kStride));
   }
 }
 
@@ -274,21 +300,20 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
   constexpr std::uint32_t kSeed = 1502;
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
-  // A map by hand: distances at random.
+  // A map by hand: rooms at random, and few that end at once.
   ClearanceLanes lanes{};
-  std::vector<std::uint8_t> cells(64 * 8 * 8 * kClearancePlanes + 3);
-  for (std::uint8_t& cell : cells) cell = static_cast<std::uint8_t>(random() % 8);
+  std::vector<RoomAround> cells(64 * 8 * 8 * kClearancePlanes + 1);
+  for (RoomAround& cell : cells) cell = static_cast<RoomAround>(random() | 0x1111U);
   for (std::size_t n = 0; n < kLanes; ++n) {
-    lanes.inverse_cell[n] = 16;
-    lanes.column[n] = 1.0F / 32;
-    lanes.cells_x[n] = 50;
-    lanes.cells_z[n] = 60;
+    lanes.inverse_step[n] = 32;
+    lanes.steps_x[n] = 100;
+    lanes.steps_z[n] = 120;
     lanes.lowest[n] = 0.2F;
     lanes.low[n] = 0.3F;
     lanes.highest[n] = 1.4F;
     lanes.band_from[n] = 0.1F;
     lanes.inverse_band[n] = kClearanceBands / 1.3F;
-    lanes.band_bytes[n] = 64 * 8 * 8;
+    lanes.band_cells[n] = 64 * 8 * 8;
     lanes.tiles_x[n] = 7;
   }
   std::size_t sure = 0;
@@ -302,16 +327,18 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
     SureGroups fast;
     surelyFreePortable(&question, 1, cells.data(), kLanes, &found);
     surelyFreeAvx2(&question, 1, cells.data(), kLanes, &fast);
-    ASSERT_EQ(fast, found);
-    const float reach = uniformIn(random, 0, 0.5F);
-    const unsigned within = freeWithinPortable(found, reach);
-    ASSERT_EQ(freeWithinAvx2(found, reach), within);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      ASSERT_EQ((within >> lane & 1U) != 0, found.slack[lane] >= reach);
-    }
-    still += within == 0 ? 0U : 1U;
+    expectSame(fast, found);
+    CenterBounds box;
+    for (std::size_t b = 0; b < kBounds; ++b) box.values[b] = eight.bounds[b * kLanes];
+    ASSERT_EQ(boxSurelyFreePortable(lanes, cells.data(), box), found.free);
+    ASSERT_EQ(boxSurelyFreeAvx2(lanes, cells.data(), box), found.free);
+    const float x = uniformIn(random, -0.2F, 0.2F);
+    const float z = uniformIn(random, -0.2F, 0.2F);
+    const unsigned after = freeAfterPortable(lanes, found, x, z);
+    ASSERT_EQ(freeAfterAvx2(lanes, fast, x, z), after);
+    still += after == 0 ? 0U : 1U;
     sure += found.free == 0 ? 0U : 1U;
-    low += (found.free & found.low) == 0 ? 0U : 1U;
+    low += found.free != 0 && *std::ranges::min_element(eight.y) < lanes.low[0] ? 1U : 0U;
   }
   EXPECT_GT(low, kRounds / 50);
   EXPECT_GT(still, kRounds / 50);
@@ -322,7 +349,11 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
 TEST(ClearanceMaps, KnowNothingWithoutAMap) {
   std::mt19937 random(1503);
   const Eight eight(random);
-  EXPECT_EQ(sureOf(ClearanceMaps({0}), kNoClearanceMap, 0, eight.bounds.data()), SureGroups{});
+  const ClearanceMaps maps({0});
+  const SureGroups sure = sureOf(maps, kNoClearanceMap, 0, eight.bounds.data());
+  EXPECT_EQ(sure.free, 0U);
+  EXPECT_EQ(maps.freeAfter(kNoClearanceMap, 0, sure, 0, 0), 0U);
+  EXPECT_EQ(maps.surelyFree(kNoClearanceMap, 0, CenterBounds{}), 0U);
 }
 
 TEST(ClearanceMaps, TakeNoMoreThanThereIsRoomFor) {
@@ -339,8 +370,8 @@ TEST(ClearanceMaps, TakeNoMoreThanThereIsRoomFor) {
     EXPECT_EQ(more.add(room.scene(), 0, kUnevenness, kHeights), n);
   }
   const Eight eight(random);
-  EXPECT_EQ(sureOf(maps, added - 1, 0, eight.bounds.data()),
-            sureOf(more, 0, 0, eight.bounds.data()));
+  expectSame(sureOf(maps, added - 1, 0, eight.bounds.data()),
+             sureOf(more, 0, 0, eight.bounds.data()));
 }
 
 TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {
