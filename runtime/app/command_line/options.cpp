@@ -38,6 +38,10 @@ constexpr const char* kFooter =
     "  galactic-run world.pack --policy picker.pack --contact-sheet run.png --render rgb\n"
     "  galactic-run world.pack --policy scripted --steps 500 --envs 4 --view run.html\n"
     "  galactic-run world.pack --policy replay:run.rec";
+/// Perhaps the first that a newcomer reads.
+constexpr const char* kNoPack =
+    "found no pack; name one to see what is in it (galactic-run world.pack), or a world to step "
+    "(galactic-run world.pack --steps 1000); galactic-bake makes packs";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
 constexpr const char* kPlainGroup = "Options";
@@ -306,6 +310,8 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   visitWorldTask(options.simulation, visitor);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError&) {
+    return refuseCommandLine(kNoPack);
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == 0;  // --help, --version
     return asked ? app.exit(error)
