@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <utility>
 #if defined(__SSE2__)
@@ -156,11 +154,6 @@ class UsedStream {
  private:
   void*& used_;
 };
-
-[[noreturn]] void giveUp(const Error& error) {
-  std::fprintf(stderr, "%s: %s\n", error.where.c_str(), error.message.c_str());
-  std::abort();
-}
 
 }  // namespace
 
@@ -554,13 +547,18 @@ Result<void> CudaEngine::readImages() {
 void CudaEngine::begin(std::span<const RenderView> views, const RenderTargets& targets) {
   targets_ = targets;
   const CurrentDevice current(*driver_, device_);
-  if (const Result<void> drawn = draw(views); !drawn) giveUp(drawn.error());
+  const Result<void> drawn = draw(views);
+  if (drawn) return;
+  // There is nothing to read.
+  targets_ = {};
+  slices_.clear();
+  throw ErrorException(drawn.error());
 }
 
 void CudaEngine::end() {
   const CurrentDevice current(*driver_, device_);
-  if (const Result<void> read = readImages(); !read) giveUp(read.error());
-  if (const Result<void> read = readCounts(); !read) giveUp(read.error());
+  if (const Result<void> read = readImages(); !read) throw ErrorException(read.error());
+  if (const Result<void> read = readCounts(); !read) throw ErrorException(read.error());
 }
 
 Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> views,
