@@ -202,6 +202,30 @@ TEST_F(RenderCli, WhatCannotWorkIsRefusedBeforeTheRun) {
   }
 }
 
+TEST_F(RenderCli, TheProcessorDoesNotDrawForADeviceThatIsNamed) {
+  const auto refusal_of = [&](const char* device) {
+    return runBare(
+        {"world.pack", "--envs", "1", "--steps", "1", "--render", "rgb", "--device", device});
+  };
+  const ProgramRun missing = refusal_of("99");
+  EXPECT_EQ(missing.exit_code, 5);
+  EXPECT_THAT(missing.err, StartsWith("galactic-run: render device: neither gl nor cuda draws on "
+                                      "it. gl: "));
+  EXPECT_EQ(runBare({"world.pack", "--envs", "1", "--steps", "1", "--render", "rgb"}).exit_code, 0);
+}
+
+TEST_F(RenderCli, ASheetThatIsTooLargeIsRefusedBeforeTheRun) {
+  const ProgramRun result = runBare(
+      {"world.pack", "--backend", "soft", "--envs", "300", "--frame-envs", "300", "--steps", "1",
+       "--render", "rgb", "--size", "4096x1", "--contact-sheet", "a.png", "--record", "a.rec"});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.err,
+            "galactic-run: a.png: would be a picture of 1231208 x 70 pixels, which is more than "
+            "PNG files are made of here; show fewer envs (--frame-envs), or smaller images "
+            "(--size)\n");
+  EXPECT_THAT(result.out, IsEmpty());
+}
+
 TEST_F(RenderCli, NamesOfPicturesAndAnimationsSayWhatTheyAre) {
   for (const char* name : {"sheet.jpg", "sheet", "sheet.png.bak"}) {
     const ProgramRun sheet = run({"--render", "rgb", "--contact-sheet", name});

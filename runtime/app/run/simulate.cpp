@@ -158,16 +158,21 @@ class Run {
       if (report_.is_interrupted) break;
     }
     report_.loop_seconds = secondsBetween(start, Clock::now());
-    if (drawn_) {
-      if (Result<void> finished = drawn_->finish(simulator_, report_); !finished) return finished;
-    }
-    if (tracked_) {
-      if (Result<void> written = tracked_->finish(); !written) return written;
-    }
-    return writer_ ? writer_->finish() : Result<void>();
+    return finish();
   }
 
  private:
+  /// Writes what comes last. What cannot be written keeps nothing else from it; the recording is
+  /// first, because all the rest can be made of it.
+  Result<void> finish() {
+    const Result<void> recorded = writer_ ? writer_->finish() : Result<void>();
+    const Result<void> drawn = drawn_ ? drawn_->finish(simulator_, report_) : Result<void>();
+    const Result<void> tracked = tracked_ ? tracked_->finish() : Result<void>();
+    RETURN_IF_ERROR(recorded);
+    RETURN_IF_ERROR(drawn);
+    return tracked;
+  }
+
   /// Whether every env has had its share of the episodes.
   [[nodiscard]] bool hasPlayedAll() const {
     return std::ranges::all_of(simulator_.idle(), [](std::uint8_t idle) { return idle != 0; });
