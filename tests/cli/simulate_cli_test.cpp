@@ -40,6 +40,20 @@ class SimulateCli : public testing::Test {
   [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
     return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
   }
+  /// Until a run that was started has tried its files, which are empty then, and records.
+  void waitForRecording() const {
+    const auto records = [&] {
+      const std::filesystem::directory_iterator files(folder_.path());
+      return std::any_of(begin(files), end(files), [](const auto& file) {
+        std::error_code gone;
+        return file.path().filename().string().starts_with("run.rec.part-") &&
+               file.file_size(gone) > 0 && !gone;
+      });
+    };
+    for (int n = 0; n < 2000 && !records(); ++n) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
   /// With the world.
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), {"world.pack"});
@@ -446,23 +460,12 @@ TEST_F(SimulateCli, KeepsTheRecordingWhereAnotherFileCannotBeWritten) {
       GALACTIC_RUN, folder_.path(),
       {"world.pack", "--envs", "1", "--steps", "1000000", "--threads", "1", "--record", "run.rec",
        "--view", "pages/run.html", "--view-envs", "1"});
-  // It has tried its files, which are empty then, when it records.
-  const auto records = [&] {
-    const std::filesystem::directory_iterator files(folder_.path());
-    return std::any_of(begin(files), end(files), [](const auto& file) {
-      std::error_code gone;
-      return file.path().filename().string().starts_with("run.rec.part-") &&
-             file.file_size(gone) > 0 && !gone;
-    });
-  };
-  for (int n = 0; n < 2000 && !records(); ++n) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  waitForRecording();
   std::filesystem::remove(pages);
   started.signal(SIGINT);
   const ProgramRun result = started.wait();
   EXPECT_EQ(result.exit_code, 2) << result.err;
-  EXPECT_THAT(result.err, StartsWith("galactic-run: pages/run.html: cannot write the file"));
+  EXPECT_THAT(result.err, HasSubstr("\ngalactic-run: pages/run.html: cannot write the file"));
   EXPECT_TRUE(RecordingReader::open(folder_.path() / "run.rec"));
 }
 
@@ -479,6 +482,22 @@ TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_GT(reader->steps(), 0U);
   EXPECT_THAT(result.out, StartsWith("8 envs, " + std::to_string(reader->steps()) + " steps each"));
+}
+
+TEST_F(SimulateCli, EndsAtOnceWhenItIsInterruptedAgain) {
+  const test::StartedProgram started(GALACTIC_RUN, folder_.path(),
+                                     {"world.pack", "--envs", "1024", "--steps", "100000000000",
+                                      "--record", "run.rec", "--report", "report.json"});
+  waitForRecording();
+  started.signal(SIGINT);
+  started.signal(SIGTERM);
+  const ProgramRun result = started.wait();
+  EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
+  EXPECT_THAT(result.err,
+              HasSubstr("galactic-run: finishing what has begun; once more to stop at once\n"));
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "run.rec"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "report.json"));
 }
 
 }  // namespace

@@ -1,14 +1,16 @@
-#include "stop_request.h"
+#include "support/stop_request.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <ctime>
+#include <utility>
 
 #include "support/standard_streams.h"
 
-namespace galactic::bake {
+namespace galactic {
 
-StopRequest::StopRequest() {
+StopRequest::StopRequest(std::string program) : program_(std::move(program)) {
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
@@ -30,8 +32,9 @@ void StopRequest::watch() {
     if (signal <= 0) continue;
     // Files appear only when they are whole, so that leaving at once loses nothing.
     if (came_.exchange(true)) ::_exit(kSignalBase + signal);
-    printToStderr("\ngalactic-bake: finishing what has begun; once more to stop at once\n");
+    printToStderr(
+        fmt::format("\n{}: finishing what has begun; once more to stop at once\n", program_));
   }
 }
 
-}  // namespace galactic::bake
+}  // namespace galactic
