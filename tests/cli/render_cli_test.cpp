@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -320,6 +323,33 @@ TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
   EXPECT_THAT(result.out, HasSubstr("(stopped; 1000000000 steps were asked for)"));
   EXPECT_THAT(content("sheet.png"), StartsWith("\x89PNG"));
   EXPECT_THAT(files("frames"), testing::Contains("env_0001_step_000000_rgb.png"));
+}
+
+TEST_F(RenderCli, ASecondSignalEndsARunAtOnceThatHasMuchToFinish) {
+  // It waits for an ffmpeg that takes its time.
+  const auto script = folder_.write("bin/ffmpeg", "#!/bin/sh\ncat > ended\nsleep 20\n");
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  const std::string before = std::getenv("PATH");
+  ::setenv("PATH", ((folder_.path() / "bin").string() + ":" + before).c_str(), 1);
+  const test::StartedProgram started(
+      GALACTIC_RUN, folder_.path(),
+      {"world.pack", "--backend", "soft", "--envs", "1", "--steps", "1000000000", "--render", "rgb",
+       "--size", "16", "--video", "run.mp4", "--record", "run.rec"});
+  ::setenv("PATH", before.c_str(), 1);
+  const auto has_begun = [&] { return !content("ended").empty(); };
+  for (int n = 0; n < 2000 && !has_begun(); ++n) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  started.signal(SIGINT);
+  // The same request, by another way.
+  started.signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  started.signal(SIGTERM);
+  const ProgramRun result = started.wait();
+  EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
+  EXPECT_EQ(result.err, "\ngalactic-run: finishing what has begun; once more to stop at once\n");
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "run.mp4"));
 }
 
 }  // namespace

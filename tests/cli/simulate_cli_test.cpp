@@ -484,21 +484,5 @@ TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
   EXPECT_THAT(result.out, StartsWith("8 envs, " + std::to_string(reader->steps()) + " steps each"));
 }
 
-TEST_F(SimulateCli, EndsAtOnceWhenItIsInterruptedAgain) {
-  const test::StartedProgram started(GALACTIC_RUN, folder_.path(),
-                                     {"world.pack", "--envs", "1024", "--steps", "100000000000",
-                                      "--record", "run.rec", "--report", "report.json"});
-  waitForRecording();
-  started.signal(SIGINT);
-  started.signal(SIGTERM);
-  const ProgramRun result = started.wait();
-  EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
-  EXPECT_THAT(result.err,
-              HasSubstr("galactic-run: finishing what has begun; once more to stop at once\n"));
-  EXPECT_THAT(result.out, IsEmpty());
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "run.rec"));
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "report.json"));
-}
-
 }  // namespace
 }  // namespace galactic::simulate_cli_test

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <ctime>
+#include <chrono>
 #include <utility>
 
 #include "support/standard_streams.h"
@@ -20,18 +20,30 @@ StopRequest::StopRequest(std::string program) : program_(std::move(program)) {
 
 StopRequest::~StopRequest() {
   over_ = true;
+  // It waits for nothing else.
+  pthread_kill(watcher_.native_handle(), SIGTERM);
   watcher_.join();
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 void StopRequest::watch() {
-  constexpr timespec kTick{.tv_sec = 0, .tv_nsec = 50'000'000};
+  using Clock = std::chrono::steady_clock;
+  // Who sends it to a process and to its group, as timeout(1) does, asks once.
+  constexpr std::chrono::milliseconds kSameRequest{500};
   constexpr int kSignalBase = 128;
-  while (!over_) {
-    const int signal = sigtimedwait(&signals_, nullptr, &kTick);
-    if (signal <= 0) continue;
-    // Files appear only when they are whole, so that leaving at once loses nothing.
-    if (came_.exchange(true)) ::_exit(kSignalBase + signal);
+  Clock::time_point asked;
+  while (true) {
+    int signal = 0;
+    if (sigwait(&signals_, &signal) != 0) continue;
+    if (over_) return;
+    const Clock::time_point now = Clock::now();
+    if (came_) {
+      // Files appear only when they are whole, so that leaving at once loses nothing.
+      if (now - asked >= kSameRequest) ::_exit(kSignalBase + signal);
+      continue;
+    }
+    asked = now;
+    came_ = true;
     printToStderr(
         fmt::format("\n{}: finishing what has begun; once more to stop at once\n", program_));
   }

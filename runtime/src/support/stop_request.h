@@ -6,9 +6,9 @@
 
 namespace galactic {
 
-/// While it lives, the first Ctrl-C or SIGTERM is a request to begin nothing more; the second ends
-/// the program at once, whatever it is busy with. Make it before other threads start: they inherit
-/// the signals' mask.
+/// While it lives, the first Ctrl-C or SIGTERM is a request to begin nothing more; the second, half
+/// a second later or more, ends the program at once, whatever it is busy with. Make it before other
+/// threads start: they inherit the signals' mask.
 class StopRequest {
  public:
   /// `program`: who says on standard error that the request was heard.
