@@ -544,21 +544,23 @@ Result<void> CudaEngine::readImages() {
   return driver_->check(read(targets_.semantics, semantics_), "read semantic ids");
 }
 
+/// Whoever ends the batch all the same finds nothing to wait for.
+void CudaEngine::giveUp(const Error& error) {
+  slices_.clear();
+  throw ErrorException(error);
+}
+
 void CudaEngine::begin(std::span<const RenderView> views, const RenderTargets& targets) {
   targets_ = targets;
   const CurrentDevice current(*driver_, device_);
-  const Result<void> drawn = draw(views);
-  if (drawn) return;
-  // There is nothing to read.
-  targets_ = {};
-  slices_.clear();
-  throw ErrorException(drawn.error());
+  if (const Result<void> drawn = draw(views); !drawn) giveUp(drawn.error());
 }
 
 void CudaEngine::end() {
+  if (slices_.empty()) return;
   const CurrentDevice current(*driver_, device_);
-  if (const Result<void> read = readImages(); !read) throw ErrorException(read.error());
-  if (const Result<void> read = readCounts(); !read) throw ErrorException(read.error());
+  if (const Result<void> read = readImages(); !read) giveUp(read.error());
+  if (const Result<void> read = readCounts(); !read) giveUp(read.error());
 }
 
 Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> views,

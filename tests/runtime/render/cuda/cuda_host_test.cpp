@@ -163,18 +163,18 @@ TEST_F(CudaHost, ThrowsWhereImagesWouldBeWrongAndDrawsAgainAfterwards) {
   };
   const auto thrown_by = [&](const char* failing) -> std::string {
     standin_->failing = failing;
+    std::string thrown = "nothing";
     try {
       draw();
     } catch (const ErrorException& failure) {
       EXPECT_EQ(failure.error().code, ErrorCode::kUnsupported);
-      return failure.what();
+      thrown = failure.what();
     }
-    return "nothing";
+    // There is nothing to wait for.
+    (*engine)->end();
+    return thrown;
   };
   EXPECT_THAT(thrown_by("cuMemAlloc"), HasSubstr("on the device: error 2"));
-  // Where nothing began there is nothing to wait for.
-  standin_->failing = nullptr;
-  (*engine)->end();
   EXPECT_THAT(thrown_by("cuLaunchKernel"), HasSubstr("could not launch a kernel"));
   EXPECT_THAT(thrown_by("cuStreamSynchronize"), HasSubstr("could not draw"));
   standin_->failing = nullptr;
