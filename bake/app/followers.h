@@ -7,7 +7,7 @@
 
 #include "command.h"
 #include "galactic/bake/build.h"
-#include "stop_request.h"
+#include "support/stop_request.h"
 #include "terminal.h"
 
 namespace galactic::bake {
@@ -45,7 +45,7 @@ class WorldFollower final : public BuildObserver {
   void forgetStage();
   void redraw();
 
-  StopRequest stop_;
+  StopRequest stop_{"galactic-bake"};
   std::mutex mutex_;
   Verbosity verbosity_;
   std::size_t count_;

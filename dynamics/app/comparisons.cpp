@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <fstream>
 #include <iterator>
 #include <span>
@@ -14,10 +13,10 @@
 #include "dynamics/episodes/trace.h"
 #include "galactic/bake/parallel_for.h"
 #include "galactic/option_text.h"
-#include "run/interrupt.h"
 #include "run/recording.h"
 #include "support/content_hash.h"
 #include "support/standard_streams.h"
+#include "support/stop_request.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
@@ -178,14 +177,11 @@ Result<std::vector<EpisodeComparison>> compareAll(const EpisodePlan& plan,
       command.threads != 0 ? command.threads : std::max(1U, std::thread::hardware_concurrency());
   const std::size_t threads = std::min(wanted, open.size());
   // Before there are threads, which inherit it.
-  const Interrupt interrupt;
-  std::atomic<bool> is_interrupted = false;
+  const StopRequest stop("galactic-dynamics");
   ASSIGN_OR_RETURN(const auto lanes, LanePool::create(plan, threads));
   Progress progress(results.size() - open.size(), results.size(), command.is_quiet);
   bake::parallelFor(static_cast<unsigned>(threads), open.size(), [&](std::size_t k) {
-    // A signal is told to one of the threads.
-    if (interrupt.came()) is_interrupted = true;
-    if (is_interrupted) return;
+    if (stop.came()) return;
     const std::size_t n = open[k];
     std::unique_ptr<EpisodeLane> lane = lanes->take();
     const auto compared = [&]() -> Result<EpisodeComparison> {

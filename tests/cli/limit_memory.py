@@ -106,6 +106,8 @@ def main() -> int:
     commands = [
         ["envs", "galactic-run", world, "--envs", 65536, "--steps", 1, "--threads", 1],
         ["images of 2048 x 2048 pixels", "galactic-run", world, *images],
+        # Where the system gives no more threads, those that it gives go on.
+        ["", "galactic-run", world, "--envs", 4096, "--steps", 2, "--threads", 64],
         ["", "galactic-pack", "picture", packs / "crate.pack", "--size", 2048, "-o", "crate.png"],
         ["", "galactic-pack", "report", *[packs / name for name in REPORTED], "-o", "report.html"],
         ["columns", "galactic-bake", packs / "room.obj", "--spacing", 0.002, "--check-columns", 0, "-q", "-o", "room.pack"],

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -202,6 +205,30 @@ TEST_F(RenderCli, WhatCannotWorkIsRefusedBeforeTheRun) {
   }
 }
 
+TEST_F(RenderCli, TheProcessorDoesNotDrawForADeviceThatIsNamed) {
+  const auto refusal_of = [&](const char* device) {
+    return runBare(
+        {"world.pack", "--envs", "1", "--steps", "1", "--render", "rgb", "--device", device});
+  };
+  const ProgramRun missing = refusal_of("99");
+  EXPECT_EQ(missing.exit_code, 5);
+  EXPECT_THAT(missing.err, StartsWith("galactic-run: render device: neither gl nor cuda draws on "
+                                      "it. gl: "));
+  EXPECT_EQ(runBare({"world.pack", "--envs", "1", "--steps", "1", "--render", "rgb"}).exit_code, 0);
+}
+
+TEST_F(RenderCli, ASheetThatIsTooLargeIsRefusedBeforeTheRun) {
+  const ProgramRun result = runBare(
+      {"world.pack", "--backend", "soft", "--envs", "300", "--frame-envs", "300", "--steps", "1",
+       "--render", "rgb", "--size", "4096x1", "--contact-sheet", "a.png", "--record", "a.rec"});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(result.err,
+            "galactic-run: a.png: would be a picture of 1231208 x 70 pixels, which is more than "
+            "PNG files are made of here; show fewer envs (--frame-envs), or smaller images "
+            "(--size)\n");
+  EXPECT_THAT(result.out, IsEmpty());
+}
+
 TEST_F(RenderCli, NamesOfPicturesAndAnimationsSayWhatTheyAre) {
   for (const char* name : {"sheet.jpg", "sheet", "sheet.png.bak"}) {
     const ProgramRun sheet = run({"--render", "rgb", "--contact-sheet", name});
@@ -296,6 +323,33 @@ TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
   EXPECT_THAT(result.out, HasSubstr("(stopped; 1000000000 steps were asked for)"));
   EXPECT_THAT(content("sheet.png"), StartsWith("\x89PNG"));
   EXPECT_THAT(files("frames"), testing::Contains("env_0001_step_000000_rgb.png"));
+}
+
+TEST_F(RenderCli, ASecondSignalEndsARunAtOnceThatHasMuchToFinish) {
+  // It waits for an ffmpeg that takes its time.
+  const auto script = folder_.write("bin/ffmpeg", "#!/bin/sh\ncat > ended\nsleep 20\n");
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  const std::string before = std::getenv("PATH");
+  ::setenv("PATH", ((folder_.path() / "bin").string() + ":" + before).c_str(), 1);
+  const test::StartedProgram started(
+      GALACTIC_RUN, folder_.path(),
+      {"world.pack", "--backend", "soft", "--envs", "1", "--steps", "1000000000", "--render", "rgb",
+       "--size", "16", "--video", "run.mp4", "--record", "run.rec"});
+  ::setenv("PATH", before.c_str(), 1);
+  const auto has_begun = [&] { return !content("ended").empty(); };
+  for (int n = 0; n < 2000 && !has_begun(); ++n) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  started.signal(SIGINT);
+  // The same request, by another way.
+  started.signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  started.signal(SIGTERM);
+  const ProgramRun result = started.wait();
+  EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
+  EXPECT_EQ(result.err, "\ngalactic-run: finishing what has begun; once more to stop at once\n");
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "run.mp4"));
 }
 
 }  // namespace

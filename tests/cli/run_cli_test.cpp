@@ -50,6 +50,18 @@ TEST_F(RunCli, SaysWhatIsInAPack) {
   EXPECT_THAT(result.err, IsEmpty());
 }
 
+TEST_F(RunCli, SaysWhatToDoWithoutAPack) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{}, {"--steps", "7"}, {"--quiet"}}) {
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.err,
+              "galactic-run: command line: found no pack; name one to see what is in it "
+              "(galactic-run world.pack), or a world to step (galactic-run world.pack --steps "
+              "1000); galactic-bake makes packs; see --help\n");
+  }
+}
+
 TEST_F(RunCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
   for (const char* unheard : {"2>&-", "2>/dev/full"}) {
     const auto exit_code = [&](const char* argument) {

@@ -2,9 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -35,6 +39,20 @@ class SimulateCli : public testing::Test {
   }
   [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
     return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+  }
+  /// Until a run that was started has tried its files, which are empty then, and records.
+  void waitForRecording() const {
+    const auto records = [&] {
+      const std::filesystem::directory_iterator files(folder_.path());
+      return std::any_of(begin(files), end(files), [](const auto& file) {
+        std::error_code gone;
+        return file.path().filename().string().starts_with("run.rec.part-") &&
+               file.file_size(gone) > 0 && !gone;
+      });
+    };
+    for (int n = 0; n < 2000 && !records(); ++n) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
   }
   /// With the world.
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
@@ -433,6 +451,22 @@ TEST_F(SimulateCli, WritesTheSamePageForARunAndItsReplay) {
   EXPECT_EQ(page({"--threads", "3"}), one);
   EXPECT_NE(page({"--view-envs", "1"}), one);
   EXPECT_LT(page({"--view-envs", "1"}).size(), one.size());
+}
+
+TEST_F(SimulateCli, KeepsTheRecordingWhereAnotherFileCannotBeWritten) {
+  const std::filesystem::path pages = folder_.path() / "pages";
+  std::filesystem::create_directory(pages);
+  const test::StartedProgram started(
+      GALACTIC_RUN, folder_.path(),
+      {"world.pack", "--envs", "1", "--steps", "1000000", "--threads", "1", "--record", "run.rec",
+       "--view", "pages/run.html", "--view-envs", "1"});
+  waitForRecording();
+  std::filesystem::remove(pages);
+  started.signal(SIGINT);
+  const ProgramRun result = started.wait();
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("\ngalactic-run: pages/run.html: cannot write the file"));
+  EXPECT_TRUE(RecordingReader::open(folder_.path() / "run.rec"));
 }
 
 TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {

@@ -38,6 +38,10 @@ constexpr const char* kFooter =
     "  galactic-run world.pack --policy picker.pack --contact-sheet run.png --render rgb\n"
     "  galactic-run world.pack --policy scripted --steps 500 --envs 4 --view run.html\n"
     "  galactic-run world.pack --policy replay:run.rec";
+/// Perhaps the first that a newcomer reads.
+constexpr const char* kNoPack =
+    "found no pack; name one to see what is in it (galactic-run world.pack), or a world to step "
+    "(galactic-run world.pack --steps 1000); galactic-bake makes packs";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
 constexpr const char* kPlainGroup = "Options";
@@ -230,6 +234,20 @@ std::string faultOf(const RunOptions& options) {
   return {};
 }
 
+/// Which option was typed without what it is a detail of; empty when none.
+std::string loneDetail(const CLI::App& app, const RunOptions& options) {
+  if (options.view.empty() && app.count("--view-envs") > 0) {
+    return "--view-envs applies to the page of a run only; add --view FILE.html";
+  }
+  if (options.policyFile().empty() && app.count("--sampled") > 0) {
+    return "--sampled applies to learned policies only; add --policy FILE.pack";
+  }
+  if (!options.simulates && !options.bench && app.count("--seed") > 0) {
+    return "--seed applies to simulations and --bench only; add --steps N, for example";
+  }
+  return {};
+}
+
 std::vector<std::string> longNamesOf(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
@@ -306,6 +324,8 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   visitWorldTask(options.simulation, visitor);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError&) {
+    return refuseCommandLine(kNoPack);
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == 0;  // --help, --version
     return asked ? app.exit(error)
@@ -318,9 +338,7 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
     options.simulates |= option->count() > 0 && option->get_group() != kPlainGroup;
   }
   std::string fault = faultOf(options);
-  if (fault.empty() && options.view.empty() && app.count("--view-envs") > 0) {
-    fault = "--view-envs applies to the page of a run only; add --view FILE.html";
-  }
+  if (fault.empty()) fault = loneDetail(app, options);
   options.drawing.policy_may_draw = !options.policyFile().empty();
   if (fault.empty()) fault = drawingFault(options.drawing, app);
   options.simulation.body_transforms |= options.drawing.draws();

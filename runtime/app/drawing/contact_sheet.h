@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pictures/image.h"
@@ -15,6 +16,22 @@ struct SheetCell {
 
 /// Pixels around and between the cells of a sheet, and between picture and caption.
 inline constexpr int kSheetGap = 8;
+
+/// How cells lie on a sheet.
+struct SheetLayout {
+  int across = 0;
+  int down = 0;
+  /// Of a cell, its caption included, pixels.
+  int cell_width = 0;
+  int cell_height = 0;
+
+  [[nodiscard]] int width() const { return kSheetGap + across * (cell_width + kSheetGap); }
+  [[nodiscard]] int height() const { return kSheetGap + down * (cell_height + kSheetGap); }
+};
+
+/// Of `count` cells, `columns` in each row, all as large as `picture`, or as `caption` is wide.
+[[nodiscard]] SheetLayout sheetLayout(std::size_t count, std::size_t columns,
+                                      const pictures::Image& picture, std::string_view caption);
 
 /// The cells, row by row, `columns` in each; all as large as the first one, or as its caption is
 /// wide. There is at least one cell.

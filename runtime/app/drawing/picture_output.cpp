@@ -14,7 +14,9 @@
 
 #include "pictures/png_file.h"
 #include "support/atomic_file.h"
+#include "support/out_of_memory.h"
 #include "support/output_files.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -59,6 +61,10 @@ std::vector<std::uint64_t> spreadMoments(std::uint64_t frames) {
 /// How `count` tiles are laid out in a video: about as many rows as columns.
 std::size_t tileColumns(std::size_t count) {
   return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+}
+
+std::string captionOf(std::size_t env, std::uint64_t step) {
+  return fmt::format("env {} step {}", env, step);
 }
 
 /// A tile as it will be, of nothing.
@@ -111,6 +117,7 @@ PictureOutput::PictureOutput(const DrawingOptions& options, const RunLength& len
 
 Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const RunLength& length) {
   PictureOutput output(options, length);
+  RETURN_IF_ERROR(output.checkSheet());
   if (!options.video.empty()) {
     const std::vector<Image> tiles(output.envs_, emptyTile(options));
     Result<VideoPipe> video = VideoPipe::start(options.video, output.videoFrame(tiles));
@@ -118,6 +125,24 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const R
     output.video_.emplace(std::move(*video));
   }
   return output;
+}
+
+/// Before the run: it would be a pity afterwards.
+Result<void> PictureOutput::checkSheet() const {
+  if (options_.contact_sheet.empty()) return {};
+  const SheetLayout layout = sheetLayout(envs_ * sheet_steps_.size(), envs_, emptyTile(options_),
+                                         captionOf(envs_ - 1, sheet_steps_.back()));
+  constexpr const char* kAdvice = "show fewer envs (--frame-envs), or smaller images (--size)";
+  if (!pictures::fitsPng(layout.width(), layout.height())) {
+    return fail(ErrorCode::kUnsupported, options_.contact_sheet,
+                fmt::format("would be a picture of {} x {} pixels, which is more than PNG files "
+                            "are made of here; {}",
+                            layout.width(), layout.height(), kAdvice));
+  }
+  // The tiles, the sheet, and the file that becomes of it.
+  constexpr double kBytesPerPixel = 3 * sizeof(pictures::Rgb);
+  return checkMemory(kBytesPerPixel * layout.width() * layout.height(),
+                     fmt::format("pictures of {} envs on one sheet", envs_), kAdvice);
 }
 
 Result<void> PictureOutput::writeLegend(std::string_view json) const {
@@ -146,7 +171,7 @@ Result<void> PictureOutput::add(std::uint64_t step, std::span<const EnvFrame> fr
   }
   if (!isOnSheet(step)) return {};
   for (std::size_t env = 0; env < tiles.size(); ++env) {
-    sheet_.push_back({std::move(tiles[env]), fmt::format("env {} step {}", env, step)});
+    sheet_.push_back({std::move(tiles[env]), captionOf(env, step)});
   }
   return {};
 }

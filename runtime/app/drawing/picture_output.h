@@ -48,7 +48,7 @@ class PictureOutput {
   static constexpr std::size_t kSheetRows = 6;
 
   /// Whether files can be written is for others to try: makeFrameFolder() and tryFile(). Fails with
-  /// the errors of VideoPipe.
+  /// the errors of VideoPipe, and with kUnsupported when the sheet would be too large.
   [[nodiscard]] static Result<PictureOutput> open(const DrawingOptions& options,
                                                   const RunLength& length);
 
@@ -68,6 +68,7 @@ class PictureOutput {
  private:
   PictureOutput(const DrawingOptions& options, const RunLength& length);
 
+  [[nodiscard]] Result<void> checkSheet() const;
   [[nodiscard]] Result<void> writeFrame(std::uint64_t step, std::size_t env,
                                         const EnvFrame& frame) const;
   [[nodiscard]] bool isOnSheet(std::uint64_t step) const;

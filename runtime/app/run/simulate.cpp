@@ -14,12 +14,12 @@
 #include "drawing/drawn_steps.h"
 #include "galactic/batch_simulator.h"
 #include "galactic/world.h"
-#include "run/interrupt.h"
 #include "run/live_line.h"
 #include "run/planned_policy.h"
 #include "run/policy.h"
 #include "run/run_files.h"
 #include "run/tracked_run.h"
+#include "support/stop_request.h"
 #include "support/try.h"
 
 namespace galactic {
@@ -136,7 +136,7 @@ class Run {
     return {};
   }
 
-  Result<void> go(const Interrupt& interrupt) {
+  Result<void> go(const StopRequest& stop) {
     if (!policy_) {
       const SimulationOptions& simulation = options_.simulation;
       policy_ = makeGeneratedPolicy(
@@ -145,29 +145,34 @@ class Run {
                             .first_env = std::uint64_t{simulation.rank} * simulation.envs});
     }
     LiveLine line(options_.steps, simulator_.envCount());
+    const bool shows_progress = line.isEnabled() && !options_.is_quiet;
     constexpr auto kLookEvery = std::chrono::milliseconds(250);
     const Clock::time_point start = Clock::now();
     Clock::time_point next_look = start + kLookEvery;
     while (report_.steps < options_.steps && !report_.first_difference && !hasPlayedAll()) {
-      if (Result<void> stepped = step(); !stepped) return stepped;
-      if (Clock::now() < next_look) continue;
-      next_look = Clock::now() + kLookEvery;
-      if (line.isEnabled() && !options_.is_quiet) line.show(report_.steps, simulator_.statistics());
-      report_.is_interrupted =
-          report_.steps < options_.steps && !hasPlayedAll() && interrupt.came();
+      report_.is_interrupted = stop.came();
       if (report_.is_interrupted) break;
+      if (Result<void> stepped = step(); !stepped) return stepped;
+      if (!shows_progress || Clock::now() < next_look) continue;
+      next_look = Clock::now() + kLookEvery;
+      line.show(report_.steps, simulator_.statistics());
     }
     report_.loop_seconds = secondsBetween(start, Clock::now());
-    if (drawn_) {
-      if (Result<void> finished = drawn_->finish(simulator_, report_); !finished) return finished;
-    }
-    if (tracked_) {
-      if (Result<void> written = tracked_->finish(); !written) return written;
-    }
-    return writer_ ? writer_->finish() : Result<void>();
+    return finish();
   }
 
  private:
+  /// Writes what comes last. What cannot be written keeps nothing else from it; the recording is
+  /// first, because all the rest can be made of it.
+  Result<void> finish() {
+    const Result<void> recorded = writer_ ? writer_->finish() : Result<void>();
+    const Result<void> drawn = drawn_ ? drawn_->finish(simulator_, report_) : Result<void>();
+    const Result<void> tracked = tracked_ ? tracked_->finish() : Result<void>();
+    RETURN_IF_ERROR(recorded);
+    RETURN_IF_ERROR(drawn);
+    return tracked;
+  }
+
   /// Whether every env has had its share of the episodes.
   [[nodiscard]] bool hasPlayedAll() const {
     return std::ranges::all_of(simulator_.idle(), [](std::uint8_t idle) { return idle != 0; });
@@ -240,7 +245,7 @@ Result<OpenedWorld> openWorld(const RunOptions& options) {
 
 Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
                            const RunSource& source) {
-  const Interrupt interrupt;
+  const StopRequest stop("galactic-run");
   const World& world = opened.world;
   RETURN_IF_ERROR(tryOutputs(world, options));
   RunReport report;
@@ -277,7 +282,7 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
       return tl::unexpected<Error>(opened_file.error());
     }
   }
-  if (Result<void> done = run.go(interrupt); !done) return tl::unexpected<Error>(done.error());
+  if (Result<void> done = run.go(stop); !done) return tl::unexpected<Error>(done.error());
   report.threads = simulator->threadCount();
   report.phases = simulator->phaseTimes();
   report.sampled_steps = (report.steps + kSampleEvery - 1) / kSampleEvery;

@@ -25,8 +25,9 @@ struct RunSource {
 };
 
 /// Steps the world as `options` say and writes the recording. On a terminal a line says how it
-/// goes; Ctrl-C ends the run early. A replay ends at the first step that differs. Fails with the
-/// errors of tryOutputs, BatchSimulator::create, makeLearnedPolicy and the recordings.
+/// goes; Ctrl-C ends the run early, pressed twice at once. A replay ends at the first step that
+/// differs. Fails with the errors of tryOutputs, BatchSimulator::create, makeLearnedPolicy and the
+/// recordings.
 [[nodiscard]] Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
                                          const RunSource& source);
 

@@ -135,8 +135,10 @@ struct RenderStatistics {
 };
 
 /// Draws many images of one library together (paper, appendix D). Every image depends on its view
-/// and the options only. Rendering neither allocates (once it has seen its largest load), nor
-/// throws, nor locks. Not safe to call from several threads at once.
+/// and the options only. Rendering neither allocates, nor throws, nor locks, once it has seen its
+/// largest load: until then it throws std::bad_alloc, or ErrorException with kUnsupported, where
+/// memory is lacking, and may be called with a smaller load afterwards. A graphics processor that
+/// fails is an ErrorException, too. Not safe to call from several threads at once.
 class BatchRenderer {
  public:
   /// `library` must outlive the renderer. Fails with kInvalidInput on options out of range, with

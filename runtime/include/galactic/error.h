@@ -1,7 +1,9 @@
 #pragma once
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <utility>
 
 namespace galactic {
 
@@ -48,5 +50,17 @@ using Result = tl::expected<T, Error>;
                                                 std::string message, std::string_view name = {}) {
   return tl::unexpected<Error>(Error{code, std::move(where), std::move(message), name});
 }
+
+/// Thrown where a call that returns no Result cannot go on, as when a graphics processor runs out
+/// of memory in the middle of its work.
+class ErrorException : public std::runtime_error {
+ public:
+  explicit ErrorException(Error error)
+      : std::runtime_error(error.where + ": " + error.message), error_(std::move(error)) {}
+  [[nodiscard]] const Error& error() const noexcept { return error_; }
+
+ private:
+  Error error_;
+};
 
 }  // namespace galactic

@@ -49,7 +49,15 @@ Made makeFastestEngine(const RenderLibrary& library, const RenderOptions& option
   Made gl = render::makeGlEngine(library, options);
   if (gl) return gl;
   Made cuda = makeProvenCudaEngine(library, options);
-  return cuda ? std::move(cuda) : render::makeSoftEngine(library, options);
+  if (cuda) return cuda;
+  // Who names a device does not mean the processor.
+  if (!options.device.empty()) {
+    if (gl.error().code == ErrorCode::kInvalidInput) return gl;
+    return fail(gl.error().code, "render device",
+                "neither gl nor cuda draws on it. gl: " + gl.error().message +
+                    ". cuda: " + cuda.error().message);
+  }
+  return render::makeSoftEngine(library, options);
 }
 
 Made makeEngine(const RenderLibrary& library, const RenderOptions& options) {

@@ -55,6 +55,7 @@ class BatchSimulator::Impl {
     beginFirstEpisodes();
     workers_ = std::make_unique<detail::Workers>(
         threads_, chunks, [this](std::size_t thread, std::size_t n) { run(thread, n); });
+    threads_ = std::min(threads_, workers_->count());
   }
 
   void begin(std::span<const float> actions, std::span<const std::int32_t> resets) {

@@ -111,12 +111,25 @@ AtomicFile::~AtomicFile() = default;
 AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
 AtomicFile& AtomicFile::operator=(AtomicFile&&) noexcept = default;
 
+std::filesystem::path followLinks(const std::filesystem::path& path) {
+  // As many as Linux follows.
+  constexpr int kMostLinks = 40;
+  std::error_code none;
+  std::filesystem::path target = path;
+  for (int n = 0; n < kMostLinks && std::filesystem::is_symlink(target, none); ++n) {
+    target = target.parent_path() / std::filesystem::read_symlink(target, none);
+  }
+  return target;
+}
+
 Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
   std::error_code unknown;
   // A link stays a link: what it points to is written.
-  const bool is_link = std::filesystem::is_symlink(path, unknown);
-  const std::filesystem::path target =
-      is_link ? std::filesystem::weakly_canonical(path, unknown) : path;
+  const std::filesystem::path target = followLinks(path);
+  if (std::filesystem::is_symlink(target, unknown)) {
+    return fail(ErrorCode::kIo, path.string(),
+                "cannot write the file: " + std::generic_category().message(ELOOP));
+  }
   const auto status = std::filesystem::status(target, unknown);
   if (std::filesystem::is_other(status)) {
     return fail(ErrorCode::kIo, path.string(),

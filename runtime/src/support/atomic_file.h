@@ -10,6 +10,10 @@
 
 namespace galactic {
 
+/// What `path` leads to through links, whether or not something is there; still a link where they
+/// lead in a circle.
+[[nodiscard]] std::filesystem::path followLinks(const std::filesystem::path& path);
+
 /// A file that is written piece by piece and seen only when it is whole: it grows under another
 /// name beside its path, and is renamed at the end. A symbolic link is followed; a folder, device
 /// or pipe is refused. Destroyed before it was published, it leaves nothing behind and an old file

@@ -14,6 +14,8 @@ namespace galactic {
 Error errorOfException() {
   try {
     throw;
+  } catch (const ErrorException& failure) {
+    return failure.error();
   } catch (const std::bad_alloc&) {
     return outOfMemory();
   } catch (const std::length_error&) {  // a vector that no memory could hold

@@ -19,11 +19,19 @@ bool isWithin(std::string_view text, Number least, Number most) {
   return problem == std::errc() && stop == end && value >= least && value <= most;
 }
 
+/// A limit that is kept in single precision reads as it was written there.
+std::string limitText(double limit) {
+  const auto single = static_cast<float>(limit);
+  return static_cast<double>(single) == limit ? fmt::format("{}", single)
+                                              : fmt::format("{}", limit);
+}
+
 }  // namespace
 
 std::string numberFault(std::string_view text, double least, double most) {
   if (isWithin(text, least, most)) return {};
-  return fmt::format("found {}, expected a number from {} to {}", shown(text), least, most);
+  return fmt::format("found {}, expected a number from {} to {}", shown(text), limitText(least),
+                     limitText(most));
 }
 
 std::string wholeFault(std::string_view text, std::uint64_t least, std::uint64_t most) {

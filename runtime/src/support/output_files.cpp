@@ -19,7 +19,7 @@ bool isSameFile(const fs::path& a, const fs::path& b) {
   if (fs::exists(a, missing) || fs::exists(b, missing)) return false;
   // A relative name of which nothing exists would stay relative.
   const auto where_it_would_be = [&missing](const fs::path& path) {
-    return fs::weakly_canonical(fs::absolute(path, missing), missing);
+    return fs::weakly_canonical(fs::absolute(followLinks(path), missing), missing);
   };
   const fs::path place = where_it_would_be(a);
   return !place.empty() && place == where_it_would_be(b);

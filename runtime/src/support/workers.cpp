@@ -81,8 +81,13 @@ Workers::Workers(std::size_t threads, std::size_t parts, Work work)
     ranges_[n].next = ranges_[n].last;
   }
   threads_.reserve(count - 1);
-  for (std::size_t n = 1; n < count; ++n) {
-    threads_.emplace_back([this, n] { serve(n); });
+  try {
+    for (std::size_t n = 1; n < count; ++n) {
+      threads_.emplace_back([this, n] { serve(n); });
+    }
+  } catch (const std::exception&) {
+    // The system has no more threads, or no memory for their stacks: those that started do the
+    // work. To leave from here would wait for them, and they for a round.
   }
 }
 

@@ -25,11 +25,12 @@ void forEachPart(std::uint32_t threads, std::size_t count,
 /// data in every round, and then helps with what others have not begun. More parts than threads
 /// even out what neighbors on the machine take away. The caller helps too while it waits for the
 /// end, so there is one thread fewer than asked for, but at least one, so that the caller may do
-/// something else in between. Nothing locks. Threads wait awake only for as long as it takes to
-/// wake one up, so that rounds that follow each other closely start at once, then asleep.
+/// something else in between. Where the system gives fewer, those that it gives do the work.
+/// Nothing locks. Threads wait awake only for as long as it takes to wake one up, so that rounds
+/// that follow each other closely start at once, then asleep.
 class Workers {
  public:
-  /// Does a part; it must not throw. `thread`, below count(), is not at work on another part.
+  /// Does a part; it must not throw. `thread`, below countFor(), is not at work on another part.
   using Work = std::function<void(std::size_t thread, std::size_t part)>;
 
   Workers(std::size_t threads, std::size_t parts, Work work);
@@ -43,6 +44,9 @@ class Workers {
   [[nodiscard]] static std::size_t countFor(std::size_t threads) {
     return std::max<std::size_t>(2, threads);
   }
+
+  /// How many there are, the caller included: fewer than countFor() where the system gave no more.
+  [[nodiscard]] std::size_t count() const noexcept { return threads_.size() + 1; }
 
   /// Does a round. Where the others would only be in its way, the caller does all parts.
   void run() noexcept;

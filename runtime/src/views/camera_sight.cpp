@@ -94,8 +94,10 @@ SightLine inSight(const Scene& scene, const Vec3& base, const RigidTransform& wa
     }
   };
   float lowered = 0;
-  // Not above the base either: a place that is none.
-  while (highest.y - lowered >= base.y + kLowestTarget) {
+  // Not above the base either: a place that is none. Nor beyond what any place is worth: the target
+  // of a camera that looks up is as far away as it likes.
+  while (highest.y - lowered >= base.y + kLowestTarget &&
+         1 - kPriceOfMetersLower * lowered > best) {
     const Vec3 target = highest - Vec3{0, lowered, 0};
     RigidTransform start = wanted;
     start.origin.y -= lowered;

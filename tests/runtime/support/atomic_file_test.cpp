@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/output_files.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::atomic_file_test {
@@ -65,6 +66,31 @@ TEST(AtomicFile, HoldsItsPartsOneAfterTheOther) {
   ASSERT_TRUE(writeFileAtomically(path, {bytesOf("head"), bytesOf(""), bytesOf("payload")}));
   EXPECT_EQ(contentOf(path), "headpayload");
   EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"scene.pack"});
+}
+
+TEST(AtomicFile, FollowsLinksToWhatIsNotThereYet) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path scratch = folder.path() / "scratch";
+  std::filesystem::create_directory(scratch);
+  std::filesystem::create_symlink("scratch/second", folder.path() / "first");
+  std::filesystem::create_symlink(scratch / "run.rec", scratch / "second");
+  EXPECT_EQ(followLinks(folder.path() / "first"), scratch / "run.rec");
+  EXPECT_TRUE(isSameFile(folder.path() / "first", scratch / "run.rec"));
+  ASSERT_TRUE(writeFileAtomically(folder.path() / "first", {bytesOf("recorded")}));
+  EXPECT_EQ(contentOf(scratch / "run.rec"), "recorded");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "first"));
+  EXPECT_TRUE(std::filesystem::is_symlink(scratch / "second"));
+}
+
+TEST(AtomicFile, LeavesLinksAloneThatLeadInACircle) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path link = folder.path() / "link";
+  std::filesystem::create_symlink("link", link);
+  const Result<void> written = writeFileAtomically(link, {});
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, ErrorCode::kIo);
+  EXPECT_EQ(written.error().message, "cannot write the file: Too many levels of symbolic links");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
 }
 
 TEST(AtomicFile, MayBeEmpty) {

@@ -36,6 +36,15 @@ TEST(ErrorOfException, SaysThatMemoryIsLackingHoweverThatIsFound) {
   }
 }
 
+TEST(ErrorOfException, IsTheErrorThatWasThrown) {
+  const ErrorException thrown({ErrorCode::kUnsupported, "render device", "is no more"});
+  EXPECT_STREQ(thrown.what(), "render device: is no more");
+  const Error error = errorOf(thrown);
+  EXPECT_EQ(error.code, ErrorCode::kUnsupported);
+  EXPECT_EQ(error.where, "render device");
+  EXPECT_EQ(error.message, "is no more");
+}
+
 TEST(ErrorOfException, NamesWhatCannotBeReadOrWritten) {
   const auto full = std::make_error_code(std::errc::no_space_on_device);
   const Error printed = errorOf(std::system_error(full));

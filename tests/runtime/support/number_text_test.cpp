@@ -20,6 +20,9 @@ TEST(NumberText, TakesTheWholeTextAsANumberInItsRange) {
   }
   EXPECT_EQ(numberFault("nan", 0, 5), "found nan, expected a number from 0 to 5");
   EXPECT_EQ(numberFault("", 0, 5), "found nothing, expected a number from 0 to 5");
+  // The limits of options are kept in single precision.
+  EXPECT_EQ(numberFault("9", static_cast<double>(0.01F), 0.1),
+            "found 9, expected a number from 0.01 to 0.1");
 }
 
 TEST(NumberText, TakesDigitsAloneAsAWholeNumber) {

@@ -12,6 +12,9 @@
 #include <thread>
 #include <vector>
 
+#include "support/limited_memory.h"
+#include "support/sanitized.h"
+
 namespace galactic::test::workers_test {
 namespace {
 
@@ -66,6 +69,21 @@ TEST(Workers, DoManyMorePartsThanThreadsEachOnceAndNeverTwoOnOneDesk) {
       ASSERT_EQ(done, round * kParts);
       for (const Slot& part : parts) ASSERT_EQ(part.rounds, round);
     }
+  }
+}
+
+TEST(Workers, GoOnWithTheThreadsThatTheSystemGives) {
+  if (kIsSanitized) GTEST_SKIP() << "a sanitizer maps more than a limit could allow";
+  constexpr std::size_t kThreads = 512;
+  constexpr std::uint64_t kRoomForStacks = std::uint64_t{128} << 20U;
+  std::vector<Slot> parts(kThreads);
+  const LimitedMemory limit(kRoomForStacks);
+  Workers workers(kThreads, kThreads, [&](std::size_t, std::size_t n) { ++parts[n].rounds; });
+  EXPECT_LT(workers.count(), kThreads);
+  for (std::uint64_t round = 1; round <= 10; ++round) {
+    workers.begin();
+    workers.end();
+    for (const Slot& part : parts) ASSERT_EQ(part.rounds, round);
   }
 }
 

@@ -215,6 +215,19 @@ TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightStaysInTheRoom) {
   EXPECT_FALSE(inside(outside.views()[0].camera));
 }
 
+TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightMayLookStraightUpOrDown) {
+  // The follow camera looks 38 degrees down by itself. What it looks at is then as far away as
+  // numbers go, in either direction.
+  for (const float pitch : {-128.0F, -127.99999F, -128.00001F, 52.0F, 51.99999F, 52.00001F}) {
+    const auto camera =
+        chooseCamera(world_->robot(), {.name = "follow", .rpy_degrees = {0, pitch, 0}});
+    ASSERT_TRUE(camera);
+    ASSERT_TRUE(camera->mount.keeps_sight);
+    const WorldViews views(*world_, *models_, *simulator_, camera->mount);
+    for (const RenderView& view : views.views()) EXPECT_TRUE(render::canSee(view.camera)) << pitch;
+  }
+}
+
 TEST_F(WorldViewsOfAHome, ACameraOfTheWorldStaysWhereItIs) {
   const CameraMount mount{
       .frame = CameraFrame::kWorld, .link = 0, .frame_from_camera = {{1, 2, 3}, test::yaw(1)}};

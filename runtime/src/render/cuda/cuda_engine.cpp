@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <utility>
 #if defined(__SSE2__)
@@ -156,11 +154,6 @@ class UsedStream {
  private:
   void*& used_;
 };
-
-[[noreturn]] void giveUp(const Error& error) {
-  std::fprintf(stderr, "%s: %s\n", error.where.c_str(), error.message.c_str());
-  std::abort();
-}
 
 }  // namespace
 
@@ -551,6 +544,12 @@ Result<void> CudaEngine::readImages() {
   return driver_->check(read(targets_.semantics, semantics_), "read semantic ids");
 }
 
+/// Whoever ends the batch all the same finds nothing to wait for.
+void CudaEngine::giveUp(const Error& error) {
+  slices_.clear();
+  throw ErrorException(error);
+}
+
 void CudaEngine::begin(std::span<const RenderView> views, const RenderTargets& targets) {
   targets_ = targets;
   const CurrentDevice current(*driver_, device_);
@@ -558,6 +557,7 @@ void CudaEngine::begin(std::span<const RenderView> views, const RenderTargets& t
 }
 
 void CudaEngine::end() {
+  if (slices_.empty()) return;
   const CurrentDevice current(*driver_, device_);
   if (const Result<void> read = readImages(); !read) giveUp(read.error());
   if (const Result<void> read = readCounts(); !read) giveUp(read.error());

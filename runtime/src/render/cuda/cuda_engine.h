@@ -115,6 +115,7 @@ class CudaEngine final : public RenderEngine {
                                   const Upload& at) const;
   Result<void> readCounts();
   Result<void> readImages();
+  [[noreturn]] void giveUp(const Error& error);
 
   RenderOptions options_;
   CudaTuning tuning_;

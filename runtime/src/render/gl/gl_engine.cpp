@@ -80,7 +80,13 @@ void GlEngine::submitNext() {
     ViewSlice& slice = slices_[submitted_slices_ % slices_.size()];
     const std::size_t count = std::min(renderer_->mostViews(), views_.size() - submitted_views_);
     slice.first_view = submitted_views_;
-    renderer_->submit(views_.subspan(submitted_views_, count), slice);
+    try {
+      renderer_->submit(views_.subspan(submitted_views_, count), slice);
+    } catch (...) {
+      // What was submitted is still to be collected, and nothing else.
+      views_ = {};
+      throw;
+    }
     submitted_views_ += count;
     ++submitted_slices_;
   }

@@ -206,7 +206,6 @@ void GlRenderer::chooseSlices(const GlTuning& tuning) {
   constexpr std::size_t kGoodViews = 256;
   constexpr std::size_t kGoodSoftwareViews = 8;
   constexpr std::size_t kTargetBytes = std::size_t{1} << 30U;
-  constexpr std::size_t kBytesPerPixel = 12;
   const std::size_t pixels = std::size_t{options_.width} * options_.height;
   GLint64 block = 0;
   glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
@@ -215,7 +214,7 @@ void GlRenderer::chooseSlices(const GlTuning& tuning) {
   const std::size_t good = software ? kGoodSoftwareViews : kGoodViews;
   const std::size_t wanted = tuning.most_views > 0 ? tuning.most_views : good;
   largest_block_ = static_cast<std::size_t>(block);
-  most_views_ = std::min({wanted, kTargetBytes / (pixels * kBytesPerPixel),
+  most_views_ = std::min({wanted, kTargetBytes / (pixels * kTargetBytesPerPixel),
                           largest_block_ / (pixels * sizeof(float)),
                           static_cast<std::size_t>(limitOf(GL_MAX_FRAMEBUFFER_LAYERS)),
                           static_cast<std::size_t>(limitOf(GL_MAX_ARRAY_TEXTURE_LAYERS))});

@@ -1,8 +1,27 @@
 #include "render/gl/handles.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "galactic/error.h"
+
 namespace galactic::render::gl {
+namespace {
+
+ErrorException lacksMemory(std::size_t bytes) {
+  return ErrorException(
+      {ErrorCode::kUnsupported, "render device",
+       fmt::format("OpenGL has no memory for {} MB more; draw fewer images at once or smaller "
+                   "ones, or use the soft backend",
+                   (bytes >> 20U) + 1)});
+}
+
+}  // namespace
+
+void requireMemory(std::size_t bytes) {
+  if (glGetError() == GL_OUT_OF_MEMORY) throw lacksMemory(bytes);
+}
 
 void Buffer::reserve(std::size_t bytes) {
   bytes = std::max<std::size_t>(bytes, 1);
@@ -15,10 +34,14 @@ void Buffer::reserve(std::size_t bytes) {
   glCreateBuffers(1, &name);
   name_ = BufferName(name);
   const auto size = static_cast<GLsizeiptr>(bytes);
-  glNamedBufferStorage(name, size, nullptr, flags);
+  // Whatever fails, the next call begins anew.
+  size_ = 0;
   data_ = nullptr;
+  glNamedBufferStorage(name, size, nullptr, flags);
+  requireMemory(bytes);
   if (flags != 0) {
     data_ = static_cast<std::byte*>(glMapNamedBufferRange(name, 0, size, flags));
+    if (data_ == nullptr) throw lacksMemory(bytes);
   }
   size_ = bytes;
 }

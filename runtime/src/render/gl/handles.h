@@ -41,6 +41,9 @@ using VertexArray = Handle<deleteVertexArray>;
 using Program = Handle<deleteProgram>;
 using Query = Handle<deleteQuery>;
 
+/// Throws ErrorException where OpenGL could not reserve the bytes that it was asked for last.
+void requireMemory(std::size_t bytes);
+
 /// How the processor reaches a buffer.
 enum class Access { kNone, kWrite, kRead };
 
@@ -51,7 +54,7 @@ class Buffer {
   explicit Buffer(Access access) : access_(access) {}
 
   /// Makes room for so many bytes; what was in it is lost when it grows. At least one byte, so that
-  /// it can be bound.
+  /// it can be bound. Throws ErrorException where memory is lacking.
   void reserve(std::size_t bytes);
   /// Fills a buffer of exactly this content, for good.
   void fill(const void* data, std::size_t bytes);

@@ -22,7 +22,7 @@ GLint drawBuffersOf(const RenderOptions& options, std::array<GLenum, 2>& buffers
 
 void Targets::reserve(std::size_t layers) {
   if (layers <= layers_) return;
-  layers_ = layers;
+  layers_ = 0;
   GLuint name = 0;
   glCreateFramebuffers(1, &name);
   framebuffer_ = Framebuffer(name);
@@ -34,6 +34,8 @@ void Targets::reserve(std::size_t layers) {
   std::array<GLenum, 2> buffers{};
   const GLint count = drawBuffersOf(options_, buffers);
   glNamedFramebufferDrawBuffers(name, count, buffers.data());
+  requireMemory(layers * options_.width * options_.height * kTargetBytesPerPixel);
+  layers_ = layers;
 }
 
 Texture Targets::attach(GLenum format, GLenum attachment, std::size_t layers) const {

@@ -8,6 +8,9 @@
 
 namespace galactic::render::gl {
 
+/// Of color, depth and semantics together.
+inline constexpr std::size_t kTargetBytesPerPixel = 12;
+
 /// What is drawn into: a layer for each view of a slice.
 class Targets {
  public:
@@ -16,7 +19,8 @@ class Targets {
 
   explicit Targets(const RenderOptions& options) : options_(options) {}
 
-  /// Makes room for so many layers; what was drawn is lost when they get more.
+  /// Makes room for so many layers; what was drawn is lost when they get more. Throws
+  /// ErrorException where memory is lacking.
   void reserve(std::size_t layers);
   /// Binds them for drawing, cleared to the background.
   void beginDrawing() const;

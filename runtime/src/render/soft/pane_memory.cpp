@@ -56,11 +56,10 @@ PaneMemory::PaneMemory(std::uint32_t width, std::uint32_t height) {
 PaneMemory::~PaneMemory() { pages_.deallocate(block_, block_bytes_, kAlignment); }
 
 void PaneMemory::reserve(std::size_t models, std::size_t clusters) {
+  // Each by its own size: memory may be lacking between them, and there again at the next call.
   if (models > models_.size()) models_.resize(models);
-  if (clusters > seen_.size()) {
-    seen_.resize(clusters);
-    order_.resize(clusters);
-  }
+  if (clusters > seen_.size()) seen_.resize(clusters);
+  if (clusters > order_.size()) order_.resize(clusters);
   scratch_.seen = seen_.data();
   scratch_.order = order_.data();
 }

@@ -18,6 +18,8 @@ SoftEngine::SoftEngine(const RenderLibrary& library, const RenderOptions& option
   }
   workers_ = std::make_unique<detail::Workers>(
       options_.threads, [this](std::size_t part) { drawPanes(*memories_[part]); });
+  options_.threads =
+      static_cast<std::uint32_t>(std::min<std::size_t>(options_.threads, workers_->count()));
 }
 
 void SoftEngine::cutImage() {

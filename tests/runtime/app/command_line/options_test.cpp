@@ -29,7 +29,7 @@ RunOptions parsed(const std::vector<std::string>& arguments) {
 
 TEST(RunCommandLine, SimulatesWhenAnOptionOfTheSimulationIsTyped) {
   EXPECT_FALSE(parsed({}).simulates);
-  EXPECT_FALSE(parsed({"--seed", "5", "--trusted"}).simulates);
+  EXPECT_FALSE(parsed({"--bench", "--seed", "5", "--trusted"}).simulates);
   EXPECT_FALSE(parsed({"--bench"}).simulates);
   for (const char* option : {"--no-distractors", "--safe-drop", "--body-transforms"}) {
     EXPECT_TRUE(parsed({option}).simulates) << option;
@@ -43,8 +43,7 @@ TEST(RunCommandLine, TakesPacksWithAndWithoutTheOptionsName) {
   using Packs = std::vector<std::string>;
   EXPECT_EQ(parsed({}).packs, (Packs{"world.pack"}));
   EXPECT_EQ(parsed({"robot.pack"}).packs, (Packs{"world.pack", "robot.pack"}));
-  EXPECT_EQ(parsed({"--pack", "robot.pack", "--seed", "5"}).packs,
-            (Packs{"world.pack", "robot.pack"}));
+  EXPECT_EQ(parsed({"--pack", "robot.pack", "--bench"}).packs, (Packs{"world.pack", "robot.pack"}));
 }
 
 /// The options of --help whose values are numbers.
@@ -170,6 +169,15 @@ TEST(RunCommandLine, SamplesOrTakesTheLikeliest) {
   EXPECT_FALSE(parsed({"--policy", "a.pack"}).is_deterministic);
   EXPECT_NE(refusalOf({"--policy", "a.pack", "--deterministic", "--sampled"}).find("excludes"),
             std::string::npos);
+}
+
+TEST(RunCommandLine, RefusesDetailsOfWhatIsNotAskedFor) {
+  const auto refused = [](const std::vector<std::string>& arguments, const char* why) {
+    EXPECT_NE(refusalOf(arguments).find(why), std::string::npos) << refusalOf(arguments);
+  };
+  refused({"--seed", "5"}, "--seed applies to simulations and --bench only");
+  refused({"--sampled", "--steps", "5"}, "--sampled applies to learned policies only");
+  refused({"--view-envs", "5"}, "--view-envs applies to the page of a run only");
 }
 
 TEST(RunCommandLine, HelpIsFreeOfTheParsersNotation) {

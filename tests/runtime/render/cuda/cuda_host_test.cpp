@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string>
@@ -152,12 +153,34 @@ TEST_F(CudaHost, PassesOnWhatTheDriverRefuses) {
   }
 }
 
-TEST_F(CudaHost, EndsTheProgramWhereImagesWouldBeWrong) {
+TEST_F(CudaHost, ThrowsWhereImagesWouldBeWrongAndDrawsAgainAfterwards) {
   auto engine = makeEngine(library_, options_);
   ASSERT_TRUE(engine);
   RenderImages images = emptyImages(options_, 1);
-  standin_->failing = "cuLaunchKernel";
-  EXPECT_DEATH((*engine)->begin({&view_, 1}, targetsOf(images)), "could not launch a kernel");
+  const auto draw = [&] {
+    (*engine)->begin({&view_, 1}, targetsOf(images));
+    (*engine)->end();
+  };
+  const auto thrown_by = [&](const char* failing) -> std::string {
+    standin_->failing = failing;
+    std::string thrown = "nothing";
+    try {
+      draw();
+    } catch (const ErrorException& failure) {
+      EXPECT_EQ(failure.error().code, ErrorCode::kUnsupported);
+      thrown = failure.what();
+    }
+    // There is nothing to wait for.
+    (*engine)->end();
+    return thrown;
+  };
+  EXPECT_THAT(thrown_by("cuMemAlloc"), HasSubstr("on the device: error 2"));
+  EXPECT_THAT(thrown_by("cuLaunchKernel"), HasSubstr("could not launch a kernel"));
+  EXPECT_THAT(thrown_by("cuStreamSynchronize"), HasSubstr("could not draw"));
+  standin_->failing = nullptr;
+  draw();
+  const auto black = [](std::uint8_t channel) { return channel == 0; };
+  EXPECT_FALSE(std::ranges::all_of(images.color, black));
 }
 
 TEST_F(CudaHost, GivesEverythingBack) {

@@ -1,15 +1,18 @@
 #pragma once
 #include <atomic>
 #include <csignal>
+#include <string>
 #include <thread>
 
-namespace galactic::bake {
+namespace galactic {
 
-/// While it lives, the first Ctrl-C or SIGTERM is a request to begin nothing more; the second ends
-/// the program at once. Make it before other threads start: they inherit the signals' mask.
+/// While it lives, the first Ctrl-C or SIGTERM is a request to begin nothing more; the second, half
+/// a second later or more, ends the program at once, whatever it is busy with. Make it before other
+/// threads start: they inherit the signals' mask.
 class StopRequest {
  public:
-  StopRequest();
+  /// `program`: who says on standard error that the request was heard.
+  explicit StopRequest(std::string program);
   ~StopRequest();
   StopRequest(const StopRequest&) = delete;
   StopRequest& operator=(const StopRequest&) = delete;
@@ -21,6 +24,7 @@ class StopRequest {
  private:
   void watch();
 
+  std::string program_;
   sigset_t signals_{};
   sigset_t before_{};
   std::atomic<bool> came_{false};
@@ -28,4 +32,4 @@ class StopRequest {
   std::thread watcher_;
 };
 
-}  // namespace galactic::bake
+}  // namespace galactic
