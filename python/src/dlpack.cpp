@@ -74,15 +74,16 @@ Function driverFunction(const char* name) {
   void* library = dlopen("libcuda.so.1", RTLD_LAZY | RTLD_LOCAL);
   void* function = library == nullptr ? nullptr : dlsym(library, name);
   if (function != nullptr) return reinterpret_cast<Function>(function);
-  throw Refusal{{ErrorCode::kUnsupported, "device images",
-                 std::string("found no ") + name + " in libcuda.so.1; install NVIDIA's driver"}};
+  throw ErrorException{
+      {ErrorCode::kUnsupported, "device images",
+       std::string("found no ") + name + " in libcuda.so.1; install NVIDIA's driver"}};
 }
 
 int currentDevice() {
   int device = -1;
   if (driverFunction<int (*)(int*)>("cuCtxGetDevice")(&device) == 0) return device;
-  throw Refusal{{ErrorCode::kUnsupported, "device images",
-                 "no CUDA context is current on this thread; make one first"}};
+  throw ErrorException{{ErrorCode::kUnsupported, "device images",
+                        "no CUDA context is current on this thread; make one first"}};
 }
 
 /// The images are there in the order of the legacy default stream. Streams that do not wait for it

@@ -7,11 +7,12 @@
 namespace galactic::python {
 namespace {
 
+/// Makes a galactic.Error of an ErrorException, which may be thrown without the interpreter's lock.
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
-  } catch (const Refusal& refusal) {
-    const Error& error = refusal.error;
+  } catch (const ErrorException& refusal) {
+    const Error& error = refusal.error();
     const py::object type = py::module_::import("galactic.errors").attr("Error");
     const py::object raised = type(static_cast<int>(error.code), error.where, error.message);
     PyErr_SetObject(type.ptr(), raised.ptr());

@@ -75,8 +75,9 @@ std::vector<std::string> knownKeywords() {
 
 [[noreturn]] void refuseValue(const char* name, const py::handle& value,
                               const std::string& wanted) {
-  throw Refusal{{ErrorCode::kInvalidInput, name,
-                 fmt::format("is {}, expected {}", py::repr(value).cast<std::string>(), wanted)}};
+  throw ErrorException{
+      {ErrorCode::kInvalidInput, name,
+       fmt::format("is {}, expected {}", py::repr(value).cast<std::string>(), wanted)}};
 }
 
 /// None for what is not a whole number from 0 to `most`.
@@ -113,8 +114,8 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
   if (!fault) return texts;
   const OptionText& text = texts[fault->index];
   if (fault->wanted.empty()) refuseKeyword(underscored(text.name), knownKeywords());
-  throw Refusal{{ErrorCode::kInvalidInput, underscored(text.name),
-                 fmt::format("is {}, expected {}", text.value, fault->wanted)}};
+  throw ErrorException{{ErrorCode::kInvalidInput, underscored(text.name),
+                        fmt::format("is {}, expected {}", text.value, fault->wanted)}};
 }
 
 }  // namespace

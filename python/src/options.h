@@ -14,7 +14,7 @@ namespace galactic::python {
 namespace py = pybind11;
 
 /// What a keyword is given, as a whole number of a range, a number, a truth value, or text. Throws
-/// a Refusal that says what was found; the last one says what was `wanted`, too.
+/// an ErrorException that says what was found; the last one says what was `wanted`, too.
 [[nodiscard]] std::uint64_t wholeOf(const char* name, const py::handle& value, std::uint64_t least,
                                     std::uint64_t most);
 [[nodiscard]] double numberOf(const char* name, const py::handle& value);
@@ -29,8 +29,8 @@ namespace py = pybind11;
 
 /// The options that keywords name: those of the option table with '_' for '-', and `threads`,
 /// `body_transforms` and `auto_reset`. What they do not name is what the world says of its task,
-/// else the default. A value of None counts as not given. Throws a Refusal for a wrong value and
-/// TypeError, with the nearest name, for an unknown keyword.
+/// else the default. A value of None counts as not given. Throws an ErrorException for a wrong
+/// value and TypeError, with the nearest name, for an unknown keyword.
 [[nodiscard]] SimulationOptions optionsOf(const World& world, const py::dict& keywords);
 
 /// The options of task, reward and robot (OptionScope::kTask) that keywords, named as above, give

@@ -190,9 +190,10 @@ void writePack(const Path& path, const py::dict& content, const py::dict& traine
 PackFile openPolicy(const Path& path) {
   Result<PackFile> pack = PackFile::open(path);
   if (!pack && pack.error().code == ErrorCode::kInvalidInput && path.extension() == ".pt") {
-    throw Refusal{{ErrorCode::kInvalidInput, path.string(),
-                   "is a checkpoint, expected a policy pack; python3 -m galactic.export makes one "
-                   "of it"}};
+    throw ErrorException{
+        {ErrorCode::kInvalidInput, path.string(),
+         "is a checkpoint, expected a policy pack; python3 -m galactic.export makes one "
+         "of it"}};
   }
   return valueOf(std::move(pack));
 }

@@ -41,17 +41,21 @@ Renderer::Renderer(const py::object& simulator, WorldModels models)
     : simulator_(simulator), models_(std::move(models)) {}
 
 Renderer::~Renderer() {
-  // The images are still written to.
-  if (is_rendering_) renderer_->endRender();
+  if (!is_rendering_) return;
+  // The images are still written to. Nobody waits for them, nor for what went wrong.
+  try {
+    renderer_->endRender();
+  } catch (const std::exception&) {
+  }
 }
 
 std::unique_ptr<Renderer> Renderer::create(const py::object& simulator,
                                            const CameraOptions& options) {
   auto& shown = simulator.cast<Simulator&>();
   if (!shown.batch().options().body_transforms) {
-    throw Refusal{{ErrorCode::kInvalidInput, "simulator",
-                   "was made without body_transforms, which drawing needs; make it with "
-                   "body_transforms=True"}};
+    throw ErrorException{{ErrorCode::kInvalidInput, "simulator",
+                          "was made without body_transforms, which drawing needs; make it with "
+                          "body_transforms=True"}};
   }
   const ChosenCamera camera = valueOf(chooseCamera(shown.world().robot(), options.camera));
   std::unique_ptr<Renderer> renderer(
@@ -129,9 +133,9 @@ void Renderer::beginRender(const py::object& out, const py::object& envs) {
   requireIdle();
   const std::span<const RenderView> views = viewsOf(envs);
   const RenderTargets targets = targetsFor(views.size(), out);
-  is_rendering_ = true;
   const py::gil_scoped_release unlocked;
   renderer_->beginRender(views, targets);
+  is_rendering_ = true;
 }
 
 py::dict Renderer::endRender() {
@@ -139,12 +143,11 @@ py::dict Renderer::endRender() {
   if (!is_rendering_) {
     throw std::runtime_error("no rendering is under way; call begin_render() first");
   }
-  {
-    const py::gil_scoped_release unlocked;
-    renderer_->endRender();
-  }
   is_rendering_ = false;
-  return std::exchange(images_, py::dict());
+  py::dict images = std::exchange(images_, py::dict());
+  const py::gil_scoped_release unlocked;
+  renderer_->endRender();
+  return images;
 }
 
 py::dict Renderer::renderToDevice(std::uintptr_t stream) {

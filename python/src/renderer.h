@@ -29,8 +29,8 @@ struct CameraOptions {
 /// away while they work.
 class Renderer {
  public:
-  /// Throws the errors of chooseCamera, WorldModels::from and BatchRenderer::create as a Refusal,
-  /// and one when the simulator was made without body_transforms.
+  /// Throws the errors of chooseCamera, WorldModels::from and BatchRenderer::create as an
+  /// ErrorException, and one when the simulator was made without body_transforms.
   [[nodiscard]] static std::unique_ptr<Renderer> create(const py::object& simulator,
                                                         const CameraOptions& options);
   ~Renderer();

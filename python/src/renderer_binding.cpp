@@ -26,7 +26,8 @@ ColorFormat colorOf(const py::handle& value) {
   const std::string name = wordOf("color", value, "rgb, rgba or None");
   if (name == "rgb") return ColorFormat::kRgb8;
   if (name == "rgba") return ColorFormat::kRgba8;
-  throw Refusal{{ErrorCode::kInvalidInput, "color", "is " + name + ", expected rgb, rgba or None"}};
+  throw ErrorException{
+      {ErrorCode::kInvalidInput, "color", "is " + name + ", expected rgb, rgba or None"}};
 }
 
 RenderBackend backendOf(const py::handle& value) {
@@ -35,7 +36,7 @@ RenderBackend backendOf(const py::handle& value) {
   if (name == "soft") return RenderBackend::kSoft;
   if (name == "gl") return RenderBackend::kGl;
   if (name == "cuda") return RenderBackend::kCuda;
-  throw Refusal{
+  throw ErrorException{
       {ErrorCode::kInvalidInput, "backend", "is " + name + ", expected auto, soft, gl or cuda"}};
 }
 
@@ -111,10 +112,11 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
     known->second(options, value);
   }
   if (options.render.backend == RenderBackend::kSoft && !options.render.device.empty()) {
-    throw Refusal{{ErrorCode::kInvalidInput, "device",
-                   "is " + options.render.device +
-                       ", but the soft backend draws on the processor; leave it out, or take the "
-                       "backend cuda or gl"}};
+    throw ErrorException{
+        {ErrorCode::kInvalidInput, "device",
+         "is " + options.render.device +
+             ", but the soft backend draws on the processor; leave it out, or take the "
+             "backend cuda or gl"}};
   }
   return options;
 }

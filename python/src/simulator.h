@@ -24,7 +24,7 @@ class Simulator;
 class Simulator {
  public:
   /// `keywords`: see optionsOf(). Throws what that throws, and the errors of
-  /// BatchSimulator::create as a Refusal.
+  /// BatchSimulator::create as an ErrorException.
   [[nodiscard]] static std::unique_ptr<Simulator> create(std::shared_ptr<const World> world,
                                                          const py::dict& keywords);
 
