@@ -137,24 +137,53 @@ inline LaneBounds boundsOf(const Lanes values[kLanes]) {
   return bounds;
 }
 
+/// The centers of eight spheres: rows of each coordinate.
+struct EightCenters {
+  Lanes x[kLanes], y[kLanes], z[kLanes];
+};
+
+/// Of spheres that are fixed to the root, which stands upright: the sums of moved() without what is
+/// multiplied by 0.
+inline void placeOnRoot(const BodySphere* spheres, const float* frames, EightCenters& centers) {
+  const LaneFrame root = frameOf(frames, -1);
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    const Lanes x = spread(spheres[n].center.x);
+    const Lanes z = spread(spheres[n].center.z);
+    centers.x[n] = root.x_axis.x * x + root.z_axis.x * z + root.origin.x;
+    centers.y[n] = spread(spheres[n].center.y) + root.origin.y;
+    centers.z[n] = root.x_axis.z * x + root.z_axis.z * z + root.origin.z;
+  }
+}
+
+inline void placeOnNodes(const BodySphere* spheres, const float* frames, EightCenters& centers) {
+  for (std::size_t n = 0; n < kLanes; ++n) {
+    const LaneVector center = moved(frameOf(frames, spheres[n].node), spheres[n].center);
+    centers.x[n] = center.x;
+    centers.y[n] = center.y;
+    centers.z[n] = center.z;
+  }
+}
+
+inline bool areOnRoot(const BodySphere* spheres) {
+  std::int32_t nodes = -1;
+  for (std::size_t n = 0; n < kLanes; ++n) nodes &= spheres[n].node;
+  return nodes == -1;
+}
+
 /// The centers of eight spheres. `bounds`: of these spheres, kBounds vectors; null
 /// when nobody wants them.
 inline void placeEightSpheres(const BodySphere* spheres, const float* frames, float* centers,
                               std::size_t count, Lanes* bounds) {
-  Lanes values[3][kLanes];
-  for (std::size_t n = 0; n < kLanes; ++n) {
-    const LaneVector center = moved(frameOf(frames, spheres[n].node), spheres[n].center);
-    values[0][n] = center.x;
-    values[1][n] = center.y;
-    values[2][n] = center.z;
-  }
+  EightCenters found;
+  areOnRoot(spheres) ? placeOnRoot(spheres, frames, found) : placeOnNodes(spheres, frames, found);
+  const Lanes* const rows[3] = {found.x, found.y, found.z};
   for (std::size_t c = 0; c < 3; ++c) {
     if (bounds != nullptr) {
-      const LaneBounds both = boundsOf(values[c]);
+      const LaneBounds both = boundsOf(rows[c]);
       bounds[2 * c] = both.least;
       bounds[2 * c + 1] = both.most;
     }
-    storeColumns(values[c], centers + c * count, 3 * count);
+    storeColumns(rows[c], centers + c * count, 3 * count);
   }
 }
 
