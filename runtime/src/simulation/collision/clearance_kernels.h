@@ -21,7 +21,7 @@ struct alignas(32) SlackOfGroups {
 };
 
 /// Which of eight groups of spheres are surely free.
-struct alignas(64) SureGroups {
+struct alignas(32) SureGroups {
   /// Down and up X, down and up Z.
   SlackOfGroups down_x, up_x, down_z, up_z;
   /// Those that are, as bits.
