@@ -182,22 +182,6 @@ TEST_F(RenderCli, SendsAVideoToFfmpeg) {
             "--frames instead\n");
 }
 
-TEST_F(RenderCli, KeepsTheRecordingWhereFfmpegEndsInTheMiddleOfTheRun) {
-  const auto script = folder_.write("bin/ffmpeg", "#!/bin/sh\nhead -c 20000 > /dev/null\nexit 3\n");
-  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
-  const std::string before = std::getenv("PATH");
-  ::setenv("PATH", ((folder_.path() / "bin").string() + ":" + before).c_str(), 1);
-  const ProgramRun result =
-      runBare({"world.pack", "--backend", "soft", "--envs", "3", "--steps", "100000", "--render",
-               "rgb", "--size", "16", "--video", "run.mp4", "--record", "run.rec"});
-  ::setenv("PATH", before.c_str(), 1);
-  EXPECT_EQ(result.exit_code, 2) << result.err;
-  EXPECT_THAT(result.err, StartsWith("galactic-run: run.mp4: "));
-  const ProgramRun replayed = runBare({"world.pack", "--policy", "replay:run.rec"});
-  EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
-  EXPECT_THAT(replayed.out, StartsWith("3 envs, "));
-}
-
 TEST_F(RenderCli, WhatCannotWorkIsRefusedBeforeTheRun) {
   static_cast<void>(folder_.write("occupied", "a file"));
   const std::vector<std::tuple<std::vector<std::string>, int, std::string>> mistakes{

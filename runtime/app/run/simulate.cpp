@@ -152,11 +152,7 @@ class Run {
     while (report_.steps < options_.steps && !report_.first_difference && !hasPlayedAll()) {
       report_.is_interrupted = stop.came();
       if (report_.is_interrupted) break;
-      if (Result<void> stepped = step(); !stepped) {
-        // What was recorded until then is not lost with it.
-        if (writer_) (void)writer_->finish();
-        return stepped;
-      }
+      if (Result<void> stepped = step(); !stepped) return stepped;
       if (!shows_progress || Clock::now() < next_look) continue;
       next_look = Clock::now() + kLookEvery;
       line.show(report_.steps, simulator_.statistics());
