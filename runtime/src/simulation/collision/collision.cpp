@@ -94,26 +94,14 @@ std::vector<EightSpheres> spheresByEights(std::span<const RadiusRange> ranges) {
 
 std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
                              std::span<const EightSpheres> groups, std::size_t first,
-                             unsigned asked) noexcept {
+                             std::uint64_t asked) noexcept {
   std::uint64_t blocked = 0;
-  while (asked != 0) {
-    // All groups of one radius at once.
-    const std::uint32_t radius =
-        groups[first + static_cast<std::size_t>(std::countr_zero(asked))].radius_index;
-    unsigned same = 0;
-    std::uint64_t real = 0;
-    for (unsigned left = asked; left != 0; left &= left - 1) {
-      const auto n = static_cast<std::size_t>(std::countr_zero(left));
-      if (groups[first + n].radius_index != radius) continue;
-      same |= 1U << n;
-      real |= std::uint64_t{groups[first + n].spheres} << (kLanes * n);
-    }
-    const std::size_t n = first * kLanes;
-    const detail::EightsOfCenters centers{spheres.x + n, spheres.y + n, spheres.z + n, same};
-    const ColumnGridLayout& grid = scene.grids()[radius].layout();
-    blocked |= real & (detail::hasAvx2() ? detail::notFreeAvx2(grid, centers)
-                                         : detail::notFreePortable(grid, centers));
-    asked &= ~same;
+  for (; asked != 0; asked &= asked - 1) {
+    const auto bit = static_cast<std::size_t>(std::countr_zero(asked));
+    const std::size_t n = first * kLanes + bit;
+    const ColumnGrid& grid = scene.grids()[groups[first + bit / kLanes].radius_index];
+    const Clearance clearance = grid.clearance({spheres.x[n], spheres.y[n], spheres.z[n]});
+    blocked |= std::uint64_t{clearance != Clearance::kFree} << bit;
   }
   return blocked;
 }

@@ -91,8 +91,8 @@ struct PlacesQuery {
 struct InSlices {
   /// One bit for each sphere that is surely blocked.
   std::uint64_t blocked = 0;
-  /// The groups with spheres of which slices do not know.
-  unsigned unknown = 0;
+  /// One bit for each sphere of which slices do not know.
+  std::uint64_t unknown = 0;
 };
 
 /// Envs that are asked about at a time.
@@ -128,8 +128,7 @@ struct EnvPlacesQuery {
 [[gnu::always_inline]] inline void addGroup(const EightPlaces& places, unsigned spheres,
                                             std::size_t n, InSlices& found) {
   found.blocked |= std::uint64_t{spheres & places.blocked} << (n * kLanes);
-  const unsigned unknown = spheres & ~(places.free | places.blocked);
-  found.unknown |= static_cast<unsigned>(unknown != 0) << n;
+  found.unknown |= std::uint64_t{spheres & ~(places.free | places.blocked)} << (n * kLanes);
 }
 
 /// Finds the places of eights of centers. Both do the same operations, and agree bit for bit.

@@ -85,7 +85,7 @@ TEST(FreeSlices, CallFreeOrBlockedOnlyWhatTheColumnsDo) {
       const InSlices found = slices.findPlaces(
           map, radius, {eight.x.data(), eight.y.data(), eight.z.data(), 1, &places});
       ASSERT_EQ(found.blocked, places.blocked);
-      ASSERT_EQ(found.unknown != 0, (places.free | places.blocked) != kAllLanes);
+      ASSERT_EQ(found.unknown, kAllLanes & ~(places.free | places.blocked));
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const Vec3 center{eight.x[lane], eight.y[lane], eight.z[lane]};
         const bool is_free = (places.free >> lane & 1U) != 0;
@@ -184,9 +184,10 @@ TEST(FreeSlices, AnswerSeveralEnvsAsTheyAnswerEach) {
   std::mt19937 random(kSeed);
   const BoxRoom room = furnishedRoom(random, 6);
   constexpr std::size_t kGroups = 3;
-  FreeSlices slices({{0, BoxRoom::kRadii[0], kAllLanes},
-                     {1, BoxRoom::kRadii[1], kAllLanes},
-                     {2, BoxRoom::kRadii[2], 0x1fU}});
+  constexpr std::array<unsigned, kGroups> kSpheres{kAllLanes, kAllLanes, 0x1fU};
+  FreeSlices slices({{0, BoxRoom::kRadii[0], kSpheres[0]},
+                     {1, BoxRoom::kRadii[1], kSpheres[1]},
+                     {2, BoxRoom::kRadii[2], kSpheres[2]}});
   const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
   // Of each env, its groups, then something else.
   constexpr std::size_t kStride = kGroups * kLanes + 5;
@@ -228,7 +229,12 @@ TEST(FreeSlices, AnswerSeveralEnvsAsTheyAnswerEach) {
                                                 .places = each.data()});
       ASSERT_EQ(found[e].blocked, alone.blocked);
       ASSERT_EQ(found[e].unknown, alone.unknown);
-      ASSERT_TRUE(maps[e] != kNoClearanceMap || alone.unknown == groups);
+      std::uint64_t spheres = 0;
+      for (std::size_t n = 0; n < kGroups; ++n) {
+        const bool is_asked = (groups >> n & 1U) != 0;
+        spheres |= std::uint64_t{is_asked ? kSpheres[n] : 0} << (kLanes * n);
+      }
+      ASSERT_TRUE(maps[e] != kNoClearanceMap || alone.unknown == spheres);
       blocked.add(alone.blocked != 0);
       unknown.add(alone.unknown != 0);
       for (std::size_t n = 0; n < kGroups; ++n) {
