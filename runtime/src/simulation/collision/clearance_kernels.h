@@ -73,11 +73,17 @@ void surelyFreePortable(const ClearanceQuestion* questions, std::size_t count,
 void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count, const RoomAround* cells,
                     std::size_t stride, SureGroups* sure) noexcept;
 
-/// As surelyFree() for eight groups that have the same bounds: those that are, as bits.
-[[nodiscard]] unsigned boxSurelyFreePortable(const ClearanceLanes& lanes, const RoomAround* cells,
-                                             const CenterBounds& bounds) noexcept;
-[[nodiscard]] unsigned boxSurelyFreeAvx2(const ClearanceLanes& lanes, const RoomAround* cells,
-                                         const CenterBounds& bounds) noexcept;
+/// What is asked about eight groups that have the same bounds.
+struct BoxQuestion {
+  const ClearanceLanes* lanes = nullptr;
+  const CenterBounds* bounds = nullptr;
+};
+
+/// The kernels of surelyFree() for such groups. `free`: of each question those that are, as bits.
+void boxesSurelyFreePortable(const BoxQuestion* questions, std::size_t count,
+                             const RoomAround* cells, unsigned* free) noexcept;
+void boxesSurelyFreeAvx2(const BoxQuestion* questions, std::size_t count, const RoomAround* cells,
+                         unsigned* free) noexcept;
 
 /// The groups, as bits, that are surely free after a move along X and Z, too, meters.
 [[nodiscard]] unsigned freeAfterPortable(const ClearanceLanes& lanes, const SureGroups& sure,

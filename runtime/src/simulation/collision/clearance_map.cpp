@@ -284,12 +284,21 @@ void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t 
   }
 }
 
-unsigned ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight,
-                                   const CenterBounds& bounds) const noexcept {
-  if (map == kNoClearanceMap) return 0;
-  const ClearanceLanes& lanes = lanes_[map * eights_ + eight];
-  return detail::hasAvx2() ? boxSurelyFreeAvx2(lanes, cells_.data(), bounds)
-                           : boxSurelyFreePortable(lanes, cells_.data(), bounds);
+void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
+                               std::span<const CenterBounds> bounds,
+                               std::span<unsigned> free) const noexcept {
+  std::array<BoxQuestion, kMostAsked> questions;
+  for (std::size_t n = 0; n < maps.size(); ++n) {
+    const std::size_t map = maps[n] == kNoClearanceMap ? 0 : maps[n];
+    questions[n] = {lanes_.data() + map * eights_ + eight, &bounds[n]};
+  }
+  if (!lanes_.empty()) {
+    const auto ask = detail::hasAvx2() ? boxesSurelyFreeAvx2 : boxesSurelyFreePortable;
+    ask(questions.data(), maps.size(), cells_.data(), free.data());
+  }
+  for (std::size_t n = 0; n < maps.size(); ++n) {
+    if (maps[n] == kNoClearanceMap) free[n] = 0;
+  }
 }
 
 unsigned ClearanceMaps::freeAfter(std::uint32_t map, std::size_t eight, const SureGroups& sure,
@@ -370,11 +379,15 @@ void surelyFreePortable(const ClearanceQuestion* questions, std::size_t count,
   }
 }
 
-unsigned boxSurelyFreePortable(const ClearanceLanes& lanes, const RoomAround* cells,
-                               const CenterBounds& bounds) noexcept {
-  std::array<float, kBounds * kLanes> of_all;
-  for (std::size_t n = 0; n < of_all.size(); ++n) of_all[n] = bounds.values[n / kLanes];
-  return surelyFree(lanes, cells, of_all.data(), kLanes).free;
+void boxesSurelyFreePortable(const BoxQuestion* questions, std::size_t count,
+                             const RoomAround* cells, unsigned* free) noexcept {
+  for (std::size_t n = 0; n < count; ++n) {
+    std::array<float, kBounds * kLanes> of_all;
+    for (std::size_t k = 0; k < of_all.size(); ++k) {
+      of_all[k] = questions[n].bounds->values[k / kLanes];
+    }
+    free[n] = surelyFree(*questions[n].lanes, cells, of_all.data(), kLanes).free;
+  }
 }
 
 unsigned freeAfterPortable(const ClearanceLanes& lanes, const SureGroups& sure, float x,

@@ -73,9 +73,10 @@ class ClearanceMaps {
                   std::size_t env_stride, std::span<SureGroups> sure) const noexcept;
   static constexpr std::size_t kMostAsked = 16;
 
-  /// Which of eight groups are surely free that have the same bounds, as bits.
-  [[nodiscard]] unsigned surelyFree(std::uint32_t map, std::size_t eight,
-                                    const CenterBounds& bounds) const noexcept;
+  /// Which of eight groups are surely free that have the same bounds, for several of these,
+  /// kMostAsked at most, each in its own map. `free`: of each, those that are, as bits.
+  void surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
+                  std::span<const CenterBounds> bounds, std::span<unsigned> free) const noexcept;
 
   /// The groups, as bits, that are surely free after a move along X and Z, too, meters. `sure`:
   /// what surelyFree() said of them.

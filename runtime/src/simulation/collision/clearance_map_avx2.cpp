@@ -42,6 +42,8 @@ struct alignas(32) Asked {
   float inside[kLanes];
 };
 
+constexpr std::size_t kAtATime = 8;
+
 /// Bounds of eight groups.
 struct Bounds {
   __m256 least_x, most_x, least_y, most_y, least_z, most_z;
@@ -144,10 +146,10 @@ template <int kSide>
 
 }  // namespace
 
+// Each step for several: a core can hold back few loads whose addresses are not known yet.
+
 void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count, const RoomAround* cells,
                     std::size_t stride, SureGroups* sure) noexcept {
-  // Each step for several: a core can hold back few loads whose addresses are not known yet.
-  constexpr std::size_t kAtATime = 8;
   Asked asked[kAtATime];
   for (std::size_t first = 0; first < count; first += kAtATime) {
     const std::size_t here = count - first < kAtATime ? count - first : kAtATime;
@@ -161,13 +163,21 @@ void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count, const
   }
 }
 
-unsigned boxSurelyFreeAvx2(const ClearanceLanes& lanes, const RoomAround* cells,
-                           const CenterBounds& bounds) noexcept {
-  Asked asked;
-  ask(lanes, boundsOfAll(bounds.values), asked);
-  SureGroups sure;
-  answer(cells, asked, sure);
-  return sure.free;
+void boxesSurelyFreeAvx2(const BoxQuestion* questions, std::size_t count, const RoomAround* cells,
+                         unsigned* free) noexcept {
+  Asked asked[kAtATime];
+  for (std::size_t first = 0; first < count; first += kAtATime) {
+    const std::size_t here = count - first < kAtATime ? count - first : kAtATime;
+    for (std::size_t n = 0; n < here; ++n) {
+      const BoxQuestion& question = questions[first + n];
+      ask(*question.lanes, boundsOfAll(question.bounds->values), asked[n]);
+    }
+    for (std::size_t n = 0; n < here; ++n) {
+      SureGroups sure;
+      answer(cells, asked[n], sure);
+      free[first + n] = sure.free;
+    }
+  }
 }
 
 unsigned freeAfterAvx2(const ClearanceLanes& lanes, const SureGroups& sure, float x,
@@ -198,9 +208,9 @@ void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count, const
   surelyFreePortable(questions, count, cells, stride, sure);
 }
 
-unsigned boxSurelyFreeAvx2(const ClearanceLanes& lanes, const RoomAround* cells,
-                           const CenterBounds& bounds) noexcept {
-  return boxSurelyFreePortable(lanes, cells, bounds);
+void boxesSurelyFreeAvx2(const BoxQuestion* questions, std::size_t count, const RoomAround* cells,
+                         unsigned* free) noexcept {
+  boxesSurelyFreePortable(questions, count, cells, free);
 }
 
 unsigned freeAfterAvx2(const ClearanceLanes& lanes, const SureGroups& sure, float x,

@@ -34,6 +34,14 @@ struct SeenGroups {
   std::uint64_t blocked = 0;
 };
 
+/// What a look at one candidate found of what it holds.
+struct SeenHeld {
+  /// Of the centers of its spheres, and a bit more.
+  CenterBounds bounds;
+  /// Whether the scene surely leaves them free, as far as the maps know.
+  bool clears_scene = false;
+};
+
 /// Room for a search for the way out of the scene.
 struct SceneExitScratch {
   explicit SceneExitScratch(const Model& model);
@@ -119,6 +127,8 @@ class Chunk {
   [[nodiscard]] std::size_t placesStride() const { return group_count_; }
   /// Room for a search for the way out of the scene.
   [[nodiscard]] SceneExitScratch& sceneExit() { return scene_exit_; }
+  /// What the last look at what the candidate holds found.
+  [[nodiscard]] SeenHeld& seenHeld(std::size_t env) { return seen_held_[env]; }
   /// One bit for each sphere of the held object that may penetrate something, whether it counts or
   /// not: where the candidate was found free.
   [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
@@ -163,6 +173,7 @@ class Chunk {
   std::vector<SeenGroups> seen_;
   std::vector<EightPlaces> places_;
   SceneExitScratch scene_exit_;
+  std::array<SeenHeld, kChunk> seen_held_{};
   std::vector<std::uint64_t> held_bits_;
   std::vector<std::uint64_t> body_bits_;
 };

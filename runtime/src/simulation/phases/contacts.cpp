@@ -71,6 +71,53 @@ InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight,
                                        .places = step.chunk.places(e, eight)});
 }
 
+namespace {
+
+/// Bounds of the ball around what the candidate holds.
+CenterBounds boundsOfHeld(const ChunkStep& step, std::size_t e) {
+  const Held& held = step.state.held(step.first + e);
+  // More than the spheres can leave the ball by through rounding, meters.
+  constexpr float kSlack = 1e-3F;
+  const Vec3 center = gripToWorld(step.chunk.grip(e), held.ball_center);
+  const float reach = held.ball_radius + kSlack;
+  const Vec3 least{center.x - reach, center.y - reach, center.z - reach};
+  const Vec3 most{center.x + reach, center.y + reach, center.z + reach};
+  return {{least.x, most.x, least.y, most.y, least.z, most.z, least.z, most.z}};
+}
+
+/// Asks maps about what some candidates hold, so that none waits for the answer about another.
+void lookAtHeld(const ChunkStep& step, std::span<const std::size_t> holding) {
+  std::array<std::uint32_t, kChunk> maps;
+  std::array<CenterBounds, kChunk> bounds;
+  for (std::size_t n = 0; n < holding.size(); ++n) {
+    maps[n] = mapOf(step, holding[n]);
+    bounds[n] = boundsOfHeld(step, holding[n]);
+  }
+  std::array<unsigned, kChunk> free;
+  const ClearanceMaps& clearance = step.model.clearance;
+  clearance.surelyFree(std::span(maps).first(holding.size()), clearance.eights() - 1, bounds, free);
+  for (std::size_t n = 0; n < holding.size(); ++n) {
+    const std::uint32_t radii = step.state.held(step.first + holding[n]).radii;
+    step.chunk.seenHeld(holding[n]) = {bounds[n], (radii & ~free[n]) == 0};
+  }
+}
+
+void lookAtAllHeld(const ChunkStep& step) {
+  std::array<std::size_t, kChunk> holding;
+  std::size_t count = 0;
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    holding[count] = e;
+    count += step.state.env(step.first + e).held >= 0 ? 1U : 0U;
+  }
+  if (count > 0) lookAtHeld(step, std::span(holding).first(count));
+}
+
+}  // namespace
+
+void lookAtHeld(const ChunkStep& step, std::size_t e) noexcept {
+  if (step.state.env(step.first + e).held >= 0) lookAtHeld(step, std::span(&e, 1));
+}
+
 void lookAtAll(const ChunkStep& step) noexcept {
   static_assert(kChunk <= ClearanceMaps::kMostAsked && kChunk % kEnvsAsked == 0);
   std::array<std::uint32_t, kChunk> maps;
@@ -100,6 +147,7 @@ void lookAtAll(const ChunkStep& step) noexcept {
                                     .found = &found[first]});
     }
   }
+  lookAtAllHeld(step);
 }
 
 namespace {
@@ -165,17 +213,8 @@ bool isSureAfter(const ChunkStep& step, std::size_t e, const Push& moved,
 }
 
 bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
-  const Held& held = step.state.held(step.first + e);
-  // More than the spheres can leave the ball by through rounding, meters.
-  constexpr float kSlack = 1e-3F;
-  const Vec3 center = gripToWorld(step.chunk.grip(e), held.ball_center);
-  const float reach = held.ball_radius + kSlack;
-  const Vec3 least{center.x - reach, center.y - reach, center.z - reach};
-  const Vec3 most{center.x + reach, center.y + reach, center.z + reach};
-  const CenterBounds each{{least.x, most.x, least.y, most.y, least.z, most.z, least.z, most.z}};
-  if (step.state.resting(step.first + e).mayTouch(each)) return false;
-  const ClearanceMaps& maps = step.model.clearance;
-  return (held.radii & ~maps.surelyFree(mapOf(step, e), maps.eights() - 1, each)) == 0;
+  const SeenHeld& seen = step.chunk.seenHeld(e);
+  return seen.clears_scene && !step.state.resting(step.first + e).mayTouch(seen.bounds);
 }
 
 namespace {
@@ -226,7 +265,9 @@ Hindrance hindranceAsSeen(const ChunkStep& step, std::size_t e) noexcept {
 Hindrance hindranceOf(const ChunkStep& step, std::size_t e) noexcept {
   const Hindrance floor = hindranceByFloor(step, e);
   if (floor != Hindrance::kNone) return floor;
-  return findBlocked(step, e) ? Hindrance::kScene : hindranceByObjects(step, e);
+  if (findBlocked(step, e)) return Hindrance::kScene;
+  lookAtHeld(step, e);
+  return hindranceByObjects(step, e);
 }
 
 }  // namespace galactic::simulation

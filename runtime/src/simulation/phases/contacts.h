@@ -35,7 +35,11 @@ enum class Hindrance : std::uint8_t {
 /// What the floor under its base hinders the candidate by, if it does.
 [[nodiscard]] Hindrance hindranceByFloor(const ChunkStep& step, std::size_t e) noexcept;
 
-/// What hinders the candidate, if neither the floor nor the scene hinders the robot itself.
+/// Asks maps about what the candidate holds, if anything.
+void lookAtHeld(const ChunkStep& step, std::size_t e) noexcept;
+
+/// What hinders the candidate, if neither the floor nor the scene hinders the robot itself. What it
+/// holds has been looked at.
 [[nodiscard]] Hindrance hindranceByObjects(const ChunkStep& step, std::size_t e) noexcept;
 
 /// Asks maps and slices about all candidates of a chunk at once, so that none waits for the answer
@@ -66,7 +70,7 @@ bool findBlocked(const ChunkStep& step, std::size_t e, std::span<const unsigned>
 InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight,
                     unsigned groups) noexcept;
 
-/// Whether a look at the ball around the held object's spheres says that all are free.
+/// Whether the last look at what the candidate holds says that all its spheres are free.
 [[nodiscard]] bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept;
 
 [[nodiscard]] inline bool isEmpty(std::span<const std::uint64_t> bits) {

@@ -104,6 +104,7 @@ class Glide {
       since_asked_.reset();
       if (findBlocked(step_, e_, exit_.suited())) return Hindrance::kScene;
     }
+    lookAtHeld(step_, e_);
     return hindranceByObjects(step_, e_);
   }
 

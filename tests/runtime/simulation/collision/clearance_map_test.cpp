@@ -330,8 +330,13 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
     expectSame(fast, found);
     CenterBounds box;
     for (std::size_t b = 0; b < kBounds; ++b) box.values[b] = eight.bounds[b * kLanes];
-    ASSERT_EQ(boxSurelyFreePortable(lanes, cells.data(), box), found.free);
-    ASSERT_EQ(boxSurelyFreeAvx2(lanes, cells.data(), box), found.free);
+    const BoxQuestion of_box{&lanes, &box};
+    unsigned free = 0;
+    boxesSurelyFreePortable(&of_box, 1, cells.data(), &free);
+    ASSERT_EQ(free, found.free);
+    free = 0;
+    boxesSurelyFreeAvx2(&of_box, 1, cells.data(), &free);
+    ASSERT_EQ(free, found.free);
     const float x = uniformIn(random, -0.2F, 0.2F);
     const float z = uniformIn(random, -0.2F, 0.2F);
     const unsigned after = freeAfterPortable(lanes, found, x, z);
@@ -353,7 +358,10 @@ TEST(ClearanceMaps, KnowNothingWithoutAMap) {
   const SureGroups sure = sureOf(maps, kNoClearanceMap, 0, eight.bounds.data());
   EXPECT_EQ(sure.free, 0U);
   EXPECT_EQ(maps.freeAfter(kNoClearanceMap, 0, sure, 0, 0), 0U);
-  EXPECT_EQ(maps.surelyFree(kNoClearanceMap, 0, CenterBounds{}), 0U);
+  const CenterBounds bounds{};
+  unsigned free = 1;
+  maps.surelyFree(std::span(&kNoClearanceMap, 1), 0, std::span(&bounds, 1), std::span(&free, 1));
+  EXPECT_EQ(free, 0U);
 }
 
 TEST(ClearanceMaps, TakeNoMoreThanThereIsRoomFor) {
