@@ -65,7 +65,8 @@ class Hand {
     const Pose there{place, {}};
     env.held = static_cast<std::int32_t>(object);
     state_.held(0).grip_from_object = inverse(gripPose(state_.grip(0))) * there;
-    state_.held(0).before = there;
+    // Where the object goes back to if it can rest nowhere.
+    state_.placeObject(0, object, there);
     measureHeld(heldModel(model_, env), state_.held(0));
     std::ranges::fill(chunk_.actions(), EnvRow{});
     chunk_.action(kHand, 0) = -1;

@@ -249,7 +249,7 @@ TEST_F(DamagedState, IsRefusedWithWhatIsWrong) {
   expectRefused(other, "is none");
   other = state_;
   other[8] = std::byte{9};
-  expectRefused(other, "has format version 9, expected 5");
+  expectRefused(other, "has format version 9, expected 6");
   other = state_;
   other[40] ^= std::byte{1};
   sign(other);

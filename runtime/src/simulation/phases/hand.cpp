@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "simulation/collision/grasp_query.h"
+#include "simulation/phases/contacts.h"
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/grip_frame.h"
 #include "support/random_stream.h"
@@ -56,7 +57,8 @@ void release(const ChunkStep& step, std::size_t e) {
   RandomStream random(step.model.options.seed, step.model.globalEnv(n), counters.begun, env.step);
   const Landing landing = placeObject({step.model.scenes[env.scene], resting}, object, released,
                                       random, step.model.options.placement, step.chunk.placement());
-  const Pose rest = landing.placed ? landing.pose : step.state.held(n).before;
+  const auto held = static_cast<std::size_t>(env.held);
+  const Pose rest = landing.placed ? landing.pose : step.state.objects(n)[held];
   if (!mayRestAt(step, n, rest)) {
     env.events.kept_target = true;
     return;
@@ -71,21 +73,21 @@ void takeInHand(const ChunkStep& step, std::size_t e, std::uint32_t object) noex
   const std::size_t n = step.first + e;
   Env& env = step.state.env(n);
   RestingObjects& resting = step.state.resting(n);
-  const Pose before = step.state.objects(n)[object];
+  const Pose& before = step.state.objects(n)[object];
   env.held = static_cast<std::int32_t>(object);
   Held& held = step.state.held(n);
   held = {};
   held.grip_from_object = inverse(gripPose(step.state.grip(n))) * before;
-  held.before = before;
   measureHeld(heldModel(step.model, env), held);
   resting.remove(object);
   const std::span<std::uint64_t> leaving = step.state.leaving(n, object);
-  if (std::ranges::any_of(leaving, [](std::uint64_t word) { return word != 0; })) --env.left;
+  if (!isEmpty(leaving)) --env.left;
   std::ranges::fill(leaving, 0U);
   const SphereBatch spheres =
       holdSpheres(heldModel(step.model, env), before, step.chunk.placement().spheres);
-  penetrating({step.model.scenes[env.scene], resting}, spheres, step.chunk.collision(),
-              step.state.ignored(n));
+  const std::span<std::uint64_t> ignored = step.state.ignored(n);
+  penetrating({step.model.scenes[env.scene], resting}, spheres, step.chunk.collision(), ignored);
+  env.ignores = !isEmpty(ignored);
   ++step.state.counters(n).grasps;
   env.events.picked = object == env.target && !env.has_picked;
   env.has_picked = env.has_picked || env.events.picked;
@@ -101,6 +103,7 @@ void layDown(const ChunkStep& step, std::size_t e, const Pose& world_from_object
   beginToLeave(step, e, object);
   env.events.released_target = object == env.target;
   env.held = -1;
+  env.ignores = false;
 }
 
 void useHands(const ChunkStep& step) noexcept {

@@ -27,7 +27,7 @@ void accept(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   // The bits are those of the accepted candidate.
   Env& env = step.state.env(n);
-  if (env.held >= 0) keepPenetrating(step.state.ignored(n), step.chunk.heldBits());
+  if (env.ignores) env.ignores = keepPenetrating(step.state.ignored(n), step.chunk.heldBits());
   forEachLeft(step, e, [&](std::uint32_t object) {
     overlapping(step.state.resting(n).box(object), step.chunk.spheres(e), step.chunk.bodyBits());
     const bool any = keepPenetrating(step.state.leaving(n, object), step.chunk.bodyBits());

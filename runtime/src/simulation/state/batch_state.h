@@ -57,8 +57,6 @@ struct Held {
   /// Which radii of the working set its spheres have, as bits.
   std::uint32_t radii = 0;
   Pose grip_from_object;
-  /// world_from_object where it rested before.
-  Pose before;
 };
 
 /// What a step did that decides its reward and the episode's end.
@@ -100,6 +98,9 @@ struct alignas(64) Env {
   /// The last step left the robot where it was: wherever it would have been, it penetrated
   /// something.
   bool refused = false;
+  /// Spheres of the object in the hand have penetrated something ever since it was taken, and do
+  /// not count until each is free once. BatchState::ignored() says which.
+  bool ignores = false;
   StepEvents events;
   /// Of all episodes.
   double reward_sum = 0;

@@ -23,7 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 /// Far beyond any world, meters, and any joint; keeps arithmetic on what comes from outside finite.
 constexpr float kLargest = 1e6F;
 constexpr const char* kWhere = "saved state";
@@ -59,7 +59,6 @@ struct EnvRecord {
   std::uint32_t left = 0;
   std::array<std::uint32_t, 8> counts{};
   Pose grip_from_held;
-  Pose before;
   Vec3 base;
   float yaw = 0;
   GripFrame grip{};
@@ -68,9 +67,10 @@ struct EnvRecord {
   std::uint16_t has_picked = 0;
   std::uint16_t was_refused = 0;
   std::uint32_t is_idle = 0;
+  std::uint32_t reserved = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
-              sizeof(EnvRecord) == 40 + 16 + 32 + 56 + 16 + sizeof(GripFrame) + 16);
+              sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 16 + sizeof(GripFrame) + 20);
 
 /// What tells a world from all others: kinds, sizes and hashes of its packs, in any order.
 std::uint64_t worldHash(const World& world) {
@@ -186,7 +186,6 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .counts = {counters.refused, counters.slid, counters.grasps, counters.drops,
                  counters.restored, counters.episodes, counters.successes, counters.failures},
       .grip_from_held = state.held(n).grip_from_object,
-      .before = state.held(n).before,
       .base = state.base(n),
       .yaw = state.yaw(n),
       .grip = state.grip(n),
@@ -231,8 +230,7 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
   if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 ||
       record.ordinal == 0 || record.turns > record.ordinal)
     return "has a wrong flag or count";
-  const bool is_held_plain =
-      record.held < 0 || (isPlain(record.grip_from_held) && isPlain(record.before));
+  const bool is_held_plain = record.held < 0 || isPlain(record.grip_from_held);
   if (!isPlain(record.base) || !isPlain(record.yaw) || !arePlain(record.grip) ||
       !isPlain(record.reward) || !std::isfinite(record.reward_sum) || !is_held_plain) {
     return "has a number that no simulation leaves";
@@ -249,7 +247,6 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   saved.env.step = record.step;
   saved.env.held = record.held;
   saved.held.grip_from_object = record.grip_from_held;
-  saved.held.before = record.before;
   saved.env.has_picked = record.has_picked != 0;
   saved.env.refused = record.was_refused != 0;
   saved.env.left = record.left;
@@ -423,6 +420,8 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
     state.setLastAction(j, n, saved.last_actions[j]);
   }
   std::ranges::copy(saved.ignored, state.ignored(n).begin());
+  env.ignores = env.held >= 0 &&
+                std::ranges::any_of(saved.ignored, [](std::uint64_t word) { return word != 0; });
   std::ranges::copy(saved.leaving, state.leaving(n).begin());
   if (!state.bodyTransforms(n).empty()) {
     std::ranges::copy(saved.bodies, state.bodyTransforms(n).begin());
