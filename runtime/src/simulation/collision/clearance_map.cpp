@@ -271,14 +271,16 @@ void ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight, const Group
 void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
                                const GroupBounds& bounds, std::size_t env_stride,
                                std::span<SureGroups> sure) const noexcept {
+  if (lanes_.empty()) {
+    std::ranges::fill(sure.first(maps.size()), SureGroups{});
+    return;
+  }
   std::array<ClearanceQuestion, kMostAsked> questions;
   for (std::size_t n = 0; n < maps.size(); ++n) {
     const std::size_t map = maps[n] == kNoClearanceMap ? 0 : maps[n];
-    questions[n] = {lanes_.data() + map * eights_ + eight, bounds.values + n * env_stride};
+    questions[n] = {&lanes_[map * eights_ + eight], bounds.values + n * env_stride};
   }
-  if (!lanes_.empty()) {
-    answer(std::span(questions).first(maps.size()), bounds.stride, sure.data());
-  }
+  answer(std::span(questions).first(maps.size()), bounds.stride, sure.data());
   for (std::size_t n = 0; n < maps.size(); ++n) {
     if (maps[n] == kNoClearanceMap) sure[n] = {};
   }
@@ -287,15 +289,17 @@ void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t 
 void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
                                std::span<const CenterBounds> bounds,
                                std::span<unsigned> free) const noexcept {
+  if (lanes_.empty()) {
+    std::ranges::fill(free.first(maps.size()), 0U);
+    return;
+  }
   std::array<BoxQuestion, kMostAsked> questions;
   for (std::size_t n = 0; n < maps.size(); ++n) {
     const std::size_t map = maps[n] == kNoClearanceMap ? 0 : maps[n];
-    questions[n] = {lanes_.data() + map * eights_ + eight, &bounds[n]};
+    questions[n] = {&lanes_[map * eights_ + eight], &bounds[n]};
   }
-  if (!lanes_.empty()) {
-    const auto ask = detail::hasAvx2() ? boxesSurelyFreeAvx2 : boxesSurelyFreePortable;
-    ask(questions.data(), maps.size(), cells_.data(), free.data());
-  }
+  const auto ask = detail::hasAvx2() ? boxesSurelyFreeAvx2 : boxesSurelyFreePortable;
+  ask(questions.data(), maps.size(), cells_.data(), free.data());
   for (std::size_t n = 0; n < maps.size(); ++n) {
     if (maps[n] == kNoClearanceMap) free[n] = 0;
   }

@@ -95,13 +95,29 @@ std::vector<EightSpheres> spheresByEights(std::span<const RadiusRange> ranges) {
 std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
                              std::span<const EightSpheres> groups, std::size_t first,
                              std::uint64_t asked) noexcept {
+  const auto grid_of = [&](std::size_t group) -> const ColumnGrid& {
+    return scene.grids()[groups[first + group].radius_index];
+  };
+  // Most often a few are asked about, of several eights: one by one. What is left goes by eights.
+  constexpr int kFew = 4;
   std::uint64_t blocked = 0;
-  for (; asked != 0; asked &= asked - 1) {
+  for (int few = 0; few < kFew && asked != 0; ++few, asked &= asked - 1) {
     const auto bit = static_cast<std::size_t>(std::countr_zero(asked));
     const std::size_t n = first * kLanes + bit;
-    const ColumnGrid& grid = scene.grids()[groups[first + bit / kLanes].radius_index];
-    const Clearance clearance = grid.clearance({spheres.x[n], spheres.y[n], spheres.z[n]});
+    const Clearance clearance =
+        grid_of(bit / kLanes).clearance({spheres.x[n], spheres.y[n], spheres.z[n]});
     blocked |= std::uint64_t{clearance != Clearance::kFree} << bit;
+  }
+  while (asked != 0) {
+    const std::size_t group = static_cast<std::size_t>(std::countr_zero(asked)) / kLanes;
+    const std::size_t n = (first + group) * kLanes;
+    const detail::EightsOfCenters centers{spheres.x + n, spheres.y + n, spheres.z + n};
+    const ColumnGridLayout& grid = grid_of(group).layout();
+    const std::uint64_t not_free = detail::hasAvx2() ? detail::notFreeAvx2(grid, centers)
+                                                     : detail::notFreePortable(grid, centers);
+    const std::uint64_t own = std::uint64_t{0xff} << (kLanes * group);
+    blocked |= not_free << (kLanes * group) & own & asked;
+    asked &= ~own;
   }
   return blocked;
 }

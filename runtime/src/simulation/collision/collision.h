@@ -43,8 +43,7 @@ struct Obstacles {
 [[nodiscard]] bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept;
 
 /// Which spheres of up to eight groups the static scene blocks, as bits from the first of the
-/// groups on. `groups`: of the whole batch; `asked`: the spheres of those from `first` on, as bits,
-/// one or two for the most part, so that each is asked about by itself.
+/// groups on. `groups`: of the whole batch; `asked`: the spheres of those from `first` on, as bits.
 [[nodiscard]] std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
                                            std::span<const EightSpheres> groups, std::size_t first,
                                            std::uint64_t asked) noexcept;

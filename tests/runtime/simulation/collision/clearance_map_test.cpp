@@ -354,14 +354,20 @@ TEST(ClearanceMaps, AnswerAlikeWithBothKernels) {
 TEST(ClearanceMaps, KnowNothingWithoutAMap) {
   std::mt19937 random(1503);
   const Eight eight(random);
-  const ClearanceMaps maps({0});
-  const SureGroups sure = sureOf(maps, kNoClearanceMap, 0, eight.bounds.data());
+  // Two eights of lanes.
+  const ClearanceMaps maps(std::vector<std::uint32_t>(kLanes + 1));
+  const SureGroups sure = sureOf(maps, kNoClearanceMap, 1, eight.bounds.data());
   EXPECT_EQ(sure.free, 0U);
-  EXPECT_EQ(maps.freeAfter(kNoClearanceMap, 0, sure, 0, 0), 0U);
-  const CenterBounds bounds{};
-  unsigned free = 1;
-  maps.surelyFree(std::span(&kNoClearanceMap, 1), 0, std::span(&bounds, 1), std::span(&free, 1));
-  EXPECT_EQ(free, 0U);
+  EXPECT_EQ(maps.freeAfter(kNoClearanceMap, 1, sure, 0, 0), 0U);
+  constexpr std::array<std::uint32_t, 2> kNone{kNoClearanceMap, kNoClearanceMap};
+  std::array<SureGroups, 2> of_each;
+  for (SureGroups& groups : of_each) groups.free = 1;
+  maps.surelyFree(kNone, 1, {eight.bounds.data(), kLanes}, 0, of_each);
+  EXPECT_EQ(of_each[0].free | of_each[1].free, 0U);
+  const std::array<CenterBounds, 2> bounds{};
+  std::array<unsigned, 2> free{1, 1};
+  maps.surelyFree(kNone, 1, bounds, free);
+  EXPECT_EQ(free[0] | free[1], 0U);
 }
 
 TEST(ClearanceMaps, TakeNoMoreThanThereIsRoomFor) {

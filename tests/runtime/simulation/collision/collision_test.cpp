@@ -14,6 +14,7 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "support/homes/box_room.h"
+#include "support/oracles/resting_oracle.h"
 #include "support/packs/grid_builder.h"
 #include "support/sanitized.h"
 
@@ -25,6 +26,44 @@ using namespace galactic::simulation;
 /// How far beyond the border of a cell a sphere is pushed, and beyond contact with a box.
 constexpr float kMargin = 1e-4F;
 constexpr float kRounding = 1e-5F;
+
+TEST(BlockedSpheres, AreThoseThatTheirColumnsBlockOfAnyThatAreAskedAbout) {
+  constexpr std::uint32_t kSeed = 604;
+  std::printf("seed %u\n", kSeed);
+  std::mt19937 random(kSeed);
+  const BoxRoom room = furnishedRoom(random, 5);
+  // Two groups before those that are asked about.
+  constexpr std::size_t kFirst = 2;
+  constexpr std::size_t kGroups = 5;
+  std::vector<EightSpheres> groups(kFirst + kGroups);
+  for (std::size_t n = 0; n < groups.size(); ++n) {
+    groups[n] = {.radius_index = static_cast<std::uint32_t>(n % 3), .spheres = 0xff};
+  }
+  Tally blocked;
+  for (int round = 0; round < 500; ++round) {
+    std::array<float, kLanes*(kFirst + kGroups)> x;
+    std::array<float, kLanes*(kFirst + kGroups)> y;
+    std::array<float, kLanes*(kFirst + kGroups)> z;
+    std::ranges::generate(x, [&] { return uniformIn(random, -0.2F, 3.2F); });
+    std::ranges::generate(y, [&] { return uniformIn(random, 0, 1.4F); });
+    std::ranges::generate(z, [&] { return uniformIn(random, -0.2F, 3.2F); });
+    // One in two, or in sixteen.
+    std::uint64_t asked = (std::uint64_t{random()} << 32U | random()) & 0xff'ffff'ffffU;
+    if (round % 2 == 0) asked &= std::uint64_t{random()} << 8U & random() & random();
+    std::uint64_t expected = 0;
+    for (std::size_t n = 0; n < kLanes * kGroups; ++n) {
+      if ((asked >> n & 1U) == 0) continue;
+      const std::size_t at = kFirst * kLanes + n;
+      const ColumnGrid& grid = room.scene().grids()[groups[at / kLanes].radius_index];
+      const bool is_free = grid.clearance({x[at], y[at], z[at]}) == Clearance::kFree;
+      expected |= std::uint64_t{is_free ? 0U : 1U} << n;
+      blocked.add(!is_free);
+    }
+    const SphereBatch spheres{x.data(), y.data(), z.data(), {}};
+    ASSERT_EQ(blockedSpheres(room.scene(), spheres, groups, kFirst, asked), expected);
+  }
+  blocked.expectBothSides();
+}
 
 TEST(PushSum, GivesTheSameBitsInAnyOrder) {
   std::mt19937 random(601);
