@@ -18,6 +18,8 @@ constexpr std::uint32_t kTileEdge = 8;
 constexpr float kSlack = 1e-3F;
 /// How far above the lowest height that it can have a sphere is looked for, meters.
 constexpr float kOverContact = 5e-3F;
+/// Cells after the last one: look-ups read two at a time.
+constexpr std::size_t kReadBeyond = 1;
 
 struct Heights {
   float lowest = 0;
@@ -189,7 +191,9 @@ void fillPlane(const Cells& cells, std::span<const float> lowest_free, float low
 ClearanceMaps::ClearanceMaps(std::vector<std::uint32_t> radius_of_lane, std::size_t most_bytes)
     : radius_of_lane_(std::move(radius_of_lane)),
       eights_(paddedToLanes(radius_of_lane_.size()) / kLanes),
-      most_bytes_(most_bytes) {
+      most_bytes_(most_bytes),
+      lanes_(eights_),
+      cells_(1 + kReadBeyond) {
   // Lanes beyond the last group repeat the first of their eight, as bounds do.
   for (std::size_t n = radius_of_lane_.size(); n < eights_ * kLanes; ++n) {
     radius_of_lane_.push_back(radius_of_lane_[n / kLanes * kLanes]);
@@ -210,10 +214,9 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
                                  const HeightsOverFloor& heights,
                                  std::span<const float> lowest_of_radius) {
   if (cells_.size() * sizeof(RoomAround) + bytesFor(scene) > most_bytes_) return kNoClearanceMap;
-  const std::size_t map = lanes_.size() / std::max<std::size_t>(eights_, 1);
-  lanes_.resize(lanes_.size() + eights_);
+  const std::uint32_t map = count_++;
+  lanes_.resize(count_ * eights_);
   const std::span<ClearanceLanes> lanes = std::span(lanes_).last(eights_);
-  constexpr std::size_t kReadBeyond = 1;
   for (std::uint32_t radius = 0; radius < scene.grids().size(); ++radius) {
     if (std::ranges::find(radius_of_lane_, radius) == radius_of_lane_.end()) continue;
     const ColumnGrid& grid = scene.grids()[radius];
@@ -229,7 +232,7 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
                         .band_height = (highest - from) / static_cast<float>(kClearanceBands)};
     const Cells cells = cellsOf(grid);
     const std::vector<float> lowest_free = lowestFree(grid, cells, highest);
-    const std::size_t first = cells_.empty() ? 0 : cells_.size() - kReadBeyond;
+    const std::size_t first = cells_.size() - kReadBeyond;
     cells_.resize(first + std::size_t{kClearancePlanes} * cells.count() + kReadBeyond);
     for (std::uint32_t plane = 0; plane < kClearancePlanes; ++plane) {
       fillPlane(
@@ -255,60 +258,39 @@ std::uint32_t ClearanceMaps::add(const Scene& scene, float floor, float unevenne
       to.tiles_x[lane] = static_cast<std::int32_t>(cells.tilesX());
     }
   }
-  return static_cast<std::uint32_t>(map);
+  return map;
 }
 
 void ClearanceMaps::surelyFree(std::uint32_t map, std::size_t eight, const GroupBounds& bounds,
                                SureGroups& sure) const noexcept {
-  if (map == kNoClearanceMap) {
-    sure = {};
-    return;
-  }
-  const ClearanceQuestion question{&lanes_[map * eights_ + eight], bounds.values};
+  const ClearanceQuestion question{lanesOf(map, eight), bounds.values};
   answer({&question, 1}, bounds.stride, &sure);
 }
 
 void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
                                const GroupBounds& bounds, std::size_t env_stride,
                                std::span<SureGroups> sure) const noexcept {
-  if (lanes_.empty()) {
-    std::ranges::fill(sure.first(maps.size()), SureGroups{});
-    return;
-  }
   std::array<ClearanceQuestion, kMostAsked> questions;
   for (std::size_t n = 0; n < maps.size(); ++n) {
-    const std::size_t map = maps[n] == kNoClearanceMap ? 0 : maps[n];
-    questions[n] = {&lanes_[map * eights_ + eight], bounds.values + n * env_stride};
+    questions[n] = {lanesOf(maps[n], eight), bounds.values + n * env_stride};
   }
   answer(std::span(questions).first(maps.size()), bounds.stride, sure.data());
-  for (std::size_t n = 0; n < maps.size(); ++n) {
-    if (maps[n] == kNoClearanceMap) sure[n] = {};
-  }
 }
 
 void ClearanceMaps::surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
                                std::span<const CenterBounds> bounds,
                                std::span<unsigned> free) const noexcept {
-  if (lanes_.empty()) {
-    std::ranges::fill(free.first(maps.size()), 0U);
-    return;
-  }
   std::array<BoxQuestion, kMostAsked> questions;
   for (std::size_t n = 0; n < maps.size(); ++n) {
-    const std::size_t map = maps[n] == kNoClearanceMap ? 0 : maps[n];
-    questions[n] = {&lanes_[map * eights_ + eight], &bounds[n]};
+    questions[n] = {lanesOf(maps[n], eight), &bounds[n]};
   }
   const auto ask = detail::hasAvx2() ? boxesSurelyFreeAvx2 : boxesSurelyFreePortable;
   ask(questions.data(), maps.size(), cells_.data(), free.data());
-  for (std::size_t n = 0; n < maps.size(); ++n) {
-    if (maps[n] == kNoClearanceMap) free[n] = 0;
-  }
 }
 
 unsigned ClearanceMaps::freeAfter(std::uint32_t map, std::size_t eight, const SureGroups& sure,
                                   float x, float z) const noexcept {
-  if (map == kNoClearanceMap) return 0;
-  const ClearanceLanes& lanes = lanes_[map * eights_ + eight];
+  const ClearanceLanes& lanes = *lanesOf(map, eight);
   return detail::hasAvx2() ? freeAfterAvx2(lanes, sure, x, z)
                            : freeAfterPortable(lanes, sure, x, z);
 }

@@ -41,23 +41,23 @@ struct GroupBounds {
   std::size_t stride = 0;
 };
 
-/// Where no map is known.
-inline constexpr std::uint32_t kNoClearanceMap = ~std::uint32_t{0};
+/// The number of the floor of which nothing is known, here and wherever floors go by the numbers of
+/// their maps.
+inline constexpr std::uint32_t kNoClearanceMap = 0;
 
 /// The maps of the floors of all scenes. Any thread may ask.
 class ClearanceMaps {
  public:
-  ClearanceMaps() = default;
   /// `radius_of_lane`: index into the working set, of each group that will be asked about.
   /// `most_bytes`: of all maps, at most what look-ups can count.
-  explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane,
+  explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane = {},
                          std::size_t most_bytes = kMostBytes);
   static constexpr std::size_t kMostBytes = std::size_t{1} << 31;
 
   /// Adds the maps of a floor of a scene. `floor`: the least height of that floor, meters; the
   /// robot's centers are `heights` above it, or above floors up to `unevenness` higher.
   /// `lowest_of_radius`: how far above its floor nothing of a radius is, where that is more; empty
-  /// where nobody knows. Returns the number by which surelyFree() knows it: 0, 1, ...;
+  /// where nobody knows. Returns the number by which surelyFree() knows it: 1, 2, ...;
   /// kNoClearanceMap where there is no room for it.
   std::uint32_t add(const Scene& scene, float floor, float unevenness,
                     const HeightsOverFloor& heights, std::span<const float> lowest_of_radius = {});
@@ -87,6 +87,9 @@ class ClearanceMaps {
   [[nodiscard]] std::size_t eights() const { return eights_; }
 
  private:
+  [[nodiscard]] const ClearanceLanes* lanesOf(std::uint32_t map, std::size_t eight) const noexcept {
+    return &lanes_[map * eights_ + eight];
+  }
   void answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
               SureGroups* sure) const noexcept;
 
@@ -96,9 +99,11 @@ class ClearanceMaps {
   std::vector<std::uint32_t> radius_of_lane_;
   std::size_t eights_ = 0;
   std::size_t most_bytes_ = kMostBytes;
-  /// Shape: maps x eights_.
+  /// Maps, that of kNoClearanceMap among them.
+  std::uint32_t count_ = 1;
+  /// Shape: maps x eights_; those of kNoClearanceMap are as wide as nothing.
   std::vector<ClearanceLanes> lanes_;
-  /// Of all maps, and one more: look-ups read two at a time.
+  /// Of all maps, after one for what is outside of them.
   std::vector<RoomAround> cells_;
 };
 

@@ -9,7 +9,6 @@ namespace galactic::simulation {
 // all but the look-up itself.
 bool LevelFloors::heightsUnder(std::uint32_t map, const Bases& bases,
                                float* heights) const noexcept {
-  if (map == kNoClearanceMap) return false;
   assert(bases.count % kLanes == 0);
   std::int32_t all = 1;
   for (std::size_t first = 0; first < bases.count; first += kLanes) {

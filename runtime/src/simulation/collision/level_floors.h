@@ -20,7 +20,7 @@ namespace galactic::simulation {
 /// few. So a floor has some heights, each of which leads to the next one.
 class LevelFloors {
  public:
-  /// Adds a floor, by the number of its clearance map: 0, 1, ... `height_found(center, height)`:
+  /// Adds a floor, by the number of its clearance map: 1, 2, ... `height_found(center, height)`:
   /// the height at which a base finds the floor in a column when it stood at `height` before, NaN
   /// where none carries it. The floor's height is that of the base `start`.
   template <class HeightFound>
@@ -30,7 +30,6 @@ class LevelFloors {
   /// is not known. `map`: as from ClearanceMaps::add().
   [[nodiscard]] std::optional<float> heightUnder(std::uint32_t map,
                                                  const Vec3& base) const noexcept {
-    if (map == kNoClearanceMap) return std::nullopt;
     const Floor& floor = floors_[map];
     const float x = (base.x - floor.min_x) * floor.inverse_spacing;
     const float z = (base.z - floor.min_z) * floor.inverse_spacing;
@@ -82,8 +81,10 @@ class LevelFloors {
   std::int32_t heightsOfEight(const Floor& floor, const Bases& bases, std::size_t first,
                               float* heights) const noexcept;
 
-  std::vector<Floor> floors_;
-  std::vector<std::uint32_t> words_;
+  /// After that of no map, which is as wide as nothing.
+  std::vector<Floor> floors_ = std::vector<Floor>(1);
+  /// After one for what is outside of all floors.
+  std::vector<std::uint32_t> words_ = {0};
 };
 
 template <class HeightFound>

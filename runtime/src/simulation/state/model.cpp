@@ -162,6 +162,18 @@ std::vector<float> lowestOfRadius(const Model& model) {
   return lowest;
 }
 
+/// The radius of each group of the robot that maps are asked about and, in eights after these, each
+/// radius of what its hand may hold.
+std::vector<std::uint32_t> radiiOfLanes(const Model& model) {
+  std::vector<std::uint32_t> radii;
+  for (const EightSpheres& group : model.groups) radii.push_back(group.radius_index);
+  radii.resize(paddedToLanes(radii.size()), radii.front());
+  for (std::uint32_t radius = 0; radius < model.world->radii().size(); ++radius) {
+    radii.push_back(radius);
+  }
+  return radii;
+}
+
 /// Makes a map for each floor of each scene on which episodes start.
 void mapClearance(const HeightsOverFloor& heights, Model& model) {
   // Starts whose floors differ by no more stand on one floor, with rugs.
@@ -173,13 +185,6 @@ void mapClearance(const HeightsOverFloor& heights, Model& model) {
   // know less below.
   constexpr float kRaisedArm = 0.75F;
   const HeightsOverFloor sliced{heights.lowest, heights.highest + kRaisedArm};
-  const std::size_t radii = model.world->radii().size();
-  if (radii > kLanes) return;
-  std::vector<std::uint32_t> radius_of_lane;
-  for (const EightSpheres& group : model.groups) radius_of_lane.push_back(group.radius_index);
-  radius_of_lane.resize(paddedToLanes(radius_of_lane.size()), radius_of_lane.front());
-  for (std::uint32_t radius = 0; radius < radii; ++radius) radius_of_lane.push_back(radius);
-  model.clearance = ClearanceMaps(std::move(radius_of_lane));
   const auto scene_of = [&](std::uint32_t start) {
     return model.world->sceneIndexOf(model.episodeOf(start));
   };
@@ -287,6 +292,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   measure(world, model);
   model.groups = spheresByEights(model.motion.ranges);
   model.slices = FreeSlices(model.groups);
+  model.clearance = ClearanceMaps(radiiOfLanes(model));
   StartFinder finder(model);
   finder.find();
   if (model.starts.empty()) {

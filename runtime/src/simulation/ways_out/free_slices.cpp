@@ -127,9 +127,10 @@ FreeSlices::FreeSlices(std::vector<EightSpheres> groups) : groups_(std::move(gro
 
 std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOverFloor& heights,
                               std::span<const float> lowest_of_radius) {
-  radii_ = scene.grids().size();
-  const std::size_t map = layouts_.size() / radii_;
-  for (std::uint32_t radius = 0; radius < radii_; ++radius) {
+  // No pack has more.
+  assert(scene.grids().size() <= kLanes);
+  LayoutOfRadii layouts;
+  for (std::uint32_t radius = 0; radius < scene.grids().size(); ++radius) {
     const ColumnGrid& grid = scene.grids()[radius];
     const ColumnGridLayout& from = grid.layout();
     // Nothing can be lower than at contact with the floor, and slices that begin where the lowest
@@ -140,25 +141,25 @@ std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOver
     const float range = std::max(floor + heights.highest - lowest, kSlice);
     const float slices = std::min(std::ceil(range / kSlice), kMostSlices);
     const float thickness = range / slices;
-    const SliceLayout layout{
-        .min_x = from.min_x,
-        .min_z = from.min_z,
-        .inverse_spacing = from.inverse_spacing,
-        .columns_x = static_cast<float>(from.columns_x),
-        .columns_z = from.columns_z < kMostColumnsZ ? static_cast<float>(from.columns_z) : 0,
-        .lowest = lowest,
-        .inverse_slice = 1 / thickness,
-        .slices = slices,
-        .slice_count = static_cast<std::int32_t>(slices),
-        .tiles_z = static_cast<std::int32_t>(tilesZ(grid)),
-        .first = from.columns_z < kMostColumnsZ ? numbers_.size() : 0};
+    SliceLayout& layout = layouts[radius];
+    layout = {.min_x = from.min_x,
+              .min_z = from.min_z,
+              .inverse_spacing = from.inverse_spacing,
+              .columns_x = static_cast<float>(from.columns_x),
+              .columns_z = from.columns_z < kMostColumnsZ ? static_cast<float>(from.columns_z) : 0,
+              .lowest = lowest,
+              .inverse_slice = 1 / thickness,
+              .slices = slices,
+              .slice_count = static_cast<std::int32_t>(slices),
+              .tiles_z = static_cast<std::int32_t>(tilesZ(grid)),
+              .first = from.columns_z < kMostColumnsZ ? numbers_.size() : 0};
     fill(grid, thickness, layout);
-    layouts_.push_back(layout);
   }
   for (const EightSpheres& group : groups_) {
-    slice_groups_.push_back({layouts_[map * radii_ + group.radius_index], group.spheres});
+    slice_groups_.push_back({layouts[group.radius_index], group.spheres});
   }
-  return static_cast<std::uint32_t>(map);
+  layouts_.push_back(layouts);
+  return static_cast<std::uint32_t>(layouts_.size() - 1);
 }
 
 void FreeSlices::fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout) {
@@ -214,9 +215,7 @@ std::uint32_t FreeSlices::numberOf(const SliceTile& tile) {
 }
 
 const SliceGroup* FreeSlices::groupsOf(std::uint32_t map) const {
-  // Those of no map come first.
-  static_assert(kNoClearanceMap + 1 == 0);
-  return slice_groups_.data() + std::uint32_t{map + 1} * groups_.size();
+  return slice_groups_.data() + map * groups_.size();
 }
 
 InSlices FreeSlices::findPlaces(std::uint32_t map, std::size_t first,
@@ -301,8 +300,7 @@ void findPlacesOfEnvsPortable(const EnvPlacesQuery& query) noexcept {
 
 std::optional<SurroundingRows> FreeSlices::around(std::uint32_t map, std::uint32_t radius,
                                                   const Vec3& center) const noexcept {
-  if (map == kNoClearanceMap) return std::nullopt;
-  const SliceLayout& layout = layouts_[map * radii_ + radius];
+  const SliceLayout& layout = layouts_[map][radius];
   const float x = (center.x - layout.min_x) * layout.inverse_spacing;
   const float z = (center.z - layout.min_z) * layout.inverse_spacing;
   const float height = (center.y - layout.lowest) * layout.inverse_slice;

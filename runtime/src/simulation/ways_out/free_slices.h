@@ -93,7 +93,7 @@ class FreeSlices {
 
   /// Adds the slices of a floor of a scene. `floor`: its height, meters; the robot's centers are
   /// `heights` above it. `lowest_of_radius`: see ClearanceMaps::add(). Returns the number by which
-  /// the others know it: 0, 1, ...
+  /// the others know it: 1, 2, ...
   std::uint32_t add(const Scene& scene, float floor, const HeightsOverFloor& heights,
                     std::span<const float> lowest_of_radius = {});
 
@@ -122,6 +122,8 @@ class FreeSlices {
   }
 
  private:
+  using LayoutOfRadii = std::array<SliceLayout, kLanes>;
+
   /// The first of a floor's groups.
   [[nodiscard]] const SliceGroup* groupsOf(std::uint32_t map) const;
   void fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout);
@@ -132,10 +134,9 @@ class FreeSlices {
   [[nodiscard]] TileSet tiles() const { return {numbers_.data(), tiles_.data()}; }
 
   std::vector<EightSpheres> groups_;
-  std::size_t radii_ = 0;
-  /// Shape: maps x radii.
-  std::vector<SliceLayout> layouts_;
-  /// Shape: maps x groups, after those of no map.
+  /// Of each map, of each radius, after those of no map, which are as wide as nothing.
+  std::vector<LayoutOfRadii> layouts_ = std::vector<LayoutOfRadii>(1);
+  /// Shape: maps x groups, those of no map among them.
   std::vector<SliceGroup> slice_groups_;
   std::vector<std::uint32_t> numbers_;
   std::vector<SliceTile> tiles_;

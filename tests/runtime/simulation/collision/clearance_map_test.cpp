@@ -147,16 +147,16 @@ TEST(ClearanceMaps, KnowThatSpheresThatAreNeverLowAreFreeOverARug) {
   const std::array<float, 3> lowest{0, 0, grid.radius() + kOverFloor};
   const HeightsOverFloor heights{0.07F, kHeights.highest};
   ClearanceMaps any({2});
-  any.add(room.scene(), 0, kUnevenness, heights);
+  const std::uint32_t map = any.add(room.scene(), 0, kUnevenness, heights);
   ClearanceMaps never_low({2});
-  never_low.add(room.scene(), 0, kUnevenness, heights, lowest);
+  ASSERT_EQ(never_low.add(room.scene(), 0, kUnevenness, heights, lowest), map);
   std::size_t known = 0;
   std::size_t known_more = 0;
   for (int n = 0; n < 5000; ++n) {
     const Eight eight(random, grid.radius() + uniformIn(random, 0, 2 * kOverFloor));
     const bool is_free = grid.firstNotFree({eight.x, eight.y, eight.z}) == kLanes;
-    const SureGroups before = sureOf(any, 0, 0, eight.bounds.data());
-    const SureGroups now = sureOf(never_low, 0, 0, eight.bounds.data());
+    const SureGroups before = sureOf(any, map, 0, eight.bounds.data());
+    const SureGroups now = sureOf(never_low, map, 0, eight.bounds.data());
     ASSERT_TRUE(is_free || (now.free & 1U) == 0);
     // Others are higher than the rug, as far as any map knows, or lower than what is ever asked.
     const float over_floor = *std::ranges::min_element(eight.y);
@@ -375,17 +375,16 @@ TEST(ClearanceMaps, TakeNoMoreThanThereIsRoomFor) {
   const BoxRoom room = furnishedRoom(random, 5);
   std::uint32_t added = 0;
   ClearanceMaps maps({0}, 100'000);
-  while (maps.add(room.scene(), 0, kUnevenness, kHeights) == added) ++added;
+  while (maps.add(room.scene(), 0, kUnevenness, kHeights) == added + 1) ++added;
   // The same that fits into more room.
   EXPECT_GT(added, 0U);
   EXPECT_EQ(maps.add(room.scene(), 0, kUnevenness, kHeights), kNoClearanceMap);
   ClearanceMaps more({0}, 200'000);
-  for (std::uint32_t n = 0; n <= added; ++n) {
+  for (std::uint32_t n = 1; n <= added + 1; ++n) {
     EXPECT_EQ(more.add(room.scene(), 0, kUnevenness, kHeights), n);
   }
   const Eight eight(random);
-  expectSame(sureOf(maps, added - 1, 0, eight.bounds.data()),
-             sureOf(more, 0, 0, eight.bounds.data()));
+  expectSame(sureOf(maps, added, 0, eight.bounds.data()), sureOf(more, 1, 0, eight.bounds.data()));
 }
 
 TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {

@@ -20,6 +20,9 @@ namespace {
 
 using namespace galactic::simulation;
 
+/// The number of the first floor.
+constexpr std::uint32_t kFloor = 1;
+
 /// The floor of a room as a simulator asks for it.
 LevelFloors levelFloors(const Scene& scene, const GroundOptions& options) {
   LevelFloors floors;
@@ -53,7 +56,7 @@ TEST(LevelFloors, AreWhereABaseFindsTheFloorAtItsHeight) {
     for (int n = 0; n < 1000; ++n) {
       const Vec3 base{uniformIn(random, -0.3F, 3.3F), height, uniformIn(random, -0.3F, 3.3F)};
       const FloorUnder under = floorUnder(room.scene(), base, options);
-      const std::optional<float> known = floors.heightUnder(0, base);
+      const std::optional<float> known = floors.heightUnder(kFloor, base);
       level.add(known.has_value());
       if (!known) continue;
       ASSERT_EQ(under.floor, Floor::kCarries) << base.x << " " << base.z;
@@ -89,9 +92,9 @@ TEST(LevelFloors, SayOfSixteenBasesWhatTheySayOfEach) {
     bool expected = true;
     std::array<float, kCount> heights{};
     const LevelFloors::Bases bases{x.data(), y.data(), z.data(), kCount};
-    const bool found = floors.heightsUnder(0, bases, heights.data());
+    const bool found = floors.heightsUnder(kFloor, bases, heights.data());
     for (std::size_t n = 0; n < kCount; ++n) {
-      const std::optional<float> known = floors.heightUnder(0, {x[n], y[n], z[n]});
+      const std::optional<float> known = floors.heightUnder(kFloor, {x[n], y[n], z[n]});
       expected = expected && known.has_value();
       if (known.has_value()) {
         ASSERT_EQ(heights[n], *known);
@@ -109,13 +112,13 @@ TEST(LevelFloors, KnowNothingOfOtherHeightsNorWithoutAMap) {
   const BoxRoom room = furnishedRoom(random, 0);
   const LevelFloors floors = levelFloors(room.scene(), {});
   const float height = heightOf(room.scene(), {});
-  ASSERT_TRUE(floors.heightUnder(0, {1.5F, height, 1.5F}));
-  EXPECT_FALSE(floors.heightUnder(0, {1.5F, height + 1e-5F, 1.5F}));
+  ASSERT_TRUE(floors.heightUnder(kFloor, {1.5F, height, 1.5F}));
+  EXPECT_FALSE(floors.heightUnder(kFloor, {1.5F, height + 1e-5F, 1.5F}));
   EXPECT_FALSE(floors.heightUnder(kNoClearanceMap, {1.5F, height, 1.5F}));
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), 1e30F, -1e30F}) {
-    EXPECT_FALSE(floors.heightUnder(0, {odd, height, 1.5F})) << odd;
-    EXPECT_FALSE(floors.heightUnder(0, {1.5F, odd, 1.5F})) << odd;
-    EXPECT_FALSE(floors.heightUnder(0, {1.5F, height, odd})) << odd;
+    EXPECT_FALSE(floors.heightUnder(kFloor, {odd, height, 1.5F})) << odd;
+    EXPECT_FALSE(floors.heightUnder(kFloor, {1.5F, odd, 1.5F})) << odd;
+    EXPECT_FALSE(floors.heightUnder(kFloor, {1.5F, height, odd})) << odd;
   }
 }
 
