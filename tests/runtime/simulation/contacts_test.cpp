@@ -3,14 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <span>
 #include <vector>
 
-#include "simulation/phases/episode_start.h"
-#include "simulation/phases/hand.h"
-#include "simulation/phases/move.h"
 #include "support/homes/box_world.h"
+#include "support/homes/one_robot.h"
 
 namespace galactic::test::contacts_test {
 namespace {
@@ -23,41 +19,16 @@ std::vector<Block> blocks() {
 }
 const Start kStart{.base = {1, 0, 1.5F}, .objects = {{1, 0.2F, 2.5F}}};
 
-SimulationOptions oneEnv() {
-  SimulationOptions options;
-  options.envs = 1;
-  options.task.kind = TaskKind::kNone;
-  return options;
+const Model& cartModel() {
+  static const BoxWorld world(blocks(), {kStart});
+  static const Model model = modelOfOne(world.world());
+  return model;
 }
 
 /// The cart, which a test puts somewhere and asks what hinders it there.
-class Cart {
+class Cart : public OneRobot {
  public:
-  Cart()
-      : world_(blocks(), {kStart}),
-        model_(makeModel(world_.world(), oneEnv()).value()),
-        state_(model_, 1),
-        chunk_(model_) {
-    for (std::size_t n = 0; n < state_.paddedCount(); ++n) beginEpisode(model_, state_, n, 0);
-  }
-
-  /// Puts the candidate to a place of the floor.
-  void put(float x, float z) {
-    std::ranges::fill(chunk_.actions(), EnvRow{});
-    proposePoses(step());
-    const PoseArrays candidates = chunk_.candidates(0);
-    std::fill_n(candidates.x, kChunk, x);
-    std::fill_n(candidates.z, kChunk, z);
-    followFloor(step());
-    placeBodies(step());
-  }
-
-  /// The hand takes the cube, which is `ahead` of the candidate then.
-  void takeCube(const Vec3& ahead) {
-    takeInHand(step(), 0, 0);
-    state_.held(0).grip_from_object.translation = ahead;
-    measureHeld(heldModel(model_, state_.env(0)), state_.held(0));
-  }
+  Cart() : OneRobot(cartModel()) {}
 
   /// As a look at one candidate says, and as one at all of a chunk does.
   Hindrance hindrance() {
@@ -67,16 +38,6 @@ class Cart {
     EXPECT_EQ(isFree(step(), 0), alone == Hindrance::kNone);
     return alone;
   }
-
-  Chunk& chunk() { return chunk_; }
-
- private:
-  [[nodiscard]] ChunkStep step() { return {model_, state_, chunk_, 0}; }
-
-  BoxWorld world_;
-  Model model_;
-  BatchState state_;
-  Chunk chunk_;
 };
 
 TEST(Hindrance, IsNoneInTheOpen) {
@@ -116,7 +77,8 @@ TEST(Hindrance, IsAnObjectWhereTheSceneIsFarAway) {
 TEST(Hindrance, IsWhatTheHandHoldsWhereTheRobotItselfIsFree) {
   Cart cart;
   cart.put(1, 2.1F);
-  cart.takeCube({0.5F, -0.1F, 0});
+  cart.take(0, kStart.objects[0]);
+  cart.holdAt({0.5F, -0.1F, 0});
   cart.put(1.2F, 1.5F);
   EXPECT_EQ(cart.hindrance(), Hindrance::kNone);
   // It is in the wall, half a meter ahead of the robot.

@@ -2,20 +2,16 @@
 // what was in the scene already when the hand took it.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <random>
 #include <vector>
 
 #include "simulation/collision/collision.h"
-#include "simulation/phases/contacts.h"
-#include "simulation/phases/episode_start.h"
-#include "simulation/phases/hand.h"
-#include "simulation/phases/move.h"
 #include "simulation/phases/slide.h"
 #include "simulation/state/saved_state.h"
 #include "support/homes/box_world.h"
+#include "support/homes/one_robot.h"
 #include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::holding_test {
@@ -42,53 +38,21 @@ RobotPackFields cartWithMast() {
   return robot;
 }
 
-SimulationOptions oneEnv() {
-  SimulationOptions options;
-  options.envs = 1;
-  options.task.kind = TaskKind::kNone;
-  return options;
+const Model& cartModel() {
+  static const BoxWorld world(blocks(), cartWithMast(), episodesFrom({kStart}));
+  static const Model model = modelOfOne(world.world());
+  return model;
 }
 
 /// A cart that a test puts somewhere, with a cube in its hand.
-class Cart {
+class Cart : public OneRobot {
  public:
-  Cart()
-      : world_(blocks(), cartWithMast(), episodesFrom({kStart})),
-        model_(makeModel(world_.world(), oneEnv()).value()),
-        state_(model_, 1),
-        chunk_(model_) {
-    for (std::size_t n = 0; n < state_.paddedCount(); ++n) beginEpisode(model_, state_, n, 0);
-  }
-
-  /// The cube, which lies at `place`, is in the hand from now on.
-  void takeCubeAt(const Vec3& place) {
-    state_.placeObject(0, 0, {place, {}});
-    takeInHand(step(), 0, 0);
-  }
+  Cart() : OneRobot(cartModel()) {}
 
   /// The cube is in the hand, so far away from it.
   void hold(const Vec3& away) {
-    if (state_.env(0).held < 0) takeCubeAt(kStart.objects[0]);
-    state_.held(0).grip_from_object.translation = away;
-    measureHeld(heldModel(model_, state_.env(0)), state_.held(0));
-  }
-
-  /// Puts the candidate to a place of the floor.
-  void put(float x, float z) {
-    std::ranges::fill(chunk_.actions(), EnvRow{});
-    proposePoses(step());
-    const PoseArrays candidates = chunk_.candidates(0);
-    std::fill_n(candidates.x, kChunk, x);
-    std::fill_n(candidates.z, kChunk, z);
-    followFloor(step());
-    placeBodies(step());
-  }
-
-  /// Moves the robot there. Whether nothing kept it away.
-  bool move(float x, float z) {
-    put(x, z);
-    moveRobots(step());
-    return state_.base(0).x == x && state_.base(0).z == z;
+    if (env().held < 0) take(0, kStart.objects[0]);
+    holdAt(away);
   }
 
   Hindrance hindranceHere() {
@@ -100,25 +64,16 @@ class Cart {
 
   /// As the columns themselves say.
   bool heldIsInScene() { return penetrates(obstaclesOf(step(), 0), heldSpheres(step(), 0)); }
-  [[nodiscard]] bool clearsScene() { return chunk_.seenHeld(0).clears_scene; }
-  [[nodiscard]] const Env& env() const { return state_.env(0); }
+  [[nodiscard]] bool clearsScene() { return chunk().seenHeld(0).clears_scene; }
 
   /// Goes on from what another one saves.
   void restore(const Cart& other) {
     constexpr std::array<std::uint32_t, 1> kEnv{0};
-    const auto bytes = saveEnvs(other.model_, other.state_, kEnv, 0);
-    const Result<SavedState> saved = readState(model_, bytes);
+    const auto bytes = saveEnvs(model(), other.state(), kEnv, 0);
+    const Result<SavedState> saved = readState(model(), bytes);
     ASSERT_TRUE(saved) << saved.error().message;
-    restoreEnv(model_, state_, 0, saved->envs[0]);
+    restoreEnv(model(), state(), 0, saved->envs[0]);
   }
-
- private:
-  [[nodiscard]] ChunkStep step() { return {model_, state_, chunk_, 0}; }
-
-  BoxWorld world_;
-  Model model_;
-  BatchState state_;
-  Chunk chunk_;
 };
 
 TEST(Holding, IsLookedAtWhereTheCandidateIsNow) {
@@ -175,14 +130,14 @@ void leaveTheWall(Cart& cart) {
 TEST(Holding, WhatWasInTheSceneWhenItWasTakenCountsOnceItIsFree) {
   Cart cart;
   ASSERT_TRUE(cart.move(1.5F, 2));
-  cart.takeCubeAt({1.95F, 0.5F, 2});
+  cart.take(0, {1.95F, 0.5F, 2});
   leaveTheWall(cart);
 }
 
 TEST(Holding, WhatDoesNotCountYetIsSavedAndRestored) {
   Cart cart;
   ASSERT_TRUE(cart.move(1.5F, 2));
-  cart.takeCubeAt({1.95F, 0.5F, 2});
+  cart.take(0, {1.95F, 0.5F, 2});
   Cart other;
   other.restore(cart);
   leaveTheWall(other);
