@@ -28,6 +28,7 @@ from galactic.learning.settings import (
     SettingsError,
     add_options,
     given_options,
+    positive_integer,
     resumed,
 )
 from galactic.learning.trainer import Trainer, Validation, threads_of
@@ -74,6 +75,12 @@ def make_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "--resume", action="store_true", help="continue from the latest checkpoint in FOLDER"
+    )
+    parser.add_argument(
+        "--pause-at",
+        type=positive_integer,
+        metavar="STEPS",
+        help="validate, save and end after so many steps of the run, for --resume to go on",
     )
     parser.add_argument(
         "--device",
@@ -129,14 +136,14 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         trainer.progress.say(f"going on after {trainer.steps:,} steps")
     else:
         trainer.begin()
-    complete = trainer.train()
+    undisturbed = trainer.train(options.pause_at)
     envs.close()
-    if not complete:
+    if trainer.steps < settings.steps:
         trainer.progress.say(
-            f"stopped and saved after {trainer.steps:,} steps; go on with "
-            f"python3 -m galactic.train -o {folder} --resume"
+            f"{'paused' if undisturbed else 'stopped'} and saved after {trainer.steps:,} steps; go on "
+            f"with python3 -m galactic.train -o {folder} --resume"
         )
-        return INTERRUPTED
+        return OK if undisturbed else INTERRUPTED
     trainer.progress.say(f"{folder}: curves.html, curves.csv, report.json, best.pt")
     return OK
 

@@ -424,6 +424,14 @@ def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
+def positive_integer(text: str) -> int:
+    """The type of an option that takes a number of steps, as `--steps` does."""
+    value = _integer(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f'found "{text}", expected 1 or more')
+    return value
+
+
 def _integer(text: str) -> int:
     """Also 2e6 and 2_000_000."""
     if re.fullmatch(r"-?[0-9]+(_[0-9]+)*", text):

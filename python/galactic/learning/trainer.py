@@ -103,17 +103,19 @@ class Trainer:
         self.collector.reset()
         self._started = time.perf_counter()
 
-    def train(self) -> bool:
-        """Trains until `settings.steps` are done or a signal asks to stop; saves in either case.
-        Returns whether the run is complete. Raises TrainingError when the loss is not a number."""
+    def train(self, pause_at: Optional[int] = None) -> bool:
+        """Trains until `settings.steps` are done, or `pause_at` of them, or a signal asks to stop;
+        validates in the first two cases, saves in all. Returns whether no signal did. Raises
+        TrainingError when the loss is not a number."""
         settings = self.settings
-        if self.steps >= settings.steps:
+        end = settings.steps if pause_at is None else min(pause_at, settings.steps)
+        if self.steps >= end:
             return True
         with _Signals(self._interrupt):
-            while self.steps < settings.steps:
+            while self.steps < end:
                 before = self.steps
                 losses, stop = self._iterate()
-                done = self.steps >= settings.steps or stop
+                done = self.steps >= end or stop
                 if not stop and self._is_due(settings.validate_every, before, done):
                     self._validate()
                 if done or self.seconds - self._logged[0] >= settings.log_every:
@@ -124,7 +126,7 @@ class Trainer:
                     break
         self.progress.close()
         self._write_report()
-        return self.steps >= settings.steps
+        return self.steps >= end
 
     def _iterate(self) -> tuple[dict[str, float], bool]:
         """One rollout and one update. Returns the losses and whether some rank was told to stop."""

@@ -132,6 +132,29 @@ def test_a_run_that_was_cut_goes_on_as_if_it_had_not_been(
     assert all(torch.equal(found[name], value) for name, value in wanted.items())
 
 
+def test_a_paused_run_was_validated_and_goes_on_as_if_it_had_not_been_paused(
+    tmp_path: pathlib.Path,
+) -> None:
+    options = [WORLD, *SMALL, "--steps", 6 * UPDATE, "--simulation", "task=pick episode-steps=20"]
+    options += ["--validation", HELD_OUT, "--validation-episodes", "4"]
+    options += ["--validate-every", 3 * UPDATE]
+    whole, paused = tmp_path / "whole", tmp_path / "paused"
+    assert call("train", "-o", whole, *options).returncode == 0
+    first = call("train", "-o", paused, *options, "--pause-at", 3 * UPDATE)
+    assert first.returncode == 0, first.stderr
+    assert f"paused and saved after {3 * UPDATE} steps; go on with python3" in first.stderr
+    half = curve(paused)
+    assert [row["validation_success"] is not None for row in half] == [False, False, True, False]
+    assert json.loads((paused / "report.json").read_text())["best_success"] is not None
+    # It is there already, and stays.
+    again = call("train", "-o", paused, "--resume", "--pause-at", 3 * UPDATE)
+    assert again.returncode == 0 and "paused and saved" in again.stderr
+    assert curve(paused) == half
+    rest = call("train", "-o", paused, "--resume")
+    assert rest.returncode == 0 and "report.json" in rest.stderr
+    assert curve(paused) == curve(whole)
+
+
 def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> None:
     process = subprocess.Popen(
         command("train", WORLD, "-o", tmp_path / "run", *SMALL_OF_ANY_RANKS, "--ranks", "2"),
@@ -172,6 +195,8 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
         ([WORLD, "--stepz", "5"], 1, "unrecognized arguments: --stepz 5; did you mean --steps?"),
         ([WORLD, "--stepz=5"], 1, "unrecognized arguments: --stepz=5; did you mean --steps?"),
         (["--resume"], 2, "holds no run"),
+        ([WORLD, *SMALL, "--pause-at", "0"], 1, '--pause-at: found "0", expected 1 or more'),
+        ([WORLD, *SMALL, "--pause-at", "1.5"], 1, 'found "1.5", expected a whole number'),
         ([WORLD, "--device", "cuda"], 1, "--device: found cuda, but this torch has no CUDA device"),
     ],
 )
