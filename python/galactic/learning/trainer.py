@@ -89,6 +89,7 @@ class Trainer:
         # Envs of all ranks that have not finished an episode yet.
         self._waiting = settings.envs * group.size
         self._seconds_before = 0.0
+        self._processor_seconds_before = 0.0
         self._started = time.perf_counter()
         self._logged = (0.0, 0)
         self._interrupted = False
@@ -97,6 +98,11 @@ class Trainer:
     def seconds(self) -> float:
         """Wall clock since the run began, over all its parts."""
         return self._seconds_before + time.perf_counter() - self._started
+
+    @property
+    def processor_seconds(self) -> float:
+        """The same of this rank's processor time."""
+        return self._processor_seconds_before + time.process_time()
 
     def begin(self) -> None:
         """Starts at the first step."""
@@ -274,8 +280,8 @@ class Trainer:
         counters, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
             # Checkpoints of before do not know who waits, as in Collector.load_state_dict(), nor of a
-            # paced rate.
-            counters = {"waiting": 0, "rate_share": 1.0, **counters}
+            # paced rate or of processor time.
+            counters = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0, **counters}
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
                 raise CheckpointError(
@@ -306,6 +312,8 @@ class Trainer:
         require_types(counters["stopwatch"], dict.fromkeys(counters["stopwatch"], (float, int)))
         self.stopwatch.seconds = dict(counters["stopwatch"])
         self._waiting, self._seconds_before = counters["waiting"], counters["seconds"]
+        # This process has used some before it took up the run.
+        self._processor_seconds_before = counters["processor_seconds"] - time.process_time()
 
     def _saved_policy(self, success: Optional[float]) -> SavedPolicy:
         return SavedPolicy(self.policy, self.settings, self.shape, self.parts, self.steps, success)
@@ -320,6 +328,7 @@ class Trainer:
             "waiting": self._waiting,
             "window": [dataclasses.astuple(sums) for sums in self._window],
             "seconds": self.seconds,
+            "processor_seconds": self.processor_seconds,
             "stopwatch": self.stopwatch.seconds,
         }
 
@@ -362,7 +371,7 @@ class Trainer:
                 "steps": self.steps,
                 "updates": self.updates,
                 "seconds": self.seconds,
-                "processor_seconds": time.process_time(),
+                "processor_seconds": self.processor_seconds,
                 "steps_per_second": self.steps / max(self.seconds, 1e-9),
                 "best_success": self.best,
                 "training": self.figures(),
@@ -387,6 +396,7 @@ _COUNTERS = {
     "waiting": int,
     "window": list,
     "seconds": (float, int),
+    "processor_seconds": (float, int),
     "stopwatch": dict,
 }
 

@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from typing import Any
 
 import pytest
@@ -372,14 +373,28 @@ def test_a_checkpoint_of_other_values_is_refused(
 
 def test_a_checkpoint_of_before_the_curves_waited_is_taken_up(tmp_path: pathlib.Path) -> None:
     resumed = saved_run(tmp_path)
-    removed = (("trainer.pt", "waiting"), ("trainer.pt", "rate_share"), ("rank-0.pt", "waits"))
-    for name, key in removed:
+    removed = [("trainer.pt", key) for key in ("waiting", "rate_share", "processor_seconds")]
+    for name, key in [*removed, ("rank-0.pt", "waits")]:
         file = resumed.checkpoints.latest() / name
         values, tensors = checkpoint.load(file)
         (values if key in values else tensors).pop(key)
         checkpoint.save(file, values, tensors)
     resumed.resume()
     assert resumed.collector.waiting == 0 and resumed.steps == 2 * UPDATE
+
+
+def test_a_resumed_run_counts_the_processor_time_of_all_its_parts(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    used = [100.0]
+    monkeypatch.setattr(time, "process_time", lambda: used[0])
+    resumed = saved_run(tmp_path)
+    used[0] = 3.0
+    resumed.resume()
+    used[0] = 5.0
+    resumed.train(resumed.steps + UPDATE)
+    report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    assert report["processor_seconds"] == 100.0 + 2.0
 
 
 def test_an_interrupted_run_saves_and_goes_on(tmp_path: pathlib.Path) -> None:
