@@ -427,8 +427,8 @@ def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
 def positive_integer(text: str) -> int:
     """The type of an option that takes a number of steps, as `--steps` does."""
     value = _integer(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f'found "{text}", expected 1 or more')
+    if not 1 <= value <= MOST_WHOLE:
+        raise argparse.ArgumentTypeError(f'found "{text}", expected 1 to {MOST_WHOLE}')
     return value
 
 
