@@ -295,9 +295,11 @@ TEST_F(RenderCli, AWorldWithoutRenderMeshesIsRefusedByItsPack) {
 }
 
 TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
-  // A signal that comes early waits until it is asked for.
+  // A signal that comes early waits until it is asked for. Without --foreground, timeout sends a second
+  // one to its whole group, which may end the run at once.
   const ProgramRun result = test::runProgram("/usr/bin/timeout", folder_.path(),
-                                             {"--preserve-status",
+                                             {"--foreground",
+                                              "--preserve-status",
                                               "-s",
                                               "INT",
                                               "2",
