@@ -295,8 +295,8 @@ TEST_F(RenderCli, AWorldWithoutRenderMeshesIsRefusedByItsPack) {
 }
 
 TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
-  // A signal that comes early waits until it is asked for. Without --foreground, timeout sends a second
-  // one to its whole group, which may end the run at once.
+  // A signal that comes early waits until it is asked for. Without --foreground, timeout sends a
+  // second one to its whole group, which may end the run at once.
   const ProgramRun result = test::runProgram("/usr/bin/timeout", folder_.path(),
                                              {"--foreground",
                                               "--preserve-status",

@@ -473,8 +473,8 @@ TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
   // timeout sends what Ctrl-C does; the run itself would take days.
   const ProgramRun result = test::runProgram(
       "/usr/bin/timeout", folder_.path(),
-      {"--preserve-status", "--signal=INT", "2", GALACTIC_RUN, "world.pack", "--envs", "8",
-       "--steps", "100000000000", "--threads", "2", "--record", "run.rec"});
+      {"--foreground", "--preserve-status", "--signal=INT", "2", GALACTIC_RUN, "world.pack",
+       "--envs", "8", "--steps", "100000000000", "--threads", "2", "--record", "run.rec"});
   EXPECT_EQ(result.exit_code, kExitInterrupted) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("8 envs, "), HasSubstr("(stopped; 100000000000 steps"),
                                 HasSubstr("\n  stepping ")));
