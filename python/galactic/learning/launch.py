@@ -79,13 +79,20 @@ def _ended_by(number: signal.Signals, rank: int) -> int:
 
 
 def _of_libraries() -> dict[str, str]:
-    """What the libraries that multiply should know, where the environment does not say it already.
+    """What the libraries that multiply and the one that allocates should know, where the environment does
+    not say it already.
 
     OpenBLAS 0.3.21 takes processors that are younger than it for Haswell, and leaves the wider half of
     their registers idle: with AVX-512, naming a core that has it doubles the speed. Threads that wait
-    for a share of the work sleep, instead of taking the processor from those that have some.
+    for a share of the work sleep, instead of taking the processor from those that have some. Memory that
+    tensors leave stays for the next ones: what glibc gives back to the system comes again page by page,
+    each of them cleared, which took a third of an update with images.
     """
-    chosen = {"OMP_WAIT_POLICY": "passive"}
+    chosen = {
+        "OMP_WAIT_POLICY": "passive",
+        "MALLOC_MMAP_MAX_": "0",
+        "MALLOC_TRIM_THRESHOLD_": str(1 << 62),
+    }
     information = pathlib.Path("/proc/cpuinfo")
     if information.is_file():
         words = set(information.read_text(encoding="utf-8", errors="replace").split())
