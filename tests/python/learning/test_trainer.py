@@ -517,6 +517,26 @@ def test_no_rank_is_left_behind_where_not_all_can_start(monkeypatch: pytest.Monk
     assert started[0].wait(timeout=10) == -signal.SIGKILL
 
 
+@pytest.mark.parametrize("chosen, keeps", [({}, True), ({"MALLOC_MMAP_MAX_": "65536"}, False)])
+def test_a_rank_keeps_the_memory_that_tensors_leave_unless_told_otherwise(
+    monkeypatch: pytest.MonkeyPatch, chosen: dict[str, str], keeps: bool
+) -> None:
+    for name in ("MALLOC_MMAP_MAX_", "MALLOC_TRIM_THRESHOLD_"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in chosen.items():
+        monkeypatch.setenv(name, value)
+    # Pages that the system gave for tensors of 64 MiB, when a few of them have made room.
+    work = """
+import resource, sys, torch
+for n in range(30):
+    if n == 20:
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    torch.full((1 << 24,), 1.0)
+sys.exit(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 100)
+"""
+    assert launch(1, [sys.executable, "-c", work]) == int(keeps)
+
+
 def test_a_rank_that_is_asked_to_end_was_interrupted() -> None:
     assert launch(1, [sys.executable, "-c", "import os; os.kill(os.getpid(), 15)"]) == 130
 
