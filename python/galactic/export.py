@@ -22,9 +22,9 @@ from galactic.learning.command import EXIT_CODES, OK, Parser, named_path, told
 from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
 from galactic.learning.homes import camera_options, simulation_keywords
 from galactic.learning.networks import (
-    FARTHEST,
     ActorHead,
     Encoder,
+    FeedForwardPolicy,
     Policy,
     RecurrentPolicy,
     ResidualBlock,
@@ -32,10 +32,10 @@ from galactic.learning.networks import (
     SimpleCNN,
     SpaceToDepth,
     StateEncoder,
-    StatePolicy,
 )
 from galactic.learning.normalization import MOST
 from galactic.learning.settings import Settings, typed
+from galactic.learning.sight import FARTHEST, SIGHT
 
 
 class ExportError(checkpoint.CheckpointError):
@@ -96,15 +96,17 @@ class Layers:
         )
 
     def seen(self, policy: Policy, state: int, size: int) -> int:
-        """The state, of `size` numbers, as the encoder reads it."""
+        """The state, of `size` numbers, and what the eyes see, as the encoder reads them."""
         normal = state
         if policy.normalize is not None:
             mean, scale = _numbers(policy.normalize.mean), _numbers(policy.normalize.scale)
             normal = self.add("normalize", state, mean=mean, inverse_deviation=scale, limit=MOST)
-        if policy.closeup is None:
-            return normal
-        closeups = [self.closeup(scale, state, size) for scale in policy.closeup.scales]
-        return self.add("concatenate", normal, *closeups)
+        parts = [normal]
+        if policy.closeup is not None:
+            parts += [self.closeup(scale, state, size) for scale in policy.closeup.scales]
+        if policy.eyes is not None:
+            parts.append(self.module(policy.eyes.layers, self.add("image")))
+        return normal if len(parts) == 1 else self.add("concatenate", *parts)
 
     def closeup(self, scale: float, state: int, size: int) -> int:
         larger = self.add(
@@ -170,7 +172,7 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
     policy = saved.policy
     layers = Layers()
     seen = layers.seen(policy, layers.add("observation"), saved.shape.state)
-    if isinstance(policy, StatePolicy):
+    if isinstance(policy, FeedForwardPolicy):
         features = layers.module(policy.encoder, seen)
     elif isinstance(policy, RecurrentPolicy):
         features = layers.gru(policy.rnn, layers.encoder(policy.encoder, seen))
@@ -182,7 +184,7 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
         "robot": robot,
         "options": simulation_keywords(saved.settings.simulation),
         "observation": saved.parts,
-        "image": _image(saved.settings) if policy.needs_images else None,
+        "image": _image(saved.settings) if SIGHT[saved.settings.network] else None,
         "layers": layers.list,
         **actions,
     }
@@ -213,7 +215,7 @@ def _image(settings: Settings) -> dict[str, Any]:
     return {
         "width": seen["width"],
         "height": seen["height"],
-        "color": True,
+        "color": seen["color"] is not None,
         "color_scale": 1.0 / 255.0,
         "depth": True,
         "depth_limit": FARTHEST,

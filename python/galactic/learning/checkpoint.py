@@ -69,6 +69,7 @@ def new_policy(settings: Settings, shape: PolicyShape) -> Policy:
     return make_policy(
         settings.network,
         shape,
+        image_size=settings.image_size,
         recurrent=settings.recurrent,
         width=settings.width,
         layers=settings.layers,

@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from galactic.learning.checkpoint import require_tensors, require_types
-from galactic.learning.environments import Environments, Observation, Timeouts
+from galactic.learning.environments import Environments, Timeouts
 from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
 from galactic.learning.networks import Inputs, Policy
 from galactic.learning.noise import action_noise
@@ -62,7 +62,7 @@ class Collector:
             envs.count,
             envs.state_size,
             envs.motions + 2,
-            envs.image_size,
+            envs.images,
             policy.hidden_size,
             device,
         )
@@ -83,7 +83,7 @@ class Collector:
 
     def reset(self) -> None:
         """Starts all envs on their first episodes."""
-        self.envs.reset(self._row(0, slice(None)))
+        self.envs.reset(self.rollout.row(0, slice(None)))
         self.rollout.starts[0] = True
         self._waits[:] = True
 
@@ -144,7 +144,7 @@ class Collector:
         require_types(state, {"envs": Tensor})
         require_tensors(state, self._beside_envs())
         self.envs.restore(state["envs"].numpy().tobytes())
-        self.envs.observe(self._row(0, slice(None)))
+        self.envs.observe(self.rollout.row(0, slice(None)))
         if self._hidden is not None:
             self._hidden.copy_(state["hidden"])
             assert self.rollout.first_hidden is not None
@@ -182,14 +182,6 @@ class Collector:
         noise = action_noise(self.options.seed, envs, steps, self.envs.motions)
         return torch.from_numpy(noise).to(self.device)
 
-    def _row(self, step: int, envs: slice) -> Observation:
-        rollout = self.rollout
-        return Observation(
-            rollout.state[step, envs],
-            None if rollout.rgb is None else rollout.rgb[step, envs],
-            None if rollout.depth is None else rollout.depth[step, envs],
-        )
-
     def _act(self, half: int, envs: slice, step: int, noise: Tensor) -> None:
         rollout = self.rollout
         with self.stopwatch.time("inference"):
@@ -207,7 +199,7 @@ class Collector:
                 self._hidden[envs] = hidden
             executed = actions[0].cpu().numpy()
         with self.stopwatch.time("sending"):
-            self.envs.send(half, executed, self._row(step + 1, envs))
+            self.envs.send(half, executed, self.rollout.row(step + 1, envs))
 
     def _decide(self, state: Tensor, rgb: Optional[Tensor], depth: Optional[Tensor],
                 previous: Optional[Tensor], hidden: Optional[Tensor], starts: Tensor,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Optional, Protocol, Sequence
+from typing import Mapping, NamedTuple, Optional, Protocol, Sequence
 
 import numpy as np
 from torch import Tensor
@@ -46,7 +46,9 @@ class Environments(Protocol):
     count: int
     state_size: int
     motions: int
-    image_size: Optional[tuple[int, int]]  # height, width; None without pictures
+    images: Mapping[
+        str, tuple[int, ...]
+    ]  # shapes of the images that an env gives: rgb, depth, or none
     decides_terminate: bool  # whether the task asks for the terminate action
     halves: Sequence[slice]
 

@@ -14,6 +14,7 @@ from galactic.learning.environments import Observation
 from galactic.learning.homes import Homes
 from galactic.learning.networks import Inputs, Policy
 from galactic.learning.noise import noise_of
+from galactic.learning.rollout import Rollout
 
 MOST_ENVS = 256
 
@@ -190,11 +191,10 @@ class _Player:
 
 def _rows(homes: Homes) -> Observation:
     """Memory for what all envs see."""
-    state = torch.zeros(homes.count, homes.state_size)
-    if homes.image_size is None:
-        return Observation(state)
-    size = (homes.count, *homes.image_size)
-    return Observation(state, torch.zeros(*size, 3, dtype=torch.uint8), torch.zeros(*size))
+    actions = homes.motions + 2
+    return Rollout.empty(0, homes.count, homes.state_size, actions, homes.images).row(
+        0, slice(None)
+    )
 
 
 def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:

@@ -10,7 +10,6 @@ import torch
 
 import galactic
 from galactic.learning.environments import Observation, Step, Timeouts
-from galactic.learning.networks import IMAGE_SIZE
 from galactic.learning.settings import (
     CAMERA,
     Settings,
@@ -18,6 +17,7 @@ from galactic.learning.settings import (
     option_name,
     simulation_keyword,
 )
+from galactic.learning.sight import SIGHT
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
 # What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
@@ -48,8 +48,9 @@ def simulation_keywords(text: str) -> dict[str, Any]:
 
 def camera_options(settings: Settings) -> dict[str, Any]:
     """What the network sees, as options of galactic.Renderer."""
+    color = "rgb" if "rgb" in SIGHT[settings.network] else None
     chosen = {option: getattr(settings, name) for option, name in CAMERA.items()}
-    return {"width": IMAGE_SIZE, "height": IMAGE_SIZE, **chosen}
+    return {"color": color, **chosen}
 
 
 def _as_typed(error: galactic.Error, keywords: Mapping[str, Any]) -> galactic.Error:
@@ -74,8 +75,7 @@ class Homes:
     def __init__(self, world: "galactic.World", settings: Settings, threads: int, *,
                  rank: int = 0, ranks: int = 1, order: str = "shuffled"):  # fmt: skip
         keywords = simulation_keywords(settings.simulation)
-        images = None if settings.network == "state" else camera_options(settings)
-        self.image_size = (IMAGE_SIZE, IMAGE_SIZE) if images else None
+        images = camera_options(settings) if SIGHT[settings.network] else None
         try:
             self.env = galactic.VectorEnv(
                 world,
@@ -96,6 +96,7 @@ class Homes:
             raise _as_typed(error, keywords) from error
         first = self.env.simulators[0]
         self.count = settings.envs
+        self.images: Mapping[str, tuple[int, ...]] = _shapes(self.env)
         self.state_size = first.observation_size
         self.motions = first.action_count - 2
         self.parts = [
@@ -117,9 +118,9 @@ class Homes:
         host = into if into.state.device.type == "cpu" else self._stage(half, into)
         self._into[half] = into
         landing = self._landings[half]
-        landing["state"] = host.state.numpy()
-        if host.rgb is not None and host.depth is not None:
-            landing["rgb"], landing["depth"] = host.rgb.numpy(), host.depth.numpy()
+        for name, rows in host._asdict().items():
+            if rows is not None:
+                landing[name] = rows.numpy()
         self.env.send(actions, half, landing)
 
     def recv(self, half: int) -> Step:
@@ -190,12 +191,15 @@ class Homes:
         staged = self._staged[half]
         if staged is None:
             staged = Observation(
-                _pinned(into.state),
-                None if into.rgb is None else _pinned(into.rgb),
-                None if into.depth is None else _pinned(into.depth),
+                **{name: _pinned(rows) for name, rows in into._asdict().items() if rows is not None}
             )
             self._staged[half] = staged
         return staged
+
+
+def _shapes(env: "galactic.VectorEnv") -> dict[str, tuple[int, ...]]:
+    """Of the images of one env."""
+    return {name: shape for drawn in env.renderers[:1] for name, (shape, _) in drawn.shapes.items()}
 
 
 def _pinned(like: torch.Tensor) -> torch.Tensor:
@@ -217,8 +221,7 @@ def _timeouts(envs: np.ndarray, final: np.ndarray) -> Timeouts:
     rows = [final[env] for env in envs]
     if not isinstance(rows[0], dict):
         return Timeouts(envs, np.stack(rows))
-    parts = {name: np.stack([row[name] for row in rows]) for name in ("state", "rgb", "depth")}
-    return Timeouts(envs, **parts)
+    return Timeouts(envs, **{name: np.stack([row[name] for row in rows]) for name in rows[0]})
 
 
 def _decides_terminate(terminate: str, options: Mapping[str, Any]) -> bool:

@@ -1,16 +1,18 @@
-"""The policies: the paper's three networks, and `state` for learning without a camera.
+"""The policies: the paper's three networks, and two for processors, `state` without a camera and
+`depth` with one.
 
 Every policy is the same plain chain, kept in these attributes so that an exporter can walk it:
 
     normalize   Normalizer of the state, or None
     closeup     Closeup of the state, or None
+    eyes        DepthCNN: depth -> numbers behind those of the state, or None
     encoder     inputs -> features
     rnn         nn.GRU of one layer, or None
     action      ActorHead: one HeadLinear for means, log-stds (unless those are a parameter), decisions
     critic      HeadLinear: the value
 
-A policy without `rnn` (class StatePolicy) has two encoders, `encoder` for the actor and
-`value_encoder` for the critic, which share nothing but the normalization.
+A policy without `rnn` (class FeedForwardPolicy) has two encoders, `encoder` for the actor and
+`value_encoder` for the critic, which share nothing but what is before them.
 
 Rows of `action.linear`: a mean for each motion (before tanh), a log-std for each, then two logits (no,
 yes) each for grasp and terminate.
@@ -32,13 +34,10 @@ from galactic.learning.distributions import (
 )
 from galactic.learning.normalization import Closeup, Normalizer
 from galactic.learning.sequences import run_gru
+from galactic.learning.sight import FARTHEST, IMAGE_SIZE, SIGHT
 
-FARTHEST = 10.0
-"""Depth that counts as far away, meters."""
 FEATURES = 512
 """Width of the paper's networks."""
-IMAGE_SIZE = 128
-"""Height and width that the paper's networks are made for, pixels."""
 
 
 class Inputs(NamedTuple):
@@ -75,7 +74,7 @@ class PolicyShape(NamedTuple):
 
     @property
     def seen(self) -> int:
-        """Numbers that the encoder reads."""
+        """Numbers that the encoder reads of the state."""
         return self.state * (1 + len(self.closeups))
 
 
@@ -165,17 +164,17 @@ class Policy(nn.Module):
 
     hidden_size = 0
     """Numbers of memory for each env; 0 without."""
-    needs_images = False
     needs_previous = False
     values_apart = False
     """Whether value() costs less than forward(): values can then wait until the rollout is over."""
 
     action: ActorHead
 
-    def __init__(self, shape: PolicyShape):
+    def __init__(self, shape: PolicyShape, eyes: Optional["DepthCNN"] = None):
         super().__init__()
         self.normalize = Normalizer(shape.state) if shape.normalize else None
         self.closeup = Closeup(shape.closeups) if shape.closeups else None
+        self.eyes = eyes
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         """`hidden` [n, H] from before the first step; `starts` [T, n] bool: where an episode begins,
@@ -194,46 +193,52 @@ class Policy(nn.Module):
         """An empty memory, [envs, H], or None."""
         return torch.zeros(envs, self.hidden_size, device=device) if self.hidden_size else None
 
-    def _seen(self, state: Tensor) -> Tensor:
-        """The state as the encoder reads it."""
-        normal = state if self.normalize is None else self.normalize(state)
-        return normal if self.closeup is None else torch.cat([normal, self.closeup(state)], -1)
+    def _seen(self, inputs: Inputs) -> Tensor:
+        """The state, and what the eyes see, as the encoder reads them."""
+        state = inputs.state
+        parts = [state if self.normalize is None else self.normalize(state)]
+        if self.closeup is not None:
+            parts.append(self.closeup(state))
+        if self.eyes is not None:
+            parts.append(self.eyes(inputs))
+        return parts[0] if len(parts) == 1 else torch.cat(parts, -1)
 
 
-class StatePolicy(Policy):
-    """Two perceptrons side by side, actor and critic: no camera, no memory."""
-
-    values_apart = True
+class FeedForwardPolicy(Policy):
+    """Two perceptrons side by side, actor and critic, behind the same eyes or none: no memory."""
 
     def __init__(self, shape: PolicyShape, width: int, layers: int, activation: str,
-                 initial_log_std: Optional[float]):  # fmt: skip
-        super().__init__(shape)
-        self.encoder = perceptron(shape.seen, width, layers, activation)
-        self.value_encoder = perceptron(shape.seen, width, layers, activation)
+                 initial_log_std: Optional[float], eyes: Optional["DepthCNN"]):  # fmt: skip
+        super().__init__(shape, eyes)
+        self.values_apart = eyes is None
+        seen = shape.seen + (eyes.features if eyes else 0)
+        self.encoder = perceptron(seen, width, layers, activation)
+        self.value_encoder = perceptron(seen, width, layers, activation)
         self.action = ActorHead(width, shape, initial_log_std)
         self.critic = _orthogonal(HeadLinear(width, 1), 1.0)
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
-        state = self._seen(inputs.state)
-        values = self.critic(self.value_encoder(state)).squeeze(-1)
-        return Outputs(self.action(self.encoder(state)), values, None)
+        seen = self._seen(inputs)
+        values = self.critic(self.value_encoder(seen)).squeeze(-1)
+        return Outputs(self.action(self.encoder(seen)), values, None)
 
     def act(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
-        state = self._seen(inputs.state)
-        return Outputs(self.action(self.encoder(state)), state[..., 0], None)
+        if not self.values_apart:
+            return self(inputs, hidden, starts)
+        seen = self._seen(inputs)
+        return Outputs(self.action(self.encoder(seen)), seen[..., 0], None)
 
     def value(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Tensor:
-        return self.critic(self.value_encoder(self._seen(inputs.state))).squeeze(-1)
+        return self.critic(self.value_encoder(self._seen(inputs))).squeeze(-1)
 
 
 class RecurrentPolicy(Policy):
     """An encoder, a GRU, and heads for actor and critic on it."""
 
     def __init__(self, encoder: "Encoder", shape: PolicyShape, width: int,
-                 initial_log_std: Optional[float]):  # fmt: skip
-        super().__init__(shape)
+                 initial_log_std: Optional[float], eyes: Optional["DepthCNN"] = None):  # fmt: skip
+        super().__init__(shape, eyes)
         self.hidden_size = width
-        self.needs_images = encoder.needs_images
         self.needs_previous = encoder.needs_previous
         self.encoder = encoder
         self.rnn = nn.GRU(encoder.features, width)
@@ -247,7 +252,7 @@ class RecurrentPolicy(Policy):
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         assert hidden is not None
-        features = self.encoder(inputs._replace(state=self._seen(inputs.state)))
+        features = self.encoder(inputs._replace(state=self._seen(inputs)))
         features, hidden = run_gru(self.rnn, features, hidden, starts)
         return Outputs(self.action(features), self.critic(features).squeeze(-1), hidden)
 
@@ -256,7 +261,6 @@ class Encoder(nn.Module):
     """Inputs -> features [T, n, F], F being `features`."""
 
     features = 0
-    needs_images = False
     needs_previous = False
 
 
@@ -274,8 +278,6 @@ class StateEncoder(Encoder):
 
 class SimpleCNN(Encoder):
     """Three convolutions and a linear layer, as in Habitat 2.0 (paper, appendix B)."""
-
-    needs_images = True
 
     def __init__(self, state: int):
         super().__init__()
@@ -300,7 +302,6 @@ class SimpleCNN(Encoder):
 class ResNet(Encoder):
     """The paper's ResNet9 and ResNet18: space to depth, four stages, GroupNorm everywhere."""
 
-    needs_images = True
     needs_previous = True
 
     def __init__(self, state: int, actions: int, blocks: int):
@@ -336,6 +337,33 @@ class ResNet(Encoder):
         seen = self.visual(images(inputs)).float().view(*inputs.state.shape[:2], FEATURES)
         felt = self.state(inputs.state).float()
         return torch.cat([seen, felt, self.previous(inputs.previous).float()], -1)
+
+
+class DepthCNN(nn.Module):
+    """Depth [T, n, S, S] -> numbers [T, n, F]: SimpleCNN with fewer channels, for processors."""
+
+    def __init__(self, image_size: int, features: int):
+        super().__init__()
+        self.features = features
+        edge = ((image_size - 8) // 4 - 3) // 2 - 1  # of the last convolution's image
+        self.layers = nn.Sequential(
+            nn.Conv2d(1, 16, 8, 4),
+            nn.ReLU(inplace=True),
+            nn.Conv2d(16, 32, 4, 2),
+            nn.ReLU(inplace=True),
+            nn.Conv2d(32, 32, 3, 1),
+            nn.ReLU(inplace=True),
+            nn.Flatten(),
+            nn.Linear(32 * edge * edge, features),
+            nn.ReLU(inplace=True),
+        )
+        _kaiming(self.layers)
+
+    def forward(self, inputs: Inputs) -> Tensor:
+        assert inputs.depth is not None
+        depth = inputs.depth.clamp(0.0, FARTHEST) * (1.0 / FARTHEST)
+        seen = self.layers(depth.flatten(0, 1).unsqueeze(1)).float()
+        return seen.view(*depth.shape[:2], self.features)
 
 
 class ResidualBlock(nn.Module):
@@ -394,28 +422,30 @@ def images(inputs: Inputs) -> Tensor:
     return packed.permute(0, 3, 1, 2)
 
 
-def make_policy(network: str, shape: PolicyShape, *, recurrent: bool = False, width: int = 128,
-                layers: int = 2, activation: str = "tanh",
+def make_policy(network: str, shape: PolicyShape, *, image_size: int = IMAGE_SIZE,
+                recurrent: bool = False, width: int = 128, layers: int = 2,
+                activation: str = "tanh",
                 initial_log_std: Optional[float] = None) -> Policy:  # fmt: skip
-    """A policy by its name: `state`, `simple_cnn`, `resnet9` or `resnet18`.
+    """A policy by its name, one of SIGHT.
 
-    `recurrent`, `width`, `layers`, `activation` and `initial_log_std` are for `state` alone: the
-    paper's networks are what they are. Weights come from torch's global random stream.
+    `image_size`, `recurrent`, `width`, `layers`, `activation` and `initial_log_std` are for `state`
+    and `depth` alone: the paper's networks are what they are. Weights come from torch's global random
+    stream.
     """
-    if network == "state" and not recurrent:
-        return StatePolicy(shape, width, layers, activation, initial_log_std)
-    if network == "state":
-        encoder: Encoder = StateEncoder(shape.seen, width, layers, activation)
-        return RecurrentPolicy(encoder, shape, width, initial_log_std)
+    if network in ("state", "depth"):
+        eyes = DepthCNN(image_size, width) if network == "depth" else None
+        if not recurrent:
+            return FeedForwardPolicy(shape, width, layers, activation, initial_log_std, eyes)
+        seen = shape.seen + (eyes.features if eyes else 0)
+        encoder: Encoder = StateEncoder(seen, width, layers, activation)
+        return RecurrentPolicy(encoder, shape, width, initial_log_std, eyes)
     if network == "simple_cnn":
         return RecurrentPolicy(SimpleCNN(shape.seen), shape, FEATURES, None)
     if network in ("resnet9", "resnet18"):
         blocks = 1 if network == "resnet9" else 2
         encoder = ResNet(shape.seen, shape.motions + DECISIONS, blocks)
         return RecurrentPolicy(encoder, shape, FEATURES, None)
-    raise ValueError(
-        f'"{network}" is not a network; the networks are state, simple_cnn, resnet9, resnet18'
-    )
+    raise ValueError(f'"{network}" is not a network; the networks are {", ".join(SIGHT)}')
 
 
 def _orthogonal(layer: nn.Linear, gain: float) -> nn.Linear:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Mapping, Optional
 
 import torch
 from torch import Tensor
 
+from galactic.learning.environments import Observation
 from galactic.learning.networks import Inputs
 
 
@@ -34,7 +35,7 @@ class Rollout:
 
     @classmethod
     def empty(cls, horizon: int, envs: int, state: int, actions: int,
-              image: Optional[tuple[int, int]] = None, hidden: int = 0,
+              images: Mapping[str, tuple[int, ...]] = {}, hidden: int = 0,
               device: torch.device = torch.device("cpu")) -> "Rollout":  # fmt: skip
 
         def make(*shape: int, dtype: torch.dtype = torch.float32) -> Tensor:
@@ -43,8 +44,8 @@ class Rollout:
         rows = horizon + 1
         return cls(
             state=make(rows, envs, state),
-            rgb=make(rows, envs, *image, 3, dtype=torch.uint8) if image else None,
-            depth=make(rows, envs, *image) if image else None,
+            rgb=make(rows, envs, *images["rgb"], dtype=torch.uint8) if "rgb" in images else None,
+            depth=make(rows, envs, *images["depth"]) if "depth" in images else None,
             actions=make(horizon, envs, actions),
             log_probs=make(horizon, envs),
             values=make(rows, envs),
@@ -54,6 +55,14 @@ class Rollout:
             first_previous=make(envs, actions),
             first_hidden=make(envs, hidden) if hidden else None,
         )
+
+    def row(self, step: int, envs: slice) -> Observation:
+        """What some envs give before action `step`, to be written."""
+
+        def part(rows: Optional[Tensor]) -> Optional[Tensor]:
+            return None if rows is None else rows[step, envs]
+
+        return Observation(self.state[step, envs], part(self.rgb), part(self.depth))
 
     def inputs(self, first: int, last: int, envs: "slice | Tensor", previous: bool) -> Inputs:
         """What a policy sees in the steps [first, last) of some envs."""

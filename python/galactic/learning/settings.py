@@ -12,6 +12,8 @@ import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
+from galactic.learning.sight import IMAGE_SIZE, SIGHT, SMALLEST_IMAGE
+
 
 class SettingsError(ValueError):
     """An invalid setting: says which, what was found and what was expected."""
@@ -54,6 +56,8 @@ CAMERA = {
     "position": "camera_position",
     "rpy_degrees": "camera_rpy",
     "near": "near",
+    "width": "image_size",
+    "height": "image_size",
 }
 
 
@@ -92,8 +96,9 @@ class Settings:
     network: str = _setting(
         "resnet18",
         "Network",
-        "`state` sees no images; the others are the paper's (table 4)",
-        choices=("state", "simple_cnn", "resnet9", "resnet18"),
+        "`state` sees no images, `depth` depth alone, with few channels; the others are the paper's "
+        "(table 4)",
+        choices=tuple(SIGHT),
     )
     camera: str = _setting(
         "head",
@@ -125,18 +130,32 @@ class Settings:
         low=0.0,
         high=100.0,
     )
-    recurrent: bool = _setting(
-        False, "Network", "put a GRU into the network `state`; the others always have one"
+    image_size: int = _setting(
+        IMAGE_SIZE,
+        "Network",
+        f"height and width of the images, pixels; the paper's networks are made for {IMAGE_SIZE}",
+        low=SMALLEST_IMAGE,
+        high=512,
     )
-    width: int = _setting(128, "Network", "units per layer of `state`", low=1, high=65536)
-    layers: int = _setting(2, "Network", "hidden layers of `state`", low=1, high=64)
+    recurrent: bool = _setting(
+        False,
+        "Network",
+        "put a GRU into the network `state` or `depth`; the others always have one",
+    )
+    width: int = _setting(
+        128, "Network", "units per layer of `state` and `depth`", low=1, high=65536
+    )
+    layers: int = _setting(2, "Network", "hidden layers of `state` and `depth`", low=1, high=64)
     activation: str = _setting(
-        "tanh", "Network", "activation between the layers of `state`", choices=("tanh", "relu")
+        "tanh",
+        "Network",
+        "activation between the layers of `state` and `depth`",
+        choices=("tanh", "relu"),
     )
     log_std: str = _setting(
         "output",
         "Network",
-        "standard deviations of `state`: an `output` of the network, clamped to exp(-5)..exp(2), or a "
+        "standard deviations of `state` and `depth`: an `output` of the network, clamped to exp(-5)..exp(2), or a "
         "`parameter`, the same everywhere",
         choices=("output", "parameter"),
     )
@@ -305,16 +324,23 @@ class Settings:
             )
         if self.envs % self.halves:
             raise SettingsError(f"{self.envs} envs cannot be split into {self.halves} halves")
-        if self.network != "state" and self.recurrent:
+        is_paper = self.network not in ("state", "depth")
+        if is_paper and self.recurrent:
             raise SettingsError(
-                "recurrent applies only to the network state; the paper's networks always have a GRU"
+                "recurrent applies only to the networks state and depth; the paper's networks always "
+                "have a GRU"
+            )
+        if is_paper and self.image_size != IMAGE_SIZE:
+            raise SettingsError(
+                f"image_size: found {self.image_size}, expected {IMAGE_SIZE}, which {self.network} is "
+                "made for; the network depth takes others"
             )
         for field in dataclasses.fields(self):
             is_default = getattr(self, field.name) == field.default
-            if self.network == "state" and field.name in CAMERA.values() and not is_default:
+            if not SIGHT[self.network] and field.name in CAMERA.values() and not is_default:
                 raise SettingsError(
-                    f"{field.name} applies only to networks that see images, and the network state "
-                    "does not; choose another one, such as simple_cnn"
+                    f"{field.name} applies only to networks that see images, and the network "
+                    f"{self.network} does not; choose another one, such as depth"
                 )
 
     def learning_rate_at(self, progress: float) -> float:

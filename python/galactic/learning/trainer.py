@@ -66,7 +66,7 @@ class Trainer:
         )
         self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
         self.policy = new_policy(settings, self.shape).to(group.device)
-        if self.policy.needs_images:
+        if envs.images:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.learner = Learner(self.policy, settings, group)
         options = CollectorOptions(

@@ -93,6 +93,24 @@ def test_a_network_that_sees_nothing_has_no_camera() -> None:
         assert getattr(preset("quick", network="resnet9", **camera), name) == camera[name]
 
 
+def test_only_a_network_of_any_size_has_another_size() -> None:
+    assert preset("quick", network="depth", image_size=36).image_size == 36
+    for wrong, message in (
+        ({"network": "depth", "image_size": 35}, "image_size: found 35, expected a number from 36"),
+        (
+            {"network": "resnet9", "image_size": 64},
+            "image_size: found 64, expected 128, which resnet9",
+        ),
+        ({"image_size": 64}, "image_size applies only to networks that see images"),
+        (
+            {"network": "simple_cnn", "recurrent": True},
+            "recurrent applies only to the networks state and",
+        ),
+    ):
+        with pytest.raises(SettingsError, match=f"^{message}"):
+            preset("quick", **wrong)
+
+
 def test_a_word_of_the_simulation_has_a_name() -> None:
     for word in ("=3", "--", "-"):
         with pytest.raises(

@@ -19,6 +19,7 @@ from galactic.learning import checkpoint  # noqa: E402
 from galactic.learning.homes import Homes  # noqa: E402
 from galactic.learning.networks import Inputs, PolicyShape  # noqa: E402
 from galactic.learning.settings import Settings  # noqa: E402
+from galactic.learning.sight import SIGHT  # noqa: E402
 
 WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"
 needs_world = pytest.mark.skipif(
@@ -65,19 +66,23 @@ def saved_policy(terminate: bool = True, **settings: Any) -> checkpoint.SavedPol
 class Recorded:
     """What `envs` envs see in `steps` steps, and where their episodes end."""
 
-    def __init__(self, envs: int, steps: int, pictures: bool):
+    def __init__(self, envs: int, steps: int, network: str = "state", edge: int = 128):
         draws = np.random.default_rng(5)
         self.state = draws.normal(0.0, 1.5, (steps, envs, STATE)).astype(np.float32)
         self.dones = draws.random((steps, envs)) < 0.15
         self.dones[0] = False
         self.rgb: Optional[np.ndarray] = None
         self.depth: Optional[np.ndarray] = None
-        if pictures:
+        part = edge // 4
+        if "rgb" in SIGHT[network]:
             # Rough pictures, each with its own colors, and grain.
-            rough = draws.uniform(0.0, 235.0, (steps, envs, 4, 4, 3)).repeat(32, 2).repeat(32, 3)
-            grain = draws.uniform(0.0, 20.0, (steps, envs, 128, 128, 3))
+            rough = (
+                draws.uniform(0.0, 235.0, (steps, envs, 4, 4, 3)).repeat(part, 2).repeat(part, 3)
+            )
+            grain = draws.uniform(0.0, 20.0, (steps, envs, edge, edge, 3))
             self.rgb = (rough + grain).astype(np.uint8)
-            far = draws.uniform(0.0, 13.0, (steps, envs, 4, 4)).repeat(32, 2).repeat(32, 3)
+        if "depth" in SIGHT[network]:
+            far = draws.uniform(0.0, 13.0, (steps, envs, 4, 4)).repeat(part, 2).repeat(part, 3)
             self.depth = far.astype(np.float32)
 
 
@@ -133,6 +138,8 @@ NETWORKS = {
     "state_closeup": {"network": "state", "closeup": 0.2, "activation": "relu"},
     "state_closeups": {"network": "state", "closeup": 0.2, "second_closeup": 0.04},
     "state_recurrent": {"network": "state", "recurrent": True, "log_std": "parameter"},
+    "depth": {"network": "depth", "image_size": 64, "normalize": True, "closeup": 0.2},
+    "depth_recurrent": {"network": "depth", "recurrent": True, "log_std": "parameter"},
     "simple_cnn": {"network": "simple_cnn", "normalize": True},
     "resnet9": {"network": "resnet9"},
     "resnet18": {"network": "resnet18"},
@@ -142,8 +149,8 @@ NETWORKS = {
 @pytest.mark.parametrize("name", NETWORKS)
 def test_a_pack_acts_as_torch_does(name: str, tmp_path: pathlib.Path) -> None:
     saved = saved_policy(**NETWORKS[name])
-    pictures = saved.policy.needs_images
-    seen = Recorded(envs=2 if pictures else 7, steps=20, pictures=pictures)
+    network, edge = saved.settings.network, saved.settings.image_size
+    seen = Recorded(2 if SIGHT[network] else 7, 20, network, edge)
     pack = write(export.content_of(saved, name), tmp_path / "policy.pack")
     wanted = np.stack([actions.mode()[0].numpy() for actions in by_torch(saved, seen)])
     played = by_pack(pack, seen)
@@ -156,7 +163,7 @@ def test_a_pack_acts_as_torch_does(name: str, tmp_path: pathlib.Path) -> None:
 @pytest.mark.parametrize("name", ["state_normalized", "state_recurrent", "simple_cnn"])
 def test_deviations_and_odds_are_those_of_torch(name: str, tmp_path: pathlib.Path) -> None:
     saved = saved_policy(**NETWORKS[name])
-    seen = Recorded(envs=3, steps=5, pictures=saved.policy.needs_images)
+    seen = Recorded(3, 5, saved.settings.network)
     content = export.content_of(saved, name)
     # A policy whose actions are all that the network says.
     heads = [content["continuous"]["mean"], content["continuous"]["log_deviation"]]
@@ -175,7 +182,7 @@ def test_deviations_and_odds_are_those_of_torch(name: str, tmp_path: pathlib.Pat
 
 def test_nobody_terminates_where_the_task_does_not_ask(tmp_path: pathlib.Path) -> None:
     saved = saved_policy(terminate=False, network="state")
-    seen = Recorded(envs=20, steps=3, pictures=False)
+    seen = Recorded(20, 3)
     played = by_pack(write(export.content_of(saved, "p"), tmp_path / "p.pack"), seen)
     assert 0.1 < played[..., 9].mean() < 0.9
     assert not played[..., 10].any()
@@ -319,9 +326,13 @@ PLACED = {"camera_position": (-0.1, 0.0, 0.35), "camera_rpy": (0.0, 25.0, -10.1)
 @pytest.mark.skipif("GALACTIC_RUN" not in os.environ, reason="GALACTIC_RUN names no program")
 def test_galactic_run_sees_what_a_placed_camera_saw_in_training(tmp_path: pathlib.Path) -> None:
     envs, steps, acted = 2, 3, []
-    for name, placed in (("placed", PLACED), ("head", {})):
-        settings = Settings(envs=envs, halves=1, mini_batches=1, network="simple_cnn",
-                            simulation="task=pick", **placed)  # fmt: skip
+    cameras = {
+        "placed": {"network": "simple_cnn", **PLACED},
+        "head": {"network": "simple_cnn"},
+        "depth": {"network": "depth", "image_size": 44},
+    }
+    for name, chosen in cameras.items():
+        settings = Settings(envs=envs, halves=1, mini_batches=1, simulation="task=pick", **chosen)
         homes = Homes(galactic.World(WORLD), settings, 1)
         torch.manual_seed(3)
         shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
@@ -334,10 +345,11 @@ def test_galactic_run_sees_what_a_placed_camera_saw_in_training(tmp_path: pathli
         player = galactic.LearnedPolicy(pack, envs, deterministic=True)
         env = galactic.VectorEnv(WORLD, envs, images=player.images, **player.options)
         seen, trained = env.reset()[0], homes.env.reset()[0]
-        for image in ("rgb", "depth"):
+        assert set(seen) == {"state", *SIGHT[settings.network]}
+        for image in SIGHT[settings.network]:
             np.testing.assert_array_equal(seen[image], trained[image])
         for _ in range(steps):
-            acted.append(player.act(seen["state"], None, seen["rgb"], seen["depth"]))
+            acted.append(player.act(seen["state"], None, seen.get("rgb"), seen["depth"]))
             seen = env.step(acted[-1])[0]
         # After a head of its own length, a recording has the actions of each step and two hashes.
         record = tmp_path / "run.rec"
@@ -349,6 +361,7 @@ def test_galactic_run_sees_what_a_placed_camera_saw_in_training(tmp_path: pathli
         rows = rows.reshape(steps, floats + hashes)[:, :floats]
         np.testing.assert_array_equal(rows.reshape(steps, envs, -1), np.stack(acted[-steps:]))
     assert not np.array_equal(acted[0], acted[steps])
+    assert not np.array_equal(acted[steps], acted[2 * steps])
 
 
 def test_a_policy_says_where_its_camera_is(tmp_path: pathlib.Path, capsys: Any) -> None:

@@ -10,6 +10,7 @@ from galactic.learning.distributions import ActionDistribution
 from galactic.learning.networks import Inputs, PolicyShape, Tanh, make_policy
 from galactic.learning.normalization import Normalizer
 from galactic.learning.sequences import run_gru
+from galactic.learning.sight import SIGHT
 
 ARM_OF_SEVEN = PolicyShape(state=26, motions=9)
 
@@ -31,18 +32,26 @@ def test_the_heads_have_the_parameters_of_the_paper(network: str) -> None:
     assert parameters(policy.action) + parameters(policy.critic) == 11_799
 
 
-def some_inputs(policy: torch.nn.Module, steps: int, envs: int) -> Inputs:
+def some_inputs(network: str, steps: int, envs: int, edge: int = 128) -> Inputs:
     random = torch.Generator().manual_seed(7)
     state = torch.randn(steps, envs, 26, generator=random)
-    if not policy.needs_images:
-        return Inputs(state)
-    rgb = torch.randint(0, 256, (steps, envs, 128, 128, 3), generator=random).to(torch.uint8)
-    depth = 12.0 * torch.rand(steps, envs, 128, 128, generator=random)
-    previous = torch.randn(steps, envs, 11, generator=random) if policy.needs_previous else None
-    return Inputs(state, rgb, depth, previous)
+    images: dict[str, torch.Tensor] = {}
+    if "rgb" in SIGHT[network]:
+        rgb = torch.randint(0, 256, (steps, envs, edge, edge, 3), generator=random)
+        images["rgb"] = rgb.to(torch.uint8)
+    if "depth" in SIGHT[network]:
+        images["depth"] = 12.0 * torch.rand(steps, envs, edge, edge, generator=random)
+    return Inputs(state, previous=torch.randn(steps, envs, 11, generator=random), **images)
 
 
-POLICIES = [("state", False), ("state", True), ("simple_cnn", False), ("resnet9", False)]
+POLICIES = [
+    ("state", False),
+    ("state", True),
+    ("depth", False),
+    ("depth", True),
+    ("simple_cnn", False),
+    ("resnet9", False),
+]
 
 
 @pytest.mark.parametrize("network, recurrent", POLICIES)
@@ -50,7 +59,7 @@ def test_a_sequence_equals_its_steps_one_after_another(network: str, recurrent: 
     torch.manual_seed(3)
     policy = make_policy(network, ARM_OF_SEVEN, recurrent=recurrent)
     steps, envs = 6, 3
-    inputs = some_inputs(policy, steps, envs)
+    inputs = some_inputs(network, steps, envs)
     starts = torch.zeros(steps, envs, dtype=torch.bool)
     starts[0, 1] = starts[2, 0] = starts[5, 2] = starts[2, 1] = starts[3, 1] = True
     hidden = policy.initial_hidden(envs, torch.device("cpu"))
@@ -79,7 +88,7 @@ def test_heads_are_float32_after_a_network_of_bfloat16(
         policy.critic.bias.fill_(9.0)  # neighbors in bfloat16 are 1/16 apart there
         policy.action.linear.bias.uniform_(0.1, 1.0)
     steps, envs = 3, 4
-    inputs = some_inputs(policy, steps, envs)
+    inputs = some_inputs(network, steps, envs)
     hidden = policy.initial_hidden(envs, torch.device("cpu"))
     starts = torch.zeros(steps, envs, dtype=torch.bool)
     features: dict[torch.nn.Module, torch.Tensor] = {}
@@ -136,13 +145,44 @@ def test_gradients_stop_at_the_start_of_an_episode() -> None:
     assert (inputs.grad[:3] == 0).all() and (inputs.grad[3:] != 0).any(dim=-1).all()
 
 
-def test_values_apart_are_the_same_values() -> None:
-    policy = make_policy("state", ARM_OF_SEVEN)
-    inputs = some_inputs(policy, 4, 3)
+@pytest.mark.parametrize("network", ["state", "depth"])
+def test_actions_and_values_apart_are_those_of_both_together(network: str) -> None:
+    policy = make_policy(network, ARM_OF_SEVEN)
+    inputs = some_inputs(network, 4, 3)
     starts = torch.zeros(4, 3, dtype=torch.bool)
     whole = policy(inputs, None, starts)
+    acted = policy.act(inputs, None, starts)
     torch.testing.assert_close(policy.value(inputs, None, starts), whole.values)
-    torch.testing.assert_close(policy.act(inputs, None, starts).actions.mean, whole.actions.mean)
+    torch.testing.assert_close(acted.actions.mean, whole.actions.mean)
+    # Only where values cost a pass through the eyes, they come with the actions.
+    assert torch.equal(acted.values, whole.values) is not policy.values_apart
+
+
+@pytest.mark.parametrize("edge", [36, 37, 43, 44, 64, 128])
+def test_eyes_see_images_of_any_size(edge: int) -> None:
+    """What was drawn in the last rows and columns, too, but for those behind the last stride."""
+    policy = make_policy("depth", ARM_OF_SEVEN, image_size=edge)
+    inputs = some_inputs("depth", 1, 2, edge)
+    starts = torch.ones(1, 2, dtype=torch.bool)
+    assert policy(inputs, None, starts).values.shape == (1, 2)
+    assert policy.eyes is not None and inputs.depth is not None
+    depth = inputs.depth.clone().requires_grad_()
+    policy.eyes(inputs._replace(depth=depth)).square().sum().backward()
+    assert depth.grad is not None
+    seen = (depth.grad != 0.0).any(0).any(0)
+    reach = 36 + 8 * ((edge - 36) // 8)
+    assert seen[:reach, :reach].float().mean() > 0.7  # not what is further than 10 m
+    assert not seen[reach:].any() and not seen[:, reach:].any()
+
+
+def test_eyes_see_what_is_far_as_the_paper_does() -> None:
+    policy = make_policy("depth", ARM_OF_SEVEN, image_size=36)
+    inputs = some_inputs("depth", 1, 1, 36)
+
+    def sees(meters: float) -> torch.Tensor:
+        return policy.eyes(inputs._replace(depth=torch.full((1, 1, 36, 36), meters)))
+
+    assert torch.equal(sees(10.0), sees(70.0)) and not torch.equal(sees(10.0), sees(9.0))
 
 
 def test_pictures_are_scaled_as_the_paper_says() -> None:
@@ -219,7 +259,7 @@ def test_a_normalizer_that_absorbs_in_parts_knows_the_whole() -> None:
 def test_a_normalizer_stands_still_until_it_absorbs() -> None:
     policy = make_policy("state", ARM_OF_SEVEN._replace(normalize=True))
     before = {name: value.clone() for name, value in policy.state_dict().items()}
-    policy(some_inputs(policy, 3, 5), None, torch.zeros(3, 5, dtype=torch.bool))
+    policy(some_inputs("state", 3, 5), None, torch.zeros(3, 5, dtype=torch.bool))
     assert all(torch.equal(value, before[name]) for name, value in policy.state_dict().items())
     assert "normalize.mean" in before
 
@@ -232,7 +272,7 @@ def test_closeups_are_seen_beside_the_normalized_state(
     shape = PolicyShape(26, 9, normalize=True, closeup=scales[0], second_closeup=scales[1])
     policy = make_policy("state", shape, recurrent=recurrent)
     state = torch.full((1, 1, 26), 0.05)
-    normal, *closeups = policy._seen(state).split(26, -1)
+    normal, *closeups = policy._seen(Inputs(state)).split(26, -1)
     torch.testing.assert_close(normal, policy.normalize(state))
     for closeup, scale in zip(closeups, filter(None, scales), strict=True):
         torch.testing.assert_close(closeup, torch.tanh(state / scale))

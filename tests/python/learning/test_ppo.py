@@ -13,7 +13,7 @@ from galactic.learning.ppo import Batch, Learner, PacedRate, ppo_loss
 from galactic.learning.precision import Precision
 from galactic.learning.rollout import advantages
 from galactic.learning.settings import Settings
-from toys import ReachAndGrasp, Remember
+from toys import Look, ReachAndGrasp, Remember
 
 CPU = torch.device("cpu")
 TOY = dict(network="state", precision="fp32", width=32, normalize=True, log_std="parameter")
@@ -165,7 +165,8 @@ def train(envs: ReachAndGrasp, settings: Settings, updates: int) -> list[float]:
     """The success rate of each update's episodes."""
     torch.manual_seed(settings.seed)
     shape = PolicyShape(envs.state_size, envs.motions, False, settings.normalize)
-    policy = make_policy("state", shape, recurrent=settings.recurrent, width=settings.width,
+    policy = make_policy(settings.network, shape, image_size=settings.image_size,
+                         recurrent=settings.recurrent, width=settings.width,
                          initial_log_std=-0.5)  # fmt: skip
     learner = Learner(policy, settings, Group.alone())
     options = CollectorOptions(settings.horizon, settings.seed, settings.gamma)
@@ -185,6 +186,19 @@ def test_a_policy_without_memory_learns_to_reach_and_grasp() -> None:
     rates = train(ReachAndGrasp(64, halves=2), settings, updates=60)
     # Random decisions grasp too early: a few percent.
     assert rates[0] < 0.2 and np.mean(rates[-5:]) > 0.9, rates
+
+
+def test_what_only_an_image_shows_is_learned_by_eyes_and_by_nothing_else() -> None:
+    rates = {}
+    for network in ("depth", "state"):
+        chosen = {**TOY, "network": network}
+        chosen |= {"image_size": Look.EDGE} if network == "depth" else {}
+        settings = Settings(
+            envs=64, mini_batches=4, epochs=4, horizon=20, learning_rate=2e-3, **chosen
+        )
+        rates[network] = train(Look(64, halves=2), settings, updates=60)
+    assert np.mean(rates["depth"][-5:]) > 0.85, rates
+    assert np.mean(rates["state"][-5:]) < 0.3, rates
 
 
 def test_memory_is_learned_by_a_gru_and_by_nothing_else() -> None:

@@ -397,12 +397,24 @@ def test_an_evaluation_repeats_itself(tmp_path: pathlib.Path) -> None:
     assert len(reports[0]["each"]) == 20
 
 
-def test_a_policy_that_sees_pictures_trains_and_is_evaluated(tmp_path: pathlib.Path) -> None:
+@pytest.mark.parametrize("network, edge", [("simple_cnn", 128), ("depth", 40)])
+def test_a_policy_that_sees_pictures_trains_goes_on_and_is_evaluated(
+    tmp_path: pathlib.Path, network: str, edge: int
+) -> None:
     """Two updates of the paper's preset, small."""
-    done = call("train", WORLD, "-o", tmp_path / "run", "--network", "simple_cnn", "--envs", 4,
-                "--horizon", 8, "--steps", 2 * 4 * 8, "--log-every", 0, "--validation", HELD_OUT,
-                "--validation-episodes", 3, "--simulation", "task=pick episode-steps=6")  # fmt: skip
+    small = [WORLD, "--network", network, "--image-size", edge, "--envs", 4, "--horizon", 8,
+             "--steps", 2 * 4 * 8, "--log-every", 0, "--validation", HELD_OUT,
+             "--validation-episodes", 3, "--simulation", "task=pick episode-steps=6"]  # fmt: skip
+    done = call("train", "-o", tmp_path / "run", *small)
     assert done.returncode == 0, done.stderr
+    assert call("train", "-o", tmp_path / "paused", *small, "--pause-at", 32).returncode == 0
+    assert call("train", "-o", tmp_path / "paused", "--resume").returncode == 0
+    final = f"checkpoints/{64:012d}/policy.pt"
+    found, wanted = (
+        checkpoint.load_policy(tmp_path / name / final).policy.state_dict()
+        for name in ("paused", "run")
+    )
+    assert all(torch.equal(found[name], value) for name, value in wanted.items())
     rows = read_curves(tmp_path / "run" / "curves.csv")
     updates = [row for row in rows if row["policy_loss"] is not None]
     assert len(updates) == 2 and "validation after 64 steps" in done.stderr

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from typing import Optional
+from typing import Mapping
 
 import numpy as np
 
@@ -23,9 +23,9 @@ class ReachAndGrasp:
     decides_terminate = False
 
     def __init__(self, count: int, halves: int = 1, seed: int = 1, first_env: int = 0,
-                 limit: int = 20, image_size: Optional[tuple[int, int]] = None):  # fmt: skip
+                 limit: int = 20, images: Mapping[str, tuple[int, ...]] = {}):  # fmt: skip
         self.count = count
-        self.image_size = image_size
+        self.images = images
         self.seed = seed
         self.limit = limit
         size = count // halves
@@ -57,6 +57,9 @@ class ReachAndGrasp:
             into.rgb.numpy()[:] = (127.0 + 100.0 * self.way[envs, :1, None, None]).astype(np.uint8)
             into.depth.numpy()[:] = 2.0 + self.way[envs, 1, None, None]
 
+    def _cut(self, envs: slice, which: np.ndarray) -> Timeouts:
+        return Timeouts(which, self._rows(envs)[which])
+
     def reset(self, into: Observation) -> None:
         self.episode[:] = 0
         self._begin(np.arange(self.count))
@@ -82,7 +85,7 @@ class ReachAndGrasp:
         timeouts = None
         if truncated.any():
             index = np.flatnonzero(truncated)
-            timeouts = Timeouts(index, self._rows(envs)[index])
+            timeouts = self._cut(envs, index)
         ended = np.flatnonzero(grasped | truncated) + envs.start
         self.episode[ended] += 1
         self._begin(ended)
@@ -100,6 +103,36 @@ class ReachAndGrasp:
 
     def close(self) -> None:
         pass
+
+
+class Look(ReachAndGrasp):
+    """The same where the state does not tell the way: only an image of EDGE pixels does, in which the
+    place stands out as a square, seen from the point."""
+
+    EDGE = 36
+
+    def __init__(self, count: int, **options: int):
+        super().__init__(count, images={"depth": (self.EDGE, self.EDGE)}, **options)
+
+    def _rows(self, envs: slice) -> np.ndarray:
+        rows = super()._rows(envs)
+        rows[:, :2] = 0.0
+        return rows
+
+    def _images(self, envs: slice) -> np.ndarray:
+        pixels = np.arange(self.EDGE)
+        # 2 m wide each way.
+        near = [np.abs(pixels - (self.way[envs, axis, None] + 2.0) * self.EDGE / 4.0) < 4.0
+                for axis in (0, 1)]  # fmt: skip
+        return np.where(near[1][:, :, None] & near[0][:, None], 1.0, 9.0).astype(np.float32)
+
+    def _write(self, envs: slice, into: Observation) -> None:
+        super()._write(envs, into)
+        assert into.depth is not None
+        into.depth.numpy()[:] = self._images(envs)
+
+    def _cut(self, envs: slice, which: np.ndarray) -> Timeouts:
+        return super()._cut(envs, which)._replace(depth=self._images(envs)[which])
 
 
 class Remember(ReachAndGrasp):

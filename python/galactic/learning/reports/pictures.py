@@ -22,6 +22,7 @@ from galactic.learning.environments import Observation
 from galactic.learning.evaluation import Actor, EpisodeResult
 from galactic.learning.homes import SUCCESS, camera_options, simulation_keywords
 from galactic.learning.settings import Settings
+from galactic.learning.sight import SIGHT
 
 WIDTH, HEIGHT = 256, 192
 MOMENTS = 6
@@ -103,7 +104,7 @@ def film(world: "galactic.World", settings: Settings, actor: Actor, episodes: Se
         simulator, camera="follow", width=WIDTH, height=HEIGHT, depth=False, threads=threads
     )
     eyes = None
-    if actor.policy.needs_images:
+    if SIGHT[settings.network]:
         eyes = galactic.Renderer(simulator, **camera_options(settings), threads=threads)
     films = [Film(episode) for episode in episodes]
     playing = np.arange(envs)
@@ -188,8 +189,9 @@ def _seen(simulator: "galactic.Simulator", eyes: Any) -> Observation:
     state = torch.from_numpy(simulator.observations.copy())
     if eyes is None:
         return Observation(state)
-    images = eyes.render()
-    return Observation(state, torch.from_numpy(images["rgb"]), torch.from_numpy(images["depth"]))
+    return Observation(
+        state, **{name: torch.from_numpy(rows) for name, rows in eyes.render().items()}
+    )
 
 
 def _label(text: str, color: tuple[int, int, int], width: int) -> np.ndarray:
