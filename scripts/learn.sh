@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# learn.sh [TASK] [SEED]: a robot learns to pick things up in the sample apartment, or to rearrange
-# them, without a camera or a graphics processor, and shows what it learned. After
+# learn.sh [TASK] [SEED]: a robot learns to pick things up in the sample apartment, by a laser or by a
+# depth camera, or to rearrange them, and shows what it learned; without a graphics processor. After
 # scripts/quickstart.sh; works from any folder. What it makes is in build/release/learn; the worlds
 # lie beside the packs that they list.
 set -euo pipefail
@@ -9,10 +9,13 @@ cd "$galactic_root"
 
 task=${1:-pick}
 seed=${2:-1}
-if [[ ! $task =~ ^(pick|rearrange)$ || ! $seed =~ ^[0-9]+$ || $# -gt 2 ]]; then
-  echo "learn: found \"$*\", wanted a task, which is pick or rearrange, and a seed, a whole number" >&2
+if [[ ! $task =~ ^(pick|pick-depth|rearrange)$ || ! $seed =~ ^[0-9]+$ || $# -gt 2 ]]; then
+  echo "learn: found \"$*\", wanted a task, which is pick, pick-depth or rearrange, and a seed, a whole \
+number" >&2
   exit 1
 fi
+preset=quick
+[ "$task" != pick-depth ] || preset=quick-depth
 bin=build/release/bin
 sample=build/release/sample
 out=build/release/learn
@@ -53,7 +56,7 @@ learn() {
   if [ -f "$run/settings.json" ]; then
     /usr/bin/python3 -m galactic.train -o "$run" --resume "${pause[@]}"
   else
-    /usr/bin/python3 -m galactic.train "$sample/homes.pack" --preset quick --seed "$seed" \
+    /usr/bin/python3 -m galactic.train "$sample/homes.pack" --preset "$preset" --seed "$seed" \
       --validation "$sample/validation.pack" -o "$run" "${pause[@]}" "$@"
   fi
 }
@@ -103,11 +106,11 @@ learn_to_rearrange() {
   run=$run/3
 }
 
-if [ "$task" = pick ]; then
-  heading "Learning to pick (preset quick)"
-  learn "$run"
-else
+if [ "$task" = rearrange ]; then
   learn_to_rearrange
+else
+  heading "Learning to pick (preset $preset)"
+  learn "$run"
 fi
 
 heading "Playing each unseen episode once: sampled actions, then the likeliest"
@@ -122,6 +125,10 @@ heading "The same policy without Python: the likeliest actions in each unseen ep
   --order partition --envs 64 --steps 100000
 "$bin/galactic-run" "$sample/unseen.pack" --policy "$run/policy.pack" --envs 8 --steps 300 \
   --view "$run/run.html" --view-envs 8 >"$run/run.txt"
+if [ "$task" = pick-depth ]; then
+  "$bin/galactic-run" "$sample/unseen.pack" --policy "$run/policy.pack" --envs 4 --steps 40 \
+    --render rgbd --contact-sheet "$run/camera.png" >"$run/camera.txt"
+fi
 
 cat <<END
 
@@ -133,3 +140,6 @@ Look at these, in $run/:
   best.pt        the policy, for Python
   policy.pack    the policy, for galactic-run
 END
+if [ "$task" = pick-depth ]; then
+  echo "  camera.png     what the camera of four robots showed, its depth on the right"
+fi

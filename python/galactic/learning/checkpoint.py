@@ -40,6 +40,7 @@ from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.networks import Policy, PolicyShape, make_policy
 from galactic.learning.settings import Settings
+from galactic.learning.sight import OF_THE_PAPER
 
 FORMAT = 1
 # What every pack begins with: docs/packs.md.
@@ -180,7 +181,7 @@ def _described(value: Any) -> str:
 NEW_TERMINATE_LOGIT = -4.0
 """Log-odds, in every state, of a terminate action that the policy has not learned yet: one step in 55."""
 
-_NETWORK = ("network", "recurrent", "width", "layers", "activation", "log_std")
+_NETWORK = ("network", "image_size", "recurrent", "width", "layers", "activation", "log_std")
 
 
 def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
@@ -195,7 +196,7 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
     saved = load_policy(file)
     ours = {name: getattr(settings, name) for name in _NETWORK}
     theirs = {name: getattr(saved.settings, name) for name in _NETWORK}
-    if ours["network"] != "state":
+    if settings.network in OF_THE_PAPER:
         ours = {"network": ours["network"]}
     for described, of, seen in ((ours, shape, parts), (theirs, saved.shape, saved.parts)):
         described.update(

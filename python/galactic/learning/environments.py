@@ -46,9 +46,7 @@ class Environments(Protocol):
     count: int
     state_size: int
     motions: int
-    images: Mapping[
-        str, tuple[int, ...]
-    ]  # shapes of the images that an env gives: rgb, depth, or none
+    images: Mapping[str, tuple[int, ...]]  # shapes of an env's rgb and depth, of one, or of none
     decides_terminate: bool  # whether the task asks for the terminate action
     halves: Sequence[slice]
 

@@ -7,9 +7,8 @@ from typing import Any, Mapping
 
 from galactic.learning.settings import Settings, SettingsError, did_you_mean, overriding
 
-# What both of these share: two ranks of one machine wait for each other, so that a run repeats itself,
-# bit for bit. A blind policy stays at half of the episodes: it needs to see walls, to know the way
-# around them (geodesic), and to feel that it is stuck (bump).
+# A blind policy stays at half of the episodes: it needs to see walls, to know the way around them
+# (geodesic), and to feel that it is stuck (bump).
 _WAY = "geodesic geodesic-weight=1 bump bump-penalty=0.03"
 _QUICK = {
     "ranks": 2,
@@ -23,13 +22,14 @@ _QUICK = {
     "horizon": 32,
     "epochs": 2,
     "mini_batches": 4,
+    # Two ranks of one machine wait for each other: a run repeats itself, bit for bit.
     "sync_fraction": 1.0,
 }
 
 PRESETS: Mapping[str, Mapping[str, Any]] = {
     # Table 3 of the paper, which are the defaults.
     "paper": {},
-    # Mobile Pick without a camera, in minutes on two processors: a laser sees the walls.
+    # Mobile Pick in minutes on two processors, without a camera: a laser sees the walls.
     "quick": {
         **_QUICK,
         "steps": 12_000_000,

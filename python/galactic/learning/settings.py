@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
-from galactic.learning.sight import IMAGE_SIZE, SIGHT, SMALLEST_IMAGE
+from galactic.learning.sight import IMAGE_SIZE, OF_THE_PAPER, SIGHT, SMALLEST_IMAGE
 
 
 class SettingsError(ValueError):
@@ -155,8 +155,8 @@ class Settings:
     log_std: str = _setting(
         "output",
         "Network",
-        "standard deviations of `state` and `depth`: an `output` of the network, clamped to exp(-5)..exp(2), or a "
-        "`parameter`, the same everywhere",
+        "standard deviations of `state` and `depth`: an `output` of the network, clamped to "
+        "exp(-5)..exp(2), or a `parameter`, the same everywhere",
         choices=("output", "parameter"),
     )
     initial_log_std: float = _setting(
@@ -324,13 +324,12 @@ class Settings:
             )
         if self.envs % self.halves:
             raise SettingsError(f"{self.envs} envs cannot be split into {self.halves} halves")
-        is_paper = self.network not in ("state", "depth")
-        if is_paper and self.recurrent:
+        if self.network in OF_THE_PAPER and self.recurrent:
             raise SettingsError(
                 "recurrent applies only to the networks state and depth; the paper's networks always "
                 "have a GRU"
             )
-        if is_paper and self.image_size != IMAGE_SIZE:
+        if self.network in OF_THE_PAPER and self.image_size != IMAGE_SIZE:
             raise SettingsError(
                 f"image_size: found {self.image_size}, expected {IMAGE_SIZE}, which {self.network} is "
                 "made for; the network depth takes others"

@@ -12,6 +12,8 @@ SIGHT: Mapping[str, tuple[str, ...]] = {
     "resnet18": ("rgb", "depth"),
 }
 """The networks, and what each of them sees."""
+OF_THE_PAPER = ("simple_cnn", "resnet9", "resnet18")
+"""Those whose layers nobody chooses."""
 IMAGE_SIZE = 128
 """Height and width that the paper's networks are made for, pixels."""
 SMALLEST_IMAGE = 36

@@ -415,6 +415,11 @@ def test_a_policy_that_sees_pictures_trains_goes_on_and_is_evaluated(
         for name in ("paused", "run")
     )
     assert all(torch.equal(found[name], value) for name, value in wanted.items())
+    begin = [*small, "--start-from", tmp_path / "run" / "best.pt", "-o", tmp_path / "begun"]
+    if network == "depth":
+        other = call("train", *(48 if word == edge else word for word in begin))
+        assert other.returncode == 3 and "image_size: found 40, expected 48;" in other.stderr
+    assert call("train", *begin).returncode == 0
     rows = read_curves(tmp_path / "run" / "curves.csv")
     updates = [row for row in rows if row["policy_loss"] is not None]
     assert len(updates) == 2 and "validation after 64 steps" in done.stderr
