@@ -109,14 +109,17 @@ class Layers:
         return normal if len(parts) == 1 else self.add("concatenate", *parts)
 
     def closeup(self, scale: float, state: int, size: int) -> int:
-        larger = self.add(
+        return self.add("tanh", self.times(1.0 / scale, state, size))
+
+    def times(self, factor: float, x: int, size: int) -> int:
+        """Value `x`, of `size` numbers, times a factor."""
+        return self.add(
             "normalize",
-            state,
+            x,
             mean=np.zeros(size, np.float32),
-            inverse_deviation=np.full(size, 1.0 / scale, np.float32),
+            inverse_deviation=np.full(size, factor, np.float32),
             limit=float(np.finfo(np.float32).max),
         )
-        return self.add("tanh", larger)
 
     def encoder(self, encoder: Encoder, seen: int) -> int:
         if isinstance(encoder, StateEncoder):
@@ -203,11 +206,20 @@ def _actions(layers: Layers, head: ActorHead, features: int) -> dict[str, Any]:
     discrete = []
     for decision in range(DECISIONS):
         logits = layers.add("slice", rows, first=first + 2 * decision, size=2)
+        if head.odds_limit > 0.0:
+            logits = _limited(layers, head.odds_limit, logits)
         # Where the task does not ask for it, nobody terminates.
         is_decided = decision + 1 < DECISIONS or head.decides_terminate
         discrete.append({"logits": logits, "values": [0.0, 1.0] if is_decided else [0.0, 0.0]})
     continuous = {"count": motions, "mean": mean, "log_deviation": log_std}
     return {"continuous": continuous, "discrete": discrete}
+
+
+def _limited(layers: Layers, limit: float, logits: int) -> int:
+    """The logits of no and yes whose odds stay within a limit: half of the difference each, with signs."""
+    half = np.array([[0.5, -0.5], [-0.5, 0.5]], np.float32)
+    apart = layers.add("linear", logits, outputs=2, weight=half, bias=None)
+    return layers.times(0.5 * limit, layers.closeup(0.5 * limit, apart, 2), 2)
 
 
 def _image(settings: Settings) -> dict[str, Any]:

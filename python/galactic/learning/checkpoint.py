@@ -76,6 +76,7 @@ def new_policy(settings: Settings, shape: PolicyShape) -> Policy:
         layers=settings.layers,
         activation=settings.activation,
         initial_log_std=settings.initial_log_std if free else None,
+        odds_limit=settings.odds_limit,
     )
 
 

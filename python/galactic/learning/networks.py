@@ -91,13 +91,16 @@ class ActorHead(nn.Module):
     """Features [..., F] -> ActionDistribution. One linear layer, so one multiplication.
 
     `initial_log_std` None: log-stds are outputs of the layer, clamped to [-5, 2] (paper); a number:
-    they are parameters that do not depend on the state, and start there.
+    they are parameters that do not depend on the state, and start there. `odds_limit`: what the
+    log-odds of a decision stay below, and above the negative of; 0: they have no limit.
     """
 
-    def __init__(self, features: int, shape: PolicyShape, initial_log_std: Optional[float] = None):
+    def __init__(self, features: int, shape: PolicyShape, initial_log_std: Optional[float] = None,
+                 odds_limit: float = 0.0):  # fmt: skip
         super().__init__()
         self.motions = shape.motions
         self.decides_terminate = shape.decides_terminate
+        self.odds_limit = odds_limit
         self.log_std: Optional[nn.Parameter] = None
         if initial_log_std is not None:
             self.log_std = nn.Parameter(torch.full((shape.motions,), initial_log_std))
@@ -114,9 +117,10 @@ class ActorHead(nn.Module):
             log_std = self.log_std.expand_as(mean)
         log_std = log_std.clamp(LOWEST_LOG_STD, HIGHEST_LOG_STD)
         choices = rows[..., -2 * DECISIONS :]
-        return ActionDistribution(
-            mean, log_std, choices[..., 1::2] - choices[..., 0::2], self.decides_terminate
-        )
+        odds = choices[..., 1::2] - choices[..., 0::2]
+        if self.odds_limit > 0.0:
+            odds = torch.tanh(odds * (1.0 / self.odds_limit)) * self.odds_limit
+        return ActionDistribution(mean, log_std, odds, self.decides_terminate)
 
     def start_terminate(self, logit: float) -> None:
         """Makes `logit` the log-odds of terminating, whatever the features are."""
@@ -208,13 +212,14 @@ class FeedForwardPolicy(Policy):
     """Two perceptrons side by side, actor and critic, behind the same eyes or none: no memory."""
 
     def __init__(self, shape: PolicyShape, width: int, layers: int, activation: str,
-                 initial_log_std: Optional[float], eyes: Optional["DepthCNN"]):  # fmt: skip
+                 initial_log_std: Optional[float], odds_limit: float,
+                 eyes: Optional["DepthCNN"]):  # fmt: skip
         super().__init__(shape, eyes)
         self.values_apart = eyes is None
         seen = shape.seen + (eyes.features if eyes else 0)
         self.encoder = perceptron(seen, width, layers, activation)
         self.value_encoder = perceptron(seen, width, layers, activation)
-        self.action = ActorHead(width, shape, initial_log_std)
+        self.action = ActorHead(width, shape, initial_log_std, odds_limit)
         self.critic = _orthogonal(HeadLinear(width, 1), 1.0)
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
@@ -236,13 +241,14 @@ class RecurrentPolicy(Policy):
     """An encoder, a GRU, and heads for actor and critic on it."""
 
     def __init__(self, encoder: "Encoder", shape: PolicyShape, width: int,
-                 initial_log_std: Optional[float], eyes: Optional["DepthCNN"] = None):  # fmt: skip
+                 initial_log_std: Optional[float], odds_limit: float,
+                 eyes: Optional["DepthCNN"] = None):  # fmt: skip
         super().__init__(shape, eyes)
         self.hidden_size = width
         self.needs_previous = encoder.needs_previous
         self.encoder = encoder
         self.rnn = nn.GRU(encoder.features, width)
-        self.action = ActorHead(width, shape, initial_log_std)
+        self.action = ActorHead(width, shape, initial_log_std, odds_limit)
         self.critic = _orthogonal(HeadLinear(width, 1), 1.0)
         for name, parameter in self.rnn.named_parameters():
             if "weight" in name:
@@ -424,9 +430,9 @@ def images(inputs: Inputs) -> Tensor:
 
 def make_policy(network: str, shape: PolicyShape, *, image_size: int = IMAGE_SIZE,
                 recurrent: bool = False, width: int = 128, layers: int = 2,
-                activation: str = "tanh",
-                initial_log_std: Optional[float] = None) -> Policy:  # fmt: skip
-    """A policy by its name, one of SIGHT.
+                activation: str = "tanh", initial_log_std: Optional[float] = None,
+                odds_limit: float = 0.0) -> Policy:  # fmt: skip
+    """A policy by its name, one of SIGHT, with an ActorHead of `odds_limit`.
 
     `image_size`, `recurrent`, `width`, `layers`, `activation` and `initial_log_std` are for `state`
     and `depth` alone: the paper's networks are what they are. Weights come from torch's global random
@@ -435,16 +441,18 @@ def make_policy(network: str, shape: PolicyShape, *, image_size: int = IMAGE_SIZ
     if network in ("state", "depth"):
         eyes = DepthCNN(image_size, width) if network == "depth" else None
         if not recurrent:
-            return FeedForwardPolicy(shape, width, layers, activation, initial_log_std, eyes)
+            return FeedForwardPolicy(
+                shape, width, layers, activation, initial_log_std, odds_limit, eyes
+            )
         seen = shape.seen + (eyes.features if eyes else 0)
         encoder: Encoder = StateEncoder(seen, width, layers, activation)
-        return RecurrentPolicy(encoder, shape, width, initial_log_std, eyes)
+        return RecurrentPolicy(encoder, shape, width, initial_log_std, odds_limit, eyes)
     if network == "simple_cnn":
-        return RecurrentPolicy(SimpleCNN(shape.seen), shape, FEATURES, None)
+        return RecurrentPolicy(SimpleCNN(shape.seen), shape, FEATURES, None, odds_limit)
     if network in ("resnet9", "resnet18"):
         blocks = 1 if network == "resnet9" else 2
         encoder = ResNet(shape.seen, shape.motions + DECISIONS, blocks)
-        return RecurrentPolicy(encoder, shape, FEATURES, None)
+        return RecurrentPolicy(encoder, shape, FEATURES, None, odds_limit)
     raise ValueError(f'"{network}" is not a network; the networks are {", ".join(SIGHT)}')
 
 

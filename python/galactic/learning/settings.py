@@ -170,6 +170,13 @@ class Settings:
         low=-5.0,
         high=2.0,
     )
+    odds_limit: float = _setting(
+        0.0,
+        "Network",
+        "what the log-odds of a decision stay below, so that none is so certain that the other is "
+        "never tried: with 4 it is in one step of 56; 0: no limit",
+        low=0.0,
+    )
     normalize: bool = _setting(
         False, "Network", "normalize observations by their running mean and variance, clamped to 10"
     )

@@ -138,6 +138,7 @@ NETWORKS = {
     "state_closeup": {"network": "state", "closeup": 0.2, "activation": "relu"},
     "state_closeups": {"network": "state", "closeup": 0.2, "second_closeup": 0.04},
     "state_recurrent": {"network": "state", "recurrent": True, "log_std": "parameter"},
+    "state_unsure": {"network": "state", "odds_limit": 1.5},
     "depth": {"network": "depth", "image_size": 64, "normalize": True, "closeup": 0.2},
     "depth_recurrent": {"network": "depth", "recurrent": True, "log_std": "parameter"},
     "simple_cnn": {"network": "simple_cnn", "normalize": True},
@@ -160,7 +161,9 @@ def test_a_pack_acts_as_torch_does(name: str, tmp_path: pathlib.Path) -> None:
     assert 0.1 < decisions < 0.9, "decisions go both ways"
 
 
-@pytest.mark.parametrize("name", ["state_normalized", "state_recurrent", "simple_cnn"])
+@pytest.mark.parametrize(
+    "name", ["state_normalized", "state_recurrent", "state_unsure", "simple_cnn"]
+)
 def test_deviations_and_odds_are_those_of_torch(name: str, tmp_path: pathlib.Path) -> None:
     saved = saved_policy(**NETWORKS[name])
     seen = Recorded(3, 5, saved.settings.network)

@@ -185,6 +185,26 @@ def test_eyes_see_what_is_far_as_the_paper_does() -> None:
     assert torch.equal(sees(10.0), sees(70.0)) and not torch.equal(sees(10.0), sees(9.0))
 
 
+@pytest.mark.parametrize("network", ["state", "simple_cnn"])
+def test_decisions_are_never_surer_than_their_limit(network: str) -> None:
+    found = {}
+    for limit in (0.0, 3.0):
+        torch.manual_seed(5)
+        policy = make_policy(network, ARM_OF_SEVEN, odds_limit=limit)
+        policy.action.linear.weight.data.normal_(0.0, 3.0)
+        hidden = policy.initial_hidden(50, torch.device("cpu"))
+        found[limit] = policy(
+            some_inputs(network, 1, 50), hidden, torch.ones(1, 50, dtype=torch.bool)
+        ).actions
+    free, limited = found[0.0], found[3.0]
+    assert free.logits.abs().max() > 9.0 and 2.9 < limited.logits.abs().max() <= 3.0
+    assert torch.equal(free.mode(), limited.mode()) and torch.equal(free.mean, limited.mean)
+    # Near even odds, they are as they were.
+    near = free.logits.abs() < 1.0
+    torch.testing.assert_close(limited.logits[near], free.logits[near], rtol=0.0, atol=0.05)
+    assert near.any()
+
+
 def test_pictures_are_scaled_as_the_paper_says() -> None:
     from galactic.learning.networks import images
 

@@ -31,7 +31,8 @@ SMALL_OF_ANY_RANKS = ["--preset", "quick", "--envs", "16", "--horizon", "8", "--
 SMALL = [*SMALL_OF_ANY_RANKS, "--ranks", "1"]
 UPDATE = 16 * 8
 PROGRAMS = {"train": train, "evaluate": evaluate}
-BLIND = "laser-beams=0 geodesic=false geodesic-weight=0 bump=false bump-penalty=0"
+BLIND = "geodesic=false geodesic-weight=0 bump=false bump-penalty=0"
+LASER = "laser-beams=24 laser-heights=0.25,0.8 laser-range=4"
 SENSORS = "laser-beams=8 laser-noise=0.01 geodesic geodesic-weight=1 bump"
 TO_BE_CUT = [*SMALL, "--halves", "2", "--simulation", f"task=pick episode-steps=60 {SENSORS}",
              "--checkpoint-every", 10 * UPDATE, "--steps", 80 * UPDATE]  # fmt: skip
@@ -334,8 +335,8 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     """The weights of Mobile Pick begin a run of Rearrange, which has a decision more."""
     pick, rearrange = tmp_path / "pick", tmp_path / "rearrange"
     small = [*SMALL, "--steps", UPDATE, "--learning-rate", "0"]
-    assert call("train", WORLD, "-o", pick, *small).returncode == 0
-    other = [*small, "--simulation", "task=rearrange", "--start-from", pick / "best.pt"]
+    assert call("train", WORLD, "-o", pick, *small, "--simulation", LASER).returncode == 0
+    other = [*small, "--simulation", f"{LASER} task=rearrange", "--start-from", pick / "best.pt"]
     done = call("train", WORLD, "-o", rearrange, *other)
     assert done.returncode == 0, done.stderr
     told = [json.loads((one / "settings.json").read_text()) for one in (pick, rearrange)]
@@ -355,13 +356,14 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     )
     assert blind.returncode == 3 and fault in blind.stderr
     short = call("train", WORLD, "-o", tmp_path / "blind", *small, "--simulation",
-                 "laser-beams=8 target-up bump=false", "--start-from", pick / "best.pt")  # fmt: skip
+                 f"{LASER} laser-beams=8 target-up bump=false",
+                 "--start-from", pick / "best.pt")  # fmt: skip
     fault = (
         "observations: the run lacks bump and the policy lacks target_up and laser has 48 numbers "
     )
     assert short.returncode == 3 and fault + "in the policy and 16 in the run;" in short.stderr
-    wide = call("train", WORLD, "-o", tmp_path / "wide", *small, "--width", "64",
-                "--start-from", pick / "best.pt")  # fmt: skip
+    wide = call("train", WORLD, "-o", tmp_path / "wide", *small, "--simulation", LASER,
+                "--width", "64", "--start-from", pick / "best.pt")  # fmt: skip
     assert wide.returncode == 3 and "width: found 128, expected 64" in wide.stderr
     assert not (tmp_path / "blind").exists() and not (tmp_path / "wide").exists()
     resumed = call("train", "-o", rearrange, "--resume", "--start-from", pick / "best.pt")
@@ -369,7 +371,8 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
 
 
 def test_a_policy_pack_knows_the_options_of_its_env(tmp_path: pathlib.Path) -> None:
-    assert call("train", WORLD, "-o", tmp_path / "run", *SMALL, "--steps", UPDATE).returncode == 0
+    small = [*SMALL, "--steps", UPDATE, "--simulation", LASER]
+    assert call("train", WORLD, "-o", tmp_path / "run", *small).returncode == 0
     pack = tmp_path / "policy.pack"
     assert export.main([str(tmp_path / "run" / "best.pt"), "-o", str(pack)]) == 0
     policy = galactic.LearnedPolicy(pack, 4, deterministic=True)
