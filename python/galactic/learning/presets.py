@@ -7,15 +7,12 @@ from typing import Any, Mapping
 
 from galactic.learning.settings import Settings, SettingsError, did_you_mean, overriding
 
-# Mobile Pick in minutes on two processors. Its policy has to know the way around walls and furniture
-# (geodesic), and to feel that it is stuck (bump).
+_BUMP = "bump bump-penalty=0.03"
 _QUICK = {
     "steps": 6_000_000,
     "ranks": 2,
     "envs": 512,
     "halves": 1,
-    "simulation": "task=pick episode-steps=200 geodesic geodesic-weight=1 bump bump-penalty=0.03",
-    "network": "state",
     "log_std": "parameter",
     "final_log_std": -1.5,
     "normalize": True,
@@ -32,9 +29,20 @@ _QUICK = {
 PRESETS: Mapping[str, Mapping[str, Any]] = {
     # Table 3 of the paper, which are the defaults.
     "paper": {},
-    "quick": _QUICK,
-    # The same with the head's depth camera.
-    "quick-depth": {**_QUICK, "network": "depth", "image_size": 64},
+    # Mobile Pick in minutes on two processors: the robot knows the way around walls and furniture
+    # (geodesic), and feels that it is stuck (bump).
+    "quick": {
+        **_QUICK,
+        "simulation": f"task=pick episode-steps=200 geodesic geodesic-weight=1 {_BUMP}",
+        "network": "state",
+    },
+    # The same with its head's depth camera in the place of what it knows of the way.
+    "quick-depth": {
+        **_QUICK,
+        "simulation": f"task=pick episode-steps=200 geodesic-weight=1 {_BUMP}",
+        "network": "depth",
+        "image_size": 64,
+    },
 }
 
 
