@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # learn.sh [TASK] [SEED]: a robot learns to pick things up in the sample apartment, along a path that it
 # knows (pick) or by its depth camera (pick-depth), or to rearrange them (rearrange), and shows what it
-# learned; without a graphics processor. After scripts/quickstart.sh; works from any folder. What it makes is in build/release/learn; the worlds
-# lie beside the packs that they list.
+# learned; without a graphics processor. After scripts/quickstart.sh; works from any folder. What it
+# makes is in build/release/learn; the worlds lie beside the packs that they list.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
 cd "$galactic_root"
