@@ -1,0 +1,139 @@
+"""Ranks: how they are started and end, and that several learn what one does."""
+
+from __future__ import annotations
+
+import pathlib
+import signal
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+import torch
+from torch.distributed import HashStore
+
+import galactic
+from galactic.learning.distributed import Group, RankLost
+from galactic.learning.launch import launch
+from galactic.learning.reports.curves import read_curves
+
+HERE = pathlib.Path(__file__).parent
+
+
+def test_ranks_tell_once_what_went_wrong() -> None:
+    def ranks() -> list[Group]:
+        both, store = [Group(rank, 2, torch.device("cpu")) for rank in (0, 1)], HashStore()
+        for group in both:
+            group._store = store
+        return both
+
+    first, second = ranks()
+    assert first.may_tell(OSError("disk full")) and not second.may_tell(OSError("disk full"))
+    assert second.may_tell(OSError("no memory")) and not second.may_tell(RankLost("of the first"))
+    # One that ended without a word is missed, once.
+    first, second = ranks()
+    assert first.may_tell(RankLost("peer at 1")) and not second.may_tell(RankLost("peer at 2"))
+
+
+@pytest.mark.parametrize(
+    "number, advice",
+    [
+        (signal.SIGKILL, "memory is lacking: take fewer --envs"),
+        (signal.SIGSEGV, "please report it"),
+    ],
+)
+def test_a_rank_that_a_signal_ends_is_missed_in_words(number: signal.Signals, advice: str) -> None:
+    """The other one fails on its own account, as those do that lose a rank."""
+    work = (
+        "import os, time\n"
+        f"if os.environ['RANK'] == '1': os.kill(os.getpid(), {int(number)})\n"
+        "time.sleep(0.5)\n"
+        "exit(4)"
+    )
+    with pytest.raises(galactic.Error, match=f"^rank 1: was ended by {number.name}; .*{advice}"):
+        launch(2, [sys.executable, "-c", work])
+
+
+def test_no_rank_is_left_behind_where_not_all_can_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[Any] = []
+    start = subprocess.Popen
+
+    def start_one(*arguments: Any, **keywords: Any) -> Any:
+        if started:
+            raise OSError("no more processes")
+        started.append(start(*arguments, **keywords))
+        return started[0]
+
+    monkeypatch.setattr(subprocess, "Popen", start_one)
+    with pytest.raises(OSError, match="no more processes"):
+        launch(2, [sys.executable, "-c", "import time; time.sleep(60)"])
+    assert started[0].wait(timeout=10) == -signal.SIGKILL
+
+
+@pytest.mark.parametrize("chosen, keeps", [({}, True), ({"MALLOC_MMAP_MAX_": "65536"}, False)])
+def test_a_rank_keeps_the_memory_that_tensors_leave_unless_told_otherwise(
+    monkeypatch: pytest.MonkeyPatch, chosen: dict[str, str], keeps: bool
+) -> None:
+    for name in ("MALLOC_MMAP_MAX_", "MALLOC_TRIM_THRESHOLD_"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in chosen.items():
+        monkeypatch.setenv(name, value)
+    # Pages that the system gave for tensors of 64 MiB, when a few of them have made room.
+    work = """
+import resource, sys, torch
+for n in range(30):
+    if n == 20:
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    torch.full((1 << 24,), 1.0)
+few = resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 100
+sys.exit(7 if few else 8)
+"""
+    assert launch(1, [sys.executable, "-c", work]) == (7 if keeps else 8)
+
+
+def test_a_rank_that_is_asked_to_end_was_interrupted() -> None:
+    assert launch(1, [sys.executable, "-c", "import os; os.kill(os.getpid(), 15)"]) == 130
+
+
+def run_ranks(ranks: int, *arguments: str) -> None:
+    """Runs ranks.py in as many processes."""
+    assert launch(ranks, [sys.executable, "-B", str(HERE / "ranks.py"), *arguments]) == 0
+
+
+def test_two_ranks_are_one_of_twice_the_envs(tmp_path: pathlib.Path) -> None:
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+    run_ranks(1, "train", str(tmp_path / "one"), "32")
+    run_ranks(2, "train", str(tmp_path / "two"), "16")
+    first = torch.load(tmp_path / "two" / "parameters-0.pt")
+    second = torch.load(tmp_path / "two" / "parameters-1.pt")
+    whole = torch.load(tmp_path / "one" / "parameters-0.pt")
+    assert torch.equal(first, second)
+    start = torch.load(tmp_path / "one" / "start.pt")
+    moved = (whole - start).abs().max()
+    # Sums in another order, carried through eight updates.
+    assert moved > 0.01 and (first - whole).abs().max() < 1e-3 * moved
+    one, two = (read_curves(tmp_path / name / "curves.csv") for name in ("one", "two"))
+    assert len(one) == len(two) == 8
+    for row, other in zip(one, two):
+        # Measured ones differ.
+        for name in row.keys() - {"seconds", "sps"}:
+            assert row[name] == pytest.approx(other[name], rel=1e-3, abs=1e-4), name
+
+
+def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) -> None:
+    run_ranks(2, "straggle", str(tmp_path))
+    steps = [torch.load(tmp_path / f"steps-{rank}.pt") for rank in range(2)]
+    assert steps[0]["rollouts"] == [16, 16, 16]
+    # Not before a quarter of the rollout, nor as late as its end.
+    assert all(4 <= length < 16 for length in steps[1]["rollouts"]), steps
+    total = sum(steps[0]["rollouts"]) + sum(steps[1]["rollouts"])
+    assert steps[0]["steps"] == steps[1]["steps"] == 16 * total
+    assert torch.equal(steps[0]["parameters"], steps[1]["parameters"])
+
+
+def test_the_curves_of_ranks_wait_for_the_envs_of_all(tmp_path: pathlib.Path) -> None:
+    run_ranks(2, "wait", str(tmp_path))
+    for rank in range(2):
+        updates = torch.load(tmp_path / f"figures-{rank}.pt")
+        assert updates == [False, False, False, False, True]
