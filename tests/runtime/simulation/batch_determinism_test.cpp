@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <random>
+#include <vector>
 
 #include "batch_trace.h"
 
@@ -42,6 +44,51 @@ TEST(BatchSimulator, GivesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(many.statistics().reward, one.statistics().reward);
     EXPECT_EQ(many.statistics().slid, one.statistics().slid);
   }
+}
+
+TEST(BatchSimulator, KnowsEachOfManyFloorsAsIfThereWereNoOther) {
+  // Terraces, each lower than the one before, with walls between them.
+  constexpr int kEdge = 5;
+  constexpr float kWidth = 0.6F;
+  std::vector<Block> blocks;
+  std::vector<Start> starts;
+  for (int n = 0; n < kEdge * kEdge; ++n) {
+    const float x = kWidth * static_cast<float>(n % kEdge);
+    const float z = kWidth * static_cast<float>(n / kEdge);
+    const float height = 0.05F * static_cast<float>(kEdge * kEdge - n);
+    blocks.push_back({{x, -0.4F, z}, {x + kWidth, height, z + kWidth}});
+    blocks.push_back({{x, height, z}, {x + 0.1F, height + 0.4F, z + kWidth}});
+    blocks.push_back({{x, height, z}, {x + kWidth, height + 0.4F, z + 0.1F}});
+    starts.push_back({.base = {x + 0.35F, height, z + 0.35F}, .objects = {{2.9F, 2.5F, 2.9F}}});
+  }
+  SimulationOptions options = optionsFor(kEdge * kEdge);
+  options.order = EpisodeOrder::kLinear;
+  options.task.kind = TaskKind::kNone;
+  const BoxWorld world(blocks, starts);
+  BatchSimulator together = made(world, options);
+  options.threads = 3;
+  BatchSimulator by_threads = made(world, options);
+  options.threads = 1;
+  std::vector<std::unique_ptr<BoxWorld>> worlds;
+  std::vector<BatchSimulator> alone;
+  for (const Start& start : starts) {
+    worlds.push_back(std::make_unique<BoxWorld>(blocks, std::vector{start}));
+    alone.push_back(made(*worlds.back(), options));
+  }
+  for (std::uint32_t step = 0; step < 30; ++step) {
+    const std::vector<float> actions = actionsFor(together, 0, step);
+    together.step(actions);
+    by_threads.step(actions);
+    for (std::uint32_t env = 0; env < alone.size(); ++env) {
+      alone[env].step(actions);
+      const Pose wanted = alone[env].envState(env).world_from_root;
+      ASSERT_EQ(together.envState(env).world_from_root, wanted) << env << " in step " << step;
+      ASSERT_EQ(by_threads.envState(env).world_from_root, wanted) << env << " in step " << step;
+    }
+  }
+  EXPECT_EQ(together.statistics().episodes, 0U);
+  EXPECT_GT(together.statistics().slid, 100U);
+  EXPECT_GT(together.statistics().refused, 0U);
 }
 
 TEST(BatchSimulator, GivesTheSameBitsAgain) {

@@ -40,6 +40,9 @@ inline constexpr int kRoomUpX = kRoomBits;
 inline constexpr int kRoomDownZ = 2 * kRoomBits;
 inline constexpr int kRoomUpZ = 3 * kRoomBits;
 
+/// Cells along the edge of a tile, of which a plane consists.
+inline constexpr std::uint32_t kClearanceTile = 8;
+
 /// What is taken from each slack after a move, in steps: more than any rounding.
 inline constexpr float kMoveRounding = 0.01F;
 

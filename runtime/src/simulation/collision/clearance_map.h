@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "galactic/scene.h"
 #include "simulation/collision/clearance_kernels.h"
+#include "simulation/collision/floor_clearance.h"
 #include "simulation/collision/sphere_batch.h"
 
 namespace galactic::simulation {
@@ -21,18 +21,6 @@ namespace galactic::simulation {
 //
 // Floors differ by what lies on them: a rug. What is so low that a rug would block it gets a band
 // of its own, which is clear where there is none.
-
-/// Where a robot's sphere centers are over a floor, meters above it.
-struct HeightsOverFloor {
-  float lowest = 0;
-  float highest = 0;
-};
-
-/// How far above its floor nothing of a radius is; 0 where nobody knows.
-[[nodiscard]] inline float lowestOver(std::span<const float> lowest_of_radius,
-                                      std::uint32_t radius) {
-  return radius < lowest_of_radius.size() ? lowest_of_radius[radius] : 0;
-}
 
 /// The bounds of eight groups of one env, as BodyArrays::bounds has them.
 struct GroupBounds {
@@ -52,15 +40,13 @@ class ClearanceMaps {
   /// `most_bytes`: of all maps, at most what look-ups can count.
   explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane = {},
                          std::size_t most_bytes = kMostBytes);
-  static constexpr std::size_t kMostBytes = std::size_t{1} << 31;
+  static constexpr std::size_t kMostBytes = (std::size_t{1} << 31) * sizeof(RoomAround);
 
-  /// Adds the maps of a floor of a scene. `floor`: the least height of that floor, meters; the
-  /// robot's centers are `heights` above it, or above floors up to `unevenness` higher.
-  /// `lowest_of_radius`: how far above its floor nothing of a radius is, where that is more; empty
-  /// where nobody knows. Returns the number by which surelyFree() knows it: 1, 2, ...;
+  /// Adds the maps of a floor. Returns the number by which surelyFree() knows it: 1, 2, ...;
   /// kNoClearanceMap where there is no room for it.
-  std::uint32_t add(const Scene& scene, float floor, float unevenness,
-                    const HeightsOverFloor& heights, std::span<const float> lowest_of_radius = {});
+  std::uint32_t add(const FloorClearance& floor);
+  /// Makes room for so many cells of all floors to come.
+  void reserve(std::size_t cells);
 
   /// Which of eight groups are surely free: those of the lanes from 8 * `eight` on, with these
   /// bounds. `map`: as add() returned it; none are for kNoClearanceMap.
@@ -93,8 +79,8 @@ class ClearanceMaps {
   void answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
               SureGroups* sure) const noexcept;
 
-  /// Of all planes of a floor of a scene.
-  [[nodiscard]] std::size_t bytesFor(const Scene& scene) const;
+  /// Whether any lane is of that radius.
+  [[nodiscard]] bool isAsked(std::uint32_t radius) const;
 
   std::vector<std::uint32_t> radius_of_lane_;
   std::size_t eights_ = 0;

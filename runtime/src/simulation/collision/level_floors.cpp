@@ -5,6 +5,12 @@
 
 namespace galactic::simulation {
 
+void LevelFloors::add(const LevelFloor& floor) {
+  floors_.push_back(floor.layout);
+  floors_.back().first += words_.size();
+  words_.insert(words_.end(), floor.words.begin(), floor.words.end());
+}
+
 // Loops without branches and of a length that is known, so that the compiler makes vectors of them:
 // all but the look-up itself.
 bool LevelFloors::heightsUnder(std::uint32_t map, const Bases& bases,
@@ -17,8 +23,8 @@ bool LevelFloors::heightsUnder(std::uint32_t map, const Bases& bases,
   return all != 0;
 }
 
-std::int32_t LevelFloors::heightsOfEight(const Floor& floor, const Bases& bases, std::size_t first,
-                                         float* heights) const noexcept {
+std::int32_t LevelFloors::heightsOfEight(const LevelFloorLayout& floor, const Bases& bases,
+                                         std::size_t first, float* heights) const noexcept {
   using Whole = std::array<std::int32_t, kLanes>;
   Whole i;
   Whole k;

@@ -12,6 +12,72 @@
 
 namespace galactic::simulation {
 
+/// How the columns of a floor's grid lie among words of bits, rows along X.
+struct LevelFloorLayout {
+  static constexpr std::uint32_t kBits = 32;
+  static constexpr std::uint32_t kMostHeights = 8;
+
+  [[nodiscard]] std::size_t wordOf(std::uint32_t i, std::uint32_t k) const {
+    return first + std::size_t{k} * row_words + i / kBits;
+  }
+
+  float min_x = 0, min_z = 0, inverse_spacing = 0;
+  float columns_x = 0, columns_z = 0;
+  /// The last one is the first again.
+  std::array<float, kMostHeights + 1> heights{};
+  std::uint32_t height_count = 0;
+  std::uint32_t row_words = 0;
+  std::size_t first = 0;
+};
+
+/// One floor: see LevelFloors. `layout` counts from the first word.
+struct LevelFloor {
+  LevelFloorLayout layout;
+  std::vector<std::uint32_t> words;
+};
+
+/// `height_found(center, height)`: the height at which a base finds the floor in a column when it
+/// stood at `height` before, NaN where none carries it. The floor's height is that of the base
+/// `start`.
+template <class HeightFound>
+[[nodiscard]] LevelFloor makeLevelFloor(const ColumnGrid& grid, const Vec3& start,
+                                        const HeightFound& height_found) {
+  const ColumnGridLayout& from = grid.layout();
+  constexpr std::uint32_t kBits = LevelFloorLayout::kBits;
+  constexpr std::uint32_t kMostHeights = LevelFloorLayout::kMostHeights;
+  LevelFloor made;
+  LevelFloorLayout& floor = made.layout;
+  floor.min_x = from.min_x;
+  floor.min_z = from.min_z;
+  floor.inverse_spacing = from.inverse_spacing;
+  floor.columns_x = static_cast<float>(from.columns_x);
+  floor.columns_z = static_cast<float>(from.columns_z);
+  floor.row_words = (from.columns_x + kBits - 1) / kBits;
+  std::array<float, kMostHeights + 1>& heights = floor.heights;
+  heights[0] = start.y;
+  for (std::uint32_t n = 0; n < kMostHeights; ++n) heights[0] = height_found(start, heights[0]);
+  for (std::uint32_t n = 0; n < kMostHeights && floor.height_count == 0; ++n) {
+    heights[n + 1] = height_found(start, heights[n]);
+    if (heights[n + 1] == heights[0]) floor.height_count = n + 1;
+  }
+  const auto stays_level = [&](const Vec3& center) {
+    bool is_level = floor.height_count > 0;
+    for (std::uint32_t n = 0; n < floor.height_count; ++n) {
+      is_level = is_level && height_found(center, heights[n]) == heights[n + 1];
+    }
+    return is_level;
+  };
+  made.words.resize(std::size_t{floor.row_words} * from.columns_z);
+  for (std::uint32_t k = 0; k < from.columns_z; ++k) {
+    for (std::uint32_t i = 0; i < from.columns_x; ++i) {
+      const Vec3 center{from.min_x + (static_cast<float>(i) + 0.5F) * from.spacing, 0,
+                        from.min_z + (static_cast<float>(k) + 0.5F) * from.spacing};
+      if (stays_level(center)) made.words[floor.wordOf(i, k)] |= 1U << (i % kBits);
+    }
+  }
+  return made;
+}
+
 /// Where floors are level: one bit for each column of a scene's first grid, set where a base that
 /// stands on the floor finds it at the floor's height again. Most steps need no other look at it.
 /// Any thread may ask.
@@ -20,17 +86,14 @@ namespace galactic::simulation {
 /// few. So a floor has some heights, each of which leads to the next one.
 class LevelFloors {
  public:
-  /// Adds a floor, by the number of its clearance map: 1, 2, ... `height_found(center, height)`:
-  /// the height at which a base finds the floor in a column when it stood at `height` before, NaN
-  /// where none carries it. The floor's height is that of the base `start`.
-  template <class HeightFound>
-  void add(const ColumnGrid& grid, const Vec3& start, const HeightFound& height_found);
+  /// Adds a floor, by the number of its clearance map: 1, 2, ...
+  void add(const LevelFloor& floor);
 
   /// The height at which a base finds the floor, its y being where it stood before; none where that
   /// is not known. `map`: as from ClearanceMaps::add().
   [[nodiscard]] std::optional<float> heightUnder(std::uint32_t map,
                                                  const Vec3& base) const noexcept {
-    const Floor& floor = floors_[map];
+    const LevelFloorLayout& floor = floors_[map];
     const float x = (base.x - floor.min_x) * floor.inverse_spacing;
     const float z = (base.z - floor.min_z) * floor.inverse_spacing;
     const bool is_inside = x >= 0 && x < floor.columns_x && z >= 0 && z < floor.columns_z;
@@ -60,66 +123,16 @@ class LevelFloors {
                                   float* heights) const noexcept;
 
  private:
-  static constexpr std::uint32_t kBits = 32;
-  static constexpr std::uint32_t kMostHeights = 8;
-
-  struct Floor {
-    [[nodiscard]] std::size_t wordOf(std::uint32_t i, std::uint32_t k) const {
-      return first + std::size_t{k} * row_words + i / kBits;
-    }
-
-    float min_x = 0, min_z = 0, inverse_spacing = 0;
-    float columns_x = 0, columns_z = 0;
-    /// The last one is the first again.
-    std::array<float, kMostHeights + 1> heights{};
-    std::uint32_t height_count = 0;
-    std::uint32_t row_words = 0;
-    std::size_t first = 0;
-  };
+  static constexpr std::uint32_t kBits = LevelFloorLayout::kBits;
 
   /// 1 where all heights of eight bases from `first` on are known, else 0.
-  std::int32_t heightsOfEight(const Floor& floor, const Bases& bases, std::size_t first,
+  std::int32_t heightsOfEight(const LevelFloorLayout& floor, const Bases& bases, std::size_t first,
                               float* heights) const noexcept;
 
   /// After that of no map, which is as wide as nothing.
-  std::vector<Floor> floors_ = std::vector<Floor>(1);
+  std::vector<LevelFloorLayout> floors_ = std::vector<LevelFloorLayout>(1);
   /// After one for what is outside of all floors.
   std::vector<std::uint32_t> words_ = {0};
 };
-
-template <class HeightFound>
-void LevelFloors::add(const ColumnGrid& grid, const Vec3& start, const HeightFound& height_found) {
-  const ColumnGridLayout& layout = grid.layout();
-  Floor floor{.min_x = layout.min_x,
-              .min_z = layout.min_z,
-              .inverse_spacing = layout.inverse_spacing,
-              .columns_x = static_cast<float>(layout.columns_x),
-              .columns_z = static_cast<float>(layout.columns_z),
-              .row_words = (layout.columns_x + kBits - 1) / kBits,
-              .first = words_.size()};
-  std::array<float, kMostHeights + 1>& heights = floor.heights;
-  heights[0] = start.y;
-  for (std::uint32_t n = 0; n < kMostHeights; ++n) heights[0] = height_found(start, heights[0]);
-  for (std::uint32_t n = 0; n < kMostHeights && floor.height_count == 0; ++n) {
-    heights[n + 1] = height_found(start, heights[n]);
-    if (heights[n + 1] == heights[0]) floor.height_count = n + 1;
-  }
-  const auto stays_level = [&](const Vec3& center) {
-    bool is_level = floor.height_count > 0;
-    for (std::uint32_t n = 0; n < floor.height_count; ++n) {
-      is_level = is_level && height_found(center, heights[n]) == heights[n + 1];
-    }
-    return is_level;
-  };
-  words_.resize(words_.size() + std::size_t{floor.row_words} * layout.columns_z);
-  for (std::uint32_t k = 0; k < layout.columns_z; ++k) {
-    for (std::uint32_t i = 0; i < layout.columns_x; ++i) {
-      const Vec3 center{layout.min_x + (static_cast<float>(i) + 0.5F) * layout.spacing, 0,
-                        layout.min_z + (static_cast<float>(k) + 0.5F) * layout.spacing};
-      if (stays_level(center)) words_[floor.wordOf(i, k)] |= 1U << (i % kBits);
-    }
-  }
-  floors_.push_back(floor);
-}
 
 }  // namespace galactic::simulation

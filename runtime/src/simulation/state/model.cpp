@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "simulation/phases/chunk.h"
@@ -14,6 +12,7 @@
 #include "simulation/phases/observe.h"
 #include "simulation/phases/slide.h"
 #include "simulation/state/batch_state.h"
+#include "simulation/state/floor_maps.h"
 #include "support/workers.h"
 
 namespace galactic::simulation {
@@ -140,28 +139,6 @@ class StartFinder {
                             .highest = -std::numeric_limits<float>::infinity()};
 };
 
-void addLevelFloor(const Scene& scene, const Vec3& start, Model& model) {
-  model.level_floors.add(scene.grids().front(), start, [&](const Vec3& at, float height) {
-    const FloorUnder under = floorUnder(scene, {at.x, height, at.z}, model.options.ground);
-    return under.floor == Floor::kCarries ? under.height : std::numeric_limits<float>::quiet_NaN();
-  });
-}
-
-/// For each radius how far above the floor its lowest center is where all are fixed to the robot's
-/// root, and so always as high; 0 where some are not.
-std::vector<float> lowestOfRadius(const Model& model) {
-  std::vector<float> lowest(model.world->radii().size());
-  for (const RadiusRange& range : model.motion.ranges) {
-    const auto spheres = std::span(model.motion.spheres).subspan(range.first, range.count);
-    const auto is_fixed = [](const BodySphere& sphere) { return sphere.node < 0; };
-    if (!std::ranges::all_of(spheres, is_fixed)) continue;
-    const auto height = [](const BodySphere& sphere) { return sphere.center.y; };
-    lowest[range.radius_index] =
-        model.motion.base.root_height + height(*std::ranges::min_element(spheres, {}, height));
-  }
-  return lowest;
-}
-
 /// The radius of each group of the robot that maps are asked about and, in eights after these, each
 /// radius of what its hand may hold.
 std::vector<std::uint32_t> radiiOfLanes(const Model& model) {
@@ -172,45 +149,6 @@ std::vector<std::uint32_t> radiiOfLanes(const Model& model) {
     radii.push_back(radius);
   }
   return radii;
-}
-
-/// Makes a map for each floor of each scene on which episodes start.
-void mapClearance(const HeightsOverFloor& heights, Model& model) {
-  // Starts whose floors differ by no more stand on one floor, with rugs.
-  constexpr float kUnevenness = 0.03F;
-  // What the hand holds may be higher than the robot was at any start.
-  constexpr float kOverRobot = 0.25F;
-  const HeightsOverFloor raised{heights.lowest, heights.highest + kOverRobot};
-  // So may a raised arm, and more: slices have to know where it is. Maps that reached as high would
-  // know less below.
-  constexpr float kRaisedArm = 0.75F;
-  const HeightsOverFloor sliced{heights.lowest, heights.highest + kRaisedArm};
-  const auto scene_of = [&](std::uint32_t start) {
-    return model.world->sceneIndexOf(model.episodeOf(start));
-  };
-  std::vector<std::uint32_t> order(model.starts.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple(scene_of(a), model.starts[a].base.y, a) <
-           std::tuple(scene_of(b), model.starts[b].base.y, b);
-  });
-  const std::vector<float> lowest_of_radius = lowestOfRadius(model);
-  for (std::size_t n = 0; n < order.size();) {
-    const std::uint32_t scene = scene_of(order[n]);
-    const float floor = model.starts[order[n]].base.y;
-    const std::uint32_t map =
-        model.clearance.add(model.scenes[scene], floor, kUnevenness, raised, lowest_of_radius);
-    // Where the maps have no room left, robots ask the columns themselves.
-    if (map != kNoClearanceMap) {
-      model.slices.add(model.scenes[scene], floor, sliced, lowest_of_radius);
-      addLevelFloor(model.scenes[scene], model.starts[order[n]].base, model);
-    }
-    for (; n < order.size() && scene_of(order[n]) == scene &&
-           model.starts[order[n]].base.y <= floor + kUnevenness;
-         ++n) {
-      model.starts[order[n]].clearance_map = map;
-    }
-  }
 }
 
 /// Once per start, as many as there are.
@@ -301,7 +239,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
                     std::to_string(model.skipped.size()) +
                     " episodes; check that scene, robot and episodes belong together");
   }
-  mapClearance(finder.heights(), model);
+  mapFloors(finder.heights(), model);
   if (auto made = makeSensors(*laser, model); !made) return tl::unexpected<Error>(made.error());
   return model;
 }

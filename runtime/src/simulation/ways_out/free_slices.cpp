@@ -3,93 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cassert>
 #include <cmath>
-#include <cstring>
-#include <functional>
-#include <string_view>
 #include <utility>
 
 #include "column_grid/column_grid_kernels.h"
 
 namespace galactic::simulation {
 namespace {
-
-/// Height of a slice, meters, and how many there are at most. Higher ones where they do not
-/// suffice.
-constexpr float kSlice = 0.04F;
-constexpr float kMostSlices = 64;
-/// What blocks is at least this far from a free slice, meters: more than any rounding.
-constexpr float kSlack = 1e-3F;
-/// What tileOfRow() can tell: of wider scenes nothing is known.
-constexpr std::uint32_t kMostColumnsZ = 1U << 16U;
-
-/// Slices of one column, as bits.
-struct ColumnSlices {
-  /// Free at all heights; blocked at all heights.
-  std::uint64_t free = 0;
-  std::uint64_t blocked = 0;
-};
-
-/// The slices from `from` up to `to`, counted from the lowest, of `count`.
-std::uint64_t slicesWithin(float from, float to, float count) {
-  const auto first = static_cast<unsigned>(std::clamp(from, 0.0F, count));
-  const auto end = static_cast<unsigned>(std::clamp(to, 0.0F, count));
-  std::uint64_t bits = 0;
-  for (unsigned slice = first; slice < end; ++slice) bits |= std::uint64_t{1} << slice;
-  return bits;
-}
-
-ColumnSlices slicesOf(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k, float lowest,
-                      float thickness, float count) {
-  constexpr std::size_t kMostSpans = 16;
-  std::array<Span, kMostSpans> spans;
-  const std::size_t found = grid.spans(i, k, spans);
-  std::uint64_t free = 0;
-  std::uint64_t touched = 0;
-  for (std::size_t n = 0; n < std::min(found, kMostSpans); ++n) {
-    const auto slice_at = [&](float height) { return (height - lowest) / thickness; };
-    free |= slicesWithin(std::ceil(slice_at(spans[n].lo + kSlack)),
-                         std::floor(slice_at(spans[n].hi - kSlack)), count);
-    touched |= slicesWithin(std::floor(slice_at(spans[n].lo - kSlack)),
-                            std::ceil(slice_at(spans[n].hi + kSlack)), count);
-  }
-  // Of more spans than there is room for, those left out may be free anywhere.
-  return {free, found > kMostSpans ? 0 : ~touched & slicesWithin(0, count, count)};
-}
-
-std::uint32_t tilesX(const ColumnGrid& grid) {
-  return (grid.columnsX() + kTileColumns - 1) / kTileColumns;
-}
-
-std::uint32_t tilesZ(const ColumnGrid& grid) {
-  return (grid.columnsZ() + kTileRows - 1) / kTileRows;
-}
-
-/// Sixteen columns side by side.
-using TileRow = std::array<ColumnSlices, 16>;
-
-/// Calls write(slice, bits) for each slice of which some bit is set: those of a row's columns.
-template <class Write>
-void forEachSlice(const TileRow& row, std::uint64_t ColumnSlices::*which, const Write& write) {
-  std::uint64_t all = ~std::uint64_t{0};
-  std::uint64_t any = 0;
-  for (const ColumnSlices& column : row) {
-    all &= column.*which;
-    any |= column.*which;
-  }
-  for (; any != 0; any &= any - 1) {
-    const auto slice = static_cast<std::size_t>(std::countr_zero(any));
-    unsigned bits = 0xffffU;
-    if ((all >> slice & 1U) == 0) {
-      bits = 0;
-      for (unsigned c = 0; c < row.size(); ++c) {
-        bits |= static_cast<unsigned>(row[c].*which >> slice & 1U) << c;
-      }
-    }
-    write(slice, static_cast<std::uint16_t>(bits));
-  }
-}
 
 /// A column and a slice.
 struct SliceCell {
@@ -117,101 +37,24 @@ CellInTile inTile(const SliceLayout& layout, const TileSet& tiles, const SliceCe
 
 FreeSlices::FreeSlices(std::vector<EightSpheres> groups) : groups_(std::move(groups)) {
   for (const EightSpheres& group : groups_) slice_groups_.push_back({{}, group.spheres});
-  // The first one: see TileSet. What is outside of slices asks for the first number.
-  SliceTile all_free{};
-  std::ranges::fill(all_free.free, std::uint16_t{0xffff});
-  numbers_.push_back(numberOf(all_free));
-  [[maybe_unused]] const std::uint32_t nothing_known = numberOf({});
-  assert(nothing_known == kNothingKnown);
+  // What is outside of slices asks for the first number.
+  numbers_.push_back(0);
 }
 
-std::uint32_t FreeSlices::add(const Scene& scene, float floor, const HeightsOverFloor& heights,
-                              std::span<const float> lowest_of_radius) {
-  // No pack has more.
-  assert(scene.grids().size() <= kLanes);
-  LayoutOfRadii layouts;
-  for (std::uint32_t radius = 0; radius < scene.grids().size(); ++radius) {
-    const ColumnGrid& grid = scene.grids()[radius];
-    const ColumnGridLayout& from = grid.layout();
-    // Nothing can be lower than at contact with the floor, and slices that begin where the lowest
-    // sphere is know that it is free over a rug.
-    const float over_floor =
-        std::max(heights.lowest, lowestOver(lowest_of_radius, radius)) - kSlack;
-    const float lowest = floor + std::max(over_floor, grid.radius() + 2 * kSlack);
-    const float range = std::max(floor + heights.highest - lowest, kSlice);
-    const float slices = std::min(std::ceil(range / kSlice), kMostSlices);
-    const float thickness = range / slices;
-    SliceLayout& layout = layouts[radius];
-    layout = {.min_x = from.min_x,
-              .min_z = from.min_z,
-              .inverse_spacing = from.inverse_spacing,
-              .columns_x = static_cast<float>(from.columns_x),
-              .columns_z = from.columns_z < kMostColumnsZ ? static_cast<float>(from.columns_z) : 0,
-              .lowest = lowest,
-              .inverse_slice = 1 / thickness,
-              .slices = slices,
-              .slice_count = static_cast<std::int32_t>(slices),
-              .tiles_z = static_cast<std::int32_t>(tilesZ(grid)),
-              .first = from.columns_z < kMostColumnsZ ? numbers_.size() : 0};
-    fill(grid, thickness, layout);
+std::uint32_t FreeSlices::add(const FloorSlices& floor) {
+  SlicesOfRadii layouts = floor.layouts;
+  for (SliceLayout& layout : layouts) {
+    if (layout.columns_z > 0) layout.first += numbers_.size();
   }
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(floor.tiles.tiles().size());
+  for (const SliceTile& tile : floor.tiles.tiles()) numbers.push_back(tiles_.numberOf(tile));
+  for (const std::uint32_t number : floor.numbers) numbers_.push_back(numbers[number]);
   for (const EightSpheres& group : groups_) {
     slice_groups_.push_back({layouts[group.radius_index], group.spheres});
   }
   layouts_.push_back(layouts);
   return static_cast<std::uint32_t>(layouts_.size() - 1);
-}
-
-void FreeSlices::fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout) {
-  if (layout.columns_z == 0) return;
-  std::vector<ColumnSlices> columns(std::size_t{grid.columnsX()} * grid.columnsZ());
-  for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
-    for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
-      columns[std::size_t{k} * grid.columnsX() + i] =
-          slicesOf(grid, i, k, layout.lowest, thickness, layout.slices);
-    }
-  }
-  // A tile begins kCellsAround before the cells around which it answers.
-  const auto row_at = [&](std::uint32_t tile_x, std::uint32_t k) {
-    TileRow row;
-    for (std::uint32_t n = 0; n < row.size(); ++n) {
-      const std::uint32_t i = tile_x * kTileColumns + n - kCellsAround;
-      const bool is_inside = i < grid.columnsX() && k < grid.columnsZ();
-      row[n] = is_inside ? columns[std::size_t{k} * grid.columnsX() + i] : ColumnSlices{};
-    }
-    return row;
-  };
-  std::vector<SliceTile> tiles(static_cast<std::size_t>(layout.slice_count));
-  for (std::uint32_t tile_x = 0; tile_x < tilesX(grid); ++tile_x) {
-    for (std::uint32_t tile_z = 0; tile_z < tilesZ(grid); ++tile_z) {
-      std::ranges::fill(tiles, SliceTile{});
-      for (std::uint32_t n = 0; n < SliceTile::kRows; ++n) {
-        const TileRow row = row_at(tile_x, tile_z * kTileRows + n - kCellsAround);
-        forEachSlice(row, &ColumnSlices::free,
-                     [&](std::size_t slice, std::uint16_t bits) { tiles[slice].free[n] = bits; });
-        forEachSlice(row, &ColumnSlices::blocked, [&](std::size_t slice, std::uint16_t bits) {
-          tiles[slice].blocked[n] = bits;
-        });
-      }
-      for (const SliceTile& tile : tiles) numbers_.push_back(numberOf(tile));
-    }
-  }
-}
-
-std::uint32_t FreeSlices::numberOf(const SliceTile& tile) {
-  const std::string_view bytes(reinterpret_cast<const char*>(&tile), sizeof(tile));
-  const std::size_t hash = std::hash<std::string_view>{}(bytes);
-  const auto [first, end] = known_.equal_range(hash);
-  for (auto at = first; at != end; ++at) {
-    if (std::memcmp(&tiles_[at->second], &tile, sizeof(tile)) == 0) return at->second;
-  }
-  // Rows are counted in 32 bits.
-  constexpr std::size_t kMostTiles = (std::size_t{1} << 31) / kTileStride;
-  if (tiles_.size() == kMostTiles) return kNothingKnown;
-  const auto number = static_cast<std::uint32_t>(tiles_.size());
-  tiles_.push_back(tile);
-  known_.emplace(hash, number);
-  return number;
 }
 
 const SliceGroup* FreeSlices::groupsOf(std::uint32_t map) const {
@@ -310,7 +153,7 @@ std::optional<SurroundingRows> FreeSlices::around(std::uint32_t map, std::uint32
   const CellInTile cell = inTile(layout, tiles(),
                                  {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z),
                                   static_cast<std::uint32_t>(height)});
-  const SliceTile& tile = tiles_[cell.tile];
+  const SliceTile& tile = tiles().tiles[cell.tile];
   return SurroundingRows{tile.free + cell.row, tile.blocked + cell.row, cell.column};
 }
 

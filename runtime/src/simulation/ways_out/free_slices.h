@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "galactic/pose.h"
 #include "galactic/scene.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
+#include "simulation/ways_out/floor_slices.h"
 #include "simulation/ways_out/free_slices_kernels.h"
 
 namespace galactic::simulation {
@@ -91,11 +91,8 @@ class FreeSlices {
   /// `groups`: eights of spheres that will be asked about with findPlaces().
   explicit FreeSlices(std::vector<EightSpheres> groups = {});
 
-  /// Adds the slices of a floor of a scene. `floor`: its height, meters; the robot's centers are
-  /// `heights` above it. `lowest_of_radius`: see ClearanceMaps::add(). Returns the number by which
-  /// the others know it: 1, 2, ...
-  std::uint32_t add(const Scene& scene, float floor, const HeightsOverFloor& heights,
-                    std::span<const float> lowest_of_radius = {});
+  /// Adds the slices of a floor. Returns the number by which the others know it: 1, 2, ...
+  std::uint32_t add(const FloorSlices& floor);
 
   /// Finds where the spheres of some of the groups from `first` on are. `map`: as add() returned
   /// it; nothing is known for kNoClearanceMap.
@@ -106,7 +103,7 @@ class FreeSlices {
                   const GroupsOfEnvs& some) const noexcept;
 
   /// What the places of spheres count from.
-  [[nodiscard]] const std::uint16_t* rows() const noexcept { return tiles_.data()->free; }
+  [[nodiscard]] const std::uint16_t* rows() const noexcept { return tiles_.tiles().data()->free; }
 
   /// The cells around any center; none where it is outside of slices.
   [[nodiscard]] std::optional<SurroundingRows> around(std::uint32_t map, std::uint32_t radius,
@@ -118,30 +115,21 @@ class FreeSlices {
   }
 
   [[nodiscard]] std::size_t bytes() const {
-    return tiles_.size() * sizeof(SliceTile) + numbers_.size() * sizeof(std::uint32_t);
+    return tiles_.tiles().size_bytes() + numbers_.size() * sizeof(std::uint32_t);
   }
 
  private:
-  using LayoutOfRadii = std::array<SliceLayout, kLanes>;
-
   /// The first of a floor's groups.
   [[nodiscard]] const SliceGroup* groupsOf(std::uint32_t map) const;
-  void fill(const ColumnGrid& grid, float thickness, const SliceLayout& layout);
-  /// Of a tile, which is kept if it is of a new kind and there is room for it.
-  [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile);
-  /// The number of a tile of which no cell is surely free nor surely blocked.
-  static constexpr std::uint32_t kNothingKnown = 1;
-  [[nodiscard]] TileSet tiles() const { return {numbers_.data(), tiles_.data()}; }
+  [[nodiscard]] TileSet tiles() const { return {numbers_.data(), tiles_.tiles().data()}; }
 
   std::vector<EightSpheres> groups_;
   /// Of each map, of each radius, after those of no map, which are as wide as nothing.
-  std::vector<LayoutOfRadii> layouts_ = std::vector<LayoutOfRadii>(1);
+  std::vector<SlicesOfRadii> layouts_ = std::vector<SlicesOfRadii>(1);
   /// Shape: maps x groups, those of no map among them.
   std::vector<SliceGroup> slice_groups_;
   std::vector<std::uint32_t> numbers_;
-  std::vector<SliceTile> tiles_;
-  /// The numbers of tiles, by the hashes of their bytes.
-  std::unordered_multimap<std::size_t, std::uint32_t> known_;
+  DistinctTiles tiles_;
 };
 
 /// The same at any height, from the columns themselves: exact, and slow.

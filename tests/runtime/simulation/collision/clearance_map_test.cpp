@@ -83,7 +83,7 @@ TEST(ClearanceMaps, CallNothingSurelyFreeThatAColumnBlocks) {
     const auto radii = static_cast<std::uint32_t>(room.scene().grids().size());
     // As a simulator has them: what is asked about is not in the first eight.
     ClearanceMaps maps({2, 2, 2, 2, 2, 2, 2, 2, 0, 1, 2});
-    const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+    const std::uint32_t map = maps.add(makeFloorClearance(room.scene(), 0, kUnevenness, kHeights));
     for (int n = 0; n < 2000; ++n) {
       const Eight eight(random);
       const unsigned free = sureOf(maps, map, 1, eight.bounds.data()).free;
@@ -115,7 +115,8 @@ TEST(ClearanceMaps, KnowOfWhatIsFreeCloseOverABareFloor) {
     const BoxRoom room = furnishedRoom(random, 5);
     const auto radii = static_cast<std::uint32_t>(room.scene().grids().size());
     ClearanceMaps maps({0, 1, 2});
-    const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, {0, kHeights.highest});
+    const std::uint32_t map =
+        maps.add(makeFloorClearance(room.scene(), 0, kUnevenness, {0, kHeights.highest}));
     for (std::uint32_t radius = 0; radius < radii; ++radius) {
       const ColumnGrid& grid = room.scene().grids()[radius];
       for (int n = 0; n < 1000; ++n) {
@@ -147,9 +148,9 @@ TEST(ClearanceMaps, KnowThatSpheresThatAreNeverLowAreFreeOverARug) {
   const std::array<float, 3> lowest{0, 0, grid.radius() + kOverFloor};
   const HeightsOverFloor heights{0.07F, kHeights.highest};
   ClearanceMaps any({2});
-  const std::uint32_t map = any.add(room.scene(), 0, kUnevenness, heights);
+  const std::uint32_t map = any.add(makeFloorClearance(room.scene(), 0, kUnevenness, heights));
   ClearanceMaps never_low({2});
-  ASSERT_EQ(never_low.add(room.scene(), 0, kUnevenness, heights, lowest), map);
+  ASSERT_EQ(never_low.add(makeFloorClearance(room.scene(), 0, kUnevenness, heights, lowest)), map);
   std::size_t known = 0;
   std::size_t known_more = 0;
   for (int n = 0; n < 5000; ++n) {
@@ -177,7 +178,7 @@ TEST(ClearanceMaps, SayHowFarWhatIsSurelyFreeMayGo) {
   for (int round = 0; round < 20; ++round) {
     const BoxRoom room = furnishedRoom(random, 5);
     ClearanceMaps maps({0, 1, 2});
-    const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+    const std::uint32_t map = maps.add(makeFloorClearance(room.scene(), 0, kUnevenness, kHeights));
     for (int n = 0; n < 2000; ++n) {
       const Eight eight(random);
       const SureGroups sure = sureOf(maps, map, 0, eight.bounds.data());
@@ -238,7 +239,7 @@ void expectToKnowOfEachColumn(std::uint32_t columns, float step) {
   const BoxRoom room(
       {{{1.2F, -1, 0.7F}, {1.6F, 2.9F, 1.1F}}, {{2.1F, -1, 2.2F}, {2.2F, 2.9F, 2.9F}}}, columns);
   ClearanceMaps maps({0, 1, 2});
-  const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+  const std::uint32_t map = maps.add(makeFloorClearance(room.scene(), 0, kUnevenness, kHeights));
   Tally sure_in_all;
   std::size_t free = 0;
   std::size_t unknown = 0;
@@ -278,7 +279,7 @@ TEST(ClearanceMaps, AnswerSeveralEnvsAsTheyAnswerEach) {
   std::mt19937 random(1507);
   const BoxRoom room = furnishedRoom(random, 5);
   ClearanceMaps maps({0, 1, 2});
-  const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+  const std::uint32_t map = maps.add(makeFloorClearance(room.scene(), 0, kUnevenness, kHeights));
   constexpr std::size_t kEnvs = 11;
   constexpr std::size_t kStride = kBounds * kLanes;
   alignas(32) std::array<float, kEnvs * kStride> bounds;
@@ -375,13 +376,13 @@ TEST(ClearanceMaps, TakeNoMoreThanThereIsRoomFor) {
   const BoxRoom room = furnishedRoom(random, 5);
   std::uint32_t added = 0;
   ClearanceMaps maps({0}, 100'000);
-  while (maps.add(room.scene(), 0, kUnevenness, kHeights) == added + 1) ++added;
+  while (maps.add(makeFloorClearance(room.scene(), 0, kUnevenness, kHeights)) == added + 1) ++added;
   // The same that fits into more room.
   EXPECT_GT(added, 0U);
-  EXPECT_EQ(maps.add(room.scene(), 0, kUnevenness, kHeights), kNoClearanceMap);
+  EXPECT_EQ(maps.add(makeFloorClearance(room.scene(), 0, kUnevenness, kHeights)), kNoClearanceMap);
   ClearanceMaps more({0}, 200'000);
   for (std::uint32_t n = 1; n <= added + 1; ++n) {
-    EXPECT_EQ(more.add(room.scene(), 0, kUnevenness, kHeights), n);
+    EXPECT_EQ(more.add(makeFloorClearance(room.scene(), 0, kUnevenness, kHeights)), n);
   }
   const Eight eight(random);
   expectSame(sureOf(maps, added, 0, eight.bounds.data()), sureOf(more, 1, 0, eight.bounds.data()));
@@ -391,7 +392,7 @@ TEST(ClearanceMaps, AreNotFooledByWhatIsNoNumber) {
   std::mt19937 random(1504);
   const BoxRoom room = furnishedRoom(random, 5);
   ClearanceMaps maps({0});
-  const std::uint32_t map = maps.add(room.scene(), 0, kUnevenness, kHeights);
+  const std::uint32_t map = maps.add(makeFloorClearance(room.scene(), 0, kUnevenness, kHeights));
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), 1e30F, -1e30F}) {
     alignas(32) std::array<float, kBounds * kLanes> bounds;
     bounds.fill(odd);

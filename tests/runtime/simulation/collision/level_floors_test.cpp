@@ -24,13 +24,18 @@ using namespace galactic::simulation;
 constexpr std::uint32_t kFloor = 1;
 
 /// The floor of a room as a simulator asks for it.
-LevelFloors levelFloors(const Scene& scene, const GroundOptions& options) {
-  LevelFloors floors;
+LevelFloor levelFloor(const Scene& scene, const GroundOptions& options) {
   const Vec3 start{1.5F, 0, 1.5F};
-  floors.add(scene.grids().front(), start, [&](const Vec3& at, float height) {
+  const auto height_found = [&](const Vec3& at, float height) {
     const FloorUnder under = floorUnder(scene, {at.x, height, at.z}, options);
     return under.floor == Floor::kCarries ? under.height : std::numeric_limits<float>::quiet_NaN();
-  });
+  };
+  return makeLevelFloor(scene.grids().front(), start, height_found);
+}
+
+LevelFloors levelFloors(const Scene& scene, const GroundOptions& options) {
+  LevelFloors floors;
+  floors.add(levelFloor(scene, options));
   return floors;
 }
 
@@ -61,6 +66,25 @@ TEST(LevelFloors, AreWhereABaseFindsTheFloorAtItsHeight) {
       if (!known) continue;
       ASSERT_EQ(under.floor, Floor::kCarries) << base.x << " " << base.z;
       ASSERT_EQ(under.height, *known) << base.x << " " << base.z;
+    }
+  }
+  level.expectBothSides();
+}
+
+TEST(LevelFloors, SayOfEachFloorWhatTheySayOfItAlone) {
+  std::mt19937 random(1704);
+  LevelFloors all;
+  Tally level;
+  for (std::uint32_t n = 1; n <= 5; ++n) {
+    const BoxRoom room = furnishedRoom(random, 3);
+    all.add(levelFloor(room.scene(), {}));
+    const LevelFloors alone = levelFloors(room.scene(), {});
+    const float height = heightOf(room.scene(), {});
+    for (int asked = 0; asked < 1000; ++asked) {
+      const Vec3 base{uniformIn(random, -0.3F, 3.3F), height, uniformIn(random, -0.3F, 3.3F)};
+      const std::optional<float> found = all.heightUnder(n, base);
+      ASSERT_EQ(found, alone.heightUnder(kFloor, base));
+      level.add(found.has_value());
     }
   }
   level.expectBothSides();

@@ -76,7 +76,7 @@ TEST(FreeSlices, CallFreeOrBlockedOnlyWhatTheColumnsDo) {
     FreeSlices slices({{0, BoxRoom::kRadii[0], kAllLanes},
                        {1, BoxRoom::kRadii[1], kAllLanes},
                        {2, BoxRoom::kRadii[2], kAllLanes}});
-    const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
+    const std::uint32_t map = slices.add(makeFloorSlices(room.scene(), 0, kHeights));
     for (int n = 0; n < 300; ++n) {
       const auto radius = static_cast<std::uint32_t>(n % 3);
       const ColumnGrid& grid = room.scene().grids()[radius];
@@ -188,7 +188,7 @@ TEST(FreeSlices, AnswerSeveralEnvsAsTheyAnswerEach) {
   FreeSlices slices({{0, BoxRoom::kRadii[0], kSpheres[0]},
                      {1, BoxRoom::kRadii[1], kSpheres[1]},
                      {2, BoxRoom::kRadii[2], kSpheres[2]}});
-  const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
+  const std::uint32_t map = slices.add(makeFloorSlices(room.scene(), 0, kHeights));
   // Of each env, its groups, then something else.
   constexpr std::size_t kStride = kGroups * kLanes + 5;
   constexpr std::size_t kPlacesStride = kGroups + 1;
@@ -307,6 +307,38 @@ TEST(FreeSlices, OfSeveralEnvsAreTheSameBitForBitWithBothKernels) {
     for (std::size_t n = 0; n < portable.size(); ++n) ASSERT_TRUE(areSame(portable[n], fast[n]));
   }
   blocked.expectBothSides();
+}
+
+TEST(FreeSlices, SayOfEachFloorWhatTheySayOfItAlone) {
+  std::mt19937 random(1608);
+  FreeSlices all;
+  std::size_t bytes = 0;
+  Tally free;
+  for (std::uint32_t n = 1; n <= 5; ++n) {
+    const BoxRoom room = furnishedRoom(random, 12);
+    const float floor = 0.1F * static_cast<float>(n);
+    const FloorSlices slices = makeFloorSlices(room.scene(), floor, kHeights);
+    FreeSlices alone;
+    const std::uint32_t only = alone.add(slices);
+    const std::uint32_t map = all.add(slices);
+    ASSERT_EQ(map, n);
+    for (int asked = 0; asked < 2000; ++asked) {
+      const auto radius = static_cast<std::uint32_t>(asked % 3);
+      const Vec3 center{uniformIn(random, -0.2F, 3.2F), uniformIn(random, 0.1F, 1.2F),
+                        uniformIn(random, -0.2F, 3.2F)};
+      const auto found = all.around(map, radius, center);
+      const auto wanted = alone.around(only, radius, center);
+      ASSERT_EQ(found.has_value(), wanted.has_value());
+      if (!found) continue;
+      ASSERT_EQ(found->cells().rows, wanted->cells().rows);
+      ASSERT_EQ(found->blockedCells().rows, wanted->blockedCells().rows);
+      free.add(found->isFree(0, 0));
+    }
+    bytes += alone.bytes();
+  }
+  // What floors have in common is kept once.
+  EXPECT_LT(all.bytes(), bytes);
+  free.expectBothSides();
 }
 
 TEST(SurroundingsOf, AreThoseOfTheColumns) {

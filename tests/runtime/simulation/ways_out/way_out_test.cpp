@@ -262,7 +262,7 @@ TEST(ColumnWays, AreTheWaysOutThatAllColumnsAllow) {
   for (int round = 0; round < 20; ++round) {
     const BoxRoom room = furnishedRoom(random, 6);
     FreeSlices slices;
-    const std::uint32_t map = slices.add(room.scene(), 0, kHeights);
+    const std::uint32_t map = slices.add(makeFloorSlices(room.scene(), 0, kHeights));
     for (int n = 0; n < 150; ++n) {
       const Body body(random);
       WayOut all(body.centers.size());
