@@ -45,9 +45,14 @@ void WorldFollower::begin(const PackJob& pack) {
 void WorldFollower::show(std::string_view /*item*/, std::string_view stage, double fraction) {
   const std::lock_guard lock(mutex_);
   if (running_.size() != 1) return;
+  if (stage_.empty()) {
+    stage_start_ = Clock::now();
+    stage_from_ = fraction;
+  }
   stage_ = stage;
   fraction_ = fraction;
   redraw();
+  sayThatItGoesOn();
 }
 
 void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome) {
@@ -62,31 +67,53 @@ void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome) {
   if (outcome.state == PackState::kBaked) ++baked_;
   const bool is_news = outcome.state == PackState::kBaked || verbosity_ == Verbosity::kVerbose;
   if (verbosity_ >= Verbosity::kNormal && is_news && outcome.failures.empty()) {
-    fmt::print("  [{}/{}] {} {} in {:.1f} s\n", done_, count_, printable(pack.name),
-               nameOf(outcome.state), outcome.seconds);
-    std::fflush(stdout);
+    print(fmt::format("{} {} in {:.1f} s", printable(pack.name), nameOf(outcome.state),
+                      outcome.seconds));
   }
   redraw();
 }
 
 void WorldFollower::forgetStage() {
   stage_.clear();
-  fraction_ = 0;
+  fraction_ = stage_from_ = 0;
+}
+
+void WorldFollower::print(const std::string& line) {
+  fmt::print("  [{}/{}] {}\n", done_, count_, line);
+  std::fflush(stdout);
+  printed_ = Clock::now();
+}
+
+void WorldFollower::sayThatItGoesOn() {
+  constexpr std::chrono::seconds kSilence{30};
+  const bool is_wanted = verbosity_ >= Verbosity::kNormal && !line_.isEnabled();
+  if (!is_wanted || Clock::now() - printed_ < kSilence) return;
+  print(fmt::format("{}: {}, {} left", printable(*running_.begin()), printable(stage_), left()));
+}
+
+std::string WorldFollower::left() const {
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const std::size_t begun = done_ + running_.size();
+  const std::size_t waiting = count_ > begun ? count_ - begun : 0;
+  // What was found in the cache says nothing of how long the rest takes.
+  const double baked = static_cast<double>(baked_);
+  if (fraction_ > stage_from_) {
+    const double rest = since(stage_start_) / (fraction_ - stage_from_) * (1 - fraction_);
+    if (waiting == 0) return clockText(rest);
+    return baked > 0 ? clockText(rest + since(start_) / baked * static_cast<double>(waiting)) : "?";
+  }
+  if (baked == 0) return "?";
+  return clockText(since(start_) / baked * static_cast<double>(count_ - done_));
 }
 
 void WorldFollower::redraw() {
   if (running_.empty()) return line_.clear();
-  std::string left = "?";
-  const double done = static_cast<double>(done_) + fraction_;
-  // What was found in the cache says nothing of how long the rest takes.
-  const double baked = static_cast<double>(baked_) + fraction_;
-  if (baked > 0) {
-    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - start_;
-    left = clockText(since.count() / baked * (static_cast<double>(count_) - done));
-  }
   std::string at_work = printable(*running_.begin());
   if (!stage_.empty()) at_work += ": " + printable(stage_);
-  line_.show(fmt::format("{}/{}, {} left", done_, count_, left), at_work,
+  const double done = static_cast<double>(done_) + fraction_;
+  line_.show(fmt::format("{}/{}, {} left", done_, count_, left()), at_work,
              done / static_cast<double>(count_));
 }
 

@@ -28,7 +28,8 @@ class FileFollower final : public BuildObserver {
 };
 
 /// Follows the build of many packs: on a terminal one line with an estimate of what is left,
-/// elsewhere a line for each pack that is done. The first Ctrl-C stops it between packs.
+/// elsewhere a line for each pack that is done, and one now and then while a pack takes long. The
+/// first Ctrl-C stops it between packs.
 class WorldFollower final : public BuildObserver {
  public:
   /// `count`: packs that are to be made.
@@ -42,19 +43,32 @@ class WorldFollower final : public BuildObserver {
   [[nodiscard]] bool stops() override { return stop_.came(); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void forgetStage();
   void redraw();
+  /// A line that stays.
+  void print(const std::string& line);
+  /// Where nobody sees the line that changes: one that stays, after a while without any.
+  void sayThatItGoesOn();
+  /// How much time is left; "?" while nobody knows.
+  [[nodiscard]] std::string left() const;
 
   StopRequest stop_{"galactic-bake"};
   std::mutex mutex_;
   Verbosity verbosity_;
   std::size_t count_;
   ProgressLine line_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Clock::time_point start_ = Clock::now();
+  /// When the last line that stays was printed.
+  Clock::time_point printed_ = start_;
   std::set<std::string> running_;
   /// Of the only pack at work: what is done, and how much of it is; else nothing.
   std::string stage_;
   double fraction_ = 0;
+  /// When and with what it was first told.
+  Clock::time_point stage_start_;
+  double stage_from_ = 0;
   std::size_t done_ = 0;
   std::size_t baked_ = 0;
 };

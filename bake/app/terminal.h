@@ -37,6 +37,8 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
+  [[nodiscard]] bool isEnabled() const { return enabled_; }
+
   /// Replaces the line. `fraction` from 0 to 1.
   void show(std::string_view item, std::string_view stage, double fraction);
   /// Removes the line, so that other output begins on a clean one.
