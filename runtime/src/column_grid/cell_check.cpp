@@ -129,10 +129,12 @@ class CellChecker {
     for (std::size_t n = begin * kCellsPerTile; n < end * kCellsPerTile && !offence_.found(); ++n) {
       const std::uint64_t cell = layout_.cells[n];
       if (!isOverflow(cell)) continue;
-      offence_.require(overflowStart(cell) == next_overflow_, fmt::format("cells[{}]", element(n)),
-                       "is an overflow cell whose spans begin at element {}, expected {}",
-                       overflowStart(cell), next_overflow_);
-      if (!offence_.found()) checkOverflowSpans();
+      if (overflowStart(cell) != next_overflow_) {
+        return offence_.require(false, fmt::format("cells[{}]", element(n)),
+                                "is an overflow cell whose spans begin at element {}, expected {}",
+                                overflowStart(cell), next_overflow_);
+      }
+      checkOverflowSpans();
     }
   }
 
@@ -204,10 +206,15 @@ class CellChecker {
           n == first || span.lo > overflowSpan(layout_, static_cast<std::uint32_t>(n - 1)).hi;
       if (!inside || !above) return explainOverflowSpan(n, inside);
     }
-    offence_.require(n < block_.overflow_elements, overflowField(first),
-                     "begins the spans of an overflow cell, expected an end mark behind them");
-    offence_.require(n > first, overflowField(first),
-                     "is an end mark, expected the first span of an overflow cell");
+    if (n == block_.overflow_elements) {
+      return offence_.require(
+          false, overflowField(first),
+          "begins the spans of an overflow cell, expected an end mark behind them");
+    }
+    if (n == first) {
+      return offence_.require(false, overflowField(first),
+                              "is an end mark, expected the first span of an overflow cell");
+    }
     totals_.spans += n - first;
     totals_.max_spans_per_column =
         std::max(totals_.max_spans_per_column, static_cast<std::uint32_t>(n - first));

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "galactic/pack_reference.h"
+#include "support/workers.h"
 
 namespace galactic {
 namespace {
@@ -292,12 +294,22 @@ Result<void> checkParts(const std::vector<PackFile>& packs, const Parts& parts) 
 Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
   const auto references = packReferences(world);
   if (!references) return tl::unexpected<Error>(references.error());
+  // There may be thousands, and each is read and checked from end to end.
+  std::vector<std::optional<Result<PackFile>>> opened(references->size());
+  std::atomic<std::size_t> failed = opened.size();
+  detail::forEachPart(detail::threadCount(0), opened.size(), [&](std::size_t n) {
+    // The first one that fails is told of, whichever thread is ahead.
+    if (n > failed) return;
+    opened[n] = openReference(world, (*references)[n], trust);
+    if (*opened[n]) return;
+    for (std::size_t known = failed; n < known && !failed.compare_exchange_weak(known, n);) {
+    }
+  });
   std::vector<PackFile> packs;
-  packs.reserve(references->size());
-  for (const PackReference& reference : *references) {
-    Result<PackFile> pack = openReference(world, reference, trust);
-    if (!pack) return tl::unexpected<Error>(std::move(pack.error()));
-    packs.push_back(std::move(*pack));
+  packs.reserve(opened.size());
+  for (std::optional<Result<PackFile>>& pack : opened) {
+    if (!*pack) return tl::unexpected<Error>(std::move(pack->error()));
+    packs.push_back(std::move(**pack));
   }
   return packs;
 }
