@@ -107,12 +107,12 @@ void Geodesic::planFloors(const World& world, const StandingRobot& robot,
                           const GroundOptions& ground, std::size_t most_bytes,
                           std::uint32_t threads) {
   const std::size_t scenes = world.scenes().size();
+  std::vector<std::vector<Known*>> in_scene(scenes);
+  for (Known& one : errands_) in_scene[one.errand.scene].push_back(&one);
   std::vector<std::vector<FloorPlan>> plans(scenes);
   detail::forEachPart(threads, scenes, [&](std::size_t scene) {
     ScenePlanner planner(world.scenes()[scene], robot, ground, most_bytes);
-    for (Known& one : errands_) {
-      if (one.errand.scene == scene) one.plan = planner.planOf(one.errand.base);
-    }
+    for (Known* one : in_scene[scene]) one->plan = planner.planOf(one->errand.base);
     plans[scene] = planner.take();
   });
   std::vector<std::uint32_t> first;

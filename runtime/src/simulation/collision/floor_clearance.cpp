@@ -164,20 +164,25 @@ RoomAround roomAround(const Cells& cells, const NotClear& not_clear, std::int64_
     room = static_cast<RoomAround>(room + (steps << side));
   };
   for (const int side : {kRoomDownX, kRoomUpX, kRoomDownZ, kRoomUpZ}) add(side, square + 1);
+  // What is in the way of a side stays there when others grow.
+  unsigned blocked = 0;
   const auto grow = [&](int side, std::int64_t& border, std::int64_t by, const auto& is_clear) {
+    if ((blocked >> side & 1U) != 0) return;
     const bool is_wide = (static_cast<unsigned>(room) >> side & kMostRoom) == kMostRoom;
-    if (is_wide || !is_clear()) return false;
+    if (is_wide || !is_clear()) {
+      blocked |= 1U << side;
+      return;
+    }
     border += by;
     add(side, 1);
-    return true;
   };
-  for (bool grows = true; grows;) {
-    grows = grow(kRoomDownX, x, -step, [&] { return not_clear.none(x - step, x, z, end_z); });
-    grows |=
-        grow(kRoomUpX, end_x, step, [&] { return not_clear.none(end_x, end_x + step, z, end_z); });
-    grows |= grow(kRoomDownZ, z, -step, [&] { return not_clear.none(x, end_x, z - step, z); });
-    grows |=
-        grow(kRoomUpZ, end_z, step, [&] { return not_clear.none(x, end_x, end_z, end_z + step); });
+  constexpr unsigned kAllSides =
+      1U << kRoomDownX | 1U << kRoomUpX | 1U << kRoomDownZ | 1U << kRoomUpZ;
+  while (blocked != kAllSides) {
+    grow(kRoomDownX, x, -step, [&] { return not_clear.none(x - step, x, z, end_z); });
+    grow(kRoomUpX, end_x, step, [&] { return not_clear.none(end_x, end_x + step, z, end_z); });
+    grow(kRoomDownZ, z, -step, [&] { return not_clear.none(x, end_x, z - step, z); });
+    grow(kRoomUpZ, end_z, step, [&] { return not_clear.none(x, end_x, end_z, end_z + step); });
   }
   return room;
 }

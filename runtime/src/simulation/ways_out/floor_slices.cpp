@@ -1,13 +1,14 @@
 #include "simulation/ways_out/floor_slices.h"
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <limits>
-#include <string_view>
 
 #include "galactic/column_grid.h"
 
@@ -119,9 +120,9 @@ void transpose(BitMatrix& matrix) {
   }
 }
 
-/// One bit for each slice and column: a plane for each slice, in rows along X. They begin
-/// kCellsAround before the first column, and so do rows along Z, so that tiles begin with the bit
-/// and the row at which they stand.
+/// One bit for each slice and column: a plane for each slice, in rows along X of words, of which
+/// those of one column of words lie side by side. They begin kCellsAround before the first column,
+/// and so do rows along Z, so that tiles begin with the bit and the row at which they stand.
 class BitPlanes {
  public:
   BitPlanes(const ColumnGrid& grid, std::size_t slices)
@@ -134,7 +135,7 @@ class BitPlanes {
   void set(std::uint32_t k, std::size_t word, BitMatrix& columns) {
     transpose(columns);
     for (std::size_t slice = 0; slice < slices_; ++slice) {
-      bits_[(slice * rows_ + k + kCellsAround) * words_ + word] = columns[slice];
+      bits_[(slice * words_ + word) * rows_ + k + kCellsAround] = columns[slice];
     }
   }
   [[nodiscard]] std::size_t words() const { return words_; }
@@ -145,12 +146,16 @@ class BitPlanes {
     const std::size_t bit = std::size_t{tile_x} * kTileColumns;
     const std::size_t shift = bit % kWordBits;
     const std::uint64_t* from =
-        &bits_[(slice * rows_ + std::size_t{tile_z} * kTileRows) * words_ + bit / kWordBits];
-    const bool is_in_one = shift + kRowBits <= kWordBits;
-    for (std::uint16_t& row : rows) {
-      const std::uint64_t rest = is_in_one ? 0 : from[1] << (kWordBits - shift);
-      row = static_cast<std::uint16_t>(from[0] >> shift | rest);
-      from += words_;
+        &bits_[(slice * words_ + bit / kWordBits) * rows_ + std::size_t{tile_z} * kTileRows];
+    if (shift + kRowBits <= kWordBits) {
+      for (std::size_t n = 0; n < SliceTile::kRows; ++n) {
+        rows[n] = static_cast<std::uint16_t>(from[n] >> shift);
+      }
+      return;
+    }
+    const std::uint64_t* rest = from + rows_;
+    for (std::size_t n = 0; n < SliceTile::kRows; ++n) {
+      rows[n] = static_cast<std::uint16_t>(from[n] >> shift | rest[n] << (kWordBits - shift));
     }
   }
 
@@ -216,7 +221,7 @@ void addTiles(const ColumnGrid& grid, float thickness, const SliceLayout& layout
 
 }  // namespace
 
-DistinctTiles::DistinctTiles() {
+DistinctTiles::DistinctTiles() : slots_(16) {
   SliceTile all_free{};
   std::ranges::fill(all_free.free, std::uint16_t{0xffff});
   [[maybe_unused]] const std::uint32_t free_everywhere = numberOf(all_free);
@@ -225,19 +230,66 @@ DistinctTiles::DistinctTiles() {
 }
 
 std::uint32_t DistinctTiles::numberOf(const SliceTile& tile) {
-  const std::string_view bytes(reinterpret_cast<const char*>(&tile), sizeof(tile));
-  const std::size_t hash = std::hash<std::string_view>{}(bytes);
-  const auto [first, end] = known_.equal_range(hash);
-  for (auto at = first; at != end; ++at) {
-    if (isSame(tiles_[at->second], tile)) return at->second;
+  return numberOf(tile, XXH3_64bits(&tile, sizeof(tile)));
+}
+
+std::vector<std::uint32_t> DistinctTiles::numbersOf(const DistinctTiles& others) {
+  // What is looked at lies anywhere in memory: so far ahead it is asked for.
+  constexpr std::size_t kSlotsAhead = 24;
+  constexpr std::size_t kTilesAhead = 12;
+  const std::span<const Hash> hashes = others.hashes_;
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(hashes.size());
+  for (std::size_t n = 0; n < hashes.size(); ++n) {
+    if (n + kSlotsAhead < hashes.size()) prefetchSlot(hashes[n + kSlotsAhead]);
+    if (n + kTilesAhead < hashes.size()) prefetchTile(hashes[n + kTilesAhead]);
+    numbers.push_back(numberOf(others.tiles_[n], hashes[n]));
   }
+  return numbers;
+}
+
+std::uint32_t DistinctTiles::numberOf(const SliceTile& tile, Hash hash) {
+  const std::size_t slot = slotOf(tile, hash);
+  if (slots_[slot].count != 0) return slots_[slot].count - 1;
   // Rows are counted in 32 bits.
   constexpr std::size_t kMostTiles = (std::size_t{1} << 31) / kTileStride;
   if (tiles_.size() == kMostTiles) return kNothingKnown;
-  const auto number = static_cast<std::uint32_t>(tiles_.size());
   tiles_.push_back(tile);
-  known_.emplace(hash, number);
-  return number;
+  hashes_.push_back(hash);
+  const auto count = static_cast<std::uint32_t>(tiles_.size());
+  slots_[slot] = {count, static_cast<std::uint32_t>(hash >> 32U)};
+  if (2 * tiles_.size() > slots_.size()) growSlots();
+  return count - 1;
+}
+
+std::size_t DistinctTiles::slotOf(const SliceTile& tile, Hash hash) const {
+  const auto part = static_cast<std::uint32_t>(hash >> 32U);
+  std::size_t at = hash % slots_.size();
+  while (slots_[at].count != 0 &&
+         (slots_[at].hash != part || !isSame(tiles_[slots_[at].count - 1], tile))) {
+    at = (at + 1) % slots_.size();
+  }
+  return at;
+}
+
+void DistinctTiles::growSlots() {
+  slots_.assign(2 * slots_.size(), {});
+  for (std::uint32_t n = 0; n < tiles_.size(); ++n) {
+    std::size_t at = hashes_[n] % slots_.size();
+    while (slots_[at].count != 0) at = (at + 1) % slots_.size();
+    slots_[at] = {n + 1, static_cast<std::uint32_t>(hashes_[n] >> 32U)};
+  }
+}
+
+void DistinctTiles::prefetchSlot(Hash hash) const {
+  __builtin_prefetch(&slots_[hash % slots_.size()]);
+}
+
+void DistinctTiles::prefetchTile(Hash hash) const {
+  const std::uint32_t count = slots_[hash % slots_.size()].count;
+  if (count == 0) return;
+  __builtin_prefetch(tiles_[count - 1].free);
+  __builtin_prefetch(tiles_[count - 1].blocked);
 }
 
 FloorSlices makeFloorSlices(const Scene& scene, float floor, const HeightsOverFloor& heights,

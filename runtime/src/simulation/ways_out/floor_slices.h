@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "galactic/scene.h"
@@ -24,13 +23,33 @@ class DistinctTiles {
   /// Of a tile, which is kept if it is of a new kind and there is room for it.
   [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile);
 
+  /// The same of all tiles of another set, in their order.
+  [[nodiscard]] std::vector<std::uint32_t> numbersOf(const DistinctTiles& others);
+
   /// In the order of their numbers.
   [[nodiscard]] std::span<const SliceTile> tiles() const noexcept { return tiles_; }
 
  private:
+  using Hash = std::uint64_t;
+  /// A tile, as one more than its number, and a part of its hash; 0 where there is none.
+  struct Slot {
+    std::uint32_t count = 0;
+    std::uint32_t hash = 0;
+  };
+
+  /// Where a tile stands in `slots_`, or where there is room for it.
+  [[nodiscard]] std::size_t slotOf(const SliceTile& tile, Hash hash) const;
+  [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile, Hash hash);
+  void growSlots();
+  /// Ask the memory for what looks for a tile read: its first slot; and then what that leads to.
+  void prefetchSlot(Hash hash) const;
+  void prefetchTile(Hash hash) const;
+
   std::vector<SliceTile> tiles_;
-  /// The numbers of tiles, by the hashes of their bytes.
-  std::unordered_multimap<std::size_t, std::uint32_t> known_;
+  std::vector<Hash> hashes_;
+  /// Each tile at the first free slot from that of its hash on. As many as a power of two, at most
+  /// half of them taken.
+  std::vector<Slot> slots_;
 };
 
 /// The slices of a floor, of each radius.

@@ -46,9 +46,7 @@ std::uint32_t FreeSlices::add(const FloorSlices& floor) {
   for (SliceLayout& layout : layouts) {
     if (layout.columns_z > 0) layout.first += numbers_.size();
   }
-  std::vector<std::uint32_t> numbers;
-  numbers.reserve(floor.tiles.tiles().size());
-  for (const SliceTile& tile : floor.tiles.tiles()) numbers.push_back(tiles_.numberOf(tile));
+  const std::vector<std::uint32_t> numbers = tiles_.numbersOf(floor.tiles);
   for (const std::uint32_t number : floor.numbers) numbers_.push_back(numbers[number]);
   for (const EightSpheres& group : groups_) {
     slice_groups_.push_back({layouts[group.radius_index], group.spheres});
