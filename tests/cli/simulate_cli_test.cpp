@@ -94,7 +94,7 @@ TEST_F(SimulateCli, EndsWithATable) {
   EXPECT_THAT(result.out,
               AllOf(StartsWith("20 envs, 50 steps each, 2 threads, policy random, seed 3\n"),
                     HasSubstr("\n  stepping "), HasSubstr(" steps/s"), HasSubstr("\n  whole loop "),
-                    HasSubstr("\n  start-up "), HasSubstr("bytes per env\n"),
+                    HasSubstr("\n  start-up "), HasSubstr(" bytes per env, "),
                     HasSubstr("\n    collide "), HasSubstr("% refused, "), HasSubstr(" grasps, ")));
   EXPECT_THAT(result.out, AllOf(HasSubstr(" ended: "), HasSubstr("means of the episodes"),
                                 HasSubstr("\n  skipped       1 of 4 episodes: 2\n")));

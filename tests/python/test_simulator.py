@@ -476,6 +476,7 @@ def test_phases_are_measured_on_demand(simulator, draw_actions):
 def test_skipped_episodes_are_listed(simulator):
     assert simulator.skipped_episodes == [2]
     assert simulator.memory_bytes > 0
+    assert simulator.shared_bytes > 0
     assert simulator.thread_count == 1
 
 

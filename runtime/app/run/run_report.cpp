@@ -153,8 +153,10 @@ std::string tableOf(const RunReport& report) {
   text += line("start-up", fmt::format("{:.3f} s: packs {:.3f}, envs {:.3f}",
                                        report.open_seconds + report.create_seconds,
                                        report.open_seconds, report.create_seconds));
-  text += line("memory", fmt::format("{:.0f} bytes per env",
-                                     ratio(report.memory_bytes, options.simulation.envs)));
+  constexpr double kMegabyte = 1e6;
+  text += line("memory", fmt::format("{:.0f} bytes per env, {:.1f} MB for all beside the packs",
+                                     ratio(report.memory_bytes, options.simulation.envs),
+                                     static_cast<double>(report.shared_bytes) / kMegabyte));
   text += phaseTable(report);
   text += line("moves", fmt::format("{} refused, {} slid", percent(ratio(sum.refused, sum.steps)),
                                     percent(ratio(sum.slid, sum.steps))));

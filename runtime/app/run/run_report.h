@@ -80,7 +80,9 @@ struct RunReport {
   /// Episodes of the world, and which of them cannot be started.
   std::size_t world_episodes = 0;
   std::vector<std::uint32_t> skipped;
+  /// Of all envs; and what they share.
   std::size_t memory_bytes = 0;
+  std::size_t shared_bytes = 0;
   /// When something was drawn. Then step_seconds holds the drawing, too.
   std::optional<RenderReport> rendering;
   /// When a policy pack was played.

@@ -148,6 +148,7 @@ std::string jsonOf(const RunReport& report) {
   writeRendering(json, report);
   json.number("bytes_per_env", static_cast<double>(report.memory_bytes) /
                                    static_cast<double>(report.options.simulation.envs));
+  json.number("bytes_shared", static_cast<double>(report.shared_bytes));
   writeCounts(json, report);
   if (!report.options.replayFile().empty()) {
     json.raw("first_difference",

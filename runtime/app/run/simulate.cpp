@@ -290,6 +290,7 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
   report.world_episodes = world.episodes().episodes().size();
   report.skipped.assign(simulator->skippedEpisodes().begin(), simulator->skippedEpisodes().end());
   report.memory_bytes = simulator->memoryBytes();
+  report.shared_bytes = simulator->sharedBytes();
   return report;
 }
 

@@ -363,5 +363,6 @@ std::span<const RigidTransform> BatchSimulator::bodyTransforms() const {
 void BatchSimulator::samplePhases(std::uint32_t every) { impl_->sample(every); }
 std::vector<PhaseTime> BatchSimulator::phaseTimes() const { return impl_->phaseTimes(); }
 std::size_t BatchSimulator::memoryBytes() const { return impl_->state().bytes(); }
+std::size_t BatchSimulator::sharedBytes() const { return impl_->model().bytes(); }
 
 }  // namespace galactic

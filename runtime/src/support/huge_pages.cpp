@@ -1,6 +1,7 @@
 #include "support/huge_pages.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <new>
 
 #if defined(__linux__)
@@ -16,7 +17,12 @@ std::size_t alignmentFor(std::size_t bytes, std::size_t alignment) {
   return bytes < kHugePage ? alignment : std::max(alignment, kHugePage);
 }
 
-}  // namespace
+class HugePages final : public std::pmr::memory_resource {
+ private:
+  void* do_allocate(std::size_t bytes, std::size_t alignment) override;
+  void do_deallocate(void* memory, std::size_t bytes, std::size_t alignment) override;
+  [[nodiscard]] bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override;
+};
 
 void* HugePages::do_allocate(std::size_t bytes, std::size_t alignment) {
   void* memory = ::operator new (bytes, std::align_val_t{alignmentFor(bytes, alignment)});
@@ -32,7 +38,14 @@ void HugePages::do_deallocate(void* memory, std::size_t bytes, std::size_t align
 }
 
 bool HugePages::do_is_equal(const std::pmr::memory_resource& other) const noexcept {
-  return dynamic_cast<const HugePages*>(&other) != nullptr;
+  return this == &other;
+}
+
+}  // namespace
+
+std::pmr::memory_resource* hugePages() noexcept {
+  static HugePages pages;
+  return &pages;
 }
 
 }  // namespace galactic::detail

@@ -61,5 +61,22 @@ TEST(BatchMemory, IsWhatTheBatchSaysForEachEnv) {
   EXPECT_LE(taken, said + said / 8);
 }
 
+TEST(BatchMemory, SaysWhatAllEnvsShare) {
+  const BoxWorld world = furnishedWorld();
+  const auto measure = [&](std::uint32_t envs, bool geodesic) {
+    SimulationOptions options = optionsFor(envs);
+    options.sensors.geodesic = geodesic;
+    const std::uint64_t before = allocatedBytes();
+    const auto simulator = BatchSimulator::create(world.world(), options).value();
+    EXPECT_LE(simulator.sharedBytes(), allocatedBytes() - before - simulator.memoryBytes());
+    return simulator.sharedBytes();
+  };
+  const std::size_t maps = measure(4, false);
+  // Two bytes for each of 48 x 48 cells of two columns, five planes and three radii, at least.
+  EXPECT_GE(maps, 2U * 48 * 48 * 5 * 3);
+  EXPECT_EQ(measure(64, false), maps);
+  EXPECT_GT(measure(4, true), maps);
+}
+
 }  // namespace
 }  // namespace galactic::test::batch_memory_test

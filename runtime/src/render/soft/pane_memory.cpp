@@ -1,5 +1,7 @@
 #include "render/soft/pane_memory.h"
 
+#include "support/huge_pages.h"
+
 namespace galactic::render {
 namespace {
 
@@ -49,11 +51,11 @@ std::size_t layOut(std::byte* block, std::size_t tiles, PaneScratch& scratch) {
 PaneMemory::PaneMemory(std::uint32_t width, std::uint32_t height) {
   const std::size_t tiles = wholeTiles(width) * wholeTiles(height);
   block_bytes_ = layOut(nullptr, tiles, scratch_);
-  block_ = static_cast<std::byte*>(pages_.allocate(block_bytes_, kAlignment));
+  block_ = static_cast<std::byte*>(detail::hugePages()->allocate(block_bytes_, kAlignment));
   layOut(block_, tiles, scratch_);
 }
 
-PaneMemory::~PaneMemory() { pages_.deallocate(block_, block_bytes_, kAlignment); }
+PaneMemory::~PaneMemory() { detail::hugePages()->deallocate(block_, block_bytes_, kAlignment); }
 
 void PaneMemory::reserve(std::size_t models, std::size_t clusters) {
   // Each by its own size: memory may be lacking between them, and there again at the next call.

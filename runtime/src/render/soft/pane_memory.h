@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "render/soft/pane.h"
-#include "support/huge_pages.h"
 
 namespace galactic::render {
 
@@ -28,7 +27,6 @@ class PaneMemory {
   PaneCounts counts;
 
  private:
-  detail::HugePages pages_;
   std::byte* block_ = nullptr;
   std::size_t block_bytes_ = 0;
   std::vector<SeenCluster> seen_;

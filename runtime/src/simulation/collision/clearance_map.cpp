@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "column_grid/column_grid_kernels.h"
+#include "support/huge_pages.h"
 
 namespace galactic::simulation {
 namespace {
@@ -21,7 +22,7 @@ ClearanceMaps::ClearanceMaps(std::vector<std::uint32_t> radius_of_lane, std::siz
       eights_(paddedToLanes(radius_of_lane_.size()) / kLanes),
       most_bytes_(most_bytes),
       lanes_(eights_),
-      cells_(1 + kReadBeyond) {
+      cells_(1 + kReadBeyond, detail::hugePages()) {
   // Lanes beyond the last group repeat the first of their eight, as bounds do.
   for (std::size_t n = radius_of_lane_.size(); n < eights_ * kLanes; ++n) {
     radius_of_lane_.push_back(radius_of_lane_[n / kLanes * kLanes]);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -69,6 +70,10 @@ class ClearanceMaps {
   [[nodiscard]] unsigned freeAfter(std::uint32_t map, std::size_t eight, const SureGroups& sure,
                                    float x, float z) const noexcept;
 
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return std::span(cells_).size_bytes() + std::span(lanes_).size_bytes();
+  }
+
   /// How many eights of lanes there are.
   [[nodiscard]] std::size_t eights() const { return eights_; }
 
@@ -90,7 +95,7 @@ class ClearanceMaps {
   /// Shape: maps x eights_; those of kNoClearanceMap are as wide as nothing.
   std::vector<ClearanceLanes> lanes_;
   /// Of all maps, after one for what is outside of them.
-  std::vector<RoomAround> cells_;
+  std::pmr::vector<RoomAround> cells_;
 };
 
 }  // namespace galactic::simulation

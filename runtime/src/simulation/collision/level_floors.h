@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "galactic/pose.h"
@@ -121,6 +122,10 @@ class LevelFloors {
   /// The same for several. Whether all heights are known, which are written in any case.
   [[nodiscard]] bool heightsUnder(std::uint32_t map, const Bases& bases,
                                   float* heights) const noexcept;
+
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return std::span(floors_).size_bytes() + std::span(words_).size_bytes();
+  }
 
  private:
   static constexpr std::uint32_t kBits = LevelFloorLayout::kBits;

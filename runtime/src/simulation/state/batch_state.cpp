@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/huge_pages.h"
+
 namespace galactic::simulation {
 namespace {
 
@@ -77,8 +79,8 @@ std::size_t stateBytes(const Model& model, std::size_t envs) {
 }
 
 BatchState::BatchState(const Model& model, std::size_t envs)
-    : memory_(paddedToChunks(envs) * envBytes(model), &huge_pages_),
-      bounds_memory_(paddedToChunks(envs) * boundsBytes(model), &huge_pages_),
+    : memory_(paddedToChunks(envs) * envBytes(model), detail::hugePages()),
+      bounds_memory_(paddedToChunks(envs) * boundsBytes(model), detail::hugePages()),
       env_count_(envs),
       most_objects_(model.most_objects),
       held_words_(model.heldWords()),

@@ -10,7 +10,6 @@
 #include "simulation/collision/resting_objects.h"
 #include "simulation/state/grip_frame.h"
 #include "simulation/state/model.h"
-#include "support/huge_pages.h"
 
 namespace galactic::simulation {
 
@@ -303,7 +302,6 @@ class BatchState {
     x[2 * kChunk] = p.z;
   }
 
-  detail::HugePages huge_pages_;
   /// All vectors are made once, one after the other, in here.
   std::pmr::monotonic_buffer_resource memory_;
   /// For the bounds of resting objects: those of all envs lie together, apart from what is rarely

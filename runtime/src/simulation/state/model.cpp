@@ -196,6 +196,12 @@ Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
 
 }  // namespace
 
+std::size_t Model::bytes() const {
+  return clearance.bytes() + slices.bytes() + level_floors.bytes() + laser.bytes() +
+         geodesic.bytes() + std::span(starts).size_bytes() +
+         std::span(start_variables).size_bytes() + std::span(start_bodies).size_bytes();
+}
+
 OptionalIndex Model::startOf(std::int64_t episode) const noexcept {
   if (episode < 0) return {};
   const auto start = std::ranges::lower_bound(starts, episode, {}, [](const EpisodeStart& one) {

@@ -72,6 +72,8 @@ struct Model {
   /// By start; off unless it is observed or rewarded.
   sensors::Geodesic geodesic;
 
+  /// Of what grows with the world: homes and episodes.
+  [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] std::size_t actionCount() const { return motion.controlled.size() + 4; }
   [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }
   /// Spheres of the robot, padded to lanes.

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "galactic/column_grid.h"
+#include "support/huge_pages.h"
 
 namespace galactic::simulation {
 namespace {
@@ -221,7 +222,7 @@ void addTiles(const ColumnGrid& grid, float thickness, const SliceLayout& layout
 
 }  // namespace
 
-DistinctTiles::DistinctTiles() : slots_(16) {
+DistinctTiles::DistinctTiles() : tiles_(detail::hugePages()), slots_(16) {
   SliceTile all_free{};
   std::ranges::fill(all_free.free, std::uint16_t{0xffff});
   [[maybe_unused]] const std::uint32_t free_everywhere = numberOf(all_free);

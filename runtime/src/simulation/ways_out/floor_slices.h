@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,10 @@ class DistinctTiles {
   /// In the order of their numbers.
   [[nodiscard]] std::span<const SliceTile> tiles() const noexcept { return tiles_; }
 
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return tiles().size_bytes() + std::span(hashes_).size_bytes() + std::span(slots_).size_bytes();
+  }
+
  private:
   using Hash = std::uint64_t;
   /// A tile, as one more than its number, and a part of its hash; 0 where there is none.
@@ -45,7 +50,7 @@ class DistinctTiles {
   void prefetchSlot(Hash hash) const;
   void prefetchTile(Hash hash) const;
 
-  std::vector<SliceTile> tiles_;
+  std::pmr::vector<SliceTile> tiles_;
   std::vector<Hash> hashes_;
   /// Each tile at the first free slot from that of its hash on. As many as a power of two, at most
   /// half of them taken.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "column_grid/column_grid_kernels.h"
+#include "support/huge_pages.h"
 
 namespace galactic::simulation {
 namespace {
@@ -35,7 +36,8 @@ CellInTile inTile(const SliceLayout& layout, const TileSet& tiles, const SliceCe
 
 }  // namespace
 
-FreeSlices::FreeSlices(std::vector<EightSpheres> groups) : groups_(std::move(groups)) {
+FreeSlices::FreeSlices(std::vector<EightSpheres> groups)
+    : groups_(std::move(groups)), numbers_(detail::hugePages()) {
   for (const EightSpheres& group : groups_) slice_groups_.push_back({{}, group.spheres});
   // What is outside of slices asks for the first number.
   numbers_.push_back(0);

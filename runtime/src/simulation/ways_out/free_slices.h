@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -114,8 +115,8 @@ class FreeSlices {
     return {first, first + SliceTile::kRows, static_cast<unsigned>(places.column[lane])};
   }
 
-  [[nodiscard]] std::size_t bytes() const {
-    return tiles_.tiles().size_bytes() + numbers_.size() * sizeof(std::uint32_t);
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return tiles_.bytes() + std::span(numbers_).size_bytes();
   }
 
  private:
@@ -128,7 +129,7 @@ class FreeSlices {
   std::vector<SlicesOfRadii> layouts_ = std::vector<SlicesOfRadii>(1);
   /// Shape: maps x groups, those of no map among them.
   std::vector<SliceGroup> slice_groups_;
-  std::vector<std::uint32_t> numbers_;
+  std::pmr::vector<std::uint32_t> numbers_;
   DistinctTiles tiles_;
 };
 
