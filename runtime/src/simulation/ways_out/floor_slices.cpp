@@ -265,10 +265,10 @@ std::uint32_t DistinctTiles::numberOf(const SliceTile& tile, Hash hash) {
 
 std::size_t DistinctTiles::slotOf(const SliceTile& tile, Hash hash) const {
   const auto part = static_cast<std::uint32_t>(hash >> 32U);
-  std::size_t at = hash % slots_.size();
+  std::size_t at = wrapped(hash);
   while (slots_[at].count != 0 &&
          (slots_[at].hash != part || !isSame(tiles_[slots_[at].count - 1], tile))) {
-    at = (at + 1) % slots_.size();
+    at = wrapped(at + 1);
   }
   return at;
 }
@@ -276,18 +276,16 @@ std::size_t DistinctTiles::slotOf(const SliceTile& tile, Hash hash) const {
 void DistinctTiles::growSlots() {
   slots_.assign(2 * slots_.size(), {});
   for (std::uint32_t n = 0; n < tiles_.size(); ++n) {
-    std::size_t at = hashes_[n] % slots_.size();
-    while (slots_[at].count != 0) at = (at + 1) % slots_.size();
+    std::size_t at = wrapped(hashes_[n]);
+    while (slots_[at].count != 0) at = wrapped(at + 1);
     slots_[at] = {n + 1, static_cast<std::uint32_t>(hashes_[n] >> 32U)};
   }
 }
 
-void DistinctTiles::prefetchSlot(Hash hash) const {
-  __builtin_prefetch(&slots_[hash % slots_.size()]);
-}
+void DistinctTiles::prefetchSlot(Hash hash) const { __builtin_prefetch(&slots_[wrapped(hash)]); }
 
 void DistinctTiles::prefetchTile(Hash hash) const {
-  const std::uint32_t count = slots_[hash % slots_.size()].count;
+  const std::uint32_t count = slots_[wrapped(hash)].count;
   if (count == 0) return;
   __builtin_prefetch(tiles_[count - 1].free);
   __builtin_prefetch(tiles_[count - 1].blocked);

@@ -42,6 +42,8 @@ class DistinctTiles {
     std::uint32_t hash = 0;
   };
 
+  /// A number of a slot that may be too large, from the first one on again.
+  [[nodiscard]] std::size_t wrapped(std::size_t at) const { return at & (slots_.size() - 1); }
   /// Where a tile stands in `slots_`, or where there is room for it.
   [[nodiscard]] std::size_t slotOf(const SliceTile& tile, Hash hash) const;
   [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile, Hash hash);
