@@ -130,10 +130,12 @@ class NotClear {
   std::vector<std::uint32_t> sums_;
 };
 
-/// The largest square around a cell that is clear, in steps beyond the cell; kNotClear where the
-/// cell itself is not. `before`: that of the cell before along X, kNotClear for the first one. From
-/// cell to cell it grows and shrinks by no more than the steps of a cell.
+/// The square around a cell that is not clear itself.
 constexpr std::int64_t kNotClear = -1;
+
+/// The largest square around a cell that is clear, in steps beyond the cell. `before`: that of the
+/// cell before along X, kNotClear for the first one. From cell to cell it grows and shrinks by no
+/// more than the steps of a cell.
 std::int64_t squareAround(const Cells& cells, const NotClear& not_clear, std::int64_t x,
                           std::int64_t z, std::int64_t before) {
   const auto is_clear = [&](std::int64_t square) {
