@@ -53,8 +53,9 @@ TEST(BatchSimulator, KnowsEachOfManyFloorsAsIfThereWereNoOther) {
   std::vector<Block> blocks;
   std::vector<Start> starts;
   for (int n = 0; n < kEdge * kEdge; ++n) {
-    const float x = kWidth * static_cast<float>(n % kEdge);
-    const float z = kWidth * static_cast<float>(n / kEdge);
+    const int row = n / kEdge;
+    const float x = kWidth * static_cast<float>(n - row * kEdge);
+    const float z = kWidth * static_cast<float>(row);
     const float height = 0.05F * static_cast<float>(kEdge * kEdge - n);
     blocks.push_back({{x, -0.4F, z}, {x + kWidth, height, z + kWidth}});
     blocks.push_back({{x, height, z}, {x + 0.1F, height + 0.4F, z + kWidth}});
