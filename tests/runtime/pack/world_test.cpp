@@ -235,6 +235,25 @@ TEST(World, RefusesATruncatedPack) {
   EXPECT_EQ(world.error().where, cut);
 }
 
+TEST(World, TellsOfTheFirstOfSeveralTruncatedPacks) {
+  const ScratchFolder folder;
+  const fs::path path = writeWorld(folder, WorldFields{});
+  const PackFile pack = PackFile::open(path).value();
+  const std::vector<PackReference> listed = packReferences(pack).value();
+  ASSERT_EQ(listed.size(), 4U);
+  // Threads open them in any order.
+  constexpr int kTries = 50;
+  for (std::size_t first = listed.size(); first-- > 0;) {
+    const fs::path cut = pathOf(listed[first], pack);
+    fs::resize_file(cut, 100);
+    for (int n = 0; n < kTries; ++n) {
+      const Result<World> world = openWorld(path);
+      ASSERT_FALSE(world.has_value());
+      ASSERT_EQ(world.error().where, cut);
+    }
+  }
+}
+
 TEST(World, RefusesAWorldAmongOtherPacks) {
   const ScratchFolder folder;
   const fs::path path = writeWorld(folder, WorldFields{});

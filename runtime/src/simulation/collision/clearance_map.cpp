@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "column_grid/column_grid_kernels.h"
@@ -38,11 +36,11 @@ void ClearanceMaps::reserve(std::size_t cells) {
 }
 
 std::uint32_t ClearanceMaps::add(const FloorClearance& floor) {
-  std::size_t cells = cells_.size();
+  std::size_t cells = 0;
   for (std::uint32_t radius = 0; radius < floor.size(); ++radius) {
     if (isAsked(radius)) cells += floor[radius].cells.size();
   }
-  if (cells * sizeof(RoomAround) > most_bytes_) return kNoClearanceMap;
+  if (!hasRoomFor(cells)) return kNoClearanceMap;
   const std::uint32_t map = count_++;
   lanes_.resize(count_ * eights_);
   const std::span<ClearanceLanes> lanes = std::span(lanes_).last(eights_);

@@ -48,6 +48,10 @@ class ClearanceMaps {
   std::uint32_t add(const FloorClearance& floor);
   /// Makes room for so many cells of all floors to come.
   void reserve(std::size_t cells);
+  /// Whether a floor of so many cells can be added.
+  [[nodiscard]] bool hasRoomFor(std::size_t cells) const noexcept {
+    return (cells_.size() + cells) * sizeof(RoomAround) <= most_bytes_;
+  }
 
   /// Which of eight groups are surely free: those of the lanes from 8 * `eight` on, with these
   /// bounds. `map`: as add() returned it; none are for kNoClearanceMap.

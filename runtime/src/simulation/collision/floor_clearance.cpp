@@ -1,7 +1,6 @@
 #include "simulation/collision/floor_clearance.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <span>
 
@@ -15,6 +14,7 @@ namespace {
 constexpr float kSlack = 1e-3F;
 /// How far above the lowest height that it can have a sphere is looked for, meters.
 constexpr float kOverContact = 5e-3F;
+
 struct Heights {
   float lowest = 0;
   float low = 0;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -120,16 +121,18 @@ void mapFloors(const HeightsOverFloor& heights, Model& model) {
   for (std::size_t first = 0; first < storeys.size(); first += at_a_time) {
     const std::span some =
         std::span(storeys).subspan(first, std::min(at_a_time, storeys.size() - first));
-    std::vector<FloorMaps> maps(some.size());
+    // Where the maps have no room left, robots ask the columns themselves.
+    std::vector<std::optional<FloorMaps>> maps(some.size());
     detail::forEachPart(threads, some.size(), [&](std::size_t n) {
+      if (!model.clearance.hasRoomFor(clearanceCells(model.scenes[some[n].scene]))) return;
       maps[n] = mapsOf(some[n], heights, lowest_of_radius, model);
     });
     for (std::size_t n = 0; n < some.size(); ++n) {
-      const std::uint32_t map = model.clearance.add(maps[n].clearance);
-      // Where the maps have no room left, robots ask the columns themselves.
+      if (!maps[n]) continue;
+      const std::uint32_t map = model.clearance.add(maps[n]->clearance);
       if (map == kNoClearanceMap) continue;
-      model.slices.add(maps[n].slices);
-      model.level_floors.add(maps[n].level);
+      model.slices.add(maps[n]->slices);
+      model.level_floors.add(maps[n]->level);
       for (std::size_t start = some[n].first; start < some[n].end; ++start) {
         model.starts[order[start]].clearance_map = map;
       }
