@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <set>
 
+#include "episodes/home/robot_body.h"
 #include "floor_oracle.h"
 #include "made_world.h"
 
@@ -58,6 +60,88 @@ TEST(FloorMap, AgreesWithBruteForceOnWhereTheRobotStands) {
   }
   EXPECT_GT(stands, asked / 10);
   EXPECT_LT(stands, asked * 9 / 10);
+}
+
+/// A heading in a column.
+struct Standing {
+  int i = 0;
+  int k = 0;
+  int heading = 0;
+  friend auto operator<=>(const Standing&, const Standing&) = default;
+};
+
+/// Where the robot is free on a floor at height 0.
+std::set<Standing> freeStandings(const Scene& scene, const Robot& robot) {
+  std::set<Standing> free;
+  const ColumnGrid& grid = scene.grids().back();
+  for (std::uint32_t heading = 0; heading < bake::kHeadings; ++heading) {
+    const bake::RobotBody body =
+        bake::robotBody(robot, bake::groundPose({}, bake::yawOf(heading)), robot.startPositions());
+    for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
+      for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
+        const Vec3 ground{grid.layout().min_x + (static_cast<float>(i) + 0.5F) * grid.spacing(), 0,
+                          grid.layout().min_z + (static_cast<float>(k) + 0.5F) * grid.spacing()};
+        if (!bake::isFree(scene, body.spheres, ground)) continue;
+        free.insert({static_cast<int>(i), static_cast<int>(k), static_cast<int>(heading)});
+      }
+    }
+  }
+  return free;
+}
+
+/// The largest part of them that single steps and turns connect.
+std::set<Standing> largestPart(std::set<Standing> free) {
+  std::set<Standing> largest;
+  constexpr int kCount = bake::kHeadings;
+  while (!free.empty()) {
+    std::set<Standing> part;
+    std::vector<Standing> open{*free.begin()};
+    free.erase(free.begin());
+    while (!open.empty()) {
+      const Standing at = open.back();
+      open.pop_back();
+      part.insert(at);
+      for (const Standing& next :
+           {Standing{at.i - 1, at.k, at.heading}, Standing{at.i + 1, at.k, at.heading},
+            Standing{at.i, at.k - 1, at.heading}, Standing{at.i, at.k + 1, at.heading},
+            Standing{at.i, at.k, (at.heading + 1) % kCount},
+            Standing{at.i, at.k, (at.heading + kCount - 1) % kCount}}) {
+        if (free.erase(next) > 0) open.push_back(next);
+      }
+    }
+    if (part.size() > largest.size()) largest = part;
+  }
+  return largest;
+}
+
+TEST(FloorMap, HasTheHeadingsToWhichALongRobotCanTurnAndDrive) {
+  RobotPackFields robot = stickRobot();
+  // Its arm is stretched out: it cannot turn around in the corridor between the rooms.
+  robot.start_positions = {0, 0, 0};
+  MeshBuilder rooms = madeRoom(4, 2);
+  rooms.box({2.2F, 0, 0}, {3.2F, 2.5F, 0.75F});
+  rooms.box({2.2F, 0, 1.25F}, {3.2F, 2.5F, 2});
+  // A pot at the height of the hand: there is room for the hand in it, but no way there.
+  rooms.box({1, 0.5F, 0.9F}, {1.3F, 0.55F, 1.2F});
+  rooms.box({1, 0.5F, 0.9F}, {1.04F, 0.9F, 1.2F});
+  rooms.box({1.26F, 0.5F, 0.9F}, {1.3F, 0.9F, 1.2F});
+  rooms.box({1, 0.5F, 0.9F}, {1.3F, 0.9F, 0.94F});
+  rooms.box({1, 0.5F, 1.16F}, {1.3F, 0.9F, 1.2F});
+  const MadeWorld world(rooms.build(), robot);
+  const FloorMap map(world.scene(), world.robot());
+  std::set<Standing> found;
+  for (const FloorPlace& place : map.places()) {
+    for (std::uint32_t heading = 0; heading < bake::kHeadings; ++heading) {
+      if (((place.headings >> heading) & 1U) == 0) continue;
+      found.insert(
+          {static_cast<int>(place.i), static_cast<int>(place.k), static_cast<int>(heading)});
+    }
+  }
+  const std::set<Standing> free = freeStandings(world.scene(), world.robot());
+  const std::set<Standing> expected = largestPart(free);
+  EXPECT_LT(expected.size(), free.size());
+  EXPECT_GT(expected.size(), free.size() / 2);
+  EXPECT_TRUE(found == expected) << found.size() << " of " << expected.size();
 }
 
 TEST(FloorMap, KeepsTheLargerOfTwoRoomsThatTheRobotCannotDriveBetween) {

@@ -68,6 +68,43 @@ TEST(SupportPlaces, KeepToTheHeightsAskedFor) {
   }
 }
 
+TEST(SupportPlaces, StandBetweenTheHeightsOverTheirOwnFloor) {
+  // Half of the room is a platform of 40 cm, with stairs of 4 cm, over a table of 74 cm and one of
+  // 34 cm: over the platform, the latter would be under it.
+  MeshBuilder room = madeRoom(5, 3);
+  constexpr int kSteps = 10;
+  constexpr float kStep = 0.04F;
+  for (int n = 1; n <= kSteps; ++n) {
+    const float x = 1.6F + 0.15F * static_cast<float>(n);
+    room.box({x, 0, 0}, {5, kStep * static_cast<float>(n), 3});
+  }
+  room.box({0.3F, 0.7F, 1}, {0.9F, kTable, 2});
+  room.box({0.3F, 0.3F, 0.2F}, {0.9F, 0.34F, 0.6F});
+  room.box({4.2F, 0.7F, 1}, {4.8F, kTable, 2});
+  const MadeWorld world(room.build(), stickRobot());
+  const FloorMap floor(world.scene(), world.robot());
+  const ArmReach reach(world.robot());
+  EpisodeGeneratorOptions options;
+  options.heights = {0.32F, 0.8F};
+  const SupportPlaces supports(world.scene(), {floor, reach}, {}, options);
+  std::size_t low = 0;
+  std::size_t high = 0;
+  for (const SupportPlace& place : supports.places()) {
+    EXPECT_GE(place.surface - place.floor, options.heights.least);
+    EXPECT_LE(place.surface - place.floor, options.heights.most);
+    if (place.x > 2) {
+      EXPECT_NEAR(place.surface, kTable, 0.001F);
+      EXPECT_LT(place.floor, kTable - options.heights.least);
+      ++high;
+    } else {
+      EXPECT_NEAR(place.floor, 0, 0.161F);
+      ++low;
+    }
+  }
+  EXPECT_GT(low, 200U);
+  EXPECT_GT(high, 200U);
+}
+
 /// A table top of cobbles: squares of 6 cm, some of them 6 mm higher.
 bake::TriangleMesh bumpyRoom() {
   MeshBuilder room = madeRoom(3, 3);

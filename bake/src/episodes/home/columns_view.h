@@ -1,6 +1,9 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "galactic/column_grid.h"
@@ -12,13 +15,25 @@ struct Column {
   std::uint32_t k = 0;
 };
 
-/// The free spans of a column, ascending.
-[[nodiscard]] inline std::vector<Span> spansOf(const ColumnGrid& grid, std::uint32_t i,
-                                               std::uint32_t k) {
-  std::vector<Span> spans(grid.spanCount(i, k));
-  grid.spans(i, k, spans);
-  return spans;
-}
+/// The free spans of a column, ascending: a range that takes no memory where they are few, as they
+/// nearly always are.
+class ColumnSpans {
+ public:
+  ColumnSpans(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k)
+      : count_(grid.spans(i, k, few_)) {
+    if (count_ <= few_.size()) return;
+    many_.resize(count_);
+    grid.spans(i, k, many_);
+  }
+
+  [[nodiscard]] const Span* begin() const { return many_.empty() ? few_.data() : many_.data(); }
+  [[nodiscard]] const Span* end() const { return begin() + count_; }
+
+ private:
+  std::array<Span, 8> few_;
+  std::vector<Span> many_;
+  std::size_t count_;
+};
 
 /// Where column (i, k) stands: x and z in meters, y 0.
 [[nodiscard]] inline Vec3 columnCenter(const ColumnGrid& grid, std::uint32_t i, std::uint32_t k) {

@@ -1,8 +1,10 @@
 #include "episodes/home/floor_map.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "episodes/home/columns_view.h"
 #include "episodes/home/robot_body.h"
@@ -15,27 +17,29 @@ constexpr std::uint32_t kNoPlace = 0xFFFFFFFF;
 /// A step that the run's base takes in both directions, meters.
 constexpr float kMostStep = std::min(GroundOptions{}.most_rise, GroundOptions{}.most_drop);
 
-/// Which headings of which places have been seen by a flood fill.
+/// The headings next to these ones.
+std::uint16_t besideHeadings(std::uint16_t headings) {
+  static_assert(kHeadings == 16);
+  return static_cast<std::uint16_t>(std::rotl(headings, 1) | std::rotr(headings, 1));
+}
+
+/// Where a flood fill has been.
 struct Flood {
-  struct State {
-    std::uint32_t place = 0;
-    std::uint32_t heading = 0;
-  };
+  explicit Flood(std::size_t places) : seen(places, 0), fresh(places, 0) {}
 
-  explicit Flood(std::size_t places) : seen(places, 0) {}
-
-  void visit(std::uint32_t place, std::uint32_t heading) {
-    seen[place] = static_cast<std::uint16_t>(seen[place] | (1U << heading));
-    open.push_back({place, heading});
+  /// Remembers headings of a place that have not been seen.
+  void visit(std::uint32_t place, std::uint16_t headings) {
+    seen[place] = static_cast<std::uint16_t>(seen[place] | headings);
+    if (fresh[place] == 0) open.push_back(place);
+    fresh[place] = static_cast<std::uint16_t>(fresh[place] | headings);
   }
 
+  /// By place: the headings seen, and those of them from which the fill has not gone on yet.
   std::vector<std::uint16_t> seen;
-  std::vector<State> open;
+  std::vector<std::uint16_t> fresh;
+  /// Places with fresh headings.
+  std::vector<std::uint32_t> open;
 };
-
-bool hasHeading(std::uint16_t headings, std::uint32_t heading) {
-  return ((std::uint32_t{headings} >> heading) & 1U) != 0;
-}
 
 /// Connections of floor places.
 class FloorGraph {
@@ -44,37 +48,55 @@ class FloorGraph {
              const ColumnGrid& grid)
       : places_(places), first_(first), grid_(grid) {}
 
-  /// Fills from one heading of a place; returns how many states it reached.
+  /// Fills from one heading of a place; returns how many headings of all places it reached.
   std::size_t fill(Flood& flood, std::uint32_t place, std::uint32_t heading) const {
     std::size_t reached = 0;
-    flood.visit(place, heading);
+    flood.visit(place, static_cast<std::uint16_t>(1U << heading));
     while (!flood.open.empty()) {
-      const Flood::State state = flood.open.back();
+      const std::uint32_t from = flood.open.back();
       flood.open.pop_back();
-      ++reached;
-      tryVisit(flood, state.place, (state.heading + 1) % kHeadings);
-      tryVisit(flood, state.place, (state.heading + kHeadings - 1) % kHeadings);
-      const FloorPlace& here = places_[state.place];
-      if (here.i > 0) visitColumn(flood, state, here.i - 1, here.k);
-      if (here.k > 0) visitColumn(flood, state, here.i, here.k - 1);
-      if (here.i + 1 < grid_.columnsX()) visitColumn(flood, state, here.i + 1, here.k);
-      if (here.k + 1 < grid_.columnsZ()) visitColumn(flood, state, here.i, here.k + 1);
+      const std::uint16_t headings = turnAt(flood, from);
+      reached += static_cast<std::size_t>(std::popcount(headings));
+      const FloorPlace& here = places_[from];
+      const Arrival arrival{here.height, headings};
+      if (here.i > 0) visitColumn(flood, arrival, here.i - 1, here.k);
+      if (here.k > 0) visitColumn(flood, arrival, here.i, here.k - 1);
+      if (here.i + 1 < grid_.columnsX()) visitColumn(flood, arrival, here.i + 1, here.k);
+      if (here.k + 1 < grid_.columnsZ()) visitColumn(flood, arrival, here.i, here.k + 1);
     }
     return reached;
   }
 
  private:
-  void tryVisit(Flood& flood, std::uint32_t place, std::uint32_t heading) const {
-    const bool free = hasHeading(places_[place].headings, heading);
-    if (free && !hasHeading(flood.seen[place], heading)) flood.visit(place, heading);
+  /// A robot that comes from a neighboring place.
+  struct Arrival {
+    float height = 0;
+    std::uint16_t headings = 0;
+  };
+
+  /// Takes the fresh headings of a place, and all to which the robot can turn from them there.
+  std::uint16_t turnAt(Flood& flood, std::uint32_t place) const {
+    std::uint16_t headings = std::exchange(flood.fresh[place], std::uint16_t{0});
+    while (const std::uint16_t turned = unseen(flood, place, besideHeadings(headings))) {
+      flood.seen[place] = static_cast<std::uint16_t>(flood.seen[place] | turned);
+      headings = static_cast<std::uint16_t>(headings | turned);
+    }
+    return headings;
   }
 
-  void visitColumn(Flood& flood, const Flood::State& from, std::uint32_t i, std::uint32_t k) const {
+  void visitColumn(Flood& flood, const Arrival& from, std::uint32_t i, std::uint32_t k) const {
     const std::size_t column = std::size_t{k} * grid_.columnsX() + i;
     for (std::uint32_t place = first_[column]; place < first_[column + 1]; ++place) {
-      const float step = places_[place].height - places_[from.place].height;
-      if (std::abs(step) <= kMostStep) tryVisit(flood, place, from.heading);
+      if (std::abs(places_[place].height - from.height) > kMostStep) continue;
+      const std::uint16_t headings = unseen(flood, place, from.headings);
+      if (headings != 0) flood.visit(place, headings);
     }
+  }
+
+  /// Those of the headings in which the robot is free and has not been seen.
+  [[nodiscard]] std::uint16_t unseen(const Flood& flood, std::uint32_t place,
+                                     std::uint16_t headings) const {
+    return static_cast<std::uint16_t>(headings & places_[place].headings & ~flood.seen[place]);
   }
 
   const std::vector<FloorPlace>& places_;
@@ -85,7 +107,7 @@ class FloorGraph {
 /// The spheres of a body as the batched queries of grids want them, to be tested in many places.
 class BodyArrays {
  public:
-  /// `spheres` are ordered by radius.
+  /// `spheres` are ordered by radius; at least one.
   explicit BodyArrays(std::span<const BodySphere> spheres) : moved_(spheres.size()) {
     centers_.reserve(spheres.size());
     for (const BodySphere& sphere : spheres) {
@@ -95,10 +117,14 @@ class BodyArrays {
       ++parts_.back().count;
       centers_.push_back(sphere.center);
     }
+    blocked_.radius_index = parts_.front().radius_index;
   }
 
-  /// The answer of isFree() for these spheres, moved by `offset`, found faster.
+  /// The answer of isFree() for these spheres, moved by `offset`, found faster. Soonest where the
+  /// sphere that was blocked last is blocked again, as it mostly is near the place before.
   [[nodiscard]] bool isFreeAt(const Scene& scene, const Vec3& offset) {
+    const ColumnGrid& grid = scene.grids()[blocked_.radius_index];
+    if (grid.clearance(centers_[blocked_.sphere] + offset) != Clearance::kFree) return false;
     std::size_t first = 0;
     for (const Part& part : parts_) {
       for (std::size_t n = first; n < first + part.count; ++n) {
@@ -110,7 +136,11 @@ class BodyArrays {
       const SphereCenters centers{.x = std::span(moved_.x).subspan(first, part.count),
                                   .y = std::span(moved_.y).subspan(first, part.count),
                                   .z = std::span(moved_.z).subspan(first, part.count)};
-      if (scene.grids()[part.radius_index].firstNotFree(centers) < part.count) return false;
+      const std::size_t blocked = scene.grids()[part.radius_index].firstNotFree(centers);
+      if (blocked < part.count) {
+        blocked_ = {part.radius_index, first + blocked};
+        return false;
+      }
       first += part.count;
     }
     return true;
@@ -122,6 +152,10 @@ class BodyArrays {
     std::uint32_t radius_index = 0;
     std::size_t count = 0;
   };
+  struct Blocked {
+    std::uint32_t radius_index = 0;
+    std::size_t sphere = 0;
+  };
   struct Arrays {
     explicit Arrays(std::size_t count) : x(count), y(count), z(count) {}
     std::vector<float> x;
@@ -131,6 +165,7 @@ class BodyArrays {
 
   std::vector<Part> parts_;
   std::vector<Vec3> centers_;
+  Blocked blocked_;
   Arrays moved_;
 };
 
@@ -175,7 +210,7 @@ FloorMap::FloorMap(const Scene& scene, const Robot& robot)
 
 void FloorMap::addPlaces(std::uint32_t i, std::uint32_t k) {
   std::optional<float> last;
-  for (const Span& span : spansOf(grid_, i, k)) {
+  for (const Span& span : ColumnSpans(grid_, i, k)) {
     Vec3 center = columnCenter(grid_, i, k);
     center.y = span.lo;
     const std::optional<float> floor = floorUnder(center);
@@ -197,7 +232,7 @@ std::optional<float> FloorMap::heightAt(float x, float z, float height) const {
   const std::optional<Column> column = columnAt(fine_grid_, x, z);
   if (!column) return std::nullopt;
   std::optional<float> nearest;
-  for (const Span& span : spansOf(fine_grid_, column->i, column->k)) {
+  for (const Span& span : ColumnSpans(fine_grid_, column->i, column->k)) {
     const float floor = span.lo - fine_grid_.radius();
     const float step = std::abs(floor - height);
     if (step <= kMostStep && (!nearest || step < std::abs(*nearest - height))) nearest = floor;
@@ -218,20 +253,22 @@ void FloorMap::keepLargestPart() {
   const FloorGraph graph(places_, first_, grid_);
   Flood all(places_.size());
   std::size_t most = 0;
-  Flood::State seed{kNoPlace, 0};
+  std::uint32_t seed_place = kNoPlace;
+  std::uint32_t seed_heading = 0;
   for (std::uint32_t place = 0; place < places_.size(); ++place) {
-    for (std::uint32_t heading = 0; heading < kHeadings; ++heading) {
-      if (!hasHeading(places_[place].headings, heading)) continue;
-      if (hasHeading(all.seen[place], heading)) continue;
+    while (const auto left =
+               static_cast<std::uint16_t>(places_[place].headings & ~all.seen[place])) {
+      const auto heading = static_cast<std::uint32_t>(std::countr_zero(left));
       const std::size_t reached = graph.fill(all, place, heading);
       if (reached <= most) continue;
       most = reached;
-      seed = {place, heading};
+      seed_place = place;
+      seed_heading = heading;
     }
   }
-  if (seed.place == kNoPlace) return;
+  if (seed_place == kNoPlace) return;
   Flood largest(places_.size());
-  graph.fill(largest, seed.place, seed.heading);
+  graph.fill(largest, seed_place, seed_heading);
   for (std::size_t n = 0; n < places_.size(); ++n) places_[n].headings = largest.seen[n];
   std::erase_if(places_, [](const FloorPlace& place) { return place.headings == 0; });
   indexColumns();

@@ -1,6 +1,7 @@
 #include "episodes/home/support_places.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,7 +16,7 @@ constexpr float kFloorStride = 0.09F;
 /// surface to what is over it. None where there is no such surface.
 std::optional<Span> freeOver(const ColumnGrid& grid, const Column& column, float surface,
                              float flatness) {
-  for (const Span& span : spansOf(grid, column.i, column.k)) {
+  for (const Span& span : ColumnSpans(grid, column.i, column.k)) {
     const float height = span.lo - grid.radius();
     if (std::abs(height - surface) <= flatness) return Span{height, span.hi + grid.radius()};
   }
@@ -32,34 +33,129 @@ float rimOf(const ColumnGrid& grid, float flatness) {
 /// Finds floors from which the arm reaches a point.
 class ReachTest {
  public:
-  ReachTest(const Scene& scene, const Reachable& from) : floor_(from.floor), reach_(from.reach) {
-    const float spacing = scene.grids().back().spacing();
-    stride_ = std::max(1.0F, std::floor(kFloorStride / spacing)) * spacing;
+  /// `heights` are those that the point may have over the floor.
+  ReachTest(const Scene& scene, const Reachable& from, const DistanceRange& heights)
+      : floor_(from.floor), reach_(from.reach), heights_(heights) {
+    listWays(scene.grids().back().spacing());
+    floor_heights_.reserve(floor_.places().size());
+    for (const FloorPlace& place : floor_.places()) floor_heights_.push_back(place.height);
+    std::sort(floor_heights_.begin(), floor_heights_.end());
   }
 
   /// The height of a floor from which the arm reaches `point`, and over which `point` is between
-  /// `heights`; the first one in a fixed order.
-  [[nodiscard]] std::optional<float> floorFor(const Vec3& point,
-                                              const DistanceRange& heights) const {
-    const auto steps = static_cast<std::int32_t>(reach_.farthest() / stride_);
-    for (std::int32_t step_z = -steps; step_z <= steps; ++step_z) {
-      for (std::int32_t step_x = -steps; step_x <= steps; ++step_x) {
-        const float dx = static_cast<float>(step_x) * stride_;
-        const float dz = static_cast<float>(step_z) * stride_;
-        for (const FloorPlace& place : floor_.placesAt(point.x + dx, point.z + dz)) {
-          const float height = point.y - place.height;
-          if (height < heights.least || height > heights.most) continue;
-          if (reach_.covers(std::hypot(dx, dz), height)) return place.height;
-        }
+  /// the heights; the first one in a fixed order.
+  [[nodiscard]] std::optional<float> floorFor(const Vec3& point) const {
+    if (!isOverAnyFloor(point)) return std::nullopt;
+    for (const Way& way : ways_) {
+      for (const FloorPlace& place : floor_.placesAt(point.x + way.dx, point.z + way.dz)) {
+        const float height = point.y - place.height;
+        if (height < heights_.least || height > heights_.most) continue;
+        if (reach_.covers(way.length, height)) return place.height;
       }
     }
     return std::nullopt;
   }
 
  private:
+  /// From the point to where the base may stand, meters.
+  struct Way {
+    float dx = 0;
+    float dz = 0;
+    float length = 0;
+  };
+
+  void listWays(float spacing) {
+    const float stride = std::max(1.0F, std::floor(kFloorStride / spacing)) * spacing;
+    const auto steps = static_cast<std::int32_t>(reach_.farthest() / stride);
+    for (std::int32_t step_z = -steps; step_z <= steps; ++step_z) {
+      for (std::int32_t step_x = -steps; step_x <= steps; ++step_x) {
+        const float dx = static_cast<float>(step_x) * stride;
+        const float dz = static_cast<float>(step_z) * stride;
+        const float length = std::hypot(dx, dz);
+        if (length <= reach_.farthest()) ways_.push_back({dx, dz, length});
+      }
+    }
+  }
+
+  /// Whether any floor, however far away, is as far below as the heights ask for: hardly any point
+  /// of the floors themselves is, and they are most of all points.
+  [[nodiscard]] bool isOverAnyFloor(const Vec3& point) const {
+    const auto highest =
+        std::partition_point(floor_heights_.begin(), floor_heights_.end(),
+                             [&](float floor) { return point.y - floor > heights_.most; });
+    return highest != floor_heights_.end() && point.y - *highest >= heights_.least;
+  }
+
   const FloorMap& floor_;
   const ArmReach& reach_;
-  float stride_ = 0;
+  DistanceRange heights_;
+  /// In the order in which they are tried.
+  std::vector<Way> ways_;
+  /// Of all places of the floor, ascending, meters.
+  std::vector<float> floor_heights_;
+};
+
+/// The heights of the surfaces in a row of columns and in the rows beside it, meters.
+class SurfaceRows {
+ public:
+  explicit SurfaceRows(const ColumnGrid& grid) : grid_(grid) {
+    for (Row& row : rows_) row.first.resize(grid.columnsX() + std::size_t{1});
+    if (grid.columnsZ() > 0) read(0);
+  }
+
+  /// Makes row k the middle one; one after the other, from 0.
+  void moveTo(std::uint32_t k) {
+    middle_ = k;
+    if (k + 1 < grid_.columnsZ()) read(k + 1);
+  }
+
+  /// Of column i of the row in the middle.
+  [[nodiscard]] std::span<const float> heights(std::uint32_t i) const {
+    return rowOf(middle_).heightsOf(i);
+  }
+
+  /// Whether column i of the row in the middle has eight neighbors, and these and itself have a
+  /// surface of about this height.
+  [[nodiscard]] bool isFlatAround(std::uint32_t i, float surface, float flatness) const {
+    if (i == 0 || middle_ == 0) return false;
+    if (i + 1 >= grid_.columnsX() || middle_ + 1 >= grid_.columnsZ()) return false;
+    const auto is_about = [&](float height) { return std::abs(height - surface) <= flatness; };
+    for (std::uint32_t k = middle_ - 1; k <= middle_ + 1; ++k) {
+      for (std::uint32_t column = i - 1; column <= i + 1; ++column) {
+        if (!std::ranges::any_of(rowOf(k).heightsOf(column), is_about)) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  struct Row {
+    /// Index of the first height of each column, and the number of heights at the end.
+    std::vector<std::size_t> first;
+    std::vector<float> heights;
+
+    [[nodiscard]] std::span<const float> heightsOf(std::uint32_t i) const {
+      return std::span(heights).subspan(first[i], first[i + 1] - first[i]);
+    }
+  };
+
+  [[nodiscard]] const Row& rowOf(std::uint32_t k) const { return rows_[k % rows_.size()]; }
+
+  void read(std::uint32_t k) {
+    Row& row = rows_[k % rows_.size()];
+    row.heights.clear();
+    for (std::uint32_t i = 0; i < grid_.columnsX(); ++i) {
+      row.first[i] = row.heights.size();
+      for (const Span& span : ColumnSpans(grid_, i, k)) {
+        row.heights.push_back(span.lo - grid_.radius());
+      }
+    }
+    row.first.back() = row.heights.size();
+  }
+
+  const ColumnGrid& grid_;
+  std::array<Row, 3> rows_;
+  std::uint32_t middle_ = 0;
 };
 
 /// Which flat places are one surface: neighbors in a row or a column of the grid that are about
@@ -158,11 +254,11 @@ SupportPlaces::SupportPlaces(const Scene& scene, const Reachable& from,
       receptacles_(receptacles),
       choice_(options.supports),
       flatness_(options.flatness) {
-  const ReachTest test(scene, from);
+  const ReachTest test(scene, from, options.heights);
   for (SupportPlace& place : flatPlaces()) {
     const Vec3 point{place.x, place.surface, place.z};
     if (!isAllowed(point)) continue;
-    const std::optional<float> floor = test.floorFor(point, options.heights);
+    const std::optional<float> floor = test.floorFor(point);
     if (!floor) continue;
     place.floor = *floor;
     if (choice_ == SupportChoice::kBoth && isInReceptacle(point)) {
@@ -177,14 +273,15 @@ std::vector<SupportPlace> SupportPlaces::flatPlaces() const {
   const ColumnGrid& grid = scene_->grids().front();
   std::vector<SupportPlace> flat;
   SurfaceLabels labels(grid.columnsX(), flatness_);
+  SurfaceRows surfaces(grid);
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
+    surfaces.moveTo(k);
     for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
       labels.beginColumn(i, flat.size());
-      for (const Span& span : spansOf(grid, i, k)) {
-        Vec3 point = columnCenter(grid, i, k);
-        point.y = span.lo - grid.radius();
-        if (!isFlatAround({i, k}, point.y)) continue;
-        flat.push_back({.x = point.x, .z = point.z, .surface = point.y, .floor = 0});
+      const Vec3 center = columnCenter(grid, i, k);
+      for (const float height : surfaces.heights(i)) {
+        if (!surfaces.isFlatAround(i, height, flatness_)) continue;
+        flat.push_back({.x = center.x, .z = center.z, .surface = height, .floor = 0});
         labels.add(i, flat);
       }
     }
@@ -219,18 +316,6 @@ bool SupportPlaces::isAllowed(const Vec3& point) const {
 bool SupportPlaces::isInReceptacle(const Vec3& point) const {
   return std::any_of(receptacles_.begin(), receptacles_.end(),
                      [&](const SupportRegion& region) { return contains(region, point); });
-}
-
-bool SupportPlaces::isFlatAround(const Column& column, float surface) const {
-  const ColumnGrid& grid = scene_->grids().front();
-  if (column.i == 0 || column.k == 0) return false;
-  if (column.i + 1 >= grid.columnsX() || column.k + 1 >= grid.columnsZ()) return false;
-  for (std::uint32_t k = column.k - 1; k <= column.k + 1; ++k) {
-    for (std::uint32_t i = column.i - 1; i <= column.i + 1; ++i) {
-      if (!freeOver(grid, {i, k}, surface, flatness_)) return false;
-    }
-  }
-  return true;
 }
 
 std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, float surface) const {

@@ -7,7 +7,6 @@
 
 #include "common/random.h"
 #include "episodes/home/arm_reach.h"
-#include "episodes/home/columns_view.h"
 #include "episodes/home/floor_map.h"
 #include "episodes/home/placed_object.h"
 #include "galactic/bake/episode_generator.h"
@@ -72,7 +71,6 @@ class SupportPlaces {
 
  private:
   [[nodiscard]] std::vector<SupportPlace> flatPlaces() const;
-  [[nodiscard]] bool isFlatAround(const Column& column, float surface) const;
   [[nodiscard]] bool isInReceptacle(const Vec3& point) const;
 
   const Scene* scene_;

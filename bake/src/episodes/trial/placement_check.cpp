@@ -21,7 +21,7 @@ std::optional<float> liftOutOf(const ColumnGrid& grid, const Vec3& center) {
   if (grid.clearance(center) == Clearance::kFree) return 0.0F;
   const std::optional<Column> column = columnAt(grid, center.x, center.z);
   if (!column) return std::nullopt;
-  for (const Span& span : spansOf(grid, column->i, column->k)) {
+  for (const Span& span : ColumnSpans(grid, column->i, column->k)) {
     // A column may call a height free that the query, which counts in quanta, does not.
     if (span.hi > center.y) return std::max(span.lo - center.y, kNudge);
   }
