@@ -29,13 +29,21 @@ bake::SourceAsset brick(float lift = 0) {
       "brick");
 }
 
-/// Few large spheres: a fit takes hundredths of a second.
-ObjectBakeOptions coarse() {
+/// Few large spheres: a fit takes hundredths of a second. For an object that is `scale` times as
+/// large as the brick.
+ObjectBakeOptions coarse(float scale = 1) {
   ObjectBakeOptions options;
-  options.spheres.radii = {0.015F, 0.03F};
-  options.spheres.eps = 0.02F;
-  options.spheres.tau = 0.03F;
+  options.spheres.radii = {0.015F * scale, 0.03F * scale};
+  options.spheres.eps = 0.02F * scale;
+  options.spheres.tau = 0.03F * scale;
   return options;
+}
+
+/// The brick, so many times as large.
+bake::SourceAsset scaledBrick(float scale) {
+  bake::SourceAsset asset = brick();
+  for (Vec3& p : asset.meshes[0].positions) p = p * scale;
+  return asset;
 }
 
 BakedObject bakeWell(const bake::SourceAsset& asset, const ObjectBakeOptions& options) {
@@ -104,22 +112,15 @@ TEST(ObjectBaker, SaysWhenTheTolerancesCannotBeMet) {
 }
 
 TEST(ObjectBaker, AsksAboutTheUnitOfTinyAndLargeObjectsAndRefusesHugeOnes) {
-  bake::SourceAsset tiny = brick();
-  for (Vec3& p : tiny.meshes[0].positions) p = p * 0.01F;
-  ObjectBakeOptions options = coarse();
-  options.spheres.radii = {0.0005F};
-  EXPECT_THAT(bakeWell(tiny, options).warnings,
+  constexpr float kTiny = 0.01F;
+  EXPECT_THAT(bakeWell(scaledBrick(kTiny), coarse(kTiny)).warnings,
               testing::Contains("is only 1 mm large; is the unit right? `scale` sets meters per "
                                 "unit"));
-  bake::SourceAsset large = brick();
-  for (Vec3& p : large.meshes[0].positions) p = p * 40;
-  options.spheres.radii = {2};
-  EXPECT_THAT(bakeWell(large, options).warnings,
+  constexpr float kLarge = 40;
+  EXPECT_THAT(bakeWell(scaledBrick(kLarge), coarse(kLarge)).warnings,
               testing::Contains(testing::MatchesRegex(
                   "is [0-9.]+ m large; is the unit right\\? `scale` sets meters per unit")));
-  bake::SourceAsset huge = brick();
-  for (Vec3& p : huge.meshes[0].positions) p = p * 1000;
-  const auto refused = bakeObject(huge, coarse());
+  const auto refused = bakeObject(scaledBrick(1000), coarse());
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(refused.error().where, "mesh");
