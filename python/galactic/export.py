@@ -34,6 +34,7 @@ from galactic.learning.networks import (
     StateEncoder,
 )
 from galactic.learning.normalization import MOST
+from galactic.learning.privileges import options_of_actor, parts_of_actor
 from galactic.learning.settings import Settings, typed
 from galactic.learning.sight import FARTHEST, SIGHT
 
@@ -95,11 +96,13 @@ class Layers:
             state_bias=_numbers(parameters["bias_hh_l0"]),
         )
 
-    def seen(self, policy: Policy, state: int, size: int) -> int:
-        """The state, of `size` numbers, and what the eyes see, as the encoder reads them."""
-        normal = state
+    def seen(self, policy: Policy, state: int, columns: Sequence[int]) -> int:
+        """The state and what the eyes see, as the actor reads them. `state` has these columns of a row of
+        observations."""
+        normal, size, chosen = state, len(columns), list(columns)
         if policy.normalize is not None:
-            mean, scale = _numbers(policy.normalize.mean), _numbers(policy.normalize.scale)
+            mean = _numbers(policy.normalize.mean[chosen])
+            scale = _numbers(policy.normalize.scale[chosen])
             normal = self.add("normalize", state, mean=mean, inverse_deviation=scale, limit=MOST)
         parts = [normal]
         if policy.closeup is not None:
@@ -171,10 +174,12 @@ class Layers:
 
 
 def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dict[str, Any]:
-    """A saved policy as write_policy_pack() wants it. The critic is left out."""
-    policy = saved.policy
+    """A saved policy as write_policy_pack() wants it. The critic is left out, with all that it alone
+    sees."""
+    policy, privileges = saved.policy, saved.settings.critic_only
     layers = Layers()
-    seen = layers.seen(policy, layers.add("observation"), saved.shape.state)
+    columns = [n for n in range(saved.shape.state) if n not in saved.shape.critic_only]
+    seen = layers.seen(policy, layers.add("observation"), columns)
     if isinstance(policy, FeedForwardPolicy):
         features = layers.module(policy.encoder, seen)
     elif isinstance(policy, RecurrentPolicy):
@@ -185,8 +190,8 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
     return {
         "name": name,
         "robot": robot,
-        "options": simulation_keywords(saved.settings.simulation),
-        "observation": saved.parts,
+        "options": options_of_actor(privileges, simulation_keywords(saved.settings.simulation)),
+        "observation": parts_of_actor(privileges, saved.parts),
         "image": _image(saved.settings) if SIGHT[saved.settings.network] else None,
         "layers": layers.list,
         **actions,

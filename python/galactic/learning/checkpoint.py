@@ -39,6 +39,7 @@ from torch import Tensor
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.networks import Policy, PolicyShape, make_policy
+from galactic.learning.privileges import critic_columns
 from galactic.learning.settings import Settings
 from galactic.learning.sight import OF_THE_PAPER
 
@@ -119,6 +120,7 @@ _SHAPE = {
     "normalize": bool,
     "closeup": (float, int),
     "second_closeup": (float, int),
+    "critic_only": (list, tuple),
 }
 
 
@@ -126,11 +128,15 @@ def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
     require_types(values, _POLICY)
     sizes = {**PolicyShape._field_defaults, **values["shape"]}
     require_types(sizes, _SHAPE)
+    sizes["critic_only"] = tuple(sizes["critic_only"])
     settings, shape = Settings.from_dict(values["settings"]), PolicyShape(**sizes)
+    parts = [(str(name), int(size)) for name, size in values["parts"]]
+    wanted = critic_columns(settings.critic_only, parts)
+    if shape.critic_only != wanted:
+        raise ValueError(f"critic_only: found {shape.critic_only}, expected {wanted}")
     policy = new_policy(settings, shape)
     policy.load_state_dict(state)
     policy.eval()
-    parts = [(str(name), int(size)) for name, size in values["parts"]]
     return SavedPolicy(policy, settings, shape, parts, values["steps"], values["success"])
 
 
@@ -205,6 +211,7 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
             normalize=of.normalize,
             closeup=of.closeup,
             second_closeup=of.second_closeup,
+            critic_only=of.critic_only,
             parts=seen,
         )
     for name, wanted in ours.items():

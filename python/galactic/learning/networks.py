@@ -6,13 +6,15 @@ Every policy is the same plain chain, kept in these attributes so that an export
     normalize   Normalizer of the state, or None
     closeup     Closeup of the state, or None
     eyes        DepthCNN: depth -> numbers behind those of the state, or None
+    blinkers    Blinkers: keeps from the actor what the critic alone sees, or None
     encoder     inputs -> features
     rnn         nn.GRU of one layer, or None
     action      ActorHead: one HeadLinear for means, log-stds (unless those are a parameter), decisions
     critic      HeadLinear: the value
 
 A policy without `rnn` (class FeedForwardPolicy) has two encoders, `encoder` for the actor and
-`value_encoder` for the critic, which share nothing but what is before them.
+`value_encoder` for the critic, which share nothing but what is before them. One with `rnn` has a
+`value_encoder` behind it where the critic sees more than the actor.
 
 Rows of `action.linear`: a mean for each motion (before tanh), a log-std for each, then two logits (no,
 yes) each for grasp and terminate.
@@ -66,6 +68,7 @@ class PolicyShape(NamedTuple):
     normalize: bool = False
     closeup: float = 0.0  # a scale of the Closeup of the state; 0: none
     second_closeup: float = 0.0  # another one
+    critic_only: tuple[int, ...] = ()  # columns of that row that the actor does not see
 
     @property
     def closeups(self) -> tuple[float, ...]:
@@ -74,8 +77,37 @@ class PolicyShape(NamedTuple):
 
     @property
     def seen(self) -> int:
-        """Numbers that the encoder reads of the state."""
+        """Numbers that the critic reads of the state."""
         return self.state * (1 + len(self.closeups))
+
+    @property
+    def apart(self) -> int:
+        """How many of them it alone reads."""
+        return len(self.critic_only) * (1 + len(self.closeups))
+
+
+class Blinkers(nn.Module):
+    """Rows [..., S + F] of the state, as Policy sees it, and of `features` F -> what the actor sees of
+    them (Pinto et al. 2018, asymmetric actor-critic)."""
+
+    def __init__(self, shape: PolicyShape, features: int):
+        super().__init__()
+        firsts = range(0, shape.seen, shape.state)
+        apart = [first + column for first in firsts for column in shape.critic_only]
+        ahead = sorted(set(range(shape.seen + features)) - set(apart))
+        # No parameters: checkpoints know them by the shape.
+        self.register_buffer("ahead", torch.tensor(ahead), persistent=False)
+        self.register_buffer("aside", torch.tensor(apart), persistent=False)
+
+    ahead: Tensor
+    aside: Tensor
+
+    def forward(self, seen: Tensor) -> Tensor:
+        return seen.index_select(-1, self.ahead)
+
+    def hidden(self, seen: Tensor) -> Tensor:
+        """What the critic alone sees."""
+        return seen.index_select(-1, self.aside)
 
 
 class HeadLinear(nn.Linear):
@@ -179,6 +211,8 @@ class Policy(nn.Module):
         self.normalize = Normalizer(shape.state) if shape.normalize else None
         self.closeup = Closeup(shape.closeups) if shape.closeups else None
         self.eyes = eyes
+        features = eyes.features if eyes else 0
+        self.blinkers = Blinkers(shape, features) if shape.critic_only else None
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         """`hidden` [n, H] from before the first step; `starts` [T, n] bool: where an episode begins,
@@ -198,7 +232,7 @@ class Policy(nn.Module):
         return torch.zeros(envs, self.hidden_size, device=device) if self.hidden_size else None
 
     def _seen(self, inputs: Inputs) -> Tensor:
-        """The state, and what the eyes see, as the encoder reads them."""
+        """The state, and what the eyes see, as the critic reads them."""
         state = inputs.state
         parts = [state if self.normalize is None else self.normalize(state)]
         if self.closeup is not None:
@@ -206,6 +240,10 @@ class Policy(nn.Module):
         if self.eyes is not None:
             parts.append(self.eyes(inputs))
         return parts[0] if len(parts) == 1 else torch.cat(parts, -1)
+
+    def _by_actor(self, seen: Tensor) -> Tensor:
+        """The same, as the actor reads them."""
+        return seen if self.blinkers is None else self.blinkers(seen)
 
 
 class FeedForwardPolicy(Policy):
@@ -217,7 +255,7 @@ class FeedForwardPolicy(Policy):
         super().__init__(shape, eyes)
         self.values_apart = eyes is None
         seen = shape.seen + (eyes.features if eyes else 0)
-        self.encoder = perceptron(seen, width, layers, activation)
+        self.encoder = perceptron(seen - shape.apart, width, layers, activation)
         self.value_encoder = perceptron(seen, width, layers, activation)
         self.action = ActorHead(width, shape, initial_log_std, odds_limit)
         self.critic = _orthogonal(HeadLinear(width, 1), 1.0)
@@ -225,20 +263,21 @@ class FeedForwardPolicy(Policy):
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         seen = self._seen(inputs)
         values = self.critic(self.value_encoder(seen)).squeeze(-1)
-        return Outputs(self.action(self.encoder(seen)), values, None)
+        return Outputs(self.action(self.encoder(self._by_actor(seen))), values, None)
 
     def act(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         if not self.values_apart:
             return self(inputs, hidden, starts)
         seen = self._seen(inputs)
-        return Outputs(self.action(self.encoder(seen)), seen[..., 0], None)
+        return Outputs(self.action(self.encoder(self._by_actor(seen))), seen[..., 0], None)
 
     def value(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Tensor:
         return self.critic(self.value_encoder(self._seen(inputs))).squeeze(-1)
 
 
 class RecurrentPolicy(Policy):
-    """An encoder, a GRU, and heads for actor and critic on it."""
+    """An encoder, a GRU, and heads for actor and critic on it; the critic's behind a layer that joins
+    what it alone sees."""
 
     def __init__(self, encoder: "Encoder", shape: PolicyShape, width: int,
                  initial_log_std: Optional[float], odds_limit: float,
@@ -249,6 +288,9 @@ class RecurrentPolicy(Policy):
         self.encoder = encoder
         self.rnn = nn.GRU(encoder.features, width)
         self.action = ActorHead(width, shape, initial_log_std, odds_limit)
+        self.value_encoder: Optional[nn.Module] = None
+        if shape.critic_only:
+            self.value_encoder = perceptron(width + shape.apart, width, 1, "tanh")
         self.critic = _orthogonal(HeadLinear(width, 1), 1.0)
         for name, parameter in self.rnn.named_parameters():
             if "weight" in name:
@@ -258,9 +300,13 @@ class RecurrentPolicy(Policy):
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         assert hidden is not None
-        features = self.encoder(inputs._replace(state=self._seen(inputs)))
+        seen = self._seen(inputs)
+        features = self.encoder(inputs._replace(state=self._by_actor(seen)))
         features, hidden = run_gru(self.rnn, features, hidden, starts)
-        return Outputs(self.action(features), self.critic(features).squeeze(-1), hidden)
+        judged = features
+        if self.blinkers is not None and self.value_encoder is not None:
+            judged = self.value_encoder(torch.cat([features, self.blinkers.hidden(seen)], -1))
+        return Outputs(self.action(features), self.critic(judged).squeeze(-1), hidden)
 
 
 class Encoder(nn.Module):
@@ -444,14 +490,16 @@ def make_policy(network: str, shape: PolicyShape, *, image_size: int = IMAGE_SIZ
             return FeedForwardPolicy(
                 shape, width, layers, activation, initial_log_std, odds_limit, eyes
             )
-        seen = shape.seen + (eyes.features if eyes else 0)
+        seen = shape.seen - shape.apart + (eyes.features if eyes else 0)
         encoder: Encoder = StateEncoder(seen, width, layers, activation)
         return RecurrentPolicy(encoder, shape, width, initial_log_std, odds_limit, eyes)
     if network == "simple_cnn":
-        return RecurrentPolicy(SimpleCNN(shape.seen), shape, FEATURES, None, odds_limit)
+        return RecurrentPolicy(
+            SimpleCNN(shape.seen - shape.apart), shape, FEATURES, None, odds_limit
+        )
     if network in ("resnet9", "resnet18"):
         blocks = 1 if network == "resnet9" else 2
-        encoder = ResNet(shape.seen, shape.motions + DECISIONS, blocks)
+        encoder = ResNet(shape.seen - shape.apart, shape.motions + DECISIONS, blocks)
         return RecurrentPolicy(encoder, shape, FEATURES, None, odds_limit)
     raise ValueError(f'"{network}" is not a network; the networks are {", ".join(SIGHT)}')
 

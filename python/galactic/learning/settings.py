@@ -193,6 +193,12 @@ class Settings:
         "the same with another divisor, beside the first or alone; 0: off",
         low=0.0,
     )
+    critic_only: str = _setting(
+        "",
+        "Network",
+        "sensors that the critic alone sees, such as `geodesic`, with commas between: they teach the "
+        "policy, which acts without them",
+    )
 
     learning_rate: float = _setting(3.5e-4, "PPO", "Adam's learning rate at the start", low=0.0)
     learning_rate_end: float = _setting(

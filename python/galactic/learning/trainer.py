@@ -27,6 +27,7 @@ from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
 from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.ppo import Learner
+from galactic.learning.privileges import critic_columns
 from galactic.learning.reports.curves import COLUMNS, Curves, write_json
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
@@ -56,6 +57,7 @@ class Trainer:
         self.folder = folder
         self.validation = validation
         torch.manual_seed(settings.seed)
+        self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
         self.shape = PolicyShape(
             envs.state_size,
             envs.motions,
@@ -63,8 +65,8 @@ class Trainer:
             settings.normalize,
             settings.closeup,
             settings.second_closeup,
+            critic_columns(settings.critic_only, self.parts),
         )
-        self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
         self.policy = new_policy(settings, self.shape).to(group.device)
         if envs.images:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import pathlib
 import subprocess
@@ -18,6 +19,7 @@ from galactic import export  # noqa: E402
 from galactic.learning import checkpoint  # noqa: E402
 from galactic.learning.homes import Homes  # noqa: E402
 from galactic.learning.networks import Inputs, PolicyShape  # noqa: E402
+from galactic.learning.privileges import critic_columns  # noqa: E402
 from galactic.learning.settings import Settings  # noqa: E402
 from galactic.learning.sight import SIGHT  # noqa: E402
 
@@ -25,7 +27,7 @@ WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held
 needs_world = pytest.mark.skipif(
     not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
 )
-PARTS = [("robot_target", 3), ("joints", 7), ("laser", 16)]
+PARTS = [("robot_target", 3), ("joints", 6), ("bump", 1), ("laser", 10), ("geodesic", 6)]
 STATE = 26
 TOLERANCE = 1e-4
 """Of actions; float sums in another order differ by a tenth of it."""
@@ -42,6 +44,7 @@ def saved_policy(terminate: bool = True, **settings: Any) -> checkpoint.SavedPol
         normalize=made.normalize,
         closeup=made.closeup,
         second_closeup=made.second_closeup,
+        critic_only=critic_columns(made.critic_only, PARTS),
     )
     policy = checkpoint.new_policy(made, shape)
     policy.action.linear.weight.data.normal_(0.0, 0.1)
@@ -110,6 +113,14 @@ def by_torch(saved: checkpoint.SavedPolicy, seen: Recorded) -> list[Any]:
     return said
 
 
+def observed(saved: checkpoint.SavedPolicy, seen: Recorded) -> Recorded:
+    """What the pack of the policy observes of it."""
+    kept = [n for n in range(STATE) if n not in saved.shape.critic_only]
+    less = copy.copy(seen)
+    less.state = np.ascontiguousarray(seen.state[..., kept])
+    return less
+
+
 def by_pack(pack: pathlib.Path, seen: Recorded) -> np.ndarray:
     """Likeliest actions [steps, envs, A]."""
     steps, envs = seen.dones.shape
@@ -139,6 +150,21 @@ NETWORKS = {
     "state_closeups": {"network": "state", "closeup": 0.2, "second_closeup": 0.04},
     "state_recurrent": {"network": "state", "recurrent": True, "log_std": "parameter"},
     "state_unsure": {"network": "state", "odds_limit": 1.5},
+    "state_taught": {
+        "network": "state",
+        "critic_only": "bump,geodesic",
+        "normalize": True,
+        "closeup": 0.2,
+    },
+    "depth_taught": {
+        "network": "depth",
+        "image_size": 64,
+        "critic_only": "laser",
+        "recurrent": True,
+        "log_std": "parameter",
+        "second_closeup": 0.1,
+    },
+    "resnet9_taught": {"network": "resnet9", "critic_only": "geodesic"},
     "depth": {"network": "depth", "image_size": 64, "normalize": True, "closeup": 0.2},
     "depth_recurrent": {"network": "depth", "recurrent": True, "log_std": "parameter"},
     "simple_cnn": {"network": "simple_cnn", "normalize": True},
@@ -154,7 +180,7 @@ def test_a_pack_acts_as_torch_does(name: str, tmp_path: pathlib.Path) -> None:
     seen = Recorded(2 if SIGHT[network] else 7, 20, network, edge)
     pack = write(export.content_of(saved, name), tmp_path / "policy.pack")
     wanted = np.stack([actions.mode()[0].numpy() for actions in by_torch(saved, seen)])
-    played = by_pack(pack, seen)
+    played = by_pack(pack, observed(saved, seen))
     assert played.shape == wanted.shape
     np.testing.assert_allclose(played, wanted, atol=TOLERANCE)
     decisions = wanted[..., 9:].mean()
@@ -211,6 +237,16 @@ def test_a_checkpoint_becomes_a_pack(tmp_path: pathlib.Path, capsys: Any) -> Non
     for word in (b"slide-attempts", b"no-distractors", b"best.pt", b"trained-steps"):
         assert word in pack.read_bytes()
     assert capsys.readouterr().err == ""
+
+
+def test_a_pack_needs_no_sensor_that_the_critic_alone_saw(tmp_path: pathlib.Path) -> None:
+    simulation = "task=pick geodesic geodesic-weight=1 bump laser-beams=5 laser-range=4"
+    saved = saved_policy(network="state", simulation=simulation, critic_only="laser,geodesic")
+    checkpoint.save_policy(saved, tmp_path / "best.pt")
+    assert export.main([str(tmp_path / "best.pt"), "-o", str(tmp_path / "p.pack")]) == 0
+    player = _core.LearnedPolicy(tmp_path / "p.pack", 1)
+    assert player.options == {"task": "pick", "geodesic_weight": 1.0, "bump": True}
+    assert player.observation == [("robot_target", 3), ("joints", 6), ("bump", 1)]
 
 
 def test_errors_say_what_to_do(tmp_path: pathlib.Path, capsys: Any) -> None:

@@ -77,6 +77,38 @@ def test_a_sequence_equals_its_steps_one_after_another(network: str, recurrent: 
         torch.testing.assert_close(hidden, whole.hidden)
 
 
+@pytest.mark.parametrize("network, recurrent", POLICIES)
+def test_the_actor_does_not_see_what_the_critic_alone_sees(network: str, recurrent: bool) -> None:
+    torch.manual_seed(8)
+    apart = (4, 5, 19)
+    shape = ARM_OF_SEVEN._replace(critic_only=apart, normalize=True, closeup=0.3)
+    policy = make_policy(network, shape, recurrent=recurrent)
+    steps, envs = 3, 2
+    inputs = some_inputs(network, steps, envs)
+    inputs.state.requires_grad_()
+    hidden = policy.initial_hidden(envs, torch.device("cpu"))
+    starts = torch.zeros(steps, envs, dtype=torch.bool)
+    columns = torch.zeros(26, dtype=torch.bool)
+    columns[list(apart)] = True
+
+    def gradient(of: torch.Tensor) -> torch.Tensor:
+        return torch.autograd.grad(of.sum(), inputs.state, retain_graph=True)[0].abs().sum((0, 1))
+
+    outputs = policy(inputs, hidden, starts)
+    acted = policy.act(inputs, hidden, starts).actions
+    for actions in (outputs.actions, acted):
+        for part in (actions.mean, actions.log_std, actions.logits):
+            felt = gradient(part)
+            assert not felt[columns].any() and felt[~columns].all()
+    for values in (outputs.values, policy.value(inputs, hidden, starts)):
+        assert gradient(values).all()
+
+
+def test_what_nobody_hides_leaves_a_network_as_it_was() -> None:
+    names = {name for name, _ in make_policy("state", ARM_OF_SEVEN, recurrent=True).named_modules()}
+    assert not names & {"blinkers", "value_encoder"}
+
+
 @pytest.mark.parametrize("log_std", [None, -0.5])
 @pytest.mark.parametrize("network, recurrent", POLICIES[:-1])  # a GroupNorm mixes no types here
 def test_heads_are_float32_after_a_network_of_bfloat16(

@@ -34,7 +34,7 @@ PROGRAMS = {"train": train, "evaluate": evaluate}
 BLIND = "geodesic=false geodesic-weight=0 bump=false bump-penalty=0"
 LASER = "laser-beams=24 laser-heights=0.25,0.8 laser-range=4"
 SENSORS = "laser-beams=8 laser-noise=0.01 geodesic geodesic-weight=1 bump"
-TO_BE_CUT = [*SMALL, "--halves", "2", "--simulation", f"task=pick episode-steps=60 {SENSORS}",
+TO_BE_CUT = [*SMALL, "--halves", "2", "--critic-only", "geodesic", "--simulation", f"task=pick episode-steps=60 {SENSORS}",
              "--checkpoint-every", 10 * UPDATE, "--steps", 80 * UPDATE]  # fmt: skip
 
 pytestmark = pytest.mark.skipif(
@@ -192,6 +192,21 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
         ),
         ([WORLD, *SMALL, "--simulation", "no-such"], 1, "--simulation: there is no option no_such"),
         ([WORLD, *SMALL, "--simulation", "laser-range=nan"], 3, "laser_range: is nan, expected"),
+        (
+            [WORLD, *SMALL, "--critic-only", "geodesik"],
+            1,
+            'critic_only: "geodesik" is no sensor; did you mean geodesic?',
+        ),
+        (
+            [WORLD, *SMALL, "--critic-only", "joints"],
+            1,
+            '"joints" is no sensor; it can be of bump, ',
+        ),
+        (
+            [WORLD, *SMALL, "--critic-only", "geodesic,laser"],
+            1,
+            "critic_only: laser is not observed; turn the sensor on with --simulation",
+        ),
         ([WORLD, "--preset", "quik"], 1, '"quik" is not a preset; did you mean quick?'),
         ([WORLD, "--stepz", "5"], 1, "unrecognized arguments: --stepz 5; did you mean --steps?"),
         ([WORLD, "--stepz=5"], 1, "unrecognized arguments: --stepz=5; did you mean --steps?"),
@@ -385,6 +400,28 @@ def test_a_policy_pack_knows_the_options_of_its_env(tmp_path: pathlib.Path) -> N
     sizes = [(n, one.stop - one.start) for n, one in homes.simulators[0].observation_parts.items()]
     assert policy.observation == sizes
     assert policy.options.items() <= homes.simulators[0].options.items()
+
+
+def test_what_the_critic_alone_saw_is_no_part_of_the_pack(tmp_path: pathlib.Path) -> None:
+    small = [*SMALL, "--steps", UPDATE, "--critic-only", "geodesic"]
+    taught = tmp_path / "taught" / "best.pt"
+    assert call("train", WORLD, "-o", taught.parent, *small).returncode == 0
+    pack = tmp_path / "policy.pack"
+    assert export.main([str(taught), "-o", str(pack)]) == 0
+    policy = galactic.LearnedPolicy(pack, 4, deterministic=True)
+    homes = galactic.VectorEnv(HELD_OUT, 4, **policy.options)
+    observations, _ = homes.reset()
+    homes.step(policy.act(observations))
+    assert "geodesic" not in homes.simulators[0].observation_parts
+    # Weights of a critic that saw more fit no other run.
+    plain = call("train", WORLD, "-o", tmp_path / "run", *SMALL, "--start-from", taught)
+    assert plain.returncode == 3 and "critic_only: found (27, " in plain.stderr
+    file = tmp_path / "other.pt"
+    values, tensors = checkpoint.load(taught)
+    values["shape"]["critic_only"] = [1, 2]
+    checkpoint.save(file, values, tensors)
+    with pytest.raises(checkpoint.CheckpointError, match="critic_only: found .1, 2., expected"):
+        checkpoint.load_policy(file)
 
 
 def test_an_evaluation_repeats_itself(tmp_path: pathlib.Path) -> None:

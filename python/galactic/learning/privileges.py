@@ -1,0 +1,63 @@
+"""What the critic alone sees: parts of the observation that help to judge, and that no robot has."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Sequence
+
+from galactic.learning.settings import SettingsError, did_you_mean
+
+# The parts that options of the simulation add to an observation, and these options. The others are
+# always there.
+_SENSORS: Mapping[str, tuple[str, ...]] = {
+    "bump": ("bump",),
+    "target_goal": ("target_goal",),
+    "target_up": ("target_up",),
+    "near_objects": ("near_objects",),
+    "laser": (
+        "laser_beams",
+        "laser_fov",
+        "laser_heights",
+        "laser_range",
+        "laser_min_range",
+        "laser_noise",
+    ),
+    "geodesic": ("geodesic",),
+}
+
+
+def names_of(critic_only: str) -> list[str]:
+    """The parts that Settings.critic_only names: "geodesic,bump" names two."""
+    return critic_only.replace(",", " ").replace("-", "_").split()
+
+
+def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[int, ...]:
+    """Columns of these parts in a row of observations, whose parts are `parts`, names and sizes in
+    order. Raises SettingsError for a part that is no sensor's, or that is not there."""
+    columns: list[int] = []
+    names = names_of(critic_only)
+    for name in names:
+        if name not in _SENSORS:
+            hint = did_you_mean(name, _SENSORS) or f"; it can be of {', '.join(_SENSORS)}"
+            raise SettingsError(f'critic_only: "{name}" is no sensor{hint}')
+        if name not in dict(parts):
+            raise SettingsError(
+                f"critic_only: {name} is not observed; turn the sensor on with --simulation"
+            )
+    first = 0
+    for name, size in parts:
+        if name in names:
+            columns += range(first, first + size)
+        first += size
+    return tuple(columns)
+
+
+def parts_of_actor(critic_only: str, parts: Sequence[tuple[str, int]]) -> list[tuple[str, int]]:
+    """The parts without those that the critic alone sees."""
+    names = names_of(critic_only)
+    return [(name, size) for name, size in parts if name not in names]
+
+
+def options_of_actor(critic_only: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of the simulation without those of sensors that the critic alone sees."""
+    left_out = {option for name in names_of(critic_only) for option in _SENSORS[name]}
+    return {name: value for name, value in options.items() if name not in left_out}
