@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
 # learn.sh [TASK] [SEED]: a robot learns to pick things up in the sample apartment, along a path that it
-# knows (pick) or by its depth camera (pick-depth), or to rearrange them (rearrange), and shows what it
-# learned; without a graphics processor. After scripts/quickstart.sh; works from any folder. What it
-# makes is in build/release/learn; the worlds lie beside the packs that they list.
+# knows (pick), or without one, by its laser (pick-laser) or its depth camera (pick-depth), or to
+# rearrange them (rearrange), and shows what it learned; without a graphics processor. After
+# scripts/quickstart.sh; works from any folder. What it makes is in build/release/learn; the worlds lie
+# beside the packs that they list.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
 cd "$galactic_root"
 
 task=${1:-pick}
 seed=${2:-1}
-if [[ ! $task =~ ^(pick|pick-depth|rearrange)$ || ! $seed =~ ^[0-9]+$ || $# -gt 2 ]]; then
-  echo "learn: found \"$*\", wanted a task, which is pick, pick-depth or rearrange, and a seed, a whole \
-number" >&2
+if [[ ! $task =~ ^(pick|pick-laser|pick-depth|rearrange)$ || ! $seed =~ ^[0-9]+$ || $# -gt 2 ]]; then
+  echo "learn: found \"$*\", wanted a task, which is pick, pick-laser, pick-depth or rearrange, and a \
+seed, a whole number" >&2
   exit 1
 fi
 preset=quick
-[ "$task" != pick-depth ] || preset=quick-depth
+[[ $task != pick-* ]] || preset=quick-${task#pick-}
 bin=build/release/bin
 sample=build/release/sample
 out=build/release/learn

@@ -36,7 +36,17 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
         "simulation": f"task=pick episode-steps=200 geodesic geodesic-weight=1 {_BUMP}",
         "network": "state",
     },
-    # The same with its head's depth camera in the place of what it knows of the way.
+    # The same without a map: two planes of a laser scanner in the place of what it knows of the way,
+    # which only its critic knows.
+    "quick-laser": {
+        **_QUICK,
+        "steps": 16_000_000,
+        "simulation": "task=pick episode-steps=200 laser-beams=32 laser-heights=0.25,0.8 laser-range=4 "
+        f"geodesic geodesic-weight=1 {_BUMP}",
+        "network": "state",
+        "critic_only": "geodesic",
+    },
+    # By its head's depth camera instead; a critic that knows the way makes no difference there.
     "quick-depth": {
         **_QUICK,
         "simulation": f"task=pick episode-steps=200 geodesic-weight=1 {_BUMP}",

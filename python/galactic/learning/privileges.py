@@ -41,7 +41,8 @@ def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[
             raise SettingsError(f'critic_only: "{name}" is no sensor{hint}')
         if name not in dict(parts):
             raise SettingsError(
-                f"critic_only: {name} is not observed; turn the sensor on with --simulation"
+                f"critic_only: {name} is not observed; turn the sensor on with --simulation, or leave "
+                "it out of --critic-only"
             )
     first = 0
     for name, size in parts:
