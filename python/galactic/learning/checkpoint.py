@@ -39,7 +39,7 @@ from torch import Tensor
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.networks import Policy, PolicyShape, make_policy
-from galactic.learning.privileges import critic_columns
+from galactic.learning.privileges import critic_columns, names_of
 from galactic.learning.settings import Settings
 from galactic.learning.sight import OF_THE_PAPER
 
@@ -205,13 +205,16 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
     theirs = {name: getattr(saved.settings, name) for name in _NETWORK}
     if settings.network in OF_THE_PAPER:
         ours = {"network": ours["network"]}
-    for described, of, seen in ((ours, shape, parts), (theirs, saved.shape, saved.parts)):
+    for described, of, seen, made in (
+        (ours, shape, parts, settings),
+        (theirs, saved.shape, saved.parts, saved.settings),
+    ):
         described.update(
             motions=of.motions,
             normalize=of.normalize,
             closeup=of.closeup,
             second_closeup=of.second_closeup,
-            critic_only=of.critic_only,
+            critic_only=", ".join(names_of(made.critic_only)) or "nothing",
             parts=seen,
         )
     for name, wanted in ours.items():
