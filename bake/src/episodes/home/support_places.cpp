@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "episodes/home/columns_view.h"
+
 namespace galactic::bake {
 namespace {
 
