@@ -131,13 +131,22 @@ def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
     sizes["critic_only"] = tuple(sizes["critic_only"])
     settings, shape = Settings.from_dict(values["settings"]), PolicyShape(**sizes)
     parts = [(str(name), int(size)) for name, size in values["parts"]]
-    wanted = critic_columns(settings.critic_only, parts)
-    if shape.critic_only != wanted:
-        raise ValueError(f"critic_only: found {shape.critic_only}, expected {wanted}")
+    _require_columns(settings, shape, parts)
     policy = new_policy(settings, shape)
     policy.load_state_dict(state)
     policy.eval()
     return SavedPolicy(policy, settings, shape, parts, values["steps"], values["success"])
+
+
+def _require_columns(settings: Settings, shape: PolicyShape, parts: list[tuple[str, int]]) -> None:
+    """Raises ValueError where the shape has other columns for the critic alone than the settings."""
+    names = names_of(settings.critic_only)
+    # Sizes are a stranger's: nothing is listed that the shape has not.
+    count = sum(max(size, 0) for name, size in parts if name in names)
+    found = shape.critic_only
+    if count != len(found) or critic_columns(settings.critic_only, parts) != found:
+        wanted = ", ".join(names) or "nothing"
+        raise ValueError(f"critic_only: found columns {found}, expected those of {wanted}")
 
 
 @contextlib.contextmanager

@@ -422,7 +422,12 @@ def test_what_the_critic_alone_saw_is_no_part_of_the_pack(tmp_path: pathlib.Path
     values, tensors = checkpoint.load(taught)
     values["shape"]["critic_only"] = [1, 2]
     checkpoint.save(file, values, tensors)
-    with pytest.raises(checkpoint.CheckpointError, match="critic_only: found .1, 2., expected"):
+    fault = "critic_only: found columns .1, 2., expected those of geodesic"
+    with pytest.raises(checkpoint.CheckpointError, match=fault):
+        checkpoint.load_policy(file)
+    values["parts"] = [["geodesic", 10**15]]
+    checkpoint.save(file, values, tensors)
+    with pytest.raises(checkpoint.CheckpointError, match=fault):
         checkpoint.load_policy(file)
 
 

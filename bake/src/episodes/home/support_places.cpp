@@ -82,10 +82,10 @@ class ReachTest {
   /// Whether any floor, however far away, is as far below as the heights ask for: hardly any point
   /// of the floors themselves is, and they are most of all points.
   [[nodiscard]] bool isOverAnyFloor(const Vec3& point) const {
-    const auto highest =
+    const auto lowest =
         std::partition_point(floor_heights_.begin(), floor_heights_.end(),
                              [&](float floor) { return point.y - floor > heights_.most; });
-    return highest != floor_heights_.end() && point.y - *highest >= heights_.least;
+    return lowest != floor_heights_.end() && point.y - *lowest >= heights_.least;
   }
 
   const FloorMap& floor_;
