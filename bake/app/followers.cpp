@@ -62,7 +62,7 @@ void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome) {
   forgetStage();
   line_.clear();
   for (const BakeFailure& failure : outcome.failures) printError(failure.error);
-  if (is_world) return;
+  if (is_world || outcome.state == PackState::kPlanned) return;
   ++done_;
   if (outcome.state == PackState::kBaked) ++baked_;
   const bool is_news = outcome.state == PackState::kBaked || verbosity_ == Verbosity::kVerbose;

@@ -165,7 +165,8 @@ std::string EpisodePlan::describe() const {
 
 Result<std::vector<EpisodeComparison>> compareAll(const EpisodePlan& plan,
                                                   const ComparisonWorlds& worlds,
-                                                  const Command& command, Journal* journal) {
+                                                  const Command& command,
+                                                  ComparisonJournal* journal) {
   std::vector<std::optional<Result<EpisodeComparison>>> results(plan.count());
   std::vector<std::size_t> open;
   for (std::size_t n = 0; n < results.size(); ++n) {

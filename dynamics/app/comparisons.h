@@ -56,6 +56,6 @@ class EpisodePlan {
 [[nodiscard]] Result<std::vector<EpisodeComparison>> compareAll(const EpisodePlan& plan,
                                                                 const ComparisonWorlds& worlds,
                                                                 const Command& command,
-                                                                Journal* journal);
+                                                                ComparisonJournal* journal);
 
 }  // namespace galactic::dynamics

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -66,14 +66,15 @@ Result<void> tryOutputs(const Command& command, const World& world, const bake::
   return {};
 }
 
-/// Null where no report is wanted.
-Result<std::unique_ptr<Journal>> openJournal(const Command& command, const EpisodePlan& plan) {
-  if (command.report.empty()) return std::unique_ptr<Journal>();
+/// None where no report is wanted.
+Result<std::optional<ComparisonJournal>> openJournal(const Command& command,
+                                                     const EpisodePlan& plan) {
+  if (command.report.empty()) return std::nullopt;
   const WorldOptions& world = command.world;
   const std::string subject =
       fmt::format("galactic-dynamics " GALACTIC_VERSION " {} {} {} {} {}", command.recipe.string(),
                   nameOf(world.arm), nameOf(world.base), world.friction, plan.describe());
-  return Journal::open(journalFile(command), subject);
+  return ComparisonJournal::open(journalFile(command), subject);
 }
 
 Result<void> showBoth(const Command& command, const EpisodePlan& plan,
@@ -112,10 +113,11 @@ Result<int> run(const Command& command) {
     if (command.is_quiet) break;
     printToStderr(fmt::format("galactic-dynamics: warning: {}\n", printable(warning)));
   }
-  ASSIGN_OR_RETURN(const auto journal, openJournal(command, *plan));
+  ASSIGN_OR_RETURN(auto journal, openJournal(command, *plan));
   const ComparisonWorlds worlds{world, plan->options(), sources, command.world};
   Comparisons comparisons;
-  ASSIGN_OR_RETURN(comparisons.episodes, compareAll(*plan, worlds, command, journal.get()));
+  ASSIGN_OR_RETURN(comparisons.episodes,
+                   compareAll(*plan, worlds, command, journal ? &*journal : nullptr));
   if (comparisons.episodes.size() < plan->count()) {
     return endInterrupted(command, comparisons.episodes.size(), plan->count());
   }

@@ -1,13 +1,11 @@
 #include "dynamics/report/journal.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
-#include "support/atomic_file.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
@@ -119,10 +117,10 @@ EpisodeComparison comparisonOf(const Json& json) {
   return c;
 }
 
-/// One line of the file; nothing where it is damaged.
-std::optional<std::pair<std::size_t, EpisodeComparison>> readLine(const std::string& line) {
+/// What a record says; nothing where it is of another kind.
+std::optional<std::pair<std::size_t, EpisodeComparison>> readRecord(const std::string& record) {
   try {
-    const Json json = Json::parse(line);
+    const Json json = Json::parse(record);
     return std::pair(json.at("number").get<std::size_t>(), comparisonOf(json.at("episode")));
   } catch (const Json::exception&) {
     return std::nullopt;
@@ -131,49 +129,23 @@ std::optional<std::pair<std::size_t, EpisodeComparison>> readLine(const std::str
   }
 }
 
-std::string lineOf(std::size_t number, const EpisodeComparison& comparison) {
-  return Json{{"number", number}, {"episode", jsonOf(comparison)}}.dump() + "\n";
-}
-
 }  // namespace
 
-Result<std::unique_ptr<Journal>> Journal::open(const std::filesystem::path& path,
-                                               std::string_view subject) {
-  std::unique_ptr<Journal> journal(new Journal(path));
-  const std::string kept = journal->read(subject);
-  // Without what is damaged or of another subject.
-  RETURN_IF_ERROR(writeFileAtomically(path, {std::as_bytes(std::span(kept))}));
-  journal->stream_.open(path, std::ios::binary | std::ios::app);
-  if (journal->stream_) return journal;
-  return fail(ErrorCode::kIo, path.string(), "cannot be written; check folder and rights");
-}
-
-std::string Journal::read(std::string_view subject) {
-  std::string kept = std::string(subject) + "\n";
-  std::ifstream stream(path_, std::ios::binary);
-  std::string line;
-  if (!std::getline(stream, line) || line != subject) return kept;
-  while (std::getline(stream, line)) {
-    auto one = readLine(line);
-    if (!one) continue;
-    kept += line + "\n";
-    done_.insert(std::move(*one));
+ComparisonJournal::ComparisonJournal(std::unique_ptr<Journal> journal)
+    : journal_(std::move(journal)) {
+  for (const std::string& record : journal_->records()) {
+    if (auto one = readRecord(record)) done_.insert(std::move(*one));
   }
-  return kept;
 }
 
-Result<void> Journal::add(std::size_t number, const EpisodeComparison& comparison) {
-  const std::string line = lineOf(number, comparison);
-  const std::lock_guard lock(mutex_);
-  stream_ << line << std::flush;
-  if (stream_) return {};
-  return fail(ErrorCode::kIo, path_.string(), "cannot be written; free some space");
+Result<ComparisonJournal> ComparisonJournal::open(const std::filesystem::path& path,
+                                                  std::string_view subject) {
+  ASSIGN_OR_RETURN(auto journal, Journal::open(path, subject));
+  return ComparisonJournal(std::move(journal));
 }
 
-void Journal::remove() {
-  stream_.close();
-  std::error_code none;
-  std::filesystem::remove(path_, none);
+Result<void> ComparisonJournal::add(std::size_t number, const EpisodeComparison& comparison) {
+  return journal_->add(Json{{"number", number}, {"episode", jsonOf(comparison)}}.dump());
 }
 
 }  // namespace galactic::dynamics

@@ -1,44 +1,35 @@
 #pragma once
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
-#include <mutex>
-#include <string>
 #include <string_view>
 
 #include "dynamics/episodes/comparison.h"
 #include "galactic/error.h"
+#include "support/journal.h"
 
 namespace galactic::dynamics {
 
-/// The episodes that are done, kept beside the report until that is written, so that a run that is
-/// interrupted goes on where it was. A text file: its subject, then one line of JSON per episode;
-/// numbers read back exactly. Threads may add at the same time.
-class Journal {
+/// The episodes that are done, kept beside the report until that is written, as lines of JSON whose
+/// numbers read back exactly: see Journal. Threads may add at the same time.
+class ComparisonJournal {
  public:
-  /// `subject`: all that decides what comes out, in one line. A journal of another subject is begun
-  /// anew, and lines that are damaged, as the last one of a killed run may be, do not count. Fails
-  /// with kIo.
-  [[nodiscard]] static Result<std::unique_ptr<Journal>> open(const std::filesystem::path& path,
-                                                             std::string_view subject);
+  /// Fails as Journal::open.
+  [[nodiscard]] static Result<ComparisonJournal> open(const std::filesystem::path& path,
+                                                      std::string_view subject);
 
   /// Those that were done before, by their numbers in the run.
   [[nodiscard]] const std::map<std::size_t, EpisodeComparison>& done() const { return done_; }
   /// Fails with kIo.
   [[nodiscard]] Result<void> add(std::size_t number, const EpisodeComparison& comparison);
   /// After the report is written.
-  void remove();
+  void remove() { journal_->remove(); }
 
  private:
-  explicit Journal(std::filesystem::path path) : path_(std::move(path)) {}
-  /// Returns what is kept of the file.
-  [[nodiscard]] std::string read(std::string_view subject);
+  explicit ComparisonJournal(std::unique_ptr<Journal> journal);
 
-  std::filesystem::path path_;
-  std::mutex mutex_;
-  std::ofstream stream_;
+  std::unique_ptr<Journal> journal_;
   std::map<std::size_t, EpisodeComparison> done_;
 };
 

@@ -17,6 +17,7 @@ class ErrorCode(IntEnum):
     INVALID_INPUT = 3
     INTERNAL = 4
     UNSUPPORTED = 5
+    INTERRUPTED = 130
 
 class EpisodeEnd(IntEnum):
     NONE = 0

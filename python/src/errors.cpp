@@ -26,7 +26,8 @@ void bindErrors(py::module_& module) {
            {{"IO", static_cast<int>(ErrorCode::kIo)},
             {"INVALID_INPUT", static_cast<int>(ErrorCode::kInvalidInput)},
             {"INTERNAL", static_cast<int>(ErrorCode::kInternal)},
-            {"UNSUPPORTED", static_cast<int>(ErrorCode::kUnsupported)}},
+            {"UNSUPPORTED", static_cast<int>(ErrorCode::kUnsupported)},
+            {"INTERRUPTED", static_cast<int>(ErrorCode::kInterrupted)}},
            "Why something failed. The values are the exit codes of galactic's programs.");
   py::register_exception_translator(&translate);
 }

@@ -2,10 +2,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "cli/bake_folder.h"
 #include "galactic/world.h"
+#include "support/journal.h"
 #include "support/source_folder.h"
 
 namespace galactic::generation_cli_test {
@@ -13,6 +22,7 @@ namespace {
 
 using test::ProgramRun;
 using testing::HasSubstr;
+using testing::SizeIs;
 
 std::string sample(const char* file) {
   return (test::sourceFolder() / "packs/sample/" / file).string();
@@ -34,18 +44,32 @@ class GenerationCli : public test::BakeFolder {
     }
   }
 
-  [[nodiscard]] ProgramRun draw(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"apartment.pack",
-                                       "objects.pack",
-                                       "porter.pack",
-                                       "--as",
-                                       "episodes",
-                                       "--count",
-                                       "3",
-                                       "--objects",
-                                       "2"};
+  /// Three episodes, unless more is said.
+  [[nodiscard]] static std::vector<std::string> drawing(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "apartment.pack", "objects.pack", "porter.pack", "--as", "episodes", "--objects", "2"};
+    if (std::ranges::find(more, "--count") == more.end()) {
+      arguments.insert(arguments.end(), {"--count", "3"});
+    }
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(std::move(arguments));
+    return arguments;
+  }
+  [[nodiscard]] ProgramRun draw(const std::vector<std::string>& more) const {
+    return run(drawing(more));
+  }
+  /// What a journal holds, as far as it is written.
+  [[nodiscard]] std::vector<std::string> recordsOf(const std::string& journal) {
+    if (!has(journal)) return {};
+    const std::string text = content(journal);
+    const std::size_t subject = text.find('\n') + 1;
+    // Not the file itself: somebody may be writing it.
+    write("copy.partial", text);
+    const auto copy = Journal::open(path("copy.partial"),
+                                    text.substr(subject, text.find('\n', subject) - subject));
+    return copy ? (*copy)->records() : std::vector<std::string>();
+  }
+  [[nodiscard]] test::StartedProgram startDrawing(const std::vector<std::string>& more) const {
+    return {GALACTIC_BAKE, path(""), drawing(more)};
   }
 };
 
@@ -104,6 +128,54 @@ TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   EXPECT_EQ(impossible.exit_code, 3);
   EXPECT_THAT(impossible.err, HasSubstr("no flat surface between 90 and 91 m"));
   EXPECT_FALSE(has("none.pack"));
+}
+
+TEST_F(GenerationCli, GoesOnWhereItWasKilled) {
+  bakePacks();
+  const std::vector<std::string> words{"--count", "200", "--solve", "0", "-j", "1"};
+  const auto to = [&](const std::string& pack) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"-o", pack});
+    return all;
+  };
+  ASSERT_EQ(draw(to("whole.pack")).exit_code, 0);
+  EXPECT_FALSE(has("whole.pack.partial"));
+  // Killed after the first of four batches, and after one more.
+  std::size_t kept = 0;
+  for (const std::size_t wanted : {2U, 3U}) {
+    const test::StartedProgram program = startDrawing(to("out.pack"));
+    for (int n = 0; n < 5000 && recordsOf("out.pack.partial").size() < wanted; ++n) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    program.signal(SIGKILL);
+    ASSERT_EQ(program.wait().exit_code, -1);
+    EXPECT_FALSE(has("out.pack"));
+    const std::vector<std::string> records = recordsOf("out.pack.partial");
+    EXPECT_GE(records.size(), wanted);
+    EXPECT_LT(records.size(), 5U);
+    EXPECT_THAT(std::set(records.begin(), records.end()), SizeIs(records.size())) << "done twice";
+    kept = records.size();
+  }
+  // A run that writes nothing changes nothing.
+  ASSERT_EQ(draw({"--dry-run", "-o", "out.pack"}).exit_code, 0);
+  EXPECT_THAT(recordsOf("out.pack.partial"), SizeIs(kept));
+  ASSERT_EQ(draw(to("out.pack")).exit_code, 0);
+  EXPECT_TRUE(content("out.pack") == content("whole.pack"));
+  EXPECT_FALSE(has("out.pack.partial"));
+}
+
+TEST_F(GenerationCli, OverwritesNoFileThatItDidNotWrite) {
+  bakePacks();
+  write("out.pack.partial", "my notes");
+  const ProgramRun refused = draw({"-o", "out.pack"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("out.pack.partial: is kept for what is done until"));
+  EXPECT_EQ(content("out.pack.partial"), "my notes");
+  std::filesystem::copy(path("apartment.pack"), path("to.pack.partial"));
+  const ProgramRun read =
+      run({"to.pack.partial", "objects.pack", "porter.pack", "--as", "episodes", "-o", "to.pack"});
+  EXPECT_NE(read.exit_code, 0);
+  EXPECT_TRUE(content("to.pack.partial") == content("apartment.pack"));
 }
 
 }  // namespace

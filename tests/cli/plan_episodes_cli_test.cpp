@@ -2,7 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+
 #include "cli/plan_folder.h"
+#include "galactic/error.h"
 #include "galactic/world.h"
 #include "support/recipe_text.h"
 
@@ -130,6 +137,42 @@ TEST_F(PlanEpisodes, AreAnErrorWhereNoSceneIsLeft) {
   const ProgramRun wrong = bakeWorld(R"("c")", R"(supports = "tables")");
   EXPECT_EQ(wrong.exit_code, 3);
   EXPECT_THAT(wrong.err, HasSubstr("supports"));
+}
+
+TEST_F(PlanEpisodes, StopBetweenBatchesAndGoOnLater) {
+  const std::string recipe = test::quickRecipe(
+      "dataset = \"data/home.scene_dataset_config.json\"\nscenes = [\"c\"]", "count = 200");
+  write("whole.toml", recipe);
+  write("some.toml", recipe);
+  const auto words = [&](const std::string& name) {
+    return std::vector<std::string>{name, "--data",   sampleFile(""), "-j",
+                                    "1",  "--report", "report.json"};
+  };
+  ASSERT_EQ(run(words("whole.toml")).exit_code, 0);
+  const StartedProgram program{GALACTIC_BAKE, path(""), words("some.toml")};
+  const auto has_drawn = [&] {
+    std::error_code none;
+    constexpr std::uintmax_t kBatch = 4000;
+    const std::uintmax_t size =
+        std::filesystem::file_size(path("some/episodes.pack.partial"), none);
+    return !none && size > kBatch;
+  };
+  for (int n = 0; n < 20000 && !has_drawn(); ++n) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  program.signal(SIGINT);
+  const ProgramRun stopped = program.wait();
+  EXPECT_EQ(stopped.exit_code, kExitInterrupted) << stopped.err;
+  EXPECT_THAT(stopped.out, HasSubstr("stopped; the same command goes on from here\n"));
+  EXPECT_THAT(stopped.err, testing::Not(HasSubstr("interrupted after")));
+  EXPECT_THAT(packsThatAre("planned"), ElementsAre("episodes.pack"));
+  EXPECT_FALSE(has("some/episodes.pack"));
+  EXPECT_FALSE(has("some.pack"));
+  ASSERT_TRUE(has_drawn());
+  ASSERT_EQ(run(words("some.toml")).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("episodes.pack"));
+  EXPECT_TRUE(content("some/episodes.pack") == content("whole/episodes.pack"));
+  EXPECT_FALSE(has("some/episodes.pack.partial"));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "galactic/error.h"
+#include "support/journal.h"
 #include "support/program_run.h"
 #include "support/recipe_text.h"
 #include "support/scratch_folder.h"
@@ -74,6 +75,21 @@ class DynamicsCli : public testing::Test {
 };
 std::unique_ptr<ScratchFolder> DynamicsCli::folder_;
 
+/// Changes what a journal says, and keeps its form.
+void changeFirstRecord(const std::filesystem::path& file,
+                       const std::function<void(std::string&)>& change) {
+  const std::string text = fileContent(file);
+  const std::size_t subject = text.find('\n') + 1;
+  const std::string subject_line = text.substr(subject, text.find('\n', subject) - subject);
+  auto journal = Journal::open(file, subject_line).value();
+  std::vector<std::string> records = journal->records();
+  ASSERT_FALSE(records.empty());
+  change(records.front());
+  journal->remove();
+  journal = Journal::open(file, subject_line).value();
+  for (const std::string& record : records) ASSERT_TRUE(journal->add(record));
+}
+
 TEST_F(DynamicsCli, ReplaysARecording) {
   const ProgramRun done =
       run({"--recording", "home.rec", "--arm", "kinematic", "--report", "replay.json"});
@@ -119,10 +135,10 @@ TEST_F(DynamicsCli, GoesOnWhereItWasInterrupted) {
   };
   ASSERT_EQ(interrupted("again.json").exit_code, kExitInterrupted);
   // One number is changed to see that what is done is not computed again.
-  std::string kept = fileContent(path("again.json.partial"));
-  const std::string disturbed = "\"disturbed\":";
-  kept.insert(kept.find(disturbed) + disturbed.size(), "70");
-  std::ofstream(path("again.json.partial"), std::ios::binary | std::ios::trunc) << kept;
+  changeFirstRecord(path("again.json.partial"), [](std::string& record) {
+    const std::string disturbed = "\"disturbed\":";
+    record.insert(record.find(disturbed) + disturbed.size(), "70");
+  });
   ASSERT_EQ(run(words).exit_code, 0);
   const json before = json::parse(whole);
   const json after = report("again.json");

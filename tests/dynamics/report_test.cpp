@@ -4,19 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
+#include <string>
 
 #include "dynamics/report/journal.h"
 #include "dynamics/report/moments.h"
 #include "dynamics/report/report_sums.h"
-#include "support/program_run.h"
+#include "support/journal.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::report_test {
 namespace {
 
+using dynamics::ComparisonJournal;
 using dynamics::EpisodeComparison;
-using dynamics::Journal;
 using dynamics::MissCause;
 using dynamics::Moment;
 using dynamics::MomentKind;
@@ -70,50 +70,35 @@ void expectSame(const EpisodeComparison& found, const EpisodeComparison& wanted)
   EXPECT_EQ(found.rests[0].step, wanted.rests[0].step);
 }
 
-TEST(AJournal, GivesBackExactlyWhatWasAdded) {
+TEST(AJournalOfComparisons, GivesBackExactlyWhatWasAdded) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "r.json.partial";
-  const auto journal = Journal::open(file, "these").value();
-  EXPECT_TRUE(journal->done().empty());
-  ASSERT_TRUE(journal->add(5, made(17)));
-  ASSERT_TRUE(journal->add(2, made(9)));
-  const auto again = Journal::open(file, "these").value();
-  ASSERT_EQ(again->done().size(), 2U);
-  expectSame(again->done().at(5), made(17));
-  expectSame(again->done().at(2), made(9));
-  again->remove();
+  auto journal = ComparisonJournal::open(file, "these").value();
+  EXPECT_TRUE(journal.done().empty());
+  ASSERT_TRUE(journal.add(5, made(17)));
+  ASSERT_TRUE(journal.add(2, made(9)));
+  auto again = ComparisonJournal::open(file, "these").value();
+  ASSERT_EQ(again.done().size(), 2U);
+  expectSame(again.done().at(5), made(17));
+  expectSame(again.done().at(2), made(9));
+  again.remove();
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-TEST(AJournal, OfAnotherSubjectIsBegunAnew) {
+TEST(AJournalOfComparisons, TakesNoOtherRecords) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "r.json.partial";
-  ASSERT_TRUE(Journal::open(file, "these").value()->add(0, made(1)));
-  EXPECT_TRUE(Journal::open(file, "others").value()->done().empty());
-  EXPECT_TRUE(Journal::open(file, "these").value()->done().empty());
-}
-
-TEST(AJournal, ForgetsLinesThatAreDamaged) {
-  const ScratchFolder folder;
-  const std::filesystem::path file = folder.path() / "r.json.partial";
-  {
-    const auto journal = Journal::open(file, "these").value();
-    ASSERT_TRUE(journal->add(0, made(1)));
-    ASSERT_TRUE(journal->add(1, made(2)));
-  }
-  const std::string whole = fileContent(file);
-  const std::size_t first = whole.find('\n', whole.find('\n') + 1) + 1;
-  // Killed anywhere in the second line.
-  for (std::size_t length = first; length + 1 < whole.size(); length += 7) {
-    std::ofstream(file, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
-    const auto journal = Journal::open(file, "these").value();
-    ASSERT_EQ(journal->done().size(), 1U) << length;
-    expectSame(journal->done().at(0), made(1));
-  }
-  std::string wrong = whole;
+  auto journal = ComparisonJournal::open(file, "these").value();
+  ASSERT_TRUE(journal.add(0, made(1)));
+  const auto plain = Journal::open(file, "these").value();
+  std::string wrong = plain->records().front();
   wrong.replace(wrong.find("\"there\":[5"), 10, "\"there\":[9");
-  std::ofstream(file, std::ios::binary | std::ios::trunc) << wrong;
-  EXPECT_EQ(Journal::open(file, "these").value()->done().count(0), 0U);
+  plain->remove();
+  const auto other = Journal::open(file, "these").value();
+  ASSERT_TRUE(other->add(wrong));
+  ASSERT_TRUE(other->add("{}"));
+  ASSERT_TRUE(other->add("no JSON"));
+  EXPECT_TRUE(ComparisonJournal::open(file, "these").value().done().empty());
 }
 
 TEST(TheWorstMoments, AreOfEachKindInTurn) {

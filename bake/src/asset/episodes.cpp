@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <set>
+#include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -15,12 +18,17 @@
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
+#include "support/journal.h"
 #include "support/try.h"
 
 namespace galactic::bake {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Writes what the outcome holds.
 Result<Made> finish(EpisodeOutcome outcome, const Job& job, std::vector<SourceFile> sources,
@@ -95,6 +103,31 @@ Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_vi
   return details;
 }
 
+/// All that decides which episodes are drawn, but what only scenes know. `files`: sorted.
+std::string subjectOf(const EpisodeGenerationJob& job, std::span<const SourceFile> files,
+                      const SourceFile& program) {
+  std::string parts = fmt::format("{:016x}{:016x}\n", program.hash_high, program.hash_low);
+  for (const auto& [name, value] : contentOptions(job))
+    parts += fmt::format("{}={}\n", name, value);
+  for (const SourceFile& file : files) {
+    parts += fmt::format("{:016x}{:016x}\n", file.hash_high, file.hash_low);
+  }
+  const SourceFile all = describeBytes({}, std::as_bytes(std::span(parts)));
+  return fmt::format("episodes {:016x}{:016x}", all.hash_high, all.hash_low);
+}
+
+/// Beside the pack; null where nothing is written.
+Result<std::unique_ptr<Journal>> openJournal(const EpisodeGenerationJob& job,
+                                             std::span<const SourceFile> files,
+                                             const BakeContext& context) {
+  if (context.dry_run) return std::unique_ptr<Journal>();
+  const std::filesystem::path path = context.output.string() + ".partial";
+  RETURN_IF_ERROR(context.log.checkNotRead(path));
+  // Another build of the program may draw other episodes.
+  ASSIGN_OR_RETURN(const SourceFile program, describeFile("/proc/self/exe"));
+  return Journal::open(path, subjectOf(job, files, program));
+}
+
 Result<GeneratedEpisodes> generate(const EpisodeGenerationJob& job, const EpisodeInputs& inputs,
                                    const BakeContext& context) {
   const auto show = [&](std::size_t done) {
@@ -103,6 +136,29 @@ Result<GeneratedEpisodes> generate(const EpisodeGenerationJob& job, const Episod
   };
   show(0);
   return generateEpisodes(inputs, job.generate, show);
+}
+
+/// Generates them, lets a sample of them be played, and writes them.
+Result<Made> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInputs& inputs,
+                          std::vector<SourceFile> files, const BakeContext& context) {
+  const auto start = Clock::now();
+  ASSIGN_OR_RETURN(auto generated, generate(job, inputs, context));
+  context.show("episodes", "solve", 1);
+  ASSIGN_OR_RETURN(auto sample,
+                   solveSample(inputs.packs, generated.episodes,
+                               {.most_episodes = job.solve, .jobs = job.generate.jobs}));
+  return finish({.input = fmt::format("{} packs", job.packs.size()),
+                 .episodes = std::move(generated.episodes),
+                 .generation = EpisodeGeneration{generated.rejections, std::move(generated.scenes),
+                                                 std::move(generated.left_out), std::move(sample),
+                                                 generated.skipped, generated.with_fewer_objects},
+                 .seconds = secondsSince(start)},
+                job, std::move(files), context);
+}
+
+/// Whether the same bake may come further another time.
+bool mayGoOn(const Error& error) {
+  return error.code == ErrorCode::kInterrupted || error.code == ErrorCode::kIo;
 }
 
 /// The options of an import, with what stands in other files.
@@ -121,10 +177,6 @@ Result<EpisodeImportOptions> importOptions(const EpisodeImportJob& job) {
   return options;
 }
 
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 }  // namespace
 
 Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
@@ -141,7 +193,6 @@ Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
 }
 
 Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context) {
-  const auto start = Clock::now();
   ASSIGN_OR_RETURN(auto opened, openPacks(job.packs));
   RETURN_IF_ERROR(addGeometry(job, context.log, opened));
   // The bytes of the pack do not depend on the order of the inputs, of which several may have one
@@ -149,24 +200,16 @@ Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context)
   std::ranges::sort(opened.files, {}, [](const SourceFile& file) {
     return std::tie(file.name, file.bytes, file.hash_high, file.hash_low);
   });
-  EpisodeInputs inputs;
+  ASSIGN_OR_RETURN(const auto journal, openJournal(job, opened.files, context));
+  EpisodeInputs inputs{.journal = journal.get(), .stops = context.stops};
   inputs.packs.reserve(opened.packs.size());
   for (const PackFile& pack : opened.packs) inputs.packs.push_back(&pack);
   if (job.details || !job.geometry.empty()) {
     inputs.details = [&job](std::string_view scene) { return readDetails(job, scene); };
   }
-  ASSIGN_OR_RETURN(auto generated, generate(job, inputs, context));
-  context.show("episodes", "solve", 1);
-  ASSIGN_OR_RETURN(auto sample,
-                   solveSample(inputs.packs, generated.episodes,
-                               {.most_episodes = job.solve, .jobs = job.generate.jobs}));
-  return finish({.input = fmt::format("{} packs", job.packs.size()),
-                 .episodes = std::move(generated.episodes),
-                 .generation = EpisodeGeneration{generated.rejections, std::move(generated.scenes),
-                                                 std::move(generated.left_out), std::move(sample),
-                                                 generated.skipped, generated.with_fewer_objects},
-                 .seconds = secondsSince(start)},
-                job, std::move(opened.files), context);
+  auto made = makeEpisodes(job, inputs, std::move(opened.files), context);
+  if (journal && (made || !mayGoOn(made.error()))) journal->remove();
+  return made;
 }
 
 }  // namespace galactic::bake

@@ -144,6 +144,7 @@ class Making {
         .log = outcome_.log,
         .show = [this](std::string_view item, std::string_view stage,
                        double fraction) { tools_.observer.show(item, stage, fraction); },
+        .stops = [this] { return tools_.observer.stops(); },
         .dry_run = tools_.options.mode != BuildMode::kBake,
         .keep_going = tools_.options.keep_going};
     ASSIGN_OR_RETURN(auto made, bake(job, context));
@@ -188,7 +189,8 @@ PackOutcome makePack(const PackJob& pack, unsigned jobs, const BuildTools& tools
   Making making(pack, tools);
   auto done = making.make(jobs);
   PackOutcome& outcome = making.outcome();
-  if (!done) {
+  // What was interrupted is still to be done.
+  if (!done && done.error().code != ErrorCode::kInterrupted) {
     outcome.state = PackState::kFailed;
     outcome.figures.reset();
     outcome.failures.push_back({inputOf(pack), std::move(done.error())});

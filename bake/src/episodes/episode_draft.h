@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -50,6 +51,7 @@ struct DraftedEpisode {
 
 /// The part of a draft that found no place.
 enum class DraftEnd : std::uint8_t { kDone, kTarget, kGoal, kOthers, kStart };
+inline constexpr std::size_t kDraftEnds = 5;
 
 inline constexpr std::size_t kSurveyTries = 20'000;
 

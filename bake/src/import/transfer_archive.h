@@ -4,6 +4,7 @@
 #include <cstring>
 #include <functional>
 #include <span>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -14,8 +15,10 @@ namespace galactic::bake {
 /// Receives consecutive pieces of a transfer.
 using TransferSink = std::function<void(std::span<const std::byte>)>;
 
+/// Values that are their bytes. What a view or a pointer points to is elsewhere.
 template <class T>
-concept Plain = std::is_trivially_copyable_v<T>;
+concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
+                !std::is_same_v<T, std::string_view>;
 
 /// For transferFields: one list of fields per type serves both directions.
 template <class T, class Base>
@@ -26,9 +29,9 @@ void transferFields(Archive& archive, Is<Error> auto& error) {
   archive(error.code, error.where, error.message);
 }
 
-/// Writes values as bytes for another process of this same program. A type that is neither plain
-/// nor a list needs a function template `transferFields(archive, value)` in galactic::bake, which
-/// calls the archive with its fields; the archive is a writer or a reader.
+/// Writes values as bytes for another or a later process of this same program. A type that is
+/// neither plain nor a list needs a function template `transferFields(archive, value)` in
+/// galactic::bake, which calls the archive with its fields; the archive is a writer or a reader.
 class TransferWriter {
  public:
   explicit TransferWriter(const TransferSink& sink) : sink_(sink) {}

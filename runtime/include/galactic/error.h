@@ -7,15 +7,22 @@
 
 namespace galactic {
 
-/// Why something failed. The values are the exit codes of all tools.
-enum class ErrorCode { kIo = 2, kInvalidInput = 3, kInternal = 4, kUnsupported = 5 };
+/// Why something failed. The values are the exit codes of all tools; that of what was interrupted
+/// is the one that shells give Ctrl-C.
+enum class ErrorCode {
+  kIo = 2,
+  kInvalidInput = 3,
+  kInternal = 4,
+  kUnsupported = 5,
+  kInterrupted = 130
+};
 
-/// The exit codes besides those of ErrorCode: success, a wrong command line, a difference, and of
-/// what was interrupted the one that shells give Ctrl-C.
+/// The exit codes besides those of ErrorCode: success, a wrong command line, a difference; and of
+/// what was interrupted and yet wrote all its files.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitUsage = 1;
 inline constexpr int kExitDiffers = 7;
-inline constexpr int kExitInterrupted = 130;
+inline constexpr int kExitInterrupted = static_cast<int>(ErrorCode::kInterrupted);
 /// What --help of all tools says about exit codes.
 inline constexpr const char* kExitCodesHelp =
     "Exit codes:\n"

@@ -269,8 +269,7 @@ TEST(ScenesWithoutFloorOrSurface, AreAnErrorWhenNoOtherIsLeft) {
     EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(none.error().where, "den");
     EXPECT_THAT(none.error().message, testing::HasSubstr("stands nowhere"));
-    EXPECT_THAT(none.error().message,
-                testing::EndsWith("; none of the 1 other scenes can be used either"));
+    EXPECT_THAT(none.error().message, testing::EndsWith("; the other scene cannot be used either"));
   }
 }
 

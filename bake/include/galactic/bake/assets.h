@@ -58,6 +58,8 @@ struct BakeContext {
   std::filesystem::path output{};
   ReadLog& log;
   BakeProgress show = [](std::string_view, std::string_view, double) {};
+  /// Asked now and then, from several threads, whether a long bake ends early, with kInterrupted.
+  std::function<bool()> stops = [] { return false; };
   bool dry_run = false;
   /// Whether a pack of several objects holds those that succeeded when others fail.
   bool keep_going = false;
@@ -161,7 +163,9 @@ struct Made {
 /// Imports a published set of episodes into a pack.
 [[nodiscard]] Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context);
 
-/// Generates episodes in packs and lets the scripted policy play a sample of them.
+/// Generates episodes in packs and lets the scripted policy play a sample of them. What is drawn
+/// stands in OUTPUT.partial until the pack is written: a bake that was interrupted or killed goes
+/// on from there.
 [[nodiscard]] Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context);
 
 /// Lists packs in a world pack, after seeing that together they make a world.

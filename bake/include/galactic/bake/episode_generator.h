@@ -16,6 +16,10 @@
 #include "galactic/error.h"
 #include "galactic/pack.h"
 
+namespace galactic {
+class Journal;
+}  // namespace galactic
+
 namespace galactic::bake {
 
 /// Why something that was drawn for an episode was not taken. In the order of the tests.
@@ -141,9 +145,14 @@ struct EpisodeGeneratorOptions {
 /// In what episodes are generated.
 struct EpisodeInputs {
   /// Scenes, one or more sets of objects, one robot, in any order, baked for the same radii.
-  std::vector<const PackFile*> packs;
+  std::vector<const PackFile*> packs{};
   /// Empty: nothing is known but the packs.
-  SceneDetailSource details;
+  SceneDetailSource details{};
+  /// Keeps what is done, and may hold what was done before, of the same packs, options, seed and
+  /// program: that is not done again. Null: nothing is kept.
+  Journal* journal = nullptr;
+  /// Asked now and then, from several threads, whether to end early; empty: never.
+  std::function<bool()> stops{};
 };
 
 /// What was found in a scene.
@@ -198,7 +207,8 @@ struct GeneratedEpisodes {
 /// objects, and skipped at last; what becomes of it depends on no other episode.
 /// Fails with kInvalidInput, saying what was tried, on unusable options, packs that do not go
 /// together, when all scenes are left out and when more than the options' share of the episodes is
-/// skipped, or all; and with the errors of `inputs.details`.
+/// skipped, or all; with the errors of `inputs.details` and of the journal; and with kInterrupted
+/// once `inputs.stops` has said so.
 [[nodiscard]] Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
                                                          const EpisodeGeneratorOptions& options,
                                                          const EpisodeProgress& progress = {});

@@ -1,0 +1,139 @@
+#include "episodes/generation_round.h"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "episodes/episode_batch.h"
+#include "galactic/bake/parallel_for.h"
+#include "support/try.h"
+
+namespace galactic::bake {
+namespace {
+
+/// The first failure in the order of `results`.
+Result<void> firstFailure(std::span<const Result<void>> results) {
+  for (const Result<void>& result : results) {
+    if (!result) return result;
+  }
+  return {};
+}
+
+/// Cuts episodes into batches.
+std::vector<std::span<DrawnEpisode>> batchesOf(std::span<DrawnEpisode> episodes) {
+  std::vector<std::span<DrawnEpisode>> batches;
+  for (; !episodes.empty(); episodes = episodes.subspan(batches.back().size())) {
+    batches.push_back(episodes.first(std::min(EpisodeBatch::kMost, episodes.size())));
+  }
+  return batches;
+}
+
+}  // namespace
+
+/// A scene at work, which is prepared when somebody needs that.
+class GenerationRound::SceneWork {
+ public:
+  SceneWork(const GenerationContext& context, const SceneJournal& journal, const SceneOfPack& scene,
+            SceneDetails details)
+      : context_(context),
+        journal_(journal),
+        scene_(scene),
+        details_(std::move(details)),
+        key_(SceneJournal::keyOf(scene.scene.name(), details_)) {}
+
+  [[nodiscard]] const SceneJournal::Key& key() const { return key_; }
+
+  Result<SceneLook> look() {
+    if (const SceneLook* known = journal_.lookAt(key_)) return *known;
+    ASSIGN_OR_RETURN(const PreparedScene* const scene, prepared());
+    SceneLook look{scene->unusable(), scene->summary()};
+    RETURN_IF_ERROR(journal_.add(key_, look));
+    return look;
+  }
+
+  Result<const PreparedScene*> prepared() {
+    if (!prepared_) {
+      ASSIGN_OR_RETURN(prepared_,
+                       PreparedScene::prepare(context_, scene_.scene, std::move(details_)));
+    }
+    return prepared_.get();
+  }
+
+ private:
+  const GenerationContext& context_;
+  const SceneJournal& journal_;
+  const SceneOfPack& scene_;
+  SceneDetails details_;
+  SceneJournal::Key key_;
+  std::unique_ptr<const PreparedScene> prepared_;
+};
+
+Result<SceneDetails> detailsOf(const EpisodeInputs& inputs, const SceneOfPack& scene) {
+  return inputs.details ? inputs.details(scene.scene.name()) : SceneDetails{};
+}
+
+void GenerationRound::run(std::vector<SceneTask>& tasks) {
+  const unsigned jobs = std::max(1U, context_.options.jobs);
+  const auto for_scenes = static_cast<unsigned>(std::min<std::size_t>(jobs, tasks.size()));
+  parallelFor(for_scenes, tasks.size(),
+              [&](std::size_t n) { runIn(tasks[n], std::max(1U, jobs / for_scenes)); });
+}
+
+/// Looks at the scene, draws its episodes with `jobs` threads, and forgets the scene.
+void GenerationRound::runIn(SceneTask& task, unsigned jobs) {
+  if (stops()) return;
+  auto details = detailsOf(inputs_, *task.scene);
+  if (!details) {
+    task.prepared = tl::unexpected(details.error());
+    return;
+  }
+  SceneWork work(context_, journal_, *task.scene, std::move(*details));
+  const auto look = work.look();
+  if (!look) {
+    task.prepared = tl::unexpected(look.error());
+    return;
+  }
+  task.unusable = look->unusable;
+  if (!task.unusable.empty()) only_look_ = true;
+  if (only_look_) return;
+  task.summary = look->summary;
+  task.drawn = draw(task, work, jobs);
+  task.summary.skipped = static_cast<std::uint32_t>(
+      std::ranges::count(task.episodes, true, &DrawnEpisode::is_skipped));
+  task.summary.episodes = static_cast<std::uint32_t>(task.episodes.size()) - task.summary.skipped;
+}
+
+Result<void> GenerationRound::draw(SceneTask& task, SceneWork& work, unsigned jobs) {
+  std::vector<std::span<DrawnEpisode>> open = batchesOf(task.episodes);
+  std::erase_if(open, [&](std::span<DrawnEpisode> batch) {
+    const bool is_drawn = journal_.recall(work.key(), batch);
+    if (is_drawn) count(batch.size());
+    return is_drawn;
+  });
+  if (open.empty()) return {};
+  ASSIGN_OR_RETURN(const PreparedScene* const prepared, work.prepared());
+  const EpisodeBatch batch(context_, *task.scene, *prepared);
+  std::vector<Result<void>> results(open.size());
+  parallelFor(jobs, open.size(), [&](std::size_t n) {
+    if (only_look_ || stops()) return;
+    results[n] = batch.fill(open[n]);
+    if (results[n]) results[n] = journal_.add(work.key(), open[n]);
+    count(open[n].size());
+  });
+  return firstFailure(results);
+}
+
+bool GenerationRound::stops() {
+  if (inputs_.stops && inputs_.stops()) is_stopped_ = true;
+  return is_stopped_;
+}
+
+void GenerationRound::count(std::size_t episodes) {
+  if (!progress_) return;
+  const std::lock_guard lock(mutex_);
+  done_ += episodes;
+  progress_(done_);
+}
+
+}  // namespace galactic::bake

@@ -1,0 +1,124 @@
+#include "episodes/scene_journal.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "import/transfer_archive.h"
+
+namespace galactic::bake {
+
+template <class Archive>
+void transferFields(Archive& archive, Is<GeneratedScene> auto& scene) {
+  archive(scene.name, scene.floor_places, scene.support_places, scene.surfaces, scene.receptacles,
+          scene.has_mesh, scene.shortened_way);
+}
+
+template <class Archive>
+void transferFields(Archive& archive, Is<SceneLook> auto& look) {
+  archive(look.unusable, look.summary);
+}
+
+template <class Archive>
+void transferFields(Archive& archive, Is<DrawnEpisode> auto& one) {
+  archive(one.number, one.seed, one.is_skipped, one.drafts, one.replays_failed, one.ends,
+          one.rejections, one.episode, one.placements);
+}
+
+template <class Archive>
+void transferFields(Archive& archive, Is<SupportRegion> auto& region) {
+  archive(region.name, region.world_from_region, region.half_extents);
+}
+
+namespace {
+
+enum class RecordKind : std::uint8_t { kLook, kBatch };
+
+template <class... Fields>
+std::string bytesOf(const Fields&... fields) {
+  std::string bytes;
+  const TransferSink sink = [&bytes](std::span<const std::byte> more) {
+    bytes.append(reinterpret_cast<const char*>(more.data()), more.size());
+  };
+  TransferWriter{sink}(fields...);
+  return bytes;
+}
+
+/// Whether an episode is one of the generation's: its journal could be anybody's.
+bool isSound(const DrawnEpisode& episode, std::size_t objects) {
+  if (episode.is_skipped) return true;
+  return episode.episode.placement_count == episode.placements.size() &&
+         episode.episode.target < episode.placements.size() &&
+         std::ranges::all_of(episode.placements,
+                             [&](const Placement& one) { return one.object < objects; });
+}
+
+}  // namespace
+
+SceneJournal::Key SceneJournal::keyOf(std::string_view scene, const SceneDetails& details) {
+  const std::string bytes = bytesOf(scene, details.mesh.vertices, details.mesh.triangles,
+                                    details.mesh.bounds, details.receptacles);
+  return detail::contentHash(std::as_bytes(std::span(bytes)));
+}
+
+SceneJournal::SceneJournal(Journal* journal, std::size_t objects)
+    : journal_(journal), objects_(objects) {
+  if (journal_ == nullptr) return;
+  for (const std::string& record : journal_->records()) read(record);
+}
+
+void SceneJournal::read(std::string_view record) {
+  TransferReader reader(std::as_bytes(std::span(record)));
+  RecordKind kind{};
+  Key key;
+  reader(kind, key);
+  const Name name{key.high, key.low};
+  if (kind == RecordKind::kLook) {
+    SceneLook look;
+    reader(look);
+    if (reader.good() && reader.atEnd()) looks_.insert_or_assign(name, std::move(look));
+    return;
+  }
+  std::vector<DrawnEpisode> batch;
+  reader(batch);
+  const bool is_whole = reader.good() && reader.atEnd() && !batch.empty();
+  const auto is_sound = [&](const DrawnEpisode& one) { return isSound(one, objects_); };
+  if (!is_whole || !std::ranges::all_of(batch, is_sound)) return;
+  const std::size_t first = batch.front().number;
+  batches_.insert_or_assign({name, first}, std::move(batch));
+}
+
+bool SceneJournal::hasUnusable(std::string_view scene) const {
+  return std::ranges::any_of(looks_, [&](const auto& one) {
+    return !one.second.unusable.empty() && one.second.summary.name == scene;
+  });
+}
+
+const SceneLook* SceneJournal::lookAt(const Key& key) const {
+  const auto found = looks_.find({key.high, key.low});
+  return found == looks_.end() ? nullptr : &found->second;
+}
+
+bool SceneJournal::recall(const Key& key, std::span<DrawnEpisode> episodes) const {
+  const auto found = batches_.find({{key.high, key.low}, episodes.front().number});
+  if (found == batches_.end()) return false;
+  const std::vector<DrawnEpisode>& drawn = found->second;
+  const auto is_same = [](const DrawnEpisode& a, const DrawnEpisode& b) {
+    return a.number == b.number && a.seed == b.seed;
+  };
+  if (!std::ranges::equal(drawn, episodes, is_same)) return false;
+  std::ranges::copy(drawn, episodes.begin());
+  return true;
+}
+
+Result<void> SceneJournal::add(const Key& key, const SceneLook& look) const {
+  if (journal_ == nullptr) return {};
+  return journal_->add(bytesOf(RecordKind::kLook, key, look));
+}
+
+Result<void> SceneJournal::add(const Key& key, std::span<const DrawnEpisode> episodes) const {
+  if (journal_ == nullptr) return {};
+  const std::vector<DrawnEpisode> batch(episodes.begin(), episodes.end());
+  return journal_->add(bytesOf(RecordKind::kBatch, key, batch));
+}
+
+}  // namespace galactic::bake
