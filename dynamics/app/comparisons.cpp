@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <iterator>
 #include <span>
@@ -181,8 +182,10 @@ Result<std::vector<EpisodeComparison>> compareAll(const EpisodePlan& plan,
   const StopRequest stop("galactic-dynamics");
   ASSIGN_OR_RETURN(const auto lanes, LanePool::create(plan, threads));
   Progress progress(results.size() - open.size(), results.size(), command.is_quiet);
+  // What cannot be kept is not worth the time.
+  std::atomic<bool> is_lost = false;
   bake::parallelFor(static_cast<unsigned>(threads), open.size(), [&](std::size_t k) {
-    if (stop.came()) return;
+    if (stop.came() || is_lost) return;
     const std::size_t n = open[k];
     std::unique_ptr<EpisodeLane> lane = lanes->take();
     const auto compared = [&]() -> Result<EpisodeComparison> {
@@ -192,6 +195,7 @@ Result<std::vector<EpisodeComparison>> compareAll(const EpisodePlan& plan,
       return one;
     };
     results[n] = compared();
+    if (!*results[n] && results[n]->error().code == ErrorCode::kIo) is_lost = true;
     lanes->giveBack(std::move(lane));
     progress.add();
   });

@@ -104,8 +104,11 @@ Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_vi
 }
 
 /// All that decides which episodes are drawn, but what only scenes know. `files`: sorted.
-std::string subjectOf(const EpisodeGenerationJob& job, std::span<const SourceFile> files,
+std::string subjectOf(EpisodeGenerationJob job, std::span<const SourceFile> files,
                       const SourceFile& program) {
+  // What they decide comes after the drawing.
+  job.solve = 0;
+  job.generate.most_skipped = 0;
   std::string parts = fmt::format("{:016x}{:016x}\n", program.hash_high, program.hash_low);
   for (const auto& [name, value] : contentOptions(job))
     parts += fmt::format("{}={}\n", name, value);
@@ -156,11 +159,6 @@ Result<Made> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInputs& 
                 job, std::move(files), context);
 }
 
-/// Whether the same bake may come further another time.
-bool mayGoOn(const Error& error) {
-  return error.code == ErrorCode::kInterrupted || error.code == ErrorCode::kIo;
-}
-
 /// The options of an import, with what stands in other files.
 Result<EpisodeImportOptions> importOptions(const EpisodeImportJob& job) {
   EpisodeImportOptions options = job.import;
@@ -208,7 +206,7 @@ Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context)
     inputs.details = [&job](std::string_view scene) { return readDetails(job, scene); };
   }
   auto made = makeEpisodes(job, inputs, std::move(opened.files), context);
-  if (journal && (made || !mayGoOn(made.error()))) journal->remove();
+  if (journal && made) journal->remove();
   return made;
 }
 

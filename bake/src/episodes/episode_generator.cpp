@@ -135,6 +135,12 @@ Result<void> takeOutKnown(const EpisodeInputs& inputs, const SceneJournal& journ
   return {};
 }
 
+/// Of scenes of which one failed.
+Error firstFailureOf(std::span<const SceneTask> tasks) {
+  return std::ranges::find_if(tasks, [](const SceneTask& task) { return !task.drawn; })
+      ->drawn.error();
+}
+
 Error interrupted(std::span<const SceneTask> tasks) {
   std::size_t drawn = 0;
   std::size_t all = 0;
@@ -163,6 +169,7 @@ Result<std::vector<SceneTask>> drawInUsable(const EpisodeInputs& inputs,
     for (const SceneTask& task : tasks) {
       if (!task.prepared) return tl::unexpected(task.prepared.error());
     }
+    if (round.hasFailed()) return tl::unexpected(firstFailureOf(tasks));
     if (round.isStopped()) return tl::unexpected(interrupted(tasks));
     const std::size_t before = left_out.size();
     takeOutUnusable(tasks, scenes, left_out);

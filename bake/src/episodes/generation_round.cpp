@@ -91,13 +91,14 @@ void GenerationRound::runIn(SceneTask& task, unsigned jobs) {
   SceneWork work(context_, journal_, *task.scene, std::move(*details));
   const auto look = work.look();
   if (!look) {
-    task.prepared = tl::unexpected(look.error());
+    task.prepared = kept(tl::unexpected(look.error()));
     return;
   }
   task.unusable = look->unusable;
   if (!task.unusable.empty()) only_look_ = true;
   if (only_look_) return;
   task.summary = look->summary;
+  task.summary.name = std::string(task.scene->scene.name());
   task.drawn = draw(task, work, jobs);
   task.summary.skipped = static_cast<std::uint32_t>(
       std::ranges::count(task.episodes, true, &DrawnEpisode::is_skipped));
@@ -118,7 +119,7 @@ Result<void> GenerationRound::draw(SceneTask& task, SceneWork& work, unsigned jo
   parallelFor(jobs, open.size(), [&](std::size_t n) {
     if (only_look_ || stops()) return;
     results[n] = batch.fill(open[n]);
-    if (results[n]) results[n] = journal_.add(work.key(), open[n]);
+    if (results[n]) results[n] = kept(journal_.add(work.key(), open[n]));
     count(open[n].size());
   });
   return firstFailure(results);
@@ -126,7 +127,12 @@ Result<void> GenerationRound::draw(SceneTask& task, SceneWork& work, unsigned jo
 
 bool GenerationRound::stops() {
   if (inputs_.stops && inputs_.stops()) is_stopped_ = true;
-  return is_stopped_;
+  return is_stopped_ || has_failed_;
+}
+
+Result<void> GenerationRound::kept(Result<void> added) {
+  if (!added && added.error().code == ErrorCode::kIo) has_failed_ = true;
+  return added;
 }
 
 void GenerationRound::count(std::size_t episodes) {

@@ -42,13 +42,18 @@ class GenerationRound {
 
   /// Whether somebody stopped it, with some of the tasks not done.
   [[nodiscard]] bool isStopped() const { return is_stopped_; }
+  /// Whether what it did could not be kept, with an error in one of the tasks.
+  [[nodiscard]] bool hasFailed() const { return has_failed_; }
 
  private:
   class SceneWork;
 
   [[nodiscard]] Result<void> draw(SceneTask& task, SceneWork& work, unsigned jobs);
   void runIn(SceneTask& task, unsigned jobs);
+  /// Whether to begin nothing more, as somebody asks for it or what is done cannot be kept.
   [[nodiscard]] bool stops();
+  /// Remembers that it failed.
+  [[nodiscard]] Result<void> kept(Result<void> added);
   /// Tells the user, one call at a time.
   void count(std::size_t episodes);
 
@@ -60,6 +65,7 @@ class GenerationRound {
   std::size_t done_ = 0;
   std::atomic<bool> only_look_{false};
   std::atomic<bool> is_stopped_{false};
+  std::atomic<bool> has_failed_{false};
 };
 
 }  // namespace galactic::bake

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
 
 #include "import/transfer_archive.h"
 
@@ -9,8 +10,13 @@ namespace galactic::bake {
 
 template <class Archive>
 void transferFields(Archive& archive, Is<GeneratedScene> auto& scene) {
+  // 0 where there is none.
+  float shortened_way = scene.shortened_way.value_or(0);
   archive(scene.name, scene.floor_places, scene.support_places, scene.surfaces, scene.receptacles,
-          scene.has_mesh, scene.shortened_way);
+          scene.has_mesh, shortened_way);
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(scene)>>) {
+    if (shortened_way > 0) scene.shortened_way = shortened_way;
+  }
 }
 
 template <class Archive>

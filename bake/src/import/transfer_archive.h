@@ -15,10 +15,13 @@ namespace galactic::bake {
 /// Receives consecutive pieces of a transfer.
 using TransferSink = std::function<void(std::span<const std::byte>)>;
 
-/// Values that are their bytes. What a view or a pointer points to is elsewhere.
+/// Values that are their bytes. What a view or a pointer points to is elsewhere, and not any byte
+/// says whether an optional value is there.
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> &&
-                !std::is_same_v<T, std::string_view>;
+                !std::is_same_v<T, std::string_view> && !requires(const T& value) {
+  value.has_value();
+};
 
 /// For transferFields: one list of fields per type serves both directions.
 template <class T, class Base>

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -11,6 +10,7 @@
 
 #include "support/atomic_file.h"
 #include "support/content_hash.h"
+#include "support/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic {
@@ -48,39 +48,47 @@ std::string asInFile(std::string_view record) {
 
 Result<std::unique_ptr<Journal>> Journal::open(const fs::path& path, std::string_view subject) {
   std::unique_ptr<Journal> journal(new Journal(path));
-  ASSIGN_OR_RETURN(const std::string kept, journal->read(subject));
-  // Without what is damaged or of another subject.
-  RETURN_IF_ERROR(writeFileAtomically(path, {std::as_bytes(std::span(kept))}));
-  journal->stream_.open(path, std::ios::binary | std::ios::app);
-  if (journal->stream_) return journal;
-  return fail(ErrorCode::kIo, path.string(), "cannot be written; check folder and rights");
+  RETURN_IF_ERROR(journal->read(subject));
+  return journal;
 }
 
-Result<std::string> Journal::read(std::string_view subject) {
-  std::string kept = fmt::format("{}{}\n", kMagic, subject);
-  std::ifstream stream(path_, std::ios::binary);
-  if (!stream) return kept;
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (!text.empty() && !kMagic.starts_with(text) && !text.starts_with(kMagic)) {
+Result<void> Journal::read(std::string_view subject) {
+  kept_ = fmt::format("{}{}\n", kMagic, subject);
+  std::error_code none;
+  if (fs::status(path_, none).type() == fs::file_type::not_found) return {};
+  ASSIGN_OR_RETURN(const auto file, MappedFile::open(path_));
+  const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()),
+                              file.bytes().size());
+  if (!kMagic.starts_with(text) && !text.starts_with(kMagic)) {
     return fail(ErrorCode::kInvalidInput, path_.string(),
                 "is kept for what is done until the output is complete, but this file is of "
-                "another kind; move it, or give another output");
+                "another kind, or of another version; move it, or give another output");
   }
-  if (!text.starts_with(kept)) return kept;
-  std::string_view rest = text;
-  rest.remove_prefix(kept.size());
+  is_own_ = text.starts_with(kept_);
+  if (!is_own_) return {};
+  std::string_view rest = text.substr(kept_.size());
   while (const auto record = firstRecord(rest)) {
     records_.emplace_back(*record);
     const std::string whole = asInFile(*record);
-    kept += whole;
+    kept_ += whole;
     rest.remove_prefix(whole.size());
   }
-  return kept;
+  return {};
+}
+
+Result<void> Journal::begin() {
+  // Without what is damaged or of another subject.
+  RETURN_IF_ERROR(writeFileAtomically(path_, {std::as_bytes(std::span(kept_))}));
+  is_own_ = true;
+  kept_ = {};
+  stream_.open(path_, std::ios::binary | std::ios::app);
+  return {};
 }
 
 Result<void> Journal::add(std::string_view record) {
   const std::string whole = asInFile(record);
   const std::lock_guard lock(mutex_);
+  if (!stream_.is_open() && stream_) RETURN_IF_ERROR(begin());
   stream_ << whole << std::flush;
   if (stream_) return {};
   return fail(ErrorCode::kIo, path_.string(), "cannot be written; free some space");
@@ -89,7 +97,7 @@ Result<void> Journal::add(std::string_view record) {
 void Journal::remove() {
   stream_.close();
   std::error_code none;
-  fs::remove(path_, none);
+  if (is_own_) fs::remove(path_, none);
 }
 
 }  // namespace galactic

@@ -17,27 +17,33 @@ namespace galactic {
 /// record, any bytes, comes with its size and hash.
 class Journal {
  public:
-  /// `subject`: all that decides what comes out, in one line. A journal of another subject is begun
-  /// anew. What is damaged, as the last record of a killed process may be, does not count, nor does
-  /// what comes after it. Fails with kIo, and with kInvalidInput where `path` is a file of another
-  /// kind, which stays as it is.
+  /// `subject`: all that decides what comes out, in one line. A journal of another subject holds
+  /// nothing; it stays as it is until the first record is added, in its place. What is damaged, as
+  /// the last record of a killed process may be, does not count, nor does what comes after it.
+  /// Fails with kIo, and with kInvalidInput where `path` is a file of another kind, which stays.
   [[nodiscard]] static Result<std::unique_ptr<Journal>> open(const std::filesystem::path& path,
                                                              std::string_view subject);
 
   /// Those that were there when it was opened, in their order.
   [[nodiscard]] const std::vector<std::string>& records() const { return records_; }
-  /// Threads may add at the same time. Fails with kIo.
+  /// Threads may add at the same time. Fails with kIo, and from then on always.
   [[nodiscard]] Result<void> add(std::string_view record);
   /// After the output is written; nothing may be added then.
   void remove();
 
  private:
   explicit Journal(std::filesystem::path path) : path_(std::move(path)) {}
-  /// Returns what is kept of the file.
-  [[nodiscard]] Result<std::string> read(std::string_view subject);
+  [[nodiscard]] Result<void> read(std::string_view subject);
+  /// Makes the file what is kept of it.
+  [[nodiscard]] Result<void> begin();
 
   std::filesystem::path path_;
   std::mutex mutex_;
+  /// What the file begins with.
+  std::string kept_;
+  /// Whether the file that is there has this subject.
+  bool is_own_ = false;
+  /// Open from the first record on.
   std::ofstream stream_;
   std::vector<std::string> records_;
 };

@@ -190,10 +190,27 @@ TEST_F(EpisodeJournal, IsReadWithCare) {
     const auto journal = open();
     for (const std::string& record : bad) ASSERT_TRUE(journal->add(record));
   }
+  // Poses may be anything, as nothing tells them from others; all else is as it has to be.
   const auto made = goOn();
-  // Looks and batches of other episodes and scenes change nothing.
   ASSERT_TRUE(made.has_value()) << made.error().message;
   EXPECT_EQ(made->episodes.episodes.size(), wanted.episodes.episodes.size());
+  EXPECT_EQ(made->episodes.placements.size(), wanted.episodes.placements.size());
+  EXPECT_EQ(made->scenes[0].name, "kitchen");
+}
+
+TEST_F(EpisodeJournal, EndsTheDrawingWhereNothingCanBeKept) {
+  const ScratchFolder folder;
+  const auto journal = Journal::open(folder.path() / "gone/x.partial", "these").value();
+  int looks = 0;
+  inputs_.journal = journal.get();
+  inputs_.details = [&looks](std::string_view) -> Result<SceneDetails> {
+    ++looks;
+    return SceneDetails{};
+  };
+  const auto made = bake::generateEpisodes(inputs_, options_);
+  ASSERT_FALSE(made.has_value());
+  EXPECT_EQ(made.error().code, ErrorCode::kIo);
+  EXPECT_EQ(looks, 1) << "of two scenes";
 }
 
 TEST(ASceneJournal, TakesNoEpisodesThatCannotBe) {

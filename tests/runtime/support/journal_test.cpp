@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -53,13 +55,19 @@ TEST_F(AJournal, GivesBackAnyBytesInTheirOrder) {
   EXPECT_THAT(open()->records(), ElementsAre(first_, second_, third_, "more"));
 }
 
-TEST_F(AJournal, OfAnotherSubjectIsBegunAnew) {
-  ASSERT_TRUE(open("these")->add(first_));
-  EXPECT_THAT(open("those")->records(), IsEmpty());
-  EXPECT_THAT(open("these")->records(), IsEmpty());
+TEST_F(AJournal, OfAnotherSubjectIsReplacedByTheFirstRecord) {
   ASSERT_TRUE(open("these")->add(first_));
   // One subject that begins as another.
-  EXPECT_THAT(open("thes")->records(), IsEmpty());
+  for (const char* other : {"those", "thes", "these "}) {
+    const auto journal = open(other);
+    EXPECT_THAT(journal->records(), IsEmpty());
+    // Whoever only looked leaves it as it was.
+    journal->remove();
+    EXPECT_THAT(open("these")->records(), ElementsAre(first_));
+  }
+  ASSERT_TRUE(open("those")->add(second_));
+  EXPECT_THAT(open("these")->records(), IsEmpty());
+  EXPECT_THAT(open("those")->records(), ElementsAre(second_));
 }
 
 TEST_F(AJournal, ForgetsWhatAKilledProcessWasWriting) {
@@ -107,7 +115,7 @@ TEST_F(AJournal, LeavesFilesOfOtherKindsAlone) {
     ASSERT_FALSE(refused.has_value());
     EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(refused.error().where, file().string());
-    EXPECT_THAT(refused.error().message, HasSubstr("this file is of another kind; move it"));
+    EXPECT_THAT(refused.error().message, HasSubstr("another kind, or of another version; move it"));
     EXPECT_EQ(text(), other);
   }
 }
@@ -137,9 +145,28 @@ TEST_F(AJournal, IsGoneOnceTheOutputIsThere) {
 }
 
 TEST_F(AJournal, SaysWhereItCannotBeKept) {
-  const auto nowhere = Journal::open(file() / "x", "these");
-  ASSERT_FALSE(nowhere.has_value());
-  EXPECT_EQ(nowhere.error().code, ErrorCode::kIo);
+  const auto isRefused = [](const Result<void>& done) {
+    return !done.has_value() && done.error().code == ErrorCode::kIo;
+  };
+  const auto nowhere = Journal::open(file() / "x", "these").value();
+  EXPECT_TRUE(isRefused(nowhere->add(first_)));
+  EXPECT_TRUE(isRefused(nowhere->add(first_)));
+  std::filesystem::create_directory(file());
+  const auto folder = Journal::open(file(), "these");
+  ASSERT_FALSE(folder.has_value());
+  EXPECT_EQ(folder.error().code, ErrorCode::kIo);
+  std::filesystem::remove(file());
+  ASSERT_EQ(::mkfifo(file().c_str(), 0600), 0);
+  EXPECT_FALSE(Journal::open(file(), "these").has_value());
+}
+
+TEST_F(AJournal, OverwritesNoFileThatItCannotRead) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  write("mine");
+  std::filesystem::permissions(file(), std::filesystem::perms::none);
+  const auto refused = Journal::open(file(), "these");
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().code, ErrorCode::kIo);
 }
 
 }  // namespace
