@@ -1,22 +1,21 @@
 #!/usr/bin/env bash
-# learn.sh [TASK] [SEED]: a robot learns to pick things up in the sample apartment, along a path that it
-# knows (pick), or without one, by its laser (pick-laser) or its depth camera (pick-depth), or to
-# rearrange them (rearrange), and shows what it learned; without a graphics processor. After
-# scripts/quickstart.sh; works from any folder. What it makes is in build/release/learn; the worlds lie
-# beside the packs that they list.
+# learn.sh [TASK] [SEED]: a robot learns to pick things up in the sample apartment (pick), or to rearrange
+# them (rearrange), along a path that it knows; or without one, from a robot that knows it, by its laser
+# (pick-laser, rearrange-laser) or its depth camera (pick-depth). Shows what it learned; without a
+# graphics processor. After scripts/quickstart.sh; works from any folder. What it makes is in
+# build/release/learn; the worlds lie beside the packs that they list.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
 cd "$galactic_root"
 
 task=${1:-pick}
 seed=${2:-1}
-if [[ ! $task =~ ^(pick|pick-laser|pick-depth|rearrange)$ || ! $seed =~ ^[0-9]+$ || $# -gt 2 ]]; then
-  echo "learn: found \"$*\", wanted a task, which is pick, pick-laser, pick-depth or rearrange, and a \
-seed, a whole number" >&2
+if [[ ! $task =~ ^(pick|pick-laser|pick-depth|rearrange|rearrange-laser)$ || ! $seed =~ ^[0-9]+$ || \
+  $# -gt 2 ]]; then
+  echo "learn: found \"$*\", wanted a task, which is pick, pick-laser, pick-depth, rearrange or \
+rearrange-laser, and a seed, a whole number" >&2
   exit 1
 fi
-preset=quick
-[[ $task != pick-* ]] || preset=quick-${task#pick-}
 bin=build/release/bin
 sample=build/release/sample
 out=build/release/learn
@@ -49,10 +48,10 @@ world homes 2000 101
 world validation 200 303
 world unseen 400 202
 
-# learn RUN OPTION...: one that was interrupted goes on; one that is complete stays as it is.
+# learn RUN PRESET OPTION...: one that was interrupted goes on; one that is complete stays as it is.
 learn() {
-  local run=$1
-  shift
+  local run=$1 preset=$2
+  shift 2
   if [ -f "$run/settings.json" ]; then
     /usr/bin/python3 -m galactic.train -o "$run" --resume
   else
@@ -61,36 +60,57 @@ learn() {
   fi
 }
 
-# stage RUN RULES OPTION...: one of the runs that learn to rearrange. Other senses, and what they pay,
+learn_to_pick() {
+  heading "Learning to pick, along a path that it knows (preset quick)"
+  learn "$out/pick-$seed" quick
+}
+
+# rearrange RUN PRESET RULES OPTION...: a run that learns to rearrange. Other senses, and what they pay,
 # are the preset's.
-stage() {
-  local run=$1 rules=$2
-  shift 2
-  learn "$run" --second-closeup 0.04 --validate-every 2e6 "$@" --simulation "task=rearrange \
+rearrange() {
+  local run=$1 preset=$2 rules=$3
+  shift 3
+  learn "$run" "$preset" --second-closeup 0.04 --validate-every 2e6 "$@" --simulation "task=rearrange \
 episode-steps=500 observe-current target-goal target-up tilt-penalty=0.1 $rules"
 }
 
 # Three runs. Each begins with what the one before has learned, and its rules are stricter.
 learn_to_rearrange() {
+  local run=$out/rearrange-$seed
   heading "1 of 3: to carry. Away from the goal the hand keeps the target; to let go there costs little"
   # A hand that were sure to stay closed would not find out that letting go at the goal pays.
-  stage "$run/1" "no-terminate safe-drop drop-penalty=0.05" --steps 16e6 --learning-rate 2e-3 \
-    --target-kl 0.02 --odds-limit 4
+  rearrange "$run/1" quick "no-terminate safe-drop drop-penalty=0.05" --steps 16e6 \
+    --learning-rate 2e-3 --target-kl 0.02 --odds-limit 4
   heading "2 of 3: to say when it is done"
-  stage "$run/2" "safe-drop drop-penalty=0.5" --start-from "$run/1/best.pt" --steps 8e6 \
+  rearrange "$run/2" quick "safe-drop drop-penalty=0.5" --start-from "$run/1/best.pt" --steps 8e6 \
     --target-kl 0.03 --initial-log-std -1.4 --final-log-std -1.7
   heading "3 of 3: the paper's rules. Letting go elsewhere ends the episode"
-  stage "$run/3" "" --start-from "$run/2/best.pt" --steps 50e6 --target-kl 0.015 \
+  rearrange "$run/3" quick "" --start-from "$run/2/best.pt" --steps 50e6 --target-kl 0.015 \
     --initial-log-std -1.7 --final-log-std -2.6
-  run=$run/3
 }
 
-if [ "$task" = rearrange ]; then
-  learn_to_rearrange
-else
-  heading "Learning to pick (preset $preset)"
-  learn "$run"
-fi
+run=$out/$task-$seed
+case $task in
+  pick)
+    learn_to_pick
+    ;;
+  pick-*)
+    learn_to_pick
+    preset=quick-${task#pick-}
+    heading "Learning the same without the path, from the one that knows it (preset $preset)"
+    learn "$run" "$preset" --teacher "$out/pick-$seed/best.pt"
+    ;;
+  rearrange)
+    learn_to_rearrange
+    run=$run/3
+    ;;
+  rearrange-laser)
+    learn_to_rearrange
+    heading "Learning the same without the path, from the one that knows it (preset quick-laser)"
+    rearrange "$run" quick-laser "" --teacher "$out/rearrange-$seed/3/best.pt" --teacher-share 1 \
+      --steps 16e6 --initial-log-std -1.2 --final-log-std -2.6
+    ;;
+esac
 
 heading "Playing each unseen episode once: sampled actions, then the likeliest"
 /usr/bin/python3 -m galactic.evaluate "$run/best.pt" "$sample/unseen.pack" \

@@ -15,6 +15,7 @@ import torch
 
 import galactic
 from galactic.learning import checkpoint, evaluation
+from galactic.learning.checkpoint import SavedPolicy
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
 from galactic.learning.distributed import Group, device_of, local_ranks
@@ -28,10 +29,15 @@ from galactic.learning.settings import (
     SettingsError,
     add_options,
     given_options,
+    option_name,
     positive_integer,
     resumed,
 )
 from galactic.learning.trainer import Trainer, Validation, threads_of
+
+
+TEACHER = "teacher.pt"
+"""The copy of the teacher in the folder of a run."""
 
 
 @dataclasses.dataclass
@@ -42,6 +48,7 @@ class Run:
     validation: Optional[pathlib.Path]
     settings: Settings
     start_from: Optional[pathlib.Path] = None
+    teacher: Optional[pathlib.Path] = None
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -72,6 +79,13 @@ def make_parser() -> argparse.ArgumentParser:
         type=named_path,
         metavar="POLICY",
         help="begin with the weights of this best.pt or policy.pt from another task or world",
+    )
+    parser.add_argument(
+        "--teacher",
+        type=named_path,
+        metavar="POLICY",
+        help="learn at first what this best.pt or policy.pt would do, which may see sensors that the "
+        "policy does not (--critic-only)",
     )
     parser.add_argument(
         "--resume", action="store_true", help="continue from the latest checkpoint in FOLDER"
@@ -120,8 +134,22 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
     envs = Homes(galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size)
     validation = _validation(run, envs, threads, group)
+    teacher = None
+    if run.teacher:
+        # A run keeps a copy, with which it can be resumed.
+        file, remedy = run.teacher, ""
+        if options.resume:
+            file = folder / TEACHER
+            remedy = f"put back this copy of {run.teacher}, or begin another run"
+        teacher = checkpoint.load_policy(file, remedy), file
     trainer = Trainer(
-        settings, envs, group, folder, validation=validation, title=folder.resolve().name
+        settings,
+        envs,
+        group,
+        folder,
+        validation=validation,
+        teacher=teacher,
+        title=folder.resolve().name,
     )
     if options.resume:
         trainer.resume()
@@ -131,7 +159,7 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         )
     # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
     group.wait_for_all()
-    group.raise_on_all(_begin_folder(run, folder) if group.rank == 0 else None)
+    group.raise_on_all(_begin_folder(run, folder, teacher) if group.rank == 0 else None)
     if options.resume:
         trainer.progress.say(f"going on after {trainer.steps:,} steps")
     else:
@@ -155,21 +183,27 @@ def _new_run(options: argparse.Namespace) -> Run:
         raise SettingsError(
             f"{options.out} already holds a run; continue it with --resume, or choose another folder"
         )
-    settings = preset(
-        "paper" if options.preset is None else options.preset, **given_options(options)
-    )
+    given = given_options(options)
+    for name in ("teacher_weight", "teacher_share"):
+        if name in given and options.teacher is None:
+            raise SettingsError(
+                f"{option_name(name)} goes with --teacher; name one, or leave it out"
+            )
+    settings = preset("paper" if options.preset is None else options.preset, **given)
     return Run(
         options.world.resolve(),
         _absolute(options.validation),
         settings,
         _absolute(options.start_from),
+        _absolute(options.teacher),
     )
 
 
 def _resumed_run(options: argparse.Namespace) -> Run:
-    if options.world or options.preset or options.validation or options.start_from:
+    policies = options.start_from or options.teacher
+    if options.world or options.preset or options.validation or policies:
         raise SettingsError(
-            "a resumed run keeps its world, its preset and its weights; leave them out"
+            "a resumed run keeps its world, its preset, its weights and its teacher; leave them out"
         )
     file = options.out / "settings.json"
     if not file.is_file():
@@ -184,23 +218,35 @@ def _read_run(file: pathlib.Path) -> Run:
     remedy = "begin another run, which can have the weights of best.pt (--start-from)"
     with checkpoint.refusing(f"{file} does not say what the run is", remedy):
         run = json.loads(file.read_text(encoding="utf-8"))
-        run, path = {"start_from": None, **run}, (str, type(None))
+        run, path = {"start_from": None, "teacher": None, **run}, (str, type(None))
         checkpoint.require_types(
-            run, {"world": str, "validation": path, "start_from": path, "settings": dict}
+            run,
+            {
+                "world": str,
+                "validation": path,
+                "start_from": path,
+                "teacher": path,
+                "settings": dict,
+            },
         )
         return Run(
             pathlib.Path(run["world"]),
             pathlib.Path(run["validation"]) if run["validation"] else None,
             Settings.from_dict(run["settings"]),
             pathlib.Path(run["start_from"]) if run["start_from"] else None,
+            pathlib.Path(run["teacher"]) if run["teacher"] else None,
         )
 
 
-def _begin_folder(run: Run, folder: pathlib.Path) -> Optional[Exception]:
+def _begin_folder(
+    run: Run, folder: pathlib.Path, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]
+) -> Optional[Exception]:
     """Makes the folder of a run; why that is impossible."""
     try:
         checkpoint.require_folder(folder)
         folder.mkdir(parents=True, exist_ok=True)
+        if teacher is not None and teacher[1] != folder / TEACHER:
+            checkpoint.save_policy(teacher[0], folder / TEACHER)
         _write_run(run, folder)
     except (galactic.Error, OSError) as error:
         return error
@@ -214,6 +260,7 @@ def _write_run(run: Run, folder: pathlib.Path) -> None:
             "world": str(run.world),
             "validation": str(run.validation) if run.validation else None,
             "start_from": str(run.start_from) if run.start_from else None,
+            "teacher": str(run.teacher) if run.teacher else None,
             "settings": run.settings.to_dict(),
         },
     )

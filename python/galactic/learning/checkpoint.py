@@ -8,6 +8,7 @@ A run's folder holds
         trainer.pt                   optimizer, counters, curves
         rank-0.pt, rank-1.pt ...     envs, memories and episodes of each rank
     best.pt                          the policy.pt that did best
+    teacher.pt                       the policy.pt of the teacher, if there is one
     curves.csv, curves.html          written while it runs
 
 A .pt file is a dictionary that `torch.load(..., weights_only=True)` reads: tensors under their names,

@@ -63,6 +63,23 @@ class ActionDistribution(NamedTuple):
         odds = functional.softplus(self.logits) - self.logits * torch.sigmoid(self.logits)
         return gaussian + self._of_decisions(odds)
 
+    def divergence(self, other: "ActionDistribution") -> Tensor:
+        """Kullback-Leibler divergence of `other` from this distribution, of what both decide; shape
+        [...]. No gradient reaches the noise of `other`: it follows the means and the odds alone."""
+        noise = other.log_std.detach()
+        apart = (self.mean - other.mean).square() + torch.exp(2.0 * self.log_std)
+        motions = noise - self.log_std + 0.5 * (apart * torch.exp(-2.0 * noise) - 1.0)
+        odds = functional.softplus(other.logits) - functional.softplus(self.logits)
+        decisions = odds + torch.sigmoid(self.logits) * (self.logits - other.logits)
+        fewer = other if self.decides_terminate else self
+        return motions.sum(-1) + fewer._of_decisions(decisions)
+
+    def of(self, envs: Tensor) -> "ActionDistribution":
+        """That of some envs, of a batch [T, n, ...]."""
+        return self._replace(
+            mean=self.mean[:, envs], log_std=self.log_std[:, envs], logits=self.logits[:, envs]
+        )
+
     def _of_decisions(self, terms: Tensor) -> Tensor:
         return terms.sum(-1) if self.decides_terminate else terms[..., 0]
 

@@ -10,12 +10,14 @@ import torch
 from torch import Tensor
 
 from galactic.learning.distributed import Group
+from galactic.learning.distributions import ActionDistribution
 from galactic.learning.flat_adam import FlatAdam
 from galactic.learning.networks import Outputs, Policy
 from galactic.learning.noise import mini_batch_envs
 from galactic.learning.precision import Precision
 from galactic.learning.rollout import Rollout, advantages
 from galactic.learning.settings import Settings
+from galactic.learning.teacher import Teacher
 
 
 @dataclass
@@ -67,6 +69,14 @@ def ppo_loss(outputs: Outputs, batch: Batch, settings: Settings, entropy_coeffic
     return Loss(total, sums)
 
 
+@dataclass
+class Lesson:
+    """What a teacher would have done in the steps of a rollout, and how much that counts."""
+
+    actions: ActionDistribution  # of shape [T, N]
+    weight: float
+
+
 class PacedRate:
     """The share of the scheduled learning rate that keeps the divergence of an update, which grows with
     the square of the rate, at `target_kl`: PPO's adaptive penalty (Schulman et al. 2017, section 4)
@@ -93,8 +103,10 @@ class Learner:
     """Improves a policy by the rollouts of all ranks. All ranks keep the same parameters, bit for
     bit: they start from the first rank's, and apply the same sum of gradients."""
 
-    def __init__(self, policy: Policy, settings: Settings, group: Group):
+    def __init__(self, policy: Policy, settings: Settings, group: Group,
+                 teacher: Optional[Teacher] = None):  # fmt: skip
         self.policy = policy
+        self.teacher = teacher
         self.settings = settings
         self.group = group
         self.precision = Precision(settings.precision, group.device)
@@ -119,7 +131,8 @@ class Learner:
         returns = raw + rollout.values[:steps]
         scaled, all_steps = self._normalized(raw)
         per_mini_batch = all_steps / settings.mini_batches
-        totals = torch.zeros(len(Loss.NAMES) + 1, dtype=torch.float64, device=raw.device)
+        lesson = self._lesson(rollout, progress)
+        totals = torch.zeros(len(Loss.NAMES) + 2, dtype=torch.float64, device=raw.device)
         for epoch in range(settings.epochs):
             numbers = range(self.group.rank * envs, (self.group.rank + 1) * envs)
             parts = mini_batch_envs(
@@ -134,26 +147,41 @@ class Learner:
                     scaled[:, chosen],
                     returns[:, chosen],
                 )
-                totals += self._step(rollout, chosen, batch, entropy_coefficient, per_mini_batch)
+                totals += self._step(
+                    rollout, chosen, batch, lesson, entropy_coefficient, per_mini_batch
+                )
         self._limit_exploration(progress)
         self._absorb_observations(rollout)
         report = self._report(totals, raw, returns)
+        if lesson is None:
+            del report["teacher_kl"]
         self.rate.follow(report["kl"])
         return report
 
-    def _step(self, rollout: Rollout, chosen: Tensor, batch: Batch, entropy_coefficient: float,
-              steps_of_all: float) -> Tensor:  # fmt: skip
-        """One step of the optimizer; the sums of its losses and the norm of the gradient."""
+    def _lesson(self, rollout: Rollout, progress: float) -> Optional[Lesson]:
+        weight = self.settings.teacher_weight_at(progress)
+        if self.teacher is None or weight == 0.0:
+            return None
+        return Lesson(self.teacher.actions(rollout), weight)
+
+    def _step(self, rollout: Rollout, chosen: Tensor, batch: Batch, lesson: Optional[Lesson],
+              entropy_coefficient: float, steps_of_all: float) -> Tensor:  # fmt: skip
+        """One step of the optimizer; the sums of its losses, the divergence from the teacher, and the
+        norm of the gradient."""
         self.optimizer.clear()
         with self.precision.autocast():
             hidden = None if rollout.first_hidden is None else rollout.first_hidden[chosen]
             inputs = rollout.inputs(0, rollout.steps, chosen, self.policy.needs_previous)
             outputs = self.policy(inputs, hidden, rollout.starts[: rollout.steps, chosen])
         loss = ppo_loss(outputs, batch, self.settings, entropy_coefficient, steps_of_all)
-        loss.total.backward()
+        total, divergence = loss.total, loss.sums.new_zeros(())
+        if lesson is not None:
+            divergence = lesson.actions.of(chosen).divergence(outputs.actions).sum()
+            total = total + (lesson.weight / steps_of_all) * divergence
+        total.backward()
         self.group.sum(self.optimizer.gradients)
         norm = self.optimizer.step(self.settings.max_grad_norm)
-        return torch.cat([loss.sums, norm.reshape(1)]).double()
+        return torch.cat([loss.sums, divergence.detach().reshape(1), norm.reshape(1)]).double()
 
     def _normalized(self, raw: Tensor) -> tuple[Tensor, float]:
         """Advantages of mean 0 and variance 1 over all ranks, and the steps of all ranks."""
@@ -187,6 +215,7 @@ class Learner:
         *sums, error, steps, first, second = self.group.sum(torch.cat([totals, spread])).tolist()
         count = sums[Loss.NAMES.index("steps")]
         report = {name: sums[i] / count for i, name in enumerate(Loss.NAMES[:-1])}
+        report["teacher_kl"] = sums[-2] / count
         report["grad_norm"] = sums[-1] / (rounds * self.group.size)
         variance = second / steps - (first / steps) ** 2
         report["explained_variance"] = 1.0 - error / steps / max(variance, 1e-12)

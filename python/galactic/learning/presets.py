@@ -37,20 +37,25 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
         "network": "state",
     },
     # The same without a map: two planes of a laser scanner in the place of what it knows of the way,
-    # which only its critic knows.
+    # which only its critic knows, and a memory. For a --teacher that the preset `quick` has made;
+    # without one it takes more steps.
     "quick-laser": {
         **_QUICK,
-        "steps": 16_000_000,
+        "steps": 4_000_000,
         "simulation": "task=pick episode-steps=200 laser-beams=32 laser-heights=0.25,0.8 laser-range=4 "
         f"geodesic geodesic-weight=1 {_BUMP}",
         "network": "state",
+        "recurrent": True,
         "critic_only": "geodesic",
     },
-    # By its head's depth camera instead; a critic that knows the way makes no difference there.
+    # By its head's depth camera instead.
     "quick-depth": {
         **_QUICK,
-        "simulation": f"task=pick episode-steps=200 geodesic-weight=1 {_BUMP}",
+        "steps": 4_000_000,
+        "simulation": f"task=pick episode-steps=200 geodesic geodesic-weight=1 {_BUMP}",
         "network": "depth",
+        "recurrent": True,
+        "critic_only": "geodesic",
         "image_size": 64,
     },
 }

@@ -242,6 +242,20 @@ class Settings:
         True, "PPO", "normalize advantages to mean 0, variance 1 over all ranks"
     )
 
+    teacher_weight: float = _setting(
+        1.0,
+        "PPO",
+        "weight of the divergence from what the `--teacher` would do, at the start of the run",
+        low=0.0,
+    )
+    teacher_share: float = _setting(
+        0.5,
+        "PPO",
+        "share of the run over which that weight goes down to 0; the rest is learned by reward alone",
+        low=0.0,
+        high=1.0,
+    )
+
     ranks: int = _setting(
         1,
         "Ranks",
@@ -362,6 +376,11 @@ class Settings:
     def entropy_at(self, progress: float) -> float:
         end = self.entropy if self.entropy_end < 0.0 else self.entropy_end
         return _between(self.entropy, end, progress)
+
+    def teacher_weight_at(self, progress: float) -> float:
+        if progress >= self.teacher_share:
+            return 0.0
+        return _between(self.teacher_weight, 0.0, progress / self.teacher_share)
 
     def log_std_limit_at(self, progress: float) -> float:
         """The most that a parameter of `log_std` may be."""

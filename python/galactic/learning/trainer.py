@@ -32,6 +32,7 @@ from galactic.learning.reports.curves import COLUMNS, Curves, write_json
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
 from galactic.learning.stopwatch import Stopwatch
+from galactic.learning.teacher import Teacher
 
 Validation = Callable[[Policy], EpisodeSums]
 """Runs the episodes for validation that are this rank's, and returns their sums."""
@@ -45,11 +46,13 @@ class Trainer:
     """A run: all that `python3 -m galactic.train` does after it has read its command line.
 
     `folder` None writes nothing. `parts` are names and sizes of the parts of an observation, for those
-    who use the policy. Every rank makes one, and calls the same methods.
+    who use the policy. `teacher`: see Teacher, with the file it comes from. Every rank makes one, and
+    calls the same methods.
     """
 
     def __init__(self, settings: Settings, envs: Environments, group: Group,
                  folder: Optional[pathlib.Path], *, validation: Optional[Validation] = None,
+                 teacher: Optional[tuple[SavedPolicy, pathlib.Path]] = None,
                  title: str = "run"):  # fmt: skip
         self.settings = settings
         self.envs = envs
@@ -70,7 +73,10 @@ class Trainer:
         self.policy = new_policy(settings, self.shape).to(group.device)
         if envs.images:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
-        self.learner = Learner(self.policy, settings, group)
+        taught_by = None
+        if teacher is not None:
+            taught_by = Teacher(*teacher, self.parts, envs.motions, group)
+        self.learner = Learner(self.policy, settings, group, taught_by)
         options = CollectorOptions(
             settings.horizon,
             settings.seed,
@@ -306,6 +312,10 @@ class Trainer:
     def _take_counters(self, counters: dict[str, Any]) -> None:
         self.updates, self.best = counters["updates"], counters["best"]
         self.learner.rate.share = counters["rate_share"]
+        # Checkpoints of before lack the columns that were added since.
+        for row in counters["rows"]:
+            if isinstance(row, list) and len(row) == _COLUMNS_OF_BEFORE:
+                row += [None] * (len(COLUMNS) - len(row))
         self.curves.rows = _rows(counters, "rows", len(COLUMNS), (float, int, type(None)))
         width = len(dataclasses.fields(EpisodeSums))
         self._window = collections.deque(
@@ -387,6 +397,8 @@ class Trainer:
         self._interrupted = True
         self.progress.say("stopping after this update; once more to stop without saving")
 
+
+_COLUMNS_OF_BEFORE = COLUMNS.index("teacher_kl")
 
 # Of a trainer.pt: types that JSON gives its values.
 _COUNTERS = {

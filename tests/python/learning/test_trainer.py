@@ -323,7 +323,7 @@ GONE = "gone"
         (
             "trainer.pt",
             {"rows": [[1.0, 2.0]]},
-            r"rows\[0\]: found \[1.0, 2.0\], expected 20 numbers",
+            r"rows\[0\]: found \[1.0, 2.0\], expected 21 numbers",
         ),
         ("trainer.pt", {"window": [[1, 2, 3, "4"]]}, r"window\[0\]: found \[1, 2, 3, '4'\], exp"),
         ("trainer.pt", {"window": [4]}, r"window\[0\]: found 4, expected 4 numbers"),
@@ -364,6 +364,21 @@ def test_a_checkpoint_of_other_values_is_refused(
     with pytest.raises(CheckpointError, match=message) as refused:
         resumed.resume()
     assert str(file.parent) in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_a_checkpoint_of_before_there_were_teachers_is_taken_up(tmp_path: pathlib.Path) -> None:
+    resumed = saved_run(tmp_path)
+    file = resumed.checkpoints.latest() / "trainer.pt"
+    values, tensors = checkpoint.load(file)
+    width = len(values["rows"][0])
+    values["rows"] = [row[:-1] for row in values["rows"]]
+    checkpoint.save(file, values, tensors)
+    resumed.resume()
+    assert values["rows"] and [len(row) for row in resumed.curves.rows] == [width] * 2
+    values["rows"] = [row[:-1] for row in values["rows"]]
+    checkpoint.save(file, values, tensors)
+    with pytest.raises(CheckpointError, match="rows.0.: found"):
+        resumed.resume()
 
 
 def test_a_checkpoint_of_before_the_curves_waited_is_taken_up(tmp_path: pathlib.Path) -> None:

@@ -385,6 +385,50 @@ def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
     assert resumed.returncode == 1 and "leave them out" in resumed.stderr
 
 
+def test_a_run_learns_from_a_teacher_that_sees_more(tmp_path: pathlib.Path) -> None:
+    """It keeps a copy of it, and goes on with that."""
+    teacher, folder = tmp_path / "teacher", tmp_path / "run"
+    assert call("train", WORLD, "-o", teacher, *SMALL, "--steps", UPDATE).returncode == 0
+    taught = ["--simulation", LASER, "--critic-only", "geodesic", "--recurrent"]
+    taught += ["--teacher", teacher / "best.pt", "--teacher-share", "0.6"]
+    words = [*SMALL, *taught, "--steps", 4 * UPDATE, "--checkpoint-every", UPDATE]
+    for place, pause in ((folder, []), (tmp_path / "cut", ["--pause-at", 2 * UPDATE])):
+        done = call("train", WORLD, "-o", place, *words, *pause)
+        assert done.returncode == 0, done.stderr
+    told = [row["teacher_kl"] for row in curve(folder)]
+    assert told[0] and told[1] and told[2] and told[3] is None
+    assert json.loads((folder / "settings.json").read_text())["teacher"] == str(teacher / "best.pt")
+    words = [*SMALL_OF_ANY_RANKS, "--ranks", "2", *taught, "--steps", UPDATE]
+    both = run("train", WORLD, "-o", tmp_path / "both", *words)
+    assert both.returncode == 0, both.stderr
+    (teacher / "best.pt").unlink()
+    assert call("train", "-o", tmp_path / "cut", "--resume").returncode == 0
+    assert curve(tmp_path / "cut") == curve(folder)
+    policy = checkpoint.load_policy(folder / "best.pt")
+    other = checkpoint.load_policy(tmp_path / "cut" / "best.pt")
+    for one, two in zip(policy.policy.parameters(), other.policy.parameters()):
+        assert torch.equal(one, two)
+
+    def refuse(code: int, message: str, *options: object) -> None:
+        done = call("train", *options)
+        assert done.returncode == code and message in done.stderr, done.stderr
+
+    new = [WORLD, "-o", tmp_path / "new", *SMALL, "--teacher"]
+    refuse(2, "best.pt: cannot open the file: No such file", *new, teacher / "best.pt")
+    copy = folder / "teacher.pt"
+    blind = [*new, copy, "--simulation", BLIND]
+    refuse(3, f"{copy} sees bump, which this run does not observe; turn the sensor on", *blind)
+    refuse(3, f"{folder / 'best.pt'} has a memory, expected a teacher", *new, folder / "best.pt")
+    refuse(1, "--teacher-share goes with --teacher", *new[:-1], "--teacher-share", "0.3")
+    refuse(1, "its weights and its teacher", "-o", folder, "--resume", "--teacher", copy)
+    assert not (tmp_path / "new").exists()
+    copy.unlink()
+    gone = (
+        f"{copy}: cannot open the file: No such file or directory; put back this copy of {teacher}"
+    )
+    refuse(2, gone, "-o", folder, "--resume", "--steps", 5 * UPDATE)
+
+
 def test_a_policy_pack_knows_the_options_of_its_env(tmp_path: pathlib.Path) -> None:
     small = [*SMALL, "--steps", UPDATE, "--simulation", LASER]
     assert call("train", WORLD, "-o", tmp_path / "run", *small).returncode == 0

@@ -32,11 +32,13 @@ COLUMNS = (
     "explained_variance",
     "log_std",
     "learning_rate",
+    "teacher_kl",
 )
 """Steps, seconds and updates since the run began, over all its parts; sps: steps per second since the
 row before. Success, return and length: means of the latest episodes of training, from when every env
 has finished one; `validation_...`: of the episodes for validation, in rows that have them. Log_std:
-the mean of the policy's, where they are parameters."""
+the mean of the policy's, where they are parameters. Teacher_kl: the divergence from what the teacher
+would do, nats per step, while it counts. New columns come last: see Trainer."""
 
 
 class Curves:
