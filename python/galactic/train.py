@@ -22,7 +22,7 @@ from galactic.learning.distributed import Group, device_of, local_ranks
 from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.launch import launch
 from galactic.learning.networks import Policy
-from galactic.learning.presets import PRESETS, preset
+from galactic.learning.presets import PRESETS, TAUGHT, preset
 from galactic.learning.reports.curves import write_json
 from galactic.learning.settings import (
     Settings,
@@ -163,6 +163,10 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     if options.resume:
         trainer.progress.say(f"going on after {trainer.steps:,} steps")
     else:
+        if options.preset in TAUGHT and run.teacher is None:
+            trainer.progress.say(
+                f"the preset {options.preset} is made for a --teacher; without one, give it more --steps"
+            )
         trainer.begin()
     undisturbed = trainer.train(options.pause_at)
     envs.close()

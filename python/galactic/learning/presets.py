@@ -60,6 +60,9 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
     },
 }
 
+# Those that are made for a run with a --teacher.
+TAUGHT = ("quick-laser", "quick-depth")
+
 
 def preset(name: str, **changes: Any) -> Settings:
     """The settings of a preset, with changes: see overriding()."""

@@ -409,6 +409,11 @@ def test_a_run_learns_from_a_teacher_that_sees_more(tmp_path: pathlib.Path) -> N
     for one, two in zip(policy.policy.parameters(), other.policy.parameters()):
         assert torch.equal(one, two)
 
+    untaught = [*SMALL[2:], "--preset", "quick-laser", "--steps", UPDATE]
+    done = call("train", WORLD, "-o", tmp_path / "untaught", *untaught)
+    assert done.returncode == 0
+    assert "the preset quick-laser is made for a --teacher; without one" in done.stderr
+
     def refuse(code: int, message: str, *options: object) -> None:
         done = call("train", *options)
         assert done.returncode == code and message in done.stderr, done.stderr
