@@ -61,9 +61,12 @@ bool isSound(const DrawnEpisode& episode, std::size_t objects) {
 }  // namespace
 
 SceneJournal::Key SceneJournal::keyOf(std::string_view scene, const SceneDetails& details) {
-  const std::string bytes = bytesOf(scene, details.mesh.vertices, details.mesh.triangles,
-                                    details.mesh.bounds, details.receptacles);
-  return detail::contentHash(std::as_bytes(std::span(bytes)));
+  const auto hashOf = [](const auto& list) {
+    return detail::contentHash(std::as_bytes(std::span(list)));
+  };
+  // Meshes are large, and not copied.
+  return hashOf(bytesOf(scene, hashOf(details.mesh.vertices), hashOf(details.mesh.triangles),
+                        details.receptacles));
 }
 
 SceneJournal::SceneJournal(Journal* journal, std::size_t objects)
