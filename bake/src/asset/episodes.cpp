@@ -110,8 +110,9 @@ std::string subjectOf(EpisodeGenerationJob job, std::span<const SourceFile> file
   job.solve = 0;
   job.generate.most_skipped = 0;
   std::string parts = fmt::format("{:016x}{:016x}\n", program.hash_high, program.hash_low);
-  for (const auto& [name, value] : contentOptions(job))
+  for (const auto& [name, value] : contentOptions(job)) {
     parts += fmt::format("{}={}\n", name, value);
+  }
   for (const SourceFile& file : files) {
     parts += fmt::format("{:016x}{:016x}\n", file.hash_high, file.hash_low);
   }

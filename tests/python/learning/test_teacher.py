@@ -127,7 +127,7 @@ def test_a_teacher_that_could_not_play_is_refused(
 
 
 class Blindfold(ReachAndGrasp):
-    """The same, where reward tells nothing: success pays once in a hundred, and by chance."""
+    """The same, where nothing is paid."""
 
     def recv(self, half: int) -> Any:
         step = super().recv(half)
