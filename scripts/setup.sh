@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Installs the Debian packages of scripts/packages.txt that are not there yet. Asks no questions; as a
-# user other than root it calls sudo.
+# setup.sh [PACKAGE...]: installs the Debian packages of scripts/packages.txt, and these, that are not there yet. Asks
+# no questions; as a user other than root it calls sudo.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 mapfile -t wanted < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$here/packages.txt")
+wanted+=("$@")
 
 if ! command -v apt-get >/dev/null; then
   echo "setup: found no apt-get; this script knows Debian 12 only. Install what" \

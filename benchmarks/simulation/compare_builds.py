@@ -6,8 +6,9 @@
 
 WORLDS is what make_published_world.sh left. Where code happens to lie in memory changes the time of a step by 2 % and
 more, so play_workload, as it is here, is linked with the library of each build (libgalactic.a) in several orders of its
-sections, and runs in turns, after so many steps that robots that drive ahead have reached the walls. Prints the processor time of a step of one env in nanoseconds: of the least of each order's
-turns the mean and the range, and how many times as fast that is as the first build. Needs lld.
+sections, and runs in turns, after so many steps that robots that drive ahead have reached the walls. Prints the
+processor time of a step of one env in nanoseconds: of the least of each order's turns the mean and the range, and how
+many times as fast that is as the first build. Needs lld, or the linker that a build was configured with.
 """
 
 import argparse
@@ -23,20 +24,21 @@ HERE = pathlib.Path(__file__).resolve().parent
 LIBRARIES = ("-lfmt", "-lxxhash", "-lepoxy", "-lpthread", "-ldl")
 
 
-def source_of(build: pathlib.Path) -> pathlib.Path:
-    """The source tree that a build folder belongs to."""
+def configured(build: pathlib.Path, name: str) -> str:
+    """What a build folder was configured with, "" if it was not."""
     cache = (build / "CMakeCache.txt").read_text()
-    found = re.search(r"^CMAKE_HOME_DIRECTORY:INTERNAL=(.*)$", cache, re.MULTILINE)
-    if found is None:
-        raise ValueError(f"{build} is no build folder: CMakeCache.txt names no source")
-    return pathlib.Path(found[1])
+    found = re.search(rf"^{name}:\w+=(.*)$", cache, re.MULTILINE)
+    return found[1] if found else ""
 
 
 def link(build: pathlib.Path, orders: int, out: pathlib.Path) -> list[pathlib.Path]:
     """play_workload with the library of a build, in so many orders of its sections."""
-    compiler = ["c++", "-O3", "-DNDEBUG", "-std=c++20"]
+    compiler = [configured(build, "CMAKE_CXX_COMPILER"), "-O3", "-DNDEBUG", "-std=c++20"]
+    if configured(build, "CMAKE_INTERPROCEDURAL_OPTIMIZATION") == "ON":
+        compiler.append("-flto=thin")
+    linker = configured(build, "CMAKE_EXE_LINKER_FLAGS") or "-fuse-ld=lld"
     part = out / "play_workload.o"
-    include = source_of(build) / "runtime/include"
+    include = pathlib.Path(configured(build, "CMAKE_HOME_DIRECTORY")) / "runtime/include"
     subprocess.run(
         [*compiler, f"-I{include}", "-c", HERE / "play_workload.cpp", "-o", part], check=True
     )
@@ -44,7 +46,7 @@ def link(build: pathlib.Path, orders: int, out: pathlib.Path) -> list[pathlib.Pa
     for order in range(1, orders + 1):
         program = out / str(order)
         library = build / "runtime/libgalactic.a"
-        shuffle = ("-fuse-ld=lld", f"-Wl,--shuffle-sections=.text*={order}", "-Wl,--as-needed")
+        shuffle = (linker, f"-Wl,--shuffle-sections=.text*={order}", "-Wl,--as-needed")
         subprocess.run([*compiler, *shuffle, part, library, *LIBRARIES, "-o", program], check=True)
         programs.append(program)
     return programs

@@ -1,0 +1,31 @@
+# Profile-guided optimization, with Clang (scripts/build_pgo.sh goes through the steps): programs of a build with
+# GALACTIC_PGO=record count which code runs how often, and the next build lays its code out by what was merged of
+# these counts. Code that was built for the record and did not run counts as cold: a record is to do all that has
+# to be fast.
+set(GALACTIC_PGO "" CACHE STRING
+  "record (have programs count what they run, in FOLDER/profile), or the merged profile to optimize by (.profdata)")
+if(NOT GALACTIC_PGO)
+  return()
+endif()
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  message(FATAL_ERROR "found GALACTIC_PGO=${GALACTIC_PGO} with ${CMAKE_CXX_COMPILER}, expected Clang: set "
+    "CMAKE_CXX_COMPILER, or run scripts/build_pgo.sh, which does")
+endif()
+
+if(GALACTIC_PGO STREQUAL "record")
+  add_compile_options(-fprofile-generate=${PROJECT_BINARY_DIR}/profile)
+  add_link_options(-fprofile-generate=${PROJECT_BINARY_DIR}/profile)
+else()
+  get_filename_component(profile ${GALACTIC_PGO} ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
+  if(NOT EXISTS ${profile} OR IS_DIRECTORY ${profile})
+    message(FATAL_ERROR "found no profile ${profile}, which GALACTIC_PGO names: scripts/build_pgo.sh records one")
+  endif()
+  # Compiled anew with a new profile: the copy's name is in the command line of the compiler.
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${profile})
+  file(SHA256 ${profile} hash)
+  string(SUBSTRING ${hash} 0 16 hash)
+  file(COPY_FILE ${profile} ${PROJECT_BINARY_DIR}/${hash}.profdata ONLY_IF_DIFFERENT)
+  # Sources that changed since the record are compiled without it.
+  add_compile_options(-fprofile-use=${PROJECT_BINARY_DIR}/${hash}.profdata
+    -Wno-profile-instr-unprofiled -Wno-profile-instr-out-of-date -Wno-backend-plugin)
+endif()
