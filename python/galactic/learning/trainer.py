@@ -75,7 +75,7 @@ class Trainer:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         taught_by = None
         if teacher is not None:
-            taught_by = Teacher(*teacher, self.parts, envs.motions, group)
+            taught_by = Teacher(*teacher, settings, self.parts, envs.motions, group)
         self.learner = Learner(self.policy, settings, group, taught_by)
         options = CollectorOptions(
             settings.horizon,
