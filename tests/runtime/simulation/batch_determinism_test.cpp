@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "batch_trace.h"
+#include "support/sanitized.h"
 
 namespace galactic::test::batch_determinism_test {
 namespace {
@@ -72,17 +73,20 @@ TEST(BatchSimulator, KnowsEachOfManyFloorsAsIfThereWereNoOther) {
   options.threads = 1;
   std::vector<std::unique_ptr<BoxWorld>> worlds;
   std::vector<BatchSimulator> alone;
-  for (const Start& start : starts) {
-    worlds.push_back(std::make_unique<BoxWorld>(blocks, std::vector{start}));
+  // Each floor is mapped once more for one that is alone: where a sanitizer watches, for a few.
+  constexpr std::uint32_t kStride = kIsSanitized ? 8 : 1;
+  for (std::uint32_t env = 0; env < starts.size(); env += kStride) {
+    worlds.push_back(std::make_unique<BoxWorld>(blocks, std::vector{starts[env]}));
     alone.push_back(made(*worlds.back(), options));
   }
   for (std::uint32_t step = 0; step < 30; ++step) {
     const std::vector<float> actions = actionsFor(together, 0, step);
     together.step(actions);
     by_threads.step(actions);
-    for (std::uint32_t env = 0; env < alone.size(); ++env) {
-      alone[env].step(actions);
-      const Pose wanted = alone[env].envState(env).world_from_root;
+    for (std::uint32_t n = 0; n < alone.size(); ++n) {
+      const std::uint32_t env = n * kStride;
+      alone[n].step(actions);
+      const Pose wanted = alone[n].envState(env).world_from_root;
       ASSERT_EQ(together.envState(env).world_from_root, wanted) << env << " in step " << step;
       ASSERT_EQ(by_threads.envState(env).world_from_root, wanted) << env << " in step " << step;
     }
