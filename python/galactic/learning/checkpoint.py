@@ -19,6 +19,7 @@ and under "values" a JSON text with all else (torch 1.13 reads no plain floats t
                 settings  Settings.to_dict()
                 shape     PolicyShape._asdict()
                 parts     names and sizes of the parts of an observation, in order: [[name, size], ...]
+                meanings  what their numbers mean: privileges.meaning_of(); not in older files
                 steps     steps of training
                 success   success rate by which it was judged, or null
 """
@@ -31,7 +32,7 @@ import json
 import os
 import pathlib
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Callable, Iterable, Iterator, Mapping, Optional
 
 import torch
@@ -56,7 +57,8 @@ class CheckpointError(Exception):
 
 @dataclass
 class SavedPolicy:
-    """A policy as it was saved. `parts`: names and sizes of the parts of its observations."""
+    """A policy as it was saved. `parts`: names and sizes of the parts of its observations. `meanings`: what
+    their numbers mean (privileges.meaning_of()), as far as that is known."""
 
     policy: Policy
     settings: Settings
@@ -64,6 +66,7 @@ class SavedPolicy:
     parts: list[tuple[str, int]]
     steps: int
     success: Optional[float]
+    meanings: Mapping[str, Any] = field(default_factory=dict)
 
 
 def new_policy(settings: Settings, shape: PolicyShape) -> Policy:
@@ -89,6 +92,7 @@ def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
         "settings": saved.settings.to_dict(),
         "shape": saved.shape._asdict(),
         "parts": [list(part) for part in saved.parts],
+        "meanings": dict(saved.meanings),
         "steps": saved.steps,
         "success": saved.success,
     }
@@ -111,6 +115,7 @@ _POLICY = {
     "settings": dict,
     "shape": dict,
     "parts": list,
+    "meanings": dict,
     "steps": int,
     "success": (float, int, type(None)),
 }
@@ -126,6 +131,7 @@ _SHAPE = {
 
 
 def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
+    values = {"meanings": {}, **values}
     require_types(values, _POLICY)
     sizes = {**PolicyShape._field_defaults, **values["shape"]}
     require_types(sizes, _SHAPE)
@@ -136,7 +142,9 @@ def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
     policy = new_policy(settings, shape)
     policy.load_state_dict(state)
     policy.eval()
-    return SavedPolicy(policy, settings, shape, parts, values["steps"], values["success"])
+    return SavedPolicy(
+        policy, settings, shape, parts, values["steps"], values["success"], values["meanings"]
+    )
 
 
 def _require_columns(settings: Settings, shape: PolicyShape, parts: list[tuple[str, int]]) -> None:

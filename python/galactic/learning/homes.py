@@ -10,6 +10,7 @@ import torch
 
 import galactic
 from galactic.learning.environments import Observation, Step, Timeouts
+from galactic.learning.privileges import meaning_of
 from galactic.learning.settings import (
     CAMERA,
     Settings,
@@ -102,6 +103,7 @@ class Homes:
         self.parts = [
             (name, part.stop - part.start) for name, part in first.observation_parts.items()
         ]
+        self.meanings = meaning_of((name for name, _ in self.parts), first.options)
         self.decides_terminate = _decides_terminate(settings.terminate, first.options)
         self.halves: Sequence[slice] = [self.env.rows(half) for half in range(settings.halves)]
         self._landings = [_landing(half.stop - half.start) for half in self.halves]

@@ -1,8 +1,9 @@
-"""What the critic alone sees: parts of the observation that help to judge, and that no robot has."""
+"""Parts of the observation: which the critic alone sees, as they help to judge and no robot has them, and
+what the numbers of others mean."""
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence
+from typing import Any, Iterable, Mapping, Sequence
 
 from galactic.learning.settings import SettingsError, did_you_mean
 
@@ -23,6 +24,9 @@ _SENSORS: Mapping[str, tuple[str, ...]] = {
     ),
     "geodesic": ("geodesic",),
 }
+
+# Options that say how many numbers there are, or how exact.
+_NO_MEANING = ("laser_beams", "laser_noise")
 
 
 def names_of(critic_only: str) -> list[str]:
@@ -62,3 +66,9 @@ def options_of_actor(critic_only: str, options: Mapping[str, Any]) -> dict[str, 
     """Options of the simulation without those of sensors that the critic alone sees."""
     left_out = {option for name in names_of(critic_only) for option in _SENSORS[name]}
     return {name: value for name, value in options.items() if name not in left_out}
+
+
+def meaning_of(names: Iterable[str], options: Mapping[str, Any]) -> dict[str, Any]:
+    """Those options of the simulation by which numbers of the parts `names` mean one thing or another."""
+    asked = ["observe_current", *(option for name in names for option in _SENSORS.get(name, ()))]
+    return {name: options[name] for name in asked if name in options and name not in _NO_MEANING}

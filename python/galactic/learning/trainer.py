@@ -32,7 +32,7 @@ from galactic.learning.reports.curves import COLUMNS, Curves, write_json
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
 from galactic.learning.stopwatch import Stopwatch
-from galactic.learning.teacher import Teacher
+from galactic.learning.teacher import Observed, Teacher
 
 Validation = Callable[[Policy], EpisodeSums]
 """Runs the episodes for validation that are this rank's, and returns their sums."""
@@ -61,6 +61,7 @@ class Trainer:
         self.validation = validation
         torch.manual_seed(settings.seed)
         self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
+        self.meanings: dict[str, Any] = dict(getattr(envs, "meanings", {}))
         self.shape = PolicyShape(
             envs.state_size,
             envs.motions,
@@ -75,7 +76,8 @@ class Trainer:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         taught_by = None
         if teacher is not None:
-            taught_by = Teacher(*teacher, settings, self.parts, envs.motions, group)
+            observed = Observed(self.parts, self.meanings)
+            taught_by = Teacher(*teacher, observed, envs.motions, group)
         self.learner = Learner(self.policy, settings, group, taught_by)
         options = CollectorOptions(
             settings.horizon,
@@ -328,7 +330,9 @@ class Trainer:
         self._processor_seconds_before = counters["processor_seconds"] - time.process_time()
 
     def _saved_policy(self, success: Optional[float]) -> SavedPolicy:
-        return SavedPolicy(self.policy, self.settings, self.shape, self.parts, self.steps, success)
+        return SavedPolicy(
+            self.policy, self.settings, self.shape, self.parts, self.steps, success, self.meanings
+        )
 
     def _counters(self) -> dict[str, Any]:
         return {

@@ -3,6 +3,7 @@ learned otherwise."""
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import pathlib
 from typing import Any, Optional
@@ -18,7 +19,7 @@ from galactic.learning.networks import Inputs, PolicyShape
 from galactic.learning.ppo import Learner
 from galactic.learning.rollout import Rollout
 from galactic.learning.settings import Settings
-from galactic.learning.teacher import Teacher
+from galactic.learning.teacher import Observed, Teacher
 from toys import ReachAndGrasp
 
 CPU = torch.device("cpu")
@@ -82,7 +83,7 @@ def test_a_teacher_reads_its_own_parts_of_what_is_observed() -> None:
     rollout = Rollout.empty(6, 3, 4, 4)
     rollout.state.normal_()
     rollout.steps = 5
-    found = Teacher(teacher, FILE, SETTINGS, PARTS, 2, Group.alone()).actions(rollout)
+    found = Teacher(teacher, FILE, Observed(PARTS, {}), 2, Group.alone()).actions(rollout)
     own = rollout.state[:5][..., [2, 0, 1]]
     expected = teacher.policy(Inputs(own), None, rollout.starts[:5]).actions
     torch.testing.assert_close(found.mean, expected.mean)
@@ -122,44 +123,56 @@ def test_a_teacher_that_could_not_play_is_refused(
     parts: list[tuple[str, int]], options: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(CheckpointError, match="give another --teacher") as refused:
-        Teacher(saved(parts, **options), FILE, SETTINGS, PARTS, 2, Group.alone())
+        Teacher(saved(parts, **options), FILE, Observed(PARTS, {}), 2, Group.alone())
     assert str(refused.value).startswith(message)
 
 
+LASER = [("laser", 4)]
+
+
 @pytest.mark.parametrize(
-    "parts, theirs, ours, message",
+    "parts, theirs, ours, critic_only, message",
     [
-        (["laser"], "laser_beams=64", "laser_beams=64 laser_noise=0.02", None),
-        (["laser"], "laser_fov=270", "laser_fov=270.0 no-terminate", None),
-        (["laser"], "laser_fov=-1", "laser_beams=64", None),
-        (["laser"], "observe-current=false", "", None),
-        (["laser"], "laser_fov=270", "laser_fov=180", "laser_fov=270, found laser_fov=180 in"),
-        (["laser"], "laser_range=4.5", "", "laser_range=4.5, found no laser_range in"),
+        (LASER, {"laser_fov": 270}, {"laser_fov": 270}, "", None),
+        # As in files that do not say, or for a part that it does not look at.
+        (LASER, {}, {"laser_fov": 270}, "", None),
+        (PARTS, {"laser_fov": 270}, {"laser_fov": 180}, "", None),
+        ([*PARTS, *LASER], {"laser_fov": 270}, {"laser_fov": 180}, "laser", None),
         (
-            ["laser"],
+            LASER,
+            {"laser_beams": 8, "laser_noise": 0},
+            {"laser_beams": 4, "laser_noise": 0.1},
             "",
-            "laser-heights=0.1-0.4",
-            "no laser_heights, found laser_heights=0.1-0.4 in",
+            None,
         ),
-        (["way"], "laser_fov=270", "laser_fov=180", None),
-        (["way"], "", "observe-current", "no observe_current, found observe_current in"),
+        (LASER, {"laser_fov": 270}, {"laser_fov": 180}, "", "laser_fov=270, found 180 in"),
+        (
+            [*PARTS, *LASER],
+            {"laser_fov": 270, "laser_heights": "robot"},
+            {"laser_fov": 270, "laser_heights": "0.25"},
+            "",
+            "laser_heights=robot, found 0.25 in",
+        ),
+        (
+            PARTS,
+            {"observe_current": False},
+            {"observe_current": True},
+            "",
+            "observe_current=False,",
+        ),
     ],
 )
 def test_a_teacher_whose_numbers_mean_something_else_is_refused(
-    parts: list[str], theirs: str, ours: str, message: Optional[str]
+    parts: list[tuple[str, int]],
+    theirs: dict[str, Any],
+    ours: dict[str, Any],
+    critic_only: str,
+    message: Optional[str],
 ) -> None:
-    made = [(name, 2) for name in parts]
-    settings = dataclasses.replace(SETTINGS, simulation=ours)
-
-    def teacher() -> Teacher:
-        return Teacher(saved(made, simulation=theirs), FILE, settings, made, 2, Group.alone())
-
-    if message is None:
-        teacher()
-        return
-    with pytest.raises(CheckpointError) as refused:
-        teacher()
-    assert str(refused.value).startswith(f"best.pt learned with {message}")
+    made = dataclasses.replace(saved(parts, critic_only=critic_only), meanings=theirs)
+    refusal = pytest.raises(CheckpointError, match=f"^best.pt learned with {message}")
+    with refusal if message else contextlib.nullcontext():
+        Teacher(made, FILE, Observed(parts, ours), 2, Group.alone())
 
 
 class Blindfold(ReachAndGrasp):
@@ -195,7 +208,7 @@ def test_a_policy_learns_what_its_teacher_would_do_where_no_reward_tells() -> No
     assert sum(rates[-5:]) > 4.5
     shape = PolicyShape(4, 2, False, SETTINGS.normalize)
     made = SavedPolicy(policy, SETTINGS, shape, PARTS, 0, None)
-    teacher = Teacher(made, FILE, SETTINGS, PARTS, 2, Group.alone())
+    teacher = Teacher(made, FILE, Observed(PARTS, {}), 2, Group.alone())
     pupil = dataclasses.replace(SETTINGS, seed=2, teacher_share=0.8)
     _, losses, rates = learned(teacher, Blindfold(64, halves=2), pupil, 30)
     taught = [one["teacher_kl"] for one in losses if "teacher_kl" in one]

@@ -195,7 +195,7 @@ def write_policy(file: pathlib.Path, **changes: Any) -> None:
     """A policy.pt in which some of the values, and "policy", are others; "left out" leaves one out."""
     shape = PolicyShape(4, 2, False, True)
     policy = new_policy(SETTINGS, shape)
-    good = checkpoint.SavedPolicy(policy, SETTINGS, shape, [("way", 4)], 7, None)
+    good = checkpoint.SavedPolicy(policy, SETTINGS, shape, [("way", 4)], 7, None, {"laser_fov": 270})
     checkpoint.save_policy(good, file)
     values, tensors = checkpoint.load(file)
     tensors["policy"] = changes.pop("policy", tensors["policy"])
@@ -223,6 +223,7 @@ def write_policy(file: pathlib.Path, **changes: Any) -> None:
         ({"shape": {"state": 4, "motions": 2, "legs": 2}}, "legs"),
         ({"parts": [["way"]]}, "not enough values"),
         ({"parts": None}, "parts: found None, expected list"),
+        ({"meanings": []}, r"meanings: found \[\], expected dict"),
         ({"steps": "many"}, "steps: found 'many', expected int"),
         ({"success": "left out"}, "success: found nothing, expected float or int or NoneType"),
         ({"policy": []}, "list"),
@@ -244,7 +245,10 @@ def test_a_policy_of_other_values_is_refused_with_the_files_name(
 
 def test_a_policy_of_before_a_choice_takes_its_default(tmp_path: pathlib.Path) -> None:
     write_policy(tmp_path / "policy.pt", shape={"state": 4, "motions": 2, "normalize": True})
-    assert load_policy(tmp_path / "policy.pt").shape == PolicyShape(4, 2, normalize=True)
+    found = load_policy(tmp_path / "policy.pt")
+    assert found.shape == PolicyShape(4, 2, normalize=True) and found.meanings == {"laser_fov": 270}
+    write_policy(tmp_path / "policy.pt", meanings="left out")
+    assert load_policy(tmp_path / "policy.pt").meanings == {}
 
 
 def test_values_that_are_no_dictionary_are_refused(tmp_path: pathlib.Path) -> None:
