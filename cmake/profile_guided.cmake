@@ -21,11 +21,18 @@ else()
     message(FATAL_ERROR "found no profile ${profile}, which GALACTIC_PGO names: scripts/build_pgo.sh records one")
   endif()
   # Compiled anew with a new profile: the copy's name is in the command line of the compiler.
+  file(GLOB earlier ${PROJECT_BINARY_DIR}/*.profdata)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${profile})
   file(SHA256 ${profile} hash)
   string(SUBSTRING ${hash} 0 16 hash)
+  list(REMOVE_ITEM earlier ${PROJECT_BINARY_DIR}/${hash}.profdata)
+  file(REMOVE ${earlier})
   file(COPY_FILE ${profile} ${PROJECT_BINARY_DIR}/${hash}.profdata ONLY_IF_DIFFERENT)
   # Sources that changed since the record are compiled without it.
   add_compile_options(-fprofile-use=${PROJECT_BINARY_DIR}/${hash}.profdata
     -Wno-profile-instr-unprofiled -Wno-profile-instr-out-of-date -Wno-backend-plugin)
+  # Programs share what the linker compiles of the library.
+  if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+    add_link_options(-Wl,--thinlto-cache-dir=${PROJECT_BINARY_DIR}/thinlto)
+  endif()
 endif()

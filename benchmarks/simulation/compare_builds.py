@@ -14,6 +14,7 @@ many times as fast that is as the first build. Needs lld, or the linker that a b
 import argparse
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -31,14 +32,23 @@ def configured(build: pathlib.Path, name: str) -> str:
     return found[1] if found else ""
 
 
+def compiler_of(build: pathlib.Path) -> list[str]:
+    """As programs of a build folder are compiled and linked."""
+    command = [configured(build, "CMAKE_CXX_COMPILER"), "-O3", "-DNDEBUG", "-std=c++20"]
+    if configured(build, "CMAKE_INTERPROCEDURAL_OPTIMIZATION").upper() in ("ON", "TRUE", "YES", "1"):
+        command.append("-flto=thin" if "clang" in command[0] else "-flto=auto")
+    return command
+
+
 def link(build: pathlib.Path, orders: int, out: pathlib.Path) -> list[pathlib.Path]:
     """play_workload with the library of a build, in so many orders of its sections."""
-    compiler = [configured(build, "CMAKE_CXX_COMPILER"), "-O3", "-DNDEBUG", "-std=c++20"]
-    if configured(build, "CMAKE_INTERPROCEDURAL_OPTIMIZATION") == "ON":
-        compiler.append("-flto=thin")
-    linker = configured(build, "CMAKE_EXE_LINKER_FLAGS") or "-fuse-ld=lld"
+    compiler = compiler_of(build)
+    linker = shlex.split(configured(build, "CMAKE_EXE_LINKER_FLAGS")) or ["-fuse-ld=lld"]
     part = out / "play_workload.o"
-    include = pathlib.Path(configured(build, "CMAKE_HOME_DIRECTORY")) / "runtime/include"
+    source = configured(build, "CMAKE_HOME_DIRECTORY")
+    if not source:
+        raise ValueError(f"{build} is no build folder: CMakeCache.txt names no source")
+    include = pathlib.Path(source) / "runtime/include"
     subprocess.run(
         [*compiler, f"-I{include}", "-c", HERE / "play_workload.cpp", "-o", part], check=True
     )
@@ -46,7 +56,7 @@ def link(build: pathlib.Path, orders: int, out: pathlib.Path) -> list[pathlib.Pa
     for order in range(1, orders + 1):
         program = out / str(order)
         library = build / "runtime/libgalactic.a"
-        shuffle = (linker, f"-Wl,--shuffle-sections=.text*={order}", "-Wl,--as-needed")
+        shuffle = (*linker, f"-Wl,--shuffle-sections=.text*={order}", "-Wl,--as-needed")
         subprocess.run([*compiler, *shuffle, part, library, *LIBRARIES, "-o", program], check=True)
         programs.append(program)
     return programs
