@@ -163,7 +163,8 @@ def main() -> int:
         groups = group_sources([source for source in sources if uses[source] == 1])
         for number, members in enumerate(groups):
             if len(members) > 1:
-                lines.append(f"set_source_files_properties({' '.join(members)} TARGET_DIRECTORY {name}\n"
+                quoted = " ".join(f'"{member}"' for member in members)
+                lines.append(f"set_source_files_properties({quoted} TARGET_DIRECTORY {name}\n"
                              f"  PROPERTIES UNITY_GROUP {number})\n")
     pathlib.Path(sys.argv[2]).write_text("".join(lines), encoding="utf-8")
     return 0

@@ -4,6 +4,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import source_groups  # noqa: E402
@@ -99,6 +100,20 @@ class SourceGroupsTest(unittest.TestCase):
     def test_a_group_does_not_grow_without_end(self):
         many = [source(f"int f{n}() {{\n  return {n};\n}}") for n in range(source_groups.MOST_SOURCES + 1)]
         self.assertEqual(self.groups(*many), [source_groups.MOST_SOURCES, 1])
+
+    def test_a_folder_may_have_a_space_in_its_name(self):
+        folder = self.folder / "two words"
+        folder.mkdir()
+        sources = [folder / name for name in ("a.cpp", "b.cpp")]
+        for path in sources:
+            path.write_text(source("constexpr int kOf_" + path.stem + " = 1;"))
+        (folder / "targets.txt").write_text(f"tool;{sources[0]};{sources[1]}\n")
+        command = ["source_groups", str(folder / "targets.txt"), str(folder / "groups.cmake")]
+        with unittest.mock.patch.object(sys, "argv", command):
+            self.assertEqual(source_groups.main(), 0)
+        self.assertEqual((folder / "groups.cmake").read_text(),
+                         f'set_source_files_properties("{sources[0]}" "{sources[1]}" TARGET_DIRECTORY tool\n'
+                         "  PROPERTIES UNITY_GROUP 0)\n")
 
 
 if __name__ == "__main__":

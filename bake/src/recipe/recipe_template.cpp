@@ -104,7 +104,7 @@ class RecipeExplainer {
       const std::size_t end = std::min(help.find(' '), help.size());
       if (line.size() + 1 + end > kWidth) {
         text_ += line + '\n';
-        line = "#";
+        line.resize(1);
       }
       line += fmt::format(" {}", help.substr(0, end));
       help.remove_prefix(std::min(end + 1, help.size()));
