@@ -26,7 +26,9 @@ else()
   file(SHA256 ${profile} hash)
   string(SUBSTRING ${hash} 0 16 hash)
   list(REMOVE_ITEM earlier ${PROJECT_BINARY_DIR}/${hash}.profdata)
-  file(REMOVE ${earlier})
+  if(earlier)
+    file(REMOVE ${earlier})
+  endif()
   file(COPY_FILE ${profile} ${PROJECT_BINARY_DIR}/${hash}.profdata ONLY_IF_DIFFERENT)
   # Sources that changed since the record are compiled without it.
   add_compile_options(-fprofile-use=${PROJECT_BINARY_DIR}/${hash}.profdata
