@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # learn.sh [TASK] [SEED]: a robot learns to pick things up in the sample apartment (pick), or to rearrange
 # them (rearrange), along a path that it knows; or without one, from a robot that knows it, by its laser
-# (pick-laser, rearrange-laser) or its depth camera (pick-depth). Shows what it learned; without a
-# graphics processor. After scripts/quickstart.sh; works from any folder. What it makes is in
+# (pick-laser, rearrange-laser) or its depth camera (pick-depth, rearrange-depth). Shows what it learned;
+# without a graphics processor. After scripts/quickstart.sh; works from any folder. What it makes is in
 # build/release/learn; the worlds lie beside the packs that they list.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
@@ -10,10 +10,9 @@ cd "$galactic_root"
 
 task=${1:-pick}
 seed=${2:-1}
-if [[ ! $task =~ ^(pick|pick-laser|pick-depth|rearrange|rearrange-laser)$ || ! $seed =~ ^[0-9]+$ || \
-  $# -gt 2 ]]; then
-  echo "learn: found \"$*\", wanted a task, which is pick, pick-laser, pick-depth, rearrange or \
-rearrange-laser, and a seed, a whole number" >&2
+if [[ ! $task =~ ^(pick|rearrange)(-laser|-depth)?$ || ! $seed =~ ^[0-9]+$ || $# -gt 2 ]]; then
+  echo "learn: found \"$*\", wanted a task, which is pick, pick-laser, pick-depth, rearrange, \
+rearrange-laser or rearrange-depth, and a seed, a whole number" >&2
   exit 1
 fi
 bin=build/release/bin
@@ -104,10 +103,11 @@ case $task in
     learn_to_rearrange
     run=$run/3
     ;;
-  rearrange-laser)
+  rearrange-*)
     learn_to_rearrange
-    heading "Learning the same without the path, from the one that knows it (preset quick-laser)"
-    rearrange "$run" quick-laser "" --teacher "$out/rearrange-$seed/3/best.pt" --teacher-share 1 \
+    preset=quick-${task#rearrange-}
+    heading "Learning the same without the path, from the one that knows it (preset $preset)"
+    rearrange "$run" "$preset" "" --teacher "$out/rearrange-$seed/3/best.pt" --teacher-share 1 \
       --steps 16e6 --initial-log-std -1.2 --final-log-std -2.6
     ;;
 esac
@@ -124,7 +124,7 @@ heading "The same policy without Python: the likeliest actions in each unseen ep
   --order partition --envs 64 --steps 100000
 "$bin/galactic-run" "$sample/unseen.pack" --policy "$run/policy.pack" --envs 8 --steps 300 \
   --view "$run/run.html" --view-envs 8 >"$run/run.txt"
-if [ "$task" = pick-depth ]; then
+if [[ $task == *-depth ]]; then
   "$bin/galactic-run" "$sample/unseen.pack" --policy "$run/policy.pack" --envs 4 --steps 40 \
     --render rgbd --contact-sheet "$run/camera.png" >"$run/camera.txt"
 fi
@@ -139,6 +139,6 @@ Look at these, in $run/:
   best.pt        the policy, for Python
   policy.pack    the policy, for galactic-run
 END
-if [ "$task" = pick-depth ]; then
+if [[ $task == *-depth ]]; then
   echo "  camera.png     what the camera of four robots showed, its depth on the right"
 fi
