@@ -195,7 +195,9 @@ def write_policy(file: pathlib.Path, **changes: Any) -> None:
     """A policy.pt in which some of the values, and "policy", are others; "left out" leaves one out."""
     shape = PolicyShape(4, 2, False, True)
     policy = new_policy(SETTINGS, shape)
-    good = checkpoint.SavedPolicy(policy, SETTINGS, shape, [("way", 4)], 7, None, {"laser_fov": 270})
+    good = checkpoint.SavedPolicy(
+        policy, SETTINGS, shape, [("way", 4)], 7, None, {"laser_fov": 270}
+    )
     checkpoint.save_policy(good, file)
     values, tensors = checkpoint.load(file)
     tensors["policy"] = changes.pop("policy", tensors["policy"])
