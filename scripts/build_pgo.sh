@@ -35,12 +35,12 @@ record() {
     llvm-profdata-19 merge -o "$recorder/galactic.profdata" "$counts"/*.profraw
 }
 
-# A robot may have no place for a laser, packs no meshes to draw: what cannot be played is not recorded. Exit code 5 is
-# that of what is not supported, 1 and 3 of what does not go with this world.
+# A robot may have no place for a laser, packs no meshes to draw: what cannot be played in this world (exit codes 3 and
+# 5) is not recorded.
 if_possible() {
   local code=0
   "$@" || code=$?
-  [[ $code =~ ^(0|1|3|5)$ ]]
+  [[ $code =~ ^(0|3|5)$ ]]
 }
 
 # play FOLDER: what 96 envs do by each slide rule, what they sense, and what they see.

@@ -19,7 +19,7 @@ from galactic.learning.rollout import Rollout
 
 class Observed(NamedTuple):
     """What is observed in a run: names and sizes of the parts, and what their numbers mean
-    (privileges.meanings())."""
+    (privileges.meaning_of())."""
 
     parts: Sequence[tuple[str, int]]
     meanings: Mapping[str, Any]
