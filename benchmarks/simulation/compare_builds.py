@@ -35,12 +35,8 @@ def configured(build: pathlib.Path, name: str) -> str:
 def compiler_of(build: pathlib.Path) -> list[str]:
     """As programs of a build folder are compiled and linked."""
     command = [configured(build, "CMAKE_CXX_COMPILER"), "-O3", "-DNDEBUG", "-std=c++20"]
-    if configured(build, "CMAKE_INTERPROCEDURAL_OPTIMIZATION").upper() in (
-        "ON",
-        "TRUE",
-        "YES",
-        "1",
-    ):
+    across_files = configured(build, "CMAKE_INTERPROCEDURAL_OPTIMIZATION").upper()
+    if across_files in ("ON", "TRUE", "YES", "1"):
         command.append("-flto=thin" if "clang" in command[0] else "-flto=auto")
     return command
 
