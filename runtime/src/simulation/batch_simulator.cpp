@@ -106,6 +106,7 @@ class BatchSimulator::Impl {
     for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
       state_.env(env) = {};
       state_.counters(env) = {};
+      state_.moves(env) = {};
       state_.clearOutcome(env);
     }
     beginFirstEpisodes();
@@ -322,10 +323,11 @@ SimulationStatistics BatchSimulator::statistics() const {
 }
 SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
   const simulation::EnvCounters& counters = impl_->state().counters(env);
+  const simulation::MoveCounters& moves = impl_->state().moves(env);
   // An env that came from a longer run may have idled for longer than this one has run.
   return {.steps = impl_->steps() - std::min(impl_->steps(), counters.idle_steps),
-          .refused = counters.refused,
-          .slid = counters.slid,
+          .refused = moves.refused,
+          .slid = moves.slid,
           .grasps = counters.grasps,
           .drops = counters.drops,
           .restored = counters.restored,

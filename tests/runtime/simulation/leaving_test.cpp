@@ -82,7 +82,7 @@ TEST_F(Leaving, ARobotThatStandsStillIsNeverRefusedWhateverItLetGoOf) {
     const std::uint32_t left = robot.env().left;
     robot.drive(0, 0);
     ASSERT_FALSE(robot.env().refused) << "round " << round << ", leaves " << left;
-    ASSERT_EQ(robot.state().counters(0).slid, 0U) << "round " << round << ", leaves " << left;
+    ASSERT_EQ(robot.state().moves(0).slid, 0U) << "round " << round << ", leaves " << left;
     ASSERT_EQ(robot.env().left, left);
   }
   several.expectBothSides();

@@ -96,5 +96,12 @@ inline std::uint32_t objectsNear(const PackedBounds& objects, const QueryBounds&
   return objects.resting & (everywhere | ~apart_from) & ~others;
 }
 
+/// The same of the p-th 32 objects of a view.
+inline std::uint32_t objectsNear(const RestingView& objects, std::size_t p,
+                                 const QueryBounds& query) {
+  const std::uint32_t absent = p == objects.absent_pack ? objects.absent : 0;
+  return objectsNear(objects.bounds[p], query) & ~absent;
+}
+
 }  // namespace
 }  // namespace galactic::simulation

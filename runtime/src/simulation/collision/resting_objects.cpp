@@ -17,11 +17,13 @@ namespace {
 constexpr float kSlack = 1e-4F;
 constexpr float kRelativeSlack = 1e-6F;
 
-std::size_t packsFor(std::size_t objects) {
-  return (objects + kPackedObjects - 1) / kPackedObjects;
-}
-
 std::uint32_t bitOf(std::uint32_t index) { return 1U << (index % kPackedObjects); }
+
+/// Some objects, as bits, rest no more.
+void takeOut(PackedBounds& bounds, std::uint32_t objects) {
+  bounds.resting &= ~objects;
+  bounds.everywhere &= ~objects;
+}
 
 /// Number of the cell that a coordinate is in, which never falls where coordinates rise; the last
 /// one for NaN. The kernels do the same.
@@ -51,7 +53,7 @@ CellSpan cellsAround(float center, float reach, float edge) {
 template <class Visit>
 bool anyNear(const RestingView& objects, const QueryBounds& query, const Visit& visit) {
   for (std::size_t p = 0; p < objects.bounds_count; ++p) {
-    for (std::uint32_t near = objectsNear(objects.bounds[p], query); near != 0; near &= near - 1) {
+    for (std::uint32_t near = objectsNear(objects, p, query); near != 0; near &= near - 1) {
       const auto bit = static_cast<std::uint32_t>(std::countr_zero(near));
       if (visit(static_cast<std::uint32_t>(p) * kPackedObjects + bit)) return true;
     }
@@ -89,32 +91,67 @@ RestingObjects::RestingObjects(std::size_t most_objects, float largest_radius,
                                std::pmr::memory_resource* memory,
                                std::pmr::memory_resource* bounds_memory)
     : largest_radius_(largest_radius),
-      bounds_(packsFor(most_objects), bounds_memory),
-      boxes_(most_objects, memory) {}
+      own_bounds_(packsFor(most_objects), bounds_memory),
+      own_boxes_(most_objects, memory) {
+  showOwn();
+}
 
-std::uint32_t RestingObjects::between(const PackedBounds& bounds, const Span& heights) noexcept {
+void RestingObjects::showOwn() noexcept {
+  now_ = {own_bounds_.data(), own_bounds_.size(), own_boxes_.data(), own_boxes_.size()};
+}
+
+std::uint32_t RestingObjects::between(std::size_t pack, const Span& heights) const noexcept {
   QueryBounds query;
   query.bands = bandsOf(cellSpan(heights.lo, heights.hi, kBandHeight));
   query.is_everywhere = true;
-  return objectsNear(bounds, query);
+  return objectsNear(now_, pack, query);
 }
 
-std::uint32_t RestingObjects::inColumnOf(const PackedBounds& bounds, const Vec3& center) noexcept {
+std::uint32_t RestingObjects::inColumnOf(std::size_t pack, const Vec3& center) const noexcept {
   QueryBounds query = boundsOf(center, center);
   query.bands = kAllBands;
-  return objectsNear(bounds, query);
+  return objectsNear(now_, pack, query);
 }
 
-void RestingObjects::clear() noexcept { std::fill(bounds_.begin(), bounds_.end(), PackedBounds{}); }
+void RestingObjects::clear() noexcept {
+  showOwn();
+  std::ranges::fill(own_bounds_, PackedBounds{});
+}
+
+void RestingObjects::share(const RestingView& others) noexcept {
+  assert(others.bounds_count <= own_bounds_.size() && others.boxes_count <= own_boxes_.size());
+  now_ = others;
+}
+
+PackedBounds& RestingObjects::ownBounds(std::uint32_t index) noexcept {
+  if (!ownsBounds()) {
+    const auto rest = std::copy_n(now_.bounds, now_.bounds_count, own_bounds_.begin());
+    std::fill(rest, own_bounds_.end(), PackedBounds{});
+    now_.bounds = own_bounds_.data();
+    now_.bounds_count = own_bounds_.size();
+    if (now_.absent != 0) takeOut(own_bounds_[now_.absent_pack], now_.absent);
+    now_.absent = 0;
+  }
+  return own_bounds_[index / kPackedObjects];
+}
+
+RestingBox& RestingObjects::ownBox(std::uint32_t index) noexcept {
+  if (now_.boxes != own_boxes_.data()) {
+    std::copy_n(now_.boxes, now_.boxes_count, own_boxes_.begin());
+    now_.boxes = own_boxes_.data();
+    now_.boxes_count = own_boxes_.size();
+  }
+  return own_boxes_[index];
+}
 
 void RestingObjects::insert(std::uint32_t index, const RestingBox& box) noexcept {
-  assert(index < boxes_.size() && !isResting(index));
-  boxes_[index] = box;
+  assert(index < capacity() && !isResting(index));
+  ownBox(index) = box;
   const Vec3 half = halfBounds(box);
   const float radius = largest_radius_;
   const CellSpan x = cellsAround(box.center.x, half.x + radius, kCellEdge);
   const CellSpan z = cellsAround(box.center.z, half.z + radius, kCellEdge);
-  PackedBounds& bounds = bounds_[index / kPackedObjects];
+  PackedBounds& bounds = ownBounds(index);
   const std::uint32_t n = index % kPackedObjects;
   bounds.least_x[n] = static_cast<std::uint8_t>(x.first);
   bounds.most_x[n] = static_cast<std::uint8_t>(x.last);
@@ -127,18 +164,21 @@ void RestingObjects::insert(std::uint32_t index, const RestingBox& box) noexcept
 
 void RestingObjects::remove(std::uint32_t index) noexcept {
   assert(isResting(index));
-  PackedBounds& bounds = bounds_[index / kPackedObjects];
-  bounds.resting &= ~bitOf(index);
-  bounds.everywhere &= ~bitOf(index);
+  // A hand takes one object, which needs no bounds of its own.
+  if (!ownsBounds() && now_.absent == 0) {
+    now_.absent_pack = index / kPackedObjects;
+    now_.absent = bitOf(index);
+  } else {
+    takeOut(ownBounds(index), bitOf(index));
+  }
 }
 
 bool RestingObjects::isResting(std::uint32_t index) const noexcept {
-  assert(index < boxes_.size());
-  return (bounds_[index / kPackedObjects].resting & bitOf(index)) != 0;
-}
-
-RestingView RestingObjects::view() const noexcept {
-  return {bounds_.data(), bounds_.size(), boxes_.data()};
+  assert(index < capacity());
+  const std::size_t pack = index / kPackedObjects;
+  if (pack >= now_.bounds_count) return false;
+  const std::uint32_t absent = pack == now_.absent_pack ? now_.absent : 0;
+  return (now_.bounds[pack].resting & ~absent & bitOf(index)) != 0;
 }
 
 bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {
@@ -184,7 +224,7 @@ OptionalIndex RestingObjects::nearest(const Vec3& center, float radius) const no
   OptionalIndex best;
   float least = radius * radius;
   forEachInColumnOf(center, [&](std::uint32_t index) {
-    const float squared = squaredDistance(boxes_[index], center);
+    const float squared = squaredDistance(now_.boxes[index], center);
     if (!(squared < least)) return;
     least = squared;
     best = index;
@@ -196,7 +236,7 @@ float RestingObjects::fall(const Vec3& center, float radius) const noexcept {
   assert(radius <= largest_radius_);
   float least = std::numeric_limits<float>::infinity();
   forEachInColumnOf(center, [&](std::uint32_t index) {
-    const RestingBox& box = boxes_[index];
+    const RestingBox& box = now_.boxes[index];
     // Whoever lies lower than the sphere is known to sink, or aside of it, needs no closer look.
     if (center.y - radius - box.center.y - box.half_height > least) return;
     const Vec3 half = halfBounds(box);
@@ -211,7 +251,7 @@ float RestingObjects::fall(const Vec3& center, float radius) const noexcept {
 }
 
 std::size_t RestingObjects::bytes() const {
-  return bounds_.size() * sizeof(bounds_[0]) + boxes_.size() * sizeof(boxes_[0]);
+  return own_bounds_.size() * sizeof(PackedBounds) + own_boxes_.size() * sizeof(RestingBox);
 }
 
 }  // namespace galactic::simulation

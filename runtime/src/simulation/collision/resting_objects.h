@@ -27,18 +27,30 @@ struct SphereHit {
 
 /// The objects of one env that rest in the scene. Their bounds are packed, 32 objects together, as
 /// often as the objects need, so no capacity can overflow, and each 32 cost a query the same. How
-/// that works: resting_objects_kernels.h. After construction nothing allocates and nothing throws.
-/// One thread at a time; const members from any.
-class RestingObjects {
+/// that works: resting_objects_kernels.h. They may be those of others at first (share()), of which
+/// they keep their own copies when they change. After construction nothing allocates and nothing
+/// throws. One thread at a time; const members from any.
+class alignas(64) RestingObjects {
  public:
   /// Room for `most_objects` objects, in `memory`, and for their bounds, which each query reads, in
   /// `bounds_memory`. Queries are for spheres of up to `largest_radius`, meters.
   RestingObjects(std::size_t most_objects, float largest_radius,
                  std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
                  std::pmr::memory_resource* bounds_memory = std::pmr::get_default_resource());
+  /// What was shared stays shared.
+  RestingObjects(RestingObjects&&) = default;
+  RestingObjects& operator=(RestingObjects&&) = delete;
+  RestingObjects(const RestingObjects&) = delete;
+  RestingObjects& operator=(const RestingObjects&) = delete;
+  ~RestingObjects() = default;
 
   /// Forgets all objects.
   void clear() noexcept;
+
+  /// Has the objects of `others`, capacity() at most, which are for the same largest radius.
+  /// Nothing is copied before it changes here: there it must not, as long as it is shared. So envs
+  /// that began the same episode read the same memory.
+  void share(const RestingView& others) noexcept;
 
   /// Object `index` (less than capacity()) rests at `box` from now on. It must not be resting
   /// already. It may be anywhere: there is no frame to be outside of.
@@ -49,11 +61,13 @@ class RestingObjects {
 
   /// Objects that there is room for.
   [[nodiscard]] std::uint32_t capacity() const noexcept {
-    return static_cast<std::uint32_t>(boxes_.size());
+    return static_cast<std::uint32_t>(own_boxes_.size());
   }
   [[nodiscard]] bool isResting(std::uint32_t index) const noexcept;
   /// Of a resting object.
-  [[nodiscard]] const RestingBox& box(std::uint32_t index) const noexcept { return boxes_[index]; }
+  [[nodiscard]] const RestingBox& box(std::uint32_t index) const noexcept {
+    return now_.boxes[index];
+  }
   [[nodiscard]] float largestRadius() const noexcept { return largest_radius_; }
 
   /// Whether any sphere overlaps any object. No radius may exceed the largest. A sphere with a
@@ -83,9 +97,9 @@ class RestingObjects {
   /// `heights`; `y`: the nearest of them to its center.
   template <class Visit>
   void forEachBetween(const Span& heights, const Visit& visit) const {
-    forEachOf([&](const PackedBounds& bounds) { return between(bounds, heights); },
+    forEachOf([&](std::size_t pack) { return between(pack, heights); },
               [&](std::uint32_t index) {
-                const RestingBox& box = boxes_[index];
+                const RestingBox& box = now_.boxes[index];
                 const float y = std::clamp(box.center.y, heights.lo, heights.hi);
                 if (std::fabs(y - box.center.y) < box.half_height) visit(box, y);
               });
@@ -95,44 +109,50 @@ class RestingObjects {
   /// largest) around `center` could overlap, be it higher or lower: few, and all that it overlaps.
   template <class Visit>
   void forEachInColumnOf(const Vec3& center, const Visit& visit) const {
-    forEachOf([&](const PackedBounds& bounds) { return inColumnOf(bounds, center); }, visit);
+    forEachOf([&](std::size_t pack) { return inColumnOf(pack, center); }, visit);
   }
 
-  /// What `touches` reads, for the kernels and the tests that compare them.
-  [[nodiscard]] RestingView view() const noexcept;
+  /// What `touches` reads, for the kernels, and to share.
+  [[nodiscard]] const RestingView& view() const noexcept { return now_; }
 
   /// Asks for what `touches` reads, so that it is in the nearest cache when it is needed.
   void prefetch() const noexcept {
     constexpr std::size_t kCacheLine = 64;
-    for (const PackedBounds& bounds : bounds_) {
-      const auto* bytes = reinterpret_cast<const char*>(&bounds);
-      for (std::size_t n = 0; n < sizeof(bounds); n += kCacheLine) __builtin_prefetch(bytes + n);
-    }
+    const auto* bytes = reinterpret_cast<const char*>(now_.bounds);
+    const std::size_t count = now_.bounds_count * sizeof(PackedBounds);
+    for (std::size_t n = 0; n < count; n += kCacheLine) __builtin_prefetch(bytes + n);
   }
 
+  /// Of its own memory.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Calls `visit` with the index of each object that is among those of `choose(bounds)`, as bits,
+  /// Calls `visit` with the index of each object that is among those of `choose(pack)`, as bits,
   /// ascending.
   template <class Choose, class Visit>
   void forEachOf(const Choose& choose, const Visit& visit) const {
-    for (std::size_t p = 0; p < bounds_.size(); ++p) {
-      for (std::uint32_t bits = choose(bounds_[p]); bits != 0; bits &= bits - 1) {
+    for (std::size_t p = 0; p < now_.bounds_count; ++p) {
+      for (std::uint32_t bits = choose(p); bits != 0; bits &= bits - 1) {
         visit(static_cast<std::uint32_t>(p * kPackedObjects) +
               static_cast<std::uint32_t>(std::countr_zero(bits)));
       }
     }
   }
-  /// Of 32 objects, those that centers at a height, or at a place, may be near.
-  [[nodiscard]] static std::uint32_t between(const PackedBounds& bounds,
-                                             const Span& heights) noexcept;
-  [[nodiscard]] static std::uint32_t inColumnOf(const PackedBounds& bounds,
-                                                const Vec3& center) noexcept;
+  /// Of the pack-th 32 objects, those that centers at a height, or at a place, may be near.
+  [[nodiscard]] std::uint32_t between(std::size_t pack, const Span& heights) const noexcept;
+  [[nodiscard]] std::uint32_t inColumnOf(std::size_t pack, const Vec3& center) const noexcept;
 
+  [[nodiscard]] bool ownsBounds() const noexcept { return now_.bounds == own_bounds_.data(); }
+  void showOwn() noexcept;
+  /// Where they are its own, after copying those of others.
+  [[nodiscard]] PackedBounds& ownBounds(std::uint32_t index) noexcept;
+  [[nodiscard]] RestingBox& ownBox(std::uint32_t index) noexcept;
+
+  /// Its own or another's; first, because each step reads it.
+  RestingView now_;
   float largest_radius_;
-  std::pmr::vector<PackedBounds> bounds_;
-  std::pmr::vector<RestingBox> boxes_;
+  std::pmr::vector<PackedBounds> own_bounds_;
+  std::pmr::vector<RestingBox> own_boxes_;
 };
 
 }  // namespace galactic::simulation

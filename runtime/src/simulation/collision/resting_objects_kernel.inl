@@ -76,7 +76,7 @@ inline unsigned touchingLanes(const RestingView& objects, const Centers& centers
   unsigned lanes = 0;
   for (std::size_t p = 0; p < objects.bounds_count; ++p) {
     const RestingBox* boxes = objects.boxes + p * kPackedObjects;
-    for (std::uint32_t near = objectsNear(objects.bounds[p], query); near != 0; near &= near - 1) {
+    for (std::uint32_t near = objectsNear(objects, p, query); near != 0; near &= near - 1) {
       lanes |= overlapping(boxes[__builtin_ctz(near)], centers, radius);
     }
   }
@@ -107,7 +107,7 @@ bool mayTouchKernel(const RestingView& objects, const CenterBounds& bounds) noex
   const QueryBounds query = boundsOf(bounds);
   std::uint32_t any = 0;
   for (std::size_t p = 0; p < objects.bounds_count; ++p) {
-    const std::uint32_t near = objectsNear(objects.bounds[p], query);
+    const std::uint32_t near = objectsNear(objects, p, query);
     any |= near;
     // Whoever asks looks at these next, mostly at one. How many there are nobody can guess: no
     // loop.
@@ -191,7 +191,7 @@ bool touchesKernel(const RestingView& given_objects, const BoundedSpheres& given
   const BoundedSpheres spheres = given_spheres;
   const QueryBounds query = boundsOf(*spheres.all);
   for (std::size_t p = 0; p < objects.bounds_count; ++p) {
-    const std::uint32_t near = objectsNear(objects.bounds[p], query);
+    const std::uint32_t near = objectsNear(objects, p, query);
     if (near == 0) continue;
     const RestingBox* boxes = objects.boxes + p * kPackedObjects;
     if (touchesSome(objects.bounds[p], boxes, near, spheres)) return true;

@@ -36,6 +36,11 @@ inline constexpr std::int32_t kMostByteCells = kByteCells / 4 - 1;
 /// Objects whose bounds are packed together.
 inline constexpr std::uint32_t kPackedObjects = 32;
 
+/// What so many objects need.
+[[nodiscard]] constexpr std::size_t packsFor(std::size_t objects) {
+  return (objects + kPackedObjects - 1) / kPackedObjects;
+}
+
 /// The bounds of 32 objects, grown by the largest radius: an object is near a center whose cells
 /// and band are among its own.
 struct alignas(64) PackedBounds {
@@ -74,6 +79,10 @@ struct RestingView {
   const PackedBounds* bounds = nullptr;
   std::size_t bounds_count = 0;
   const RestingBox* boxes = nullptr;
+  std::size_t boxes_count = 0;
+  /// One of them that is not there: in which element, and its bit. 0: there is none.
+  std::uint32_t absent_pack = 0;
+  std::uint32_t absent = 0;
 };
 
 /// Eight spheres of a batch, one in each lane of a register.

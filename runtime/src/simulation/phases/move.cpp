@@ -204,6 +204,7 @@ void placeBodies(const ChunkStep& step) noexcept {
 void moveRobots(const ChunkStep& step) noexcept {
   EnvMask accepted{};
   if (step.between == nullptr) lookAtAll(step);
+  step.state.prefetchChunk(step.first + kChunk);
   for (std::size_t e = 0; e < kChunk; ++e) {
     // A thread takes one chunk after the other. Asked for while the longest phase lasts, what the
     // next one needs is there in time, and none of it waits for much else.
@@ -213,11 +214,11 @@ void moveRobots(const ChunkStep& step) noexcept {
     env.refused = false;
     const Walk walk = step.between == nullptr ? jumpToCandidate(step, e) : walkToCandidate(step, e);
     if (walk == Walk::kNone) {
-      ++step.state.counters(step.first + e).refused;
+      ++step.state.moves(step.first + e).refused;
       env.refused = true;
       continue;
     }
-    if (walk == Walk::kHindered) ++step.state.counters(step.first + e).slid;
+    if (walk == Walk::kHindered) ++step.state.moves(step.first + e).slid;
     accept(step, e);
     accepted[e] = ~std::uint32_t{0};
   }

@@ -184,6 +184,8 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
   const bool pays_for_ways = task.geodesic_weight != 0;
   const bool pays_for_tilt = task.kind != TaskKind::kNone && task.tilt_penalty != 0;
   const std::uint8_t* idle = step.state.idle().data() + step.first;
+  // Those of the next chunk come nearer in the meantime.
+  if (step.first + kChunk < resets.size()) __builtin_prefetch(&resets[step.first + kChunk]);
   const Measured measured = measure(step);
   Outcomes outcomes;
   for (std::size_t e = 0; e < kChunk; ++e) {

@@ -19,14 +19,14 @@ std::size_t envBytes(const Model& model) {
   // What the alignment of an env's own vectors may cost.
   constexpr std::size_t kPadding = 96;
   const std::size_t floats = rowCount(model) + 2 * model.observation_size + 1;
-  return kPadding + sizeof(Env) + sizeof(EnvCounters) + sizeof(Held) + sizeof(RestingObjects) +
-         model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
+  return kPadding + sizeof(Env) + sizeof(EnvCounters) + sizeof(MoveCounters) + sizeof(Held) +
+         sizeof(RestingObjects) + model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
          (model.heldWords() + model.most_objects * model.bodyWords()) * sizeof(std::uint64_t) +
          floats * sizeof(float) + 3 + model.bodyCount() * sizeof(RigidTransform);
 }
 
 std::size_t boundsBytes(const Model& model) {
-  return (model.most_objects + kPackedObjects - 1) / kPackedObjects * sizeof(PackedBounds);
+  return packsFor(model.most_objects) * sizeof(PackedBounds);
 }
 
 template <class T>
@@ -92,6 +92,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   const std::size_t padded = paddedToChunks(env_count_);
   envs_.resize(padded);
   counters_.resize(padded);
+  moves_.resize(padded);
   held_.resize(padded);
   resting_.reserve(padded);
   for (std::size_t n = 0; n < padded; ++n) {
@@ -125,13 +126,26 @@ void BatchState::prefetch(std::size_t n) const noexcept {
   const std::size_t part = row_count_ * sizeof(float);
   prefetchBytes(reinterpret_cast<const std::byte*>(rows_.data()) + n * part, part);
   resting_[n].prefetch();
-  // Which says where its sets are.
-  if (n + kChunk < envs_.size()) prefetchBytes(&resting_[n + kChunk], sizeof(RestingObjects));
+  // Which says where its bounds are.
+  if (n + kChunk < envs_.size()) prefetchBytes(&resting_[n + kChunk], sizeof(RestingView));
+}
+
+void BatchState::prefetchChunk(std::size_t first) const noexcept {
+  if (first >= envs_.size() || !is_large_) return;
+  const auto row = [&](const auto& values) {
+    prefetchRow(std::span(values).subspan(first, kChunk));
+  };
+  row(moves_);
+  row(rewards_);
+  row(dones_);
+  row(successes_);
+  row(endings_);
+  row(idle_);
 }
 
 std::size_t BatchState::bytes() const {
-  std::size_t bytes = bytesOf(envs_) + bytesOf(counters_) + bytesOf(held_) + bytesOf(objects_) +
-                      bytesOf(ignored_) + bytesOf(leaving_) + bytesOf(rows_) +
+  std::size_t bytes = bytesOf(envs_) + bytesOf(counters_) + bytesOf(moves_) + bytesOf(held_) +
+                      bytesOf(objects_) + bytesOf(ignored_) + bytesOf(leaving_) + bytesOf(rows_) +
                       2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
                       4 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();

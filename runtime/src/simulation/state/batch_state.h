@@ -35,8 +35,6 @@ struct alignas(64) EnvCounters {
   /// Episodes begun, and those of them whose turn it was.
   std::uint64_t begun = 0;
   std::uint64_t turns = 0;
-  std::uint32_t refused = 0;
-  std::uint32_t slid = 0;
   std::uint32_t grasps = 0;
   std::uint32_t drops = 0;
   std::uint32_t restored = 0;
@@ -46,6 +44,13 @@ struct alignas(64) EnvCounters {
   std::uint64_t nan_actions = 0;
   /// Steps in which the env was idle.
   std::uint64_t idle_steps = 0;
+};
+
+/// How moves of an env ended; added up like EnvCounters. Apart from these, because robots that
+/// drive slide in most steps: those of a chunk lie together.
+struct MoveCounters {
+  std::uint32_t refused = 0;
+  std::uint32_t slid = 0;
 };
 
 /// The object in the hand of an env, if there is one.
@@ -130,6 +135,8 @@ class BatchState {
   [[nodiscard]] const Env& env(std::size_t n) const { return envs_[n]; }
   [[nodiscard]] EnvCounters& counters(std::size_t n) { return counters_[n]; }
   [[nodiscard]] const EnvCounters& counters(std::size_t n) const { return counters_[n]; }
+  [[nodiscard]] MoveCounters& moves(std::size_t n) { return moves_[n]; }
+  [[nodiscard]] const MoveCounters& moves(std::size_t n) const { return moves_[n]; }
   /// Of the object in the hand of an env, which must hold one.
   [[nodiscard]] Held& held(std::size_t n) { return held_[n]; }
   [[nodiscard]] const Held& held(std::size_t n) const { return held_[n]; }
@@ -277,6 +284,8 @@ class BatchState {
   /// Asks the memory for what a step of an env reads and writes: a chunk ahead, it is there in
   /// time. There may be no such env.
   void prefetch(std::size_t n) const noexcept;
+  /// The same for what a chunk from env `first` on has in a few lines of its own.
+  void prefetchChunk(std::size_t first) const noexcept;
 
  private:
   [[nodiscard]] std::size_t gripRow() const { return kBaseRows + variable_count_; }
@@ -320,6 +329,7 @@ class BatchState {
   std::size_t body_count_ = 0;
   std::pmr::vector<Env> envs_{&memory_};
   std::pmr::vector<EnvCounters> counters_{&memory_};
+  std::pmr::vector<MoveCounters> moves_{&memory_};
   std::pmr::vector<Held> held_{&memory_};
   std::pmr::vector<RestingObjects> resting_{&memory_};
   std::pmr::vector<Pose> objects_{&memory_};

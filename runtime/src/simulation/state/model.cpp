@@ -109,6 +109,18 @@ class StartFinder {
     state_.env(0).scene = scene;
   }
 
+  /// As setObjects() left them.
+  void keepObjects(std::size_t count) {
+    const RestingView& objects = state_.resting(0).view();
+    EpisodeStart& start = model_.starts.back();
+    start.first_bounds = model_.start_bounds.size();
+    start.first_box = model_.start_boxes.size();
+    start.objects = count;
+    model_.start_bounds.insert(model_.start_bounds.end(), objects.bounds,
+                               objects.bounds + packsFor(count));
+    model_.start_boxes.insert(model_.start_boxes.end(), objects.boxes, objects.boxes + count);
+  }
+
   bool tryEpisode(std::uint32_t n) {
     const Episode& episode = model_.world->episodes().episodes()[n];
     setVariables(n);
@@ -123,6 +135,7 @@ class StartFinder {
     heights_.lowest = std::min(heights_.lowest, chunk_.lowest(0) - floor);
     heights_.highest = std::max(heights_.highest, chunk_.highest(0) - floor);
     model_.starts.push_back({n, chunk_.base(0), *pose.yaw, chunk_.grip(0)});
+    keepObjects(model_.placements(episode).size());
     keepBodies(step, {~std::uint32_t{0}});
     const std::span<const RigidTransform> bodies = state_.bodyTransforms(0);
     model_.start_bodies.insert(model_.start_bodies.end(), bodies.begin(), bodies.end());
@@ -199,7 +212,8 @@ Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
 std::size_t Model::bytes() const {
   return clearance.bytes() + slices.bytes() + level_floors.bytes() + laser.bytes() +
          geodesic.bytes() + std::span(starts).size_bytes() +
-         std::span(start_variables).size_bytes() + std::span(start_bodies).size_bytes();
+         std::span(start_variables).size_bytes() + std::span(start_bodies).size_bytes() +
+         std::span(start_bounds).size_bytes() + std::span(start_boxes).size_bytes();
 }
 
 OptionalIndex Model::startOf(std::int64_t episode) const noexcept {

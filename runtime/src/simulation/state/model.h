@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,9 +16,11 @@
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
 #include "simulation/collision/level_floors.h"
+#include "simulation/collision/resting_objects_kernels.h"
 #include "simulation/motion/motion_kernels.h"
 #include "simulation/motion/motion_model.h"
 #include "simulation/ways_out/free_slices.h"
+#include "support/huge_pages.h"
 #include "support/optional_index.h"
 
 namespace galactic::simulation {
@@ -35,6 +38,10 @@ struct EpisodeStart {
   GripFrame grip{};
   /// In Model::clearance.
   std::uint32_t clearance_map = kNoClearanceMap;
+  /// Of Model::start_bounds and start_boxes: the first of its objects, and how many there are.
+  std::size_t first_bounds = 0;
+  std::size_t first_box = 0;
+  std::size_t objects = 0;
 };
 
 /// What never changes in a run: computed once, shared by all threads.
@@ -52,6 +59,9 @@ struct Model {
   std::vector<float> start_variables;
   /// Shape: starts * bodyCount().
   std::vector<RigidTransform> start_bodies;
+  /// Bounds and boxes of the objects at all starts, which envs share until they move one.
+  std::pmr::vector<PackedBounds> start_bounds{detail::hugePages()};
+  std::pmr::vector<RestingBox> start_boxes{detail::hugePages()};
   std::vector<std::uint32_t> skipped;
   /// The robot's spheres in eights.
   std::vector<EightSpheres> groups;
@@ -103,6 +113,12 @@ struct Model {
   }
   [[nodiscard]] std::uint32_t targetOf(const Episode& episode) const {
     return options.task.distractors ? episode.target : 0;
+  }
+  /// The objects at a start.
+  [[nodiscard]] RestingView objectsAt(std::uint32_t start) const {
+    const EpisodeStart& at = starts[start];
+    return {start_bounds.data() + at.first_bounds, packsFor(at.objects),
+            start_boxes.data() + at.first_box, at.objects};
   }
   /// The object of that number in the episode of that start.
   [[nodiscard]] const ObjectModel& object(std::uint32_t start, std::uint32_t number) const {

@@ -173,6 +173,7 @@ class Reader {
 void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer& out) {
   const Env& env = state.env(n);
   const EnvCounters& counters = state.counters(n);
+  const MoveCounters& moves = state.moves(n);
   out.add(EnvRecord{
       .ordinal = counters.begun,
       .turns = counters.turns,
@@ -183,8 +184,8 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .step = env.step,
       .held = env.held,
       .left = env.left,
-      .counts = {counters.refused, counters.slid, counters.grasps, counters.drops,
-                 counters.restored, counters.episodes, counters.successes, counters.failures},
+      .counts = {moves.refused, moves.slid, counters.grasps, counters.drops, counters.restored,
+                 counters.episodes, counters.successes, counters.failures},
       .grip_from_held = state.held(n).grip_from_object,
       .base = state.base(n),
       .yaw = state.yaw(n),
@@ -256,8 +257,6 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   saved.env.reward_sum = record.reward_sum;
   saved.counters = {.begun = record.ordinal,
                     .turns = record.turns,
-                    .refused = refused,
-                    .slid = slid,
                     .grasps = grasps,
                     .drops = drops,
                     .restored = restored,
@@ -266,6 +265,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
                     .failures = failures,
                     .nan_actions = record.nan_actions,
                     .idle_steps = record.idle_steps};
+  saved.moves = {.refused = refused, .slid = slid};
   saved.base = record.base;
   saved.yaw = record.yaw;
   saved.grip = record.grip;
@@ -407,6 +407,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   env.left = saved.env.left;
   env.reward_sum = saved.env.reward_sum;
   state.counters(n) = saved.counters;
+  state.moves(n) = saved.moves;
   const PoseArrays to = state.poses(n);
   *to.x = saved.base.x;
   *to.y = saved.base.y;
@@ -427,11 +428,14 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
     std::ranges::copy(saved.bodies, state.bodyTransforms(n).begin());
   }
   RestingObjects& resting = state.resting(n);
-  resting.clear();
   for (std::uint32_t object = 0; object < env.objects; ++object) {
     const Pose& pose = saved.objects[object];
+    const bool is_held = static_cast<std::int32_t>(object) == env.held;
+    const bool has_moved = !(pose == state.objects(n)[object]);
     state.placeObject(n, object, pose);
-    if (static_cast<std::int32_t>(object) == env.held) continue;
+    // Those that nobody has moved stay shared with other envs.
+    if (is_held || has_moved) resting.remove(object);
+    if (is_held || !has_moved) continue;
     resting.insert(object, restingBox(model.object(env.start, object).box, pose));
   }
   state.idle()[n] = saved.is_idle ? 1 : 0;

@@ -25,6 +25,7 @@ struct SavedEnv {
   /// Indices and figures; reach, transport and what the episode says are not saved.
   Env env;
   EnvCounters counters;
+  MoveCounters moves;
   Held held;
   Vec3 base;
   float yaw = 0;
