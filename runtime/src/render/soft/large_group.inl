@@ -89,9 +89,11 @@ inline AreaSigns setUpAreas(const LargeCorners& k, LargeGroup& group) {
   for (std::uint32_t first = 0; first < kLanes; first += kHalf) {
     const Doubles area = doublesOf(k.b.x - k.a.x, first) * doublesOf(k.c.y - k.a.y, first) -
                          doublesOf(k.c.x - k.a.x, first) * doublesOf(k.b.y - k.a.y, first);
+    double areas[kHalf];
+    store(areas, area);
     for (std::uint32_t n = 0; n < kHalf; ++n) {
-      signs.negative |= (area[n] < 0 ? 1U : 0U) << (first + n);
-      signs.none |= (area[n] == 0 ? 1U : 0U) << (first + n);
+      signs.negative |= (areas[n] < 0 ? 1U : 0U) << (first + n);
+      signs.none |= (areas[n] == 0 ? 1U : 0U) << (first + n);
     }
     store(group.area + first, area < 0 ? -area : area);
   }
