@@ -15,7 +15,10 @@ using testing::IsEmpty;
 class RealTextures : public testing::Test {
  protected:
   void SetUp() override {
-    if (assetsFolder().empty()) GTEST_SKIP() << "no assets; set GALACTIC_ASSETS";
+    for (const char* folder : {"replica_cad", "ycb"}) {
+      if (exists(assetsFolder() / folder)) continue;
+      GTEST_SKIP() << "set GALACTIC_ASSETS to a folder with replica_cad/ and ycb/ in it";
+    }
   }
 
   static BakedMaterials bakeFile(const std::string& name) {
