@@ -183,8 +183,8 @@ void bindQueries(py::class_<Simulator>& type) {
       "Memory of all envs together.");
   type.def_property_readonly(
       "shared_bytes", [](const Simulator& one) { return one.batch().sharedBytes(); },
-      "Memory of what all envs share beside the packs: what is known of the floors of all homes,\n"
-      "ways along them, and what lasers see.");
+      "Memory of what all envs share beside the packs: how episodes begin, what is known of the\n"
+      "floors of all homes, ways along them, and what lasers see.");
   type.def("episodes", &episodes, py::arg("envs") = py::none(),
            "The index of the episode that each env is in, or each of the numbers `envs`: int32,\n"
            "a copy.");

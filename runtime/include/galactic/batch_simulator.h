@@ -255,8 +255,8 @@ class BatchSimulator {
   [[nodiscard]] std::vector<PhaseTime> phaseTimes() const;
   /// Memory of all envs together, bytes.
   [[nodiscard]] std::size_t memoryBytes() const;
-  /// Memory of what all envs share beside the packs, bytes: what is known of the floors of all
-  /// homes, ways along them, and what lasers see.
+  /// Memory of what all envs share beside the packs, bytes: how episodes begin, what is known of
+  /// the floors of all homes, ways along them, and what lasers see.
   [[nodiscard]] std::size_t sharedBytes() const;
 
  private:

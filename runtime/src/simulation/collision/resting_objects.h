@@ -37,7 +37,7 @@ class alignas(64) RestingObjects {
   RestingObjects(std::size_t most_objects, float largest_radius,
                  std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
                  std::pmr::memory_resource* bounds_memory = std::pmr::get_default_resource());
-  /// What was shared stays shared.
+  /// What was shared stays shared; of the one that is left, nothing may be asked.
   RestingObjects(RestingObjects&&) = default;
   RestingObjects& operator=(RestingObjects&&) = delete;
   RestingObjects(const RestingObjects&) = delete;
@@ -48,8 +48,8 @@ class alignas(64) RestingObjects {
   void clear() noexcept;
 
   /// Has the objects of `others`, capacity() at most, which are for the same largest radius.
-  /// Nothing is copied before it changes here: there it must not, as long as it is shared. So envs
-  /// that began the same episode read the same memory.
+  /// Nothing is copied before it changes here; there it must neither change nor go away as long as
+  /// it is shared. So envs that began the same episode read the same memory.
   void share(const RestingView& others) noexcept;
 
   /// Object `index` (less than capacity()) rests at `box` from now on. It must not be resting
@@ -114,14 +114,6 @@ class alignas(64) RestingObjects {
 
   /// What `touches` reads, for the kernels, and to share.
   [[nodiscard]] const RestingView& view() const noexcept { return now_; }
-
-  /// Asks for what `touches` reads, so that it is in the nearest cache when it is needed.
-  void prefetch() const noexcept {
-    constexpr std::size_t kCacheLine = 64;
-    const auto* bytes = reinterpret_cast<const char*>(now_.bounds);
-    const std::size_t count = now_.bounds_count * sizeof(PackedBounds);
-    for (std::size_t n = 0; n < count; n += kCacheLine) __builtin_prefetch(bytes + n);
-  }
 
   /// Of its own memory.
   [[nodiscard]] std::size_t bytes() const;

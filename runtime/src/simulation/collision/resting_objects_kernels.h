@@ -12,8 +12,8 @@ namespace galactic::simulation {
 // each, the bounds are kept in bytes, as in the nodes of compressed wide hierarchies (Ylitie,
 // Karras and Laine 2017), axis by axis, so that some thirty instructions compare the bounds of a
 // query with those of 32 objects: of one sphere, of eight, or of a whole robot. That takes 192
-// bytes per env where windows of a grid take 8,000 and their strips 640, and grasping and dropping
-// an object writes five bytes.
+// bytes where windows of a grid take 8,000 and their strips 640, so little that envs which have
+// moved nothing share it, and the first object that one lays down copies it.
 //
 // The bytes wrap around: cell n stands for every 256th one, 32 meters apart. No scene is too large,
 // and nothing has to be clamped. What is in another room at the same place on the torus is found
@@ -36,7 +36,7 @@ inline constexpr std::int32_t kMostByteCells = kByteCells / 4 - 1;
 /// Objects whose bounds are packed together.
 inline constexpr std::uint32_t kPackedObjects = 32;
 
-/// What so many objects need.
+/// Elements of PackedBounds for so many objects.
 [[nodiscard]] constexpr std::size_t packsFor(std::size_t objects) {
   return (objects + kPackedObjects - 1) / kPackedObjects;
 }
@@ -72,8 +72,9 @@ struct QueryBounds {
   bool is_everywhere = false;
 };
 
-/// The resting objects of one env as bare pointers: the code built for AVX2 must not instantiate
-/// library templates, which the linker could then share with code for any processor.
+/// The resting objects of an env, which others may share, as bare pointers: the code built for AVX2
+/// must not instantiate library templates, which the linker could then share with code for any
+/// processor.
 struct RestingView {
   /// Bit b of element p stands for object 32 p + b.
   const PackedBounds* bounds = nullptr;

@@ -42,6 +42,7 @@ namespace {
 /// Runs the phases, telling `lap` after each of them.
 template <class Lap>
 void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) noexcept {
+  step.state.prefetchBounds(step.first);
   readActions(step, input.actions);
   lap(0);
   proposePoses(step);

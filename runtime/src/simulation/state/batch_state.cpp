@@ -125,9 +125,7 @@ void BatchState::prefetch(std::size_t n) const noexcept {
   // The chunk's rows in equal parts, an env each.
   const std::size_t part = row_count_ * sizeof(float);
   prefetchBytes(reinterpret_cast<const std::byte*>(rows_.data()) + n * part, part);
-  resting_[n].prefetch();
-  // Which says where its bounds are.
-  if (n + kChunk < envs_.size()) prefetchBytes(&resting_[n + kChunk], sizeof(RestingView));
+  prefetchBytes(&resting_[n], sizeof(RestingView));
 }
 
 void BatchState::prefetchChunk(std::size_t first) const noexcept {
@@ -141,6 +139,14 @@ void BatchState::prefetchChunk(std::size_t first) const noexcept {
   row(successes_);
   row(endings_);
   row(idle_);
+}
+
+void BatchState::prefetchBounds(std::size_t first) const noexcept {
+  if (!is_large_) return;
+  for (std::size_t n = first; n < first + kChunk; ++n) {
+    const RestingView& objects = resting_[n].view();
+    prefetchBytes(objects.bounds, objects.bounds_count * sizeof(PackedBounds));
+  }
 }
 
 std::size_t BatchState::bytes() const {

@@ -282,10 +282,13 @@ class BatchState {
   [[nodiscard]] std::size_t bytes() const;
 
   /// Asks the memory for what a step of an env reads and writes: a chunk ahead, it is there in
-  /// time. There may be no such env.
+  /// time. There may be no such env. Reads nothing of it: another thread may be at work on it.
   void prefetch(std::size_t n) const noexcept;
   /// The same for what a chunk from env `first` on has in a few lines of its own.
   void prefetchChunk(std::size_t first) const noexcept;
+  /// The same for bounds of the objects of a chunk, which its envs know where they are: when its
+  /// step begins.
+  void prefetchBounds(std::size_t first) const noexcept;
 
  private:
   [[nodiscard]] std::size_t gripRow() const { return kBaseRows + variable_count_; }
@@ -313,8 +316,8 @@ class BatchState {
 
   /// All vectors are made once, one after the other, in here.
   std::pmr::monotonic_buffer_resource memory_;
-  /// For the bounds of resting objects: those of all envs lie together, apart from what is rarely
-  /// read, so that a step reads them as one stream.
+  /// For the bounds that resting objects have where envs do not share them: together, apart from
+  /// what is rarely read, so that a step reads them as one stream.
   std::pmr::monotonic_buffer_resource bounds_memory_;
   std::size_t env_count_ = 0;
   std::size_t most_objects_ = 0;

@@ -48,6 +48,14 @@ class StartFinder {
     const std::size_t count = world.episodes().episodes().size();
     model_.starts.reserve(count);
     model_.start_variables.reserve(count * model_.variableCount());
+    std::size_t packs = 0;
+    std::size_t objects = 0;
+    for (const Episode& episode : world.episodes().episodes()) {
+      packs += packsFor(model_.placements(episode).size());
+      objects += model_.placements(episode).size();
+    }
+    model_.start_bounds.reserve(packs);
+    model_.start_boxes.reserve(objects);
     for (std::uint32_t n = 0; n < count; ++n) {
       if (!tryEpisode(n)) model_.skipped.push_back(n);
     }

@@ -433,7 +433,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
     const bool is_held = static_cast<std::int32_t>(object) == env.held;
     const bool has_moved = !(pose == state.objects(n)[object]);
     state.placeObject(n, object, pose);
-    // Those that nobody has moved stay shared with other envs.
+    // While nobody has moved any, they are shared with other envs.
     if (is_held || has_moved) resting.remove(object);
     if (is_held || !has_moved) continue;
     resting.insert(object, restingBox(model.object(env.start, object).box, pose));
