@@ -1,5 +1,5 @@
 // What a learned policy takes: processor time per env of act(), on one thread, for the networks of
-// the paper and the state policy. The images are noise.
+// the paper and those that learn on processors. The images are noise.
 //
 //   learned_policy [--benchmark_filter=state]
 #include "galactic/learned_policy.h"
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,9 +42,11 @@ struct Bench {
     observations = numbers.take(envs * batch.observation_size, 2);
     actions.resize(envs * batch.actions);
     dones.resize(envs);
-    if (!content.interface.image) return;
-    const std::size_t pixels = envs * 128 * 128;
+    const std::optional<PolicyImage>& image = content.interface.image;
+    if (!image) return;
+    const std::size_t pixels = envs * image->width * image->height;
     depth.resize(pixels, 3);
+    if (!image->color) return;
     color.resize(pixels * 4);
     for (std::size_t n = 0; n < color.size(); ++n) {
       color[n] = static_cast<std::uint8_t>(n * 2654435761U >> 24U);
@@ -72,6 +75,7 @@ void act(benchmark::State& state, const std::string& name) {
 
 BENCHMARK_CAPTURE(act, state, "state")->Arg(1024)->Arg(1);
 BENCHMARK_CAPTURE(act, state_gru, "state_gru")->Arg(1024)->Arg(1);
+BENCHMARK_CAPTURE(act, depth_gru, "depth_gru")->Arg(64)->Arg(1);
 BENCHMARK_CAPTURE(act, simple_cnn, "simple_cnn")->Arg(64)->Arg(1);
 BENCHMARK_CAPTURE(act, resnet9, "resnet9")->Arg(64)->Arg(1);
 BENCHMARK_CAPTURE(act, resnet18, "resnet18")->Arg(64)->Arg(1);

@@ -149,6 +149,7 @@ TEST(LearnedPolicy, ActsLikeThePlainNetworkWithoutCamera) {
 }
 
 TEST(LearnedPolicy, ActsLikeThePlainNetworkOnImages) {
+  expectLikeOracle(policyNetwork("depth_gru"), 3, 4);
   expectLikeOracle(policyNetwork("simple_cnn"), 1, 2);
   // Under sanitizers the plain network takes half a minute for each of these; all kinds of their
   // layers were in a small one.

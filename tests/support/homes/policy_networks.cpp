@@ -61,6 +61,15 @@ std::uint32_t simpleCnn(PolicyBuilder& b, std::uint32_t image) {
   return b.relu(b.linear(x, 32 * 12 * 12, kWidth));
 }
 
+/// For 64 x 64 pixels of depth.
+std::uint32_t depthCnn(PolicyBuilder& b, std::uint32_t image, std::uint32_t features) {
+  std::uint32_t x =
+      b.convolution(image, {.inputs = 1, .outputs = 16, .size = 8, .stride = 4, .bias = true});
+  x = b.convolution(b.relu(x), {.inputs = 16, .outputs = 32, .size = 4, .stride = 2, .bias = true});
+  x = b.convolution(b.relu(x), {.inputs = 32, .outputs = 32, .size = 3, .bias = true});
+  return b.relu(b.linear(b.relu(x), 32 * 4 * 4, features));
+}
+
 }  // namespace
 
 std::uint32_t PolicyBuilder::add(PolicyLayer layer) {
@@ -147,11 +156,18 @@ PolicyContent policyNetwork(const std::string& name, std::uint64_t seed) {
   b.content.interface.name = name;
   b.content.interface.observation = plainObservation();
   std::uint32_t x = b.add({{}, layer::Observation{}});
-  if (name == "state" || name == "state_gru") {
+  if (name == "state" || name == "state_gru" || name == "depth_gru") {
     constexpr std::uint32_t kHidden = 128;
-    x = b.tanh(b.linear(b.normalize(x, kState), kState, kHidden));
+    x = b.normalize(x, kState);
+    std::uint32_t size = kState;
+    if (name == "depth_gru") {
+      b.content.interface.image = PolicyImage{.width = 64, .height = 64, .color = false};
+      x = b.add({{x, depthCnn(b, b.add({{}, layer::Image{}}), kHidden)}, layer::Concatenate{}});
+      size += kHidden;
+    }
+    x = b.tanh(b.linear(x, size, kHidden));
     x = b.tanh(b.linear(x, kHidden, kHidden));
-    if (name == "state_gru") x = b.gru(x, kHidden, kHidden);
+    if (name != "state") x = b.gru(x, kHidden, kHidden);
     b.heads(x, kHidden);
     return std::move(b.content);
   }

@@ -68,8 +68,9 @@ class PolicyBuilder {
 /// The observation of a simulation with so many joints.
 std::vector<PolicyPart> plainObservation(std::uint32_t joints = 7);
 
-/// The networks of issue and paper, for a robot of seven joints: "state" (two layers of 128),
-/// "state_gru" (the same and a GRU), "simple_cnn", "resnet9", "resnet18".
+/// The networks that robots learn with, for one of seven joints: "state" (two layers of 128),
+/// "state_gru" (the same and a GRU), "depth_gru" (that with a depth camera); and the paper's:
+/// "simple_cnn", "resnet9", "resnet18".
 PolicyContent policyNetwork(const std::string& name, std::uint64_t seed = 1);
 
 /// A policy with a layer of every kind, as small as each can be and still be wrong in every field.
