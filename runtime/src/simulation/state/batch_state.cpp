@@ -112,13 +112,15 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   successes_.resize(padded);
   endings_.resize(padded);
   idle_.resize(padded);
-  // What second-level caches hold with room to spare.
-  constexpr std::size_t kCached = std::size_t{768} * 1024;
-  is_large_ = bytes() > kCached;
+  // A core that has less to read each step waits less for it than it takes to ask for it ahead.
+  constexpr std::size_t kNear = std::size_t{1} << 20U;
+  const std::size_t read = sizeof(Env) + sizeof(RestingView) + row_count_ * sizeof(float) +
+                           observation_size_ * sizeof(float) + body_count_ * sizeof(RigidTransform);
+  asks_ahead_ = padded * read > kNear;
 }
 
 void BatchState::prefetch(std::size_t n) const noexcept {
-  if (n >= envs_.size() || !is_large_) return;
+  if (n >= envs_.size() || !asks_ahead_) return;
   prefetchBytes(&envs_[n], sizeof(Env));
   prefetchRow(observation(n));
   prefetchRow(bodyTransforms(n));
@@ -129,7 +131,7 @@ void BatchState::prefetch(std::size_t n) const noexcept {
 }
 
 void BatchState::prefetchChunk(std::size_t first) const noexcept {
-  if (first >= envs_.size() || !is_large_) return;
+  if (first >= envs_.size() || !asks_ahead_) return;
   const auto row = [&](const auto& values) {
     prefetchRow(std::span(values).subspan(first, kChunk));
   };
@@ -142,7 +144,7 @@ void BatchState::prefetchChunk(std::size_t first) const noexcept {
 }
 
 void BatchState::prefetchBounds(std::size_t first) const noexcept {
-  if (!is_large_) return;
+  if (!asks_ahead_) return;
   for (std::size_t n = first; n < first + kChunk; ++n) {
     const RestingView& objects = resting_[n].view();
     prefetchBytes(objects.bounds, objects.bounds_count * sizeof(PackedBounds));

@@ -326,8 +326,8 @@ class BatchState {
   std::size_t variable_count_ = 0;
   /// Of a chunk.
   std::size_t row_count_ = 0;
-  /// More than stays in a core's own caches from step to step.
-  bool is_large_ = false;
+  /// Whether steps ask the memory ahead: where there is much to read.
+  bool asks_ahead_ = false;
   std::size_t observation_size_ = 0;
   std::size_t body_count_ = 0;
   std::pmr::vector<Env> envs_{&memory_};
