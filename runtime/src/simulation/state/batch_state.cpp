@@ -153,9 +153,9 @@ void BatchState::prefetchBounds(std::size_t first) const noexcept {
 
 std::size_t BatchState::bytes() const {
   std::size_t bytes = bytesOf(envs_) + bytesOf(counters_) + bytesOf(moves_) + bytesOf(held_) +
-                      bytesOf(objects_) + bytesOf(ignored_) + bytesOf(leaving_) + bytesOf(rows_) +
-                      2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
-                      4 * bytesOf(dones_);
+                      bytesOf(resting_) + bytesOf(objects_) + bytesOf(ignored_) +
+                      bytesOf(leaving_) + bytesOf(rows_) + 2 * bytesOf(observations_) +
+                      bytesOf(bodies_) + bytesOf(rewards_) + 4 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }
