@@ -49,4 +49,12 @@ inline simulation::RestingObjects restingAt(const std::vector<Body>& bodies) {
   return objects;
 }
 
+/// All that are found.
+inline std::vector<simulation::SphereHit> hitsOf(const simulation::RestingObjects& objects,
+                                                 const simulation::SphereBatch& batch) {
+  std::vector<simulation::SphereHit> hits(10000);
+  hits.resize(objects.hits(batch, hits));
+  return hits;
+}
+
 }  // namespace galactic::test

@@ -96,11 +96,15 @@ inline std::uint32_t objectsNear(const PackedBounds& objects, const QueryBounds&
   return objects.resting & (everywhere | ~apart_from) & ~others;
 }
 
-/// The same of the p-th 32 objects of a view.
+/// Of the p-th 32 objects of a view, the one that is not there, as a bit.
+inline std::uint32_t absentOf(const RestingView& objects, std::size_t p) {
+  return p == objects.absent_pack ? objects.absent : 0;
+}
+
+/// Of the p-th 32 objects of a view, those whose bounds meet those of a query, as bits.
 inline std::uint32_t objectsNear(const RestingView& objects, std::size_t p,
                                  const QueryBounds& query) {
-  const std::uint32_t absent = p == objects.absent_pack ? objects.absent : 0;
-  return objectsNear(objects.bounds[p], query) & ~absent;
+  return objectsNear(objects.bounds[p], query) & ~absentOf(objects, p);
 }
 
 }  // namespace

@@ -177,8 +177,7 @@ bool RestingObjects::isResting(std::uint32_t index) const noexcept {
   assert(index < capacity());
   const std::size_t pack = index / kPackedObjects;
   if (pack >= now_.bounds_count) return false;
-  const std::uint32_t absent = pack == now_.absent_pack ? now_.absent : 0;
-  return (now_.bounds[pack].resting & ~absent & bitOf(index)) != 0;
+  return (now_.bounds[pack].resting & ~absentOf(now_, pack) & bitOf(index)) != 0;
 }
 
 bool RestingObjects::touches(const SphereBatch& spheres) const noexcept {

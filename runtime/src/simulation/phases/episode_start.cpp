@@ -28,9 +28,8 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) state.setLastAction(j, n, 0);
 }
 
-void placeObjects(const Model& model, BatchState& state, std::size_t n, const Episode& episode,
-                  std::uint32_t start) {
-  const std::span<const Placement> placements = model.placements(episode);
+void placeObjects(const Model& model, BatchState& state, std::size_t n, std::uint32_t start) {
+  const std::span<const Placement> placements = model.placements(model.episodeOf(start));
   for (std::uint32_t object = 0; object < placements.size(); ++object) {
     state.placeObject(n, object, placements[object].pose);
   }
@@ -56,7 +55,7 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
                   std::uint32_t start) noexcept {
   const Episode& episode = model.episodeOf(start);
   placeRobot(model, state, n, start);
-  placeObjects(model, state, n, episode, start);
+  placeObjects(model, state, n, start);
   const std::uint32_t target = model.targetOf(episode);
   Env& env = state.env(n);
   env = {.scene = model.world->sceneIndexOf(episode),

@@ -6,33 +6,28 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <span>
-#include <utility>
 
 #include "column_grid/column_grid_kernels.h"
 #include "support/homes/resting_bodies.h"
+#include "support/homes/resting_robot.h"
 #include "support/oracles/resting_oracle.h"
 
 namespace galactic::test::resting_objects_test {
 namespace {
 
 using simulation::avx2Resting;
-using simulation::BoundedSpheres;
-using simulation::CenterBounds;
 using simulation::kBandHeight;
 using simulation::kBands;
-using simulation::kBounds;
 using simulation::kByteCells;
 using simulation::kCellEdge;
 using simulation::kLanes;
 using simulation::LaneGroup;
 using simulation::overlaps;
-using simulation::paddedToLanes;
 using simulation::portableResting;
 using simulation::RadiusRange;
 using simulation::RestingBox;
@@ -52,12 +47,6 @@ OwnedBatch randomBatch(const std::vector<Body>& bodies, const Room& room, std::m
     batch.add(r, kRadii[r], centers);
   }
   return batch;
-}
-
-std::vector<SphereHit> hitsOf(const RestingObjects& objects, const SphereBatch& batch) {
-  std::vector<SphereHit> hits(10000);
-  hits.resize(objects.hits(batch, hits));
-  return hits;
 }
 
 /// `hits` against the distances of all spheres to all boxes.
@@ -326,202 +315,6 @@ TEST(RestingObjects, AnswerAlikeBitForBitWithBothKernels) {
   tally.expectBothSides();
 }
 
-/// Spheres by eights as a robot's are, each eight of its own radius, with their bounds.
-class Robot {
- public:
-  /// `radii`: of each eight.
-  Robot(const std::vector<Vec3>& centers, std::vector<float> radii)
-      : groups_(centers.size() / kLanes),
-        stride_(paddedToLanes(groups_)),
-        radii_(std::move(radii)),
-        bounds_(kBounds * stride_) {
-    for (const Vec3& center : centers) {
-      x_.push_back(center.x);
-      y_.push_back(center.y);
-      z_.push_back(center.z);
-    }
-    for (std::size_t n = 0; n < groups_; ++n) {
-      ranges_.push_back({0, radii_[n], static_cast<std::uint32_t>(n * kLanes), kLanes});
-    }
-    radii_.resize(stride_);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::vector<float>& along = *std::array{&x_, &y_, &z_}[axis];
-      for (std::size_t n = 0; n < stride_; ++n) {
-        // Lanes beyond the last group repeat the first of their eight.
-        const std::size_t group = n < groups_ ? n : n / kLanes * kLanes;
-        const auto [least, most] =
-            std::ranges::minmax(std::span(along).subspan(group * kLanes, kLanes));
-        bounds_[2 * axis * stride_ + n] = least;
-        bounds_[(2 * axis + 1) * stride_ + n] = most;
-      }
-      const auto [least, most] = std::ranges::minmax(along);
-      all_.values[2 * axis] = least;
-      all_.values[2 * axis + 1] = most;
-    }
-  }
-
-  [[nodiscard]] SphereBatch batch() const { return {x_.data(), y_.data(), z_.data(), ranges_}; }
-  [[nodiscard]] BoundedSpheres bounded() const {
-    return {x_.data(),     y_.data(),      z_.data(), groups_,
-            radii_.data(), bounds_.data(), stride_,   &all_};
-  }
-  [[nodiscard]] const CenterBounds& all() const { return all_; }
-
- private:
-  std::size_t groups_;
-  std::size_t stride_;
-  std::vector<float> radii_;
-  std::vector<float> bounds_;
-  CenterBounds all_;
-  std::vector<float> x_;
-  std::vector<float> y_;
-  std::vector<float> z_;
-  std::vector<RadiusRange> ranges_;
-};
-
-/// As many centers as eights of spheres have, each eight together somewhere within two meters.
-std::vector<Vec3> robotCenters(std::size_t eights, const std::vector<Body>& bodies,
-                               const Room& room, std::mt19937& random) {
-  const Vec3 base = randomCenter(bodies, room, random);
-  const auto aside = [&](float most) { return uniformIn(random, -most, most); };
-  std::vector<Vec3> centers;
-  for (std::size_t eight = 0; eight < eights; ++eight) {
-    const Vec3 link = base + Vec3{aside(1), aside(0.3F), aside(1)};
-    for (std::size_t n = 0; n < kLanes; ++n) {
-      centers.push_back(link + Vec3{aside(0.1F), aside(0.1F), aside(0.1F)});
-    }
-  }
-  return centers;
-}
-
-/// The fastest that this processor can run.
-RestingKernels restingKernelsHere() {
-  return detail::hasAvx2() ? avx2Resting() : portableResting();
-}
-
-/// One env's share of objects that others have, too, and what is to be found in it.
-struct Sharer {
-  Sharer() : objects(kMost, kLargestRadius), now(kMost) {}
-
-  void begin(const RestingObjects& start, const std::vector<Body>& bodies) {
-    objects.share(start.view());
-    std::ranges::copy(bodies, now.begin());
-    resting.assign(kMost, false);
-    std::fill_n(resting.begin(), bodies.size(), true);
-  }
-
-  /// A hand takes an object, or lays one down somewhere.
-  void change(const Room& room, std::mt19937& random) {
-    const auto index = static_cast<std::uint32_t>(random() % now.size());
-    if (resting[index]) {
-      objects.remove(index);
-    } else {
-      now[index] = randomBody(room, random);
-      objects.insert(index, now[index].resting());
-    }
-    resting[index] = !resting[index];
-  }
-
-  /// Compares what is found around a center with a look at all of them; whether anything was.
-  [[nodiscard]] bool check(const Vec3& center) const {
-    const OwnedBatch sphere = OwnedBatch().add(0, kLargestRadius, {center});
-    std::set<std::uint32_t> expected;
-    for (std::uint32_t n = 0; n < now.size(); ++n) {
-      EXPECT_EQ(objects.isResting(n), resting[n]);
-      if (resting[n] && overlaps(now[n].resting(), center, kLargestRadius)) expected.insert(n);
-    }
-    std::set<std::uint32_t> found;
-    for (const SphereHit& hit : hitsOf(objects, sphere.view())) found.insert(hit.object);
-    EXPECT_EQ(found, expected);
-    LaneGroup at;
-    EXPECT_EQ(portableResting().find_touching(objects.view(), sphere.view(), at), !found.empty());
-    EXPECT_EQ(static_cast<bool>(objects.nearest(center, kLargestRadius)), !found.empty());
-    return !found.empty();
-  }
-
-  /// Compares what is found with what objects find that were never shared.
-  void compare(const RestingObjects& own, const Robot& robot, const Vec3& center) const {
-    for (const RestingKernels& kernels : {portableResting(), restingKernelsHere()}) {
-      EXPECT_EQ(kernels.touches(objects.view(), robot.bounded()),
-                kernels.touches(own.view(), robot.bounded()));
-      EXPECT_EQ(kernels.may_touch(objects.view(), robot.all()),
-                kernels.may_touch(own.view(), robot.all()));
-    }
-    EXPECT_EQ(objects.fall(center, kLargestRadius), own.fall(center, kLargestRadius));
-    const auto heights = [](const RestingObjects& from, const Span& between) {
-      std::vector<float> seen;
-      from.forEachBetween(between, [&](const RestingBox&, float y) { seen.push_back(y); });
-      return seen;
-    };
-    const Span between{center.y, center.y + 0.3F};
-    EXPECT_EQ(heights(objects, between), heights(own, between));
-  }
-
-  /// The same objects, all of them its own.
-  [[nodiscard]] RestingObjects owned() const {
-    RestingObjects own(kMost, kLargestRadius);
-    for (std::uint32_t n = 0; n < kMost; ++n) {
-      if (resting[n]) own.insert(n, now[n].resting());
-    }
-    return own;
-  }
-
-  /// Half of which are there at first, in fewer packs.
-  static constexpr std::size_t kMost = 140;
-
-  RestingObjects objects;
-  std::vector<Body> now;
-  std::vector<bool> resting;
-};
-
-TEST(RestingObjects, ThatEnvsShareChangeForOneOfThemAlone) {
-  std::mt19937 random(409);
-  const Room room{.x = {0, 3}, .z = {0, 3}};
-  const std::vector<Body> bodies = randomBodies(room, Sharer::kMost / 2, random);
-  const RestingObjects start = restingAt(bodies);
-  std::vector<Sharer> sharers;
-  for (int n = 0; n < 3; ++n) sharers.emplace_back().begin(start, bodies);
-  Tally tally;
-  for (int round = 0; round < 3000; ++round) {
-    Sharer& sharer = sharers[random() % sharers.size()];
-    // Most episodes end before much has moved.
-    if (random() % 4 == 0) {
-      sharer.begin(start, bodies);
-    } else {
-      sharer.change(room, random);
-    }
-    for (const Sharer& each : sharers) {
-      const Vec3 center = randomCenter(each.now, room, random);
-      tally.add(each.check(center));
-      const Robot robot(robotCenters(1, each.now, room, random), {kRadii[random() % 3]});
-      each.compare(each.owned(), robot, center);
-    }
-    ASSERT_FALSE(HasFailure()) << "round " << round;
-  }
-  tally.expectBothSides();
-}
-
-TEST(RestingObjects, AreOneForAllWhoShareThemUntilOneComesToRest) {
-  std::mt19937 random(411);
-  const Room room{.x = {0, 3}, .z = {0, 3}};
-  const std::vector<Body> bodies = randomBodies(room, 5, random);
-  const RestingObjects start = restingAt(bodies);
-  std::vector<Sharer> sharers(2);
-  for (Sharer& sharer : sharers) sharer.begin(start, bodies);
-  // In a hand.
-  sharers[1].objects.remove(3);
-  for (const Sharer& sharer : sharers) {
-    EXPECT_EQ(sharer.objects.view().bounds, start.view().bounds);
-    EXPECT_EQ(sharer.objects.view().boxes, start.view().boxes);
-  }
-  sharers[1].objects.insert(3, bodies[3].resting());
-  EXPECT_NE(sharers[1].objects.view().bounds, start.view().bounds);
-  EXPECT_NE(sharers[1].objects.view().boxes, start.view().boxes);
-  sharers[1].begin(start, bodies);
-  EXPECT_EQ(sharers[1].objects.view().bounds, start.view().bounds);
-  EXPECT_EQ(sharers[1].objects.view().boxes, start.view().boxes);
-}
-
 TEST(RestingObjects, BoundsOfARobotChangeNoAnswer) {
   std::mt19937 random(410);
   std::vector<RestingKernels> kernels{portableResting()};
@@ -539,7 +332,7 @@ TEST(RestingObjects, BoundsOfARobotChangeNoAnswer) {
     const RestingObjects objects = restingAt(bodies);
     std::vector<float> radii(1 + random() % 20);
     for (float& radius : radii) radius = kRadii[random() % 3];
-    const Robot robot(robotCenters(radii.size(), bodies, room, random), radii);
+    const RobotOfEights robot(robotCenters(radii.size(), bodies, room, random), radii);
     const bool touches = objects.touches(robot.batch());
     tally.add(touches);
     for (const RestingKernels& each : kernels) {
@@ -570,7 +363,7 @@ TEST(RestingObjects, BoundsOfARobotHideNoSphereThatJustOverlaps) {
                   corner(box.axis_y, box.half_extents.y) + corner(box.axis_z, box.half_extents.z);
     const float radius = kRadii[random() % 3];
     (along_x ? center.x : center.z) += side * 0.999F * radius;
-    const Robot robot(std::vector<Vec3>(kLanes, center), {radius});
+    const RobotOfEights robot(std::vector<Vec3>(kLanes, center), {radius});
     ASSERT_TRUE(objects.touches(robot.batch())) << round;
     ASSERT_TRUE(objects.touches(robot.bounded())) << round;
   }
