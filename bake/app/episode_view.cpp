@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/counted.h"
 #include "support/printable.h"
 #include "terminal.h"
 #include "views.h"
@@ -27,11 +28,10 @@ void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
   }
   if (verbosity != Verbosity::kVerbose) return;
   for (const GeneratedScene& scene : generation.scenes) {
-    fmt::print(
-        "  {}: {} episodes; {} floor places, {} support places on {} surfaces, {} "
-        "receptacles{}\n",
-        printable(scene.name), scene.episodes, scene.floor_places, scene.support_places,
-        scene.surfaces, scene.receptacles, scene.has_mesh ? ", objects settled" : "");
+    fmt::print("  {}: {}; {}, {} on {}, {}{}\n", printable(scene.name),
+               counted(scene.episodes, "episode"), counted(scene.floor_places, "floor place"),
+               counted(scene.support_places, "support place"), counted(scene.surfaces, "surface"),
+               counted(scene.receptacles, "receptacle"), scene.has_mesh ? ", objects settled" : "");
   }
 }
 
@@ -39,9 +39,10 @@ void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
 
 void printEpisodes(const EpisodeFigures& set, Verbosity verbosity) {
   const EpisodeFigures::Distances& distances = set.target_to_goal;
-  fmt::print("  {}: {} episodes; {} scenes, {} objects, {} placements, at most {} in an episode\n",
-             printable(set.name), set.episodes, set.scenes.size(), set.objects.size(),
-             set.placements, set.most_placements);
+  fmt::print("  {}: {}; {}, {}, {}, at most {} in an episode\n", printable(set.name),
+             counted(set.episodes, "episode"), counted(set.scenes.size(), "scene"),
+             counted(set.objects.size(), "object"), counted(set.placements, "placement"),
+             set.most_placements);
   fmt::print("  target to goal {:.2f} m at least, {:.2f} m on average, {:.2f} m at most\n",
              distances.min, distances.mean, distances.max);
   if (verbosity == Verbosity::kVerbose) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "support/counted.h"
 #include "support/printable.h"
 #include "terminal.h"
 #include "views.h"
@@ -71,7 +72,7 @@ void printTable(const ObjectSetFigures& set, const PackFigures& pack, Verbosity 
   for (const ObjectFigures& object : objects) longest = std::max(longest, object.name.size());
   const int name_width = static_cast<int>(longest);
   std::vector<float> radii(set.radii.rbegin(), set.radii.rend());
-  fmt::print("{} object{} -> {}\n", objects.size(), objects.size() == 1 ? "" : "s", targetOf(pack));
+  fmt::print("{} -> {}\n", counted(objects.size(), "object"), targetOf(pack));
   fmt::print("  {:<{}} {:>9} {:>17} {:>4} {:>6} {:>5} {:>8} {:>4} {:>16} {:>16} {:>5} {:>7}\n",
              "object", name_width, "triangles", "box mm", "fit", "/aabb", "poses", "spheres", "all",
              "gap mm", "protrusion mm", "thin", "seconds");

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/atomic_file.h"
+#include "support/counted.h"
 #include "support/printable.h"
 #include "terminal.h"
 #include "views.h"
@@ -166,8 +167,8 @@ void printEpisodes(const BuildOutcome& outcome, Verbosity verbosity) {
 void printWorld(const JobList& list, const BuildOutcome& outcome) {
   std::uint64_t bytes = 0;
   for (const LinkedPack& pack : outcome.linked) bytes += pack.bytes;
-  fmt::print("{} packs, {:.2f} MB -> {}\n", outcome.linked.size(), static_cast<double>(bytes) / 1e6,
-             list.world->output.string());
+  fmt::print("{}, {:.2f} MB -> {}\n", counted(outcome.linked.size(), "pack"),
+             static_cast<double>(bytes) / 1e6, list.world->output.string());
 }
 
 }  // namespace
@@ -214,7 +215,7 @@ Result<void> writeReport(const std::filesystem::path& path, const Json& report) 
 void printWorldTable(const JobList& list, const BuildOutcome& outcome, Verbosity verbosity) {
   printEpisodes(outcome, verbosity);
   if (!list.left_out.empty()) {
-    fmt::print("{} scenes are left out:\n", list.left_out.size());
+    fmt::print("{} left out:\n", counted(list.left_out.size(), "scene"));
     print(reasonsOf(list.left_out));
   }
   const Sentences warnings = warningsOf(outcome);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "support/counted.h"
 #include "support/printable.h"
 #include "terminal.h"
 #include "views.h"
@@ -27,9 +28,9 @@ void printGroup(const RobotFigures::Group& group, int name_width) {
 void printPairs(const RobotFigures& robot) {
   std::array<std::size_t, 5> counts{};
   for (const RobotFigures::Pair& pair : robot.pairs) ++counts[static_cast<std::size_t>(pair.kind)];
-  fmt::print(
-      "  {} pairs of groups: {} tested, {} adjacent, {} always touch, {} never, {} ignored\n",
-      robot.pairs.size(), counts[0], counts[1], counts[2], counts[3], counts[4]);
+  fmt::print("  {} of groups: {} tested, {} adjacent, {} always touch, {} never, {} ignored\n",
+             counted(robot.pairs.size(), "pair"), counts[0], counts[1], counts[2], counts[3],
+             counts[4]);
 }
 
 }  // namespace
@@ -43,9 +44,9 @@ void printTable(const RobotFigures& robot, const PackFigures& pack, Verbosity ve
   }
   const int name_width = static_cast<int>(longest);
   fmt::print("{} -> {}\n", robot.input, targetOf(pack));
-  fmt::print("  {}: {} links, {} joint positions, {} controlled joints, {} spheres\n",
-             printable(robot.name), robot.links, robot.joint_positions, robot.controlled_joints,
-             spheres);
+  fmt::print("  {}: {}, {}, {}, {}\n", printable(robot.name), counted(robot.links, "link"),
+             counted(robot.joint_positions, "joint position"),
+             counted(robot.controlled_joints, "controlled joint"), counted(spheres, "sphere"));
   fmt::print("  {:<{}} {:>5} {:>9} {:>4} {:>16} {:>16} {:>6} {:>5}\n", "group", name_width, "links",
              "spheres", "all", "gap mm", "protrusion mm", "volume", "thin");
   for (const RobotFigures::Group& group : robot.groups) printGroup(group, name_width);

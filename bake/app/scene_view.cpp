@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "support/counted.h"
 #include "support/printable.h"
 #include "terminal.h"
 #include "views.h"
@@ -16,7 +17,7 @@ std::string castCheckText(const GridFigures& grid) {
   if (!grid.cast_check) return "not checked";
   const CastCheck& check = *grid.cast_check;
   if (check.errors > 0) return fmt::format("{:.1f} mm WRONG", check.errors * 1e3);
-  return fmt::format("{} columns checked, none wrong", check.columns);
+  return counted(check.columns, "column") + " checked, none wrong";
 }
 
 /// Where casts and grid differ although the grid is right: docs/column_grids.md.
@@ -59,14 +60,14 @@ void printDetails(const SceneFigures& scene) {
 void printTable(const SceneFigures& scene, const PackFigures& pack, Verbosity verbosity) {
   const Bounds& bounds = scene.bounds;
   fmt::print("{} -> {}\n", scene.input, targetOf(pack));
-  fmt::print("  {}, {}; {} meshes, {} instances\n", scene.imported.format,
-             withFlags(scene.convention), scene.imported.meshes, scene.imported.instances);
+  fmt::print("  {}, {}; {}, {}\n", scene.imported.format, withFlags(scene.convention),
+             counted(scene.imported.meshes, "mesh"), counted(scene.imported.instances, "instance"));
   fmt::print(
-      "  {} triangles ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} m and {:.2f} m "
+      "  {} ({} degenerate, {} duplicate dropped), {:.2f} x {:.2f} m and {:.2f} m "
       "high, y from {:.3f} to {:.3f} m\n",
-      scene.imported.triangles, scene.imported.counts.degenerate, scene.imported.counts.duplicate,
-      bounds.max.x - bounds.min.x, bounds.max.z - bounds.min.z, bounds.max.y - bounds.min.y,
-      bounds.min.y, bounds.max.y);
+      counted(scene.imported.triangles, "triangle"), scene.imported.counts.degenerate,
+      scene.imported.counts.duplicate, bounds.max.x - bounds.min.x, bounds.max.z - bounds.min.z,
+      bounds.max.y - bounds.min.y, bounds.min.y, bounds.max.y);
   printGrids(scene);
   printRenderMeshes(scene.render_meshes);
   if (verbosity == Verbosity::kVerbose) printDetails(scene);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "galactic/pack_header.h"
+#include "support/counted.h"
 #include "support/printable.h"
 
 namespace galactic::bake {
@@ -29,7 +30,7 @@ void printTable(const WorldFigures& world, const PackFigures& pack, Verbosity /*
     bytes += linked.bytes;
     width = std::max(width, static_cast<int>(linked.path.size()));
   }
-  fmt::print("{} packs -> {}\n", world.packs.size(), targetOf(pack));
+  fmt::print("{} -> {}\n", counted(world.packs.size(), "pack"), targetOf(pack));
   for (const LinkedPack& linked : world.packs) {
     fmt::print("  {} {:<{}} {:>9.2f} MB\n", packKindName(linked.kind), printable(linked.path),
                width, megabytes(linked.bytes));
@@ -39,13 +40,13 @@ void printTable(const WorldFigures& world, const PackFigures& pack, Verbosity /*
 
 void printRenderMeshes(const RenderBakeStatistics& figures, std::uint64_t textures) {
   fmt::print(
-      "  render meshes: {} -> {} triangles ({} two-sided), {} -> {} vertices, {} clusters, "
+      "  render meshes: {} -> {} triangles ({} two-sided), {} -> {} vertices, {}, "
       "error {:.2f} mm; {:.2f} -> {:.2f} MB\n",
       figures.source_triangles, figures.triangles, figures.two_sided_triangles,
-      figures.source_vertices, figures.vertices, figures.clusters,
+      figures.source_vertices, figures.vertices, counted(figures.clusters, "cluster"),
       1e3 * static_cast<double>(figures.largest_error), megabytes(figures.source_bytes),
       megabytes(figures.bytes));
-  fmt::print("  {} texture{}: {:.2f} -> {:.2f} MB\n", textures, textures == 1 ? "" : "s",
+  fmt::print("  {}: {:.2f} -> {:.2f} MB\n", counted(textures, "texture"),
              megabytes(figures.source_texture_bytes), megabytes(figures.texture_bytes));
 }
 

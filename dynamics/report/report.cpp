@@ -9,6 +9,7 @@
 #include "dynamics/episodes/robot_driver.h"
 #include "dynamics/report/names.h"
 #include "dynamics/report/report_sums.h"
+#include "support/counted.h"
 
 namespace galactic::dynamics {
 namespace {
@@ -233,7 +234,7 @@ std::string reportTable(const Comparisons& comparisons, const World& world,
   table.line("joint error, mean and worst",
              fmt::format("{:.4f}, {:.3f}", meanTracking(sums, world), sums.tracking_worst));
   for (const Gap& gap : sums.gaps) {
-    table.line(fmt::format("apart after {} steps", gap.step),
+    table.line("apart after " + counted(gap.step, "step"),
                fmt::format("base {:.3f} m, 95 % {:.3f} m; grip {:.3f} m, 95 % {:.3f} m",
                            quantile(gap.base, 0.5), quantile(gap.base, 0.95),
                            quantile(gap.grip, 0.5), quantile(gap.grip, 0.95)));

@@ -6,6 +6,7 @@
 #include "galactic/world.h"
 #include "pack_tool/check/finding.h"
 #include "pack_tool/support/console.h"
+#include "support/counted.h"
 
 namespace galactic::pack_tool {
 
@@ -23,8 +24,8 @@ CheckedPack goodPack(const PackFile& pack) {
 CheckedPack verdict(const PackFile& world, std::vector<PackFile> good_packs, std::size_t listed) {
   if (good_packs.size() < listed) {
     return badPack(world.where(), {ErrorCode::kInvalidInput, world.where(),
-                                   fmt::format("lists {} packs, {} of them are bad; see above",
-                                               listed, listed - good_packs.size()),
+                                   fmt::format("lists {}, {} of them bad; see above",
+                                               counted(listed, "pack"), listed - good_packs.size()),
                                    "world/bad-pack"});
   }
   const auto fits = checkTogether(std::move(good_packs));

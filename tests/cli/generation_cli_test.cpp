@@ -96,7 +96,7 @@ TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   const ProgramRun drawn = draw({"--seed", "7"});
   ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
   EXPECT_THAT(drawn.out, HasSubstr("3 packs -> episodes.pack"));
-  EXPECT_THAT(drawn.out, HasSubstr("3 episodes; 1 scenes, 2 objects, 6 placements"));
+  EXPECT_THAT(drawn.out, HasSubstr("3 episodes; 1 scene, 2 objects, 6 placements"));
   EXPECT_THAT(drawn.out, HasSubstr("drawn and not taken: "));
   ASSERT_EQ(draw({"--seed", "7", "-o", "again.pack", "-j", "1"}).exit_code, 0);
   ASSERT_EQ(draw({"--seed", "8", "-o", "other.pack"}).exit_code, 0);

@@ -168,7 +168,7 @@ TEST_F(ObjectCli, UnderstandsEveryOptionOfObjects) {
   EXPECT_EQ(bake({"mug.obj", "--no-support"}).exit_code, 0);
   const ProgramRun one = bake({"mug.obj", "--max-spheres", "1", "--report", "report.json"});
   EXPECT_EQ(one.exit_code, 0);
-  EXPECT_THAT(one.out, HasSubstr("warning: object 'mug': 1 spheres leave a gap"));
+  EXPECT_THAT(one.out, HasSubstr("warning: object 'mug': with 1 sphere there are gaps"));
   EXPECT_EQ(json::parse(content("report.json"))["baked"][0]["spheres"]["count"], 1);
   EXPECT_EQ(bake({"mug.obj", "--dry-run", "-o", "none.pack"}).exit_code, 0);
   EXPECT_FALSE(has("none.pack"));

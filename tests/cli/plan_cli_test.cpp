@@ -27,7 +27,7 @@ TEST_F(PlanCli, BakesADatasetIntoPacksAndAWorld) {
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_THAT(first.err, IsEmpty());
   EXPECT_THAT(first.out,
-              AllOf(HasSubstr("1 scenes are left out:\n  e: stage 'hall' is in none of"),
+              AllOf(HasSubstr("1 scene left out:\n  e: stage 'hall' is in none of"),
                     HasSubstr("scenes/d.pack: object 'lamp' is in none of the dataset's paths"),
                     HasSubstr("5 baked, 0 unchanged"), HasSubstr(" MB -> out/home.pack\n")));
   for (const char* name : {"home.pack", "home/scenes/a.pack", "home/scenes/b.pack",
@@ -221,7 +221,7 @@ TEST_F(PlanCli, TreatsScenesThatLackSomethingAsTheUserWants) {
   EXPECT_FALSE(has("out"));
   const ProgramRun skips = bake("out", {"--missing", "skip", "--dry-run"});
   EXPECT_EQ(skips.exit_code, 3) << "a dry run tells scripts that something is missing";
-  EXPECT_THAT(skips.out, HasSubstr("2 scenes are left out:\n"));
+  EXPECT_THAT(skips.out, HasSubstr("2 scenes left out:\n"));
   EXPECT_THAT(packsThatAre("planned"), Not(Contains("scenes/d.pack")));
   ASSERT_EQ(bake("out", {"--missing", "without", "--dry-run"}).exit_code, 3);
   EXPECT_THAT(packsThatAre("planned"), Contains("scenes/d.pack"));

@@ -94,7 +94,7 @@ TEST_F(RobotCli, BakesAUrdfWithItsRecipe) {
   const ProgramRun baked = bake({"arm.urdf", "--recipe", "arm.toml"});
   EXPECT_EQ(baked.exit_code, 0) << baked.err;
   EXPECT_THAT(baked.out, AllOf(HasSubstr("arm.urdf -> arm.pack"),
-                               HasSubstr("helper: 3 links, 2 joint positions, 1 controlled joints"),
+                               HasSubstr("helper: 3 links, 2 joint positions, 1 controlled joint"),
                                HasSubstr("3 pairs of groups")));
   EXPECT_THAT(baked.err, IsEmpty());
   const Opened opened = open("arm.pack");

@@ -78,7 +78,7 @@ TEST_F(RunCli, SaysWhatIsInEpisodesAndListsThePacksOfAWorld) {
   const ProgramRun result = run({"tidy.pack", "world.pack"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("tidy.pack: 2 episodes \"tidy\", format 1"),
-                                HasSubstr("\n  1 scenes, 2 objects, 1 to 3 of them at a time\n"
+                                HasSubstr("\n  1 scene, 2 objects, 1 to 3 of them at a time\n"
                                           "  robot: helper, start joints: elbow, lift\n"
                                           "    episodes  scene\n           2  kitchen\n"),
                                 HasSubstr("world.pack: world of 4 packs, format 1"),

@@ -107,7 +107,7 @@ TEST_F(SimulateCli, TakesThePacksThemselvesToo) {
       runBare({"episodes.pack", "objects.pack", "robots/helper.pack", "scenes/kitchen.pack",
                "--trusted", "--envs", "1", "--steps", "1"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, StartsWith("1 envs, 1 steps each, 1 threads"));
+  EXPECT_THAT(result.out, StartsWith("1 env, 1 step each, 1 thread"));
 }
 
 TEST_F(SimulateCli, StillDescribesAWorldWhenNoSimulationIsAskedFor) {

@@ -95,7 +95,7 @@ TEST_F(DynamicsCli, ReplaysARecording) {
       run({"--recording", "home.rec", "--arm", "kinematic", "--report", "replay.json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("success in the dynamics"));
-  EXPECT_THAT(done.out, HasSubstr("apart after 1 steps"));
+  EXPECT_THAT(done.out, HasSubstr("apart after 1 step"));
   EXPECT_THAT(done.err, HasSubstr("each of them weighs 0.5 kg"));
   const json found = report("replay.json");
   EXPECT_EQ(found["mode"], "replay");

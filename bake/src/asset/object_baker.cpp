@@ -9,6 +9,7 @@
 #include "fit/hull_planes.h"
 #include "fit/stable_poses.h"
 #include "sphere_set/authored_spheres.h"
+#include "support/counted.h"
 
 namespace galactic::bake {
 namespace {
@@ -51,11 +52,11 @@ void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
     return;
   }
   warnings.push_back(
-      fmt::format("{} spheres leave a gap of up to {:.1f} mm and stick out up to {:.1f} mm, "
-                  "expected {:.1f} and "
-                  "{:.1f} mm; allow more with `max-spheres` or wider tolerances",
-                  set.spheres.size(), 1000 * set.guaranteed_gap, 1000 * set.guaranteed_protrusion,
-                  1000 * options.eps, 1000 * options.tau));
+      fmt::format("with {} there are gaps of up to {:.1f} mm and parts that stick out up to {:.1f} "
+                  "mm, expected {:.1f} and {:.1f} mm; allow more with `max-spheres` or wider "
+                  "tolerances",
+                  counted(set.spheres.size(), "sphere"), 1000 * set.guaranteed_gap,
+                  1000 * set.guaranteed_protrusion, 1000 * options.eps, 1000 * options.tau));
 }
 
 /// A published box that differs more from the mesh's stands in another frame, or is another

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "galactic/schema/pack_generated.h"
+#include "support/counted.h"
 
 namespace galactic {
 namespace {
@@ -104,11 +105,13 @@ std::string robotText(const schema::Robot& robot) {
   }
   return radiiText(*robot.radii()) +
          fmt::format(
-             "  {} links, {} joint positions, {} of them controlled\n"
-             "  {} spheres in {} groups of links, {} of {} pairs can collide\n"
+             "  {}, {}, {} of them controlled\n"
+             "  {} in {} of links, {} of {} can collide\n"
              "  end effector: {}, camera: {}\n",
-             robot.links()->size(), robot.limits()->size(), robot.controlled_joints()->size(),
-             robot.spheres()->size(), robot.groups()->size(), tested, robot.group_pairs()->size(),
+             counted(robot.links()->size(), "link"),
+             counted(robot.limits()->size(), "joint position"), robot.controlled_joints()->size(),
+             counted(robot.spheres()->size(), "sphere"), counted(robot.groups()->size(), "group"),
+             tested, counted(robot.group_pairs()->size(), "pair"),
              robot.end_effector() == nullptr
                  ? std::string("none")
                  : clean(robot.link_names()->Get(robot.end_effector()->link())),
@@ -129,10 +132,11 @@ std::string episodesText(const schema::EpisodeSet& set) {
   joints.reserve(set.start_joints()->size());
   for (const flatbuffers::String* name : *set.start_joints()) joints.push_back(clean(name));
   std::string text = fmt::format(
-      "  {} scenes, {} objects, {} to {} of them at a time\n"
+      "  {}, {}, {} of them at a time\n"
       "  robot: {}, start joints: {}\n"
       "  {:>10}  scene\n",
-      set.scenes()->size(), set.objects()->size(), fewest, most,
+      counted(set.scenes()->size(), "scene"), counted(set.objects()->size(), "object"),
+      fewest == most ? fmt::format("{}", most) : fmt::format("{} to {}", fewest, most),
       set.robot()->size() == 0 ? "any" : clean(set.robot()),
       joints.empty() ? "none" : fmt::format("{}", fmt::join(joints, ", ")), "episodes");
   for (std::size_t n = 0; n < of_scene.size(); ++n) {
@@ -164,11 +168,12 @@ std::string policyText(const schema::Policy& policy) {
   }
   const schema::PolicyImage* image = policy.image();
   return fmt::format(
-      "  {} layers, {} continuous and {} discrete actions, robot: {}\n"
+      "  {}, {} continuous and {} discrete actions, robot: {}\n"
       "  observation: {}\n"
       "  image: {}\n",
-      policy.layers()->size(), policy.continuous() == nullptr ? 0 : policy.continuous()->count(),
-      policy.discrete()->size(), policy.robot()->size() == 0 ? "any" : clean(policy.robot()), parts,
+      counted(policy.layers()->size(), "layer"),
+      policy.continuous() == nullptr ? 0 : policy.continuous()->count(), policy.discrete()->size(),
+      policy.robot()->size() == 0 ? "any" : clean(policy.robot()), parts,
       image == nullptr ? std::string("none")
                        : fmt::format("{} x {}, camera {}", image->width(), image->height(),
                                      clean(image->camera())));
@@ -177,7 +182,7 @@ std::string policyText(const schema::Policy& policy) {
 /// What kind of asset it is, with its name where it has one, and its description.
 std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
   if (const schema::ObjectSet* set = pack.asset_as_ObjectSet()) {
-    return {fmt::format("{} objects", set->objects()->size()), objectsText(*set)};
+    return {counted(set->objects()->size(), "object"), objectsText(*set)};
   }
   if (const schema::Robot* robot = pack.asset_as_Robot()) {
     return {fmt::format("robot \"{}\"", clean(robot->name())), robotText(*robot)};
@@ -186,11 +191,12 @@ std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
     return {fmt::format("scene \"{}\"", clean(scene->name())), sceneText(*scene)};
   }
   if (const schema::EpisodeSet* set = pack.asset_as_EpisodeSet()) {
-    return {fmt::format("{} episodes \"{}\"", set->episodes()->size(), clean(set->name())),
-            episodesText(*set)};
+    return {
+        fmt::format("{} \"{}\"", counted(set->episodes()->size(), "episode"), clean(set->name())),
+        episodesText(*set)};
   }
   if (const schema::World* world = pack.asset_as_World()) {
-    return {fmt::format("world of {} packs", world->packs()->size()), worldText(*world)};
+    return {"world of " + counted(world->packs()->size(), "pack"), worldText(*world)};
   }
   if (const schema::Policy* policy = pack.asset_as_Policy()) {
     return {fmt::format("policy \"{}\"", clean(policy->name())), policyText(*policy)};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "support/counted.h"
 #include "support/printable.h"
 
 namespace galactic {
@@ -59,9 +60,10 @@ std::string episodeLines(const RunReport& report) {
   const std::size_t playable = report.world_episodes - report.skipped.size();
   const bool is_once = report.options.simulation.order == EpisodeOrder::kPartition;
   const std::string of_all = is_once ? fmt::format(" of {}", playable) : "";
-  return line("episodes", fmt::format("{}{} ended: {} successes, {} failures, {} out of time",
-                                      sum.episodes, of_all, sum.successes, sum.failures,
-                                      sum.episodes - sum.successes - sum.failures)) +
+  return line("episodes",
+              fmt::format("{}{} ended: {}, {}, {} out of time", sum.episodes, of_all,
+                          counted(sum.successes, "success"), counted(sum.failures, "failure"),
+                          sum.episodes - sum.successes - sum.failures)) +
          line("return", fmt::format("{:.4f} in {:.1f} steps, means of the episodes that ended",
                                     ratio(episodes.returns, static_cast<double>(episodes.ended)),
                                     ratio(episodes.steps, episodes.ended)));
@@ -120,7 +122,7 @@ std::string replayLine(const RunReport& report) {
   if (report.first_difference) {
     return line("replay", fmt::format("differs at step {}", *report.first_difference));
   }
-  return line("replay", fmt::format("{} steps, bit for bit the same", report.steps));
+  return line("replay", counted(report.steps, "step") + ", bit for bit the same");
 }
 
 }  // namespace
@@ -141,8 +143,9 @@ std::string tableOf(const RunReport& report) {
   const RunOptions& options = report.options;
   const SimulationStatistics& sum = report.sum;
   std::string text = fmt::format(
-      "{} envs, {} steps each, {} threads, policy {}, seed {}{}\n", options.simulation.envs,
-      report.steps, report.threads, printable(options.policy), options.simulation.seed,
+      "{}, {} each, {}, policy {}, seed {}{}\n", counted(options.simulation.envs, "env"),
+      counted(report.steps, "step"), counted(report.threads, "thread"), printable(options.policy),
+      options.simulation.seed,
       report.is_interrupted ? fmt::format(" (stopped; {} steps were asked for)", options.steps)
                             : "");
   text += taskLine(report);
@@ -160,12 +163,12 @@ std::string tableOf(const RunReport& report) {
   text += phaseTable(report);
   text += line("moves", fmt::format("{} refused, {} slid", percent(ratio(sum.refused, sum.steps)),
                                     percent(ratio(sum.slid, sum.steps))));
-  text += line("hands", fmt::format("{} grasps, {} drops, {} put back", sum.grasps, sum.drops,
-                                    sum.restored));
+  text += line("hands", fmt::format("{}, {}, {} put back", counted(sum.grasps, "grasp"),
+                                    counted(sum.drops, "drop"), sum.restored));
   text += episodeLines(report);
   text += skippedLine(report);
   if (sum.nan_actions > 0) {
-    text += line("not a number", fmt::format("{} actions, taken as 0", sum.nan_actions));
+    text += line("not a number", counted(sum.nan_actions, "action") + ", taken as 0");
   }
   return text + replayLine(report);
 }

@@ -106,7 +106,7 @@ TEST(ObjectBaker, SaysWhenTheTolerancesCannotBeMet) {
   const BakedObject object = bakeWell(brick(), options);
   EXPECT_FALSE(object.spheres.meets_tolerances);
   ASSERT_EQ(object.warnings.size(), 1U);
-  EXPECT_THAT(object.warnings[0], testing::StartsWith("1 spheres leave a gap of up to "));
+  EXPECT_THAT(object.warnings[0], testing::StartsWith("with 1 sphere there are gaps of up to "));
   EXPECT_THAT(object.warnings[0],
               HasSubstr("expected 20.0 and 30.0 mm; allow more with `max-spheres`"));
 }

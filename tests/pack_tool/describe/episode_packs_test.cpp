@@ -131,7 +131,7 @@ TEST(CheckWorld, TellsEachListedPackThatIsBad) {
   EXPECT_THAT(
       outcome.err,
       AllOf(HasSubstr("objects.pack, which is missing"), HasSubstr("helper.pack: announces"),
-            HasSubstr("lists 4 packs, 2 of them are bad; see above [world/bad-pack]\n")));
+            HasSubstr("lists 4 packs, 2 of them bad; see above [world/bad-pack]\n")));
   const Json report = Json::parse(checked(path, OutputForm::kJson).out);
   EXPECT_EQ(report.at(0).at("ok"), false);
   EXPECT_EQ(report.at(0).at("packs").at(0).at("ok"), true);

@@ -266,7 +266,7 @@ TEST(JUnit, HasACaseForEachPackAndAFailureForEachBadOne) {
                            "pack/truncated"});
   CheckedPack world =
       badPack("world.pack", {ErrorCode::kInvalidInput, "world.pack",
-                             "lists 1 packs, 1 of them are bad; see above", "world/bad-pack"});
+                             "lists 1 pack, 1 of them bad; see above", "world/bad-pack"});
   world.is_world = true;
   world.listed = {bad};
   EXPECT_EQ(junitText({good, world}),
@@ -278,7 +278,7 @@ TEST(JUnit, HasACaseForEachPackAndAFailureForEachBadOne) {
       <failure type="pack/truncated" message="has 3 bytes, a pack has at least 64; it is truncated or no pack">cut.pack: has 3 bytes, a pack has at least 64; it is truncated or no pack [pack/truncated]</failure>
     </testcase>
     <testcase classname="packs" name="world.pack">
-      <failure type="world/bad-pack" message="lists 1 packs, 1 of them are bad; see above">world.pack: lists 1 packs, 1 of them are bad; see above [world/bad-pack]</failure>
+      <failure type="world/bad-pack" message="lists 1 pack, 1 of them bad; see above">world.pack: lists 1 pack, 1 of them bad; see above [world/bad-pack]</failure>
     </testcase>
   </testsuite>
 </testsuites>

@@ -4,6 +4,7 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "render/raster/placed_model.h"
+#include "support/counted.h"
 
 namespace galactic::render {
 
@@ -69,8 +70,7 @@ std::string SoftEngine::description() const {
   const char* instructions = draw_ == drawPaneAvx512 ? "AVX-512"
                              : draw_ == drawPaneAvx2 ? "AVX2"
                                                      : "portable";
-  return std::string("soft, ") + instructions + ", " + std::to_string(options_.threads) +
-         (options_.threads == 1 ? " thread" : " threads");
+  return std::string("soft, ") + instructions + ", " + counted(options_.threads, "thread");
 }
 
 void SoftEngine::drawPanes(PaneMemory& memory) noexcept {
