@@ -133,7 +133,7 @@ std::optional<std::pair<std::size_t, EpisodeComparison>> readRecord(const std::s
 
 ComparisonJournal::ComparisonJournal(std::unique_ptr<Journal> journal)
     : journal_(std::move(journal)) {
-  for (const std::string& record : journal_->records()) {
+  for (const std::string_view record : journal_->records()) {
     if (auto one = readRecord(record)) done_.insert(std::move(*one));
   }
 }

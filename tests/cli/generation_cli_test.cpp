@@ -66,7 +66,8 @@ class GenerationCli : public test::BakeFolder {
     write("copy.partial", text);
     const auto copy = Journal::open(path("copy.partial"),
                                     text.substr(subject, text.find('\n', subject) - subject));
-    return copy ? (*copy)->records() : std::vector<std::string>();
+    if (!copy) return {};
+    return {(*copy)->records().begin(), (*copy)->records().end()};
   }
   [[nodiscard]] test::StartedProgram startDrawing(const std::vector<std::string>& more) const {
     return {GALACTIC_BAKE, path(""), drawing(more)};

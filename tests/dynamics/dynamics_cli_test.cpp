@@ -82,7 +82,7 @@ void changeFirstRecord(const std::filesystem::path& file,
   const std::size_t subject = text.find('\n') + 1;
   const std::string subject_line = text.substr(subject, text.find('\n', subject) - subject);
   auto journal = Journal::open(file, subject_line).value();
-  std::vector<std::string> records = journal->records();
+  std::vector<std::string> records(journal->records().begin(), journal->records().end());
   ASSERT_FALSE(records.empty());
   change(records.front());
   journal->remove();

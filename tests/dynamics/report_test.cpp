@@ -91,7 +91,7 @@ TEST(AJournalOfComparisons, TakesNoOtherRecords) {
   auto journal = ComparisonJournal::open(file, "these").value();
   ASSERT_TRUE(journal.add(0, made(1)));
   const auto plain = Journal::open(file, "these").value();
-  std::string wrong = plain->records().front();
+  std::string wrong(plain->records().front());
   wrong.replace(wrong.find("\"there\":[5"), 10, "\"there\":[9");
   plain->remove();
   const auto other = Journal::open(file, "these").value();

@@ -1,5 +1,7 @@
 #include "asset/asset_parts.h"
 
+#include <fmt/format.h>
+
 #include <system_error>
 #include <utility>
 
@@ -33,6 +35,10 @@ bool isThere(const fs::path& pack) {
   return opened && opened->kind() == PackKind::kTexture;
 }
 
+std::string hashText(const SourceFile& file) {
+  return fmt::format("{:016x}{:016x}\n", file.hash_high, file.hash_low);
+}
+
 }  // namespace
 
 std::string inFile(const fs::path& file, const std::string& where) {
@@ -46,6 +52,21 @@ Result<void> addSources(const std::vector<fs::path>& files, std::vector<SourceFi
     sources.push_back(std::move(file));
   }
   return {};
+}
+
+Result<std::unique_ptr<Journal>> openJournal(const Job& job, std::span<const SourceFile> files,
+                                             const BakeContext& context) {
+  if (context.dry_run) return std::unique_ptr<Journal>();
+  const fs::path path = context.output.string() + ".partial";
+  RETURN_IF_ERROR(context.log.checkNotRead(path));
+  ASSIGN_OR_RETURN(const SourceFile program, describeFile("/proc/self/exe"));
+  std::string parts = hashText(program);
+  for (const auto& [name, value] : contentOptions(job)) {
+    parts += fmt::format("{}={}\n", name, value);
+  }
+  for (const SourceFile& file : files) parts += hashText(file);
+  const SourceFile all = describeBytes({}, std::as_bytes(std::span(parts)));
+  return Journal::open(path, fmt::format("{} {}", kindOf(job), hashText(all)));
 }
 
 Result<OptionalMeshes> drawScene(const SourceAsset& scene, const DrawOptions& options,

@@ -1,11 +1,14 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "galactic/bake/assets.h"
 #include "render/render_source.h"
+#include "support/journal.h"
 
 namespace galactic::bake {
 
@@ -17,6 +20,13 @@ namespace galactic::bake {
 /// Adds the description of each of `files` that is not empty.
 [[nodiscard]] Result<void> addSources(const std::vector<std::filesystem::path>& files,
                                       std::vector<SourceFile>& sources);
+
+/// What a long bake has done, in OUTPUT.partial until the pack is written; null where nothing is
+/// written. All that decides what comes out: the options of `job`, the content of `files`, and this
+/// program, of which another build may bake other bytes.
+[[nodiscard]] Result<std::unique_ptr<Journal>> openJournal(const Job& job,
+                                                           std::span<const SourceFile> files,
+                                                           const BakeContext& context);
 
 /// Render meshes of one asset, or none where none are wanted.
 using OptionalMeshes = std::optional<BakedRenderMeshes>;

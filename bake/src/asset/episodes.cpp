@@ -103,33 +103,14 @@ Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_vi
   return details;
 }
 
-/// All that decides which episodes are drawn, but what only scenes know. `files`: sorted.
-std::string subjectOf(EpisodeGenerationJob job, std::span<const SourceFile> files,
-                      const SourceFile& program) {
+/// `files`: sorted. What only scenes know decides, too, and stands in the records.
+Result<std::unique_ptr<Journal>> openJournal(EpisodeGenerationJob job,
+                                             std::span<const SourceFile> files,
+                                             const BakeContext& context) {
   // What they decide comes after the drawing.
   job.solve = 0;
   job.generate.most_skipped = 0;
-  std::string parts = fmt::format("{:016x}{:016x}\n", program.hash_high, program.hash_low);
-  for (const auto& [name, value] : contentOptions(job)) {
-    parts += fmt::format("{}={}\n", name, value);
-  }
-  for (const SourceFile& file : files) {
-    parts += fmt::format("{:016x}{:016x}\n", file.hash_high, file.hash_low);
-  }
-  const SourceFile all = describeBytes({}, std::as_bytes(std::span(parts)));
-  return fmt::format("episodes {:016x}{:016x}", all.hash_high, all.hash_low);
-}
-
-/// Beside the pack; null where nothing is written.
-Result<std::unique_ptr<Journal>> openJournal(const EpisodeGenerationJob& job,
-                                             std::span<const SourceFile> files,
-                                             const BakeContext& context) {
-  if (context.dry_run) return std::unique_ptr<Journal>();
-  const std::filesystem::path path = context.output.string() + ".partial";
-  RETURN_IF_ERROR(context.log.checkNotRead(path));
-  // Another build of the program may draw other episodes.
-  ASSIGN_OR_RETURN(const SourceFile program, describeFile("/proc/self/exe"));
-  return Journal::open(path, subjectOf(job, files, program));
+  return openJournal(Job(std::move(job)), files, context);
 }
 
 Result<GeneratedEpisodes> generate(const EpisodeGenerationJob& job, const EpisodeInputs& inputs,

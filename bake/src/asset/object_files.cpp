@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "asset/asset_parts.h"
+#include "asset/object_journal.h"
 #include "common/stage_timer.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/packs.h"
@@ -18,10 +20,10 @@ namespace {
 
 /// One object on its way from file to pack.
 struct ObjectWork {
-  double import_seconds = 0;
-  std::vector<SourceFile> files;
-  std::vector<std::string> absent_files;
-  std::optional<Result<BakedObject>> baked;
+  /// Its object is there when `done` says so.
+  FinishedObject finished;
+  /// None where it was not begun.
+  std::optional<Result<void>> done;
 };
 
 /// What the objects of a set share.
@@ -29,6 +31,7 @@ struct ObjectTask {
   const ObjectJob& job;
   /// None where no collection is given.
   const std::optional<Collection>& collection;
+  const ObjectJournal& journal;
 };
 
 /// The options of one object: with the shape that a collection gives it.
@@ -55,43 +58,54 @@ Result<ObjectBakeOptions> optionsOf(const std::string& name, const ObjectTask& t
   return options;
 }
 
-Result<BakedObject> bakeOne(const ObjectInput& input, const ObjectTask& task, ObjectWork& work) {
+Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedObject& finished) {
   auto asset = [&] {
-    const StageTimer timer(work.import_seconds);
+    const StageTimer timer(finished.import_seconds);
     return importMesh(input.path, task.job.import);
   }();
   if (!asset) return tl::unexpected(asset.error());
-  work.files = asset->files;
-  work.absent_files = asset->absent_files;
+  finished.files = asset->files;
+  finished.absent_files = asset->absent_files;
   asset->name = input.name;
   ASSIGN_OR_RETURN(const auto options, optionsOf(input.name, task, asset->warnings));
   auto object = bakeObject(*asset, options);
   if (!object) {
     object.error().where = inFile(input.path, object.error().where);
-    return object;
+    return tl::unexpected(object.error());
   }
-  const StageTimer timer(object->times.render);
-  ASSIGN_OR_RETURN(auto meshes, drawObject(*asset, task.job.draw, input.path, object->warnings));
-  object->render_meshes = std::move(meshes);
-  return object;
+  finished.object = std::move(*object);
+  const StageTimer timer(finished.object.times.render);
+  ASSIGN_OR_RETURN(finished.object.render_meshes,
+                   drawObject(*asset, task.job.draw, input.path, finished.object.warnings));
+  return {};
 }
 
-std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, const ObjectJob& job,
-                                const std::optional<Collection>& collection, BakeContext& context) {
+/// Bakes it, unless that was done before.
+Result<void> finishOne(const ObjectInput& input, const ObjectTask& task, FinishedObject& finished) {
+  if (auto known = task.journal.recall(input)) {
+    finished = std::move(*known);
+    return {};
+  }
+  RETURN_IF_ERROR(bakeOne(input, task, finished));
+  return task.journal.add(input, finished);
+}
+
+std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, const ObjectTask& set,
+                                const BakeContext& context) {
   std::vector<ObjectWork> work(inputs.size());
   // Several objects at once, or one on all threads.
-  const unsigned jobs = job.shape.spheres.jobs;
+  const unsigned jobs = set.job.shape.spheres.jobs;
   const bool alone = inputs.size() < jobs;
-  Job each = job;
+  Job each = set.job;
   if (!alone) setThreads(each, 1);
-  const ObjectTask task{.job = std::get<ObjectJob>(each), .collection = collection};
+  const ObjectTask task{std::get<ObjectJob>(each), set.collection, set.journal};
   std::atomic<bool> stop{false};
   std::mutex progress;
   std::size_t done = 0;
   parallelFor(alone ? 1 : jobs, inputs.size(), [&](std::size_t n) {
     if (stop) return;
-    work[n].baked = bakeOne(inputs[n], task, work[n]);
-    if (!*work[n].baked && !context.keep_going) stop = true;
+    work[n].done = finishOne(inputs[n], task, work[n].finished);
+    if (!*work[n].done && !context.keep_going) stop = true;
     const std::lock_guard lock(progress);
     ++done;
     context.show(inputs[n].name, "box, poses, spheres",
@@ -113,20 +127,21 @@ Result<std::optional<Collection>> readShapes(const std::filesystem::path& path,
 void collect(const std::vector<ObjectInput>& inputs, std::vector<ObjectWork> work, ReadLog& log,
              ObjectSetOutcome& outcome, std::vector<SourceFile>& sources) {
   for (std::size_t n = 0; n < work.size(); ++n) {
-    if (!work[n].baked) continue;
-    log.noteRead(inputs[n].path.parent_path(), work[n].files);
-    log.noteAbsent(inputs[n].path.parent_path(), work[n].absent_files);
-    if (!*work[n].baked) {
-      outcome.failures.push_back({inputs[n].path, work[n].baked->error()});
+    if (!work[n].done) continue;
+    FinishedObject& finished = work[n].finished;
+    log.noteRead(inputs[n].path.parent_path(), finished.files);
+    log.noteAbsent(inputs[n].path.parent_path(), finished.absent_files);
+    if (!*work[n].done) {
+      outcome.failures.push_back({inputs[n].path, work[n].done->error()});
       continue;
     }
-    for (SourceFile& file : work[n].files) {
+    for (SourceFile& file : finished.files) {
       // Never absolute.
       file.name = inputs[n].name + "/" + file.name;
       sources.push_back(std::move(file));
     }
-    outcome.objects.push_back(std::move(**work[n].baked));
-    outcome.origins.push_back({inputs[n].path, work[n].import_seconds});
+    outcome.objects.push_back(std::move(finished.object));
+    outcome.origins.push_back({inputs[n].path, finished.import_seconds});
   }
 }
 
@@ -158,12 +173,20 @@ Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
   std::vector<SourceFile> sources;
   ASSIGN_OR_RETURN(const auto collection, readShapes(job.collection, sources));
   if (collection) outcome.warnings = collection->warnings;
-  collect(inputs, bakeAll(inputs, job, collection, context), context.log, outcome, sources);
+  // One object is done or not.
+  std::unique_ptr<Journal> kept;
+  if (inputs.size() > 1) {
+    ASSIGN_OR_RETURN(kept, openJournal(Job(job), sources, context));
+  }
+  const ObjectJournal journal(std::move(kept), outcome.radii.size());
+  collect(inputs, bakeAll(inputs, {job, collection, journal}, context), context.log, outcome,
+          sources);
   const bool goes_on = outcome.failures.empty() || context.keep_going;
   Made made{.outcome = {}, .output = context.output};
   if (goes_on && !outcome.objects.empty()) {
     ASSIGN_OR_RETURN(const auto bytes, writePack(outcome, std::move(sources), job, context));
     made.pack_bytes = bytes;
+    journal.remove();
   }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   made.outcome = std::move(outcome);

@@ -39,16 +39,6 @@ namespace {
 
 enum class RecordKind : std::uint8_t { kLook, kBatch };
 
-template <class... Fields>
-std::string bytesOf(const Fields&... fields) {
-  std::string bytes;
-  const TransferSink sink = [&bytes](std::span<const std::byte> more) {
-    bytes.append(reinterpret_cast<const char*>(more.data()), more.size());
-  };
-  TransferWriter{sink}(fields...);
-  return bytes;
-}
-
 /// Whether an episode is one of the generation's: its journal could be anybody's.
 bool isSound(const DrawnEpisode& episode, std::size_t objects) {
   if (episode.is_skipped) return true;
@@ -72,7 +62,7 @@ SceneJournal::Key SceneJournal::keyOf(std::string_view scene, const SceneDetails
 SceneJournal::SceneJournal(Journal* journal, std::size_t objects)
     : journal_(journal), objects_(objects) {
   if (journal_ == nullptr) return;
-  for (const std::string& record : journal_->records()) read(record);
+  for (const std::string_view record : journal_->records()) read(record);
 }
 
 void SceneJournal::read(std::string_view record) {

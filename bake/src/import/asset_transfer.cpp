@@ -25,11 +25,6 @@ void transferFields(Archive& archive, Is<EmbeddedTexture> auto& texture) {
   archive(texture.format, texture.bytes);
 }
 
-template <class Archive>
-void transferFields(Archive& archive, Is<SourceFile> auto& file) {
-  archive(file.name, file.bytes, file.hash_low, file.hash_high);
-}
-
 /// Everything of an asset but its meshes.
 template <class Archive>
 void transferRest(Archive& archive, auto& asset) {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -68,6 +69,17 @@ class TransferWriter {
 
   const TransferSink& sink_;
 };
+
+/// What a TransferWriter writes of `fields`.
+template <class... Fields>
+[[nodiscard]] std::string bytesOf(const Fields&... fields) {
+  std::string bytes;
+  const TransferSink sink = [&bytes](std::span<const std::byte> more) {
+    bytes.append(reinterpret_cast<const char*>(more.data()), more.size());
+  };
+  TransferWriter{sink}(fields...);
+  return bytes;
+}
 
 /// Reads what a TransferWriter wrote; nothing beyond the given bytes.
 class TransferReader {

@@ -26,14 +26,14 @@ std::string headOf(std::string_view record) {
   return fmt::format("{} {:016x}{:016x}\n", record.size(), hash.high, hash.low);
 }
 
-/// The record with which `text` begins, as it stands in a file; none where it is not whole.
+/// The record with which `text` begins, behind its head and before the line break that ends it;
+/// none where it is not whole.
 std::optional<std::string_view> firstRecord(std::string_view text) {
   std::size_t size = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), size);
   const std::size_t head = text.find('\n');
   if (problem != std::errc() || head == std::string_view::npos) return std::nullopt;
   const std::string_view after = text.substr(head + 1);
-  // It ends with a line break of its own.
   if (after.size() <= size || after[size] != '\n') return std::nullopt;
   const std::string_view record = after.substr(0, size);
   if (text.substr(0, head + 1) != headOf(record)) return std::nullopt;
@@ -66,13 +66,15 @@ Result<void> Journal::read(std::string_view subject) {
   }
   is_own_ = text.starts_with(kept_);
   if (!is_own_) return {};
-  std::string_view rest = text.substr(kept_.size());
-  while (const auto record = firstRecord(rest)) {
-    records_.emplace_back(*record);
-    const std::string whole = asInFile(*record);
-    kept_ += whole;
-    rest.remove_prefix(whole.size());
+  const std::size_t first = kept_.size();
+  kept_ = text;
+  std::size_t end = first;
+  while (const auto record = firstRecord(std::string_view(kept_).substr(end))) {
+    records_.push_back(*record);
+    end = static_cast<std::size_t>(record->data() + record->size() + 1 - kept_.data());
   }
+  // Never moved: the records are views of it.
+  kept_.resize(end);
   return {};
 }
 
@@ -80,7 +82,6 @@ Result<void> Journal::begin() {
   // Without what is damaged or of another subject.
   RETURN_IF_ERROR(writeFileAtomically(path_, {std::as_bytes(std::span(kept_))}));
   is_own_ = true;
-  kept_ = {};
   stream_.open(path_, std::ios::binary | std::ios::app);
   return {};
 }

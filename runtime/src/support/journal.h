@@ -24,8 +24,8 @@ class Journal {
   [[nodiscard]] static Result<std::unique_ptr<Journal>> open(const std::filesystem::path& path,
                                                              std::string_view subject);
 
-  /// Those that were there when it was opened, in their order.
-  [[nodiscard]] const std::vector<std::string>& records() const { return records_; }
+  /// Those that were there when it was opened, in their order; they live as long as this.
+  [[nodiscard]] const std::vector<std::string_view>& records() const { return records_; }
   /// Threads may add at the same time. Fails with kIo, and from then on always.
   [[nodiscard]] Result<void> add(std::string_view record);
   /// After the output is written; nothing may be added then.
@@ -39,13 +39,14 @@ class Journal {
 
   std::filesystem::path path_;
   std::mutex mutex_;
-  /// What the file begins with.
+  /// What the file begins with: its subject, and the records.
   std::string kept_;
   /// Whether the file that is there has this subject.
   bool is_own_ = false;
   /// Open from the first record on.
   std::ofstream stream_;
-  std::vector<std::string> records_;
+  /// In `kept_`.
+  std::vector<std::string_view> records_;
 };
 
 }  // namespace galactic

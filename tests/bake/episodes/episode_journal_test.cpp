@@ -56,7 +56,10 @@ class EpisodeJournal : public testing::Test {
   [[nodiscard]] std::unique_ptr<Journal> open() const {
     return Journal::open(folder_.path() / "x.pack.partial", "these").value();
   }
-  [[nodiscard]] std::vector<std::string> records() const { return open()->records(); }
+  [[nodiscard]] std::vector<std::string> records() const {
+    const auto journal = open();
+    return {journal->records().begin(), journal->records().end()};
+  }
 
   /// Goes on from the journal.
   [[nodiscard]] Result<GeneratedEpisodes> goOn(const std::function<bool()>& stops = {}) const {
