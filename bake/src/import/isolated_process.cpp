@@ -1,6 +1,7 @@
 #include "import/isolated_process.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -19,6 +20,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "galactic/error.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
@@ -203,11 +206,11 @@ std::uint64_t processBytes(pid_t process, int field) {
 
 using Resource = decltype(RLIMIT_AS);
 
-void limitResource(Resource resource, std::uint64_t value) {
+void limitResource(Resource resource, std::uint64_t value, std::uint64_t grace = 0) {
   rlimit limit{};
   if (::getrlimit(resource, &limit) != 0) return;
-  const rlim_t wanted = std::min<rlim_t>(value, limit.rlim_max);
-  limit = {wanted, wanted};
+  limit = {std::min<rlim_t>(value, limit.rlim_max),
+           std::min<rlim_t>(value + grace, limit.rlim_max)};
   ::setrlimit(resource, &limit);
 }
 
@@ -234,7 +237,8 @@ void settleChild(int kept, pid_t parent, const ProcessLimits& limits) {
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(limits.wall_clock).count();
   // Behind the wall clock's limit, which gives the clearer message.
   constexpr std::int64_t kGraceSeconds = 5;
-  limitResource(RLIMIT_CPU, static_cast<std::uint64_t>(seconds + kGraceSeconds));
+  // At the soft limit comes SIGXCPU, at the hard one SIGKILL, which says nothing of the reason.
+  limitResource(RLIMIT_CPU, static_cast<std::uint64_t>(seconds + kGraceSeconds), kGraceSeconds);
   if (!kUnderSanitizer) {
     const std::uint64_t now = processBytes(::getpid(), 0);
     limitResource(RLIMIT_AS, limits.memory > ~std::uint64_t{0} - now ? ~std::uint64_t{0}
@@ -309,9 +313,19 @@ int reapChild(pid_t child) {
   return status;
 }
 
+/// Nothing that the child did: by the machine, or by somebody.
+[[noreturn]] void throwKilled(int signal) {
+  throw ErrorException(
+      {ErrorCode::kUnsupported, "a process that reads files",
+       fmt::format("was killed from outside (signal {}), as the system does where memory runs out; "
+                   "free some, or bake less at once (-j, --memory), and give the command again",
+                   signal)});
+}
+
 std::optional<ProcessFailure> judgeExit(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
+    if (signal == SIGKILL || signal == SIGTERM) throwKilled(signal);
     const auto end = signal == SIGXCPU ? ProcessEnd::kTimeLimit : ProcessEnd::kCrashed;
     return ProcessFailure{.end = end, .number = signal};
   }
@@ -358,8 +372,8 @@ tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work
   ReceivedBytes received;
   auto failure = superviseChild(child, read_end.get(), limits, received);
   if (failure) ::kill(child, SIGKILL);
-  const auto ended = judgeExit(reapChild(child));
-  if (!failure) failure = ended;
+  const int status = reapChild(child);
+  if (!failure) failure = judgeExit(status);
   if (failure) {
     failure->stage = stage.get();
     return tl::unexpected(*failure);

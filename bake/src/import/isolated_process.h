@@ -58,6 +58,8 @@ using IsolatedWork = std::function<void(ProcessChannel&)>;
 /// memory hog costs an error instead of this process. The child's standard streams go nowhere, and
 /// it leaves without running destructors or exit handlers. `work` must use no other thread and no
 /// lock that another thread of the parent may hold (malloc is safe with glibc). Thread-safe.
+/// Throws ErrorException (kUnsupported) where somebody else killed the child, as a system does that
+/// runs out of memory: that says nothing of what was read.
 /// Sanitizers reserve terabytes of addresses: under them the parent watches the child's resident
 /// memory instead of limiting its address space.
 [[nodiscard]] tl::expected<ProcessOutput, ProcessFailure> runIsolated(const IsolatedWork& work,

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
 #include <utility>
 
+#include "galactic/error.h"
 #include "import/isolated_process.h"
 #include "import/transfer_archive.h"
 #include "textures/images/image.h"
@@ -25,7 +27,10 @@ constexpr ProcessLimits kBakeLimits{.wall_clock = std::chrono::seconds(120),
 std::string failureText(const ProcessFailure& failure) {
   switch (failure.end) {
     case ProcessEnd::kNotStarted:
-      return "could not be decoded: no process could be started";
+      // The machine's fault is no reason to bake without the image.
+      throw ErrorException({ErrorCode::kUnsupported, "an image of a texture",
+                            fmt::format("no process can be started to decode it: {}",
+                                        std::generic_category().message(failure.number))});
     case ProcessEnd::kTimeLimit:
       return "takes too long to decode";
     case ProcessEnd::kMemoryLimit:

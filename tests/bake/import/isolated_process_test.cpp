@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "galactic/error.h"
+
 namespace galactic::test::isolated_process_test {
 namespace {
 
@@ -51,7 +53,7 @@ TEST(IsolatedProcess, DeliversEverythingTheChildWrote) {
 }
 
 TEST(IsolatedProcess, ReportsTheSignalAndTheStageOfACrash) {
-  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGKILL}) {
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE}) {
     const ProcessFailure failure = failureOf([&](ProcessChannel& channel) {
       channel.enterStage(7);
       ::raise(signal);
@@ -59,6 +61,13 @@ TEST(IsolatedProcess, ReportsTheSignalAndTheStageOfACrash) {
     EXPECT_EQ(failure.end, ProcessEnd::kCrashed);
     EXPECT_EQ(failure.number, signal);
     EXPECT_EQ(failure.stage, 7U);
+  }
+}
+
+TEST(IsolatedProcess, BlamesNoFileForWhatKilledTheChild) {
+  for (const int signal : {SIGKILL, SIGTERM}) {
+    const auto killed = [&] { (void)failureOf([&](ProcessChannel&) { ::raise(signal); }); };
+    EXPECT_THROW(killed(), ErrorException) << signal;
   }
 }
 
