@@ -26,7 +26,31 @@ std::string withoutIndices(std::string_view place) {
   return plain;
 }
 
+/// Lists and objects inside each other: values are copied and printed by functions that call
+/// themselves.
+constexpr int kMostNesting = 100;
+
 }  // namespace
+
+Result<void> checkNesting(std::string_view text, const std::string& where) {
+  int depth = 0;
+  bool is_quoted = false;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (is_quoted && c == '\\') ++at;
+    if (c == '"') is_quoted = !is_quoted;
+    if (is_quoted) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kMostNesting) {
+      return fail(ErrorCode::kInvalidInput, where,
+                  fmt::format("its lists and objects lie more than {} deep inside each other; "
+                              "export it again",
+                              kMostNesting));
+    }
+  }
+  return {};
+}
 
 Result<Json> readJsonFile(const std::filesystem::path& path, const JsonFileKind& kind) {
   std::error_code ignored;
@@ -47,6 +71,7 @@ Result<Json> readJsonFile(const std::filesystem::path& path, const JsonFileKind&
                 fmt::format("it has {} bytes, at most {} are read; is it {}?", text.size(),
                             kind.max_bytes, kind.what));
   }
+  RETURN_IF_ERROR(checkNesting(text, path.string()));
   try {
     return Json::parse(text);
   } catch (const Json::exception& error) {

@@ -28,8 +28,13 @@ struct JsonFileKind {
   std::size_t max_bytes = 0;
 };
 
+/// Fails with kInvalidInput where lists and objects lie deeper inside each other than functions
+/// that call themselves can follow: Json's own, with which values are copied and printed.
+[[nodiscard]] Result<void> checkNesting(std::string_view text, const std::string& where);
+
 /// The JSON document in the file `path`, which may be compressed with gzip. Fails with kIo, and
-/// with kInvalidInput when it is (or unpacks to be) larger than `kind` allows, or is no JSON.
+/// with kInvalidInput when it is (or unpacks to be) larger than `kind` allows, or is no JSON, and
+/// as checkNesting.
 [[nodiscard]] Result<Json> readJsonFile(const std::filesystem::path& path,
                                         const JsonFileKind& kind);
 
