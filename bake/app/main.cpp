@@ -172,12 +172,16 @@ Error incomplete(const JobList& list, const std::vector<LeftOut>& missing) {
 }
 
 int bakeList(const BakeCommand& command, const JobList& list, Clock::time_point start) {
+  const bool looks_only = list.world && command.run.dry_run;
+  // Found before anything was begun.
+  if (!list.broken.empty() && !command.run.keep_going && !looks_only) {
+    return refuse(list.broken.front().failure.error);
+  }
   if (auto checked = checkOutputs(command, list); !checked) return refuse(checked.error());
   if (auto tried = tryOutputs(command, list); !tried) return refuse(tried.error());
   BuildOutcome outcome = buildAll(command, list);
   int exit_code = exitCodeOf(outcome);
   if (outcome.world && !outcome.world->isThere()) return exit_code;
-  const bool looks_only = list.world && command.run.dry_run;
   std::vector<LeftOut> missing;
   if (looks_only) missing = whatIsMissing(list, command.run.jobs);
   // Reading recipe and dataset, and looking for what is missing, take longer than a small build.

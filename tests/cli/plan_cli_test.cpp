@@ -143,6 +143,10 @@ TEST_F(PlanCli, BakesMeshesAndRobotsAnewWhenWhatTheyNameAppears) {
   bakeAll();
   EXPECT_THAT(packsThatAre("baked"), SizeIs(3));
   bakeAll();
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("robot.pack")) << "nobody knows what it lacks";
+  write("robot/broken.obj", cube(0.2));
+  bakeAll();
+  bakeAll();
   EXPECT_THAT(packsThatAre("unchanged"), SizeIs(3));
   write("room/looks.mtl", "newmtl looks\nKd 1 0 0\n");
   bakeAll();
@@ -151,9 +155,6 @@ TEST_F(PlanCli, BakesMeshesAndRobotsAnewWhenWhatTheyNameAppears) {
   bakeAll();
   EXPECT_THAT(packsThatAre("baked"), ElementsAre("objects/thing.pack"));
   write("robot/part.obj", cube(0.2));
-  bakeAll();
-  EXPECT_THAT(packsThatAre("baked"), ElementsAre("robot.pack"));
-  write("robot/broken.obj", cube(0.2));
   bakeAll();
   EXPECT_THAT(packsThatAre("baked"), ElementsAre("robot.pack"));
 }
@@ -194,6 +195,18 @@ TEST_F(PlanCli, KeepsItsCacheWhereTheUserWants) {
   arguments[0] = "data/in/home.scene_dataset_config.json";
   ASSERT_EQ(run(arguments).exit_code, 0);
   EXPECT_THAT(packsThatAre("unchanged"), ElementsAre("scenes/c.pack"));
+}
+
+TEST_F(PlanCli, SaysWhichMovableObjectsHaveOneName) {
+  const std::string boxes =
+      R"({"template_name": "box", "motion_type": "DYNAMIC"},
+         {"template_name": "box", "motion_type": "DYNAMIC", "uniform_scale": 2})";
+  addScene("c", "flat", boxes);
+  const ProgramRun baked = bake("out", {"--scenes", "c", "--scenes", "a"});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_THAT(baked.out, HasSubstr("object \"box\": scenes place several of this name, of other "
+                                   "templates or of other scales"));
+  EXPECT_EQ(packsIn("out").count("home/objects/box.pack"), 1U);
 }
 
 TEST_F(PlanCli, ListsScenesAndChoosesThemByPattern) {
@@ -270,6 +283,30 @@ TEST_F(PlanCli, BakesAFolderOfScans) {
   const ProgramRun habitat = bake("out", {"--up", "z"});
   EXPECT_EQ(habitat.exit_code, 3);
   EXPECT_THAT(habitat.err, HasSubstr("says itself how its meshes stand; leave out --up"));
+}
+
+TEST_F(PlanCli, TurnsScansAsTheirAttributesSay) {
+  const auto heightOf = [this](const std::string& attributes) {
+    write("scans/loft.glb", fileContent(sampleFile("apartment.glb")));
+    if (!attributes.empty()) write("scans/loft.stage_config.json", attributes);
+    const ProgramRun baked =
+        run({"scans", "--as", "dataset", "-o", "out.pack", "--radii", "0.12", "--check-columns",
+             "0", "--no-render-meshes", "--report", "report.json"});
+    EXPECT_EQ(baked.exit_code, 0) << baked.err;
+    const nlohmann::json bounds = report().at("baked").at(0).at("bounds");
+    return bounds.at("max").at(1).get<double>() - bounds.at("min").at(1).get<double>();
+  };
+  // It is higher than it is deep.
+  const double lying = heightOf("");
+  const double standing = heightOf(R"({"up": [0, 1.0, 0], "front": [0, 0, -1]})");
+  EXPECT_GT(lying, standing + 1);
+  EXPECT_EQ(heightOf(R"({"up": [0, 0, 1]})"), lying);
+  EXPECT_EQ(heightOf(R"({"friction_coefficient": 0.4})"), lying);
+  write("scans/loft.stage_config.json", R"({"up": [1, 0, 0]})");
+  const ProgramRun odd = run({"scans", "--as", "dataset", "-o", "out.pack"});
+  EXPECT_EQ(odd.exit_code, 3);
+  EXPECT_THAT(odd.err, HasSubstr("loft.stage_config.json: up: is neither [0, 1, 0] nor [0, 0, 1]; "
+                                 "give --up"));
 }
 
 TEST_F(PlanCli, ReportsTheSameOfPacksThatWereMadeBeforeAndNow) {

@@ -252,7 +252,30 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
   write("mesh.toml", scene + "[episodes]\ngeometry = { apartment = \"none.glb\" }\n");
   write("pack.toml", scene + "[episodes]\nfiles = \"value.toml\"\nobject-pack = \"none.pack\"\n");
   write("lost.toml", scene + "[robot]\nfiles = \"option.toml\"\nrecipe = \"none.toml\"\n");
+  const std::string objects = "[[objects]]\nfiles = \"data/meshes/objects\"\n";
+  write("bare.urdf", "<robot name=\"r\"><link name=\"base\"/></robot>");
+  const std::string robot = "[robot]\nfiles = \"bare.urdf\"\n";
+  write("nobody.toml", scene + objects + "[episodes]\ncount = 2\n");
+  write("nothing.toml", scene + robot + "[episodes]\ncount = 2\n");
+  write("baseless.toml", scene + objects + robot + "[episodes]\ncount = 2\n");
+  write("radii.toml", scene + "radii = [0.05]\n" + objects);
   const std::vector<Refusal> refusals{
+      {{"nobody.toml"},
+       3,
+       "nobody.toml:5: episodes are generated for a robot and objects, and "
+       "there is no [robot]; add it"},
+      {{"nothing.toml"},
+       3,
+       "nothing.toml:5: episodes are generated for a robot and objects, and "
+       "there is no [[objects]]; add it"},
+      {{"baseless.toml"},
+       3,
+       "baseless.toml:7: episodes are generated for a robot and objects, and "
+       "there is no [robot] with a recipe; add it"},
+      {{"radii.toml"}, 3, "objects/"},
+      {{"radii.toml", "--dry-run"},
+       3,
+       "give all packs of a world the same --radii, best in [bake]"},
       {{"twice.toml"}, 3, "would be scenes/apartment.pack, as "},
       {{"far.toml"}, 2, "far.toml:1: none/*.glb: fits no file in "},
       {{"option.toml"}, 3, "option.toml:5: spacing: does not go with --as object"},
@@ -317,6 +340,48 @@ TEST_F(PlanFaults, GoesOnAfterAnErrorWhereTheUserWants) {
   EXPECT_THAT(packsThatAre("failed"), SizeIs(2));
   EXPECT_THAT(packsThatAre("baked").size() + packsThatAre("unchanged").size(), 2U);
   EXPECT_TRUE(has("out/home.pack"));
+}
+
+TEST_F(PlanFaults, GoesOnWithoutScenesWhoseFilesAreBroken) {
+  write("data/scenes/b.scene_instance.json", "{\"stage_instance\": ");
+  const ProgramRun stops = bake("out", {"--missing", "skip"});
+  EXPECT_EQ(stops.exit_code, 3);
+  EXPECT_THAT(stops.err, HasSubstr("b.scene_instance.json: it is not JSON"));
+  EXPECT_FALSE(has("out"));
+  const ProgramRun looks = bake("out", {"--missing", "skip", "--dry-run"});
+  EXPECT_EQ(looks.exit_code, 3);
+  EXPECT_THAT(looks.err, HasSubstr("b.scene_instance.json: it is not JSON"));
+  EXPECT_THAT(packsThatAre("planned"), Contains("scenes/c.pack"));
+  const ProgramRun goes_on = bake("out", {"--missing", "skip", "--keep-going"});
+  EXPECT_EQ(goes_on.exit_code, 3);
+  EXPECT_THAT(goes_on.err, HasSubstr("b.scene_instance.json: it is not JSON"));
+  EXPECT_THAT(packsThatAre("failed"), testing::ElementsAre("scenes/b.pack"));
+  EXPECT_THAT(packsThatAre("baked"), SizeIs(3));
+  EXPECT_TRUE(has("out/home.pack"));
+}
+
+TEST_F(PlanFaults, MakesEpisodesOfWhatIsThere) {
+  write("data/broken.glb", "no mesh");
+  const auto recipeOf = [](const std::string& robot) {
+    std::string text = quickRecipe("files = [\"apartment.glb\", \"data/broken.glb\"]", "count = 2");
+    const std::string porter = "robot/porter.urdf";
+    text.replace(text.find(porter), porter.size(), robot);
+    return text;
+  };
+  const auto made = [this](const std::string& recipe) {
+    return run({recipe, "--data", sampleFile(""), "--keep-going", "--report", "report.json"});
+  };
+  write("home.toml", recipeOf("robot/porter.urdf"));
+  EXPECT_EQ(made("home.toml").exit_code, 3);
+  EXPECT_THAT(packsThatAre("failed"), testing::ElementsAre("scenes/broken.pack"));
+  EXPECT_THAT(packsThatAre("baked"), Contains("episodes.pack"));
+  EXPECT_TRUE(has("home.pack"));
+  write("data/none.urdf", "<robot");
+  write("lost.toml", recipeOf("data/none.urdf"));
+  const ProgramRun lost = made("lost.toml");
+  EXPECT_EQ(lost.exit_code, 3);
+  EXPECT_THAT(lost.err, HasSubstr("episodes.pack: is not made, as robot.pack is not there"));
+  EXPECT_THAT(packsThatAre("failed"), Contains("episodes.pack"));
 }
 
 TEST_F(PlanFaults, MakesTexturePacksAgainThatAreGoneOrDamaged) {

@@ -88,6 +88,7 @@ Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
   outcome.resolutions = robot->resolutions;
   context.log.noteRead(job.input.parent_path(), robot->files);
   context.log.noteAbsent(job.input.parent_path(), robot->absent_files);
+  if (!robot->is_settled) context.log.noteUnsettled();
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
   ASSIGN_OR_RETURN(auto baked, bakeParts(job, *robot, context));
   outcome.robot = std::move(baked);

@@ -22,6 +22,7 @@ Result<ReadScene> readInstance(const InstancedScene& scene, ReadLog& log) {
   const std::filesystem::path& folder = scene.dataset->folder();
   ASSIGN_OR_RETURN(auto composed, scene.dataset->compose(scene.name, *scene.meshes));
   log.noteAbsent(folder, composed.absent_files);
+  if (!composed.is_settled) log.noteUnsettled();
   std::vector<std::string>& warnings = composed.scene.warnings;
   warnings.insert(warnings.end(), composed.missing.begin(), composed.missing.end());
   return ReadScene{folder / scene.name, std::move(composed.scene)};

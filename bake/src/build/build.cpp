@@ -48,6 +48,11 @@ class Build {
     for (const PackJob& pack : list.assets) {
       outcome_.packs.push_back({.name = pack.name, .state = PackState::kElsewhere});
     }
+    for (const BrokenScene& scene : list.broken) {
+      outcome_.packs.push_back(
+          {.name = scene.name, .state = PackState::kFailed, .failures = {scene.failure}});
+      failed_ = true;
+    }
   }
 
   BuildOutcome run() {
@@ -55,6 +60,7 @@ class Build {
     const std::vector<std::size_t> order = orderOf(list_, options_.shard);
     for (const std::size_t n : order) outcome_.packs[n].state = PackState::kPlanned;
     if (options_.mode == BuildMode::kBake) removeLeftovers();
+    sayWhatIsBroken();
     if (options_.mode != BuildMode::kList) {
       bakeAssets(order);
       if (list_.episodes && options_.shard.count == 1) bakeEpisodes();
@@ -81,6 +87,13 @@ class Build {
     (void)removeStaleParts(list_.folder, {.is_recursive = true});
   }
 
+  void sayWhatIsBroken() {
+    for (std::size_t n = list_.assets.size(); n < outcome_.packs.size(); ++n) {
+      const PackOutcome& broken = outcome_.packs[n];
+      observer_.end({.name = broken.name, .job = SceneJob{}, .output = {}}, broken);
+    }
+  }
+
   void bakeAssets(const std::vector<std::size_t>& order) {
     if (order.empty()) return;
     const auto at_once = static_cast<unsigned>(
@@ -95,11 +108,38 @@ class Build {
   }
 
   void bakeEpisodes() {
-    outcome_.packs.push_back({.name = list_.episodes->name});
-    // Of assets that failed there is no pack to make episodes in.
-    const bool complete = std::all_of(outcome_.packs.begin(), outcome_.packs.end() - 1,
-                                      [](const PackOutcome& pack) { return pack.isThere(); });
-    if (complete && goesOn()) outcome_.packs.back() = makeOne(*list_.episodes, options_.jobs);
+    PackJob episodes = *list_.episodes;
+    const std::string failed = firstFailed();
+    outcome_.packs.push_back({.name = episodes.name});
+    if (!goesOn()) return;
+    if (!failed.empty() && !leaveOutFailed(episodes)) {
+      const Error error{ErrorCode::kInvalidInput, episodes.output.string(),
+                        "is not made, as " + failed + " is not there"};
+      outcome_.packs.back().state = PackState::kFailed;
+      outcome_.packs.back().failures.push_back({episodes.output, error});
+      observer_.end(episodes, outcome_.packs.back());
+      return;
+    }
+    outcome_.packs.back() = makeOne(episodes, options_.jobs);
+  }
+
+  /// The name of an asset that failed; empty where none did.
+  [[nodiscard]] std::string firstFailed() const {
+    const auto failed = std::ranges::find(outcome_.packs, PackState::kFailed, &PackOutcome::state);
+    return failed == outcome_.packs.end() ? std::string() : failed->name;
+  }
+
+  /// Leaves packs that failed out of those in which episodes are generated. False where something
+  /// is left out without which there are none: the robot; and whatever imported episodes may name.
+  [[nodiscard]] bool leaveOutFailed(PackJob& episodes) const {
+    auto* generation = std::get_if<EpisodeGenerationJob>(&episodes.job);
+    if (generation == nullptr) return false;
+    for (std::size_t n = 0; n < list_.assets.size(); ++n) {
+      if (outcome_.packs[n].isThere()) continue;
+      if (std::holds_alternative<RobotJob>(list_.assets[n].job)) return false;
+      std::erase(generation->packs, list_.assets[n].output);
+    }
+    return true;
   }
 
   PackOutcome makeOne(const PackJob& pack, unsigned jobs) {

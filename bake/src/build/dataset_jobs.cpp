@@ -13,6 +13,7 @@
 #include "dataset/mesh_library.h"
 #include "dataset/scene_dataset.h"
 #include "dataset/scene_files.h"
+#include "json/json_reader.h"
 #include "recipe/world_recipe.h"
 #include "support/try.h"
 
@@ -91,10 +92,26 @@ MeshImportOptions meshOptionsOf(const DatasetJobs& dataset) {
   return options;
 }
 
+/// Whether the pack of that name is of this object, and not of another template or of another
+/// scale.
+bool isSameObject(const PackJob& pack, const DatasetObject& object) {
+  const auto* known = std::get_if<ObjectJob>(&pack.job);
+  return known != nullptr && known->inputs.front() == object.mesh &&
+         known->import.transform == object.object_from_mesh;
+}
+
 void addObjects(const SceneSurvey& survey, const DatasetJobs& dataset, PackList& packs) {
   for (const DatasetObject& object : survey.movable) {
     const std::string name = "objects/" + object.name;
-    if (packs.has(name)) continue;
+    if (const PackJob* known = packs.find(name)) {
+      if (!isSameObject(*known, object)) {
+        packs.warn(
+            fmt::format("object \"{}\": scenes place several of this name, of other templates "
+                        "or of other scales; its pack holds the first of them",
+                        object.name));
+      }
+      continue;
+    }
     ObjectJob job{.inputs = {object.mesh}, .name = object.name};
     job.import = meshOptionsOf(dataset);
     job.import.transform = object.object_from_mesh;
@@ -102,6 +119,21 @@ void addObjects(const SceneSurvey& survey, const DatasetJobs& dataset, PackList&
     job.draw = dataset.scene.draw;
     packs.add(name, std::move(job), object.mesh);
   }
+}
+
+/// Which way is up in a scan, as its attributes say where it has any.
+Result<std::optional<UpAxis>> upOf(const SceneFile& scan) {
+  if (scan.attributes.empty()) return scan.up;
+  ASSIGN_OR_RETURN(const Json json,
+                   readJsonFile(scan.attributes, {.what = "a stage's attributes",
+                                                  .suffix = ".stage_config.json",
+                                                  .max_bytes = std::size_t{1} << 24U}));
+  const auto up = json.is_object() ? json.find("up") : json.end();
+  if (!json.is_object() || up == json.end()) return scan.up;
+  if (*up == Json({0, 1, 0})) return UpAxis::kY;
+  if (*up == Json({0, 0, 1})) return UpAxis::kZ;
+  return fail(ErrorCode::kInvalidInput, scan.attributes.string() + ": up",
+              "is neither [0, 1, 0] nor [0, 0, 1]; give `up`");
 }
 
 Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
@@ -112,7 +144,9 @@ Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
     SceneJob job = dataset.scene;
     job.input = file.path;
     job.name = file.name;
-    if (!job.import.up) job.import.up = file.up;
+    if (!job.import.up) {
+      ASSIGN_OR_RETURN(job.import.up, upOf(file));
+    }
     packs.add("scenes/" + file.name, std::move(job), file.path);
   }
   return {};
@@ -193,7 +227,10 @@ Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
   ASSIGN_OR_RETURN(const auto names, wantedScenes(shared.dataset->scenes(), dataset.scenes));
   for (const std::string& warning : shared.dataset->warnings()) packs.warn(warning);
   for (const std::string& name : names) {
-    if (auto added = addInstance(name, dataset, shared, packs); !added) return added;
+    auto added = addInstance(name, dataset, shared, packs);
+    if (!added) {
+      packs.addBroken({"scenes/" + name + ".pack", {dataset.input, std::move(added.error())}});
+    }
   }
   return {};
 }

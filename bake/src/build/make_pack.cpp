@@ -162,7 +162,8 @@ class Making {
   }
 
   Result<void> keep() {
-    if (tools_.cache == nullptr || !outcome_.failures.empty()) return {};
+    const bool is_kept = outcome_.failures.empty() && outcome_.log.isSettled();
+    if (tools_.cache == nullptr || !is_kept) return {};
     ASSIGN_OR_RETURN(auto inputs, inputsOf(outcome_.log, pack_, tools_.digests));
     inputs.key = key_;
     if (auto kept = keepTextures(pack_, *outcome_.figures, tools_); !kept) return kept;

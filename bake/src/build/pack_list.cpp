@@ -1,6 +1,7 @@
 #include "build/pack_list.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <system_error>
@@ -23,6 +24,14 @@ fs::path folderOf(const fs::path& file) {
   std::error_code problem;
   const fs::path absolute = fs::absolute(file, problem);
   return (problem ? file : absolute).lexically_normal().parent_path();
+}
+
+/// Null where the job has none.
+const std::vector<float>* radiiOf(const Job& job) {
+  if (const auto* scene = std::get_if<SceneJob>(&job)) return &scene->grids.radii;
+  if (const auto* object = std::get_if<ObjectJob>(&job)) return &object->shape.spheres.radii;
+  if (const auto* robot = std::get_if<RobotJob>(&job)) return &robot->shape.radii;
+  return nullptr;
 }
 
 std::string inputOf(const PackJob& pack) { return filesOf(pack.job).front().string(); }
@@ -68,6 +77,7 @@ Result<void> PackList::checkScenes() const {
     return std::holds_alternative<SceneJob>(pack.job);
   };
   if (std::ranges::any_of(list_.assets, is_scene)) return {};
+  if (!list_.broken.empty()) return tl::unexpected(list_.broken.front().failure.error);
   std::string why;
   if (!list_.left_out.empty()) {
     const LeftOut& first = list_.left_out.front();
@@ -78,8 +88,61 @@ Result<void> PackList::checkScenes() const {
               fmt::format("would have no scene{}; a world has at least one", why));
 }
 
-bool PackList::has(const std::string& name) const {
-  return std::ranges::find(list_.assets, name + ".pack", &PackJob::name) != list_.assets.end();
+Result<void> PackList::checkFolder() const {
+  const fs::path folder = list_.folder.lexically_normal();
+  for (const PackJob& pack : list_.assets) {
+    const fs::path below = pack.output.lexically_normal().lexically_relative(folder);
+    if (!below.empty() && *below.begin() != "..") continue;
+    return fail(ErrorCode::kInvalidInput, inputOf(pack),
+                fmt::format("would be {}, outside of {}, where the world's packs go; rename it",
+                            pack.output.string(), list_.folder.string()));
+  }
+  return {};
+}
+
+Result<void> PackList::checkRadii() const {
+  const PackJob* first = nullptr;
+  for (const PackJob& pack : list_.assets) {
+    const std::vector<float>* radii = radiiOf(pack.job);
+    if (radii == nullptr) continue;
+    if (first == nullptr) first = &pack;
+    if (*radii == *radiiOf(first->job)) continue;
+    return fail(
+        ErrorCode::kInvalidInput, pack.name,
+        fmt::format("would be baked for spheres of {} m, {} for {}: give all packs of a "
+                    "world the same `radii`, best in [bake]",
+                    fmt::join(*radii, ", "), first->name, fmt::join(*radiiOf(first->job), ", ")));
+  }
+  return {};
+}
+
+Result<void> PackList::checkForEpisodes() const {
+  const auto lacks = [](const char* what) {
+    return fail(ErrorCode::kInvalidInput, "",
+                fmt::format("episodes are generated for a robot and objects, and there is no {}; "
+                            "add it, or leave [episodes] out",
+                            what));
+  };
+  const auto job_is = [](const auto& is_wanted) {
+    return [&](const PackJob& pack) { return is_wanted(pack.job); };
+  };
+  const auto is_object = [](const Job& job) { return std::holds_alternative<ObjectJob>(job); };
+  const auto is_robot = [](const Job& job) { return std::holds_alternative<RobotJob>(job); };
+  if (std::ranges::none_of(list_.assets, job_is(is_object))) return lacks("[[objects]]");
+  const auto robot = std::ranges::find_if(list_.assets, job_is(is_robot));
+  if (robot == list_.assets.end()) return lacks("[robot]");
+  if (std::get<RobotJob>(robot->job).recipe.empty()) return lacks("[robot] with a recipe");
+  return {};
+}
+
+void PackList::warn(const std::string& warning) {
+  if (std::ranges::find(list_.warnings, warning) != list_.warnings.end()) return;
+  list_.warnings.push_back(warning);
+}
+
+const PackJob* PackList::find(const std::string& name) const {
+  const auto found = std::ranges::find(list_.assets, name + ".pack", &PackJob::name);
+  return found == list_.assets.end() ? nullptr : &*found;
 }
 
 void PackList::completeEpisodes() {
@@ -92,6 +155,7 @@ void PackList::completeEpisodes() {
 
 Result<JobList> PackList::finish() {
   RETURN_IF_ERROR(checkScenes());
+  RETURN_IF_ERROR(checkFolder());
   std::ranges::sort(list_.assets, {}, &PackJob::name);
   const auto twice = std::ranges::adjacent_find(list_.assets, {}, &PackJob::name);
   if (twice != list_.assets.end()) {

@@ -21,17 +21,26 @@ class PackList {
   void setEpisodes(EpisodeGenerationJob job);
   void setTask(std::vector<OptionText> task);
   void leaveOut(LeftOut scene) { list_.left_out.push_back(std::move(scene)); }
-  void warn(const std::string& warning) { list_.warnings.push_back(warning); }
+  void addBroken(BrokenScene scene) { list_.broken.push_back(std::move(scene)); }
+  /// Says each sentence once.
+  void warn(const std::string& warning);
   /// Where the packs go.
   [[nodiscard]] const std::filesystem::path& folder() const { return list_.folder; }
-  /// Whether a pack of this name is there.
-  [[nodiscard]] bool has(const std::string& name) const;
+  /// The pack of this name; null where there is none.
+  [[nodiscard]] const PackJob* find(const std::string& name) const;
+  /// Fails with kInvalidInput where the packs would not have the same radii, and not fit together.
+  [[nodiscard]] Result<void> checkRadii() const;
+  /// Fails with kInvalidInput where the packs so far lack what generated episodes need: an object,
+  /// and a robot with a recipe.
+  [[nodiscard]] Result<void> checkForEpisodes() const;
 
-  /// The list, sorted. Fails with kInvalidInput where two packs have one name or no scene is left.
+  /// The list, sorted. Fails with kInvalidInput where two packs have one name, where one would lie
+  /// outside of the world's folder, and where no scene is left.
   [[nodiscard]] Result<JobList> finish();
 
  private:
   [[nodiscard]] Result<void> checkScenes() const;
+  [[nodiscard]] Result<void> checkFolder() const;
   void completeEpisodes();
 
   JobList list_;

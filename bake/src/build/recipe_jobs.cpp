@@ -42,7 +42,8 @@ class RecipeJobs {
     if (recipe_.robot) {
       if (auto added = addRobot(*recipe_.robot); !added) return added;
     }
-    return recipe_.episodes ? addEpisodes(*recipe_.episodes) : Result<void>{};
+    if (recipe_.episodes) RETURN_IF_ERROR(addEpisodes(*recipe_.episodes));
+    return packs_.checkRadii();
   }
 
  private:
@@ -98,6 +99,9 @@ class RecipeJobs {
     if (assets.inputs.empty()) {
       EpisodeGenerationJob job;
       if (auto read = readOptions(assets, "generated episodes", job); !read) return read;
+      if (auto checked = packs_.checkForEpisodes(); !checked) {
+        return located(checked.error(), assets.place);
+      }
       packs_.setEpisodes(std::move(job));
       return {};
     }

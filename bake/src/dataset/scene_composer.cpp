@@ -260,6 +260,7 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   const fs::path folder = urdf.parent_path();
   for (const SourceFile& file : (*furniture)->files) merger_.noteFile(folder / file.name, file);
   for (const std::string& file : (*furniture)->absent_files) noteAbsent(folder / file);
+  if (!(*furniture)->is_settled) result_.is_settled = false;
   noteWarnings(urdf, (*furniture)->warnings);
   for (const std::string& reference : (*furniture)->missing) {
     noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kKind).noun, entry->name,

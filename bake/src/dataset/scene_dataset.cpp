@@ -32,18 +32,31 @@ struct SceneDataset::State {
 
 namespace {
 
-/// Names for the templates of a list: their own, or their handles where several have the same.
+/// A handle without what leads out of a folder: it becomes the path of a pack.
+std::string innerPath(std::string_view handle) {
+  std::string path;
+  for (const fs::path& part : fs::path(handle).relative_path()) {
+    if (part.empty() || part == "." || part == "..") continue;
+    path += (path.empty() ? "" : "/") + part.string();
+  }
+  return path;
+}
+
+/// Names for the templates of a list: their own, or their handles where several have the same, and
+/// a number where those do not tell them apart.
 std::map<std::string, const DatasetTemplate*, std::less<>> namesIn(const TemplateList& list,
                                                                    std::string_view suffix) {
   std::map<std::string_view, unsigned> count;
   for (const auto& [handle, entry] : list.all()) ++count[entry.name];
   std::map<std::string, const DatasetTemplate*, std::less<>> names;
   for (const auto& [handle, entry] : list.all()) {
-    std::string name = entry.name;
-    if (count[entry.name] > 1) {
-      name = handle.ends_with(suffix) ? handle.substr(0, handle.size() - suffix.size()) : handle;
+    std::string_view whole = handle;
+    if (whole.ends_with(suffix)) whole.remove_suffix(suffix.size());
+    const std::string base = count[entry.name] > 1 ? innerPath(whole) : entry.name;
+    std::string name = base;
+    for (unsigned number = 2; !names.try_emplace(name, &entry).second; ++number) {
+      name = fmt::format("{}_{}", base, number);
     }
-    names.try_emplace(std::move(name), &entry);
   }
   return names;
 }

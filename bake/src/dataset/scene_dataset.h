@@ -64,6 +64,8 @@ struct ComposedScene {
   /// Files that were looked for and are not there, relative to the dataset's folder: the result may
   /// change when one of them appears.
   std::vector<std::string> absent_files;
+  /// As SourceRobot::is_settled, of all furniture.
+  bool is_settled = true;
   /// Whether the stage is there. Without it there is no floor.
   bool has_stage = true;
 };

@@ -16,6 +16,8 @@ struct SceneFile {
   std::string name;
   /// Which way is up in the file, where that is known of its kind; none: as the file says.
   std::optional<UpAxis> up;
+  /// Its NAME.stage_config.json, which says so instead; empty where there is none.
+  std::filesystem::path attributes;
 };
 
 /// The scenes in a folder of scans, as Matterport3D, HM3D and Gibson are published for Habitat:

@@ -23,11 +23,6 @@ constexpr std::size_t kMostSearchedFolders = 20'000;
 /// A package.xml is small; of others only this much is looked at.
 constexpr std::size_t kPackageFileBytes = 65'536;
 
-bool isFile(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
 /// The first file by name in the folder of `path` that has its name but for upper and lower case;
 /// empty where there is none.
 std::string fileInOtherCase(const fs::path& path) {
@@ -135,6 +130,7 @@ const std::vector<fs::path>& MeshResolver::foldersOf(const std::string& package)
       if (search_.findsFolder(root / package)) entry->second.push_back(root / package);
     }
     if (entry->second.empty()) {
+      has_searched_ = !options_.search_roots.empty() || has_searched_;
       for (const fs::path& root : options_.search_roots) {
         searchPackage(root, package, entry->second);
       }
@@ -167,14 +163,14 @@ MeshResolution MeshResolver::notFound(const std::vector<fs::path>& tried) const 
           .guessed = false};
 }
 
-bool MeshResolver::isInReach(const fs::path& path) const {
+bool MeshResolver::isInReach(const fs::path& path) {
   if (options_.allow_outside || isBelow(path, ancestors_.front() / "..")) return true;
   const auto is_in = [&](const fs::path& folder) { return isBelow(path, folder); };
   const auto is_in_package = [&](const auto& package) { return is_in(package.second); };
   return std::any_of(options_.packages.begin(), options_.packages.end(), is_in_package) ||
          std::any_of(options_.search_roots.begin(), options_.search_roots.end(), is_in) ||
          std::any_of(ancestors_.begin(), ancestors_.end(), [&](const fs::path& ancestor) {
-           return isFile(ancestor / "package.xml") && is_in(ancestor);
+           return is_in(ancestor) && search_.findsFile(ancestor / "package.xml");
          });
 }
 

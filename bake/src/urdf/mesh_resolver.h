@@ -30,6 +30,8 @@ class MeshResolver {
   /// Where the references so far were looked for; below the search roots, only in the folder that
   /// has the package's name.
   [[nodiscard]] const FileSearch& search() const { return search_; }
+  /// Whether more was looked at than search() says: all folders below the search roots.
+  [[nodiscard]] bool hasSearched() const { return has_searched_; }
 
  private:
   [[nodiscard]] MeshResolution resolvePackage(const std::string& package, const std::string& rest);
@@ -40,7 +42,7 @@ class MeshResolver {
   [[nodiscard]] const std::vector<std::filesystem::path>& foldersOf(const std::string& package);
 
   /// Whether a path that leads anywhere may be followed.
-  [[nodiscard]] bool isInReach(const std::filesystem::path& path) const;
+  [[nodiscard]] bool isInReach(const std::filesystem::path& path);
 
   /// `folder / name`, also with %20 and backslashes undone, if it is a file.
   [[nodiscard]] std::optional<std::filesystem::path> fileIn(const std::filesystem::path& folder,
@@ -51,6 +53,7 @@ class MeshResolver {
 
   const UrdfImportOptions& options_;
   FileSearch search_;
+  bool has_searched_ = false;
   /// The URDF's folder and its parents, nearest first.
   std::vector<std::filesystem::path> ancestors_;
   std::map<std::string, std::vector<std::filesystem::path>> folders_of_package_;

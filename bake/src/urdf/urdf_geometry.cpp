@@ -152,6 +152,7 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
   auto asset = importMesh(file, mesh_options);
   if (!asset) {
     if (asset.error().code == ErrorCode::kInternal) return tl::unexpected(asset.error());
+    robot_.is_settled = false;
     if (describeFile(file)) robot_.files.push_back({.name = nameRelativeTo(urdf_, file)});
     return LoadedMesh{
         .index = {},
@@ -282,6 +283,7 @@ Result<std::vector<GeometryBuilder::LostShape>> GeometryBuilder::addList(const U
 }
 
 void GeometryBuilder::noteAbsentFiles() {
+  if (resolver_.hasSearched()) robot_.is_settled = false;
   for (const fs::path& absent : resolver_.search().absent()) {
     robot_.absent_files.push_back(nameRelativeTo(urdf_, absent));
   }

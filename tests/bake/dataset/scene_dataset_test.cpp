@@ -1,6 +1,7 @@
 // What a dataset offers, and what becomes of it in a scene.
 #include "dataset/scene_dataset.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +31,38 @@ using Points = std::vector<std::array<double, 3>>;
 /// Files hold coordinates as floats and text of six digits.
 constexpr double kTolerance = 1e-5;
 
+/// The names of the scenes of a dataset with these handles.
+std::vector<std::string> namesOfScenes(const std::vector<std::string>& handles) {
+  std::string scenes;
+  for (const std::string& handle : handles) {
+    scenes += fmt::format(
+        R"({}{{"template_handle": "{}.scene_instance.json", "attributes":
+            {{"stage_instance": {{"template_name": "room"}}}}}})",
+        scenes.empty() ? "" : ",", handle);
+  }
+  const ScratchFolder folder;
+  const auto config = folder.write(
+      "d.scene_dataset_config.json",
+      fmt::format(R"({{"stages": {{"configs": [{{"template_handle": "room", "attributes": {{}}}}]}},
+                       "scene_instances": {{"configs": [{}]}}}})",
+                  scenes));
+  const auto dataset = SceneDataset::read(config);
+  EXPECT_TRUE(dataset) << dataset.error().message;
+  return dataset ? dataset->scenes() : std::vector<std::string>{};
+}
+
 std::string textOf(const Error& error) { return error.where + ": " + error.message; }
+
+TEST(SceneNames, AreHandlesWhereSeveralHaveTheSame) {
+  EXPECT_THAT(namesOfScenes({"a/x", "b/y"}), ElementsAre("x", "y"));
+  EXPECT_THAT(namesOfScenes({"a/x", "b/x", "b/y"}), ElementsAre("a/x", "b/x", "y"));
+}
+
+TEST(SceneNames, LeadOutOfNoFolder) {
+  EXPECT_THAT(namesOfScenes({"../../../evil/x", "b/./x", "/root/x"}),
+              ElementsAre("b/x", "evil/x", "root/x"));
+  EXPECT_THAT(namesOfScenes({"../x", "../../x", "a/x"}), ElementsAre("a/x", "x", "x_2"));
+}
 
 ComposedScene composed(const SmallDataset& small, const std::string& name = "a_home") {
   const auto dataset = SceneDataset::read(small.config());

@@ -44,6 +44,17 @@ TEST_F(MeshReferences, ToPackagesTryNamedOnesThenTheSearchPathThenFoldersAbove) 
   EXPECT_FALSE(resolve(reference).guessed);
 }
 
+TEST_F(MeshReferences, SayWhenPackagesWereSearchedFor) {
+  (void)put("share/pkg/meshes/m.stl");
+  const fs::path deep = put("share/deep/down/arm/meshes/m.stl");
+  options_.search_roots = {folder_.path() / "share"};
+  MeshResolver resolver(urdf_, options_);
+  (void)resolver.resolve("package://pkg/meshes/m.stl");
+  EXPECT_FALSE(resolver.hasSearched());
+  EXPECT_EQ(resolver.resolve("package://arm/meshes/m.stl").file, deep);
+  EXPECT_TRUE(resolver.hasSearched());
+}
+
 TEST_F(MeshReferences, ToPackagesGoOnWhenTheFileIsNotInThePackage) {
   const fs::path above = put("ws/src/pkg/meshes/m.stl");
   options_.packages["pkg"] = folder_.path() / "elsewhere";

@@ -36,9 +36,13 @@ class ReadLog {
   void noteAbsent(const std::filesystem::path& file) { absent_.push_back(file); }
   /// `files` by their names below `folder`.
   void noteAbsent(const std::filesystem::path& folder, const std::vector<std::string>& files);
+  /// Remembers that more than these files decides what was read.
+  void noteUnsettled() { is_settled_ = false; }
 
   [[nodiscard]] const std::vector<ReadFile>& files() const { return read_; }
   [[nodiscard]] const std::vector<std::filesystem::path>& absent() const { return absent_; }
+  /// Whether the same files make the same asset again.
+  [[nodiscard]] bool isSettled() const { return is_settled_; }
 
   /// Refuses to write `output` over a file that was read.
   [[nodiscard]] Result<void> checkNotRead(const std::filesystem::path& output) const;
@@ -46,6 +50,7 @@ class ReadLog {
  private:
   std::vector<ReadFile> read_;
   std::vector<std::filesystem::path> absent_;
+  bool is_settled_ = true;
 };
 
 /// Told what is worked on, what is being done with it, and how far it is (0 to 1).

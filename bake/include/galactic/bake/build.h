@@ -36,10 +36,19 @@ struct LeftOut {
   std::vector<std::string> reasons;
 };
 
+/// A scene of a dataset whose files cannot be understood.
+struct BrokenScene {
+  /// That of its pack.
+  std::string name;
+  BakeFailure failure;
+};
+
 /// Everything that one build makes.
 struct JobList {
   /// None of them needs another.
   std::vector<PackJob> assets;
+  /// Those of which no job can be made.
+  std::vector<BrokenScene> broken;
   /// Made in the assets' packs, or imported.
   std::optional<PackJob> episodes;
   /// Lists them all.
@@ -104,7 +113,7 @@ struct PackOutcome {
 };
 
 struct BuildOutcome {
-  /// The assets in their order, then the episodes.
+  /// The assets in their order, then what is broken, then the episodes.
   std::vector<PackOutcome> packs;
   /// Where a world was linked, or could not be.
   std::optional<PackOutcome> world;
