@@ -212,6 +212,22 @@ TEST(MeshErrors, AcceptGltfExtensionsThatChangeOnlyAppearanceOrAreOptional) {
   }
 }
 
+TEST(MeshErrors, WarnOfGltfGeometryThatStandsElsewhere) {
+  const auto warningsOf = [](const char* more) {
+    const auto asset = importContent(
+        "box.glb",
+        glbFile(unevenBox(), {.nodes = GltfPieces{}.nodes, .buffer_uri = {}, .more = more}));
+    EXPECT_TRUE(asset) << more;
+    return asset ? asset->warnings : std::vector<std::string>{};
+  };
+  EXPECT_THAT(warningsOf(R"(,"extensionsUsed":["EXT_mesh_gpu_instancing"])"),
+              testing::ElementsAre(HasSubstr("instances of EXT_mesh_gpu_instancing are not read")));
+  EXPECT_THAT(warningsOf(R"(,"skins":[{"joints":[0]}])"),
+              testing::ElementsAre(HasSubstr("skeletons are not read")));
+  EXPECT_THAT(warningsOf(R"(,"extras":{"skins":1,"extensionsUsed":["EXT_mesh_gpu_instancing"]})"),
+              testing::IsEmpty());
+}
+
 TEST(MeshErrors, RefuseScalesAndTransformsThatAreNone) {
   const std::string box = objFile(unevenBox());
   for (const double scale : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),

@@ -28,6 +28,9 @@ constexpr std::array kImageExtensions{ImageExtension{"KHR_texture_basisu", "KTX2
                                       ImageExtension{"EXT_texture_webp", "WebP"},
                                       ImageExtension{"MSFT_texture_dds", "DDS"}};
 
+/// Readers that do not know it draw less, and not only otherwise.
+constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
+
 bool isHarmless(std::string_view extension) {
   return std::any_of(kHarmlessPrefixes.begin(), kHarmlessPrefixes.end(),
                      [&](std::string_view prefix) { return extension.starts_with(prefix); });
@@ -52,12 +55,25 @@ class RequiredExtensions final : public Json::json_sax_t {
   }
 
   bool key(string_t& name) override {
-    if (depth_ == 1) in_list_ = name == "extensionsRequired";
+    if (depth_ != 1) return true;
+    in_required_ = name == "extensionsRequired";
+    in_used_ = name == "extensionsUsed";
+    if (name == "skins") {
+      found_.warnings.emplace_back(
+          "skeletons are not read: meshes with one stand where their nodes are, which may be "
+          "elsewhere; export them in their pose");
+    }
     return true;
   }
 
   bool string(string_t& value) override {
-    if (depth_ != 2 || !in_list_ || isHarmless(value)) return true;
+    if (depth_ == 2 && in_used_ && value == kInstancing) {
+      found_.warnings.push_back(
+          fmt::format("instances of {} are not read: such a mesh stands once; export each as a "
+                      "node of its own",
+                      kInstancing));
+    }
+    if (depth_ != 2 || !in_required_ || isHarmless(value)) return true;
     const auto* image = std::find_if(kImageExtensions.begin(), kImageExtensions.end(),
                                      [&](const auto& known) { return known.name == value; });
     if (image == kImageExtensions.end()) {
@@ -84,7 +100,8 @@ class RequiredExtensions final : public Json::json_sax_t {
   }
 
   std::size_t depth_ = 0;
-  bool in_list_ = false;
+  bool in_required_ = false;
+  bool in_used_ = false;
   GltfRequirements found_;
 };
 
