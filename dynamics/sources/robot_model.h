@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/sources/hull_points.h"
 #include "galactic/bake/source_robot.h"
 #include "galactic/bake/urdf_import.h"
 #include "galactic/error.h"
@@ -24,9 +25,6 @@ struct Inertia {
   /// xx, yy, zz, xy, xz, yz about the center, along the axes of that frame; kg m^2.
   std::array<double, 6> moments{};
 };
-
-/// Points of which a convex piece is the hull, metres.
-using HullPoints = std::vector<Vec3>;
 
 /// What a link is made of, in its frame.
 struct LinkPart {
@@ -93,9 +91,5 @@ struct RobotBody {
 /// robot, radians or metres). Base first, parents before children.
 [[nodiscard]] std::vector<RobotBody> bodiesOf(const RobotParts& parts, const Robot& robot,
                                               std::span<const float> positions);
-
-/// The points of which a link's shapes are the hulls, in the link's frame.
-[[nodiscard]] std::vector<HullPoints> hullPointsOf(const bake::SourceRobot& source,
-                                                   const bake::SourceLink& link);
 
 }  // namespace galactic::dynamics

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "dynamics/sources/hull_points.h"
 #include "dynamics/sources/object_config.h"
 #include "galactic/bake/assets.h"
 #include "galactic/bake/job_lists.h"
@@ -21,41 +22,6 @@ using Names = std::set<std::string, std::less<>>;
 
 std::string nameOr(const std::string& name, const std::filesystem::path& input) {
   return name.empty() ? input.stem().string() : name;
-}
-
-HullPoints pointsOf(const bake::SourceAsset& asset, const bake::SourceInstance& instance) {
-  const bake::Affine& m = instance.world_from_mesh;
-  HullPoints points;
-  for (const Vec3& p : asset.meshes[instance.mesh].positions) {
-    const auto row = [&](std::size_t r) {
-      return static_cast<float>(m[4 * r] * static_cast<double>(p.x) +
-                                m[4 * r + 1] * static_cast<double>(p.y) +
-                                m[4 * r + 2] * static_cast<double>(p.z) + m[4 * r + 3]);
-    };
-    points.push_back({row(0), row(1), row(2)});
-  }
-  return points;
-}
-
-/// Of all meshes together.
-HullPoints pointsOf(const bake::SourceAsset& asset) {
-  HullPoints points;
-  for (const bake::SourceInstance& instance : asset.instances) {
-    const HullPoints part = pointsOf(asset, instance);
-    points.insert(points.end(), part.begin(), part.end());
-  }
-  return points;
-}
-
-/// Of each mesh.
-std::vector<HullPoints> piecesOf(const bake::SourceAsset& asset) {
-  constexpr std::size_t kLeastCorners = 4;
-  std::vector<HullPoints> pieces;
-  for (const bake::SourceInstance& instance : asset.instances) {
-    HullPoints piece = pointsOf(asset, instance);
-    if (piece.size() >= kLeastCorners) pieces.push_back(std::move(piece));
-  }
-  return pieces;
 }
 
 /// Reads the jobs of a recipe as far as a world needs them.
@@ -140,16 +106,24 @@ class SourceReader {
     if (!config.mass) ++without_mass_;
     ObjectSource object{
         .hulls = {}, .mass = config.mass.value_or(kObjectMass), .friction = config.friction};
-    const bool has_pieces = !config.collision_asset.empty();
-    const std::filesystem::path& pieces = has_pieces ? config.collision_asset : mesh;
-    ASSIGN_OR_RETURN(const auto asset, bake::importMesh(pieces, job.import));
-    sources_.log.noteRead(pieces.parent_path(), asset.files);
-    if (has_pieces && !config.joins_meshes) {
-      object.hulls = piecesOf(asset);
-    } else {
-      object.hulls = {pointsOf(asset)};
+    if (!config.collision_asset.empty()) {
+      ASSIGN_OR_RETURN(const auto asset, readMesh(config.collision_asset, job));
+      object.hulls = piecesOf(asset, config.joins_meshes);
+      if (!object.hulls.empty()) return object;
+      sources_.warnings.push_back(
+          fmt::format("object '{}' has the collision asset '{}', no part of which has four "
+                      "corners; the hull of its mesh counts",
+                      name, config.collision_asset.filename().string()));
     }
+    ASSIGN_OR_RETURN(const auto asset, readMesh(mesh, job));
+    object.hulls = {cornersOf(asset)};
     return object;
+  }
+  Result<bake::SourceAsset> readMesh(const std::filesystem::path& mesh,
+                                     const bake::ObjectJob& job) {
+    ASSIGN_OR_RETURN(auto asset, bake::importMesh(mesh, job.import));
+    sources_.log.noteRead(mesh.parent_path(), asset.files);
+    return asset;
   }
 
   static tl::unexpected<Error> absent(const std::filesystem::path& recipe, std::string_view kind,

@@ -70,14 +70,20 @@ void expectSame(const EpisodeComparison& found, const EpisodeComparison& wanted)
   EXPECT_EQ(found.rests[0].step, wanted.rests[0].step);
 }
 
+ComparisonJournal openJournal(const std::filesystem::path& file) {
+  auto opened = ComparisonJournal::open(file, "these");
+  EXPECT_TRUE(opened);
+  return *std::move(opened);
+}
+
 TEST(AJournalOfComparisons, GivesBackExactlyWhatWasAdded) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "r.json.partial";
-  auto journal = ComparisonJournal::open(file, "these").value();
+  auto journal = openJournal(file);
   EXPECT_TRUE(journal.done().empty());
   ASSERT_TRUE(journal.add(5, made(17)));
   ASSERT_TRUE(journal.add(2, made(9)));
-  auto again = ComparisonJournal::open(file, "these").value();
+  auto again = openJournal(file);
   ASSERT_EQ(again.done().size(), 2U);
   expectSame(again.done().at(5), made(17));
   expectSame(again.done().at(2), made(9));
@@ -88,7 +94,7 @@ TEST(AJournalOfComparisons, GivesBackExactlyWhatWasAdded) {
 TEST(AJournalOfComparisons, TakesNoOtherRecords) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder.path() / "r.json.partial";
-  auto journal = ComparisonJournal::open(file, "these").value();
+  auto journal = openJournal(file);
   ASSERT_TRUE(journal.add(0, made(1)));
   const auto plain = Journal::open(file, "these").value();
   std::string wrong(plain->records().front());
@@ -98,7 +104,7 @@ TEST(AJournalOfComparisons, TakesNoOtherRecords) {
   ASSERT_TRUE(other->add(wrong));
   ASSERT_TRUE(other->add("{}"));
   ASSERT_TRUE(other->add("no JSON"));
-  EXPECT_TRUE(ComparisonJournal::open(file, "these").value().done().empty());
+  EXPECT_TRUE(openJournal(file).done().empty());
 }
 
 TEST(TheWorstMoments, AreOfEachKindInTurn) {

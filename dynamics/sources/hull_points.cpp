@@ -1,8 +1,9 @@
+#include "dynamics/sources/hull_points.h"
+
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <variant>
-
-#include "dynamics/sources/robot_model.h"
 
 namespace galactic::dynamics {
 namespace {
@@ -18,6 +19,23 @@ Vec3 transformed(const Affine& m, double x, double y, double z) {
     return static_cast<float>(m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3]);
   };
   return {row(0), row(1), row(2)};
+}
+
+/// In the order of the vertices, whatever that of the triangles.
+HullPoints cornersOf(const bake::SourceAsset& asset, const bake::SourceInstance& instance) {
+  const bake::SourceMesh& mesh = asset.meshes[instance.mesh];
+  std::vector<bool> is_corner(mesh.positions.size(), false);
+  for (const bake::Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) is_corner[corner] = true;
+  }
+  HullPoints points;
+  for (std::size_t n = 0; n < is_corner.size(); ++n) {
+    if (!is_corner[n]) continue;
+    const Vec3& p = mesh.positions[n];
+    points.push_back(transformed(instance.world_from_mesh, static_cast<double>(p.x),
+                                 static_cast<double>(p.y), static_cast<double>(p.z)));
+  }
+  return points;
 }
 
 /// Appends the points of one shape, as one hull or several.
@@ -53,16 +71,11 @@ class HullMaker {
   void operator()(const bake::MeshShape& mesh) {
     const bake::SourceAsset& asset = source_.meshes[mesh.mesh];
     for (const bake::SourceInstance& instance : asset.instances) {
-      const bake::SourceMesh& part = asset.meshes[instance.mesh];
-      if (part.triangles.empty()) continue;
+      const HullPoints corners = cornersOf(asset, instance);
+      if (corners.empty()) continue;
       HullPoints& hull = hulls_.emplace_back();
-      for (const bake::Triangle& triangle : part.triangles) {
-        for (const std::uint32_t corner : triangle) {
-          const Vec3& p = part.positions[corner];
-          const Vec3 q = transformed(instance.world_from_mesh, static_cast<double>(p.x),
-                                     static_cast<double>(p.y), static_cast<double>(p.z));
-          add(hull, static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z));
-        }
+      for (const Vec3& p : corners) {
+        add(hull, static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
       }
     }
   }
@@ -84,6 +97,27 @@ class HullMaker {
 };
 
 }  // namespace
+
+HullPoints cornersOf(const bake::SourceAsset& asset) {
+  HullPoints points;
+  for (const bake::SourceInstance& instance : asset.instances) {
+    const HullPoints part = cornersOf(asset, instance);
+    points.insert(points.end(), part.begin(), part.end());
+  }
+  return points;
+}
+
+std::vector<HullPoints> piecesOf(const bake::SourceAsset& asset, bool is_joined) {
+  constexpr std::size_t kLeastCorners = 4;
+  std::vector<HullPoints> pieces;
+  if (is_joined) {
+    pieces.push_back(cornersOf(asset));
+  } else {
+    for (const bake::SourceInstance& one : asset.instances) pieces.push_back(cornersOf(asset, one));
+  }
+  std::erase_if(pieces, [](const HullPoints& piece) { return piece.size() < kLeastCorners; });
+  return pieces;
+}
 
 std::vector<HullPoints> hullPointsOf(const bake::SourceRobot& source,
                                      const bake::SourceLink& link) {

@@ -1,0 +1,27 @@
+#pragma once
+#include <vector>
+
+#include "galactic/bake/source_asset.h"
+#include "galactic/bake/source_robot.h"
+#include "galactic/pose.h"
+
+namespace galactic::dynamics {
+
+/// Points of which a convex piece is the hull, metres.
+using HullPoints = std::vector<Vec3>;
+
+/// The corners of an asset's triangles, all meshes together, in its world frame; each vertex once
+/// for each mesh that is placed. Vertices that no triangle uses are no part of the surface: files
+/// hold stray ones, which importers do not check.
+[[nodiscard]] HullPoints cornersOf(const bake::SourceAsset& asset);
+
+/// The corners of an asset of convex pieces: each mesh that is placed is one, or all together are
+/// with `is_joined`. Leaves out those that have fewer than four corners, so there may be none.
+[[nodiscard]] std::vector<HullPoints> piecesOf(const bake::SourceAsset& asset, bool is_joined);
+
+/// The points of which a link's shapes are the hulls, in the link's frame: of its collision
+/// elements, or of its visuals where it has none. Meshes of URDFs lie in source.meshes.
+[[nodiscard]] std::vector<HullPoints> hullPointsOf(const bake::SourceRobot& source,
+                                                   const bake::SourceLink& link);
+
+}  // namespace galactic::dynamics
