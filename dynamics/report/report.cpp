@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "dynamics/episodes/robot_driver.h"
 #include "dynamics/report/names.h"
@@ -63,6 +64,7 @@ Json contactsOf(const Sums& sums, const World& world) {
 
 Json releasesOf(const Sums& sums) {
   const auto count = static_cast<std::uint32_t>(sums.displacements.size());
+  if (count == 0) return {{"count", 0}};
   return {{"count", count},
           {"seconds", 2},
           {"displacement",
@@ -143,17 +145,24 @@ Sums sumsOf(const Comparisons& comparisons, const ReportSubject& subject) {
   return sums;
 }
 
-/// Lines of a name and a value.
+/// Lines of a name and a value, which stand below each other however long the names are.
 class Table {
  public:
-  void line(std::string_view name, const std::string& value) {
-    text_ += fmt::format("{:<34} {}\n", name, value);
+  void line(std::string name, std::string value) {
+    lines_.emplace_back(std::move(name), std::move(value));
   }
-  void line(std::string_view name, double value) { line(name, fmt::format("{:.2f}", value)); }
-  [[nodiscard]] std::string take() { return std::move(text_); }
+  void line(std::string name, double value) { line(std::move(name), fmt::format("{:.2f}", value)); }
+  [[nodiscard]] std::string text() const {
+    std::size_t width = 0;
+    for (const auto& [name, value] : lines_) width = std::max(width, name.size());
+    std::string text;
+    for (const auto& [name, value] : lines_)
+      text += fmt::format("{:<{}}  {}\n", name, width, value);
+    return text;
+  }
 
  private:
-  std::string text_;
+  std::vector<std::pair<std::string, std::string>> lines_;
 };
 
 void addSuccess(const Sums& sums, Table& table) {
@@ -165,6 +174,15 @@ void addSuccess(const Sums& sums, Table& table) {
   table.line("target picked in the dynamics", share(outcomes.picked));
   table.line("successes lost before, after picking",
              fmt::format("{}, {}", outcomes.lost_picking, outcomes.lost_later));
+}
+
+/// Of nothing there is nothing to tell but that.
+std::string releasesText(const Sums& sums) {
+  if (sums.displacements.empty()) return "0";
+  return fmt::format(
+      "{}; 2 s later {:.3f} m away, 95 % {:.3f} m; {} over 5 cm, {} tipped, {} fallen",
+      sums.displacements.size(), quantile(sums.displacements, 0.5),
+      quantile(sums.displacements, 0.95), sums.away(), sums.tipped, sums.fallen);
 }
 
 void addContacts(const Sums& sums, const World& world, Table& table) {
@@ -241,16 +259,12 @@ std::string reportTable(const Comparisons& comparisons, const World& world,
   }
   addContacts(sums, world, table);
   table.line("objects disturbed", fmt::format("{}", sums.disturbed));
-  table.line(
-      "objects let go",
-      fmt::format("{}; 2 s later {:.3f} m away, 95 % {:.3f} m; {} over 5 cm, {} tipped, {} fallen",
-                  sums.displacements.size(), quantile(sums.displacements, 0.5),
-                  quantile(sums.displacements, 0.95), sums.away(), sums.tipped, sums.fallen));
+  table.line("objects let go", releasesText(sums));
   for (const Moment& moment : comparisons.worst) {
     table.line(&moment == comparisons.worst.data() ? "worst moments" : "",
                describe(moment, comparisons.episodes[moment.comparison], world));
   }
-  return table.take();
+  return table.text();
 }
 
 }  // namespace galactic::dynamics

@@ -1,14 +1,18 @@
 // What is kept of comparisons, and what a report tells of them.
 #include "dynamics/report/report.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <span>
+#include <sstream>
 #include <string>
 
 #include "dynamics/report/journal.h"
 #include "dynamics/report/moments.h"
 #include "dynamics/report/report_sums.h"
+#include "support/homes/small_home.h"
 #include "support/journal.h"
 #include "support/scratch_folder.h"
 
@@ -21,6 +25,8 @@ using dynamics::MissCause;
 using dynamics::Moment;
 using dynamics::MomentKind;
 using dynamics::Thing;
+using testing::HasSubstr;
+using testing::Not;
 
 /// An episode in which something of each kind happens.
 EpisodeComparison made(std::uint32_t episode) {
@@ -148,6 +154,40 @@ TEST(Sums, TellWhyContactsAreMissedAndWhereSuccessIsLost) {
   EXPECT_EQ(sums.tipped, 2U);
   EXPECT_EQ(sums.fallen, 2U);
   EXPECT_DOUBLE_EQ(sums.perThousand(4), 500);
+}
+
+World smallHome(const ScratchFolder& folder) {
+  const std::filesystem::path pack = writeWorld(folder, smallHomeWorld());
+  return World::open(std::span(&pack, 1)).value();
+}
+
+TEST(AReport, HasItsValuesBelowEachOther) {
+  const ScratchFolder folder;
+  const World world = smallHome(folder);
+  const std::string table = dynamics::reportTable({.episodes = {made(0)}, .worst = {}}, world, {});
+  const std::string longest = "successes lost before, after picking  ";
+  ASSERT_THAT(table, HasSubstr("\n" + longest + "1, 0\n"));
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    ASSERT_GT(line.size(), longest.size());
+    EXPECT_EQ(line.substr(longest.size() - 2, 2), "  ") << line;
+    EXPECT_NE(line.find_first_not_of(' ', longest.size()), std::string::npos) << line;
+  }
+}
+
+TEST(AReport, TellsNoFiguresOfWhatWasNotLetGo) {
+  const ScratchFolder folder;
+  const World world = smallHome(folder);
+  dynamics::Comparisons comparisons{.episodes = {made(0)}, .worst = {}};
+  EXPECT_THAT(dynamics::reportTable(comparisons, world, {}),
+              HasSubstr("1; 2 s later 0.060 m away"));
+  EXPECT_THAT(dynamics::reportJson(comparisons, world, {}), HasSubstr("\"displacement\": {"));
+  comparisons.episodes.front().rests.clear();
+  const std::string table = dynamics::reportTable(comparisons, world, {});
+  EXPECT_THAT(table, HasSubstr("objects let go"));
+  EXPECT_THAT(table, Not(HasSubstr("2 s later")));
+  const std::string json = dynamics::reportJson(comparisons, world, {});
+  EXPECT_THAT(json, HasSubstr("\"releases\": {\n    \"count\": 0\n  }"));
 }
 
 }  // namespace
