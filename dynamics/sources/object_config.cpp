@@ -4,20 +4,27 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <system_error>
+
+#include "json_reader.h"
+#include "support/try.h"
 
 namespace galactic::dynamics {
 namespace {
 
-using Json = nlohmann::json;
+using bake::Json;
 
 constexpr std::string_view kSuffix = ".object_config.json";
 
 bool isFile(const std::filesystem::path& path) {
   std::error_code none;
   return std::filesystem::is_regular_file(path, none);
+}
+
+/// What stands there, for a warning: lists and objects by their kind, as they may be long and deep.
+std::string textOf(const Json& json) {
+  if (json.is_array()) return "a list";
+  return json.is_object() ? "an object" : json.dump();
 }
 
 /// A number of at least `least`; none, with a warning, where it is anything else.
@@ -28,7 +35,7 @@ std::optional<double> numberOf(const Json& json, const char* key, double least,
   const double value = found->is_number() ? found->get<double>() : std::nan("");
   if (std::isfinite(value) && value >= least) return value;
   config.warnings.push_back(fmt::format("has no usable '{}' in {}: found {}; the default counts",
-                                        key, config.file.filename().string(), found->dump()));
+                                        key, config.file.filename().string(), textOf(*found)));
   return std::nullopt;
 }
 
@@ -66,11 +73,10 @@ std::optional<std::filesystem::path> findObjectConfig(const std::filesystem::pat
 }
 
 Result<ObjectConfig> readObjectConfig(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return fail(ErrorCode::kIo, file.string(), "cannot be opened; check its rights");
-  constexpr bool kNoExceptions = false;
-  constexpr bool kWithComments = true;
-  const Json json = Json::parse(stream, nullptr, kNoExceptions, kWithComments);
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+  ASSIGN_OR_RETURN(const Json json, bake::readJsonFile(file, {.what = "an object configuration",
+                                                              .suffix = kSuffix,
+                                                              .max_bytes = kMostBytes}));
   if (!json.is_object()) {
     return fail(ErrorCode::kInvalidInput, file.string(),
                 "is no JSON object, which an object configuration is; mend or remove it");

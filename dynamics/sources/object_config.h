@@ -31,7 +31,8 @@ struct ObjectConfig {
     const std::filesystem::path& mesh, std::string_view name);
 
 /// Reads one. Values that no body has become warnings. Fails with kIo, and with kInvalidInput where
-/// the file is no JSON object.
+/// the file is no JSON object, is larger than 1 MiB or, as far as the bake's reader of JSON says
+/// so, nested too deeply.
 [[nodiscard]] Result<ObjectConfig> readObjectConfig(const std::filesystem::path& file);
 
 }  // namespace galactic::dynamics

@@ -1,8 +1,11 @@
 // What object configurations say of masses, friction and convex pieces.
 #include "dynamics/sources/object_config.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <string>
 
 #include "support/scratch_folder.h"
 
@@ -55,6 +58,26 @@ TEST(AnObjectConfig, WithValuesThatNoBodyHasWarns) {
     EXPECT_TRUE(config.collision_asset.empty()) << text;
     ASSERT_EQ(config.warnings.size(), 1U) << text;
     EXPECT_THAT(config.warnings.front(), testing::AnyOf(HasSubstr("default"), HasSubstr("hull")));
+  }
+}
+
+TEST(AnObjectConfig, MayBeNestedDeeply) {
+  const ScratchFolder folder;
+  // So many levels that a function that calls itself for each overflows the stack.
+  constexpr std::size_t kLevels = 200'000;
+  for (const char* key : {"mass", "collision_asset", "friction_coefficient", "other"}) {
+    const std::string text =
+        fmt::format("{{\"{}\": {}{}}}", key, std::string(kLevels, '['), std::string(kLevels, ']'));
+    const auto config = readObjectConfig(folder.write("cup.object_config.json", text));
+    // The reader of JSON may refuse it.
+    if (!config) {
+      EXPECT_EQ(config.error().code, ErrorCode::kInvalidInput) << key;
+      continue;
+    }
+    EXPECT_FALSE(config->mass) << key;
+    for (const std::string& warning : config->warnings) {
+      EXPECT_THAT(warning, HasSubstr("found a list; the default counts"));
+    }
   }
 }
 
