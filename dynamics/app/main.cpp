@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "command_line.h"
@@ -15,8 +16,10 @@
 #include "dynamics/report/names.h"
 #include "dynamics/report/report.h"
 #include "dynamics/report/side_by_side.h"
+#include "dynamics/sources/pack_sources.h"
 #include "dynamics/sources/sources.h"
 #include "galactic/bake/assets.h"
+#include "galactic/bake/source_asset.h"
 #include "support/atomic_file.h"
 #include "support/exception_error.h"
 #include "support/output_files.h"
@@ -66,14 +69,19 @@ Result<void> tryOutputs(const Command& command, const World& world, const bake::
   return {};
 }
 
-/// None where no report is wanted.
+/// None where no report is wanted. Its subject is all that decides the comparisons: the content of
+/// what was read besides the packs, and this program, another build of which may play otherwise.
 Result<std::optional<ComparisonJournal>> openJournal(const Command& command,
-                                                     const EpisodePlan& plan) {
+                                                     const EpisodePlan& plan, bake::ReadLog read) {
   if (command.report.empty()) return std::nullopt;
+  ASSIGN_OR_RETURN(auto program, bake::describeFile("/proc/self/exe"));
+  // Its name is a link to wherever it lies.
+  program.name = "galactic-dynamics";
+  read.noteRead({}, {std::move(program)});
   const WorldOptions& world = command.world;
-  const std::string subject =
-      fmt::format("galactic-dynamics " GALACTIC_VERSION " {} {} {} {} {}", command.recipe.string(),
-                  nameOf(world.arm), nameOf(world.base), world.friction, plan.describe());
+  const std::string subject = fmt::format(
+      "galactic-dynamics " GALACTIC_VERSION " {} {} {} {} {} {}", command.recipe.string(),
+      nameOf(world.arm), nameOf(world.base), world.friction, plan.describe(), digestOf(read));
   return ComparisonJournal::open(journalFile(command), subject);
 }
 
@@ -113,7 +121,7 @@ Result<int> run(const Command& command) {
     if (command.is_quiet) break;
     printToStderr(fmt::format("galactic-dynamics: warning: {}\n", printable(warning)));
   }
-  ASSIGN_OR_RETURN(auto journal, openJournal(command, *plan));
+  ASSIGN_OR_RETURN(auto journal, openJournal(command, *plan, sources.log));
   const ComparisonWorlds worlds{world, plan->options(), sources, command.world};
   Comparisons comparisons;
   ASSIGN_OR_RETURN(comparisons.episodes,

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -9,6 +11,7 @@
 
 #include "dynamics/sources/hull_points.h"
 #include "dynamics/sources/object_config.h"
+#include "dynamics/sources/pack_sources.h"
 #include "galactic/bake/assets.h"
 #include "galactic/bake/job_lists.h"
 #include "galactic/bake/triangle_mesh.h"
@@ -24,10 +27,32 @@ std::string nameOr(const std::string& name, const std::filesystem::path& input) 
   return name.empty() ? input.stem().string() : name;
 }
 
+Result<void> noteContent(const std::filesystem::path& file, bake::ReadLog& log) {
+  ASSIGN_OR_RETURN(auto content, bake::describeFile(file));
+  log.noteRead(file.parent_path(), {std::move(content)});
+  return {};
+}
+
+/// The mesh, and what is there of the files that its object was baked from.
+Result<std::vector<bake::SourceFile>> filesOfMesh(const std::filesystem::path& mesh,
+                                                  const std::vector<bake::SourceFile>& baked) {
+  ASSIGN_OR_RETURN(auto main, bake::describeFile(mesh));
+  std::vector<bake::SourceFile> files{std::move(main)};
+  for (const bake::SourceFile& one : baked) {
+    if (one.name == files.front().name) continue;
+    auto file = bake::describeFile(mesh.parent_path() / one.name);
+    if (!file) continue;
+    file->name = one.name;
+    files.push_back(std::move(*file));
+  }
+  return files;
+}
+
 /// Reads the jobs of a recipe as far as a world needs them.
 class SourceReader {
  public:
-  SourceReader(const World& world, Sources& sources) : world_(world), sources_(sources) {
+  SourceReader(const World& world, Sources& sources)
+      : world_(world), sources_(sources), packs_(world) {
     const EpisodeSet& set = world.episodes();
     for (const Episode& episode : set.episodes()) {
       scenes_.emplace(world.sceneOf(episode).name());
@@ -42,6 +67,7 @@ class SourceReader {
     if (!scenes_.contains(name)) return {};
     ASSIGN_OR_RETURN(const auto asset, bake::readSceneFile(job));
     sources_.log.noteRead(job.input.parent_path(), asset.files);
+    RETURN_IF_ERROR(compare({.kind = PackKind::kScene, .name = name, .files = asset.files}));
     ASSIGN_OR_RETURN(const auto clean, bake::placeAndClean(asset));
     sources_.scenes.emplace(name, makeSceneShape(clean.mesh));
     return {};
@@ -60,6 +86,10 @@ class SourceReader {
   Result<void> operator()(const bake::RobotJob& job) {
     ASSIGN_OR_RETURN(auto robot, bake::readRobotFile(job));
     sources_.log.noteRead(job.input.parent_path(), robot.files);
+    RETURN_IF_ERROR(compare({.kind = PackKind::kRobot,
+                             .name = world_.robot().name(),
+                             .files = robot.files,
+                             .named = {job.recipe, job.spheres}}));
     ASSIGN_OR_RETURN(auto inertials, bake::readInertials(job.input));
     ASSIGN_OR_RETURN(sources_.robot,
                      robotParts({std::move(robot), std::move(inertials)}, world_.robot()));
@@ -97,7 +127,7 @@ class SourceReader {
                                   const bake::ObjectJob& job) {
     ObjectConfig config;
     if (const auto file = findObjectConfig(mesh, name)) {
-      sources_.log.noteRead(*file);
+      RETURN_IF_ERROR(noteContent(*file, sources_.log));
       ASSIGN_OR_RETURN(config, readObjectConfig(*file));
     }
     for (const std::string& warning : config.warnings) {
@@ -109,13 +139,19 @@ class SourceReader {
     if (!config.collision_asset.empty()) {
       ASSIGN_OR_RETURN(const auto asset, readMesh(config.collision_asset, job));
       object.hulls = piecesOf(asset, config.joins_meshes);
-      if (!object.hulls.empty()) return object;
+      if (!object.hulls.empty()) {
+        // What is not read may still have changed.
+        ASSIGN_OR_RETURN(auto files, filesOfMesh(mesh, packs_.listed(PackKind::kObjects, name)));
+        RETURN_IF_ERROR(compareObject(name, std::move(files), job));
+        return object;
+      }
       sources_.warnings.push_back(
           fmt::format("object '{}' has the collision asset '{}', no part of which has four "
                       "corners; the hull of its mesh counts",
                       name, config.collision_asset.filename().string()));
     }
     ASSIGN_OR_RETURN(const auto asset, readMesh(mesh, job));
+    RETURN_IF_ERROR(compareObject(name, asset.files, job));
     object.hulls = {cornersOf(asset)};
     return object;
   }
@@ -124,6 +160,20 @@ class SourceReader {
     ASSIGN_OR_RETURN(auto asset, bake::importMesh(mesh, job.import));
     sources_.log.noteRead(mesh.parent_path(), asset.files);
     return asset;
+  }
+
+  /// Warns where the packs were made of something else.
+  Result<void> compare(const AssetSources& now) {
+    ASSIGN_OR_RETURN(auto differences, packs_.differences(now));
+    std::ranges::move(differences, std::back_inserter(sources_.warnings));
+    return {};
+  }
+  Result<void> compareObject(std::string_view name, std::vector<bake::SourceFile> files,
+                             const bake::ObjectJob& job) {
+    return compare({.kind = PackKind::kObjects,
+                    .name = name,
+                    .files = std::move(files),
+                    .named = {job.collection}});
   }
 
   static tl::unexpected<Error> absent(const std::filesystem::path& recipe, std::string_view kind,
@@ -136,6 +186,7 @@ class SourceReader {
 
   const World& world_;
   Sources& sources_;
+  PackSources packs_;
   Names scenes_;
   Names objects_;
   std::size_t without_mass_ = 0;
@@ -149,7 +200,7 @@ Result<Sources> readSources(const SourceFiles& files, const World& world) {
                    bake::jobsOfRecipe({.recipe = files.recipe, .data = files.data}, "world.pack"));
   Sources sources;
   SourceReader reader(world, sources);
-  sources.log.noteRead(files.recipe);
+  RETURN_IF_ERROR(noteContent(files.recipe, sources.log));
   for (const bake::PackJob& pack : list.assets) {
     for (const std::filesystem::path& file : bake::filesOf(pack.job)) sources.log.noteRead(file);
     RETURN_IF_ERROR(std::visit(reader, pack.job));

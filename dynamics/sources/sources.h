@@ -29,9 +29,10 @@ struct Sources {
   RobotParts robot;
   std::shared_ptr<const RobotShape> robot_shape;
   /// The recipe and the files that it names, also those that the world does not use, and what those
-  /// that were read refer to.
+  /// that were read refer to. Those that were read have their content: see digestOf().
   bake::ReadLog log;
-  /// What was missing and what is taken instead, one sentence each.
+  /// What was missing and what is taken instead, and which files are not those that the packs were
+  /// baked from, one sentence each.
   std::vector<std::string> warnings;
 };
 

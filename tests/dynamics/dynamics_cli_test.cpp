@@ -1,9 +1,11 @@
 // galactic-dynamics as a user meets it: stdout, stderr, exit codes and files.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,6 +16,7 @@
 
 #include "galactic/error.h"
 #include "support/journal.h"
+#include "support/mesh_files.h"
 #include "support/program_run.h"
 #include "support/recipe_text.h"
 #include "support/scratch_folder.h"
@@ -24,7 +27,9 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
+using testing::UnorderedElementsAre;
 
 constexpr int kUsage = 1;
 constexpr int kInvalid = 3;
@@ -46,25 +51,37 @@ class DynamicsCli : public testing::Test {
   }
   static void TearDownTestSuite() { folder_.reset(); }
 
-  [[nodiscard]] static ProgramRun run(std::vector<std::string> more) {
-    std::vector<std::string> arguments{"home.toml", "home.pack", "--data",
-                                       (sourceFolder() / "packs/sample").string()};
+  /// What the home was baked from.
+  [[nodiscard]] static std::string sample() { return (sourceFolder() / "packs/sample").string(); }
+  /// A copy of that below the folder, for tests that change it.
+  [[nodiscard]] static std::string copyOfSample(const std::string& name) {
+    std::filesystem::copy(sample(), path(name), std::filesystem::copy_options::recursive);
+    return name;
+  }
+  [[nodiscard]] static ProgramRun run(std::vector<std::string> more,
+                                      const std::string& data = sample(),
+                                      const std::string& program = GALACTIC_DYNAMICS) {
+    std::vector<std::string> arguments{"home.toml", "home.pack", "--data", data};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return runProgram(GALACTIC_DYNAMICS, folder_->path(), arguments);
+    return runProgram(program, folder_->path(), arguments);
   }
   /// The scripted policy in closed loop, told to end when the first episode is done.
-  [[nodiscard]] static ProgramRun interrupted(const std::string& report) {
+  [[nodiscard]] static ProgramRun interrupted(const std::string& report,
+                                              const std::string& data = sample()) {
     const std::string script =
         "\"$@\" & tool=$!\n"
         "until grep -q number $report.partial 2> /dev/null; do :; done\n"
         "kill -TERM $tool; wait $tool";
-    return runProgram("/usr/bin/env", folder_->path(),
-                      {"report=" + report, "sh", "-c", script, "sh", GALACTIC_DYNAMICS, "home.toml",
-                       "home.pack", "--data", (sourceFolder() / "packs/sample").string(),
-                       "--policy", "scripted", "--report", report, "-j", "1"});
+    return runProgram(
+        "/usr/bin/env", folder_->path(),
+        {"report=" + report, "sh", "-c", script, "sh", GALACTIC_DYNAMICS, "home.toml", "home.pack",
+         "--data", data, "--policy", "scripted", "--report", report, "-j", "1"});
   }
   [[nodiscard]] static std::filesystem::path path(const std::string& name) {
     return folder_->path() / name;
+  }
+  static void write(const std::string& name, const std::string& text) {
+    ASSERT_TRUE(std::filesystem::exists(folder_->write(name, text)));
   }
   [[nodiscard]] static json report(const std::string& name) {
     return json::parse(fileContent(path(name)));
@@ -88,6 +105,19 @@ void changeFirstRecord(const std::filesystem::path& file,
   journal->remove();
   journal = Journal::open(file, subject_line).value();
   for (const std::string& record : records) ASSERT_TRUE(journal->add(record));
+}
+
+/// So many objects are disturbed in no run.
+constexpr int kMark = 700;
+
+/// Changes one number, to see that what is done is not computed again.
+void markRecord(std::string& record) {
+  const std::string disturbed = "\"disturbed\":";
+  record.insert(record.find(disturbed) + disturbed.size(), "70");
+}
+
+void append(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::app | std::ios::binary) << text;
 }
 
 TEST_F(DynamicsCli, ReplaysARecording) {
@@ -134,19 +164,110 @@ TEST_F(DynamicsCli, GoesOnWhereItWasInterrupted) {
     return run(all);
   };
   ASSERT_EQ(interrupted("again.json").exit_code, kExitInterrupted);
-  // One number is changed to see that what is done is not computed again.
-  changeFirstRecord(path("again.json.partial"), [](std::string& record) {
-    const std::string disturbed = "\"disturbed\":";
-    record.insert(record.find(disturbed) + disturbed.size(), "70");
-  });
+  changeFirstRecord(path("again.json.partial"), markRecord);
   ASSERT_EQ(run(words).exit_code, 0);
   const json before = json::parse(whole);
   const json after = report("again.json");
-  EXPECT_GE(after["disturbed_objects"], 700 + before["disturbed_objects"].get<int>() % 10);
+  EXPECT_GE(after["disturbed_objects"], kMark);
   EXPECT_EQ(after["success"], before["success"]);
   // Another arm has nothing to do with it.
   EXPECT_EQ(few("kinematic").exit_code, 0);
-  EXPECT_LT(report("again.json")["disturbed_objects"], 70);
+  EXPECT_LT(report("again.json")["disturbed_objects"], kMark);
+}
+
+TEST_F(DynamicsCli, BeginsAgainWhereItsSourcesAreOthers) {
+  const std::string data = copyOfSample("changing");
+  const auto interrupt = [&] {
+    EXPECT_EQ(interrupted("changed.json", data).exit_code, kExitInterrupted);
+    changeFirstRecord(path("changed.json.partial"), markRecord);
+  };
+  const auto isMarked = [&](const std::string& program = GALACTIC_DYNAMICS) {
+    const ProgramRun done =
+        run({"--policy", "scripted", "--report", "changed.json"}, data, program);
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return report("changed.json")["disturbed_objects"] >= kMark;
+  };
+  interrupt();
+  EXPECT_TRUE(isMarked()) << "nothing has changed";
+
+  interrupt();
+  write("changing/objects/mug.object_config.json", R"({"mass": 3})");
+  EXPECT_FALSE(isMarked()) << "an object has a mass now, which had none";
+
+  interrupt();
+  write("changing/objects/mug.object_config.json", R"({"mass": 4})");
+  EXPECT_FALSE(isMarked()) << "it has another";
+
+  interrupt();
+  append(path("changing/robot/porter.urdf"), "<!-- changed -->\n");
+  EXPECT_FALSE(isMarked()) << "the robot is another";
+
+  interrupt();
+  append(path("home.toml"), "# changed\n");
+  EXPECT_FALSE(isMarked()) << "the recipe is another";
+
+  // What follows a program in its file changes nothing but its content.
+  interrupt();
+  const std::string program = path("another-build").string();
+  std::filesystem::copy_file(GALACTIC_DYNAMICS, program);
+  append(program, "changed");
+  EXPECT_FALSE(isMarked(program)) << "the program is another";
+}
+
+TEST_F(DynamicsCli, WarnsWhereThePacksWereBakedFromOtherSources) {
+  const std::string data = copyOfSample("stale");
+  const auto warnings = [&] {
+    const ProgramRun done =
+        run({"--policy", "scripted", "--episodes", "1", "--report", "stale.json"}, data);
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    std::vector<std::string> found;
+    const json whole = report("stale.json");
+    for (const json& warning : whole["warnings"]) {
+      const auto text = warning.get<std::string>();
+      if (text.find("was baked") != std::string::npos) found.push_back(text);
+    }
+    const bool is_printed = done.err.find("was baked") != std::string::npos;
+    EXPECT_EQ(is_printed, !found.empty()) << done.err;
+    return found;
+  };
+  EXPECT_THAT(warnings(), IsEmpty());
+
+  const auto overwrite = std::filesystem::copy_options::overwrite_existing;
+  std::filesystem::copy_file(path("stale/objects/bowl.glb"), path("stale/objects/mug.glb"),
+                             overwrite);
+  append(path("stale/robot/porter.urdf"), "<!-- changed -->\n");
+  append(path("stale/robot/robot.toml"), "# changed\n");
+  const std::string mug =
+      "object 'mug' was baked from another 'mug.glb' than is there now; bake the world again";
+  const std::vector<std::string> robot{
+      "robot 'porter' was baked from another 'porter.urdf' than is there now; bake the world again",
+      "robot 'porter' was baked from another 'robot.toml' than is there now; bake the world again"};
+  EXPECT_THAT(warnings(), UnorderedElementsAre(mug, robot[0], robot[1]));
+
+  // Also where the mesh is not read, as a collision asset takes its place.
+  std::filesystem::create_directory(path("stale/pieces"));
+  std::filesystem::copy_file(path("stale/objects/bowl.glb"), path("stale/pieces/mug.glb"));
+  write("stale/configs/mug.object_config.json", R"({"collision_asset": "../pieces/mug.glb"})");
+  EXPECT_THAT(warnings(), UnorderedElementsAre(mug, robot[0], robot[1]));
+}
+
+TEST_F(DynamicsCli, TakesTheHullOfTheMeshWhereNoPieceHasFourCorners) {
+  const std::string data = copyOfSample("thin");
+  write("thin/objects/sheet.obj", objFile({{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {{0, 1, 2}}}));
+  const std::vector<std::string> words{"--recording", "home.rec", "--report", "thin.json"};
+  ASSERT_EQ(run(words, data).exit_code, 0);
+  const json plain = report("thin.json");
+  for (const char* joined : {"false", "true"}) {
+    write("thin/objects/mug.object_config.json",
+          fmt::format(R"({{"mass": 0.5, "collision_asset": "sheet.obj",
+                                    "join_collision_meshes": {}}})",
+                      joined));
+    const ProgramRun done = run(words, data);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("object 'mug' has the collision asset 'sheet.obj', no part of "
+                                    "which has four corners; the hull of its mesh counts"));
+    EXPECT_EQ(report("thin.json")["each"], plain["each"]);
+  }
 }
 
 TEST_F(DynamicsCli, SaysHowToGoOnWhenItIsInterrupted) {
@@ -205,8 +326,7 @@ TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
 
 TEST_F(DynamicsCli, ReplacesNothingThatIsReadOrWritten) {
   // Its own sources, so that nothing is lost if one is replaced.
-  std::filesystem::copy(sourceFolder() / "packs/sample", path("sources"),
-                        std::filesystem::copy_options::recursive);
+  ASSERT_EQ(copyOfSample("sources"), "sources");
   std::filesystem::create_symlink(path("sources/apartment.glb"), path("linked.html"));
   std::map<std::filesystem::path, std::string> before;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(path(""))) {
