@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import contextlib
+import threading
+import time
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -21,7 +24,8 @@ StepResult = tuple[Observations, Array, Array, Array, dict[str, Any]]
 
 
 class HalfBatch:
-    """Envs that step together, and what Gymnasium wants to know about each step of theirs.
+    """Envs that step together, and what Gymnasium wants to know about each step of theirs. A second
+    thread that calls it meanwhile gets a RuntimeError, and nothing has happened then.
 
     Args:
         world: where they are.
@@ -54,6 +58,9 @@ class HalfBatch:
         envs = self.simulator.num_envs
         self._tally = EpisodeTally(self.simulator)
         self._is_new = True
+        self._in_use = threading.Lock()
+        # When the episodes began, by a clock that only goes forward.
+        self._began = np.full(envs, time.perf_counter())
         self._images = {
             name: np.zeros((envs, *shape), dtype)
             for name, (shape, dtype) in self._image_shapes.items()
@@ -86,36 +93,41 @@ class HalfBatch:
         self, seed: int | None, mask: NDArray[np.bool_], episodes: NDArray[np.int64] | None
     ) -> None:
         """See VectorEnv.reset."""
-        if seed is not None:
-            self.simulator.restart(seed)
-        untouched = self._is_new or seed is not None
-        self._is_new = False
-        if episodes is not None or not untouched:
-            next_one = Simulator.NEXT_EPISODE
-            chosen = np.full(len(mask), next_one, np.int64) if episodes is None else episodes
-            chosen = np.where(chosen < 0, Simulator.STAYS if untouched else next_one, chosen)
-            self.simulator.reset(np.where(mask, chosen, Simulator.STAYS))
-        self._tally.restart(mask)
+        with self._alone():
+            if seed is not None:
+                self.simulator.restart(seed)
+            untouched = self._is_new or seed is not None
+            self._is_new = False
+            if episodes is not None or not untouched:
+                next_one = Simulator.NEXT_EPISODE
+                chosen = np.full(len(mask), next_one, np.int64) if episodes is None else episodes
+                chosen = np.where(chosen < 0, Simulator.STAYS if untouched else next_one, chosen)
+                self.simulator.reset(np.where(mask, chosen, Simulator.STAYS))
+            self._tally.restart(mask)
+            self._began[mask] = time.perf_counter()
 
     def observe(self, out: Mapping[str, Array] | None = None) -> Observations:
         """What all envs see now."""
-        images = self._draw(out)
-        return self._observed(self._landed("state", self.simulator.observations, out), images)
+        with self._alone():
+            images = self._draw(out)
+            return self._observed(self._landed("state", self.simulator.observations, out), images)
 
     def save_state(self) -> dict[str, Array]:
         """Arrays that restore_state() takes."""
-        state = np.frombuffer(self.simulator.save_state(), np.uint8)
-        return {"simulator": state, **{name: own.copy() for name, own in self._own_state().items()}}
+        with self._alone():
+            own = {name: array.copy() for name, array in self._own_state().items()}
+            return {"simulator": np.frombuffer(self.simulator.save_state(), np.uint8), **own}
 
     def restore_state(self, saved: Mapping[str, Array]) -> None:
         """Goes on from there. Raises Error for a state that does not fit, and changes nothing."""
         # States of earlier versions do not tell whether a reset() came before them; mostly one did.
         saved = {"simulator": np.empty(0, np.uint8), "is_new": np.array(False), **saved}
-        for name, mine in self._own_state().items():
-            _check_saved(name, saved.get(name), mine)
-        self.simulator.restore_state(saved["simulator"].tobytes())
-        self._tally.restore(saved["returns"], saved["lengths"])
-        self._is_new = bool(saved["is_new"])
+        with self._alone():
+            for name, mine in self._own_state().items():
+                _check_saved(name, saved.get(name), mine)
+            self.simulator.restore_state(saved["simulator"].tobytes())
+            self._tally.restore(saved["returns"], saved["lengths"])
+            self._is_new = bool(saved["is_new"])
 
     def _own_state(self) -> dict[str, Array]:
         """What the simulator does not know."""
@@ -124,6 +136,23 @@ class HalfBatch:
 
     def step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
         """See VectorEnv.step, which has checked `actions` and `out`."""
+        with self._alone():
+            return self._step(actions, out)
+
+    @contextlib.contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Around each call: the simulator alone would notice a second thread too late, when the first
+        is drawing."""
+        if not self._in_use.acquire(blocking=False):
+            raise RuntimeError(
+                "another thread is using this galactic.VectorEnv; give each thread its own"
+            )
+        try:
+            yield
+        finally:
+            self._in_use.release()
+
+    def _step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
         simulator = self.simulator
         simulator.step(actions)
         self._is_new = False
@@ -208,6 +237,9 @@ class HalfBatch:
         for row, env in enumerate(which):
             final_obs[env] = _row(last, row)
         episode = {"r": sums.pop("r"), "_r": ended, "l": sums.pop("l"), "_l": ended}
+        now = time.perf_counter()
+        took = np.where(ended, now - self._began, 0.0)
+        self._began[which] = now
         final_info = {"episode": episode, "_episode": ended}
         for name, values in {**sums, **cameras}.items():
             final_info[name] = values
@@ -217,7 +249,11 @@ class HalfBatch:
             "_final_obs": ended,
             "final_info": final_info,
             "_final_info": ended,
-            "episode": episode,
+            "episode": {
+                **{name: values.copy() for name, values in episode.items()},
+                "t": took,
+                "_t": ended,
+            },
             "_episode": ended,
         }
 
@@ -268,3 +304,14 @@ def check_places(
         if not place.flags.c_contiguous or not place.flags.writeable:
             fault = "read-only" if place.flags.c_contiguous else "not contiguous"
             raise ValueError(f"{name} is {fault}; results are written in place")
+    _check_apart(out)
+
+
+def _check_apart(out: Mapping[str, Array]) -> None:
+    """Refuses places that share memory, where the one result would lie on the other."""
+    spans = sorted(
+        (place.__array_interface__["data"][0], place.nbytes, name) for name, place in out.items()
+    )
+    for (start, size, name), (next_start, next_size, other) in zip(spans, spans[1:]):
+        if next_start < start + size and next_size:
+            raise ValueError(f"{name} and {other} share memory; give each result its own place")

@@ -5,10 +5,11 @@ from __future__ import annotations
 import io
 import numbers
 import os
+import threading
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from enum import Enum
-from typing import Any, Literal, Union
+from typing import Any, Literal, NoReturn, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +63,8 @@ class VectorEnv(_Base):
       (num_envs,): return and length of the episode, how it ended (EpisodeEnd), and which one of
       the world's it was; with images also "world_from_camera", float32 (num_envs, 4, 4): where those
       of final_obs were drawn from, as Renderer has it of the images of the step,
-    - episode: the same {"r", "l"} again, as Gymnasium's RecordEpisodeStatistics has it,
+    - episode: the same {"r", "l"} again, and "t", the seconds that the episode took, as Gymnasium's
+      RecordEpisodeStatistics has it,
 
     each beside a mask of its name with "_" in front, bool (num_envs,). In steps in which no episode
     ends, `infos` is empty.
@@ -140,7 +142,7 @@ class VectorEnv(_Base):
             if name in Renderer.OPTIONS:
                 instead = f"give images={{{name!r}: {options[name]!r}}}"
                 raise TypeError(f"VectorEnv has no option {name}; {instead}")
-        self.world = world if isinstance(world, World) else World(world)
+        self._world = world if isinstance(world, World) else World(world)
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._actions = actions
@@ -153,7 +155,7 @@ class VectorEnv(_Base):
         # Half h of batch r is batch 2 r + h of twice as many: the same envs as undivided.
         self._halves = [
             HalfBatch(
-                self.world,
+                self._world,
                 {
                     **options,
                     "envs": num_envs // halves,
@@ -168,6 +170,7 @@ class VectorEnv(_Base):
         ]
         self._threads = [ThreadPoolExecutor(1, f"galactic-half-{n}") for n in range(halves)]
         self._pending: list[Future[StepResult] | None] = [None] * halves
+        self._beginning = threading.Lock()
         self._process = os.getpid()
         self._onlookers: list[Renderer] = []
         first = self._halves[0]
@@ -181,21 +184,29 @@ class VectorEnv(_Base):
         return f"<galactic.VectorEnv of {self.num_envs} envs>"
 
     @property
+    def world(self) -> World:
+        """Where the envs are."""
+        self._require_open()
+        return self._world
+
+    @property
     def simulators(self) -> tuple[Simulator, ...]:
         """The simulator of each half: for its statistics and states."""
+        self._require_open()
         return tuple(half.simulator for half in self._halves)
 
     @property
     def renderers(self) -> tuple[Any, ...]:
         """What draws each half's images, for its cameras and names: a Renderer, or with several
         cameras a dictionary of them by the cameras' names; () without images."""
+        self._require_open()
         drawing = [half.renderers for half in self._halves if half.renderers]
         return tuple(one.get("", one) for one in drawing)
 
     @property
     def halves(self) -> int:
         """1, or 2 when they take turns."""
-        return len(self._halves)
+        return len(self._pending)
 
     @property
     def unwrapped(self) -> VectorEnv:
@@ -222,6 +233,7 @@ class VectorEnv(_Base):
         for the one before the first step; "rewards" float32, "terminations" and "truncations" bool,
         and "endings" uint8 have `steps`.
         """
+        self._require_open()
         shapes = self._halves[0].landing_shapes()
         after = {"rewards", "terminations", "truncations", "endings"}
         return {
@@ -368,18 +380,30 @@ class VectorEnv(_Base):
             raise
 
     def close(self, **kwargs: Any) -> None:
-        """Waits for what is under way, which recv() still returns. What was returned stays valid;
-        all else raises RuntimeError from now on."""
+        """Waits for what is under way, which recv() still returns, and frees simulators, renderers and
+        the world, unless someone else has them. What was returned stays valid; all else raises
+        RuntimeError from now on."""
         if not self.closed:
             for thread in self._threads:
                 thread.shutdown()
+            self._halves, self._onlookers = [], []
+            del self._world
         self.closed = True
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            "a galactic.VectorEnv cannot be pickled or copied: make one in each process, and give it "
+            "what save_state() returned"
+        )
 
     def _begin(self, half: int, rows: NDArray[np.float32], out: Row | None) -> Future[StepResult]:
         if os.getpid() != self._process:
             raise RuntimeError("the threads of this env are in another process; make one in each")
-        step = self._threads[half].submit(self._halves[half].step, rows, out)
-        self._pending[half] = step
+        # A second thread may have come as far as here.
+        with self._beginning:
+            self._require_idle(half)
+            step = self._threads[half].submit(self._halves[half].step, rows, out)
+            self._pending[half] = step
         return step
 
     def _joined_infos(self, infos: Sequence[dict[str, Any]]) -> dict[str, Any]:
@@ -390,12 +414,15 @@ class VectorEnv(_Base):
 
     def _require_idle(self, *halves: int) -> None:
         """Raises RuntimeError where these halves, or all, cannot begin anything."""
-        if self.closed:
-            raise RuntimeError("this env is closed; make another one")
+        self._require_open()
         asked = halves or range(self.halves)
         busy = [half for half in asked if self._pending[half] is not None]
         if busy:
             raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
+
+    def _require_open(self) -> None:
+        if self.closed:
+            raise RuntimeError("this env is closed; make another one")
 
     def _require_half(self, half: int) -> None:
         if half not in range(self.halves):
@@ -480,10 +507,13 @@ def _reset_options(
 
 
 def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float32]:
-    rows = np.asarray(given, np.float32)
+    rows = np.asarray(given)
+    # What numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
+    if rows.dtype.kind not in "biufO":
+        raise TypeError(f"{name} has the type {rows.dtype}, expected numbers, such as float32")
     if rows.shape != shape:
         raise ValueError(f"{name} has the shape {rows.shape}, expected {shape}")
-    return rows
+    return rows.astype(np.float32, copy=False)
 
 
 def _arrays_of(state: bytes, halves: int) -> list[dict[str, NDArray[Any]]]:
