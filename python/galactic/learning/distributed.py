@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import datetime
 import hashlib
+import math
 import os
 import pickle
 from typing import Iterator, Optional
@@ -156,7 +157,8 @@ class Stragglers:
                  sync_fraction: float, shortest: float):  # fmt: skip
         self._store = store if sync_fraction < 1.0 else None
         self._rank = rank
-        self._enough = max(1, int(sync_fraction * size))
+        # What is lost in a product such as 0.07 * 100 is no rank more.
+        self._enough = max(1, math.ceil(sync_fraction * size - 1e-9))
         self._shortest = shortest
 
     def should_stop(self, update: int, step: int, horizon: int) -> bool:

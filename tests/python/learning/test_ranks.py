@@ -13,7 +13,7 @@ import torch
 from torch.distributed import HashStore
 
 import galactic
-from galactic.learning.distributed import Group, RankLost
+from galactic.learning.distributed import Group, RankLost, Stragglers
 from galactic.learning.launch import launch
 from galactic.learning.reports.curves import read_curves
 
@@ -130,6 +130,20 @@ def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) 
     total = sum(steps[0]["rollouts"]) + sum(steps[1]["rollouts"])
     assert steps[0]["steps"] == steps[1]["steps"] == 16 * total
     assert torch.equal(steps[0]["parameters"], steps[1]["parameters"])
+
+
+@pytest.mark.parametrize(
+    "fraction, ranks, enough",
+    [(0.6, 3, 2), (0.6, 2, 2), (0.6, 5, 3), (0.5, 2, 1), (0.07, 100, 7), (0.0, 4, 1), (0.99, 8, 8)],
+)
+def test_as_many_ranks_are_waited_for_as_the_fraction_says(
+    fraction: float, ranks: int, enough: int
+) -> None:
+    store = HashStore()
+    all_of_them = [Stragglers(store, rank, ranks, fraction, 0.0) for rank in range(ranks)]
+    for done, rank in enumerate(all_of_them):
+        assert all_of_them[-1].should_stop(0, 16, 32) == (done >= enough)
+        rank.finished(0)
 
 
 def test_the_curves_of_ranks_wait_for_the_envs_of_all(tmp_path: pathlib.Path) -> None:
