@@ -299,6 +299,8 @@ def _validation(run: Run, trained: Homes, threads: int, group: Group) -> Optiona
     episodes = playable[: settings.validation_episodes or None][group.rank :: group.size]
 
     def validate(policy: Policy) -> EpisodeSums:
+        # Else noise would go on where the validation before has ended, of which a resumed run knows nothing.
+        homes.restart(settings.seed)
         actor = evaluation.Actor(
             policy, deterministic=False, seed=settings.seed, device=group.device
         )

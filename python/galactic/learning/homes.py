@@ -110,6 +110,10 @@ class Homes:
         self._into: list[Optional[Observation]] = [None] * settings.halves
         self._staged: list[Optional[Observation]] = [None] * settings.halves
 
+    def restart(self, seed: int) -> None:
+        """As if the homes had just been made with this seed."""
+        self.env.reset(seed=seed)
+
     def reset(self, into: Observation) -> None:
         self._write(self.env.reset(seed=None)[0], into)
 

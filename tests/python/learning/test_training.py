@@ -136,7 +136,9 @@ def test_a_run_that_was_cut_goes_on_as_if_it_had_not_been(
 def test_a_paused_run_was_validated_and_goes_on_as_if_it_had_not_been_paused(
     tmp_path: pathlib.Path,
 ) -> None:
-    options = [WORLD, *SMALL, "--steps", 6 * UPDATE, "--simulation", "task=pick episode-steps=20"]
+    # With noise, which goes on from episode to episode, in validations, too.
+    noisy = "task=pick episode-steps=20 laser-beams=8 laser-noise=0.5"
+    options = [WORLD, *SMALL, "--steps", 6 * UPDATE, "--simulation", noisy]
     options += ["--validation", HELD_OUT, "--validation-episodes", "4"]
     options += ["--validate-every", 3 * UPDATE]
     whole, paused = tmp_path / "whole", tmp_path / "paused"
