@@ -194,6 +194,7 @@ def _new_run(options: argparse.Namespace) -> Run:
                 f"{option_name(name)} goes with --teacher; name one, or leave it out"
             )
     settings = preset("paper" if options.preset is None else options.preset, **given)
+    settings.require_pace()
     return Run(
         options.world.resolve(),
         _absolute(options.validation),

@@ -81,7 +81,8 @@ class PacedRate:
     """The share of the scheduled learning rate that keeps the divergence of an update, which grows with
     the square of the rate, at `target_kl`: PPO's adaptive penalty (Schulman et al. 2017, section 4)
     with the rate in the penalty's place. Precise policies need it most: the less noise they act with,
-    the further a step of the same length leads away."""
+    the further a step of the same length leads away. The divergence of an update is the mean over its
+    mini-batches of what it was before each one's step: 0 before the first."""
 
     FIRST = 0.01
     """Adam's first steps are the longest it makes, and may lead a trained policy far away."""

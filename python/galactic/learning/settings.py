@@ -207,8 +207,9 @@ class Settings:
     target_kl: float = _setting(
         0.0,
         "PPO",
-        "divergence of the policy in one update, nats: where it is larger, the learning rate goes down, "
-        "and up again to the schedule's where it is smaller; 0: always the schedule's",
+        "how much the policy should change in an update, nats: the mean over the mini-batches of an update "
+        "of the divergence before each one's step. Where it is larger, the learning rate goes down, and up "
+        "again to the schedule's where it is smaller; 0: always the schedule's",
         low=0.0,
     )
     adam_epsilon: float = _setting(1e-5, "PPO", "Adam's epsilon", low=0.0)
@@ -368,6 +369,16 @@ class Settings:
                     f"{field.name} applies only to networks that see images, and the network "
                     f"{self.network} does not; choose another one, such as depth"
                 )
+
+    def require_pace(self) -> None:
+        """Raises SettingsError where nothing could be measured that paces the learning rate. Not so with
+        each of the others: policies of runs in which nothing was are still played."""
+        if self.target_kl > 0.0 and self.epochs * self.mini_batches == 1:
+            raise SettingsError(
+                "--target-kl goes by the divergence before the step of each mini-batch, which is 0 before "
+                "the first, and with --epochs 1 and --mini-batches 1 there is no other; take more of "
+                "either, or leave --target-kl out"
+            )
 
     def learning_rate_at(self, progress: float) -> float:
         """`progress`: share of the run that is done, 0 to 1."""

@@ -1,5 +1,7 @@
 """Advantages, losses, rollouts and updates against plain references, and toys that must be solved."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import torch
@@ -12,7 +14,8 @@ from galactic.learning.distributions import ActionDistribution
 from galactic.learning.ppo import Batch, Learner, PacedRate, ppo_loss
 from galactic.learning.precision import Precision
 from galactic.learning.rollout import advantages
-from galactic.learning.settings import Settings
+from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.trainer import Trainer
 from toys import Look, ReachAndGrasp, Remember
 
 CPU = torch.device("cpu")
@@ -274,3 +277,22 @@ def test_a_policy_of_little_noise_stays_near_itself_where_the_rate_is_paced() ->
     # From then on it is about what is wanted, where the schedule's rate leads further.
     assert 0.005 < np.mean(paced[-20:]) < 0.02 < np.mean(free[-20:]), divergences
     assert rate < 2e-3
+
+
+def test_a_rate_is_not_paced_by_what_is_always_zero() -> None:
+    """The divergence is measured before each mini-batch's step: there has to be one before."""
+    for epochs, mini_batches in ((1, 2), (2, 1), (1, 1)):
+        settings = Settings(envs=8, horizon=8, network="state", width=16, target_kl=0.01, learning_rate=1.0,
+                            epochs=epochs, mini_batches=mini_batches)  # fmt: skip
+        toy = ReachAndGrasp(settings.envs, halves=settings.halves)
+        trainer = Trainer(settings, toy, Group.alone(), None)
+        trainer.begin()
+        kl = trainer._iterate()[0]["kl"]
+        if epochs * mini_batches > 1:
+            assert kl > 0.0
+            settings.require_pace()
+            continue
+        assert kl == pytest.approx(0.0, abs=1e-9)
+        with pytest.raises(SettingsError, match="--mini-batches 1 there is no other; take more of"):
+            settings.require_pace()
+    dataclasses.replace(settings, target_kl=0.0).require_pace()

@@ -213,6 +213,11 @@ def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> Non
         ([WORLD, "--stepz", "5"], 1, "unrecognized arguments: --stepz 5; did you mean --steps?"),
         ([WORLD, "--stepz=5"], 1, "unrecognized arguments: --stepz=5; did you mean --steps?"),
         (["--resume"], 2, "holds no run"),
+        (
+            [WORLD, *SMALL, "--target-kl", "0.01", "--epochs", "1", "--mini-batches", "1"],
+            1,
+            "--target-kl goes by the divergence before the step of each mini-batch, which is 0 before",
+        ),
         ([WORLD, *SMALL, "--pause-at", "0"], 1, '--pause-at: found "0", expected 1 to 9007'),
         ([WORLD, *SMALL, "--pause-at", "1.5"], 1, 'found "1.5", expected a whole number'),
         ([WORLD, "--device", "cuda"], 1, "--device: found cuda, but this torch has no CUDA device"),
