@@ -270,7 +270,8 @@ class Collector:
 
     def _bootstrap_timeouts(self) -> None:
         """Adds gamma times the value of the last observation to the reward of episodes that only time
-        cut off: the task would have gone on (Pardo et al. 2018)."""
+        cut off (Pardo et al. 2018). It is not what they would have earned if they had gone on: where time
+        is observed, none is left there, in no other row of a rollout (docs/learning.md)."""
         if not self._timeouts:
             return
         kept = self._timeouts
