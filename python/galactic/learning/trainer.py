@@ -135,7 +135,7 @@ class Trainer:
                 if not stop and self._is_due(settings.validate_every, before, done):
                     self._validate()
                 if done or self.seconds - self._logged[0] >= settings.log_every:
-                    self._log(losses)
+                    self._log(losses, is_last=done)
                 if self._is_due(settings.checkpoint_every, before, done):
                     self.save()
                 if stop:
@@ -199,7 +199,7 @@ class Trainer:
         episode: those that are over first are the short ones, successes most of all."""
         return {} if self._waiting else _means(self.recent(), "")
 
-    def _log(self, losses: dict[str, float]) -> None:
+    def _log(self, losses: dict[str, float], is_last: bool = False) -> None:
         figures = self.figures()
         seconds, steps = self._logged
         speed = (self.steps - steps) / max(self.seconds - seconds, 1e-9)
@@ -224,7 +224,7 @@ class Trainer:
             f"return {earned}  {duration(left)} left"
         )
         with self.stopwatch.time("reports"):
-            self.curves.write(self.settings.to_dict(), self.breakdown())
+            self.curves.write(self.settings.to_dict(), self.breakdown(), is_last=is_last)
 
     def _validate(self) -> None:
         if self.validation is None or not self.settings.validate_every:

@@ -25,6 +25,7 @@ from galactic.learning.checkpoint import (
 )
 from galactic.learning.distributed import Group, Stragglers
 from galactic.learning.networks import PolicyShape
+from galactic.learning.reports import curves as curves_module
 from galactic.learning.reports.curves import Curves, read_curves
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
@@ -464,6 +465,59 @@ def test_the_table_of_the_curves_keeps_every_digit_of_whole_numbers(tmp_path: pa
     assert row["steps"] == 2_500_000_128
     assert row["seconds"] == pytest.approx(1 / 3, rel=1e-8)
     assert row["success"] == 0.5 and row["return"] is None
+
+
+def test_the_table_of_the_curves_grows_row_by_row(tmp_path: pathlib.Path) -> None:
+    """It is not written again: that takes longer with each row."""
+    curves = Curves(tmp_path, "long run")
+    table = tmp_path / "curves.csv"
+    files = set()
+    for step in range(1, 5):
+        curves.add({"steps": step})
+        if step != 2:  # as rows of validations, which wait for the next one
+            curves.write({}, [])
+            files.add(table.stat().st_ino)
+            assert [row["steps"] for row in read_curves(table)] == list(range(1, step + 1))
+    assert len(files) == 1
+
+
+def test_a_torn_row_of_the_curves_is_ignored_and_mended(tmp_path: pathlib.Path) -> None:
+    resumed = saved_run(tmp_path)
+    table = tmp_path / "curves.csv"
+    whole = table.read_bytes()
+    assert len(read_curves(table)) == 2
+    later = whole.splitlines(keepends=True)[-1]
+    for damaged, rows in ((whole + later[:9], 2), (whole[:-2], 1), (whole + later, 3)):
+        table.write_bytes(damaged)
+        assert len(read_curves(table)) == rows
+        resumed = make_trainer(tmp_path, resumed.settings)
+        resumed.resume()
+        resumed.curves.write({}, [])
+        assert table.read_bytes() == whole
+
+
+def test_the_page_of_the_curves_takes_a_hundredth_of_the_time(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = [1000.0]
+    pages = []
+
+    def draw(*arguments: Any) -> str:
+        clock[0] += 0.5
+        pages.append(clock[0])
+        return "page"
+
+    monkeypatch.setattr(curves_module.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(curves_module, "curves_page", draw)
+    curves = Curves(tmp_path, "long run")
+    for step in range(1000):
+        clock[0] += 2.0
+        curves.add({"steps": step})
+        curves.write({}, [], is_last=False)
+    assert clock[0] - 1000.0 == pytest.approx(2000.0 + 0.5 * len(pages))
+    assert 2000.0 / 52 - 1 <= len(pages) <= 2000.0 / 50 + 1
+    curves.write({}, [], is_last=True)
+    assert pages[-1] == clock[0]
 
 
 @pytest.mark.parametrize("log_std", ["parameter", "output"])

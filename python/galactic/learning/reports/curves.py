@@ -6,8 +6,11 @@ import csv
 import io
 import json
 import pathlib
+import time
 from typing import Any, Mapping, Optional, Sequence
 
+from galactic._core import ErrorCode
+from galactic.errors import Error
 from galactic.learning.checkpoint import write_atomically
 from galactic.learning.reports.page import curves_page
 
@@ -41,6 +44,10 @@ the mean of the policy's, where they are parameters. Teacher_kl: the divergence 
 would do, nats per step, while it counts. New columns come last: see Trainer."""
 
 
+PAGE_SHARE = 0.01
+"""The most of a run's time that the page may take, which is written whole each time."""
+
+
 class Curves:
     """Rows of COLUMNS, and the files that show them. Not given values are None."""
 
@@ -48,25 +55,53 @@ class Curves:
         self._folder = folder
         self._title = title
         self.rows: list[list[Optional[float]]] = []
+        # How many of them the table has; None: it is none of this run's yet, or of its time before.
+        self._in_table: Optional[int] = None
+        self._next_page = 0.0
 
     def add(self, values: Mapping[str, float]) -> None:
         unknown = set(values) - set(COLUMNS)
         assert not unknown, unknown
         self.rows.append([values.get(name) for name in COLUMNS])
 
-    def write(self, settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]]) -> None:
-        """Writes curves.csv and curves.html, atomically; nothing without a folder."""
+    def write(self, settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]],
+              *, is_last: bool = True) -> None:  # fmt: skip
+        """Brings curves.csv up to date, and curves.html: after the last row in any case, before it only
+        where that takes no more than PAGE_SHARE of the time. Nothing without a folder."""
         if self._folder is None:
             return
+        self._write_table(self._folder / "curves.csv")
+        begin = time.monotonic()
+        if is_last or begin >= self._next_page:
+            page = curves_page(self._title, COLUMNS, self.rows, settings, breakdown)
+            write_atomically(self._folder / "curves.html", lambda file: file.write(page), "w")
+            end = time.monotonic()
+            self._next_page = end + (end - begin) / PAGE_SHARE
+
+    def _write_table(self, file: pathlib.Path) -> None:
+        """The first time the whole table, which a run that was killed may have left with more rows, or
+        with a part of one; from then on what is new."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        for row in self.rows:
+        if self._in_table is None:
+            writer.writerow(COLUMNS)
+        for row in self.rows[self._in_table or 0 :]:
             writer.writerow([_cell(value) for value in row])
-        table = text.getvalue()
-        write_atomically(self._folder / "curves.csv", lambda file: file.write(table), "w")
-        page = curves_page(self._title, COLUMNS, self.rows, settings, breakdown)
-        write_atomically(self._folder / "curves.html", lambda file: file.write(page), "w")
+        if self._in_table is None:
+            write_atomically(file, lambda handle: handle.write(text.getvalue()), "w")
+        else:
+            _append(file, text.getvalue())
+        self._in_table = len(self.rows)
+
+
+def _append(file: pathlib.Path, text: str) -> None:
+    """Adds whole lines to a file, in one go, so that a process that ends leaves them whole."""
+    try:
+        with open(file, "a", encoding="utf-8") as handle:
+            handle.write(text)
+    except OSError as error:
+        message = f"cannot write the file: {error.strerror}"
+        raise Error(ErrorCode.IO, str(file), message) from None
 
 
 def _cell(value: Optional[float]) -> str:
@@ -77,12 +112,14 @@ def _cell(value: Optional[float]) -> str:
 
 
 def read_curves(file: pathlib.Path) -> list[dict[str, Optional[float]]]:
-    """The rows of a curves.csv."""
-    with open(file, encoding="utf-8", newline="") as handle:
-        return [
-            {name: float(value) if value else None for name, value in row.items()}
-            for row in csv.DictReader(handle)
-        ]
+    """The rows of a curves.csv, but for a last one that is not whole: of a run that a full disk or a
+    power failure has ended."""
+    lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
+    whole = [line for line in lines if line.endswith("\n")]
+    return [
+        {name: float(value) if value else None for name, value in row.items()}
+        for row in csv.DictReader(whole)
+    ]
 
 
 def write_json(file: pathlib.Path, contents: Any) -> None:
