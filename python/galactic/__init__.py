@@ -7,6 +7,10 @@ expert to imitate, PlanningScene answers planners. docs/python.md has the tour.
 
 import sys
 
+from galactic import interrupts
+
+interrupts.end_while_loading()
+
 try:
     from galactic._core import (
         Action,

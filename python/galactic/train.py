@@ -20,7 +20,7 @@ from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
 from galactic.learning.distributed import Group, device_of, local_ranks
 from galactic.learning.homes import Homes, sizes_of
-from galactic.learning.launch import launch
+from galactic.learning.launch import follow_launcher, launch
 from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, TAUGHT, preset
 from galactic.learning.reports.curves import write_json
@@ -111,6 +111,8 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     options = make_parser().parse_args(given)
 
     def train() -> int:
+        if "RANK" in os.environ:
+            follow_launcher()
         run = _resumed_run(options) if options.resume else _new_run(options)
         if "RANK" not in os.environ:
             device_of(options.device, 0, run.settings.ranks)

@@ -9,6 +9,8 @@ import sys
 from typing import Any, Callable, NoReturn, Optional
 
 import galactic
+from galactic import interrupts
+from galactic.interrupts import INTERRUPTED
 from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.distributed import RankLost
 from galactic.learning.settings import SettingsError, did_you_mean
@@ -16,7 +18,6 @@ from galactic.learning.streams import put
 
 # Those of all tools of the project.
 OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL, UNSUPPORTED = 0, 1, 2, 3, 4, 5
-INTERRUPTED = 130
 EXIT_CODES = (
     "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, "
     "130 interrupted"
@@ -102,7 +103,8 @@ def told(
     """Does `work` and returns its exit code; what it refuses becomes a line on stderr, unless it may
     not be told, and a code."""
     try:
-        return work()
+        with interrupts.raised():
+            return work()
     except BaseException as error:
         if not isinstance(error, _REFUSALS) and not _is_lack_of_memory(error):
             raise

@@ -15,6 +15,7 @@ import torch.distributed
 from torch import Tensor
 from torch.distributed.rendezvous import rendezvous
 
+from galactic import interrupts
 from galactic.learning.settings import SettingsError
 
 
@@ -73,14 +74,15 @@ class Group:
         if is_cuda:
             torch.cuda.set_device(group.device)
         if size > 1:
-            store = next(rendezvous("env://"))[0]
-            torch.distributed.init_process_group(
-                "nccl" if is_cuda else "gloo",
-                store=torch.distributed.PrefixStore("group", store),
-                rank=rank,
-                world_size=size,
-                timeout=datetime.timedelta(minutes=30),
-            )
+            with interrupts.ended_at_once():
+                store = next(rendezvous("env://"))[0]
+                torch.distributed.init_process_group(
+                    "nccl" if is_cuda else "gloo",
+                    store=torch.distributed.PrefixStore("group", store),
+                    rank=rank,
+                    world_size=size,
+                    timeout=datetime.timedelta(minutes=30),
+                )
             group._store = torch.distributed.PrefixStore("galactic", store)
         return group
 

@@ -9,6 +9,7 @@ environment when they are loaded.
 
 from __future__ import annotations
 
+import ctypes
 import os
 import pathlib
 import signal
@@ -19,7 +20,11 @@ from typing import Any, Sequence
 import torch.distributed
 
 import galactic
-from galactic.learning.command import INTERRUPTED
+from galactic import interrupts
+from galactic.interrupts import INTERRUPTED
+
+LAUNCHER = "GALACTIC_LAUNCHER"
+"""The environment variable with the process id of who launched a rank."""
 
 GRACE = 30.0
 """Seconds that the other ranks have when one has failed, before they are killed."""
@@ -28,8 +33,9 @@ GRACE = 30.0
 def launch(ranks: int, command: Sequence[str]) -> int:
     """Runs `command` in `ranks` processes that find each other by torch.distributed's environment
     variables, and waits for them. Returns the first code that is not 0, else 0. Interrupts reach the
-    ranks, which end as they see fit. Raises galactic.Error where another signal has ended a rank, which
-    could not say so itself."""
+    ranks, which end as they see fit, and a terminal that closes asks them to end. Raises galactic.Error
+    where another signal has ended a rank, which could not say so itself. Ranks that call
+    follow_launcher() do not outlive this process, whatever ends it."""
     store = torch.distributed.TCPStore("127.0.0.1", 0, is_master=True, wait_for_workers=False)
     environment = {
         **os.environ,
@@ -40,31 +46,85 @@ def launch(ranks: int, command: Sequence[str]) -> int:
         "TORCHELASTIC_RESTART_COUNT": "0",
         "WORLD_SIZE": str(ranks),
         "LOCAL_WORLD_SIZE": str(ranks),
+        LAUNCHER: str(os.getpid()),
         **_of_libraries(),
     }
     processes: "list[subprocess.Popen[bytes]]" = []
-
-    def pass_on(number: int, _: Any) -> None:
-        for process in processes:
-            if process.poll() is None:
-                process.send_signal(number)
-
-    before = {number: signal.signal(number, pass_on) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        for rank in range(ranks):
-            own = {**environment, "RANK": str(rank), "LOCAL_RANK": str(rank)}
-            # Away from the terminal's group: an interrupt comes from here, once.
-            processes.append(subprocess.Popen(command, env=own, start_new_session=True))
-        rank, code = _wait(processes)
-    except BaseException:
-        # Those that have started would wait for the others.
-        for process in processes:
-            process.kill()
-        raise
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    with _PassedOn(processes) as signals:
+        try:
+            for rank in range(ranks):
+                own = {**environment, "RANK": str(rank), "LOCAL_RANK": str(rank)}
+                # Away from the terminal's group: an interrupt comes from here, once.
+                with interrupts.held_back():
+                    processes.append(subprocess.Popen(command, env=own, start_new_session=True))
+            signals.all_have_started()
+            rank, code = _wait(processes)
+        except BaseException:
+            # Those that have started would wait for the others.
+            for process in processes:
+                process.kill()
+            raise
     return code if code >= 0 else _ended_by(signal.Signals(-code), rank)
+
+
+def follow_launcher() -> None:
+    """Ends this rank when its launcher does: killed, that cannot end its ranks itself. Does nothing in a
+    rank of torchrun, which sees to its own."""
+    launcher = os.environ.get(LAUNCHER)
+    if launcher is None:
+        return
+    set_parent_death_signal = 1  # PR_SET_PDEATHSIG of Linux
+    ctypes.CDLL(None).prctl(set_parent_death_signal, int(signal.SIGKILL), 0, 0, 0)
+    if os.getppid() != int(launcher):
+        # It was over before.
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+class _PassedOn:
+    """While in force, signals reach the ranks, also those that come before all of them have started."""
+
+    # A rank has no terminal that could close.
+    _AS = {
+        signal.SIGINT: signal.SIGINT,
+        signal.SIGTERM: signal.SIGTERM,
+        signal.SIGHUP: signal.SIGTERM,
+    }
+
+    def __init__(self, processes: "Sequence[subprocess.Popen[bytes]]"):
+        self._processes = processes
+        self._have_started = False
+        self._early: list[int] = []
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> "_PassedOn":
+        for number in self._AS:
+            # nohup ignores what a terminal says when it closes.
+            if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
+                self._before[number] = signal.signal(number, self._pass_on)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, before in self._before.items():
+            signal.signal(number, before)
+
+    def all_have_started(self) -> None:
+        self._have_started = True
+        for number in self._early:
+            self._send(number)
+
+    def _pass_on(self, number: int, _: Any) -> None:
+        if number == signal.SIGHUP:
+            # The system says it, and a shell says it again; two signals would end ranks without saving.
+            signal.signal(number, signal.SIG_IGN)
+        if self._have_started:
+            self._send(number)
+        else:
+            self._early.append(number)
+
+    def _send(self, number: int) -> None:
+        for process in self._processes:
+            if process.poll() is None:
+                process.send_signal(self._AS[signal.Signals(number)])
 
 
 def _ended_by(number: signal.Signals, rank: int) -> int:
