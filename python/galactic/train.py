@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import dataclasses
 import functools
 import json
@@ -15,7 +16,7 @@ import torch
 
 import galactic
 from galactic.learning import checkpoint, evaluation
-from galactic.learning.checkpoint import SavedPolicy
+from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
 from galactic.learning.distributed import Group, device_of, local_ranks
@@ -153,24 +154,18 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         teacher=teacher,
         title=folder.resolve().name,
     )
-    if options.resume:
-        trainer.resume()
-    elif run.start_from:
+    if run.start_from and not options.resume:
         checkpoint.begin_with(
             trainer.policy, settings, trainer.shape, trainer.parts, run.start_from
         )
     # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
     group.wait_for_all()
-    group.raise_on_all(_begin_folder(run, folder, teacher) if group.rank == 0 else None)
-    if options.resume:
-        trainer.progress.say(f"going on after {trainer.steps:,} steps")
-    else:
-        if options.preset in TAUGHT and run.teacher is None:
-            trainer.progress.say(
-                f"the preset {options.preset} is made for a --teacher; without one, give it more --steps"
-            )
-        trainer.begin()
-    undisturbed = trainer.train(options.pause_at)
+    with contextlib.ExitStack() as held:
+        group.raise_on_all(_take_folder(options, held) if group.rank == 0 else None)
+        if options.resume:
+            trainer.resume()
+        group.raise_on_all(_begin_folder(run, folder, teacher) if group.rank == 0 else None)
+        undisturbed = _carry_out(trainer, run, options)
     envs.close()
     if trainer.steps < settings.steps:
         trainer.progress.say(
@@ -182,13 +177,23 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     return OK
 
 
+def _carry_out(trainer: Trainer, run: Run, options: argparse.Namespace) -> bool:
+    """Trains as far as it is asked for. Returns whether no signal has ended it before."""
+    if options.resume:
+        trainer.progress.say(f"going on after {trainer.steps:,} steps")
+    else:
+        if options.preset in TAUGHT and run.teacher is None:
+            trainer.progress.say(
+                f"the preset {options.preset} is made for a --teacher; without one, give it more --steps"
+            )
+        trainer.begin()
+    return trainer.train(options.pause_at)
+
+
 def _new_run(options: argparse.Namespace) -> Run:
     if options.world is None:
         raise SettingsError("which world? Name a world pack, or --resume a run")
-    if (options.out / "settings.json").exists():
-        raise SettingsError(
-            f"{options.out} already holds a run; continue it with --resume, or choose another folder"
-        )
+    _require_no_run(options.out)
     given = given_options(options)
     for name in ("teacher_weight", "teacher_share"):
         if name in given and options.teacher is None:
@@ -206,6 +211,13 @@ def _new_run(options: argparse.Namespace) -> Run:
     )
 
 
+def _require_no_run(folder: pathlib.Path) -> None:
+    if (folder / "settings.json").exists():
+        raise SettingsError(
+            f"{folder} already holds a run; continue it with --resume, or choose another folder"
+        )
+
+
 def _resumed_run(options: argparse.Namespace) -> Run:
     policies = options.start_from or options.teacher
     if options.world or options.preset or options.validation or policies:
@@ -218,7 +230,17 @@ def _resumed_run(options: argparse.Namespace) -> Run:
             galactic.ErrorCode.IO, str(file), f"does not exist: {options.out} holds no run"
         )
     run = _read_run(file)
-    return dataclasses.replace(run, settings=resumed(run.settings, given_options(options)))
+    settings = resumed(run.settings, given_options(options))
+    done = CheckpointFolder(options.out, settings.keep).steps
+    if settings.steps != run.settings.steps and settings.steps < done:
+        raise SettingsError(_behind("--steps", settings.steps, done) + "begin another run")
+    if options.pause_at is not None and options.pause_at < done:
+        raise SettingsError(_behind("--pause-at", options.pause_at, done) + "leave it out")
+    return dataclasses.replace(run, settings=settings)
+
+
+def _behind(option: str, found: int, done: int) -> str:
+    return f"{option}: found {found:,}, and the run has done {done:,} steps; take more, or "
 
 
 def _read_run(file: pathlib.Path) -> Run:
@@ -245,13 +267,27 @@ def _read_run(file: pathlib.Path) -> Run:
         )
 
 
+def _take_folder(options: argparse.Namespace, held: contextlib.ExitStack) -> Optional[Exception]:
+    """Keeps others from writing into the folder of the run, while `held` is; why that is impossible."""
+    folder: pathlib.Path = options.out
+    try:
+        if not options.resume:
+            checkpoint.require_folder(folder)
+            folder.mkdir(parents=True, exist_ok=True)
+        held.enter_context(checkpoint.alone_in(folder))
+        if not options.resume:
+            # Another one may have come and gone since.
+            _require_no_run(folder)
+    except (galactic.Error, OSError, SettingsError) as error:
+        return error
+    return None
+
+
 def _begin_folder(
     run: Run, folder: pathlib.Path, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]
 ) -> Optional[Exception]:
-    """Makes the folder of a run; why that is impossible."""
+    """Writes what the run is into its folder; why that is impossible."""
     try:
-        checkpoint.require_folder(folder)
-        folder.mkdir(parents=True, exist_ok=True)
         if teacher is not None and teacher[1] != folder / TEACHER:
             checkpoint.save_policy(teacher[0], folder / TEACHER)
         _write_run(run, folder)

@@ -10,6 +10,7 @@ A run's folder holds
     best.pt                          the policy.pt that did best
     teacher.pt                       the policy.pt of the teacher, if there is one
     curves.csv, curves.html          written while it runs
+    .lock                            held by who writes here: see alone_in()
 
 A .pt file is a dictionary that `torch.load(..., weights_only=True)` reads: tensors under their names,
 and under "values" a JSON text with all else (torch 1.13 reads no plain floats that way). In policy.pt:
@@ -28,6 +29,8 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import fcntl
+import io
 import json
 import os
 import pathlib
@@ -305,11 +308,14 @@ def require_writable(file: pathlib.Path) -> None:
         temporary.touch()
         temporary.unlink()
     except OSError as error:
-        raise Error(
-            ErrorCode.IO,
-            str(file),
-            f"cannot write the file: {error.strerror}; an existing file is left as it was",
-        ) from None
+        raise unwritable(file, error) from None
+
+
+def unwritable(file: pathlib.Path, error: OSError) -> Error:
+    """What there is to say where a file that is written atomically could not be."""
+    why = error.strerror or str(error)
+    message = f"cannot write the file: {why}; an existing file is left as it was"
+    return Error(ErrorCode.IO, str(file), message)
 
 
 def require_apart(
@@ -354,6 +360,30 @@ def require_folder(folder: pathlib.Path) -> None:
                 one.rmdir()
 
 
+@contextlib.contextmanager
+def alone_in(folder: pathlib.Path) -> Iterator[None]:
+    """Around writing into the folder of a run, which exists: raises galactic.Error where another process
+    does. The lock ends with its process, however that ends; its file stays, and means nothing. Where the
+    disk has no locks, nobody is refused."""
+    file = folder / ".lock"
+    try:
+        handle = open(file, "wb")
+    except OSError as error:
+        raise unwritable(file, error) from None
+    with handle:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            # The second is what disks say that lock by the ranges of POSIX, as NFS does.
+            if error.errno in (errno.EWOULDBLOCK, errno.EACCES):
+                message = (
+                    "a run is under way in this folder; wait for its end, interrupt it, or give "
+                    "another -o"
+                )
+                raise Error(ErrorCode.IO, str(folder), message) from None
+        yield
+
+
 def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: str = "wb") -> None:
     """Calls write(handle) on a temporary file that then takes the name `file`: readers, and whoever
     comes after a crash, find the old contents or the new ones."""
@@ -371,9 +401,11 @@ def replacing(file: pathlib.Path) -> Iterator[pathlib.Path]:
         yield temporary
         _sync(temporary)
         os.replace(temporary, file)
+        _sync(file.parent)
+    except OSError as error:
+        raise unwritable(file, error) from None
     finally:
         temporary.unlink(missing_ok=True)
-    _sync(file.parent)
 
 
 def _temporary(file: pathlib.Path) -> pathlib.Path:
@@ -382,8 +414,10 @@ def _temporary(file: pathlib.Path) -> pathlib.Path:
 
 def save(file: pathlib.Path, values: dict[str, Any], tensors: dict[str, Any]) -> None:
     """Writes what load() reads, atomically."""
-    contents = {"values": json.dumps(values), **tensors}
-    write_atomically(file, lambda handle: torch.save(contents, handle))
+    # Torch ends the process where the disk has no room for what it writes.
+    contents = io.BytesIO()
+    torch.save({"values": json.dumps(values), **tensors}, contents)
+    write_atomically(file, lambda handle: handle.write(contents.getbuffer()))
 
 
 class CheckpointFolder:
@@ -426,6 +460,11 @@ class CheckpointFolder:
             message = "holds no checkpoint to go on from; begin another run, in a folder of its own"
             raise Error(ErrorCode.IO, str(self.folder), message)
         return complete[-1]
+
+    @property
+    def steps(self) -> int:
+        """After how many steps the latest was saved; 0 where there is none."""
+        return max((int(path.name) for path in self.complete()), default=0)
 
     @property
     def without_latest(self) -> str:

@@ -171,7 +171,7 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
         handle.write(b"ne")
         raise OSError("disk full")
 
-    with pytest.raises(OSError, match="disk full"):
+    with pytest.raises(galactic.Error, match="file: cannot write the file: disk full; an existing"):
         checkpoint.write_atomically(file, fail)
     assert file.read_bytes() == b"old" and os.listdir(tmp_path) == ["file"]
 

@@ -158,6 +158,25 @@ def test_a_paused_run_was_validated_and_goes_on_as_if_it_had_not_been_paused(
     assert curve(paused) == curve(whole)
 
 
+def test_a_run_is_not_resumed_up_to_where_it_has_been(tmp_path: pathlib.Path) -> None:
+    folder = tmp_path / "run"
+    options = [*SMALL, "--steps", 4 * UPDATE, "--pause-at", 2 * UPDATE]
+    assert call("train", WORLD, "-o", folder, *options).returncode == 0
+    before = {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+    for name, remedy in (("--steps", "begin another run"), ("--pause-at", "leave it out")):
+        done = call("train", "-o", folder, "--resume", name, UPDATE)
+        assert done.returncode == 1 and done.stderr == (
+            f"galactic.train: command line: {name}: found {UPDATE}, and the run has done {2 * UPDATE} "
+            f"steps; take more, or {remedy}\n"
+        )
+    assert {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()} == before
+    # The steps that it has anyway, and exactly those that it has done.
+    for steps in (4 * UPDATE, 2 * UPDATE):
+        done = call("train", "-o", folder, "--resume", "--steps", steps, "--pause-at", 2 * UPDATE)
+        assert done.returncode == 0, done.stderr
+    assert len(curve(folder)) == 2
+
+
 def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> None:
     process = subprocess.Popen(
         command("train", WORLD, "-o", tmp_path / "run", *SMALL_OF_ANY_RANKS, "--ranks", "2"),

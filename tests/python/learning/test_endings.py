@@ -1,0 +1,270 @@
+"""How runs end that do not come to their end: by Ctrl-C while they load, with the terminal, with who has
+launched them, for lack of disk; and that a folder has one run at a time."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+import time
+from typing import Any, Callable, Iterator
+
+import pytest
+
+import galactic
+from galactic import train
+from galactic.learning import checkpoint
+from galactic.learning.launch import LAUNCHER, launch
+
+WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
+WORLD = WORLDS / "world.pack"
+UPDATE = 16 * 8
+SMALL = ["--preset", "quick", "--envs", "16", "--horizon", "8", "--log-every", "0"]
+needs_world = pytest.mark.skipif(
+    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
+)
+
+
+def command(*arguments: object) -> list[str]:
+    return [sys.executable, "-B", "-m", "galactic.train", *map(str, arguments)]
+
+
+def wait_for(holds: Callable[[], Any], process: "subprocess.Popen[str] | None" = None) -> None:
+    while not holds():
+        assert process is None or process.poll() is None
+        time.sleep(0.02)
+
+
+@pytest.fixture
+def endless_torch(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
+    """A folder in which programs that load torch leave a file each, and load on and on."""
+    place = tmp_path / "stand_in"
+    place.mkdir()
+    (place / "torch.py").write_text(
+        "import os, pathlib, time\n"
+        "(pathlib.Path(__file__).parent / f'loads-{os.getpid()}').touch()\n"
+        "time.sleep(600)\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setenv("PYTHONPATH", f"{place}:{os.environ.get('PYTHONPATH', '')}")
+    return place
+
+
+def loading(place: pathlib.Path) -> int:
+    return len(list(place.glob("loads-*")))
+
+
+@pytest.mark.parametrize("program", ["train", "evaluate", "export"])
+@pytest.mark.parametrize("run_as", [["-B", "-m"], ["-Bm"]])
+def test_ctrl_c_while_a_program_loads_ends_it_in_silence(
+    endless_torch: pathlib.Path, program: str, run_as: list[str]
+) -> None:
+    process = subprocess.Popen(
+        [sys.executable, *run_as, f"galactic.{program}"], stderr=subprocess.PIPE, text=True
+    )
+    wait_for(lambda: loading(endless_torch), process)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert (process.returncode, said) == (130, "")
+
+
+def test_who_imports_the_package_handles_interrupts_himself(tmp_path: pathlib.Path) -> None:
+    """Also in a program of his own that Python finds by -m."""
+    package = tmp_path / "own"
+    package.mkdir()
+    (package / "__init__.py").write_text("import galactic\n", encoding="utf-8")
+    (package / "work.py").write_text(
+        "import os, signal\ntry: os.kill(os.getpid(), signal.SIGINT)\n"
+        "except KeyboardInterrupt: os._exit(9)\n",
+        encoding="utf-8",
+    )
+    path = f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"
+    done = subprocess.run(
+        [sys.executable, "-B", "-m", "own.work"], env={**os.environ, "PYTHONPATH": path}, timeout=60
+    )
+    assert done.returncode == 9
+
+
+@contextlib.contextmanager
+def interrupted_when(holds: Callable[[], Any]) -> Iterator[None]:
+    """An interrupt of this process, once that holds."""
+
+    def interrupt() -> None:
+        wait_for(holds)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=interrupt)
+    thread.start()
+    yield
+    thread.join()
+
+
+def test_ctrl_c_while_ranks_load_ends_them_in_silence(
+    endless_torch: pathlib.Path, capfd: Any
+) -> None:
+    with interrupted_when(lambda: loading(endless_torch) == 2):
+        assert launch(2, command()) == 130
+    assert capfd.readouterr().err == ""
+
+
+def test_ctrl_c_before_all_ranks_have_started_reaches_all_of_them(
+    endless_torch: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capfd: Any
+) -> None:
+    start = subprocess.Popen
+    started: list[Any] = []
+
+    def start_one(*arguments: Any, **keywords: Any) -> Any:
+        os.kill(os.getpid(), signal.SIGINT)
+        started.append(start(*arguments, **keywords))
+        return started[-1]
+
+    monkeypatch.setattr(subprocess, "Popen", start_one)
+    assert launch(2, command()) == 130
+    assert [process.returncode for process in started] == [130, 130]
+    assert capfd.readouterr().err == ""
+
+
+def has_ended(process: int) -> bool:
+    """Also if nobody has asked yet how."""
+    try:
+        stat = pathlib.Path(f"/proc/{process}/stat").read_text(encoding="utf-8")
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+    return stat.rpartition(")")[2].split()[0] == "Z"
+
+
+def ranks_of(process: "subprocess.Popen[str]") -> list[int]:
+    file = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    return [int(word) for word in file.read_text(encoding="utf-8").split()]
+
+
+@contextlib.contextmanager
+def run_of_two_ranks(folder: pathlib.Path) -> Iterator["subprocess.Popen[str]"]:
+    """A long one, which has come to learn."""
+    process = subprocess.Popen(
+        command(WORLD, "-o", folder, *SMALL, "--ranks", 2), stderr=subprocess.PIPE, text=True
+    )
+    try:
+        wait_for((folder / "curves.csv").is_file, process)
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def call(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
+    """Trains as the only rank, in this process."""
+    with monkeypatch.context() as patch:
+        patch.setenv("RANK", "0")
+        patch.setenv("WORLD_SIZE", "1")
+        return train.main(list(map(str, arguments)))
+
+
+@needs_world
+def test_a_folder_has_one_run_at_a_time_and_ranks_end_with_their_launcher(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capfd: Any
+) -> None:
+    folder = tmp_path / "run"
+    with run_of_two_ranks(folder) as process:
+        capfd.readouterr()
+        before = (folder / "settings.json").read_bytes()
+        code = call(monkeypatch, "-o", folder, "--resume", "--steps", 10**9)
+        said = capfd.readouterr().err
+        assert code == 2
+        assert said == (
+            f"galactic.train: {folder}: a run is under way in this folder; wait for its end, "
+            "interrupt it, or give another -o\n"
+        )
+        # As where two have been started at once, and neither has seen the other's settings.
+        (folder / "settings.json").unlink()
+        assert call(monkeypatch, WORLD, "-o", folder, *SMALL) == 2
+        assert capfd.readouterr().err == said and not (folder / "settings.json").exists()
+        (folder / "settings.json").write_bytes(before)
+        ranks = ranks_of(process)
+        assert len(ranks) == 2 and not any(map(has_ended, ranks))
+        process.kill()
+        process.wait()
+        wait_for(lambda: all(map(has_ended, ranks)))
+        # The lock has ended with them, though its file is there.
+        assert (folder / ".lock").is_file()
+        with checkpoint.alone_in(folder):
+            pass
+
+
+@needs_world
+def test_a_terminal_that_closes_ends_a_run_that_saves(tmp_path: pathlib.Path) -> None:
+    """The system says so, and then the shell once more."""
+    with run_of_two_ranks(tmp_path / "run") as process:
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.05)
+        process.send_signal(signal.SIGHUP)
+        _, said = process.communicate(timeout=120)
+    assert process.returncode == 130 and "stopped and saved after" in said
+    assert list((tmp_path / "run").glob("checkpoints/[0-9]*/rank-1.pt"))
+
+
+@pytest.mark.parametrize("is_ignored, ends", [(False, True), (True, False)])
+def test_a_hangup_is_passed_on_unless_it_is_to_be_ignored(is_ignored: bool, ends: bool) -> None:
+    work = "import os, signal, sys, time\nos.kill(os.getppid(), signal.SIGHUP)\ntime.sleep(1)\n"
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN if is_ignored else signal.SIG_DFL)
+    try:
+        assert launch(1, [sys.executable, "-c", work]) == (130 if ends else 0)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_a_rank_whose_launcher_was_over_before_it_asked_ends(tmp_path: pathlib.Path) -> None:
+    work = "from galactic.learning.launch import follow_launcher\nfollow_launcher()\nprint('on')"
+    # Its parent is this process, which is not the first of the system.
+    for launcher, code in (({LAUNCHER: "1"}, -signal.SIGKILL), ({}, 0)):
+        done = subprocess.run(
+            [sys.executable, "-B", "-c", work], env={**os.environ, **launcher}, timeout=120
+        )
+        assert done.returncode == code
+
+
+@needs_world
+def test_a_full_disk_is_one_sentence_and_leaves_what_was_saved(tmp_path: pathlib.Path) -> None:
+    folder = tmp_path / "run"
+    work = (
+        "import resource, sys\nfrom galactic import train\n"
+        "most = int(sys.argv.pop(1))\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))\n"
+        "sys.exit(train.main(sys.argv[1:]))"
+    )
+
+    def run(most: int, *arguments: object) -> "subprocess.CompletedProcess[str]":
+        return subprocess.run(
+            [sys.executable, "-B", "-c", work, str(most), *map(str, arguments)],
+            env={**os.environ, "RANK": "0", "WORLD_SIZE": "1"},
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+
+    small = [*SMALL, "--ranks", 1, "--steps", 9 * UPDATE, "--checkpoint-every", UPDATE]
+    done = run(1 << 30, WORLD, "-o", folder, *small, "--pause-at", UPDATE)
+    assert done.returncode == 0, done.stderr
+    saved = {file: file.read_bytes() for file in folder.rglob("*.pt")}
+    # Room for reports, and none for networks.
+    full = run(100_000, "-o", folder, "--resume")
+    assert full.returncode == 2, full.stderr
+    (told,) = [line for line in full.stderr.splitlines() if "cannot write" in line]
+    assert told.startswith("galactic.train: ") and ".pt: cannot write the file: File too" in told
+    assert full.stderr.splitlines()[-1] == told and "frame" not in full.stderr
+    assert {file: file.read_bytes() for file in folder.rglob("*.pt") if file in saved} == saved
+    again = run(1 << 30, "-o", folder, "--resume", "--pause-at", 2 * UPDATE)
+    assert again.returncode == 0 and f"going on after {UPDATE} steps" in again.stderr
+
+
+def test_a_folder_is_locked_once(tmp_path: pathlib.Path) -> None:
+    with checkpoint.alone_in(tmp_path):
+        with pytest.raises(galactic.Error, match="a run is under way in this folder; wait"):
+            with checkpoint.alone_in(tmp_path):
+                pass
+    with checkpoint.alone_in(tmp_path):
+        pass
