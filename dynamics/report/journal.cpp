@@ -118,7 +118,7 @@ EpisodeComparison comparisonOf(const Json& json) {
 }
 
 /// What a record says; nothing where it is of another kind.
-std::optional<std::pair<std::size_t, EpisodeComparison>> readRecord(const std::string& record) {
+std::optional<std::pair<std::size_t, EpisodeComparison>> readRecord(std::string_view record) {
   try {
     const Json json = Json::parse(record);
     return std::pair(json.at("number").get<std::size_t>(), comparisonOf(json.at("episode")));
