@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "check/pack_check.h"
+#include "layout/render_pools.h"
 #include "support/atomic_file.h"
 #include "support/try.h"
 
@@ -10,6 +12,19 @@ namespace {
 
 schema::LengthStatistics toSchema(const LengthStatistics& lengths) {
   return {lengths.mean, lengths.p95, lengths.max};
+}
+
+/// Whether a pack passes what whoever opens it checks.
+Result<void> checkOwn(const PackHeader& header, std::span<const std::byte> file,
+                      const std::filesystem::path& path) {
+  auto checked = detail::checkPayloadStart(file.subspan(sizeof(header)), path.string());
+  if (checked) checked = detail::checkPack(header, file, path.string());
+  if (checked) return {};
+  const Error& error = checked.error();
+  return fail(ErrorCode::kInternal, error.where,
+              error.message +
+                  " (in a pack that was just made, and is not written; please report "
+                  "this with the input)");
 }
 
 }  // namespace
@@ -76,8 +91,13 @@ std::vector<std::byte> finishPack(FlatBufferBuilder& builder, Offset<schema::Pro
 Result<std::uint64_t> writePackFile(const std::filesystem::path& path, PackKind kind,
                                     std::span<const std::byte> payload) {
   const PackHeader header = makePackHeader(kind, payload);
-  RETURN_IF_ERROR(writeFileAtomically(path, {std::as_bytes(std::span(&header, 1)), payload}));
-  return sizeof(header) + payload.size();
+  // In one piece, as the checks see files.
+  std::vector<std::byte, PackAllocator<std::byte>> file(sizeof(header) + payload.size());
+  std::memcpy(file.data(), &header, sizeof(header));
+  std::memcpy(file.data() + sizeof(header), payload.data(), payload.size());
+  RETURN_IF_ERROR(checkOwn(header, file, path));
+  RETURN_IF_ERROR(writeFileAtomically(path, {file}));
+  return file.size();
 }
 
 }  // namespace galactic::bake
