@@ -65,6 +65,8 @@ Result<void> tryOutputs(const Command& command, const World& world, const bake::
   if (!command.shown.view.empty()) outputs.push_back({"--view", command.shown.view});
   if (!command.shown.pictures.empty()) outputs.push_back({"--pictures", command.shown.pictures});
   RETURN_IF_ERROR(checkOutputs(outputs, inputs));
+  const std::filesystem::path& view = command.shown.view;
+  if (!view.empty()) RETURN_IF_ERROR(checkExtension(view, kPageFile));
   for (const OutputFile& output : outputs) RETURN_IF_ERROR(tryFile(output.file));
   return {};
 }

@@ -5,6 +5,7 @@
 #include "pack_tool/support/open_listed.h"
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
+#include "support/output_files.h"
 #include "support/try.h"
 #include "support/workers.h"
 
@@ -40,6 +41,7 @@ std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs,
 }
 
 Result<void> makeReport(const ReportOptions& options) {
+  RETURN_IF_ERROR(checkExtension(options.output, kPageFile));
   ASSIGN_OR_RETURN(
       const auto packs,
       openListed({.packs = options.packs, .output = options.output, .trust = options.trust}));

@@ -6,6 +6,7 @@
 #include "pack_tool/support/open_listed.h"
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
+#include "support/output_files.h"
 #include "support/try.h"
 #include "view/page.h"
 
@@ -19,6 +20,7 @@ bool hasMeshes(const PackFile& pack) {
 }
 
 Result<void> viewPack(const ViewOptions& options) {
+  RETURN_IF_ERROR(checkExtension(options.output, kPageFile));
   ASSIGN_OR_RETURN(
       const auto packs,
       openListed({.packs = {options.pack}, .output = options.output, .trust = options.trust}));

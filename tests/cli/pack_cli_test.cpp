@@ -279,11 +279,17 @@ TEST_F(PackCli, ExportsEpisodesBesideItselfWhereNoFileIsNamed) {
 }
 
 TEST_F(PackCli, PictureAndExportRefuseWhatTheyCannotWrite) {
+  std::filesystem::create_symlink("good.pack", folder_.path() / "linked.htm");
   const std::vector<std::tuple<std::vector<std::string>, int, std::string>> runs{
       {{"export", "good.pack", "-o", "a.jpg"},
        kUnsupported,
        "use .glb, .srdf, .urdf, .obj, .ply or .episode_set.json"},
-      {{"view", "good.pack", "-o", "good.pack"}, kInvalidInput, "good.pack"},
+      {{"view", "good.pack", "-o", "good.pack"},
+       kUnsupported,
+       "galactic-pack: good.pack: pages are HTML files; end the name with .html"},
+      {{"view", "good.pack", "-o", "a.png"}, kUnsupported, "end the name with .html"},
+      {{"view", "good.pack", "-o", "linked.htm"}, kInvalidInput, "is the pack itself"},
+      {{"report", "good.pack", "-o", "a.pdf"}, kUnsupported, "end the name with .html"},
       {{"view", "good.pack", "-o", "none/a.html"}, kIo, "galactic-pack: none/a.html: "},
       {{"export", "good.pack", "-o", "a.png"}, kUnsupported, "draw it with galactic-pack picture"},
       {{"picture", "good.pack", "-o", "a.jpg"}, kUnsupported, "end the name with .png"},

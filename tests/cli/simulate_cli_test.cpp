@@ -357,6 +357,7 @@ TEST_F(SimulateCli, EndsWithACodeForEachKindOfMistake) {
       {{"--steps", "1000000", "--envs", "2", "--view", "run.html"}, 1},
       {{"--envs", "1", "--steps", "1", "--view", "missing/run.html"}, 2},
       {{"--envs", "1", "--steps", "1", "--view", "world.pack"}, 3},
+      {{"--envs", "1", "--steps", "1", "--view", "run.png"}, 5},
       {{"--steps", "1000001", "--envs", "2", "--animation", "run.glb"}, 1},
       {{"--envs", "1", "--steps", "1", "--animation", "missing/run.glb"}, 2},
       {{"--envs", "1", "--steps", "1", "--animation", "objects.pack"}, 3},
@@ -428,13 +429,32 @@ TEST_F(SimulateCli, WritesNoFileTwice) {
 }
 
 TEST_F(SimulateCli, TriesItsFilesBeforeItSteps) {
-  for (const char* option : {"--record", "--report", "--view", "--animation"}) {
+  const std::vector<std::pair<std::string, std::string>> outputs{
+      {"--record", "missing/run.rec"},
+      {"--report", "missing/run.json"},
+      {"--view", "missing/run.html"},
+      {"--animation", "missing/run.glb"}};
+  for (const auto& [option, file] : outputs) {
     // Of a run that began, the table would be there.
-    const ProgramRun result = run({"--envs", "1", "--steps", "1", option, "missing/file.glb"});
+    const ProgramRun result = run({"--envs", "1", "--steps", "1", option, file});
     EXPECT_EQ(result.exit_code, 2) << option;
-    EXPECT_THAT(result.err, StartsWith("galactic-run: missing/file.glb: cannot write the file"))
+    EXPECT_THAT(result.err, StartsWith("galactic-run: " + file + ": cannot write the file"))
         << option;
     EXPECT_THAT(result.out, IsEmpty()) << option;
+  }
+}
+
+TEST_F(SimulateCli, WritesPagesUnderNamesOfPages) {
+  for (const char* name : {"page.html", "page.htm", "page.HTML"}) {
+    EXPECT_EQ(run({"--envs", "1", "--steps", "1", "--view", name}).exit_code, 0) << name;
+    EXPECT_THAT(content(name), StartsWith("<!doctype html>")) << name;
+  }
+  for (const char* name : {"page.png", "page", "html"}) {
+    const ProgramRun result = run({"--envs", "1", "--steps", "1", "--view", name});
+    EXPECT_EQ(result.exit_code, 5) << name;
+    EXPECT_EQ(result.err, "galactic-run: " + std::string(name) +
+                              ": pages are HTML files; end the name with .html\n");
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / name));
   }
 }
 

@@ -370,9 +370,10 @@ TEST_F(DynamicsCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
 }
 
 TEST_F(DynamicsCli, TriesItsOutputsBeforeTheWork) {
-  for (const char* option : {"--view", "--pictures"}) {
-    const ProgramRun done =
-        run({"--policy", "scripted", "--report", "tried.json", option, "no/such/folder/file"});
+  const std::vector<std::pair<std::string, std::string>> outputs{
+      {"--view", "no/such/folder/both.html"}, {"--pictures", "no/such/folder/both.png"}};
+  for (const auto& [option, file] : outputs) {
+    const ProgramRun done = run({"--policy", "scripted", "--report", "tried.json", option, file});
     EXPECT_EQ(done.exit_code, 2) << done.err;
     EXPECT_TRUE(done.out.empty()) << done.out;
     EXPECT_FALSE(std::filesystem::exists(path("tried.json.partial"))) << option;
@@ -380,6 +381,14 @@ TEST_F(DynamicsCli, TriesItsOutputsBeforeTheWork) {
   const ProgramRun report = run({"--policy", "scripted", "--report", "no/such/folder/file"});
   EXPECT_EQ(report.exit_code, 2) << report.err;
   EXPECT_TRUE(report.out.empty()) << report.out;
+}
+
+TEST_F(DynamicsCli, WritesPagesUnderNamesOfPages) {
+  const ProgramRun done = run({"--policy", "scripted", "--view", "page.png"});
+  EXPECT_EQ(done.exit_code, 5) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("page.png: pages are HTML files; end the name with .html"));
+  EXPECT_TRUE(done.out.empty()) << done.out;
+  EXPECT_FALSE(std::filesystem::exists(path("page.png")));
 }
 
 TEST_F(DynamicsCli, GroupsWarningsAndReportsAllOfThem) {

@@ -44,6 +44,7 @@ std::vector<OutputFile> filesOf(const RunOptions& options) {
 Result<void> checkExtensions(const RunOptions& options) {
   const std::string& sheet = options.drawing.contact_sheet;
   if (!sheet.empty()) RETURN_IF_ERROR(checkExtension(sheet, {".png", "pictures are PNG files"}));
+  if (!options.view.empty()) RETURN_IF_ERROR(checkExtension(options.view, kPageFile));
   if (options.animation.empty()) return {};
   return checkExtension(options.animation, {".glb", "animations are binary glTF files"});
 }

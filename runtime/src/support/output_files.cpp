@@ -51,7 +51,9 @@ std::string extensionOf(const fs::path& path) {
 }
 
 Result<void> checkExtension(const fs::path& output, const FileKind& kind) {
-  if (extensionOf(output) == kind.extension) return {};
+  const std::string extension = extensionOf(output);
+  const bool is_short = !extension.empty() && extension == kind.short_extension;
+  if (extension == kind.extension || is_short) return {};
   return fail(ErrorCode::kUnsupported, output.string(),
               fmt::format("{}; end the name with {}", kind.sentence, kind.extension));
 }

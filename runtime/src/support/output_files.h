@@ -33,7 +33,11 @@ struct OutputFile {
 struct FileKind {
   std::string_view extension;
   std::string_view sentence;
+  /// Taken, too; empty for none.
+  std::string_view short_extension = {};
 };
+
+inline constexpr FileKind kPageFile{".html", "pages are HTML files", ".htm"};
 
 /// Fails with kUnsupported when a file that will be of this kind has another extension.
 [[nodiscard]] Result<void> checkExtension(const std::filesystem::path& output,
