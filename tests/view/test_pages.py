@@ -227,6 +227,20 @@ class Pages(unittest.TestCase):
         # The lift goes up, and the hand with it.
         self.assertAlmostEqual(moved[3] - before[1], moved[0] - moved[1], delta=1e-5)
 
+    def test_parts_that_touch_from_the_start_are_not_shown_as_touching(self):
+        page = self.open("world", "", "scene 0")
+        # The hand in the arm, and a part of the base under the arm.
+        touching = page.evaluate(
+            "(async () => { const { robot } = galactic.robotPack; const { groups } = robot;"
+            "const number = (link) => groups.findIndex((one) => one.link === link);"
+            "groups[number(4)].spheres = [-0.08, 0, 0, 0.016]; groups[number(0)].spheres = [0.15, 0.4, 0, 0.12];"
+            "robot.tested_pairs = [number(3), number(4), number(0), number(3)];"
+            "await galactic.show(galactic.parts.find((one) => one.kind === 'robot'));"
+            "const names = () => galactic.view.touching.map((pair) => pair.map((one) => galactic.view.figure.groupName(one)));"
+            "const start = names(); galactic.view.set(0, 0); return [start, names()]; })()"
+        )
+        self.assertEqual(touching, [[], [["base", "arm"]]])
+
     def test_the_list_is_searched(self):
         page = self.open("world", "", "scene 0")
         page.key("/", "Slash", "/")

@@ -131,6 +131,12 @@ function footprintLine(base) {
   return new LineLoop(geometry, new LineBasicMaterial({ color: 0xcc79a7 }));
 }
 
+/// Spheres of two groups that touch, as pairs of their numbers.
+function touchingSpheres(ours, theirs) {
+  const touch = (a, b) => a.center.distanceToSquared(b.center) < (a.radius + b.radius) ** 2;
+  return ours.flatMap((a, n) => theirs.flatMap((b, m) => (touch(a, b) ? [[n, m]] : [])));
+}
+
 export class RobotFigure {
   static async load(library, pack) {
     const figure = new RobotFigure();
@@ -233,25 +239,29 @@ export class RobotFigure {
     return centers;
   }
 
-  /// The tested pairs of groups that touch, as numbers of groups; their spheres light up.
-  findTouching() {
+  /// The pairs of groups that can collide, but for those whose spheres overlap in the start pose
+  /// already: that these touch says nothing. scripted/arm.cpp leaves out the same ones.
+  pairsApartAtStart() {
+    this.setPose(this.rootPose(), this.robot.start);
+    const { tested_pairs: all } = this.robot;
+    const pairs = Array.from({ length: all.length / 2 }, (_, n) => [all[2 * n], all[2 * n + 1]]);
+    return pairs.filter(([first, second]) => touchingSpheres(this.centersOf(first), this.centersOf(second)).length === 0);
+  }
+
+  /// Those of these pairs of groups that touch; their spheres light up.
+  findTouching(pairs) {
     const all = this.clouds.map((_, n) => this.centersOf(n));
     const touching = this.clouds.map(() => new Set());
-    const pairs = [];
-    for (let at = 0; at < this.robot.tested_pairs.length; at += 2) {
-      const [first, second] = this.robot.tested_pairs.slice(at, at + 2);
-      let any = false;
-      all[first].forEach((a, n) => all[second].forEach((b, m) => {
-        const reach = a.radius + b.radius;
-        if (a.center.distanceToSquared(b.center) >= reach * reach) return;
-        any = true;
-        touching[first].add(n);
-        touching[second].add(m);
-      }));
-      if (any) pairs.push([first, second]);
-    }
+    const found = pairs.filter(([first, second]) => {
+      const spheres = touchingSpheres(all[first], all[second]);
+      for (const [a, b] of spheres) {
+        touching[first].add(a);
+        touching[second].add(b);
+      }
+      return spheres.length > 0;
+    });
     this.clouds.forEach((cloud, n) => cloud.paint((sphere) => touching[n].has(sphere)));
-    return pairs;
+    return found;
   }
 
   groupName(number) { return this.robot.links[this.robot.groups[number].link].name; }

@@ -17,6 +17,7 @@ export class RobotView {
     const { stage, library } = this.page;
     this.figure = await RobotFigure.load(library, this.pack);
     this.robot = this.figure.robot;
+    this.pairs = this.figure.pairsApartAtStart();
     this.positions = [...this.robot.start];
     (address.get("joints") ?? "").split(",").forEach((text, n) => {
       const value = Number.parseFloat(text);
@@ -36,9 +37,9 @@ export class RobotView {
 
   update() {
     this.figure.setPose(this.figure.rootPose(), this.positions);
-    const pairs = this.figure.findTouching();
+    const pairs = this.figure.findTouching(this.pairs);
     this.touchPart.replaceChildren(...(pairs.length === 0
-      ? [note("No tested pair of parts touches.")]
+      ? [note("No parts touch that can be apart.")]
       : pairs.map(([a, b]) => el("div", { className: "warn" }, `${this.figure.groupName(a)} touches ${this.figure.groupName(b)}`))));
     this.touching = pairs;
     this.page.stage.draw();
@@ -95,7 +96,7 @@ export class RobotView {
       rest.length > 0 ? el("details", {}, el("summary", {}, `Other joints (${rest.length})`), ...rest.map((n) => this.sliderOf(n, names[n], null))) : null,
       heading("Numbers"),
       table([["Links", this.robot.links.length], ["Spheres", this.robot.groups.reduce((sum, one) => sum + one.spheres.length / 4, 0)],
-        ["Tested pairs", this.robot.tested_pairs.length / 2],
+        ["Pairs that can collide", this.pairs.length],
         ...(grasp ? [["Grasp radius", meters(grasp.radius)]] : []),
         ...(camera ? [["Camera", `${((camera.vertical_fov * 180) / Math.PI).toFixed(0)}° high`]] : []),
         ...(base ? [["Step of the base", `${meters(base.forward_step)}, ${((base.turn_step * 180) / Math.PI).toFixed(1)}°`]] : [])]),
