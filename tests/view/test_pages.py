@@ -324,6 +324,33 @@ class Pages(unittest.TestCase):
         self.assertEqual(hidden["shown"], 0)
         self.assertGreater(hidden["places"] - hidden["moved"], 11, "what is seen is not moved")
 
+    def test_the_first_picture_shows_the_whole_robot(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        # At all places of a run, what the mesh of the room hides of the robot's spheres.
+        hidden = page.evaluate(
+            """(async () => {
+              const { stage, view } = galactic;
+              const { raycaster } = stage;
+              const counts = [];
+              for (const env of [0, 1]) for (let frame = 0; frame <= 60; frame += 6) {
+                await view.chooseEnv(env, frame);
+                view.frameHome();
+                stage.drawNow();
+                const points = view.home.robot.clouds.flatMap((_, n) => view.home.robot.centersOf(n));
+                const cut = view.cutHeight();
+                counts.push(points.filter(({ center }) => {
+                  const way = center.clone().sub(stage.seenFrom);
+                  raycaster.set(stage.seenFrom, way.clone().normalize());
+                  raycaster.far = way.length() - 0.01;
+                  return raycaster.intersectObject(view.home.scene.mesh, true).some((hit) => hit.point.y < cut);
+                }).length);
+              }
+              raycaster.far = Infinity;
+              return counts;
+            })()"""
+        )
+        self.assertEqual(hidden, [0] * 22)
+
     def expect_poses(self, shown: list, wanted: list, frame: int):
         self.assertEqual(len(shown), len(wanted))
         for a, b in zip(shown, wanted):

@@ -5,7 +5,7 @@ import { button, checkbox, el, heading, legendRow, meters, note, table, tree } f
 import { Ghost, kGhostColor } from "./ghost.js";
 import { Home } from "./home.js";
 import { Pose } from "./kinematics.js";
-import { inSight } from "./sight.js";
+import { bestDirection, inSight } from "./sight.js";
 import { Timeline } from "./timeline.js";
 import { kEndings, Track } from "./track.js";
 
@@ -48,9 +48,13 @@ export class RunView {
   }
 
   frameHome() {
-    const root = this.home.robot.poses[0].position;
-    const around = new Box3().setFromCenterAndSize(root, new Vector3(2.2, 1.6, 2.2));
-    this.page.stage.frame(this.camera === "free" ? this.home.bounds() : around, new Vector3(0.5, 0.95, 0.8));
+    const { stage } = this.page;
+    const { robot } = this.home;
+    const around = new Box3().setFromCenterAndSize(robot.poses[0].position, new Vector3(2.2, 1.6, 2.2));
+    const box = this.camera === "free" ? this.home.bounds() : around;
+    const points = robot.clouds.flatMap((_, n) => robot.centersOf(n)).map(({ center }) => center);
+    const picture = { target: box.getCenter(new Vector3()), distance: stage.distanceTo(box), ...stage.opening };
+    stage.frame(box, this.sight ? bestDirection(this.sight, points, picture, this.cutHeight() ?? Infinity) : undefined);
     this.lastRoot = null;
   }
 

@@ -109,15 +109,26 @@ export class Stage {
     this.content.add(floor);
   }
 
+  /// Half of what the camera sees, up and sideways, at a distance of one.
+  get opening() {
+    const up = Math.tan((kFov * Math.PI) / 360);
+    return { up, sideways: up * this.camera.aspect };
+  }
+
+  /// From where the camera sees a box whole.
+  distanceTo(box) {
+    const radius = Math.max(0.05, box.getSize(new Vector3()).length() / 2);
+    const { up, sideways } = this.opening;
+    return radius / Math.min(up, sideways);
+  }
+
   /// Turns the camera to see a box, from a direction.
   frame(box, direction = new Vector3(0.9, 0.75, 1.1)) {
     if (box.isEmpty()) box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 1, 1));
     const center = box.getCenter(new Vector3());
     const radius = Math.max(0.05, box.getSize(new Vector3()).length() / 2);
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = radius / Math.tan((kFov * Math.PI) / 360) / narrow;
     this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(direction.clone().normalize(), distance);
+    this.camera.position.copy(center).addScaledVector(direction.clone().normalize(), this.distanceTo(box));
     this.camera.near = Math.max(0.005, radius / 200);
     this.camera.far = Math.max(50, radius * 12);
     this.camera.updateProjectionMatrix();
