@@ -90,6 +90,7 @@ void writeEnv(JsonWriter& json, PageData& data, const RunTrack& track, const Env
   Chunk chunk;
   chunk.addPlanes("frames", std::span<const std::int32_t>(framesOf(track, env)));
   chunk.addPlanes("moves", std::span<const std::int32_t>(movesOf(env)));
+  chunk.add("idle", std::span<const std::uint8_t>(env.idle));
   chunk.add("rewards", std::span<const float>(env.rewards));
   chunk.add("endings", std::span<const std::uint8_t>(bytesOf(env.endings)));
   chunk.add("events", std::span<const std::uint8_t>(env.events));

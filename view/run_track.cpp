@@ -74,6 +74,7 @@ void RunTrack::addFrame(const BatchSimulator& simulator, std::size_t env) {
   track.episodes.push_back(state.episode);
   track.world_from_root.push_back(state.world_from_root);
   track.held.push_back(state.held);
+  track.idle.push_back(simulator.idle()[env]);
   track.joints.insert(track.joints.end(), state.joint_positions.begin(),
                       state.joint_positions.end());
 }

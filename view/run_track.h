@@ -27,6 +27,8 @@ struct EnvTrack {
   std::vector<Pose> world_from_root;
   /// Index of the held object among the placements; -1 for none.
   std::vector<std::int32_t> held;
+  /// 1 where the env had played its share of the episodes: see BatchSimulator::idle().
+  std::vector<std::uint8_t> idle;
   /// Shape: frames x positions of the robot.
   std::vector<float> joints;
   /// Ascending frames. At the start of an episode, the objects that are not where the episode has

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -148,6 +149,29 @@ TEST_F(RunTrackTest, AppendsTheEnvsOfAnotherRun) {
   EXPECT_EQ(longer.steps(), 3U);
   EXPECT_EQ(longer.envs()[kKept].actions, both.envs()[0].actions);
   EXPECT_TRUE(longer.envs()[0].rewards.empty());
+}
+
+TEST_F(RunTrackTest, KeepsWhenAnEnvHasPlayedItsShare) {
+  SimulationOptions options = simulator_->options();
+  options.order = EpisodeOrder::kPartition;
+  options.envs = 2;
+  options.task.most_steps = 10;
+  BatchSimulator shares = *BatchSimulator::create(home_.world(), options);
+  RunTrack track(home_.world(), shares, 2);
+  for (std::size_t step = 0; step < 25; ++step) {
+    const std::vector<float> actions = actionsOf(shares, step);
+    shares.step(actions);
+    track.add(shares, actions);
+  }
+  // Three episodes can be played: the first env has two of them.
+  constexpr std::array<std::size_t, 2> kBusyFrames{20, 10};
+  for (std::size_t env = 0; env < 2; ++env) {
+    const std::vector<std::uint8_t>& idle = track.envs()[env].idle;
+    ASSERT_EQ(idle.size(), 26U);
+    for (std::size_t frame = 0; frame < idle.size(); ++frame) {
+      EXPECT_EQ(idle[frame] != 0, frame >= kBusyFrames[env]) << env << ", " << frame;
+    }
+  }
 }
 
 TEST_F(RunTrackTest, DistancesAreThoseOfAnEndThatIsNotLeft) {

@@ -70,6 +70,12 @@ class Pages(unittest.TestCase):
             *(cls.folder / "bare/world.pack", "--envs", 1, "--steps", 5),
             *("--view", cls.folder / "bare.html"),
         )
+        # Three of four episodes can be played: env 1 has one of them, env 0 two.
+        tool(
+            OPTIONS.run,
+            *(cls.folder / "world.pack", "--envs", 2, "--order", "partition"),
+            *("--episode-steps", 10, "--view", cls.folder / "shares.html"),
+        )
         cls.browser = Browser()
 
     @classmethod
@@ -387,6 +393,26 @@ class Pages(unittest.TestCase):
         page.wait("galactic.view.frame > 3")
         page.key(" ", "Space", " ")
         self.assertEqual(page.evaluate("galactic.view.timeline.playing"), 0)
+
+    def test_an_env_that_has_played_its_share_is_idle(self):
+        page = self.open("shares", "env=1&t=9", "run 1")
+        facts = "document.getElementById('panel').innerText"
+        clock = "document.querySelector('#timeline .clock').textContent"
+        self.assertIn("Its step\t9", page.evaluate(facts))
+        for frame in (10, 11, 20):
+            page.evaluate(f"galactic.view.timeline.go({frame}).then(() => 1)")
+            text = page.evaluate(facts)
+            self.assertIn("idle: has played its share", text, frame)
+            for word in ("Its step", "Target\t"):
+                self.assertNotIn(word, text, frame)
+            # What ended the episode is told where it ended.
+            self.assertEqual("out of time" in text, frame == 10)
+            self.assertEqual("Reward\t" in text, frame == 10)
+            self.assertIn("idle", page.evaluate(clock))
+            self.assertFalse(page.evaluate("galactic.view.home.task.visible"))
+        page.evaluate("galactic.view.chooseEnv(0, 15).then(() => 1)")
+        self.assertIn("Its step\t5", page.evaluate(facts))
+        self.assertTrue(page.evaluate("galactic.view.home.task.visible"))
 
     def test_names_of_packs_are_no_markup(self):
         for name in ("hostile_scene", "hostile_objects", "hostile_robot"):

@@ -83,6 +83,7 @@ export class RunView {
     if (this.run.target_only) this.home.objects.forEach((one, n) => { one.group.visible = n === target; });
     const { robot } = this.home;
     robot.setPose(this.track.root(frame), this.track.joints(frame));
+    this.home.task.visible = !this.track.isIdle(frame);
     this.ghost?.show(frame, moved);
     setAddress({ t: frame });
     this.fillFacts(frame);
@@ -163,9 +164,12 @@ export class RunView {
     const held = track.held(frame);
     const { placements, target } = this.home.episode;
     const ended = frame > 0 ? kEndings[track.endings[frame - 1]] : "";
-    const rows = [["Episode", track.episode(frame)], ["Its step", frame - track.beginOf(frame)],
-      ["Target", placements[target].object], ["In the hand", held < 0 ? "nothing" : placements[held]?.object ?? ""]];
-    if (frame > 0) {
+    const isIdle = track.isIdle(frame);
+    const rows = isIdle ? [["Episode", "idle: has played its share"]]
+      : [["Episode", track.episode(frame)], ["Its step", frame - track.beginOf(frame)], ["Target", placements[target].object]];
+    rows.push(["In the hand", held < 0 ? "nothing" : placements[held]?.object ?? ""]);
+    // An env that is idle has no reward; of the step that ended its last episode there is one.
+    if (frame > 0 && !track.isIdle(frame - 1)) {
       rows.push(["Reward", track.rewards[frame - 1].toFixed(4)]);
       this.run.distances.forEach((name, n) => rows.push([name.replace("_", " to "), meters(track.distances[(frame - 1) * this.run.distances.length + n])]));
     }

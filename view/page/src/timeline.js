@@ -104,7 +104,8 @@ export class Timeline {
   async go(frame) {
     this.frame = Math.max(0, Math.min(this.steps, frame));
     this.scrub.value = this.frame;
-    this.clock.textContent = `Step ${this.frame} of ${this.steps}, episode ${this.track.episode(this.frame)}`;
+    const what = this.track.isIdle(this.frame) ? "idle" : `episode ${this.track.episode(this.frame)}`;
+    this.clock.textContent = `Step ${this.frame} of ${this.steps}, ${what}`;
     this.scrub.setAttribute("aria-valuetext", this.clock.textContent);
     this.curves.setCursor(this.frame);
     await this.onFrame(this.frame);

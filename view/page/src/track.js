@@ -42,6 +42,9 @@ export class Track {
   held(frame) { return this.table.at(frame, 7 + this.run.positions); }
   episode(frame) { return this.table.at(frame, 8 + this.run.positions); }
 
+  /// Whether the env has played its share of the episodes: it stays as it is.
+  isIdle(frame) { return this.idle[frame] !== 0; }
+
   /// The frame in which the episode of a frame began: after an ending, or the first.
   beginOf(frame) {
     let begin = frame;
