@@ -25,8 +25,9 @@ export function addressNumber(key, otherwise) {
 
 /// When somebody edits the address or follows a link inside the page.
 export function onAddress(handler) {
-  addEventListener("hashchange", () => {
-    const now = new URLSearchParams(location.hash.slice(1));
+  addEventListener("hashchange", (event) => {
+    // Not where the page is by now: what waited to be written may stand there already.
+    const now = new URLSearchParams(new URL(event.newURL).hash.slice(1));
     for (const key of [...address.keys()]) address.delete(key);
     for (const [key, value] of now) address.set(key, value);
     handler();

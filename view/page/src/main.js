@@ -1,5 +1,5 @@
 // The page: what it holds on the left, the picture, options and numbers on the right, a timeline below.
-import { address, onAddress, setAddress } from "./address.js";
+import { address, addressNumber, onAddress, setAddress } from "./address.js";
 import { PageData } from "./data.js";
 import { button, checkbox, el, heading, megabytes, note, tree } from "./dom.js";
 import { EpisodeView } from "./episode_view.js";
@@ -102,6 +102,8 @@ class Page {
 
   async showNow(part) {
     delete document.documentElement.dataset.shown;
+    // With facts of a pack beside it, a view has lost its panel.
+    const stays = this.current?.kind === part.kind;
     this.current = part;
     setAddress(part.kind === "run" ? { view: null, n: null } : { view: part.kind, n: part.number });
     if (part.kind === "run") setAddress({ env: part.number });
@@ -109,8 +111,8 @@ class Page {
     this.markList();
     closeDrawers();
     if (part.kind === "pack") this.showFacts(part);
-    else if (part.kind === "run" && this.view instanceof RunView) await this.view.chooseEnv(part.number, this.view.frame);
-    else if (part.kind === "episode" && this.view instanceof EpisodeView) await this.view.go(part.number);
+    else if (stays && this.view instanceof RunView) await this.view.chooseEnv(part.number, this.view.frame);
+    else if (stays && this.view instanceof EpisodeView) await this.view.go(part.number);
     else await this.showView(part);
     document.getElementById("progress").hidden = true;
     this.stage.drawNow();
@@ -118,6 +120,7 @@ class Page {
   }
 
   async showView(part) {
+    this.view?.close?.();
     for (const [target, name, handler] of this.listeners.splice(0)) target.removeEventListener(name, handler);
     this.stage.clear();
     this.readout("");
@@ -131,6 +134,7 @@ class Page {
 
   /// What is written about a pack, in place of options.
   showFacts(part) {
+    this.view?.close?.();
     const pack = this.manifest.packs[part.number];
     const facts = pack.facts ? Object.entries(pack.facts).map(([key, value]) => tree(value, key)) : [note("The page was written without more about this pack.")];
     this.fillPanel([heading(pack.file), note(`${pack.kind}, ${megabytes(pack.bytes)}`), ...facts]);
@@ -278,7 +282,7 @@ async function main() {
     onAddress(() => {
       const { view } = page;
       if (view instanceof RunView && page.current.kind === "run" && !address.has("view")) {
-        view.chooseEnv(Number(address.get("env") ?? view.env), Number(address.get("t") ?? view.frame));
+        view.chooseEnv(addressNumber("env", view.env), addressNumber("t", view.frame));
       } else {
         page.show(page.parts.find((one) => one.kind === address.get("view") && one.number === Number(address.get("n") ?? 0)) ?? page.firstPart());
       }

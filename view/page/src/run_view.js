@@ -26,13 +26,18 @@ export class RunView {
     this.timeline = new Timeline(this.page, this.run, {
       onFrame: (frame) => this.go(frame), onBetween: (frame, share) => this.showBetween(frame, share),
     });
-    await this.chooseEnv(Math.max(0, Math.min(this.run.envs.length - 1, addressNumber("env", 0))), addressNumber("t", 0));
+    await this.chooseEnv(addressNumber("env", 0), addressNumber("t", 0));
     this.page.stage.beforeDraw = () => this.moveCamera();
     this.frameHome();
     this.fillPanel();
   }
 
-  async chooseEnv(number, frame = 0) {
+  /// Another part of the page is opened.
+  close() { this.timeline?.pause(); }
+
+  async chooseEnv(wanted, frame = 0) {
+    const number = Math.max(0, Math.min(this.run.envs.length - 1, Math.round(wanted)));
+    this.timeline.pause();
     this.env = number;
     this.track = await Track.load(this.page.data, this.run, number);
     const twin = this.run.twins?.[number];

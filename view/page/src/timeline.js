@@ -17,7 +17,8 @@ export class Timeline {
     this.onBetween = onBetween;
     this.frame = 0;
     this.speed = addressNumber("speed", 1);
-    this.playing = 0;
+    /// What is being played, from where and since when; null: nothing is.
+    this.playing = null;
     this.element = document.getElementById("timeline");
     this.element.hidden = false;
     this.makeTransport();
@@ -31,7 +32,7 @@ export class Timeline {
     this.envChoice.addEventListener("change", () => this.page.view.chooseEnv(Number(this.envChoice.value)));
     this.clock = el("span", { className: "clock" });
     this.scrub = el("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Step" });
-    this.scrub.addEventListener("input", () => { this.pause(); this.go(Number(this.scrub.value)); });
+    this.scrub.addEventListener("input", () => this.go(Number(this.scrub.value)));
     this.marks = el("div", { className: "marks" });
     this.curvePart = el("div");
     this.shownCurves = new Set((address.get("curves") ?? "Reward,Distance").split(","));
@@ -67,7 +68,7 @@ export class Timeline {
 
   makeCurves() {
     const shown = this.charts.filter((one) => this.shownCurves.has(one.name));
-    this.curves = new Curves(shown, this.track.frameCount, (frame) => { this.pause(); this.go(frame); });
+    this.curves = new Curves(shown, this.track.frameCount, (frame) => this.go(frame));
     this.curvePart.replaceChildren(this.curves.element);
     this.curves.setCursor(this.frame);
   }
@@ -83,7 +84,7 @@ export class Timeline {
     const { track } = this;
     const marks = [];
     const add = (step, symbol, color, text) => {
-      const mark = button(symbol, () => { this.pause(); this.go(step + 1); }, { title: `Step ${step + 1}: ${text}`, "aria-label": `Step ${step + 1}: ${text}` });
+      const mark = button(symbol, () => this.go(step + 1), { title: `Step ${step + 1}: ${text}`, "aria-label": `Step ${step + 1}: ${text}` });
       // Those of one moment stand one beside the other.
       const near = Math.ceil(0.006 * this.steps);
       const before = marks.filter((one) => step - one.step < near).length;
@@ -101,7 +102,13 @@ export class Timeline {
     this.marks.replaceChildren(...marks);
   }
 
-  async go(frame) {
+  /// Where somebody wants to be: the run stops there.
+  go(frame) {
+    this.pause();
+    return this.show(frame);
+  }
+
+  async show(frame) {
     this.frame = Math.max(0, Math.min(this.steps, frame));
     this.scrub.value = this.frame;
     const what = this.track.isIdle(this.frame) ? "idle" : `episode ${this.track.episode(this.frame)}`;
@@ -111,10 +118,7 @@ export class Timeline {
     await this.onFrame(this.frame);
   }
 
-  step(by) {
-    this.pause();
-    this.go(this.frame + by);
-  }
+  step(by) { this.go(this.frame + by); }
 
   toggle() {
     if (this.playing) this.pause();
@@ -122,25 +126,27 @@ export class Timeline {
   }
 
   play() {
-    if (this.frame >= this.steps) this.go(0);
+    if (this.frame >= this.steps) this.show(0);
     this.playButton.textContent = "Pause";
-    this.played = this.frame;
-    let last = performance.now();
+    const playing = { frame: this.frame, time: performance.now() };
+    this.playing = playing;
     const tick = async (now) => {
-      this.played += ((now - last) / 1000) * this.run.steps_per_second * this.speed;
-      last = now;
-      const frame = Math.min(this.steps, Math.floor(this.played));
-      if (frame !== this.frame) await this.go(frame);
-      else this.onBetween(frame, this.played - frame);
+      // Somebody may have paused, and even gone on from elsewhere, while a frame was made ready.
+      if (this.playing !== playing) return;
+      playing.frame += ((now - playing.time) / 1000) * this.run.steps_per_second * this.speed;
+      playing.time = now;
+      const frame = Math.min(this.steps, Math.floor(playing.frame));
+      if (frame !== this.frame) await this.show(frame);
+      else this.onBetween(frame, playing.frame - frame);
+      if (this.playing !== playing) return;
       if (frame >= this.steps) this.pause();
-      else if (this.playing) this.playing = requestAnimationFrame(tick);
+      else requestAnimationFrame(tick);
     };
-    this.playing = requestAnimationFrame(tick);
+    requestAnimationFrame(tick);
   }
 
   pause() {
-    cancelAnimationFrame(this.playing);
-    this.playing = 0;
+    this.playing = null;
     this.playButton.textContent = "Play";
   }
 
