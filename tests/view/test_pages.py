@@ -95,6 +95,20 @@ class Pages(unittest.TestCase):
         self.assertEqual(page.errors, [])
         self.assertEqual({url.split("#")[0] for url in page.requests}, {page.url})
 
+    def click(self, page: Page, selector: str, number: int = 0):
+        x, y = page.evaluate(
+            f"(() => {{ const one = document.querySelectorAll({json.dumps(selector)})[{number}];"
+            "const area = one.getBoundingClientRect();"
+            "return [area.left + area.width / 2, area.top + area.height / 2]; })()"
+        )
+        page.click(x, y)
+
+    def marked(self, page: Page) -> list[str]:
+        """The entries of the list that are marked as shown."""
+        return page.evaluate(
+            "[...document.querySelectorAll('#list [aria-current=true]')].map((one) => one.firstChild.textContent)"
+        )
+
     def show_all_parts(self, page: Page) -> int:
         count = page.evaluate("galactic.parts.length")
         for number in range(count):
@@ -255,6 +269,58 @@ class Pages(unittest.TestCase):
             "[...document.querySelectorAll('#list li button')].map((one) => one.firstChild.textContent)"
         )
         self.assertEqual(names, ["Episode 1"])
+
+    def test_the_list_marks_what_is_shown(self):
+        page = self.open("world", "", "scene 0")
+        self.assertEqual(self.marked(page), ["kitchen"])
+        self.click(page, "#list li button", 1)
+        page.shown("object 0")
+        self.assertEqual(self.marked(page), ["bowl"])
+        page.evaluate("galactic.show(galactic.parts.find((one) => one.kind === 'episode'))")
+        page.shown("episode 0")
+        page.evaluate("galactic.view.go(2).then(() => 1)")
+        self.assertEqual(self.marked(page), ["Episode 2"])
+        # Also when the list is made anew.
+        page.evaluate("galactic.fillList('episode')")
+        self.assertEqual(self.marked(page), ["Episode 2"])
+
+    def test_the_view_has_the_keys_after_a_click(self):
+        page = self.open("run", "env=0&t=10", "run 0")
+        self.click(page, "#list li button", 0)
+        page.key("ArrowRight")
+        page.wait("galactic.view.frame === 11")
+        # One step back and one step on.
+        self.click(page, "#timeline .transport button", 1)
+        page.wait("galactic.view.frame === 10")
+        page.key("End")
+        page.wait("galactic.view.frame === 60")
+        page.key("Home")
+        page.wait("galactic.view.frame === 0")
+        # A box of the panel, too.
+        self.click(page, "#panel label", 0)
+        self.assertFalse(page.evaluate("galactic.view.home.shown.scene"))
+        page.key(" ", "Space", " ")
+        page.wait("galactic.view.timeline.playing")
+        self.assertFalse(page.evaluate("galactic.view.home.shown.scene"))
+        self.click(page, "#timeline .transport button", 0)
+        page.wait("!galactic.view.timeline.playing")
+
+    def test_a_button_that_was_reached_by_keyboard_keeps_space_and_enter(self):
+        page = self.open("run", "env=0&t=10", "run 0")
+        page.evaluate("document.querySelectorAll('#timeline .transport button')[2].focus()")
+        page.key(" ", "Space", " ")
+        page.wait("galactic.view.frame === 11")
+        self.assertIsNone(page.evaluate("galactic.view.timeline.playing"))
+        page.key("ArrowRight")
+        page.wait("galactic.view.frame === 12")
+
+    def test_keys_are_the_dialogs_while_it_is_open(self):
+        page = self.open("run", "env=0&t=10", "run 0")
+        self.click(page, "#help")
+        page.key("ArrowRight")
+        page.key("Enter", "Enter", "\r")
+        page.wait("!document.getElementById('keys').open")
+        self.assertEqual(page.evaluate("galactic.view.frame"), 10)
 
     def test_a_run_shows_the_poses_of_the_simulator(self):
         page = self.open("run", "env=1&t=0", "run 1")

@@ -182,13 +182,14 @@ class Page {
     const words = text.toLowerCase().split(/\s+/).filter((word) => word);
     const most = 300;
     const sections = [];
+    this.listed = new Map();
     for (const [kind, title] of Object.entries(names)) {
       const all = this.parts.filter((one) => one.kind === kind);
       const fitting = all.filter((one) => words.every((word) => `${one.name} ${one.hint}`.toLowerCase().includes(word)));
       if (fitting.length === 0) continue;
       const items = fitting.slice(0, most).map((one) => {
         const item = button(one.name, () => this.choose(one));
-        item.part = one;
+        this.listed.set(item, one);
         if (one.hint) item.append(el("small", {}, one.hint));
         return el("li", {}, item);
       });
@@ -200,8 +201,8 @@ class Page {
   }
 
   markList() {
-    for (const item of this.lists.querySelectorAll("button")) {
-      if (item.part === this.current) item.setAttribute("aria-current", "true");
+    for (const [item, part] of this.listed) {
+      if (part === this.current) item.setAttribute("aria-current", "true");
       else item.removeAttribute("aria-current");
     }
   }
@@ -216,16 +217,32 @@ class Page {
   listenForKeys() {
     addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
-      const isTyping = event.target.matches("input[type=search], select, textarea");
-      // A focused control keeps its own keys.
-      const isControl = event.target.matches("input, button, summary") && [" ", "Enter", "ArrowLeft", "ArrowRight", "Home", "End", "PageUp", "PageDown"].includes(event.key);
-      if (isTyping || isControl) return;
+      if (keepsKey(event.target, event.key) || document.getElementById("keys").open) return;
       const own = { "/": () => document.querySelector("#list input").focus(), "?": showKeys, d: () => toggleTheme(this) }[event.key];
       if (own) own();
       else if (this.current.kind === "pack" || !this.view?.key?.(event)) return;
       event.preventDefault();
     });
   }
+}
+
+const kSwitches = "button, summary, input[type=checkbox], input[type=radio]";
+
+/// Whether a focused control works with a key itself.
+function keepsKey(control, key) {
+  if (control.matches("input[type=search], select, textarea")) return true;
+  if (control.matches("input[type=range], input[type=radio]") && /^(Arrow|Page|Home|End)/.test(key)) return true;
+  return control.matches(kSwitches) && [" ", "Enter"].includes(key);
+}
+
+/// What somebody works with a pointer does not keep the keys: they are the view's again.
+function releaseAfterPointer() {
+  let isPointer = false;
+  addEventListener("pointerdown", () => { isPointer = true; }, true);
+  addEventListener("keydown", () => { isPointer = false; }, true);
+  const release = (control) => { if (isPointer && control === document.activeElement) control?.blur(); };
+  addEventListener("click", (event) => release(event.target.closest(kSwitches)), true);
+  addEventListener("change", (event) => release(event.target.closest("select")), true);
 }
 
 function closeDrawers() {
@@ -269,6 +286,7 @@ async function main() {
   const isDark = matchMedia("(prefers-color-scheme: dark)").matches;
   setTheme(["light", "dark"].includes(address.get("theme")) ? address.get("theme") : isDark ? "dark" : "light");
   makeDrawers();
+  releaseAfterPointer();
   const status = document.getElementById("progress");
   try {
     const data = new PageData(document.querySelectorAll("script.chunk"));
