@@ -538,6 +538,43 @@ class Pages(unittest.TestCase):
         self.assertIn("Its step\t5", page.evaluate(facts))
         self.assertTrue(page.evaluate("galactic.view.home.task.visible"))
 
+    def test_a_pack_that_is_opened_first_is_drawn(self):
+        page = self.open("world", "", "scene 0")
+        packs = page.evaluate("galactic.manifest.packs.map((one) => one.file)")
+        self.assertIn("world.pack", packs)
+        for number, file in enumerate(packs):
+            page = self.open("world", f"view=pack&n={number}", f"pack {number}")
+            readout = page.evaluate("document.getElementById('readout').textContent")
+            self.assertEqual("Nothing in this pack" in readout, file == "world.pack", file)
+            drawn = page.evaluate("galactic.stage.content.children.length")
+            self.assertEqual(drawn > 0, file != "world.pack", file)
+            # Beside it stands what is known about the pack, and the list has it as what is shown.
+            panel = page.evaluate("document.getElementById('panel').innerText")
+            self.assertIn(file, panel.lower())
+            self.assertEqual(self.marked(page), [file])
+            page.wait(f"location.hash.includes('view=pack&n={number}')")
+
+    def test_one_of_a_thing_is_not_many(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        said = page.evaluate(
+            "[[60, 2], [1, 1]].map(([steps, envs]) => { const { run } = galactic.manifest;"
+            "Object.assign(run, { steps, envs: run.envs.slice(0, envs) }); return galactic.subtitle(); })"
+        )
+        self.assertTrue(said[0].endswith("replay policy, 60 steps, 2 envs"), said)
+        self.assertTrue(said[1].endswith("replay policy, 1 step, 1 env"), said)
+
+    def test_an_address_names_an_episode_once(self):
+        page = self.open("world", "view=episode&n=2", "episode 2")
+        self.assertEqual(page.evaluate("galactic.view.number"), 2)
+        page.key("ArrowRight")
+        page.wait("location.hash.includes('n=3')")
+        self.assertNotIn("episode=", page.evaluate("location.hash"))
+        # What earlier pages wrote.
+        for link in ("view=episode&episode=1", "view=episode&n=1&episode=1"):
+            page = self.open("world", link, "episode 1")
+            self.assertEqual(page.evaluate("galactic.view.number"), 1)
+            page.wait("!location.hash.includes('episode=')")
+
     def test_names_of_packs_are_no_markup(self):
         for name in ("hostile_scene", "hostile_objects", "hostile_robot"):
             page = self.open(

@@ -84,5 +84,7 @@ export function tree(value, name = "") {
   return details;
 }
 
+/// "1 step", "2 steps".
+export const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
 export const meters = (value) => `${value.toFixed(3)} m`;
 export const megabytes = (bytes) => `${(bytes / 1e6).toFixed(2)} MB`;

@@ -1,6 +1,5 @@
 // Episodes, one after the other: placements, target, goal, robot start.
 import { Vector3 } from "three";
-import { addressNumber, setAddress } from "./address.js";
 import { button, checkbox, el, heading, legendRow, note, table } from "./dom.js";
 import { Home } from "./home.js";
 
@@ -15,7 +14,7 @@ export class EpisodeView {
     this.home = new Home(this.page);
     await this.home.open();
     this.facts = el("div");
-    await this.go(addressNumber("episode", 0));
+    await this.go(this.number);
     this.fillPanel();
   }
 
@@ -28,7 +27,6 @@ export class EpisodeView {
     // Cut through the room at the height of a person, so that one sees into it.
     stage.setCut(this.isCut === false ? null : episode.base.y + 1.6);
     stage.frame(this.home.bounds(), new Vector3(0.5, 1.1, 0.8));
-    setAddress({ episode: this.number });
     this.fillFacts(episode);
     this.page.listPart?.("episode", this.number);
   }

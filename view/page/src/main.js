@@ -1,7 +1,7 @@
 // The page: what it holds on the left, the picture, options and numbers on the right, a timeline below.
 import { address, addressNumber, onAddress, setAddress } from "./address.js";
 import { PageData } from "./data.js";
-import { button, checkbox, el, heading, megabytes, note, tree } from "./dom.js";
+import { button, checkbox, counted, el, heading, megabytes, note, tree } from "./dom.js";
 import { EpisodeView } from "./episode_view.js";
 import { EpisodeList } from "./home.js";
 import { MeshLibrary } from "./meshes.js";
@@ -44,18 +44,19 @@ class Page {
     if (pack.episodes) this.episodePack = pack;
   }
 
-  /// What can be shown: { kind, number, name, hint, make }.
+  /// What can be shown: { kind, number, name, hint, pack, make }.
   makeParts() {
-    const add = (kind, number, name, hint, make) => this.parts.push({ kind, number, name, hint, make });
+    const add = (kind, number, more) => this.parts.push({ kind, number, hint: "", ...more });
     const { run, packs } = this.manifest;
-    (run?.envs ?? []).forEach((_, n) => add("run", n, envName(run, n), "", () => new RunView(this, run)));
-    [...this.scenes.values()].forEach((pack, n) => add("scene", n, pack.scene.name, "", () => new SceneView(this, pack)));
-    [...this.objects.values()].forEach(({ pack, number }, n) => add("object", n, pack.objects[number].name, "", () => new ObjectView(this, pack, number)));
-    if (this.robotPack) add("robot", 0, this.robotPack.robot.name, "", () => new RobotView(this, this.robotPack));
-    for (let n = 0; n < (this.episodes?.count ?? 0); ++n) {
-      add("episode", n, `Episode ${this.episodes.which[n]}`, this.episodes.titleOf(n), () => new EpisodeView(this, n));
+    (run?.envs ?? []).forEach((_, n) => add("run", n, { name: envName(run, n), make: () => new RunView(this, run) }));
+    [...this.scenes.values()].forEach((pack, n) => add("scene", n, { name: pack.scene.name, pack, make: () => new SceneView(this, pack) }));
+    [...this.objects.values()].forEach(({ pack, number }, n) => add("object", n, { name: pack.objects[number].name, pack, make: () => new ObjectView(this, pack, number) }));
+    const { robotPack, episodePack, episodes } = this;
+    if (robotPack) add("robot", 0, { name: robotPack.robot.name, pack: robotPack, make: () => new RobotView(this, robotPack) });
+    for (let n = 0; n < (episodes?.count ?? 0); ++n) {
+      add("episode", n, { name: `Episode ${episodes.which[n]}`, hint: episodes.titleOf(n), pack: episodePack, make: () => new EpisodeView(this, n) });
     }
-    packs.forEach((pack, n) => add("pack", n, pack.file, `${pack.kind}, ${megabytes(pack.bytes)}`, null));
+    packs.forEach((pack, n) => add("pack", n, { name: pack.file, hint: `${pack.kind}, ${megabytes(pack.bytes)}`, pack }));
   }
 
   async open() {
@@ -69,14 +70,20 @@ class Page {
     document.getElementById("subtitle").textContent = this.subtitle();
     this.makeList();
     this.listenForKeys();
-    const wanted = this.parts.find((one) => one.kind === address.get("view") && one.number === Number(address.get("n") ?? 0));
-    await this.show(wanted ?? this.firstPart());
+    await this.show(this.wantedPart());
   }
 
   subtitle() {
     const { generator, run, packs } = this.manifest;
-    if (run) return `${generator}: ${run.facts?.policy ?? "a"} policy, ${run.steps} steps, ${run.envs.length === 1 ? "1 env" : `${run.envs.length} envs`}`;
-    return `${generator}: ${packs.length === 1 ? packs[0].kind : `${packs.length} packs`}, ${megabytes(packs.reduce((sum, one) => sum + one.bytes, 0))}`;
+    if (run) return `${generator}: ${run.facts?.policy ?? "a"} policy, ${counted(run.steps, "step")}, ${counted(run.envs.length, "env")}`;
+    return `${generator}: ${packs.length === 1 ? packs[0].kind : counted(packs.length, "pack")}, ${megabytes(packs.reduce((sum, one) => sum + one.bytes, 0))}`;
+  }
+
+  /// What the address asks for; without that, what there is to see first.
+  wantedPart() {
+    // Older pages wrote the number of an episode under a key of its own, too.
+    const number = addressNumber("n", addressNumber("episode", 0));
+    return this.parts.find((one) => one.kind === address.get("view") && one.number === number) ?? this.firstPart();
   }
 
   firstPart() {
@@ -105,12 +112,10 @@ class Page {
     // With facts of a pack beside it, a view has lost its panel.
     const stays = this.current?.kind === part.kind;
     this.current = part;
-    setAddress(part.kind === "run" ? { view: null, n: null } : { view: part.kind, n: part.number });
-    if (part.kind === "run") setAddress({ env: part.number });
-    if (part.kind === "episode") setAddress({ episode: part.number });
+    setAddress({ episode: null, ...(part.kind === "run" ? { view: null, n: null, env: part.number } : { view: part.kind, n: part.number }) });
     this.markList();
     closeDrawers();
-    if (part.kind === "pack") this.showFacts(part);
+    if (part.kind === "pack") await this.showFacts(part);
     else if (stays && this.view instanceof RunView) await this.view.chooseEnv(part.number, this.view.frame);
     else if (stays && this.view instanceof EpisodeView) await this.view.go(part.number);
     else await this.showView(part);
@@ -132,15 +137,19 @@ class Page {
     await this.view.open();
   }
 
-  /// What is written about a pack, in place of options.
-  showFacts(part) {
+  /// What is written about a pack, in place of options. The picture stays; where there is none yet,
+  /// it is of what the pack holds.
+  async showFacts({ pack }) {
     this.view?.close?.();
-    const pack = this.manifest.packs[part.number];
+    if (!this.view) await this.showPicture(pack);
     const facts = pack.facts ? Object.entries(pack.facts).map(([key, value]) => tree(value, key)) : [note("The page was written without more about this pack.")];
     this.fillPanel([heading(pack.file), note(`${pack.kind}, ${megabytes(pack.bytes)}`), ...facts]);
-    if (this.view) return;
-    document.getElementById("progress").hidden = true;
-    this.readout("Nothing in this pack can be drawn: what is known about it stands in the panel.");
+  }
+
+  async showPicture(pack) {
+    const part = this.parts.find((one) => one.pack === pack && one.make);
+    if (part) await this.showView(part);
+    else this.readout("Nothing in this pack can be drawn: what is known about it stands in the panel.");
   }
 
   fail(problem) {
@@ -209,6 +218,7 @@ class Page {
 
   /// A view went on to another of its kind by itself.
   listPart(kind, number) {
+    if (this.current.kind !== kind) return;
     this.current = this.parts.find((one) => one.kind === kind && one.number === number) ?? this.current;
     if (kind === "episode") setAddress({ n: number });
     this.markList();
@@ -302,7 +312,7 @@ async function main() {
       if (view instanceof RunView && page.current.kind === "run" && !address.has("view")) {
         view.chooseEnv(addressNumber("env", view.env), addressNumber("t", view.frame));
       } else {
-        page.show(page.parts.find((one) => one.kind === address.get("view") && one.number === Number(address.get("n") ?? 0)) ?? page.firstPart());
+        page.show(page.wantedPart());
       }
     });
     await page.open();
