@@ -518,6 +518,25 @@ class Pages(unittest.TestCase):
             page.evaluate("galactic.show(galactic.parts[0]).then(() => 1)")
             self.assertIn("Its step", page.evaluate("document.getElementById('panel').innerText"))
 
+    def test_marks_stay_on_the_track(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        marks = page.evaluate(
+            "(() => { const { timeline, track } = galactic.view; const last = track.frameCount - 2;"
+            "for (const [step, events] of [[0, 1], [last, 7]]) track.events[step] = events;"
+            "track.endings[last] = 5; timeline.fillMarks();"
+            "const area = timeline.marks.getBoundingClientRect();"
+            "return [...timeline.marks.children].map((one) => { const { left, right } = one.getBoundingClientRect();"
+            "return [one.title, left - area.left, area.right - right]; }); })()"
+        )
+        self.assertGreaterEqual(sum(title.startswith("Step 60:") for title, _, _ in marks), 4)
+        for title, left, right in marks:
+            # A glyph may be a little wider than its place.
+            self.assertGreater(left, -2, title)
+            self.assertGreater(right, -2, title)
+        places = [left for _, left, _ in marks]
+        self.assertEqual(places, sorted(places))
+        self.assertEqual(len(set(places)), len(places))
+
     def test_an_env_that_has_played_its_share_is_idle(self):
         page = self.open("shares", "env=1&t=9", "run 1")
         facts = "document.getElementById('panel').innerText"

@@ -8,6 +8,8 @@ const kSpeeds = [0.25, 0.5, 1, 2, 4, 8];
 const kCurves = ["Reward", "Distance", "Contact", "Actions"];
 // Told apart by shape; colors only help.
 const kMarks = { grasp: ["▲", "--green", "grasped"], drop: ["▼", "--blue", "let go"], restore: ["↺", "--purple", "found no place to let go, the object went back"] };
+/// What a mark takes of the track, rem.
+const kMarkWidth = 0.95;
 
 export class Timeline {
   constructor(page, run, { onFrame, onBetween }) {
@@ -85,13 +87,8 @@ export class Timeline {
     const marks = [];
     const add = (step, symbol, color, text) => {
       const mark = button(symbol, () => this.go(step + 1), { title: `Step ${step + 1}: ${text}`, "aria-label": `Step ${step + 1}: ${text}` });
-      // Those of one moment stand one beside the other.
-      const near = Math.ceil(0.006 * this.steps);
-      const before = marks.filter((one) => step - one.step < near).length;
-      mark.step = step;
-      mark.style.left = `calc(${(100 * (step + 1)) / this.steps}% + ${before * 0.95}rem)`;
       mark.style.color = `var(${color})`;
-      marks.push(mark);
+      marks.push({ step, mark });
     };
     track.events.forEach((events, step) => {
       for (const [name, [symbol, color, text]] of Object.entries(kMarks)) if (events & kEvents[name]) add(step, symbol, color, text);
@@ -99,7 +96,23 @@ export class Timeline {
       if (ending === 1) add(step, "★", "--orange", "success");
       else if (ending > 1) add(step, "✕", "--red", kEndings[ending]);
     });
-    this.marks.replaceChildren(...marks);
+    this.placeMarks(marks);
+    this.marks.replaceChildren(...marks.map(({ mark }) => mark));
+  }
+
+  /// Those of one moment stand one beside the other; neither the first nor the last ones leave the
+  /// track.
+  placeMarks(marks) {
+    const near = Math.ceil(0.006 * this.steps);
+    const neighbors = (n, by) => {
+      let count = 0;
+      while (Math.abs(marks[n + (count + 1) * by]?.step - marks[n].step) < near) ++count;
+      return count;
+    };
+    marks.forEach(({ step, mark }, n) => {
+      const place = `${(100 * (step + 1)) / this.steps}% + ${neighbors(n, -1) * kMarkWidth}rem`;
+      mark.style.left = `clamp(${kMarkWidth / 2}rem, ${place}, 100% - ${(neighbors(n, 1) + 0.5) * kMarkWidth}rem)`;
+    });
   }
 
   /// Where somebody wants to be: the run stops there.
