@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "check/pack_check.h"
+#include "galactic/pack.h"
 #include "layout/render_pools.h"
 #include "support/atomic_file.h"
 #include "support/try.h"
@@ -15,12 +15,10 @@ schema::LengthStatistics toSchema(const LengthStatistics& lengths) {
 }
 
 /// Whether a pack passes what whoever opens it checks.
-Result<void> checkOwn(const PackHeader& header, std::span<const std::byte> file,
-                      const std::filesystem::path& path) {
-  auto checked = detail::checkPayloadStart(file.subspan(sizeof(header)), path.string());
-  if (checked) checked = detail::checkPack(header, file, path.string());
-  if (checked) return {};
-  const Error& error = checked.error();
+Result<void> checkOwn(std::span<const std::byte> file, const std::filesystem::path& path) {
+  const auto opened = PackFile::view(file, path.string());
+  if (opened) return {};
+  const Error& error = opened.error();
   return fail(ErrorCode::kInternal, error.where,
               error.message +
                   " (in a pack that was just made, and is not written; please report "
@@ -95,7 +93,7 @@ Result<std::uint64_t> writePackFile(const std::filesystem::path& path, PackKind 
   std::vector<std::byte, PackAllocator<std::byte>> file(sizeof(header) + payload.size());
   std::memcpy(file.data(), &header, sizeof(header));
   std::memcpy(file.data() + sizeof(header), payload.data(), payload.size());
-  RETURN_IF_ERROR(checkOwn(header, file, path));
+  RETURN_IF_ERROR(checkOwn(file, path));
   RETURN_IF_ERROR(writeFileAtomically(path, {file}));
   return file.size();
 }
