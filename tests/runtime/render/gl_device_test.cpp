@@ -213,6 +213,39 @@ TEST(GlStart, ThrowsWhereMemoryIsLackingAndDrawsAgainAfterwards) {
   EXPECT_EQ(semantics, std::vector<std::uint32_t>(pixels));
 }
 
+TEST(GlStart, ThrowsWhereTheDriverRefusesACallAndDrawsAgainAfterwards) {
+  GALACTIC_SKIP_WITHOUT_GL();
+  const Result<EglContext> context = openContext({.kind = Kind::kSoftware}, false);
+  ASSERT_TRUE(context.has_value());
+  const CurrentContext current(*context);
+  const RenderLibrary library;
+  const RenderOptions options = test::glOptions();
+  auto renderer = GlRenderer::make(library, options, {});
+  ASSERT_TRUE(renderer.has_value());
+  test::RenderImages images = test::emptyImages(options, 1);
+  ViewSlice slice;
+  const std::vector<RenderView> views(1);
+  const auto draw = [&] {
+    (*renderer)->submit(views, slice);
+    (*renderer)->collect(slice, test::targetsOf(images));
+  };
+  draw();
+  glEnable(GL_TRIANGLES);
+  try {
+    draw();
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const ErrorException& thrown) {
+    EXPECT_EQ(thrown.error().code, ErrorCode::kUnsupported);
+    EXPECT_EQ(thrown.error().message,
+              "the driver does not draw 1 images of 128 x 128 pixels (OpenGL error 0x0500); draw "
+              "fewer at once or smaller ones, or use the soft backend");
+  }
+  EXPECT_EQ(slice.fence, nullptr);
+  images = test::emptyImages(options, 1);
+  draw();
+  EXPECT_EQ(images.depth, std::vector<float>(images.depth.size()));
+}
+
 TEST(GlStart, LeavesTheCallersContextCurrent) {
   GALACTIC_SKIP_WITHOUT_GL();
   const Result<EglContext> own = openContext({.kind = Kind::kSoftware}, false);

@@ -227,6 +227,24 @@ TEST_F(GlImage, RoundsOfAnySizeGiveTheSameImages) {
   }
 }
 
+TEST_F(GlImage, ImagesOfMorePixelsThanOneRowOfWorkGroupsHasAreWhole) {
+  OneModel wall;
+  wall.builder.model();
+  addWall(wall.builder, 2, 7);
+  wall.finish();
+  RenderOptions options = glOptions();
+  options.color = ColorFormat::kNone;
+  options.width = options.height = kLargestImage;
+  // Four pixels for each thread, 64 threads for each group: more groups than OpenGL promises to
+  // take in one dimension.
+  constexpr std::size_t kPromised = 65535;
+  ASSERT_GT(std::size_t{options.width} * options.height, 4 * 64 * kPromised);
+  const std::vector<RenderView> views{wall.view(cameraAt({0, 0, 0}))};
+  const RenderImages images = renderViews(wall.library, options, views);
+  const auto is_wall = [](float depth) { return std::abs(depth - 2) < kDepthTolerance; };
+  EXPECT_TRUE(std::ranges::all_of(images.depth, is_wall));
+}
+
 TEST_F(GlImage, WithoutExtensionsTheImagesAreTheSame) {
   GlHome home;
   const std::vector<RenderView> views = home.views(5);

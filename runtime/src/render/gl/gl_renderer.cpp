@@ -68,6 +68,9 @@ void describe(GLuint array, const Attribute& attribute, GLuint binding) {
 
 constexpr std::size_t kTotalsBytes = kDrawClasses * sizeof(DrawTotals);
 
+/// Of the images that a slice reads back.
+std::size_t readBytes(const ViewSlice& slice) { return slice.stays ? 0 : slice.layout.bytes; }
+
 GLint limitOf(GLenum name) {
   GLint value = 0;
   glGetIntegerv(name, &value);
@@ -78,8 +81,15 @@ void bind(Binding binding, const Buffer& buffer) {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.get());
 }
 
-GLuint groups(std::size_t threads) {
-  return static_cast<GLuint>((threads + kGroupSize - 1) / kGroupSize);
+/// Starts the current compute shader with so many threads and some more, in rows of work groups:
+/// no driver has to take more of them in one dimension than this.
+void dispatch(std::size_t threads) {
+  constexpr std::size_t kLongestRow = 65535;
+  const std::size_t groups = (threads + kGroupSize - 1) / kGroupSize;
+  if (groups == 0) return;
+  const std::size_t rows = (groups + kLongestRow - 1) / kLongestRow;
+  const std::size_t row = (groups + rows - 1) / rows;
+  glDispatchCompute(static_cast<GLuint>(row), static_cast<GLuint>(rows), 1);
 }
 
 void copyBuffer(const Buffer& from, std::size_t from_offset, const Buffer& to,
@@ -255,6 +265,8 @@ void GlRenderer::start(std::span<const RenderView> views, ViewSlice& slice) {
   slice.views = views.size();
   slice.counts = countSlice(views, models_);
   targets_.reserve(views.size());
+  // Before anything is drawn: whoever asks for memory takes the error of an earlier call.
+  slice.readback.reserve(readBytes(slice) + kTotalsBytes);
   if (measures_) stamp(slice.times[0]);
   upload(views, slice);
   cull(slice.counts);
@@ -263,8 +275,19 @@ void GlRenderer::start(std::span<const RenderView> views, ViewSlice& slice) {
   resolve(slice);
   readBack(slice);
   if (measures_) stamp(slice.times[2]);
+  requireDrawn(slice.views);
   slice.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   glFlush();
+}
+
+void GlRenderer::requireDrawn(std::size_t views) const {
+  const GLenum error = glGetError();
+  if (error == GL_NO_ERROR) return;
+  throw ErrorException({ErrorCode::kUnsupported, "render device",
+                        fmt::format("the driver does not draw {} images of {} x {} pixels (OpenGL "
+                                    "error 0x{:04x}); draw fewer at once or smaller ones, or use "
+                                    "the soft backend",
+                                    views, options_.width, options_.height, error)});
 }
 
 void GlRenderer::upload(std::span<const RenderView> views, ViewSlice& slice) {
@@ -300,7 +323,7 @@ void GlRenderer::cull(const SliceCounts& counts) {
   glUniform1f(0, options_.near);
   glUniform1ui(1, chunks);
   glUniform1ui(2, options_.culling ? 1 : 0);
-  if (chunks > 0) glDispatchCompute(groups(chunks), 1, 1);
+  dispatch(chunks);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   bind(kDraws, totals_);
   glUseProgram(programs_.scan.get());
@@ -315,7 +338,7 @@ void GlRenderer::cull(const SliceCounts& counts) {
   bind(kDraws, draws_);
   glUseProgram(programs_.emit.get());
   glUniform1ui(0, chunks);
-  if (chunks > 0) glDispatchCompute(groups(chunks), 1, 1);
+  dispatch(chunks);
   glMemoryBarrier(GL_COMMAND_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
                   GL_BUFFER_UPDATE_BARRIER_BIT);
 }
@@ -379,13 +402,12 @@ void GlRenderer::resolve(const ViewSlice& slice) {
   glUniform1ui(3, static_cast<GLuint>(pixels));
   const std::size_t first_view = slice.stays ? slice.first_view : 0;
   glUniform1ui(4, static_cast<GLuint>(first_view * options_.width * options_.height));
-  if (pixels > 0) glDispatchCompute(groups((pixels + 3) / 4), 1, 1);
+  dispatch((pixels + 3) / 4);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void GlRenderer::readBack(ViewSlice& slice) {
-  const std::size_t bytes = slice.stays ? 0 : slice.layout.bytes;
-  slice.readback.reserve(bytes + kTotalsBytes);
+void GlRenderer::readBack(const ViewSlice& slice) const {
+  const std::size_t bytes = readBytes(slice);
   copyBuffer(images_, 0, slice.readback, 0, bytes);
   copyBuffer(totals_, 0, slice.readback, bytes, kTotalsBytes);
 }
@@ -398,8 +420,7 @@ void GlRenderer::finish(ViewSlice& slice) {
   glDeleteSync(slice.fence);
   slice.fence = nullptr;
   std::array<DrawTotals, kDrawClasses> totals{};
-  const std::size_t bytes = slice.stays ? 0 : slice.layout.bytes;
-  std::memcpy(totals.data(), slice.readback.data() + bytes, kTotalsBytes);
+  std::memcpy(totals.data(), slice.readback.data() + readBytes(slice), kTotalsBytes);
   statistics_.instances += slice.counts.instances;
   statistics_.clusters += slice.counts.clusters;
   for (const DrawTotals& total : totals) {

@@ -103,7 +103,9 @@ class GlRenderer {
   /// Prepares and draws a slice whose layout is known.
   void start(std::span<const RenderView> views, ViewSlice& slice);
   void resolve(const ViewSlice& slice);
-  void readBack(ViewSlice& slice);
+  void readBack(const ViewSlice& slice) const;
+  /// Throws an ErrorException when the driver has refused a part of drawing so many views.
+  void requireDrawn(std::size_t views) const;
 
   RenderOptions options_;
   bool indirect_count_ = false;

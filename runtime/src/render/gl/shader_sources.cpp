@@ -65,11 +65,15 @@ std::string fragmentSource(const ShaderVariant& variant, bool masked) {
          texelFunction(variant.texture_arrays) + kShaderFragment;
 }
 
-std::string testSource() { return std::string(kVersion) + kShaderStructures + kShaderCullTest; }
+std::string testSource() {
+  return std::string(kVersion) + kShaderStructures + kShaderThreads + kShaderCullTest;
+}
 std::string scanSource() { return std::string(kVersion) + kShaderStructures + kShaderCullScan; }
-std::string emitSource() { return std::string(kVersion) + kShaderStructures + kShaderCullEmit; }
+std::string emitSource() {
+  return std::string(kVersion) + kShaderStructures + kShaderThreads + kShaderCullEmit;
+}
 std::string resolveSource(const ShaderVariant& variant) {
-  return kVersion + definitions(variant) + kShaderResolve;
+  return kVersion + definitions(variant) + kShaderThreads + kShaderResolve;
 }
 
 }  // namespace galactic::render::gl

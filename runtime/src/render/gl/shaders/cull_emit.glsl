@@ -1,5 +1,4 @@
 // The third pass of culling: the commands of a chunk.
-layout(local_size_x = 64) in;
 layout(std430, binding = 2) restrict readonly buffer BoundsOfClusters { Bounds bounds[]; };
 layout(std430, binding = 3) restrict readonly buffer Chunks { Chunk chunks[]; };
 layout(std430, binding = 4) restrict readonly buffer Results { ChunkResult results[]; };
@@ -7,7 +6,7 @@ layout(std430, binding = 5) restrict writeonly buffer Draws { Draw draws[]; };
 layout(location = 0) uniform uint u_chunks;
 
 void main() {
-  uint chunk = gl_GlobalInvocationID.x;
+  uint chunk = threadNumber();
   if (chunk >= u_chunks) return;
   Chunk part = chunks[chunk];
   uint left = results[chunk].seen;

@@ -1,5 +1,4 @@
 // The first pass of culling: which clusters of a chunk are seen. A thread has a chunk.
-layout(local_size_x = 64) in;
 layout(std430, binding = 0) restrict readonly buffer Instances { Instance instances[]; };
 layout(std430, binding = 2) restrict readonly buffer BoundsOfClusters { Bounds bounds[]; };
 layout(std430, binding = 3) restrict readonly buffer Chunks { Chunk chunks[]; };
@@ -45,7 +44,7 @@ bool isSeen(Sight sight, Bounds box) {
 }
 
 void main() {
-  uint chunk = gl_GlobalInvocationID.x;
+  uint chunk = threadNumber();
   if (chunk >= u_chunks) return;
   Chunk part = chunks[chunk];
   Sight sight = sightOf(instances[part.instance]);

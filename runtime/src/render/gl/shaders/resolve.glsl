@@ -1,5 +1,4 @@
 // From the targets to images in the layout of the caller.
-layout(local_size_x = 64) in;
 layout(std430, binding = 0) restrict writeonly buffer ColorOut { uint color_out[]; };
 layout(std430, binding = 1) restrict writeonly buffer DepthOut { float depth_out[]; };
 layout(std430, binding = 2) restrict writeonly buffer SemanticOut { uint semantic_out[]; };
@@ -20,7 +19,7 @@ ivec3 placeOf(uint pixel) {
 
 // Four pixels a thread: in three bytes each, they make three words.
 void main() {
-  uint begin = 4u * gl_GlobalInvocationID.x;
+  uint begin = 4u * threadNumber();
   if (begin >= u_pixels) return;
   uint words[4] = uint[4](0u, 0u, 0u, 0u);
   for (uint i = 0u; i < 4u && begin + i < u_pixels; ++i) {
