@@ -9,10 +9,15 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <climits>
 #include <fstream>
+#include <span>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
+
+#include "support/content_hash.h"
 
 namespace galactic {
 namespace {
@@ -33,6 +38,29 @@ std::string machineName() {
   const bool is_name =
       name.size() >= kMachineDigits && name.find_first_not_of(kHexDigits) == std::string::npos;
   return is_name ? name.substr(0, kMachineDigits) : std::string(kMachineDigits, '0');
+}
+
+/// What the name of a file ends with, with its point; nothing where that is no usual ending.
+std::string endingOf(std::string_view file) {
+  constexpr std::size_t kLongest = 16;
+  std::string ending = fs::path(file).extension().string();
+  return ending.size() <= kLongest ? ending : std::string();
+}
+
+/// What stands for a target in the names of its parts.
+std::string standIn(const std::string& target) {
+  // "-THREAD-NUMBER", of 32 bits each.
+  constexpr std::size_t kNumbers = 2 * 11;
+  constexpr std::size_t kHash = 1 + 16;
+  const std::string ending = endingOf(target);
+  const std::size_t most = NAME_MAX - kMark.size() - kMachineDigits - kNumbers - ending.size();
+  // No file has a longer name; whoever tries to make one is told.
+  if (target.size() <= most || target.size() > NAME_MAX) return target;
+  std::size_t cut = most - kHash - ending.size();
+  // Not within a character: some file systems refuse what is no UTF-8.
+  while (cut > 0 && (static_cast<unsigned char>(target[cut]) & 0xC0U) == 0x80U) --cut;
+  const std::uint64_t hash = detail::contentHash(std::as_bytes(std::span(target))).low;
+  return fmt::format("{}-{:016x}{}", target.substr(0, cut), hash, ending);
 }
 
 /// The parts of a part's name.
@@ -59,7 +87,7 @@ bool parsePartName(std::string_view file, PartName& name) {
     if (digits == 0) return false;
     rest.remove_prefix(digits);
   }
-  return rest.empty();
+  return rest.empty() || rest == endingOf(name.target);
 }
 
 bool isLocked(int descriptor, int operation) {
@@ -105,23 +133,27 @@ class OpenPart {
 
 /// The parts that `Iterator` finds.
 template <class Iterator>
-std::vector<fs::path> partsIn(const fs::path& folder, std::string_view target) {
+std::vector<fs::path> partsIn(const fs::path& folder, const std::string& target) {
   std::vector<fs::path> parts;
+  const std::string wanted = standIn(target);
   std::error_code problem;
   for (Iterator at(folder, fs::directory_options::skip_permission_denied, problem), end;
        !problem && at != end; at.increment(problem)) {
     const std::string file = at->path().filename().string();
     PartName name;
     if (!parsePartName(file, name)) continue;
-    if (target.empty() || name.target == target) parts.push_back(at->path());
+    if (wanted.empty() || name.target == wanted) parts.push_back(at->path());
   }
   return parts;
 }
 
 }  // namespace
 
-fs::path partPathOf(const fs::path& target, unsigned number) {
-  return target.string() + fmt::format("{}{}-{}-{}", kMark, machineName(), ::gettid(), number);
+fs::path partPathOf(const fs::path& target, unsigned number, PartEnding ending) {
+  const std::string name = standIn(target.filename().string());
+  return target.parent_path() / fmt::format("{}{}{}-{}-{}{}", name, kMark, machineName(),
+                                            ::gettid(), number,
+                                            ending == PartEnding::kOfTarget ? endingOf(name) : "");
 }
 
 bool holdPart(int descriptor, const fs::path& part) {
@@ -130,6 +162,28 @@ bool holdPart(int descriptor, const fs::path& part) {
   (void)isLocked(descriptor, LOCK_SH);
   struct stat open {};
   return ::fstat(descriptor, &open) == 0 && isAt(part, open);
+}
+
+LentPart::LentPart(const fs::path& target, PartEnding ending) {
+  constexpr unsigned kNames = 16;
+  for (unsigned n = 0; n < kNames && descriptor_ < 0; ++n) {
+    path_ = partPathOf(target, n, ending);
+    // What a killed thread of the same number left makes way.
+    (void)removeStalePart(path_);
+    constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    descriptor_ = ::open(path_.c_str(), kFlags, 0666);
+    error_ = descriptor_ < 0 ? errno : 0;
+    if (error_ != 0 && error_ != EEXIST) return;
+    if (error_ == 0 && !holdPart(descriptor_, path_)) ::close(std::exchange(descriptor_, -1));
+  }
+  if (descriptor_ < 0) error_ = EEXIST;
+}
+
+LentPart::~LentPart() {
+  if (descriptor_ < 0) return;
+  struct stat open {};
+  if (::fstat(descriptor_, &open) == 0 && isAt(path_, open)) ::unlink(path_.c_str());
+  ::close(descriptor_);
 }
 
 bool removeStalePart(const fs::path& part, std::chrono::seconds age) {

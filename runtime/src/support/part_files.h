@@ -10,20 +10,51 @@ namespace galactic {
 // are renamed onto it when they are whole. A program that is killed leaves them behind; they are
 // found by their names, and told from those that somebody still writes by a lock (flock) that goes
 // with its holder. Some file systems keep the locks of each machine apart, or have none: MACHINE
-// says where a file was begun, and others leave it alone until it is old.
+// says where a file was begun, and others leave it alone until it is old. Where a name of the
+// target's length leaves no room for the rest, TARGET is its beginning, a hash of it and its
+// ending.
 
 /// After this time nobody goes on writing a file that does not change.
 inline constexpr std::chrono::seconds kPartAge = std::chrono::hours(24);
 
+/// How the name of a part ends.
+enum class PartEnding {
+  kNumber,
+  /// And then as its target, for programs that choose the format by it.
+  kOfTarget,
+};
+
 /// The name for what this thread writes to `target`. Threads of all machines have names of their
 /// own, but those of another container on this one; `number` is for trying again.
-[[nodiscard]] std::filesystem::path partPathOf(const std::filesystem::path& target,
-                                               unsigned number);
+[[nodiscard]] std::filesystem::path partPathOf(const std::filesystem::path& target, unsigned number,
+                                               PartEnding ending = PartEnding::kNumber);
 
 /// Keeps the file that `descriptor`, open for reading, has open as `part` from being removed as
 /// stale until the descriptor is closed. Answers whether it is there: it may have been removed
 /// since it was made, and has then to be made again.
 [[nodiscard]] bool holdPart(int descriptor, const std::filesystem::path& part);
+
+/// A part that another program writes: made empty, and held while this lives.
+class LentPart {
+ public:
+  /// `error()` says why there is none.
+  LentPart(const std::filesystem::path& target, PartEnding ending);
+  /// Removes it, unless it was renamed.
+  ~LentPart();
+  LentPart(const LentPart&) = delete;
+  LentPart& operator=(const LentPart&) = delete;
+  LentPart(LentPart&&) = delete;
+  LentPart& operator=(LentPart&&) = delete;
+
+  /// An error number; 0 where the part is there.
+  [[nodiscard]] int error() const { return error_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  int error_ = 0;
+};
 
 /// Removes `part` if nobody holds it, and it was begun on this machine since that started, or has
 /// not changed for `age`. Answers whether it has.

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <climits>
 #include <set>
 #include <string>
 #include <thread>
@@ -131,6 +132,63 @@ TEST_F(PartFiles, AreKnownByTheirWholeNameOnly) {
   for (const std::string& name : others) EXPECT_TRUE(fs::exists(at(name))) << name;
   EXPECT_TRUE(fs::is_symlink(at("link.part-0123456789abcdef-77-0")));
   EXPECT_TRUE(fs::is_directory(at("folder.part-0123456789abcdef-77-0")));
+}
+
+TEST_F(PartFiles, MayEndAsTheirTargetDoes) {
+  const fs::path part = partPathOf(at("a.mp4"), 0, PartEnding::kOfTarget);
+  EXPECT_EQ(part.extension(), ".mp4");
+  {
+    const LentPart lent(at("a.mp4"), PartEnding::kOfTarget);
+    ASSERT_EQ(lent.error(), 0);
+    EXPECT_EQ(lent.path(), part);
+    // Whoever writes it opens it by its name.
+    (void)folder_.write(part.filename().string(), "half");
+    EXPECT_EQ(removeStaleParts(folder_.path(), {.age = kNow}), 0U);
+    const LentPart second(at("a.mp4"), PartEnding::kOfTarget);
+    ASSERT_EQ(second.error(), 0);
+    EXPECT_NE(second.path(), part);
+    fs::rename(second.path(), at("a.mp4"));
+  }
+  EXPECT_EQ(files(), std::set<std::string>{"a.mp4"});
+  (void)folder_.write(part.filename().string(), "half");
+  EXPECT_EQ(removeStaleParts(folder_.path(), {.target = "b.mp4"}), 0U);
+  EXPECT_EQ(removeStaleParts(folder_.path(), {.target = "a.mp4"}), 1U);
+}
+
+TEST_F(PartFiles, OfTargetsWithLongNamesHaveShorterOnes) {
+  // Whatever the length, up to the longest: with characters of two bytes that must not be cut.
+  for (const std::size_t size : {180U, 200U, 205U, 206U, 212U, 213U, 240U, 255U}) {
+    for (const std::string& ending : {std::string(), std::string(".pack")}) {
+      std::string name(size % 2, 'x');
+      while (name.size() + 2 <= size - ending.size()) name += "\xC3\xA4";
+      name = (name + "yyy").substr(0, size - ending.size()) + ending;
+      ASSERT_EQ(name.size(), size);
+      for (const PartEnding end : {PartEnding::kNumber, PartEnding::kOfTarget}) {
+        EXPECT_LE(partPathOf(name, 99, end).string().size(), std::size_t{NAME_MAX});
+      }
+      EXPECT_EQ(partPathOf(name, 0, PartEnding::kOfTarget).extension() == ".pack", !ending.empty());
+      leavePart(name);
+      std::string other = name;
+      other.front() = 'o';
+      EXPECT_EQ(removeStaleParts(folder_.path(), {.target = other}), 0U);
+      EXPECT_EQ(removeStaleParts(folder_.path(), {.target = name}), 1U) << size;
+      ASSERT_TRUE(writeFileAtomically(at(name), {}).has_value());
+      EXPECT_EQ(files(), std::set<std::string>{name});
+      fs::remove(at(name));
+    }
+  }
+}
+
+TEST_F(PartFiles, OfTargetsWithTheSameBeginningAreToldApart) {
+  const std::string begin(240, 'x');
+  leavePart(begin + "1.pack");
+  leavePart(begin + "2.pack");
+  EXPECT_EQ(removeStaleParts(folder_.path(), {.target = begin + "1.pack"}), 1U);
+  EXPECT_EQ(removeStaleParts(folder_.path(), {.target = begin + "2.pack"}), 1U);
+}
+
+TEST_F(PartFiles, OfANameThatIsTooLongAreRefusedAtOnce) {
+  EXPECT_FALSE(AtomicFile::create(at(std::string(256, 'x'))).has_value());
 }
 
 TEST_F(PartFiles, MakeWayForTheSameThread) {
