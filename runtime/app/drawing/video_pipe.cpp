@@ -9,11 +9,14 @@
 
 #include <array>
 #include <cerrno>
+#include <optional>
 #include <span>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "support/part_files.h"
 
 namespace galactic {
 namespace {
@@ -70,23 +73,12 @@ std::vector<std::string> ffmpegCommand(const std::filesystem::path& path, const 
           "yuv420p", (path.is_absolute() ? path : "." / path).string()};
 }
 
-/// "name.partial.mp4": the ending tells ffmpeg the format.
-std::filesystem::path partialName(const std::filesystem::path& path) {
-  std::filesystem::path partial = path;
-  partial.replace_filename(path.stem().string() + ".partial" + path.extension().string());
-  return partial;
-}
-
 }  // namespace
 
 class VideoPipe::Child {
  public:
-  explicit Child(const std::filesystem::path& path) : path_(path), partial_(partialName(path)) {}
-  ~Child() {
-    if (pid_ <= 0) return;
-    (void)waitForEnd();
-    removePartial();
-  }
+  explicit Child(const std::filesystem::path& path) : path_(path) {}
+  ~Child() { (void)waitForEnd(); }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
   Child(Child&&) = delete;
@@ -97,13 +89,17 @@ class VideoPipe::Child {
       return fail(ErrorCode::kInvalidInput, path_.string(),
                   "has no ending that tells ffmpeg the format; name it, for example, run.mp4");
     }
+    (void)removeStaleParts(path_.parent_path(), {.target = path_.filename().string()});
+    // The ending tells ffmpeg the format.
+    part_.emplace(path_, PartEnding::kOfTarget);
+    if (part_->error() != 0) return failure(path_, "cannot be written: " + textOf(part_->error()));
     // A socket, unlike a pipe, can be told to raise no signal when nobody reads it.
     std::array<int, 2> ends{-1, -1};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
       return failure(path_, "cannot make a pipe to ffmpeg: " + textOf(errno));
     }
     const SpawnSetup setup(ends[0]);
-    const int error = setup.start(ffmpegCommand(partial_, like), pid_);
+    const int error = setup.start(ffmpegCommand(part_->path(), like), pid_);
     close(ends[0]);
     socket_ = ends[1];
     if (error == 0) return {};
@@ -121,7 +117,8 @@ class VideoPipe::Child {
     while (!bytes.empty()) {
       const ssize_t sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
       if (sent < 0 && errno == EINTR) continue;
-      if (sent < 0 && errno == EPIPE) return endedBadly(waitForEnd());
+      const bool has_ended = sent < 0 && (errno == EPIPE || errno == ECONNRESET);
+      if (has_ended) return endedBadly(waitForEnd());
       if (sent < 0) return failure(path_, "cannot send to ffmpeg: " + textOf(errno));
       bytes = bytes.subspan(static_cast<std::size_t>(sent));
     }
@@ -132,9 +129,8 @@ class VideoPipe::Child {
     const int status = waitForEnd();
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return endedBadly(status);
     std::error_code error;
-    std::filesystem::rename(partial_, path_, error);
+    std::filesystem::rename(part_->path(), path_, error);
     if (!error) return {};
-    removePartial();
     return failure(path_, "cannot be written: " + error.message());
   }
 
@@ -154,7 +150,7 @@ class VideoPipe::Child {
   }
 
   tl::unexpected<Error> endedBadly(int status) {
-    removePartial();
+    part_.reset();
     const std::string how = WIFEXITED(status) ? fmt::format("with code {}", WEXITSTATUS(status))
                                               : fmt::format("by signal {}", WTERMSIG(status));
     return failure(path_, fmt::format("ffmpeg ended {} before the video was whole; what it says "
@@ -162,13 +158,8 @@ class VideoPipe::Child {
                                       how));
   }
 
-  void removePartial() const {
-    std::error_code ignored;
-    std::filesystem::remove(partial_, ignored);
-  }
-
   std::filesystem::path path_;
-  std::filesystem::path partial_;
+  std::optional<LentPart> part_;
   int socket_ = -1;
   pid_t pid_ = 0;
 };

@@ -17,6 +17,7 @@
 #include "pictures/drawing.h"
 #include "pictures/palette.h"
 #include "support/homes/small_home.h"
+#include "support/part_files.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
@@ -249,10 +250,12 @@ TEST_F(Pictures, AVideoIsTheTilesOfAllFrames) {
   ASSERT_EQ(raw.size(), 3U * 22 * 2 * 3);
   EXPECT_EQ(raw.substr(0, 6), "\x0a\x14\x1e\x28\x32\x3c");
   EXPECT_EQ(raw.substr(12 * 3, 6), "\x0a\x14\x1e\x28\x32\x3c");
+  const std::string part = partPathOf(file("run.mp4"), 0, PartEnding::kOfTarget).string();
+  EXPECT_THAT(part, EndsWith(".mp4"));
   EXPECT_EQ(test::fileContent(file("arguments")),
             "-y -loglevel error -f rawvideo -pix_fmt rgb24 -s 22x2 -r 30 -i - -an -pix_fmt "
             "yuv420p " +
-                file("run.partial.mp4") + "\n");
+                part + "\n");
   EXPECT_THAT(files("."), ElementsAre("arguments", "bin", "run.mp4"));
 }
 
@@ -276,6 +279,49 @@ TEST_F(Pictures, AnFfmpegThatEndsEarlyIsAnErrorAndLeavesNothing) {
   EXPECT_EQ(sent.error().message,
             "ffmpeg ended with code 3 before the video was whole; what it says stands above");
   EXPECT_THAT(files("."), ElementsAre("bin"));
+}
+
+TEST_F(Pictures, AnFfmpegThatEndsBeforeItHasReadAFrameIsTheSameError) {
+  // Longer than it takes to fill the socket, with frames so small that none is sent in parts: the
+  // next one waits, and is reset.
+  fakeFfmpeg("sleep 0.2\nexit 4\n");
+  const Image frame(64, 64, {});
+  auto video = VideoPipe::start(file("run.mp4"), frame);
+  ASSERT_TRUE(video);
+  Result<void> sent;
+  for (int n = 0; n < 1000 && sent; ++n) sent = video->append(frame);
+  ASSERT_FALSE(sent);
+  EXPECT_EQ(sent.error().message,
+            "ffmpeg ended with code 4 before the video was whole; what it says stands above");
+  EXPECT_THAT(files("."), ElementsAre("bin"));
+}
+
+TEST_F(Pictures, AVideoGrowsUnderANameOfItsOwnAndRemovesWhatKilledRunsLeft) {
+  keepingFfmpeg();
+  static_cast<void>(folder_.write("run.partial.mp4", "another video"));
+  const auto part = partPathOf("run.mp4", 7, PartEnding::kOfTarget).string();
+  static_cast<void>(folder_.write(part, "half"));
+  auto video = VideoPipe::start(file("run.mp4"), Image(2, 2, {}));
+  ASSERT_TRUE(video);
+  auto second = VideoPipe::start(file("run.mp4"), Image(2, 2, {}));
+  ASSERT_TRUE(second);
+  ASSERT_TRUE(video->append(Image(2, 2, {})));
+  ASSERT_TRUE(video->finish());
+  EXPECT_EQ(test::fileContent(file("run.mp4")).size(), 12U);
+  ASSERT_TRUE(second->append(Image(2, 2, {})));
+  ASSERT_TRUE(second->append(Image(2, 2, {})));
+  ASSERT_TRUE(second->finish());
+  EXPECT_EQ(test::fileContent(file("run.mp4")).size(), 24U);
+  EXPECT_EQ(test::fileContent(file("run.partial.mp4")), "another video");
+  EXPECT_THAT(files("."), ElementsAre("arguments", "bin", "run.mp4", "run.partial.mp4"));
+}
+
+TEST_F(Pictures, AVideoWhereNothingCanBeWrittenIsAnError) {
+  keepingFfmpeg();
+  const auto video = VideoPipe::start(file("none/run.mp4"), Image(2, 2, {}));
+  ASSERT_FALSE(video);
+  EXPECT_EQ(video.error().code, ErrorCode::kIo);
+  EXPECT_EQ(video.error().message, "cannot be written: No such file or directory");
 }
 
 TEST_F(Pictures, AnFfmpegThatFailsAtTheEndIsAnErrorToo) {
