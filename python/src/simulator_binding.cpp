@@ -150,8 +150,9 @@ void bindResults(py::class_<Simulator>& type) {
   type.def_property_readonly(
       "idle",
       [](Self self) { return perEnv(self, of(self).batch().idle(), py::dtype::of<bool>()); },
-      "Where an env has had its share of the episodes (order='partition'): it stays as it is, and\n"
-      "nothing of it counts, until reset() chooses an episode. bool (num_envs,), a view.");
+      "Where an env has had its share of the episodes (order='partition'), or waits where its\n"
+      "episode ended (auto_reset=False): it stays as it is, and nothing of it counts, until\n"
+      "reset() begins an episode. bool (num_envs,), a view.");
 }
 
 void bindQueries(py::class_<Simulator>& type) {
@@ -232,7 +233,7 @@ void bindSimulator(py::module_& module) {
       "Keywords: every option of galactic-run's simulation with '_' for '-' (envs=128, seed=1,\n"
       "order='shuffled', task='pick', no_distractors=True, ...; docs/tools.md has them),\n"
       "threads=0 (one per processor), body_transforms=False (rendering needs them) and\n"
-      "auto_reset=True (False: envs whose episode ended wait for reset()). Options of the\n"
+      "auto_reset=True (False: envs whose episode ended are idle until reset()). Options of the\n"
       "world's task apply where no keyword says otherwise.\n\n"
       "Arrays that it shows are views: no copy, read-only, valid as long as they are kept\n"
       "(they keep the simulator), with new contents after each step. One thread at a time.");

@@ -496,5 +496,15 @@ def test_a_partition_plays_each_episode_once_and_then_idles(world, draw_actions)
     assert np.array_equal(seen, simulator.observations)
 
 
+def test_envs_that_ended_wait_for_a_reset(world, draw_actions):
+    simulator = galactic.Simulator(world, envs=2, episode_steps=3, auto_reset=False, threads=1)
+    for _ in range(8):
+        simulator.step(draw_actions(2, simulator.action_count))
+    assert simulator.idle.all() and not simulator.dones.any() and not simulator.rewards.any()
+    assert simulator.statistics()["episodes"] == 2
+    simulator.reset(np.array([simulator.NEXT_EPISODE, simulator.STAYS]))
+    assert simulator.idle.tolist() == [False, True]
+
+
 def test_the_version_is_that_of_the_project():
     assert galactic.__version__.count(".") == 2

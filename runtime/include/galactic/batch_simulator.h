@@ -228,9 +228,10 @@ class BatchSimulator {
   /// How it ended; kNone where it goes on or the caller reset it. Shape: envs.
   [[nodiscard]] std::span<const EpisodeEnd> endings() const;
 
-  /// 1 where an env has played its share of the episodes (EpisodeOrder::kPartition): it ignores
-  /// actions and is left out of all statistics until the caller chooses an episode for it. Shape:
-  /// envs.
+  /// 1 where an env has played its share of the episodes (EpisodeOrder::kPartition), or waits where
+  /// its episode ended (without SimulationOptions::auto_reset): from the step after on, it ignores
+  /// actions, stays as it is with rewards of 0, ends nothing and is left out of all statistics,
+  /// until the caller chooses an episode for it or, where it waits, asks for the next. Shape: envs.
   [[nodiscard]] std::span<const std::uint8_t> idle() const;
 
   [[nodiscard]] SimulationStatistics statistics() const;

@@ -186,7 +186,8 @@ struct SimulationOptions {
   /// Whether steps give the pose of every body of the robot, for rendering.
   bool body_transforms = false;
   /// Whether a step that ends an episode begins the next. Else the env stays where its episode
-  /// ended until BatchSimulator::reset, so that this can be drawn; the episodes are the same.
+  /// ended, idle (BatchSimulator::idle()), until BatchSimulator::reset, so that this can be drawn;
+  /// the episodes are the same.
   bool auto_reset = true;
   /// Whether moves are looked at on their way: in parts so short that no sphere moves further than
   /// its radius. Each part slides on its own; the first that cannot ends the move where it got to.

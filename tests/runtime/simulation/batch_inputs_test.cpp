@@ -234,6 +234,78 @@ TEST(Resets, ThatTheCallerMakesAfterEachEndGiveTheEpisodesOfThoseThatStepsMake) 
   EXPECT_GT(ends, 100);
 }
 
+TEST(Resets, AreWaitedForWhereAnEpisodeEndedAndNothingCountsMeanwhile) {
+  const BoxWorld world = furnishedWorld();
+  constexpr std::uint32_t kEnvs = 20;
+  constexpr std::uint32_t kEpisodeSteps = 15;
+  SimulationOptions options = optionsFor(kEnvs);
+  options.task.most_steps = kEpisodeSteps;
+  options.auto_reset = false;
+  BatchSimulator simulator = made(world, options);
+  // Time ends all episodes that have not ended before.
+  std::vector<int> ends(kEnvs);
+  for (std::uint32_t step = 0; step < kEpisodeSteps; ++step) {
+    simulator.step(actionsFor(simulator, 0, step));
+    for (std::size_t env = 0; env < kEnvs; ++env) ends[env] += simulator.dones()[env];
+  }
+  EXPECT_THAT(ends, testing::Each(1));
+  EXPECT_EQ(std::ranges::count(simulator.idle(), 1), kEnvs);
+  const SimulationStatistics before = simulator.statistics();
+  EXPECT_EQ(before.episodes, kEnvs);
+  EXPECT_LE(before.steps, std::uint64_t{kEnvs} * kEpisodeSteps);
+  const std::vector<float> seen(simulator.observations().begin(), simulator.observations().end());
+  std::vector<EnvState> states;
+  for (std::size_t env = 0; env < kEnvs; ++env) states.push_back(simulator.envState(env));
+  for (std::uint32_t step = 0; step < kEpisodeSteps; ++step) {
+    simulator.step(actionsFor(simulator, 0, 1000 + step));
+    ASSERT_EQ(std::ranges::count(simulator.dones(), 0), kEnvs);
+    ASSERT_EQ(std::ranges::count(simulator.successes(), 0), kEnvs);
+    ASSERT_EQ(std::ranges::count(simulator.endings(), EpisodeEnd::kNone), kEnvs);
+    ASSERT_EQ(std::ranges::count(simulator.rewards(), 0.0F), kEnvs);
+  }
+  EXPECT_TRUE(std::ranges::equal(simulator.observations(), seen));
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    const EnvState now = simulator.envState(env);
+    EXPECT_EQ(now.step, states[env].step);
+    EXPECT_EQ(now.world_from_root, states[env].world_from_root);
+    EXPECT_EQ(now.joint_positions, states[env].joint_positions);
+    EXPECT_EQ(now.objects, states[env].objects);
+  }
+  const SimulationStatistics after = simulator.statistics();
+  EXPECT_EQ(after.episodes, before.episodes);
+  EXPECT_EQ(after.steps, before.steps);
+  EXPECT_EQ(after.refused, before.refused);
+  EXPECT_EQ(after.reward, before.reward);
+}
+
+TEST(Resets, EndTheWaitWithTheEpisodeWhoseTurnItIsOrAChosenOne) {
+  const BoxWorld world = furnishedWorld();
+  constexpr std::uint32_t kEnvs = 3;
+  SimulationOptions options = optionsFor(kEnvs);
+  options.order = EpisodeOrder::kLinear;
+  options.task.most_steps = 2;
+  options.auto_reset = false;
+  BatchSimulator simulator = made(world, options);
+  const std::vector<float> actions(kEnvs * simulator.actionCount());
+  for (int step = 0; step < 5; ++step) simulator.step(actions);
+  // Also a state that is restored waits.
+  ASSERT_TRUE(simulator.restoreState(simulator.saveState()).has_value());
+  EXPECT_THAT(simulator.idle(), ElementsAre(1, 1, 1));
+  const std::uint32_t first = simulator.envState(0).episode;
+  simulator.reset(std::vector<std::int32_t>{BatchSimulator::kNextEpisode, 6,  //
+                                            BatchSimulator::kStays});
+  EXPECT_THAT(simulator.idle(), ElementsAre(0, 0, 1));
+  EXPECT_NE(simulator.envState(0).episode, first);
+  EXPECT_EQ(simulator.envState(1).episode, 6U);
+  for (int step = 0; step < 2; ++step) simulator.step(actions);
+  EXPECT_THAT(simulator.dones(), ElementsAre(1, 1, 0));
+  simulator.step(actions, std::vector<std::int32_t>{4, -1, -1});
+  EXPECT_THAT(simulator.idle(), ElementsAre(0, 1, 1));
+  EXPECT_EQ(simulator.envState(0).episode, 4U);
+  simulator.restart(options.seed);
+  EXPECT_THAT(simulator.idle(), ElementsAre(0, 0, 0));
+}
+
 TEST(Resets, OfEverythingAreAsGoodAsNew) {
   const BoxWorld world = furnishedWorld();
   SimulationOptions options = optionsFor(20);

@@ -1,6 +1,7 @@
 #include "simulation/phases/episode_start.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 
 #include "simulation/phases/observe.h"
@@ -34,6 +35,13 @@ void placeObjects(const Model& model, BatchState& state, std::size_t n, std::uin
     state.placeObject(n, object, placements[object].pose);
   }
   state.resting(n).share(model.objectsAt(start));
+}
+
+/// Envs whose episode ended idle from now on, until the caller begins another one.
+void awaitResets(const ChunkStep& step) {
+  const std::uint8_t* dones = step.state.dones().data() + step.first;
+  std::uint8_t* idle = step.state.idle().data() + step.first;
+  std::transform(dones, dones + kChunk, idle, idle, std::bit_or<>());
 }
 
 }  // namespace
@@ -87,7 +95,7 @@ void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) no
 }
 
 void renewEpisodes(const ChunkStep& step) noexcept {
-  if (!step.model.options.auto_reset) return;
+  if (!step.model.options.auto_reset) return awaitResets(step);
   const std::uint8_t* dones = step.state.dones().data() + step.first;
   if (std::all_of(dones, dones + kChunk, [](std::uint8_t done) { return done == 0; })) return;
   for (std::size_t e = 0; e < kChunk; ++e) {

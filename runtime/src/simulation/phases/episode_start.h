@@ -19,7 +19,8 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t env,
 /// and stays as it is: see BatchSimulator::idle().
 void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept;
 
-/// Where the episode ended, with auto_reset: keeps the last observation and begins the next one.
+/// Where the episode ended: keeps the last observation and begins the next one or, without
+/// auto_reset, leaves the env idle.
 void renewEpisodes(const ChunkStep& step) noexcept;
 
 /// Begins the episodes that the caller asks for: for each env of the batch an index into the

@@ -269,7 +269,7 @@ class BatchState {
   [[nodiscard]] std::span<const std::uint8_t> successes() const { return successes_; }
   [[nodiscard]] std::span<EpisodeEnd> endings() { return endings_; }
   [[nodiscard]] std::span<const EpisodeEnd> endings() const { return endings_; }
-  /// 1 where an env has had all its episodes; see BatchSimulator::idle().
+  /// 1 where an env has had all its episodes, or waits for a reset; see BatchSimulator::idle().
   [[nodiscard]] std::span<std::uint8_t> idle() { return idle_; }
   [[nodiscard]] std::span<const std::uint8_t> idle() const { return idle_; }
   /// As after a step in which no episode ended and nothing was earned.
