@@ -3,6 +3,7 @@
 #include <set>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "check/common_check.h"
 #include "check/offence.h"
@@ -213,11 +214,16 @@ class RobotChecker {
 
   void checkControlledJoints() {
     const auto& joints = *robot_.controlled_joints();
+    std::vector<bool> controlled(positions());
     for (flatbuffers::uoffset_t n = 0; n < joints.size() && !offence_.found(); ++n) {
       const schema::ControlledJoint& joint = *joints.Get(n);
       const std::string field = fmt::format("controlled_joints[{}]", n);
       offence_.require(joint.position() < positions(), field + ".position",
                        "is {}, expected one of {} positions", joint.position(), positions());
+      if (offence_.found()) return;
+      offence_.require(!controlled[joint.position()], field + ".position",
+                       "is {} again, expected each position once", joint.position());
+      controlled[joint.position()] = true;
       offence_.require(joint.step() > 0 && joint.step() <= kMostStep, field + ".step",
                        "is {}, expected a number above 0 and up to {}", joint.step(), kMostStep);
       if (offence_.found()) return;

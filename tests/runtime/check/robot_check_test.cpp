@@ -204,6 +204,8 @@ TEST(RobotCheck, RefusesWrongControlledJoints) {
   refuse({
       {"controlled_joints[1].position", "is 13, expected one of 13 positions",
        [](Fields& r) { r.controlled_joints[1].position = 13; }},
+      {"controlled_joints[1].position", "is 1 again, expected each position once",
+       [](Fields& r) { r.controlled_joints[1] = r.controlled_joints[0]; }},
       {"controlled_joints[0].step", "is 0, expected a number above 0 and up to 1000",
        [](Fields& r) { r.controlled_joints[0].step = 0; }},
       {"controlled_joints[0].step", "is inf, expected a number above 0 and up to 1000",
