@@ -274,8 +274,17 @@ Result<void> checkOptions(const SimulationOptions& options) {
   SimulationOptions copy = options;
   Checker checker;
   visitOptions(copy, checker);
-  if (checker.fault().empty()) return {};
-  return fail(ErrorCode::kInvalidInput, "simulation options", checker.fault());
+  if (!checker.fault().empty()) {
+    return fail(ErrorCode::kInvalidInput, "simulation options", checker.fault());
+  }
+  constexpr std::uint64_t kMostEnvs = std::uint64_t{1} << 32U;
+  const std::uint64_t all = std::uint64_t{options.ranks} * options.envs;
+  if (all <= kMostEnvs) return {};
+  return fail(
+      ErrorCode::kInvalidInput, "simulation options",
+      fmt::format("ranks is {} and envs is {}: {} envs in all, expected at most {}, as envs "
+                  "have numbers of 32 bits; take fewer ranks or fewer envs for each",
+                  options.ranks, options.envs, all, kMostEnvs));
 }
 
 }  // namespace galactic

@@ -385,6 +385,24 @@ TEST(Episodes, MayLookInAnyDirectionHoweverOftenTheyTurned) {
   EXPECT_NEAR(std::hypot(far.x - 1.5F, far.z - 1.5F), 0.1F, 1e-5F);
 }
 
+TEST(Options, OfMoreEnvsThanNumbersCanTellApartAreRefused) {
+  SimulationOptions options;
+  options.envs = 65537;
+  options.ranks = 65536;
+  const Result<void> checked = checkOptions(options);
+  ASSERT_FALSE(checked.has_value());
+  EXPECT_EQ(checked.error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(checked.error().message,
+            "ranks is 65536 and envs is 65537: 4295032832 envs in all, expected at most "
+            "4294967296, as envs have numbers of 32 bits; take fewer ranks or fewer envs for each");
+  options.rank = options.ranks - 1;
+  const BoxWorld world = furnishedWorld();
+  EXPECT_FALSE(BatchSimulator::create(world.world(), options).has_value());
+  // The last one of these has the largest number.
+  options.envs = 65536;
+  EXPECT_TRUE(checkOptions(options).has_value());
+}
+
 TEST(Options, ThatMakeNoSenseAreErrors) {
   const BoxWorld world = furnishedWorld();
   const auto message = [&](const SimulationOptions& options) {
