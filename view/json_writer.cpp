@@ -6,18 +6,36 @@
 namespace galactic {
 namespace {
 
+/// Characters of UTF-8 by the range of their first byte, and that of their second: the table of
+/// well-formed sequences in the Unicode standard (chapter 3, table 3-7). All other bytes
+/// are 80..BF.
+struct Utf8Form {
+  unsigned first, last;
+  std::size_t length;
+  unsigned least_second, most_second;
+};
+constexpr std::array<Utf8Form, 9> kUtf8Forms{{{0x00, 0x7F, 1, 0, 0},
+                                              {0xC2, 0xDF, 2, 0x80, 0xBF},
+                                              {0xE0, 0xE0, 3, 0xA0, 0xBF},
+                                              {0xE1, 0xEC, 3, 0x80, 0xBF},
+                                              {0xED, 0xED, 3, 0x80, 0x9F},
+                                              {0xEE, 0xEF, 3, 0x80, 0xBF},
+                                              {0xF0, 0xF0, 4, 0x90, 0xBF},
+                                              {0xF1, 0xF3, 4, 0x80, 0xBF},
+                                              {0xF4, 0xF4, 4, 0x80, 0x8F}}};
+
 /// Bytes of the UTF-8 character that `text` begins with; 0 when it begins with none.
 std::size_t utf8Length(std::string_view text) {
   const auto byte = [&](std::size_t n) { return static_cast<unsigned char>(text[n]); };
-  constexpr std::array<std::array<unsigned, 3>, 4> kLeads{
-      {{0x00, 0x7F, 1}, {0xC2, 0xDF, 2}, {0xE0, 0xEF, 3}, {0xF0, 0xF4, 4}}};
-  for (const auto& [first, last, length] : kLeads) {
-    if (byte(0) < first || byte(0) > last) continue;
-    if (text.size() < length) return 0;
-    for (std::size_t n = 1; n < length; ++n) {
+  for (const Utf8Form& form : kUtf8Forms) {
+    if (byte(0) < form.first || byte(0) > form.last) continue;
+    if (text.size() < form.length) return 0;
+    if (form.length == 1) return 1;
+    if (byte(1) < form.least_second || byte(1) > form.most_second) return 0;
+    for (std::size_t n = 2; n < form.length; ++n) {
       if ((byte(n) & 0xC0U) != 0x80U) return 0;
     }
-    return length;
+    return form.length;
   }
   return 0;
 }

@@ -2,6 +2,7 @@
 #include <pybind11/pybind11.h>
 
 #include <initializer_list>
+#include <string_view>
 #include <utility>
 
 namespace galactic::python {
@@ -18,6 +19,10 @@ void bindEpisodeTally(py::module_& module);
 void bindPolicy(py::module_& module);
 void bindScriptedPolicy(py::module_& module);
 void bindRenderer(py::module_& module);
+
+/// Text that comes from a file, such as a name in a pack: bytes that are no UTF-8, which names of
+/// files may have, become U+FFFD.
+[[nodiscard]] py::str fileText(std::string_view text);
 
 /// An enum.IntEnum, whose values are the numbers that arrays hold.
 void bindEnum(py::module_& module, const char* name,

@@ -143,7 +143,7 @@ NamedEnvState envState(Simulator& simulator, const py::object& env) {
   NamedEnvState state{simulator.batch().envState(number), {}};
   const std::vector<std::string_view>& names = simulator.world().episodes().objectNames();
   for (const Placement& placement : simulator.batch().envObjects(number).placements) {
-    state.object_names.emplace_back(names[placement.object]);
+    state.object_names.push_back(fileText(names[placement.object]));
   }
   return state;
 }

@@ -14,7 +14,8 @@ void translate(std::exception_ptr thrown) {
   } catch (const ErrorException& refusal) {
     const Error& error = refusal.error();
     const py::object type = py::module_::import("galactic.errors").attr("Error");
-    const py::object raised = type(static_cast<int>(error.code), error.where, error.message);
+    const py::object raised =
+        type(static_cast<int>(error.code), fileText(error.where), fileText(error.message));
     PyErr_SetObject(type.ptr(), raised.ptr());
   }
 }

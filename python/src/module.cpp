@@ -18,6 +18,13 @@ void bindEnum(py::module_& module, const char* name,
   module.attr(name) = type;
 }
 
+py::str fileText(std::string_view text) {
+  PyObject* decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 void refusePickling(const py::object& type, const char* instead) {
   const std::string message = "a galactic." + py::str(type.attr("__name__")).cast<std::string>() +
                               " cannot be pickled or copied: " + instead;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "arrays.h"
+#include "bindings.h"
 #include "dlpack.h"
 #include "errors.h"
 
@@ -174,7 +175,7 @@ py::dict Renderer::renderToDevice(std::uintptr_t stream) {
 
 py::tuple Renderer::semanticNames() const {
   py::list names;
-  for (const auto& name : models_.library().semanticNames()) names.append(py::str(name));
+  for (const auto& name : models_.library().semanticNames()) names.append(fileText(name));
   return py::tuple(names);
 }
 

@@ -44,13 +44,13 @@ std::shared_ptr<World> openWorld(const py::object& given, bool is_trusted) {
 
 py::tuple sceneNames(const World& world) {
   py::list names;
-  for (const Scene& scene : world.scenes()) names.append(py::str(scene.name()));
+  for (const Scene& scene : world.scenes()) names.append(fileText(scene.name()));
   return py::tuple(names);
 }
 
 py::tuple objectNames(const World& world) {
   py::list names;
-  for (const std::string_view name : world.episodes().objectNames()) names.append(py::str(name));
+  for (const std::string_view name : world.episodes().objectNames()) names.append(fileText(name));
   return py::tuple(names);
 }
 
@@ -58,7 +58,7 @@ py::tuple linkNames(const World& world) {
   const Robot& robot = world.robot();
   py::list names;
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
-    names.append(py::str(robot.linkName(link)));
+    names.append(fileText(robot.linkName(link)));
   }
   return py::tuple(names);
 }
@@ -118,12 +118,12 @@ std::vector<Action> actionsOf(const World& world) {
 py::tuple jointNames(const World& world) {
   py::list names;
   for (const Action& action : actionsOf(world)) {
-    if (action.position) names.append(py::str(action.name));
+    if (action.position) names.append(fileText(action.name));
   }
   return py::tuple(names);
 }
 
-std::string actionText(const Action& action) {
+py::str actionText(const Action& action) {
   std::string text = fmt::format("<galactic.Action {}", action.name);
   if (action.step && action.unit) {
     text += fmt::format(", {:.4g} {} a step", *action.step, *action.unit);
@@ -134,12 +134,12 @@ std::string actionText(const Action& action) {
     };
     text += fmt::format(", from {} to {}", limit(action.lower), limit(action.upper));
   }
-  return text + ">";
+  return fileText(text + ">");
 }
 
 void bindAction(py::module_& module) {
   py::class_<Action> type(module, "Action");
-  type.def_readonly("name", &Action::name)
+  type.def_property_readonly("name", [](const Action& action) { return fileText(action.name); })
       .def_readonly("step", &Action::step)
       .def_readonly("unit", &Action::unit)
       .def_readonly("lower", &Action::lower)
@@ -173,7 +173,7 @@ void bindWorld(py::module_& module) {
       .def_property_readonly("objects", &objectNames,
                              "Names of all objects that episodes place, each once.")
       .def_property_readonly(
-          "robot", [](const World& world) { return py::str(world.robot().name()); },
+          "robot", [](const World& world) { return fileText(world.robot().name()); },
           "Name of the robot.")
       .def_property_readonly("links", &linkNames,
                              "Names of the robot's links, the root's first: in the order of\n"
@@ -198,9 +198,9 @@ void bindWorld(py::module_& module) {
           "options", [](const World& world) { return keywordsOf(world.withTask()); },
           "Keywords of Simulator with the values that they have here unless you give others.");
   type.def("__repr__", [](const World& world) {
-    return fmt::format("<galactic.World of {} scenes, {} episodes, robot {}>",
-                       world.scenes().size(), world.episodes().episodes().size(),
-                       world.robot().name());
+    return fileText(fmt::format("<galactic.World of {} scenes, {} episodes, robot {}>",
+                                world.scenes().size(), world.episodes().episodes().size(),
+                                world.robot().name()));
   });
   type.attr("__module__") = "galactic";
   refusePickling(type, "open it by its path in each process; packs are mapped, and shared by all");

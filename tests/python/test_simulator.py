@@ -506,5 +506,20 @@ def test_envs_that_ended_wait_for_a_reset(world, draw_actions):
     assert simulator.idle.tolist() == [False, True]
 
 
+def test_names_that_are_no_utf8_have_other_characters_in_their_place(world_path):
+    world = galactic.World(world_path.parent / "strange" / "world.pack")
+    replaced = "\N{REPLACEMENT CHARACTER}"
+    assert world.objects == ("bowl", f"mug {3 * replaced}")
+    assert world.links[3] == f"arm {replaced}"
+    assert world.joints[-1] == world.actions[3].name == f"wrist {4 * replaced}"
+    assert replaced in repr(world.actions[3])
+    simulator = galactic.Simulator(world, envs=2, threads=1, body_transforms=True)
+    state = simulator.env_state(0)
+    assert f"mug {3 * replaced}" in state.object_names
+    assert pickle.loads(pickle.dumps(state)).object_names == state.object_names
+    renderer = galactic.Renderer(simulator, width=8, height=8, backend="soft")
+    assert any(f"thing {3 * replaced}" in name for name in renderer.semantic_names)
+
+
 def test_the_version_is_that_of_the_project():
     assert galactic.__version__.count(".") == 2

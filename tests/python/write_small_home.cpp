@@ -1,5 +1,5 @@
-// Writes the small home to a folder, and one that no simulator takes below it, for tests in another
-// language.
+// Writes the small home to a folder, and below it one that no simulator takes and one with strange
+// names, for tests in another language.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -34,6 +34,17 @@ galactic::test::WorldFields planarHome() {
   return home;
 }
 
+/// A home whose names are no UTF-8, as the names of files need not be: half of a surrogate pair, a
+/// character that is longer than it has to be, one behind the last, and a lonely byte.
+galactic::test::WorldFields strangeHome() {
+  galactic::test::WorldFields home = galactic::test::smallHomeWorldWithModels();
+  home.objects.objects[1].name = home.episodes.objects[1] = "mug \xED\xA0\x80";
+  home.objects.render_meshes->semantics = {"thing \xE0\x80\x80"};
+  home.robot.joint_names[4] = "wrist \xF4\x90\x80\x80";
+  home.robot.link_names[3] = "arm \xFF";
+  return home;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -44,6 +55,7 @@ int main(int argc, char** argv) {
   try {
     write(galactic::test::smallHomeWorldWithModels(), argv[1]);
     write(planarHome(), fs::path(argv[1]) / "planar");
+    write(strangeHome(), fs::path(argv[1]) / "strange");
   } catch (const std::exception& problem) {
     std::fprintf(stderr, "%s\n", problem.what());
     return 4;
