@@ -45,9 +45,10 @@ struct SliceOptions {
 };
 
 /// Draws a vertical slice through the grids, one below the other: free heights of the sphere's
-/// center are light, blocked ones dark. One scale for both axes unless the line is very short.
-/// Fails with kInvalidInput when the line is shorter than a cell, is not finite, or misses every
-/// grid. `grids` must not be empty. Safe to call from many threads.
+/// center are light, blocked ones dark. One scale for both axes unless the line is very short. Of a
+/// line that has less than a 20th of its length over the grids, only that part is drawn. Fails with
+/// kInvalidInput when the line is shorter than a cell, is not finite, or misses every grid. `grids`
+/// must not be empty. Safe to call from many threads.
 [[nodiscard]] Result<Picture> drawSlice(std::span<const ColumnGrid> grids,
                                         const SliceOptions& options);
 

@@ -94,12 +94,61 @@ void drawPlot(Image& image, const PixelRect& plot, const ColumnGrid& grid,
   drawVerticalAxis(image, plot, heights, "height (m)");
 }
 
-/// Whether a pixel column of the slice would show a column of the grid.
-bool crosses(const ColumnGrid& grid, const SliceOptions& options) {
-  for (int x = 0; x < kPlotWidth; ++x) {
-    if (pack_tool::nearestColumn(grid, pointAt(options, (x + 0.5) / kPlotWidth))) return true;
+/// A part of a line, as shares of its length.
+struct LinePart {
+  double begin = 0;
+  double end = 1;
+
+  [[nodiscard]] bool isEmpty() const { return !(begin < end); }
+  /// Leaves what is also between two values of a coordinate that goes from `from` to `to`.
+  void clip(double from, double to, double low, double high) {
+    const double way = to - from;
+    if (way == 0) {
+      if (from < low || from > high) end = begin;
+      return;
+    }
+    const auto [first, last] = std::minmax({(low - from) / way, (high - from) / way});
+    begin = std::max(begin, first);
+    end = std::min(end, last);
   }
-  return false;
+};
+
+/// What of the line is over the grid (Liang and Barsky, "A new concept and method for line
+/// clipping", 1984).
+LinePart partOver(const ColumnGrid& grid, const SliceOptions& options) {
+  const ColumnGridLayout& layout = grid.layout();
+  const auto spacing = static_cast<double>(layout.spacing);
+  const auto low_x = static_cast<double>(layout.min_x);
+  const auto low_z = static_cast<double>(layout.min_z);
+  LinePart part;
+  part.clip(options.from.x, options.to.x, low_x, low_x + layout.columns_x * spacing);
+  part.clip(options.from.z, options.to.z, low_z, low_z + layout.columns_z * spacing);
+  return part;
+}
+
+/// What of the line is over any of the grids, and between.
+LinePart partOver(std::span<const ColumnGrid> grids, const SliceOptions& options) {
+  LinePart all{1, 0};
+  for (const ColumnGrid& grid : grids) {
+    const LinePart part = partOver(grid, options);
+    if (part.isEmpty()) continue;
+    all = {std::min(all.begin, part.begin), std::max(all.end, part.end)};
+  }
+  return all;
+}
+
+/// The line, or where hardly any of it is over the grids that part alone, and at least a cell.
+SliceOptions withoutVoid(std::span<const ColumnGrid> grids, const SliceOptions& options) {
+  constexpr double kLeastShare = 0.05;
+  const LinePart part = partOver(grids, options);
+  const double share = part.end - part.begin;
+  if (share >= kLeastShare) return options;
+  const double cell = static_cast<double>(grids.front().spacing()) / lengthOf(options);
+  const double more = std::max(0.0, cell - share) / 2;
+  SliceOptions shorter = options;
+  shorter.from = pointAt(options, std::max(part.begin - more, 0.0));
+  shorter.to = pointAt(options, std::min(part.end + more, 1.0));
+  return shorter;
 }
 
 Result<void> checkLine(std::span<const ColumnGrid> grids, const SliceOptions& options) {
@@ -112,9 +161,7 @@ Result<void> checkLine(std::span<const ColumnGrid> grids, const SliceOptions& op
                 fmt::format("{} is {} m long; give two points at least a cell ({} m) apart", line,
                             length, grids.front().spacing()));
   }
-  for (const ColumnGrid& grid : grids) {
-    if (crosses(grid, options)) return {};
-  }
+  if (!partOver(grids, options).isEmpty()) return {};
   const ColumnGridLayout& layout = grids.front().layout();
   const GroundPoint low{static_cast<double>(layout.min_x), static_cast<double>(layout.min_z)};
   return fail(ErrorCode::kInvalidInput, "slice",
@@ -131,8 +178,9 @@ void drawMeanings(Image& image, int x, int y) {
 
 }  // namespace
 
-Result<Picture> drawSlice(std::span<const ColumnGrid> grids, const SliceOptions& options) {
-  RETURN_IF_ERROR(checkLine(grids, options));
+Result<Picture> drawSlice(std::span<const ColumnGrid> grids, const SliceOptions& wanted) {
+  RETURN_IF_ERROR(checkLine(grids, wanted));
+  const SliceOptions options = withoutVoid(grids, wanted);
   std::vector<PixelRect> plots;
   int y = kMargin + kTextHeight + 14;
   int plot_width = 0;

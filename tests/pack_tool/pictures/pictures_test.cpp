@@ -133,6 +133,37 @@ TEST(SlicePicture, MarksWhatTheGridDoesNotCover) {
   EXPECT_EQ(sliceColor(*picture, 0.55, 0.3), kFree);
 }
 
+TEST(SlicePicture, ShowsOnlyWhatIsOverTheGridOfALineThatGoesFarBeyond) {
+  const auto grid = sliceGrid();
+  const ColumnGrid view = grid.view();
+  const double end = view.layout().columns_x * static_cast<double>(view.layout().spacing);
+  const auto wanted = drawSlice(std::vector{grid.view()}, {.from = {0, 2.5}, .to = {end, 2.5}});
+  ASSERT_TRUE(wanted);
+  for (const double far : {300.0, 1e4, 1e9}) {
+    const auto picture =
+        drawSlice(std::vector{grid.view()}, {.from = {-far, 2.5}, .to = {far + 0.3, 2.5}});
+    ASSERT_TRUE(picture) << far << ": " << picture.error().message;
+    for (double x = 0.25; x < end; x += 0.5) {
+      for (double y = 0.3; y < 8; y += 0.5) {
+        EXPECT_EQ(sliceColor(*picture, x / end, y / 8), sliceColor(*wanted, x / end, y / 8))
+            << far << ", at " << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(SlicePicture, OfALineAcrossACornerHasItsColumn) {
+  const auto grid = sliceGrid();
+  // Crosses 2 cm of cell (0, 0), far from the middle of any of 1000 parts of the line.
+  const auto picture =
+      drawSlice(std::vector{grid.view()}, {.from = {-1000, 1000.015}, .to = {1000, -999.985}});
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(sliceColor(*picture, 0.5, 0.5), kBlocked);
+  const auto past =
+      drawSlice(std::vector{grid.view()}, {.from = {-1000, 999.985}, .to = {1000, -1000.015}});
+  EXPECT_FALSE(past);
+}
+
 TEST(SlicePicture, RefusesALineThatIsTooShortOrMissesTheGrid) {
   const auto grid = sliceGrid();
   const auto point = drawSlice(std::vector{grid.view()}, {.from = {1, 1}, .to = {1, 1}});
