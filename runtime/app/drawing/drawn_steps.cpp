@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "support/try.h"
+
 namespace galactic {
 namespace {
 
@@ -61,13 +63,16 @@ Result<void> DrawnSteps::step(BatchSimulator& simulator, std::span<const float> 
 }
 
 Result<void> DrawnSteps::finish(const BatchSimulator& simulator, const RunReport& report) {
-  if (output_.wants(report.steps)) {
+  Result<void> added;
+  if (output_.wantsLast(report.steps)) {
     rendering_.update(simulator);
     rendering_.begin();
     rendering_.end();
-    if (Result<void> added = output_.add(report.steps, rendering_.frames()); !added) return added;
+    added = output_.addLast(report.steps, rendering_.frames());
   }
-  return output_.finish();
+  const Result<void> finished = output_.finish();
+  RETURN_IF_ERROR(added);
+  return finished;
 }
 
 }  // namespace galactic

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "drawing/contact_sheet.h"
 #include "pictures/png_file.h"
 #include "support/atomic_file.h"
 #include "support/out_of_memory.h"
@@ -44,18 +45,6 @@ std::string cameraText(const EnvFrame& frame) {
       "[0, 0, 0, 1]]\n}}\n",
       k[0], k[1], k[2], k[3], k[4], k[5], k[6], k[7], k[8],  //
       x.x, y.x, z.x, t.x, x.y, y.y, z.y, t.y, x.z, y.z, z.z, t.z);
-}
-
-/// The moments that a sheet shows of `frames` frames, evenly spread, first and last among them.
-std::vector<std::uint64_t> spreadMoments(std::uint64_t frames) {
-  const std::uint64_t rows = std::min<std::uint64_t>(frames, PictureOutput::kSheetRows);
-  std::vector<std::uint64_t> moments;
-  moments.reserve(rows);
-  for (std::uint64_t row = 0; row < rows; ++row) {
-    const std::uint64_t last = std::max<std::uint64_t>(rows - 1, 1);
-    moments.push_back((row * (frames - 1) + last / 2) / last);
-  }
-  return moments;
 }
 
 /// How `count` tiles are laid out in a video: about as many rows as columns.
@@ -111,13 +100,12 @@ Image tileOf(const EnvFrame& frame) {
 
 PictureOutput::PictureOutput(const DrawingOptions& options, const RunLength& length)
     : options_(options), envs_(std::min<std::size_t>(options.frame_envs, length.envs)) {
-  sheet_steps_ = spreadMoments(length.steps / options.frame_every + 1);
-  for (std::uint64_t& step : sheet_steps_) step *= options.frame_every;
+  if (!options.contact_sheet.empty()) sheet_.emplace(length.steps, options.frame_every);
 }
 
 Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const RunLength& length) {
   PictureOutput output(options, length);
-  RETURN_IF_ERROR(output.checkSheet());
+  RETURN_IF_ERROR(output.checkSheet(length.steps));
   if (!options.video.empty()) {
     const std::vector<Image> tiles(output.envs_, emptyTile(options));
     Result<VideoPipe> video = VideoPipe::start(options.video, output.videoFrame(tiles));
@@ -128,10 +116,11 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const R
 }
 
 /// Before the run: it would be a pity afterwards.
-Result<void> PictureOutput::checkSheet() const {
-  if (options_.contact_sheet.empty()) return {};
-  const SheetLayout layout = sheetLayout(envs_ * sheet_steps_.size(), envs_, emptyTile(options_),
-                                         captionOf(envs_ - 1, sheet_steps_.back()));
+Result<void> PictureOutput::checkSheet(std::uint64_t steps) const {
+  if (!sheet_) return {};
+  const std::string longest = captionOf(envs_ - 1, steps);
+  const SheetLayout layout =
+      sheetLayout(envs_ * sheet_->planned(), envs_, emptyTile(options_), std::span(&longest, 1));
   constexpr const char* kAdvice = "show fewer envs (--frame-envs), or smaller images (--size)";
   if (!pictures::fitsPng(layout.width(), layout.height())) {
     return fail(ErrorCode::kUnsupported, options_.contact_sheet,
@@ -139,8 +128,10 @@ Result<void> PictureOutput::checkSheet() const {
                             "are made of here; {}",
                             layout.width(), layout.height(), kAdvice));
   }
-  // The tiles, the sheet, and the file that becomes of it.
-  constexpr double kBytesPerPixel = 3 * sizeof(pictures::Rgb);
+  // The tiles of all moments that are held, the sheet, and the file that becomes of it.
+  constexpr double kHeld =
+      static_cast<double>(SheetMoments::mostHeld()) / static_cast<double>(SheetMoments::kMost);
+  constexpr double kBytesPerPixel = (kHeld + 2) * sizeof(pictures::Rgb);
   return checkMemory(kBytesPerPixel * layout.width() * layout.height(),
                      fmt::format("pictures of {} envs on one sheet", envs_), kAdvice);
 }
@@ -152,41 +143,61 @@ Result<void> PictureOutput::writeLegend(std::string_view json) const {
 }
 
 bool PictureOutput::wants(std::uint64_t step) const {
-  const bool takes_all = !options_.frames.empty() || !options_.video.empty();
-  return isOnSheet(step) || (takes_all && step % options_.frame_every == 0);
+  const bool takes_all = !options_.frames.empty() || video_;
+  return (sheet_ && sheet_->wants(step)) || (takes_all && isFrame(step));
 }
 
+bool PictureOutput::wantsLast(std::uint64_t step) const { return sheet_ || wants(step); }
+
 Result<void> PictureOutput::add(std::uint64_t step, std::span<const EnvFrame> frames) {
-  if (!options_.frames.empty()) {
-    for (std::size_t env = 0; env < frames.size(); ++env) {
-      if (Result<void> written = writeFrame(step, env, frames[env]); !written) return written;
+  return show(step, frames, sheet_ && sheet_->wants(step));
+}
+
+Result<void> PictureOutput::addLast(std::uint64_t step, std::span<const EnvFrame> frames) {
+  return show(step, frames, sheet_.has_value());
+}
+
+Result<void> PictureOutput::show(std::uint64_t step, std::span<const EnvFrame> frames,
+                                 bool is_on_sheet) {
+  Result<void> written;
+  if (!options_.frames.empty() && isFrame(step)) {
+    for (std::size_t env = 0; env < frames.size() && written; ++env) {
+      written = writeFrame(step, env, frames[env]);
     }
   }
-  if (!video_ && !isOnSheet(step)) return {};
+  const bool is_filmed = video_ && isFrame(step);
+  if (!is_filmed && !is_on_sheet) return written;
   std::vector<Image> tiles;
   tiles.reserve(frames.size());
   for (const EnvFrame& frame : frames) tiles.push_back(tileOf(frame));
-  if (video_) {
-    if (Result<void> sent = video_->append(videoFrame(tiles)); !sent) return sent;
-  }
-  if (!isOnSheet(step)) return {};
-  for (std::size_t env = 0; env < tiles.size(); ++env) {
-    sheet_.push_back({std::move(tiles[env]), captionOf(env, step)});
-  }
-  return {};
+  Result<void> filmed;
+  if (is_filmed) filmed = video_->append(videoFrame(tiles));
+  // The video has ended, and the sheet goes on without it.
+  if (!filmed) video_.reset();
+  if (is_on_sheet) sheet_->add({step, std::move(tiles)});
+  RETURN_IF_ERROR(written);
+  return filmed;
 }
 
 Result<void> PictureOutput::finish() {
-  if (video_) {
-    if (Result<void> ended = video_->finish(); !ended) return ended;
-  }
-  if (options_.contact_sheet.empty() || sheet_.empty()) return {};
-  return pictures::writePng(options_.contact_sheet, contactSheet(sheet_, envs_));
+  const Result<void> filmed = video_ ? video_->finish() : Result<void>();
+  const Result<void> drawn = sheet_ ? writeSheet() : Result<void>();
+  RETURN_IF_ERROR(filmed);
+  return drawn;
 }
 
-bool PictureOutput::isOnSheet(std::uint64_t step) const {
-  return !options_.contact_sheet.empty() && std::ranges::binary_search(sheet_steps_, step);
+Result<void> PictureOutput::writeSheet() {
+  std::vector<SheetCell> cells;
+  for (SheetMoments::Moment& moment : sheet_->take()) {
+    for (std::size_t env = 0; env < moment.tiles.size(); ++env) {
+      cells.push_back({std::move(moment.tiles[env]), captionOf(env, moment.step)});
+    }
+  }
+  if (cells.empty()) return {};
+  return pictures::writePng(options_.contact_sheet, contactSheet(cells, envs_));
 }
+
+bool PictureOutput::isFrame(std::uint64_t step) const { return step % options_.frame_every == 0; }
 
 Result<void> PictureOutput::writeFrame(std::uint64_t step, std::size_t env,
                                        const EnvFrame& frame) const {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "command_line/render_options.h"
-#include "drawing/contact_sheet.h"
 #include "drawing/frame_images.h"
+#include "drawing/sheet_moments.h"
 #include "drawing/video_pipe.h"
 #include "galactic/batch_renderer.h"
 #include "galactic/error.h"
@@ -44,9 +44,6 @@ struct RunLength {
 /// Writes frames, contact sheet and video of a run, as the options say.
 class PictureOutput {
  public:
-  /// Most moments that a contact sheet shows.
-  static constexpr std::size_t kSheetRows = 6;
-
   /// Whether files can be written is for others to try: makeFrameFolder() and tryFile(). Fails with
   /// the errors of VideoPipe, and with kUnsupported when the sheet would be too large.
   [[nodiscard]] static Result<PictureOutput> open(const DrawingOptions& options,
@@ -57,28 +54,35 @@ class PictureOutput {
 
   /// Whether the state after `step` steps is shown.
   [[nodiscard]] bool wants(std::uint64_t step) const;
+  /// Whether that state is shown if it is the last one: a sheet ends with it.
+  [[nodiscard]] bool wantsLast(std::uint64_t step) const;
   /// How many envs are shown, from the first one on.
   [[nodiscard]] std::size_t envCount() const { return envs_; }
 
-  /// The state after `step` steps, which is wanted; `frames`: of envCount() envs.
+  /// The state after `step` steps, which is wanted; `frames`: of envCount() envs. After a failure,
+  /// finish() still writes what there is, all but a video that failed.
   [[nodiscard]] Result<void> add(std::uint64_t step, std::span<const EnvFrame> frames);
+  /// The same of the state with which the run ends, which is wanted as the last one.
+  [[nodiscard]] Result<void> addLast(std::uint64_t step, std::span<const EnvFrame> frames);
   /// After the last step, also of a run that ended early: writes the sheet and ends the video.
   [[nodiscard]] Result<void> finish();
 
  private:
   PictureOutput(const DrawingOptions& options, const RunLength& length);
 
-  [[nodiscard]] Result<void> checkSheet() const;
+  [[nodiscard]] Result<void> checkSheet(std::uint64_t steps) const;
+  [[nodiscard]] Result<void> show(std::uint64_t step, std::span<const EnvFrame> frames,
+                                  bool is_on_sheet);
+  [[nodiscard]] Result<void> writeSheet();
   [[nodiscard]] Result<void> writeFrame(std::uint64_t step, std::size_t env,
                                         const EnvFrame& frame) const;
-  [[nodiscard]] bool isOnSheet(std::uint64_t step) const;
+  /// Whether frames and video show the state after `step` steps.
+  [[nodiscard]] bool isFrame(std::uint64_t step) const;
   [[nodiscard]] pictures::Image videoFrame(std::span<const pictures::Image> tiles) const;
 
   DrawingOptions options_;
   std::size_t envs_;
-  /// Ascending steps.
-  std::vector<std::uint64_t> sheet_steps_;
-  std::vector<SheetCell> sheet_;
+  std::optional<SheetMoments> sheet_;
   std::optional<VideoPipe> video_;
 };
 
