@@ -81,17 +81,20 @@ int describePacks(const RunOptions& options) {
   return galactic::kExitOk;
 }
 
+Result<void> saveReport(const galactic::RunReport& run) {
+  if (run.options.report.empty()) return {};
+  const std::string json = galactic::jsonOf(run);
+  return galactic::writeFileAtomically(run.options.report, {std::as_bytes(std::span(json))});
+}
+
 int simulateWorld(const RunOptions& options, const OpenedWorld& world, const RunSource& source) {
   if (!options.without_effect.empty()) return galactic::refuseCommandLine(options.without_effect);
   const Result<galactic::RunReport> run = galactic::simulate(options, world, source);
   if (!run) return report(run.error());
   if (!options.is_quiet) fmt::print("{}", galactic::tableOf(*run));
-  if (!options.report.empty()) {
-    const std::string json = galactic::jsonOf(*run);
-    const auto saved =
-        galactic::writeFileAtomically(options.report, {std::as_bytes(std::span(json))});
-    if (!saved) return report(saved.error());
-  }
+  const Result<void> saved = saveReport(*run);
+  if (run->fault) return report(*run->fault);
+  if (!saved) return report(saved.error());
   if (run->is_interrupted) return galactic::kExitInterrupted;
   if (!run->first_difference) return galactic::kExitOk;
   galactic::printToStderr(

@@ -102,6 +102,13 @@ TEST_F(SimulateCli, EndsWithATable) {
   EXPECT_THAT(result.err, IsEmpty());
 }
 
+TEST_F(SimulateCli, GivesNoMeansOfEpisodesWhereNoneEnded) {
+  const ProgramRun result = run({"--envs", "2", "--steps", "1"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("\n  episodes      0 ended: "), HasSubstr("\n  skipped "),
+                                Not(HasSubstr("\n  return "))));
+}
+
 TEST_F(SimulateCli, TakesThePacksThemselvesToo) {
   const ProgramRun result =
       runBare({"episodes.pack", "objects.pack", "robots/helper.pack", "scenes/kitchen.pack",
@@ -458,6 +465,22 @@ TEST_F(SimulateCli, WritesPagesUnderNamesOfPages) {
   }
 }
 
+TEST_F(SimulateCli, WritesItsFilesNeitherToStandardOutputNorUnderADash) {
+  for (const char* option : {"--record", "--report", "--view"}) {
+    for (const char* name : {"-", "/dev/stdout"}) {
+      const ProgramRun result = run({"--envs", "1", "--steps", "1", option, name});
+      EXPECT_EQ(result.exit_code, 2) << option;
+      EXPECT_THAT(result.err, AllOf(StartsWith("galactic-run: " + std::string(name) + ": "),
+                                    HasSubstr("give a")))
+          << option;
+      EXPECT_THAT(result.out, IsEmpty());
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "-"));
+  EXPECT_EQ(run({"--envs", "1", "--steps", "1", "--report", "./-"}).exit_code, 0);
+  EXPECT_THAT(content("-"), StartsWith("{"));
+}
+
 TEST_F(SimulateCli, WritesTheSamePageForARunAndItsReplay) {
   record();
   const auto page = [this](std::vector<std::string> arguments) {
@@ -487,6 +510,28 @@ TEST_F(SimulateCli, KeepsTheRecordingWhereAnotherFileCannotBeWritten) {
   EXPECT_EQ(result.exit_code, 2) << result.err;
   EXPECT_THAT(result.err, HasSubstr("\ngalactic-run: pages/run.html: cannot write the file"));
   EXPECT_TRUE(RecordingReader::open(folder_.path() / "run.rec"));
+}
+
+TEST_F(SimulateCli, KeepsTheRestOfARunWhoseRecordingFillsTheDisk) {
+  // A limit of 256 blocks of 512 bytes for each file, which only the recording reaches.
+  const ProgramRun result = test::runProgram(
+      "/bin/sh", folder_.path(),
+      {"-c", "trap '' XFSZ; ulimit -f 256; exec \"$0\" \"$@\"", GALACTIC_RUN, "world.pack",
+       "--envs", "8", "--steps", "100000", "--threads", "1", "--record", "run.rec", "--report",
+       "report.json", "--animation", "run.glb"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.err,
+            "galactic-run: run.rec: cannot write the file: File too large; an existing "
+            "file is left as it was\n");
+  EXPECT_THAT(result.out, AllOf(StartsWith("8 envs, "), HasSubstr("(stopped; 100000 steps"),
+                                HasSubstr("\n  episodes ")));
+  const json report = json::parse(content("report.json"), nullptr, false);
+  ASSERT_TRUE(report.is_object());
+  EXPECT_EQ(report["interrupted"], true);
+  EXPECT_GT(report["steps"].get<int>(), 0);
+  EXPECT_THAT(result.out, StartsWith("8 envs, " + report["steps"].dump() + " steps each"));
+  EXPECT_THAT(content("run.glb"), StartsWith("glTF"));
+  EXPECT_THAT(files(), Not(testing::Contains(StartsWith("run.rec"))));
 }
 
 TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {

@@ -60,10 +60,13 @@ std::string episodeLines(const RunReport& report) {
   const std::size_t playable = report.world_episodes - report.skipped.size();
   const bool is_once = report.options.simulation.order == EpisodeOrder::kPartition;
   const std::string of_all = is_once ? fmt::format(" of {}", playable) : "";
-  return line("episodes",
-              fmt::format("{}{} ended: {}, {}, {} out of time", sum.episodes, of_all,
-                          counted(sum.successes, "success"), counted(sum.failures, "failure"),
-                          sum.episodes - sum.successes - sum.failures)) +
+  std::string text = line(
+      "episodes", fmt::format("{}{} ended: {}, {}, {} out of time", sum.episodes, of_all,
+                              counted(sum.successes, "success"), counted(sum.failures, "failure"),
+                              sum.episodes - sum.successes - sum.failures));
+  // Without an episode that ended there is no mean.
+  if (episodes.ended == 0) return text;
+  return text +
          line("return", fmt::format("{:.4f} in {:.1f} steps, means of the episodes that ended",
                                     ratio(episodes.returns, static_cast<double>(episodes.ended)),
                                     ratio(episodes.steps, episodes.ended)));

@@ -7,6 +7,7 @@
 
 #include "command_line/options.h"
 #include "galactic/batch_simulator.h"
+#include "galactic/error.h"
 #include "galactic/option_text.h"
 
 namespace galactic {
@@ -63,9 +64,12 @@ struct RunReport {
   /// What the world says of the task, whether or not the options are so.
   std::vector<OptionText> world_task;
   std::size_t threads = 0;
-  /// Of the whole batch; fewer than were asked for when the run was interrupted.
+  /// Of the whole batch; fewer than were asked for when the run was interrupted: by a signal, or by
+  /// a file that could not be written.
   std::uint64_t steps = 0;
   bool is_interrupted = false;
+  /// Why one of the run's files was not written; all the others were.
+  std::optional<Error> fault;
   /// Wall clock in seconds: opening the packs, making the simulator, all calls of step(), and the
   /// whole loop with policy and recording.
   double open_seconds = 0;

@@ -19,6 +19,7 @@
 #include "run/policy.h"
 #include "run/run_files.h"
 #include "run/tracked_run.h"
+#include "support/counted.h"
 #include "support/stop_request.h"
 #include "support/try.h"
 
@@ -136,6 +137,8 @@ class Run {
     return {};
   }
 
+  /// Until all steps are done, or what it writes cannot be written (RunReport::fault). Fails only
+  /// when no action comes: of a recording that is damaged.
   Result<void> go(const StopRequest& stop) {
     if (!policy_) {
       const SimulationOptions& simulation = options_.simulation;
@@ -149,28 +152,35 @@ class Run {
     constexpr auto kLookEvery = std::chrono::milliseconds(250);
     const Clock::time_point start = Clock::now();
     Clock::time_point next_look = start + kLookEvery;
-    while (report_.steps < options_.steps && !report_.first_difference && !hasPlayedAll()) {
+    while (report_.steps < options_.steps && !report_.first_difference && !report_.fault &&
+           !hasPlayedAll()) {
       report_.is_interrupted = stop.came();
       if (report_.is_interrupted) break;
-      if (Result<void> stepped = step(); !stepped) return stepped;
+      if (Result<void> acted = act(); !acted) return acted;
+      step();
       if (!shows_progress || Clock::now() < next_look) continue;
       next_look = Clock::now() + kLookEvery;
       line.show(report_.steps, simulator_.statistics());
     }
+    report_.is_interrupted |= report_.fault && report_.steps < options_.steps;
     report_.loop_seconds = secondsBetween(start, Clock::now());
-    return finish();
+    finish();
+    return {};
   }
 
  private:
   /// Writes what comes last. What cannot be written keeps nothing else from it; the recording is
   /// first, because all the rest can be made of it.
-  Result<void> finish() {
-    const Result<void> recorded = writer_ ? writer_->finish() : Result<void>();
-    const Result<void> drawn = drawn_ ? drawn_->finish(simulator_, report_) : Result<void>();
-    const Result<void> tracked = tracked_ ? tracked_->finish() : Result<void>();
-    RETURN_IF_ERROR(recorded);
-    RETURN_IF_ERROR(drawn);
-    return tracked;
+  void finish() {
+    if (writer_) note(writer_->finish());
+    writer_.reset();
+    if (drawn_) note(drawn_->finish(simulator_, report_));
+    if (tracked_) note(tracked_->finish());
+  }
+
+  /// Of several faults, the first one is told.
+  void note(Result<void> written) {
+    if (!written && !report_.fault) report_.fault = std::move(written.error());
   }
 
   /// Whether every env has had its share of the episodes.
@@ -185,10 +195,9 @@ class Run {
     return acted;
   }
 
-  Result<void> step() {
-    if (Result<void> acted = act(); !acted) return acted;
+  void step() {
     if (drawn_) {
-      if (Result<void> drawn = drawn_->step(simulator_, actions_, report_); !drawn) return drawn;
+      note(drawn_->step(simulator_, actions_, report_));
     } else {
       const Clock::time_point before = Clock::now();
       simulator_.step(actions_);
@@ -196,17 +205,21 @@ class Run {
     }
     tally_.add(simulator_, report_.episodes);
     if (tracked_) tracked_->add(simulator_, actions_);
-    if (writer_ || replay_ != nullptr) {
-      const std::uint64_t digest = digestOf(simulator_);
-      if (writer_) {
-        if (Result<void> written = writer_->append(actions_, digest); !written) return written;
-      }
-      if (replay_ != nullptr && replay_->digest() != digest) {
-        report_.first_difference = report_.steps;
-      }
-    }
+    if (writer_ || replay_ != nullptr) keepDigest();
     ++report_.steps;
-    return {};
+  }
+
+  void keepDigest() {
+    const std::uint64_t digest = digestOf(simulator_);
+    if (writer_) {
+      Result<void> written = writer_->append(actions_, digest);
+      // A part of a recording is none; without it, a full disk has room for the rest.
+      if (!written) writer_.reset();
+      note(std::move(written));
+    }
+    if (replay_ != nullptr && replay_->digest() != digest) {
+      report_.first_difference = report_.steps;
+    }
   }
 
   const RunOptions& options_;
@@ -301,8 +314,8 @@ Result<void> checkReplay(const RecordingReader& recording, const RunOptions& opt
   }
   if (options.steps > recording.steps()) {
     return fail(ErrorCode::kInvalidInput, recording.where(),
-                fmt::format("holds {} steps, and --steps asks for {}; ask for fewer",
-                            recording.steps(), options.steps));
+                fmt::format("holds {}, and --steps asks for {}; ask for fewer",
+                            counted(recording.steps(), "step"), options.steps));
   }
   const auto other = firstDifference(recording.subject().options, options.simulation);
   if (!other) return {};

@@ -26,8 +26,9 @@ struct RunSource {
 
 /// Steps the world as `options` say and writes the recording. On a terminal a line says how it
 /// goes; Ctrl-C ends the run early, pressed twice at once. A replay ends at the first step that
-/// differs. Fails with the errors of tryOutputs, BatchSimulator::create, makeLearnedPolicy and the
-/// recordings.
+/// differs. A file that cannot be written ends it early, too, and is RunReport::fault; the others
+/// are written. Fails with the errors of tryOutputs, BatchSimulator::create, makeLearnedPolicy and
+/// RecordingReader.
 [[nodiscard]] Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
                                          const RunSource& source);
 

@@ -106,10 +106,11 @@ TrackedRun::TrackedRun(const World& world, const BatchSimulator& simulator,
 
 Result<void> TrackedRun::finish() const {
   ASSIGN_OR_RETURN(const auto assets, pageAssetsOf(track_));
-  if (!options_.view.empty()) {
-    if (auto written = writePage(assets); !written) return written;
-  }
-  return options_.animation.empty() ? Result<void>() : writeAnimation(assets);
+  const Result<void> page = options_.view.empty() ? Result<void>() : writePage(assets);
+  const Result<void> animation =
+      options_.animation.empty() ? Result<void>() : writeAnimation(assets);
+  RETURN_IF_ERROR(page);
+  return animation;
 }
 
 Result<void> TrackedRun::writePage(std::span<const PageAsset> assets) const {
