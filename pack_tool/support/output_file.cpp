@@ -4,6 +4,7 @@
 
 #include "support/atomic_file.h"
 #include "support/output_files.h"
+#include "support/try.h"
 
 namespace galactic::pack_tool {
 
@@ -14,6 +15,7 @@ Result<void> checkOutput(const PackFile& pack, const std::filesystem::path& outp
 }
 
 Result<void> writeOutput(const std::filesystem::path& output, const std::string& bytes) {
+  RETURN_IF_ERROR(checkNotDash(output));
   return writeFileAtomically(output, {std::as_bytes(std::span(bytes))});
 }
 

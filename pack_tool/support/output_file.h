@@ -10,7 +10,8 @@ namespace galactic::pack_tool {
 /// lose it.
 [[nodiscard]] Result<void> checkOutput(const PackFile& pack, const std::filesystem::path& output);
 
-/// Writes a text or the bytes of a file in one go, replacing an existing file.
+/// Writes a text or the bytes of a file in one go, replacing an existing file. Fails with kIo, and
+/// for "-".
 [[nodiscard]] Result<void> writeOutput(const std::filesystem::path& output,
                                        const std::string& bytes);
 

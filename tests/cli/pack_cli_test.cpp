@@ -267,6 +267,21 @@ TEST_F(PackCli, PictureExportAndViewWriteTheirFilesQuietly) {
   }
 }
 
+TEST_F(PackCli, WritesNoFileThatIsCalledADash) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"report", "good.pack", "-o", "-"},
+        {"view", "good.pack", "-o", "-"},
+        {"check", "good.pack", "--junit", "-"},
+        {"export", "good.pack", "-o", "-", "--to", "obj", "--radius", "0.5"}}) {
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments[0] << result.err;
+    EXPECT_EQ(result.err,
+              "galactic-pack: -: is not the standard output here; give a file's name, or ./- for a "
+              "file of that name\n");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "-"));
+}
+
 TEST_F(PackCli, ExportsEpisodesBesideItselfWhereNoFileIsNamed) {
   write("tidy.pack", test::asText(test::buildPack(test::smallEpisodes()).bytes()));
   const ProgramRun result =

@@ -73,6 +73,7 @@ bool isFrameName(std::string_view name) {
 }
 
 Result<void> makeFrameFolder(const std::filesystem::path& folder) {
+  RETURN_IF_ERROR(checkNotDash(folder));
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {

@@ -1,6 +1,8 @@
 #include "support/atomic_file.h"
 
 #include <fcntl.h>
+#include <linux/magic.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -111,12 +113,24 @@ AtomicFile::~AtomicFile() = default;
 AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
 AtomicFile& AtomicFile::operator=(AtomicFile&&) noexcept = default;
 
+namespace {
+
+/// Whether a link stands for a file that a process has open: /dev/stdout leads to /proc/self/fd/1,
+/// and what that seems to point to may have another name by now, or none.
+bool isOpenFile(const std::filesystem::path& link) {
+  struct statfs system {};
+  return ::statfs(link.parent_path().c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC;
+}
+
+}  // namespace
+
 std::filesystem::path followLinks(const std::filesystem::path& path) {
   // As many as Linux follows.
   constexpr int kMostLinks = 40;
   std::error_code none;
   std::filesystem::path target = path;
   for (int n = 0; n < kMostLinks && std::filesystem::is_symlink(target, none); ++n) {
+    if (isOpenFile(target)) break;
     target = target.parent_path() / std::filesystem::read_symlink(target, none);
   }
   return target;
@@ -126,14 +140,15 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
   std::error_code unknown;
   // A link stays a link: what it points to is written.
   const std::filesystem::path target = followLinks(path);
-  if (std::filesystem::is_symlink(target, unknown)) {
-    return fail(ErrorCode::kIo, path.string(),
-                "cannot write the file: " + std::generic_category().message(ELOOP));
-  }
+  const bool is_link = std::filesystem::is_symlink(target, unknown);
   const auto status = std::filesystem::status(target, unknown);
-  if (std::filesystem::is_other(status)) {
+  if (std::filesystem::is_other(status) || (is_link && isOpenFile(target))) {
     return fail(ErrorCode::kIo, path.string(),
                 "cannot write the file: a device or pipe of this name is there; give another name");
+  }
+  if (is_link) {
+    return fail(ErrorCode::kIo, path.string(),
+                "cannot write the file: " + std::generic_category().message(ELOOP));
   }
   if (std::filesystem::is_directory(status)) {
     return fail(ErrorCode::kIo, path.string(),

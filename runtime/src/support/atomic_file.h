@@ -11,13 +11,14 @@
 namespace galactic {
 
 /// What `path` leads to through links, whether or not something is there; still a link where they
-/// lead in a circle.
+/// lead in a circle, or to what a process has open (/dev/stdout).
 [[nodiscard]] std::filesystem::path followLinks(const std::filesystem::path& path);
 
 /// A file that is written piece by piece and seen only when it is whole: it grows under another
 /// name beside its path, and is renamed at the end. A symbolic link is followed; a folder, device
-/// or pipe is refused. Destroyed before it was published, it leaves nothing behind and an old file
-/// of the name intact. All failures are kIo.
+/// or pipe is refused, and so is what leads to an open file, as /dev/stdout does. Destroyed before
+/// it was published, it leaves nothing behind and an old file of the name intact. All failures are
+/// kIo.
 class AtomicFile {
  public:
   [[nodiscard]] static Result<AtomicFile> create(const std::filesystem::path& path);

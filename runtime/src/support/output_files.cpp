@@ -58,7 +58,15 @@ Result<void> checkExtension(const fs::path& output, const FileKind& kind) {
               fmt::format("{}; end the name with {}", kind.sentence, kind.extension));
 }
 
+Result<void> checkNotDash(const fs::path& output) {
+  if (output != "-") return {};
+  return fail(
+      ErrorCode::kIo, output.string(),
+      "is not the standard output here; give a file's name, or ./- for a file of that name");
+}
+
 Result<void> tryFile(const fs::path& path) {
+  RETURN_IF_ERROR(checkNotDash(path));
   RETURN_IF_ERROR(AtomicFile::create(path));
   return {};
 }

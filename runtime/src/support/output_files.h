@@ -43,8 +43,12 @@ inline constexpr FileKind kPageFile{".html", "pages are HTML files", ".htm"};
 [[nodiscard]] Result<void> checkExtension(const std::filesystem::path& output,
                                           const FileKind& kind);
 
-/// Fails with kIo when no file can be written under this name; leaves nothing behind and a file of
-/// the name as it is. Long work that ends with a file begins with this.
+/// Fails with kIo for "-", which in many programs stands for the standard output: here a file of
+/// that name would surprise.
+[[nodiscard]] Result<void> checkNotDash(const std::filesystem::path& output);
+
+/// Fails with kIo when no file can be written under this name, and for "-"; leaves nothing behind
+/// and a file of the name as it is. Long work that ends with a file begins with this.
 [[nodiscard]] Result<void> tryFile(const std::filesystem::path& path);
 
 }  // namespace galactic

@@ -1,9 +1,12 @@
 // A written file is there whole, or the old one is.
 #include "support/atomic_file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -159,6 +162,55 @@ TEST(AtomicFile, IsRefusedWithTheReasonWhereNoFileCanBe) {
   }
   EXPECT_EQ(namesIn(folder.path()).size(), 2U);
   EXPECT_EQ(contentOf(file), "content");
+}
+
+/// A descriptor of a file or a pipe, closed at the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) { EXPECT_GE(number, 0); }
+  ~Descriptor() { ::close(number_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] std::string in(const std::string& folder) const {
+    return folder + "/" + std::to_string(number_);
+  }
+
+ private:
+  int number_;
+};
+
+TEST(AtomicFile, IsNotWhatAProcessHasOpen) {
+  const test::ScratchFolder folder;
+  const std::filesystem::path file = folder.write("out.txt", "kept");
+  const Descriptor redirected(::open(file.c_str(), O_WRONLY));
+  std::array<int, 2> ends{-1, -1};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const Descriptor reading(ends[0]);
+  const Descriptor pipe(ends[1]);
+  // As /dev/stdout leads to.
+  const std::filesystem::path link = folder.path() / "link";
+  std::filesystem::create_symlink(redirected.in("/proc/self/fd"), link);
+  for (const std::string& name : {redirected.in("/dev/fd"), redirected.in("/proc/self/fd"),
+                                  pipe.in("/dev/fd"), link.string()}) {
+    const auto written = writeFileAtomically(name, {bytesOf("content")});
+    ASSERT_FALSE(written) << name;
+    EXPECT_EQ(written.error().code, ErrorCode::kIo);
+    EXPECT_EQ(written.error().where, name);
+    EXPECT_EQ(written.error().message,
+              "cannot write the file: a device or pipe of this name is there; give another name");
+  }
+  EXPECT_EQ(contentOf(file), "kept");
+  EXPECT_TRUE(isSameFile(link, file));
+}
+
+TEST(OutputFiles, ADashIsNotTheStandardOutput) {
+  const Result<void> tried = tryFile("-");
+  ASSERT_FALSE(tried);
+  EXPECT_EQ(tried.error().code, ErrorCode::kIo);
+  EXPECT_EQ(tried.error().where, "-");
+  EXPECT_EQ(tried.error().message,
+            "is not the standard output here; give a file's name, or ./- for a file of that name");
+  EXPECT_TRUE(checkNotDash("./-"));
 }
 
 }  // namespace
