@@ -9,12 +9,14 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 
 #include "galactic/error.h"
 #include "pack_tool/diff/report_diff.h"
 #include "pack_tool/pictures/figure_picture.h"
+#include "support/help_lines.h"
 #include "support/nearest_name.h"
 #include "support/number_text.h"
 
@@ -435,12 +437,12 @@ std::string complaintOf(const CLI::App& app, const CLI::ParseError& error) {
 
 tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
                                             const Console& console) {
-  CLI::App app("galactic-pack inspects, checks, compares, exports, draws and shows packs.",
-               "galactic-pack");
+  CLI::App app("Inspects, checks, compares, exports, draws and shows packs.", "galactic-pack");
   AllOptions options;
   // Verbs inherit the footer that is set before them.
   app.footer(kExitCodesHelp);
   app.set_version_flag("--version", "galactic-pack " GALACTIC_VERSION);
+  app.formatter(std::make_shared<HelpLines<CLI::Formatter, CLI::Option>>());
   app.get_formatter()->label("SUBCOMMAND", "VERB");
   app.require_subcommand(1);
   addInfo(app, options.info);

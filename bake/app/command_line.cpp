@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 #include <set>
 #include <string_view>
 #include <thread>
@@ -12,6 +13,7 @@
 #include "galactic/bake/option_field.h"
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/error.h"
+#include "support/help_lines.h"
 #include "support/nearest_name.h"
 #include "support/number_text.h"
 #include "support/printable.h"
@@ -138,6 +140,7 @@ class CommandLine {
  public:
   CommandLine() {
     app_.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
+    app_.formatter(std::make_shared<HelpLines<CLI::Formatter, CLI::Option>>());
     app_.get_formatter()->column_width(34);
     app_.add_option("INPUT", inputs_,
                     "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, URDF robots, "

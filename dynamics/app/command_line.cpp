@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <limits>
 #include <map>
+#include <memory>
 
 #include "command_line/policy_command_line.h"
 #include "galactic/error.h"
 #include "run/policy.h"
+#include "support/help_lines.h"
 #include "support/nearest_name.h"
 #include "support/number_text.h"
 #include "support/printable.h"
@@ -158,6 +160,7 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, Command& 
                "galactic-dynamics"};
   app.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
   constexpr std::size_t kHelpColumn = 34;
+  app.formatter(std::make_shared<HelpLines<CLI::Formatter, CLI::Option>>());
   app.get_formatter()->column_width(kHelpColumn);
   addSources(app, command);
   addActions(app, command);

@@ -13,6 +13,7 @@ using test::ProgramRun;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 /// A folder with a good pack, one that was cut off, one of a later format, and a file that is no
@@ -62,6 +63,16 @@ TEST_F(RunCli, SaysWhatToDoWithoutAPack) {
   }
 }
 
+TEST_F(RunCli, NamesTheNearestOptionWhereThePackWasForgottenToo) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--hlep"}, {"--bench", "--hlep"}, {"good.pack", "--hlep"}}) {
+    const ProgramRun result = run(arguments);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, AllOf(StartsWith("galactic-run: command line: "), HasSubstr("--hlep"),
+                                  HasSubstr("did you mean '--help'")));
+  }
+}
+
 TEST_F(RunCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
   for (const char* unheard : {"2>&-", "2>/dev/full"}) {
     const auto exit_code = [&](const char* argument) {
@@ -88,7 +99,7 @@ TEST_F(RunCli, SaysWhatIsInEpisodesAndListsThePacksOfAWorld) {
 TEST_F(RunCli, SkipsVerificationOnlyWhenTold) {
   const ProgramRun result = run({"good.pack", "--trusted"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, testing::Not(HasSubstr("verified in")));
+  EXPECT_THAT(result.out, Not(HasSubstr("verified in")));
 }
 
 TEST_F(RunCli, PrintsErrorsOnlyWhenToldToBeQuiet) {
@@ -115,7 +126,7 @@ TEST_F(RunCli, EndsWithACodeForEachKindOfMistake) {
     SCOPED_TRACE(testing::PrintToString(arguments));
     const ProgramRun result = run(arguments);
     EXPECT_EQ(result.exit_code, code);
-    EXPECT_THAT(result.err, testing::Not(IsEmpty()));
+    EXPECT_THAT(result.err, Not(IsEmpty()));
     if (code > 1) {
       EXPECT_THAT(result.err, StartsWith("galactic-run: " + arguments.back() + ": "));
     }
@@ -127,6 +138,19 @@ TEST_F(RunCli, ListsItsExitCodesInHelp) {
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, AllOf(HasSubstr("PACK FILE ..."), HasSubstr("--bench"),
                               HasSubstr("0    success"), HasSubstr("3    invalid input")));
+  // One of two ways to name packs is needed, not both.
+  EXPECT_THAT(help.out, AllOf(HasSubstr("\n  PACK FILE ... REQUIRED          Packs to open"),
+                              HasSubstr("\n  --pack FILE ...                 The same as PACK\n"),
+                              Not(HasSubstr("--pack FILE ... REQUIRED"))));
+}
+
+TEST_F(RunCli, KeepsOptionsAndTheirExplanationsApartInHelp) {
+  // These options fill their column but for one blank.
+  const std::string help = run({"--help"}).out;
+  for (const char* option :
+       {"--camera-position X,Y,Z [0,0,0]", "--success-distance METERS [0.1]"}) {
+    EXPECT_THAT(help, HasSubstr("\n  " + std::string(option) + "\n" + std::string(34, ' ')));
+  }
 }
 
 }  // namespace

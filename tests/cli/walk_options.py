@@ -98,6 +98,8 @@ def options_of(text: str) -> list[Option]:
         if not match or match[1] in ("--help", "--version"):
             continue
         words = [word for word in match[2].split() if word not in ("REQUIRED", "...")]
+        rest = re.sub(r"^ \[[^\]]*\]", "", line[match.end() :])
+        assert len(words) <= 1 and re.match(r" *$|  ", rest), f"an option runs into its explanation: {line}"
         found.append(Option(match[1], words[0] if words else "", is_repeated(line, match[2]), heading))
     return found
 

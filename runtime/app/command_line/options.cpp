@@ -8,6 +8,8 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "run/policy.h"
 #include "run/tracked_run.h"
 #include "support/height_text.h"
+#include "support/help_lines.h"
 #include "support/nearest_name.h"
 #include "support/number_text.h"
 #include "support/option_table.h"
@@ -42,6 +45,7 @@ constexpr const char* kFooter =
 constexpr const char* kNoPack =
     "found no pack; name one to see what is in it (galactic-run world.pack), or a world to step "
     "(galactic-run world.pack --steps 1000); galactic-bake makes packs";
+constexpr const char* kPackOption = "PACK,--pack";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
 constexpr const char* kPlainGroup = "Options";
@@ -60,6 +64,21 @@ CLI::Validator knownPolicy() {
       },
       "", "policy");
 }
+
+/// PACK and --pack are one option, which has two lines in --help: only the first of them says that
+/// it is needed.
+class RunHelp : public HelpLines<CLI::Formatter, CLI::Option> {
+ public:
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    if (is_positional || !option->get_positional()) {
+      return HelpLines::make_option(option, is_positional);
+    }
+    std::ostringstream line;
+    CLI::detail::format_help(line, make_option_name(option, false) + " FILE ...",
+                             "The same as PACK", get_column_width());
+    return line.str();
+  }
+};
 
 /// What --help shows for a number: the unit with which its explanation ends.
 std::string_view placeholderOf(std::string_view help) {
@@ -164,7 +183,7 @@ class CommandLineVisitor {
 
 void addPlainOptions(CLI::App& app, RunOptions& options) {
   app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
-  app.add_option("PACK,--pack", options.packs, "Packs to open: one world, or packs of any kind")
+  app.add_option(kPackOption, options.packs, "Packs to open: one world, or packs of any kind")
       ->required()
       ->type_name("FILE");
   app.add_flag("--trusted", options.trusted,
@@ -254,6 +273,20 @@ std::vector<std::string> longNamesOf(const CLI::App& app) {
   return names;
 }
 
+/// What is wrong with a command line that cannot be read. The parser misses the packs before it
+/// minds an option that it does not know, which is what may have been typed in their place.
+std::string complaintOf(const CLI::App& app, const CLI::ParseError& error) {
+  std::string complaint = error.what();
+  if (error.get_name() == "RequiredError") {
+    const std::vector<std::string> rest = app.remaining();
+    const auto unknown =
+        std::ranges::find_if(rest, [](const std::string& word) { return word.starts_with('-'); });
+    if (unknown == rest.end()) return kNoPack;
+    complaint = "The following argument was not expected: " + *unknown;
+  }
+  return withSuggestions(complaint, longNamesOf(app));
+}
+
 /// Options that begin with `prefix`, all but `main`, and do nothing where `is_off`.
 struct Details {
   std::string_view prefix;
@@ -315,6 +348,7 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   CLI::App app{"Opens packs and says what is inside, or steps a world of them.", "galactic-run"};
   app.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
   constexpr std::size_t kHelpColumn = 34;
+  app.formatter(std::make_shared<RunHelp>());
   app.get_formatter()->column_width(kHelpColumn);
   addPlainOptions(app, options);
   addRunOptions(app, options);
@@ -324,12 +358,10 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   visitWorldTask(options.simulation, visitor);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::RequiredError&) {
-    return refuseCommandLine(kNoPack);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    const bool asked = error.get_exit_code() == 0;  // --help, --version
-    return asked ? app.exit(error)
-                 : refuseCommandLine(withSuggestions(error.what(), longNamesOf(app)));
+    return refuseCommandLine(complaintOf(app, error));
   }
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& value : option->results()) {

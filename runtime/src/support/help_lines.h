@@ -1,0 +1,25 @@
+#pragma once
+#include <cstddef>
+#include <string>
+
+namespace galactic {
+
+/// Lines of --help in which an option and its explanation stand two blanks apart or more, or on
+/// lines of their own: by one blank nobody, and no maker of man pages, tells them apart. `Parser`
+/// is the formatter of a parser of command lines, CLI::Formatter, and `Option` its CLI::Option:
+/// this library names neither.
+template <class Parser, class Option>
+class HelpLines : public Parser {
+ public:
+  std::string make_option(const Option* option, bool is_positional) const override {
+    constexpr std::size_t kIndent = 2;
+    std::string line = Parser::make_option(option, is_positional);
+    const std::size_t width = kIndent + this->make_option_name(option, is_positional).size() +
+                              this->make_option_opts(option).size();
+    const std::size_t column = this->get_column_width();
+    if (width + 1 == column) line.replace(width, 1, "\n" + std::string(column, ' '));
+    return line;
+  }
+};
+
+}  // namespace galactic
