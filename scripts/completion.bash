@@ -21,12 +21,15 @@ _galactic() {
   fi
   local options
   options=$(_galactic_options "$tool" $verb)
-  # After an option that takes one of a few words, these words.
+  # After an option that takes one of a few words, these words. What has capitals stands for something else: FILE.pack
+  # for files, LINK for what only a pack knows.
   if [[ $prev == -* ]]; then
-    local choices
-    choices=$(sed -nE "s/^(.*,)?${prev} ([a-z]+(\|[a-zA-Z.:]+)+).*/\2/p" <<<"$options" | head -n 1)
+    local choices words_of_choices
+    choices=$(sed -nE "s/^(.*,)?${prev} ([a-z][^ |]*(\|[^ |]+)+).*/\2/p" <<<"$options" | head -n 1)
     if [[ -n $choices ]]; then
-      mapfile -t COMPREPLY < <(compgen -W "${choices//|/ }" -- "$cur")
+      words_of_choices=$(tr '|' '\n' <<<"$choices" | grep -v '[A-Z]')
+      mapfile -t COMPREPLY < <(compgen -W "$words_of_choices" -- "$cur")
+      [[ $choices != *FILE* ]] || _filedir
       return
     fi
   fi

@@ -66,7 +66,7 @@ class Install(unittest.TestCase):
             COMP_WORDS=({' '.join(word or "''" for word in words)}); COMP_CWORD={len(words) - 1}
             COMP_LINE="{' '.join(words)}"; COMP_POINT=${{#COMP_LINE}}
             _galactic; printf '%s\\n' "${{COMPREPLY[@]}}" """
-        return run("bash", "--norc", "-c", script).split()
+        return run("bash", "--norc", "-c", script, cwd=self.folder.name).split()
 
     def test_another_project_finds_the_library(self) -> None:
         build = pathlib.Path(self.folder.name, "project")
@@ -138,6 +138,11 @@ class Install(unittest.TestCase):
             self.assertIn(".SH SYNOPSIS", text)
             self.assertIn(".B 130\ninterrupted", text)
             self.assertNotIn("Exit codes:", text)
+            # NAME says the name once, and what an option does stands on a line of its own.
+            name = text.split(".SH NAME\n")[1].splitlines()[0]
+            self.assertRegex(name, rf"^{page.replace('-', '.{1,2}')} .{{1,2}} [a-z]")
+            self.assertEqual(name.count("galactic"), 1, name)
+            self.assertNotRegex(text, r"(?m)^\\fB.*\] [A-Z][a-z]+ [a-z]")
 
     def test_bash_completes_options_verbs_and_choices(self) -> None:
         if not COMPLETIONS.is_file():
@@ -149,6 +154,13 @@ class Install(unittest.TestCase):
         )
         self.assertEqual(self.complete("galactic-pack", "check", "--ju"), ["--junit"])
         self.assertEqual(self.complete("galactic-run", "--backend", ""), ["auto", "cuda", "gl", "soft"])
+        self.assertEqual(self.complete("galactic-pack", "export", "a.pack", "--to", "ep"), ["episode_set"])
+        self.assertEqual(self.complete("galactic-run", "--slide-direction", "t"), ["towards-base"])
+        # What is in capitals stands for files, or for what nobody here knows.
+        pathlib.Path(self.folder.name, "picker.pack").touch()
+        self.assertEqual(self.complete("galactic-run", "--policy", "pick"), ["picker.pack"])
+        self.assertEqual(self.complete("galactic-run", "--policy", "r"), ["random"])
+        self.assertEqual(self.complete("galactic-run", "--camera", ""), ["head", "follow", "top"])
         for tool in self.tools():
             long_names = set(
                 re.findall(r"^ +(?:-\w,)?(--[a-z0-9-]+)", run(self.tool(tool), "--help"), re.M)
