@@ -2,6 +2,9 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <utility>
 
 #include "pack_tool/check/find_packs.h"
 #include "pack_tool/check/junit.h"
@@ -45,31 +48,77 @@ std::vector<Task> tasksOf(const std::vector<fs::path>& arguments) {
 }
 
 /// What becomes of a pack does not depend on which thread checks it.
-std::vector<CheckedPack> checkAll(const std::vector<Task>& tasks, std::uint32_t threads) {
-  std::vector<CheckedPack> checked(tasks.size());
+void check(std::span<Task* const> tasks, std::uint32_t threads) {
   detail::forEachPart(threads, tasks.size(), [&](std::size_t n) {
-    const fs::path& pack = tasks[n].pack;
+    const fs::path& pack = tasks[n]->pack;
     try {
-      checked[n] = tasks[n].done ? *tasks[n].done : checkPack(pack);
+      tasks[n]->done = checkPack(pack);
     } catch (...) {
       Error error = errorOfException();
       if (error.code == ErrorCode::kInternal) error.where = pack.string();
-      checked[n] = badPack(pack.string(), error);
+      tasks[n]->done = badPack(pack.string(), error);
     }
   });
+}
+
+/// One name for each file, whatever way leads to it.
+fs::path nameOf(const fs::path& file) {
+  std::error_code unknown;
+  const fs::path name = fs::weakly_canonical(file, unknown);
+  return unknown ? file : name;
+}
+
+bool isWorld(const fs::path& pack) {
+  const auto opened = PackFile::open(pack, Trust::kTrusted);
+  return opened && opened->kind() == PackKind::kWorld;
+}
+
+/// Each pack once, in the order of the tasks: those that a world lists are checked with it.
+std::vector<CheckedPack> checkAll(std::vector<Task> tasks, std::uint32_t threads) {
+  std::vector<Task*> worlds;
+  std::vector<Task*> others;
+  for (Task& task : tasks) {
+    if (!task.done) (isWorld(task.pack) ? worlds : others).push_back(&task);
+  }
+  check(worlds, threads);
+  std::set<fs::path> listed;
+  for (const Task* world : worlds) {
+    for (const CheckedPack& pack : world->done->listed) listed.insert(nameOf(pack.file));
+  }
+  std::erase_if(others, [&](const Task* task) { return listed.contains(nameOf(task->pack)); });
+  check(others, threads);
+  std::vector<CheckedPack> checked;
+  for (Task& task : tasks) {
+    if (task.done) checked.push_back(std::move(*task.done));
+  }
   return checked;
 }
 
-/// A line for each pack, those of a world before it.
-void printText(const CheckedPack& pack, const CheckOptions& options, const Console& console) {
-  for (const CheckedPack& listed : pack.listed) printText(listed, options, console);
-  if (pack.finding) {
-    const auto& [code, error] = *pack.finding;
-    reportError(console, {error.code, error.where, fmt::format("{} [{}]", error.message, code)});
-  } else if (options.form == OutputForm::kText && !options.is_quiet) {
-    console.out << fmt::format("{}: ok\n", printable(pack.file));
+/// Prints a line for each pack, those of a world before it.
+class Lines {
+ public:
+  Lines(const CheckOptions& options, const Console& console)
+      : is_shown_(options.form == OutputForm::kText && !options.is_quiet), console_(console) {}
+
+  void print(const CheckedPack& pack) {
+    for (const CheckedPack& listed : pack.listed) {
+      // Worlds may share packs.
+      if (listed.finding || told_.insert(nameOf(listed.file)).second) print(listed);
+    }
+    if (pack.finding) {
+      const auto& [code, error] = *pack.finding;
+      reportError(console_, {error.code, error.where, fmt::format("{} [{}]", error.message, code)});
+    } else if (is_shown_) {
+      console_.out << fmt::format("{}: ok\n", printable(pack.file));
+    }
   }
-}
+
+ private:
+  bool is_shown_;
+  const Console& console_;
+  /// Packs of worlds that are good.
+  std::set<fs::path> told_;
+};
 
 /// File and whether it is ok, then kind and size, or exit code, code, place and message.
 Json entryOf(const CheckedPack& pack) {
@@ -115,8 +164,9 @@ int runCheck(const CheckOptions& options, const Console& console) {
       checkAll(tasksOf(options.packs), detail::threadCount(options.threads));
   int exit_code = kExitOk;
   Json report = Json::array();
+  Lines lines(options, console);
   for (const CheckedPack& pack : packs) {
-    printText(pack, options, console);
+    lines.print(pack);
     exit_code = worseExit(exit_code, pack.exitCode());
     if (options.form == OutputForm::kJson) report.push_back(entryOf(pack));
   }

@@ -257,6 +257,34 @@ TEST_F(CheckMany, SearchesFoldersInTheOrderOfTheirPaths) {
   EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
 }
 
+TEST(CheckWorlds, TellsOnceOfAPackThatWorldsList) {
+  const ScratchFolder folder;
+  const auto world = test::writeWorld(folder, WorldFields{});
+  const auto same = folder.path() / "zz-again.pack";
+  std::filesystem::copy_file(world, same);
+  static_cast<void>(folder.write("alone.pack", goodBytes()));
+  const auto packs_in = [](const Outcome& outcome) {
+    std::multiset<std::string> lines;
+    std::istringstream text(outcome.out);
+    for (std::string line; std::getline(text, line);) lines.insert(line);
+    return lines;
+  };
+  const std::multiset<std::string> told = packs_in(check({.packs = {folder.path()}}));
+  // Two worlds, their four packs, and one that no world lists.
+  EXPECT_EQ(told.size(), 7U);
+  EXPECT_EQ(std::set<std::string>(told.begin(), told.end()).size(), told.size());
+  // A pack that is named beside its world, too.
+  const Outcome named = check({.packs = {folder.path() / "objects.pack", world}});
+  EXPECT_EQ(packs_in(named).count((folder.path() / "objects.pack").string() + ": ok"), 1U);
+  // A bad pack: its error, and that of each world.
+  static_cast<void>(folder.write("objects.pack", "short"));
+  const Outcome bad = check({.packs = {world, folder.path() / "objects.pack"}});
+  EXPECT_EQ(bad.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
+  EXPECT_EQ(std::ranges::count(bad.err, '\n'), 2);
+  const Json json = Json::parse(check({.packs = {folder.path()}, .form = OutputForm::kJson}).out);
+  EXPECT_EQ(json.size(), 3U) << "the worlds with their packs, and what no world lists";
+}
+
 TEST(JUnit, HasACaseForEachPackAndAFailureForEachBadOne) {
   CheckedPack good;
   good.file = "room.pack";
