@@ -7,6 +7,7 @@
 
 #include "galactic/schema/pack_generated.h"
 #include "pack_tool/figure/shared_textures_of.h"
+#include "support/counted.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {
@@ -50,7 +51,7 @@ Figure objectFigure(const ObjectSet& set, const ObjectModel& object, const schem
   figure.name = object.name;
   figure.radii = set.radii();
   const schema::SphereSetStatistics& quality = *stored.sphere_statistics();
-  const std::string counts = fmt::format("{} spheres ({})", object.spheres.size(),
+  const std::string counts = fmt::format("{} ({})", counted(object.spheres.size(), "sphere"),
                                          sphereCounts(object.spheres, set.radii().size()));
   const std::string gap = fmt::format("gap {}", millimeters(quality.gap()));
   figure.caption = fmt::format("{}, {}, protrusion {}: mean/p95/max", counts, gap,
@@ -82,8 +83,8 @@ Result<std::vector<Figure>> objectFigures(const PackFile& pack, const FigureOpti
   }
   if (figures.empty()) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
-                fmt::format("has no object \"{}\"; galactic-pack info lists its {} objects",
-                            options.object, stored.size()));
+                fmt::format("has no object \"{}\"; galactic-pack info lists its {}", options.object,
+                            counted(stored.size(), "object")));
   }
   return figures;
 }
@@ -162,10 +163,10 @@ Result<std::vector<Figure>> robotFigures(const PackFile& pack, const FigureOptio
   figure.kind = FigureKind::kRobot;
   figure.name = robot.name();
   figure.radii = robot.radii();
-  figure.caption =
-      fmt::format("{} spheres ({}) in {} groups{}", robot.spheres().size(),
-                  sphereCounts(robot.spheres(), robot.radii().size()), robot.groups().size(),
-                  worstText(*pack.root().asset_as_Robot()->groups()));
+  figure.caption = fmt::format("{} ({}) in {}{}", counted(robot.spheres().size(), "sphere"),
+                               sphereCounts(robot.spheres(), robot.radii().size()),
+                               counted(robot.groups().size(), "group"),
+                               worstText(*pack.root().asset_as_Robot()->groups()));
   figure.parts = robotParts(robot, world_from_link);
   if (options.layers.has(FigureLayer::kMesh)) {
     for (const schema::LinkSurface* surface : *pack.root().asset_as_Robot()->surfaces()) {
@@ -189,10 +190,13 @@ Result<std::vector<Figure>> robotFigures(const PackFile& pack, const FigureOptio
 
 Result<std::vector<Figure>> sceneFigures(const PackFile& pack, const FigureOptions& options) {
   if (!options.object.empty() || !options.joints.values.empty() ||
-      options.joints.others != OtherJoints::kStart || !options.layers.has(FigureLayer::kMesh)) {
+      options.joints.others != OtherJoints::kStart) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
-                "is a scene, which has meshes only; --object, --joints and --all-zero are for "
-                "objects and robots, and --what takes mesh");
+                "is a scene; --object, --joints and --all-zero are for objects and robots");
+  }
+  if (!options.layers.has(FigureLayer::kMesh)) {
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                "is a scene, which has neither spheres nor boxes to show; take --what mesh");
   }
   Figure figure;
   figure.kind = FigureKind::kScene;

@@ -106,7 +106,7 @@ TEST(DescribeRenderMeshes, NamesModelsAsTheirObjectsAndLinks) {
 TEST(InfoText, SumsUpRenderMeshes) {
   const std::string text = infoText(describedScene({.bc1 = true}));
   EXPECT_THAT(text,
-              HasSubstr("  render       1 models, 3 clusters (33 % two-sided), 12 vertices, "));
+              HasSubstr("  render       1 model, 3 clusters (33 % two-sided), 12 vertices, "));
   EXPECT_THAT(text, HasSubstr("               6 of 50 triangles, moved by at most 4.00 mm\n"));
   EXPECT_THAT(text,
               HasSubstr("  materials    3, 1 with a cut-out shape; vertices have no colors\n"));
@@ -288,7 +288,7 @@ TEST(SceneExport, RefusesOptionsOfObjects) {
                                         .output = folder.path() / "a.glb",
                                         .figures = FigureOptions{.object = "mug"}});
   EXPECT_EQ(answer.exit_code, kInvalid);
-  EXPECT_THAT(answer.err, HasSubstr("is a scene, which has meshes only; "));
+  EXPECT_THAT(answer.err, HasSubstr("is a scene; --object, --joints and --all-zero are for "));
 }
 
 TEST(ScenePicture, ShowsTheMeshesWhenAskedTo) {

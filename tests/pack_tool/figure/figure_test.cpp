@@ -6,6 +6,7 @@
 
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/figure/figures_of_pack.h"
+#include "support/pack_tool_fixture.h"
 
 namespace galactic::pack_tool::figure_test {
 namespace {
@@ -138,6 +139,21 @@ TEST(Figures, RefuseOptionsOfTheOtherKind) {
   ASSERT_FALSE(missing.has_value());
   EXPECT_EQ(missing.error().message,
             "has no object \"mug\"; galactic-pack info lists its 2 objects");
+  // And of scenes.
+  const test::ScratchFolder folder;
+  const auto path =
+      folder.write("a.pack", test::asText(test::buildPack(test::kitchenScene()).bytes()));
+  const auto scene = PackFile::open(path);
+  ASSERT_TRUE(scene);
+  const std::string only =
+      "is a scene; --object, --joints and --all-zero are for objects and robots";
+  EXPECT_EQ(figuresOf(*scene, {.object = "mug"}).error().message, only);
+  EXPECT_EQ(figuresOf(*scene, {.joints = {.values = {{"lift", 0}}}}).error().message, only);
+  EXPECT_EQ(figuresOf(*scene, {.joints = {.others = OtherJoints::kZero}}).error().message, only);
+  LayerSet boxes = LayerSet::none();
+  boxes.add(FigureLayer::kBoxes);
+  EXPECT_EQ(figuresOf(*scene, {.layers = boxes}).error().message,
+            "is a scene, which has neither spheres nor boxes to show; take --what mesh");
 }
 
 }  // namespace
