@@ -8,11 +8,27 @@ namespace galactic::pack_tool {
 
 namespace {
 
-/// Least, mean and greatest.
-std::string spreadOf(const Json& spread) {
+/// How a spread is shown: its numbers, and what stands behind them and behind the mean.
+struct SpreadForm {
+  std::string (*number)(double);
+  std::string_view unit;
+  std::string (*mean)(double);
+};
+
+constexpr SpreadForm kObjectsPerEpisode{[](double count) { return fmt::format("{:.6g}", count); },
+                                        " per episode",
+                                        [](double mean) { return fmt::format("{:.3g}", mean); }};
+constexpr SpreadForm kDistances{[](double length) { return fmt::format("{:.2f}", length); }, " m",
+                                [](double mean) { return fmt::format("{:.2f} m", mean); }};
+
+/// Least, greatest and mean; one number where all are the same.
+std::string spreadOf(const Json& spread, const SpreadForm& form) {
   if (spread.is_null()) return "none";
-  return fmt::format("{:.6g} to {:.6g}, {:.3g} on average", numberOf(spread.at("min")),
-                     numberOf(spread.at("max")), numberOf(spread.at("mean")));
+  const std::string least = form.number(numberOf(spread.at("min")));
+  const std::string most = form.number(numberOf(spread.at("max")));
+  if (least == most) return fmt::format("{}{}", least, form.unit);
+  return fmt::format("{} to {}{}, {} on average", least, most, form.unit,
+                     form.mean(numberOf(spread.at("mean"))));
 }
 
 std::string namesOf(const Json& names) {
@@ -40,8 +56,8 @@ std::string episodesText(const Json& set) {
          labeled("episodes", countOf(set.at("episode_count"))) +
          labeled("robot", robot.is_null() ? "any" : textOf(robot)) +
          labeled("start joints", namesOf(set.at("start_joints"))) +
-         labeled("objects", spreadOf(set.at("objects_per_episode")) + " per episode") +
-         labeled("to the goal", spreadOf(set.at("target_to_goal")) + " m") + scenes.text() +
+         labeled("objects", spreadOf(set.at("objects_per_episode"), kObjectsPerEpisode)) +
+         labeled("to the goal", spreadOf(set.at("target_to_goal"), kDistances)) + scenes.text() +
          objects.text();
 }
 

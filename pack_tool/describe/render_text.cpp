@@ -10,6 +10,7 @@
 #include "pack_tool/describe/asset_text.h"
 #include "pack_tool/describe/text_parts.h"
 #include "pack_tool/support/text_table.h"
+#include "support/counted.h"
 
 namespace galactic::pack_tool {
 
@@ -60,7 +61,7 @@ std::string appearanceText(const Json& render) {
                           render.at("colored").get<bool>() ? "vertices have colors"
                                                            : "vertices have no colors"));
   text += labeled("textures", texturesText(render));
-  return text + labeled("semantics", fmt::format("{} names", render.at("semantics").size()));
+  return text + labeled("semantics", counted(render.at("semantics").size(), "name"));
 }
 
 std::string modelsText(const Json& models) {
@@ -82,14 +83,16 @@ std::string renderMeshesText(const Json& render) {
     return labeled("render", "no render meshes: nothing to draw in batches, nothing textured");
   }
   std::string text = labeled(
-      "render", fmt::format("{} models, {} clusters ({} two-sided), {} vertices, {} bytes",
-                            render.at("models").size(), countOf(render.at("clusters")),
+      "render", fmt::format("{}, {} ({} two-sided), {}, {} bytes",
+                            counted(render.at("models").size(), "model"),
+                            countedOf(render.at("clusters"), "cluster"),
                             percentOf(render.at("two_sided_clusters"), render.at("clusters")),
-                            countOf(render.at("vertices")), countOf(render.at("geometry_bytes"))));
-  text += labeled(
-      "", fmt::format("{} of {} triangles, moved by at most {} mm", countOf(render.at("triangles")),
-                      countOf(render.at("source_triangles")),
-                      millimeterOf(render.at("largest_error"))));
+                            countedOf(render.at("vertices"), "vertex"),
+                            countOf(render.at("geometry_bytes"))));
+  text +=
+      labeled("", fmt::format("{} of {}, moved by at most {} mm", countOf(render.at("triangles")),
+                              countedOf(render.at("source_triangles"), "triangle"),
+                              millimeterOf(render.at("largest_error"))));
   text += appearanceText(render);
   if (render.at("models").size() > 1) text += modelsText(render.at("models"));
   return text;

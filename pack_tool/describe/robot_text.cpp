@@ -3,6 +3,7 @@
 #include "pack_tool/describe/asset_text.h"
 #include "pack_tool/describe/text_parts.h"
 #include "pack_tool/support/text_table.h"
+#include "support/counted.h"
 
 namespace galactic::pack_tool {
 
@@ -49,8 +50,8 @@ std::string linksText(const Json& robot) {
     }
     table.add(std::move(line));
   }
-  return labeled("links", fmt::format("{}, {} joint positions; radians, meters",
-                                      robot.at("links").size(), robot.at("positions").size())) +
+  return labeled("links", fmt::format("{}, {}; radians, meters", robot.at("links").size(),
+                                      counted(robot.at("positions").size(), "joint position"))) +
          table.text();
 }
 
@@ -74,8 +75,8 @@ std::string groupsText(const Json& robot) {
     }
     table.add(std::move(line));
   }
-  return labeled("spheres", fmt::format("{} in {} groups; gap and protrusion: mean/p95/max",
-                                        spheres, robot.at("groups").size())) +
+  return labeled("spheres", fmt::format("{} in {}; gap and protrusion: mean/p95/max", spheres,
+                                        counted(robot.at("groups").size(), "group"))) +
          table.text();
 }
 
@@ -95,7 +96,7 @@ std::string controlledText(const Json& joints) {
     table.add({textOf(joint.at("name")), numberText(joint.at("step")),
                numberText(joint.at("lower")), numberText(joint.at("upper"))});
   }
-  return labeled("controlled", fmt::format("{} joints", joints.size())) + table.text();
+  return labeled("controlled", counted(joints.size(), "joint")) + table.text();
 }
 
 constexpr double kDegrees = 57.29577951308232;

@@ -19,9 +19,9 @@ std::string headText(const Json& scene) {
   const Json& import = scene.at("import");
   std::string text = labeled("scene", textOf(scene.at("name")));
   text += labeled("bounds", fmt::format("x {}, y {}, z {} m", range(0), range(1), range(2)));
-  text +=
-      labeled("import", fmt::format("{}, {} meshes, {} instances", textOf(import.at("format")),
-                                    countOf(import.at("meshes")), countOf(import.at("instances"))));
+  text += labeled("import", fmt::format("{}, {}, {}", textOf(import.at("format")),
+                                        countedOf(import.at("meshes"), "mesh"),
+                                        countedOf(import.at("instances"), "instance")));
   text += labeled(
       "triangles",
       fmt::format("{} read, {} degenerate and {} duplicate dropped, {} kept",

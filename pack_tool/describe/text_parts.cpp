@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <limits>
 
 #include "pack_tool/support/text_table.h"
+#include "support/counted.h"
 #include "support/printable.h"
 
 namespace galactic::pack_tool {
@@ -12,6 +14,10 @@ namespace galactic::pack_tool {
 std::string textOf(const Json& json) { return printable(json.get<std::string>()); }
 
 std::string countOf(const Json& json) { return grouped(json.get<std::uint64_t>()); }
+
+std::string countedOf(const Json& count, std::string_view one) {
+  return fmt::format("{} {}", countOf(count), nounFor(count.get<std::uint64_t>(), one));
+}
 
 double numberOf(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 
 #include "pack_tool/describe/pack_description.h"
 
@@ -12,6 +13,9 @@ namespace galactic::pack_tool {
 
 /// A whole number with commas between thousands.
 [[nodiscard]] std::string countOf(const Json& json);
+
+/// How many there are, with their noun: "1 mesh", "1,024 meshes".
+[[nodiscard]] std::string countedOf(const Json& count, std::string_view one);
 
 /// A number, NaN when it is null: a trusted pack may hold anything.
 [[nodiscard]] double numberOf(const Json& json);

@@ -6,6 +6,7 @@
 
 #include "pack_tool/describe/info_text.h"
 #include "pack_tool/support/xml_text.h"
+#include "support/counted.h"
 #include "view/page_data.h"
 
 namespace galactic::pack_tool {
@@ -82,10 +83,11 @@ std::string htmlPage(const std::string& title, const std::vector<PackEntry>& pac
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n"
       "<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n"
-      "<p>{2} packs, {3:.2f} MB, {4} warnings</p>\n"
+      "<p>{2}, {3:.2f} MB, {4}</p>\n"
       "<table>\n<tr><th>pack</th><th>kind</th><th class=\"number\">MB</th>"
       "<th class=\"number\">warnings</th></tr>\n{5}</table>\n{6}</body>\n</html>\n",
-      xmlEscaped(title), kStyle, packs.size(), bytes / 1e6, warnings, rows, sections);
+      xmlEscaped(title), kStyle, counted(packs.size(), "pack"), bytes / 1e6,
+      counted(warnings, "warning"), rows, sections);
 }
 
 }  // namespace galactic::pack_tool

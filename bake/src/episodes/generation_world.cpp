@@ -9,6 +9,7 @@
 
 #include "galactic/render_meshes.h"
 #include "layout/render_layout.h"
+#include "support/counted.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -143,9 +144,10 @@ Result<void> GenerationWorld::addObjects(const PackFile& pack) {
 Result<void> GenerationWorld::check() const {
   if (scenes_.empty() || objects_.empty() || robot_.empty()) {
     return fail(ErrorCode::kInvalidInput, "episodes",
-                fmt::format("{} scenes, {} objects and {} robots are given; episodes are generated "
-                            "in at least one scene, with at least one object and one robot",
-                            scenes_.size(), objects_.size(), robot_.size()));
+                fmt::format("found {}, {} and {}; episodes are generated in at least one scene, "
+                            "with at least one object and one robot",
+                            counted(scenes_.size(), "scene"), counted(objects_.size(), "object"),
+                            counted(robot_.size(), "robot")));
   }
   if (auto checked = checkRobot(robot_.front()); !checked) return checked;
   for (const SceneOfPack& one : scenes_) {

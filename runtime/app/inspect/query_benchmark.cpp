@@ -7,6 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "support/counted.h"
+
 namespace galactic {
 namespace {
 
@@ -69,9 +71,10 @@ std::size_t countFree(std::span<const SceneGrids> scenes, const QueryWorkload& w
 
 std::string runQueryBenchmark(std::span<const SceneGrids> scenes, std::uint32_t seed) {
   constexpr double kNanoseconds = 1e9;
-  std::string table = fmt::format(
-      "query benchmark, one thread, {} scenes, seed {}\n{:<24}{:>12}{:>9}{:>14}{:>14}\n",
-      scenes.size(), seed, "workload", "queries", "free", "batched", "one by one");
+  std::string table =
+      fmt::format("query benchmark, one thread, {}, seed {}\n{:<24}{:>12}{:>9}{:>14}{:>14}\n",
+                  counted(scenes.size(), "scene"), seed, "workload", "queries", "free", "batched",
+                  "one by one");
   const QueryWorkload workloads[] = {coherentWorkload(scenes, 128, 200, seed),
                                      coherentWorkload(scenes, 1024, 40, seed),
                                      randomWorkload(scenes, 1U << 17U, seed)};

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "galactic/pack_reference.h"
+#include "support/counted.h"
 #include "support/workers.h"
 
 namespace galactic {
@@ -224,8 +225,8 @@ Result<std::vector<std::uint32_t>> findScenes(const Parts& parts) {
     const auto found = parts.scenes.find(names[n]);
     if (found == parts.scenes.end()) {
       return unknown(*parts.episodes->pack, kSceneNames, n,
-                     fmt::format("is \"{}\", which is none of the world's {} scenes; add its pack",
-                                 names[n], parts.scenes.size()));
+                     fmt::format("is \"{}\", which the world, with {}, does not have; add its pack",
+                                 names[n], counted(parts.scenes.size(), "scene")));
     }
     indices.push_back(static_cast<std::uint32_t>(std::distance(parts.scenes.begin(), found)));
   }
@@ -240,8 +241,8 @@ Result<std::vector<ObjectModel>> findObjects(const Parts& parts) {
     const auto found = parts.objects.find(names[n]);
     if (found == parts.objects.end()) {
       return unknown(*parts.episodes->pack, kObjectNames, n,
-                     fmt::format("is \"{}\", which is none of the world's {} objects; add its pack",
-                                 names[n], parts.objects.size()));
+                     fmt::format("is \"{}\", which the world, with {}, does not have; add its pack",
+                                 names[n], counted(parts.objects.size(), "object")));
     }
     objects.push_back(found->second.content);
   }

@@ -5,15 +5,20 @@
 
 namespace galactic {
 
-/// How many there are, in words: "1 mesh", "3 meshes". `one` is an English noun that takes an s, or
-/// es behind s, x, ch and sh.
-[[nodiscard]] std::string counted(std::integral auto count, std::string_view one) {
-  std::string text = std::to_string(count);
-  text.append(1, ' ').append(one);
-  if (count == 1) return text;
+/// The noun for so many of them. `one` is English and takes an s, or es behind s, x, ch and sh; but
+/// a vertex and an index have vertices and indices.
+[[nodiscard]] std::string nounFor(std::integral auto count, std::string_view one) {
+  std::string noun(one);
+  if (count == 1) return noun;
+  if (one.ends_with("ex")) return noun.replace(noun.size() - 2, 2, "ices");
   const bool hisses =
       one.ends_with('s') || one.ends_with('x') || one.ends_with("ch") || one.ends_with("sh");
-  return text.append(hisses ? "es" : "s");
+  return noun.append(hisses ? "es" : "s");
+}
+
+/// How many there are, in words: "1 mesh", "3 meshes".
+[[nodiscard]] std::string counted(std::integral auto count, std::string_view one) {
+  return std::to_string(count) + " " + nounFor(count, one);
 }
 
 }  // namespace galactic

@@ -64,7 +64,7 @@ TEST(InfoText, SummarizesEpisodes) {
   EXPECT_THAT(text, HasSubstr("  kind         EPIS, format version 1\n"));
   EXPECT_THAT(text, HasSubstr("  name         tidy\n  episodes     2\n  robot        helper\n"
                               "  start joints elbow, lift\n"
-                              "  objects      1 to 3, 2 on average per episode\n"));
+                              "  objects      1 to 3 per episode, 2 on average\n"));
   EXPECT_THAT(text, HasSubstr("    kitchen         2\n"));
   EXPECT_THAT(text, HasSubstr("    bowl         2          1\n    mug          2          1\n"));
 }
@@ -145,7 +145,7 @@ TEST(CheckWorld, TellsWhenGoodPacksDoNotFitTogether) {
   const Outcome outcome = checked(test::writeWorld(folder, fields));
   EXPECT_EQ(outcome.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_THAT(outcome.out, HasSubstr("objects.pack: ok\n"));
-  EXPECT_THAT(outcome.err, HasSubstr("episode_set.objects[1]: is \"pan\", which is none of"));
+  EXPECT_THAT(outcome.err, HasSubstr("episode_set.objects[1]: is \"pan\", which the world, "));
 }
 
 template <class Fields>

@@ -345,10 +345,10 @@ TEST(World, RefusesEpisodesOfWhatIsNotThere) {
   };
   expectRefusedWorld([](WorldFields& f) { f.episodes.scenes.emplace_back("loft"); },
                      "tidy.pack: episode_set.scenes[1]",
-                     "is \"loft\", which is none of the world's 1 scenes; add its pack");
+                     "is \"loft\", which the world, with 1 scene, does not have; add its pack");
   expectRefusedWorld([](WorldFields& f) { f.episodes.objects[1] = "pan"; },
                      "tidy.pack: episode_set.objects[1]",
-                     "is \"pan\", which is none of the world's 2 objects; add its pack");
+                     "is \"pan\", which the world, with 2 objects, does not have; add its pack");
   expectRefusedWorld(
       [](WorldFields& f) { f.episodes.robot = "fetch"; }, "tidy.pack: episode_set.robot",
       "is \"fetch\", the robot in helper.pack is \"helper\"; give the robot that the "

@@ -22,5 +22,10 @@ TEST(Counted, PutsAnEBetweenSoundsThatHiss) {
   EXPECT_EQ(counted(1, "mesh"), "1 mesh");
 }
 
+TEST(Counted, KnowsTheVertices) {
+  EXPECT_EQ(counted(1, "vertex"), "1 vertex");
+  EXPECT_EQ(counted(3, "vertex"), "3 vertices");
+}
+
 }  // namespace
 }  // namespace galactic
