@@ -93,7 +93,7 @@ TEST_F(WorldCli, ExplainsEveryRefusal) {
       {{"objects.pack", "--as", "world", "--count", "1"},
        1,
        "--count: does not go with --as world"},
-      {{"objects.pack", "--as", "episodes"}, 3, "objects and 0 robots are given"},
+      {{"objects.pack", "--as", "episodes"}, 3, "objects and 0 robots; episodes are generated"},
       {{"episodes.pack", "--as", "episodes", "-o", "x.pack"},
        3,
        "is a pack of kind EPIS; episodes are generated in"},

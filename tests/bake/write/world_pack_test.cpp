@@ -135,7 +135,8 @@ TEST_F(WorldPack, RefusesPacksThatMakeNoWorld) {
   expectRefused(linkPacks(no_scene, folder_.path()), "hold no scene");
   auto no_objects = paths_;
   no_objects.erase(no_objects.begin() + 1);
-  expectRefused(linkPacks(no_objects, folder_.path()), "none of the world's 0 objects");
+  expectRefused(linkPacks(no_objects, folder_.path()),
+                "which the world, with 0 objects, does not have");
 }
 
 TEST_F(WorldPack, MayLackRobotEpisodesAndObjects) {
