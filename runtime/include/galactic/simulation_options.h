@@ -41,7 +41,8 @@ struct PlacementOptions {
 /// How the base follows the floor.
 struct GroundOptions {
   /// Highest rise and deepest drop of the floor under the base within one step, meters. A higher
-  /// step is a wall; a deeper drop is refused.
+  /// step is a wall; a deeper drop is refused. Under what is too low for a rise above the default,
+  /// the base rises by the default at most.
   float most_rise = 0.05F;
   float most_drop = 0.05F;
 };

@@ -35,7 +35,8 @@ struct Action {
 /// One cart in a room.
 class Drive {
  public:
-  Drive(std::vector<Block> blocks, const Start& start, const SlideOptions& slide = {})
+  Drive(std::vector<Block> blocks, const Start& start, const SlideOptions& slide = {},
+        const GroundOptions& ground = {})
       : world_(std::move(blocks), {withTarget(start)}) {
     SimulationOptions options;
     options.envs = 1;
@@ -43,6 +44,7 @@ class Drive {
     options.task.kind = TaskKind::kNone;
     options.task.most_steps = 0;
     options.slide = slide;
+    options.ground = ground;
     simulator_.emplace(BatchSimulator::create(world_.world(), options).value());
   }
 
@@ -118,6 +120,41 @@ TEST(FloorUnder, ObeysItsOptions) {
   EXPECT_EQ(under.floor, Floor::kCarries);
   EXPECT_NEAR(under.height, 0.2F, kHeightTolerance);
   EXPECT_EQ(floorUnder(room.scene(), {0.5F, 0.02F, 0.5F}, climber).floor, Floor::kDrops);
+}
+
+TEST(FloorUnder, IsFoundUnderACeilingThatIsLowerThanTheHighestRise) {
+  // A hall with a step of 20 cm and a slab 1 m above the floor; a corner of it is open to the top.
+  const BoxRoom room({plainFloor(), {{1, -0.25F, 0}, {2, 0.2F, 3}}, {{0, 1, 0}, {3, 1.2F, 2}}});
+  for (const float rise : {0.1F, 0.25F, 0.9F, 0.98F, 1.1F, 2.95F, 100.0F}) {
+    const GroundOptions climber{.most_rise = rise};
+    const auto under = [&](const Vec3& base) { return floorUnder(room.scene(), base, climber); };
+    EXPECT_EQ(under({0.5F, 0, 0.5F}).floor, Floor::kCarries) << rise;
+    EXPECT_NEAR(under({0.5F, 0, 2.5F}).height, 0, kHeightTolerance) << rise;
+    const bool is_above_slab = rise > 1.2F && rise < 3;
+    EXPECT_NEAR(under({0.5F, 0, 0.5F}).height, is_above_slab ? 1.2F : 0, kHeightTolerance) << rise;
+    const bool reaches_step = rise > 0.2F && rise < 3;
+    EXPECT_EQ(under({1.5F, 0, 2.5F}).floor, reaches_step ? Floor::kCarries : Floor::kBlocks)
+        << rise;
+    EXPECT_EQ(under({0.5F, 0.3F, 2.5F}).floor, Floor::kDrops) << rise;
+    EXPECT_EQ(under({-0.01F, 0, 0.5F}).floor, Floor::kDrops) << rise;
+  }
+}
+
+TEST(MoveRobots, GlidesAlongAWallUnderACeilingThatIsLowerThanTheHighestRise) {
+  // The slab keeps the base from rising; the robot drives as it does without it.
+  const std::vector<Block> walls{plainFloor(), {{2, 0, 0}, {2.1F, 0.8F, 3}}};
+  std::vector<Block> roofed = walls;
+  roofed.push_back({{0, 0.8F, 0}, {3, 1, 3}});
+  const Start start{.base = {1.5F, 0, 1}, .yaw = -0.5F};
+  Drive open(walls, start);
+  Drive low(roofed, start, {}, {.most_rise = 0.85F});
+  for (int n = 0; n < 12; ++n) {
+    open.step({.forward = 1});
+    low.step({.forward = 1});
+    expectAt(low, open.at());
+  }
+  EXPECT_GT(low.slid(), 3U);
+  EXPECT_EQ(low.refused(), open.refused());
 }
 
 TEST(MoveRobots, DrivesOverAFlatFloor) {

@@ -28,9 +28,10 @@ void placeBodies(const ChunkStep& step) noexcept;
 /// appendix I.1); where that fails the robot stays where it was.
 void moveRobots(const ChunkStep& step) noexcept;
 
-/// The smallest sphere of the working set, standing on a rise as high as the base may climb.
-[[nodiscard]] Vec3 floorProbe(const Scene& scene, const Vec3& base,
-                              const GroundOptions& options) noexcept;
+/// Of a candidate under which there is no floor: the smallest sphere of the working set, standing
+/// on a rise as high as the base may climb or, where that is too high for the room in which it was,
+/// as high as by default. Where it is free there is a floor under it.
+[[nodiscard]] Vec3 floorProbe(const ChunkStep& step, std::size_t e) noexcept;
 
 /// How far a base at `base` (its y: the floor it comes from) is from the floor under it.
 struct FloorUnder {

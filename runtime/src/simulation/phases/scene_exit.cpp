@@ -69,9 +69,7 @@ FoundWay SceneExit::shortest(const Push& drive) {
   return scratch_.way.shortest(drive, step_.model.options.slide.step);
 }
 
-Vec3 SceneExit::floorProbeHere() const {
-  return floorProbe(scene_, step_.chunk.base(e_), step_.model.options.ground);
-}
+Vec3 SceneExit::floorProbeHere() const { return floorProbe(step_, e_); }
 
 /// Adds the robot's spheres in all groups that are not free as a whole: those that are blocked, and
 /// those of which it is known where they are free.
