@@ -274,12 +274,12 @@ TEST_F(PlanCli, BakesAFolderOfScans) {
   write("scans/mp3d.scene_dataset_config.json", R"({"stages": {"paths": {".glb": ["*/*.glb"]}}})");
   const ProgramRun list = run({"scans/", "--as", "dataset", "--list"});
   EXPECT_EQ(list.out, "hall\nloft\n");
-  const ProgramRun baked =
-      run({"scans", "--as", "dataset", "--scenes", "h*", "--up", "y", "--radii", "0.12"});
+  const ProgramRun baked = run({"scans", "--as", "dataset", "--scenes", "h*", "--up", "y",
+                                "--radii", "0.12", "-o", "homes.pack"});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
-  EXPECT_TRUE(has("scans.pack"));
-  EXPECT_TRUE(has("scans/scenes/hall.pack"));
-  EXPECT_FALSE(has("scans/scenes/loft.pack"));
+  EXPECT_TRUE(has("homes.pack"));
+  EXPECT_TRUE(has("homes/scenes/hall.pack"));
+  EXPECT_FALSE(has("homes/scenes/loft.pack"));
   const ProgramRun habitat = bake("out", {"--up", "z"});
   EXPECT_EQ(habitat.exit_code, 3);
   EXPECT_THAT(habitat.err, HasSubstr("says itself how its meshes stand; leave out --up"));
@@ -307,6 +307,40 @@ TEST_F(PlanCli, TurnsScansAsTheirAttributesSay) {
   EXPECT_EQ(odd.exit_code, 3);
   EXPECT_THAT(odd.err, HasSubstr("loft.stage_config.json: up: is neither [0, 1, 0] nor [0, 0, 1]; "
                                  "give --up"));
+}
+
+/// Before anything is baked, however the folder is named.
+TEST_F(PlanCli, WritesNoPacksIntoTheFolderOfTheirInputs) {
+  write("store/hall/hall.glb", fileContent(sampleFile("apartment.glb")));
+  fs::create_directory_symlink(path("store"), path("scans"));
+  const auto expectRefused = [this](const std::vector<std::string>& arguments,
+                                    const std::string& message) {
+    const ProgramRun refused = run(arguments);
+    EXPECT_EQ(refused.exit_code, 3) << arguments.back();
+    EXPECT_THAT(refused.err, HasSubstr(message));
+    EXPECT_THAT(refused.err, HasSubstr("; name another world with --out OTHER.pack\n"));
+    EXPECT_FALSE(has("store/scenes"));
+    EXPECT_FALSE(has("store/.cache"));
+  };
+  const std::string scans = ", which is the folder of scans scans or inside it";
+  expectRefused({"scans", "--as", "dataset"},
+                "galactic-bake: scans.pack: its packs would be written into scans" + scans);
+  expectRefused({"scans", "--as", "dataset", "-o", "store.pack"}, "into store" + scans);
+  expectRefused({"scans", "--as", "dataset", "-o", "scans/hall/world.pack"},
+                "into scans/hall/world" + scans);
+  // A configuration in a folder of its own, and a recipe's objects.
+  expectRefused({"data/home.scene_dataset_config.json", "-o", "data.pack", "--scenes", "c"},
+                "into data, where the input data/home.scene_dataset_config.json is");
+  write("things/mug/mug.glb", fileContent(sampleFile("objects/mug.glb")));
+  write("things.toml",
+        "[[scenes]]\nfiles = \"data/meshes/apartment.glb\"\n"
+        "[[objects]]\nfiles = \"things\"\n");
+  expectRefused({"things.toml"}, "into things, where the input ");
+  EXPECT_FALSE(has("things/scenes"));
+  // Beside them it may go: a folder of a dataset is full of folders.
+  const ProgramRun beside = run({"data/home.scene_dataset_config.json", "-o", "data/home.pack",
+                                 "--scenes", "c", "--dry-run"});
+  EXPECT_EQ(beside.exit_code, 0) << beside.err;
 }
 
 TEST_F(PlanCli, ReportsTheSameOfPacksThatWereMadeBeforeAndNow) {

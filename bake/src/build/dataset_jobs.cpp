@@ -139,6 +139,7 @@ Result<std::optional<UpAxis>> upOf(const SceneFile& scan) {
 Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
   ASSIGN_OR_RETURN(const auto files, scansIn(dataset.input));
   ASSIGN_OR_RETURN(const auto names, wantedScenes(namesOf(files), dataset.scenes));
+  packs.keepOutOf(dataset.input);
   for (const SceneFile& file : files) {
     if (!std::ranges::binary_search(names, file.name)) continue;
     SceneJob job = dataset.scene;

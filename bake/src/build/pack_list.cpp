@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -35,6 +36,20 @@ const std::vector<float>* radiiOf(const Job& job) {
 }
 
 std::string inputOf(const PackJob& pack) { return filesOf(pack.job).front().string(); }
+
+/// With links followed, as far as the path exists.
+fs::path canonicalOf(const fs::path& path) {
+  std::error_code problem;
+  fs::path canonical = fs::weakly_canonical(path, problem);
+  if (problem) return path.lexically_normal();
+  return canonical.has_filename() ? canonical : canonical.parent_path();
+}
+
+/// Whether `path` is `folder` or lies in it; both canonical.
+bool isWithin(const fs::path& path, const fs::path& folder) {
+  const fs::path relative = path.lexically_relative(folder);
+  return !relative.empty() && *relative.begin() != "..";
+}
 
 }  // namespace
 
@@ -100,6 +115,30 @@ Result<void> PackList::checkFolder() const {
   return {};
 }
 
+Result<void> PackList::checkInputFolders() const {
+  const auto refuse = [this](const std::string& whose) {
+    return fail(ErrorCode::kInvalidInput, list_.world->output.string(),
+                fmt::format("its packs would be written into {}, {}; name another world with `out` "
+                            "OTHER.pack",
+                            list_.folder.string(), whose));
+  };
+  const fs::path packs = canonicalOf(list_.folder);
+  for (const fs::path& folder : input_folders_) {
+    if (isWithin(packs, canonicalOf(folder))) {
+      return refuse("which is the folder of scans " + folder.string() + " or inside it");
+    }
+  }
+  // Many packs have their input in the same folder.
+  std::set<fs::path> seen;
+  for (const PackJob& pack : list_.assets) {
+    if (!seen.insert(pack.folder).second) continue;
+    if (isWithin(canonicalOf(pack.folder), packs)) {
+      return refuse("where the input " + inputOf(pack) + " is");
+    }
+  }
+  return {};
+}
+
 Result<void> PackList::checkRadii() const {
   const PackJob* first = nullptr;
   for (const PackJob& pack : list_.assets) {
@@ -156,6 +195,7 @@ void PackList::completeEpisodes() {
 Result<JobList> PackList::finish() {
   RETURN_IF_ERROR(checkScenes());
   RETURN_IF_ERROR(checkFolder());
+  RETURN_IF_ERROR(checkInputFolders());
   std::ranges::sort(list_.assets, {}, &PackJob::name);
   const auto twice = std::ranges::adjacent_find(list_.assets, {}, &PackJob::name);
   if (twice != list_.assets.end()) {

@@ -22,6 +22,8 @@ class PackList {
   void setTask(std::vector<OptionText> task);
   void leaveOut(LeftOut scene) { list_.left_out.push_back(std::move(scene)); }
   void addBroken(BrokenScene scene) { list_.broken.push_back(std::move(scene)); }
+  /// A folder that is an input as a whole: no pack may be written into it.
+  void keepOutOf(const std::filesystem::path& folder) { input_folders_.push_back(folder); }
   /// Says each sentence once.
   void warn(const std::string& warning);
   /// Where the packs go.
@@ -35,15 +37,18 @@ class PackList {
   [[nodiscard]] Result<void> checkForEpisodes() const;
 
   /// The list, sorted. Fails with kInvalidInput where two packs have one name, where one would lie
-  /// outside of the world's folder, and where no scene is left.
+  /// outside of the world's folder, where no scene is left, and where that folder is an input's.
   [[nodiscard]] Result<JobList> finish();
 
  private:
   [[nodiscard]] Result<void> checkScenes() const;
   [[nodiscard]] Result<void> checkFolder() const;
+  /// Packs among a dataset's own files would be found by whoever reads it next.
+  [[nodiscard]] Result<void> checkInputFolders() const;
   void completeEpisodes();
 
   JobList list_;
+  std::vector<std::filesystem::path> input_folders_;
 };
 
 /// Adds a pack for each wanted scene of the dataset, and one for each movable object in them.
