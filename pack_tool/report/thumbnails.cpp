@@ -77,13 +77,15 @@ bool hasFigures(const PackFile& pack) {
   return pack.kind() == PackKind::kObjects || pack.kind() == PackKind::kRobot;
 }
 
-Result<void> addFigures(const PackFile& pack, std::vector<Thumbnail>& thumbnails) {
+Result<void> addFigures(const PackFile& pack, AbsentTextures& absent,
+                        std::vector<Thumbnail>& thumbnails) {
   FigureOptions options;
   if (pack.kind() == PackKind::kScene) {
     options.layers = LayerSet::none();
     options.layers.add(FigureLayer::kMesh);
   }
   ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, options));
+  absent.note(pack, figures.front().render_meshes.get());
   ASSIGN_OR_RETURN(const auto image, drawn(figures));
   ASSIGN_OR_RETURN(auto thumbnail, encoded("as it is drawn", image));
   thumbnails.push_back(std::move(thumbnail));
@@ -92,10 +94,10 @@ Result<void> addFigures(const PackFile& pack, std::vector<Thumbnail>& thumbnails
 
 }  // namespace
 
-Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack) {
+Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack, AbsentTextures& absent) {
   std::vector<Thumbnail> thumbnails;
   if (hasFigures(pack)) {
-    RETURN_IF_ERROR(addFigures(pack, thumbnails));
+    RETURN_IF_ERROR(addFigures(pack, absent, thumbnails));
   }
   if (pack.kind() == PackKind::kScene) {
     ASSIGN_OR_RETURN(const auto scene, sceneOf(pack));

@@ -4,6 +4,7 @@
 
 #include "galactic/error.h"
 #include "galactic/pack.h"
+#include "pack_tool/figure/shared_textures_of.h"
 
 namespace galactic::pack_tool {
 
@@ -17,7 +18,9 @@ struct Thumbnail {
 };
 
 /// Pictures of what is in a pack: each grid of a scene from above, and its meshes; each object, a
-/// robot from four sides. None of other kinds. Fails as the pictures do.
-[[nodiscard]] Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack);
+/// robot from four sides. None of other kinds. Notes the shared textures that were not found for
+/// them. Fails as the pictures do.
+[[nodiscard]] Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack,
+                                                          AbsentTextures& absent);
 
 }  // namespace galactic::pack_tool

@@ -29,6 +29,11 @@ int reportError(const Console& console, const Error& error) {
   return static_cast<int>(error.code);
 }
 
+void reportWarning(const Console& console, const std::optional<std::string>& sentence) {
+  if (!sentence) return;
+  console.err << fmt::format("galactic-pack: warning: {}\n", printable(*sentence));
+}
+
 int worseExit(int a, int b) { return severity(a) < severity(b) ? b : a; }
 
 }  // namespace galactic::pack_tool

@@ -1,5 +1,7 @@
 #pragma once
+#include <optional>
 #include <ostream>
+#include <string>
 
 #include "galactic/error.h"
 #include "support/printable.h"
@@ -14,6 +16,9 @@ struct Console {
 
 /// Prints "galactic-pack: <where>: <message>" to `err`; returns the error's exit code.
 int reportError(const Console& console, const Error& error);
+
+/// Prints "galactic-pack: warning: <sentence>" to `err`, where there is one.
+void reportWarning(const Console& console, const std::optional<std::string>& sentence);
 
 /// The more serious of two exit codes. Rising: ok, differs, unsupported, I/O, invalid input,
 /// command line, internal.

@@ -6,6 +6,7 @@
 
 #include "galactic/episode_set.h"
 #include "pack_tool/export/robot_text.h"
+#include "pack_tool/figure/shared_textures_of.h"
 #include "pack_tool/mesh/figure_glb.h"
 #include "pack_tool/mesh/grid_mesh.h"
 #include "pack_tool/support/open_scene.h"
@@ -94,8 +95,10 @@ Result<std::string> gridMesh(const PackFile& pack, const ExportOptions& options,
   return format == ExportFormat::kPly ? encodePly(patches) : encodeObj(patches);
 }
 
-Result<std::string> figureScene(const PackFile& pack, const ExportOptions& options) {
+Result<std::string> figureScene(const PackFile& pack, const ExportOptions& options,
+                                AbsentTextures& absent) {
   ASSIGN_OR_RETURN(auto figures, figuresOf(pack, options.figures.value_or(FigureOptions{})));
+  absent.note(pack, figures.front().render_meshes.get());
   // A single object stays in its own frame.
   if (figures.size() > 1) layOutInARow(figures);
   auto bytes = encodeGlb(figures);
@@ -113,13 +116,13 @@ Result<std::string> publishedEpisodes(const PackFile& pack, const ExportOptions&
   return episodeSetText(set, options.object_up.value_or(FileUp::kZ));
 }
 
-Result<std::string> encode(const PackFile& pack, const ExportOptions& options,
-                           ExportFormat format) {
+Result<std::string> encode(const PackFile& pack, const ExportOptions& options, ExportFormat format,
+                           AbsentTextures& absent) {
   switch (format) {
     case ExportFormat::kEpisodeSet:
       return publishedEpisodes(pack, options);
     case ExportFormat::kGlb:
-      return figureScene(pack, options);
+      return figureScene(pack, options, absent);
     case ExportFormat::kSrdf:
     case ExportFormat::kUrdf:
       return robotDescription(pack, format);
@@ -136,11 +139,11 @@ std::filesystem::path outputOf(const ExportOptions& options) {
   return options.pack.stem().concat(kEpisodeSetSuffix);
 }
 
-Result<void> exportPack(const ExportOptions& options) {
+Result<void> exportPack(const ExportOptions& options, AbsentTextures& absent) {
   ASSIGN_OR_RETURN(const auto format, formatOf(options));
   if (auto checked = checkOptions(options, format); !checked) return checked;
   ASSIGN_OR_RETURN(const auto pack, PackFile::open(options.pack, options.trust));
-  ASSIGN_OR_RETURN(const auto bytes, encode(pack, options, format));
+  ASSIGN_OR_RETURN(const auto bytes, encode(pack, options, format, absent));
   const std::filesystem::path output = outputOf(options);
   if (auto checked = checkOutput(pack, output); !checked) return checked;
   return writeOutput(output, bytes);
@@ -149,8 +152,11 @@ Result<void> exportPack(const ExportOptions& options) {
 }  // namespace
 
 int runExport(const ExportOptions& options, const Console& console) {
-  const auto done = exportPack(options);
-  return done ? kExitOk : reportError(console, done.error());
+  AbsentTextures absent;
+  const auto done = exportPack(options, absent);
+  if (!done) return reportError(console, done.error());
+  reportWarning(console, absent.warning());
+  return kExitOk;
 }
 
 }  // namespace galactic::pack_tool

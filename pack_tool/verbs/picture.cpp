@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "pack_tool/figure/shared_textures_of.h"
 #include "pack_tool/pictures/figure_picture.h"
 #include "pack_tool/pictures/scene_picture.h"
 #include "pack_tool/support/open_scene.h"
@@ -31,8 +32,10 @@ Result<Image> drawGrids(const PackFile& pack, const GridPictureOptions& options)
   return std::move(slice->image);
 }
 
-Result<Image> drawFigures(const PackFile& pack, const PictureOptions& options) {
+Result<Image> drawFigures(const PackFile& pack, const PictureOptions& options,
+                          AbsentTextures& absent) {
   ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, options.figures.value_or(FigureOptions{})));
+  absent.note(pack, figures.front().render_meshes.get());
   if (figures.size() == 1) {
     return pictures::drawFigure(figures.front(), options.size.value_or(pictures::kDefaultViewSize));
   }
@@ -43,33 +46,35 @@ Result<Image> drawFigures(const PackFile& pack, const PictureOptions& options) {
 }
 
 /// Of a scene.
-Result<Image> drawMeshes(const PackFile& pack, const PictureOptions& options) {
+Result<Image> drawMeshes(const PackFile& pack, const PictureOptions& options,
+                         AbsentTextures& absent) {
   ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, *options.figures));
+  absent.note(pack, figures.front().render_meshes.get());
   auto image =
       pictures::drawScene(figures.front(), options.size.value_or(pictures::kDefaultViewSize));
   if (!image) image.error().where = pack.where();
   return image;
 }
 
-Result<Image> draw(const PackFile& pack, const PictureOptions& options) {
+Result<Image> draw(const PackFile& pack, const PictureOptions& options, AbsentTextures& absent) {
   if (pack.kind() == PackKind::kScene) {
     if (!options.figures && !options.size) return drawGrids(pack, options.grids);
-    if (options.figures && !options.grids.anyGiven()) return drawMeshes(pack, options);
+    if (options.figures && !options.grids.anyGiven()) return drawMeshes(pack, options, absent);
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a scene: a picture is either of its grids, with --radius, --slice and --value, "
                 "or of its meshes, with --what mesh and --size");
   }
-  if (!options.grids.anyGiven()) return drawFigures(pack, options);
+  if (!options.grids.anyGiven()) return drawFigures(pack, options, absent);
   return fail(ErrorCode::kInvalidInput, pack.where(),
               fmt::format("is a pack of kind {} and holds no column grids; --radius, --slice and "
                           "--value are for scenes",
                           packKindName(pack.kind())));
 }
 
-Result<void> makePicture(const PictureOptions& options) {
+Result<void> makePicture(const PictureOptions& options, AbsentTextures& absent) {
   RETURN_IF_ERROR(checkExtension(options.output, {".png", "pictures are PNG files"}));
   ASSIGN_OR_RETURN(const auto pack, PackFile::open(options.pack, options.trust));
-  ASSIGN_OR_RETURN(const auto image, draw(pack, options));
+  ASSIGN_OR_RETURN(const auto image, draw(pack, options, absent));
   if (auto checked = checkOutput(pack, options.output); !checked) return checked;
   return pictures::writePng(options.output, image);
 }
@@ -77,8 +82,11 @@ Result<void> makePicture(const PictureOptions& options) {
 }  // namespace
 
 int runPicture(const PictureOptions& options, const Console& console) {
-  const auto done = makePicture(options);
-  return done ? kExitOk : reportError(console, done.error());
+  AbsentTextures absent;
+  const auto done = makePicture(options, absent);
+  if (!done) return reportError(console, done.error());
+  reportWarning(console, absent.warning());
+  return kExitOk;
 }
 
 }  // namespace galactic::pack_tool

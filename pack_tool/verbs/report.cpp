@@ -23,24 +23,26 @@ std::string nameFrom(const std::filesystem::path& folder, const std::filesystem:
   return (is_below ? relative : pack.filename()).generic_string();
 }
 
-Result<PackEntry> entryOf(const PackFile& pack, const std::filesystem::path& folder) {
+Result<PackEntry> entryOf(const PackFile& pack, const std::filesystem::path& folder,
+                          AbsentTextures& absent) {
   PackEntry entry{.description = describePack(pack, Detail::kSummary), .thumbnails = {}};
   entry.description["file"] = nameFrom(folder, entry.description.at("file").get<std::string>());
-  ASSIGN_OR_RETURN(auto thumbnails, thumbnailsOf(pack));
+  ASSIGN_OR_RETURN(auto thumbnails, thumbnailsOf(pack, absent));
   entry.thumbnails = std::move(thumbnails);
   return entry;
 }
 
 /// On all cores; what becomes of a pack does not depend on which thread draws it.
 std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs,
-                                         const std::filesystem::path& folder) {
+                                         const std::filesystem::path& folder,
+                                         AbsentTextures& absent) {
   std::vector<Result<PackEntry>> entries(packs.size());
   detail::forEachPart(detail::threadCount(0), packs.size(),
-                      [&](std::size_t n) { entries[n] = entryOf(packs[n], folder); });
+                      [&](std::size_t n) { entries[n] = entryOf(packs[n], folder, absent); });
   return entries;
 }
 
-Result<void> makeReport(const ReportOptions& options) {
+Result<void> makeReport(const ReportOptions& options, AbsentTextures& absent) {
   RETURN_IF_ERROR(checkExtension(options.output, kPageFile));
   ASSIGN_OR_RETURN(
       const auto packs,
@@ -50,7 +52,7 @@ Result<void> makeReport(const ReportOptions& options) {
   std::error_code ignored;
   const std::filesystem::path folder =
       std::filesystem::absolute(options.packs.front(), ignored).lexically_normal().parent_path();
-  for (Result<PackEntry>& entry : entriesOf(packs, folder)) {
+  for (Result<PackEntry>& entry : entriesOf(packs, folder, absent)) {
     if (!entry) return tl::unexpected(entry.error());
     entries.push_back(std::move(*entry));
   }
@@ -60,8 +62,11 @@ Result<void> makeReport(const ReportOptions& options) {
 }  // namespace
 
 int runReport(const ReportOptions& options, const Console& console) {
-  const auto done = makeReport(options);
-  return done ? kExitOk : reportError(console, done.error());
+  AbsentTextures absent;
+  const auto done = makeReport(options, absent);
+  if (!done) return reportError(console, done.error());
+  reportWarning(console, absent.warning());
+  return kExitOk;
 }
 
 }  // namespace galactic::pack_tool

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "pack_tool/describe/pack_description.h"
@@ -19,7 +20,7 @@ bool hasMeshes(const PackFile& pack) {
          pack.kind() == PackKind::kRobot;
 }
 
-Result<void> viewPack(const ViewOptions& options) {
+Result<void> viewPack(const ViewOptions& options, AbsentTextures& absent) {
   RETURN_IF_ERROR(checkExtension(options.output, kPageFile));
   ASSIGN_OR_RETURN(
       const auto packs,
@@ -29,9 +30,9 @@ Result<void> viewPack(const ViewOptions& options) {
     Json facts = describePack(pack, Detail::kSummary);
     // Where the pack lay is nobody's business who is sent the page.
     facts["file"] = std::filesystem::path(pack.where()).filename().string();
-    assets.push_back({.pack = &pack,
-                      .meshes = hasMeshes(pack) ? renderMeshesWithTextures(pack) : nullptr,
-                      .facts = jsonText(facts)});
+    auto meshes = hasMeshes(pack) ? renderMeshesWithTextures(pack) : nullptr;
+    absent.note(pack, meshes.get());
+    assets.push_back({.pack = &pack, .meshes = std::move(meshes), .facts = jsonText(facts)});
   }
   ASSIGN_OR_RETURN(const auto page, viewPage(assets, {},
                                              {.title = options.pack.filename().string(),
@@ -43,8 +44,11 @@ Result<void> viewPack(const ViewOptions& options) {
 }  // namespace
 
 int runView(const ViewOptions& options, const Console& console) {
-  const auto done = viewPack(options);
-  return done ? kExitOk : reportError(console, done.error());
+  AbsentTextures absent;
+  const auto done = viewPack(options, absent);
+  if (!done) return reportError(console, done.error());
+  reportWarning(console, absent.warning());
+  return kExitOk;
 }
 
 }  // namespace galactic::pack_tool

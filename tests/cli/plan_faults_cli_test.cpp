@@ -404,6 +404,40 @@ TEST_F(PlanFaults, MakesTexturePacksAgainThatAreGoneOrDamaged) {
   expectSamePacks(packsIn("out"), before);
 }
 
+/// What is drawn is not what the scene looks like, and nobody may take it for that.
+TEST_F(PlanFaults, SaysWhichSharedTexturesAPictureLacks) {
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  const std::string scene = "out/home/scenes/c.pack";
+  const std::vector<std::vector<std::string>> runs{
+      {"picture", scene, "--what", "mesh", "--size", "64", "-o", "c.png"},
+      {"view", "out/home.pack", "-o", "c.html"},
+      {"export", scene, "-o", "c.glb"},
+      {"report", "out/home.pack", scene, "-o", "r.html"}};
+  const auto drawn = [this](const std::vector<std::string>& arguments) {
+    const ProgramRun result = runProgram(GALACTIC_PACK, path(""), arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(has(arguments.back()));
+    return result.err;
+  };
+  const std::vector<std::string> packs = textures("out");
+  ASSERT_GT(packs.size(), 2U);
+  for (const auto& arguments : runs) EXPECT_EQ(drawn(arguments), "") << arguments.front();
+  damage(packs.front());
+  EXPECT_EQ(drawn(runs.front()),
+            "galactic-pack: warning: 1 shared texture is drawn as flat colors: its pack is missing "
+            "or damaged in out/home/textures\n");
+  fs::remove_all(path("out/home/textures"));
+  for (const auto& arguments : runs) {
+    EXPECT_EQ(drawn(arguments),
+              fmt::format("galactic-pack: warning: {} shared textures are drawn as flat colors: "
+                          "their packs are missing or damaged in out/home/textures\n",
+                          packs.size()))
+        << arguments.front();
+  }
+  // Grids have none.
+  EXPECT_EQ(drawn({"picture", scene, "-o", "grids.png"}), "");
+}
+
 TEST_F(PlanFaults, MakesPacksAgainThatWereDamaged) {
   ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
   const PackContents before = packsIn("out");
