@@ -18,6 +18,9 @@ constexpr double kWorthMentioning = 0.1;
 /// What one column takes while its grid is made: as measured on the sample apartment.
 constexpr double kBytesPerColumn = 100;
 
+/// Meters, as of objects and robots.
+constexpr float kGreatestRadius = 10;
+
 Result<void> checkRadii(const std::vector<float>& radii) {
   constexpr std::size_t kMaxRadii = 8;
   const auto invalid = [](std::string message) {
@@ -30,12 +33,28 @@ Result<void> checkRadii(const std::vector<float>& radii) {
     if (!std::isfinite(radii[i]) || radii[i] <= 0) {
       return invalid(fmt::format("has the radius {} m, expected a positive length", radii[i]));
     }
+    if (radii[i] > kGreatestRadius) {
+      return invalid(
+          fmt::format("has the radius {} m, expected at most {} m; millimeters? Give meters",
+                      radii[i], kGreatestRadius));
+    }
     if (i > 0 && !(radii[i] > radii[i - 1])) {
       return invalid(fmt::format("has {} m after {} m; list each radius once, in ascending order",
                                  radii[i], radii[i - 1]));
     }
   }
   return {};
+}
+
+/// A ball larger than the scene finds no place in it, and takes long to find that out.
+Result<void> checkFits(const std::vector<float>& radii, const Bounds& bounds) {
+  const Vec3 size{bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y,
+                  bounds.max.z - bounds.min.z};
+  if (radii.back() <= std::max({size.x, size.y, size.z})) return {};
+  return fail(ErrorCode::kInvalidInput, "radii",
+              fmt::format("has the radius {} m, and the whole scene is {:.3g} x {:.3g} x {:.3g} m; "
+                          "millimeters? Give meters, or check the scene's unit (`scale`)",
+                          radii.back(), size.x, size.y, size.z));
 }
 
 /// Length of the spans of `cells` that do not lie within one span of `lines`, to float rounding.
@@ -109,6 +128,7 @@ class SceneBaker {
     if (!caster_) caster_.emplace(mesh_);
     CastCheckOptions check_options;
     check_options.columns = options_.check_columns;
+    check_options.jobs = options_.jobs;
     if (options_.coverage == Coverage::kColumn) {
       return checkWithCasts(mesh_, columns, *caster_, check_options);
     }
@@ -183,6 +203,7 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
     return placeAndClean(asset);
   }();
   if (!cleaned) return tl::unexpected(cleaned.error());
+  RETURN_IF_ERROR(checkFits(options.radii, cleaned->mesh.bounds));
 
   BakedScene scene;
   scene.name = asset.name;

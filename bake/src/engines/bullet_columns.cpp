@@ -56,6 +56,7 @@ class SphereProbe {
   }
 
   [[nodiscard]] const BulletCastOptions& options() const { return options_; }
+  [[nodiscard]] const std::shared_ptr<const BulletMesh>& shape() const { return shape_; }
 
   /// Whether a ball of `radius` at `center` touches the mesh as Bullet sees it: Bullet counts
   /// contacts up to 2 % of the radius away.
@@ -199,9 +200,14 @@ class BulletColumnCaster::World : public SphereProbe {
 
 BulletColumnCaster::BulletColumnCaster(const TriangleMesh& mesh, const BulletCastOptions& options)
     : world_(std::make_unique<World>(std::make_shared<const BulletMesh>(mesh), options)) {}
+BulletColumnCaster::BulletColumnCaster(std::unique_ptr<World> world) : world_(std::move(world)) {}
 BulletColumnCaster::~BulletColumnCaster() = default;
 BulletColumnCaster::BulletColumnCaster(BulletColumnCaster&&) noexcept = default;
 BulletColumnCaster& BulletColumnCaster::operator=(BulletColumnCaster&&) noexcept = default;
+
+BulletColumnCaster BulletColumnCaster::another() const {
+  return BulletColumnCaster(std::make_unique<World>(world_->shape(), world_->options()));
+}
 
 std::vector<Span> BulletColumnCaster::column(const GridFrame& frame, ColumnIndex at) const {
   return ColumnSearch(*world_, frame, at).run();

@@ -7,6 +7,7 @@
 
 #include "column_grid/triangle_interval.h"
 #include "galactic/bake/column_engines.h"
+#include "galactic/bake/parallel_for.h"
 
 namespace galactic::bake {
 namespace {
@@ -19,6 +20,13 @@ constexpr double kPulledIn = 1e-4;
 constexpr double kPartLength = 0.01;
 /// More parts than this are made longer instead.
 constexpr double kMaxParts = 512;
+
+/// Triangles that the casts of one column may test on average: their search meets a triangle at
+/// each step, BulletCastOptions::step, that its ball is at its height. 128 columns of such scenes
+/// take about half a second of one core.
+constexpr double kTestsPerColumn = 20'000;
+/// So many columns are replayed however many triangles they are near.
+constexpr std::uint32_t kLeastColumns = 4;
 
 /// A triangle near a sampled column: how far its box is aside, squared, and its heights.
 struct NearTriangle {
@@ -103,11 +111,12 @@ double outside(double value, const std::array<double, 2>& range) {
   return std::max({range[0] - value, value - range[1], 0.0});
 }
 
-/// Notes with each sampled column the triangles that may be within `reach` of it. One pass over the
-/// mesh: for most triangles the search among the columns, which are in ascending order, ends at
-/// once.
-void gatherTriangles(const TriangleMesh& mesh, const GridFrame& frame, double reach,
-                     std::vector<SampledColumn>& columns) {
+/// Calls `visit` with each sampled column and each triangle that may be within `reach` of it. One
+/// pass over the mesh: for most triangles the search among the columns, which are in ascending
+/// order, ends at once.
+template <class Visit>
+void forEachNear(const TriangleMesh& mesh, const GridFrame& frame, double reach,
+                 std::vector<SampledColumn>& columns, const Visit& visit) {
   const auto before = [](const SampledColumn& column, std::size_t index) {
     return column.index < index;
   };
@@ -133,11 +142,41 @@ void gatherTriangles(const TriangleMesh& mesh, const GridFrame& frame, double re
         const double dx = outside(frame.centerX(column->at.i), x);
         const double dz = outside(frame.centerZ(column->at.k), z);
         const double aside_squared = dx * dx + dz * dz;
-        if (aside_squared <= reach * reach) column->near.push_back({t, aside_squared, y});
+        if (aside_squared <= reach * reach) visit(*column, NearTriangle{t, aside_squared, y});
         ++column;
       }
     }
   }
+}
+
+/// How many tests of triangles the casts of these columns take at most.
+double testsOf(const TriangleMesh& mesh, const GridFrame& frame, double reach,
+               std::vector<SampledColumn>& columns) {
+  const auto step = static_cast<double>(BulletCastOptions().step);
+  const double most = static_cast<double>(frame.heights.hi) - static_cast<double>(frame.heights.lo);
+  double tests = 0;
+  forEachNear(mesh, frame, reach, columns, [&](const SampledColumn&, const NearTriangle& near) {
+    tests += std::min(most, near.heights[1] - near.heights[0] + 2 * reach) / step;
+  });
+  return tests;
+}
+
+/// The columns to replay, with the triangles within `reach` of each. As many as are wanted, or as
+/// few as make up for the triangles within reach: a scan of a million triangles under a ball of
+/// half a meter would take longer to check than to bake.
+std::vector<SampledColumn> sampleOf(const TriangleMesh& mesh, const Columns& columns, double reach,
+                                    std::uint32_t wanted) {
+  std::vector<SampledColumn> sample = chooseColumns(columns, wanted);
+  const double allowed = kTestsPerColumn * static_cast<double>(sample.size());
+  const double tests = testsOf(mesh, columns.frame, reach, sample);
+  if (tests > allowed && sample.size() > kLeastColumns) {
+    const auto affordable =
+        static_cast<std::uint32_t>(static_cast<double>(sample.size()) * (allowed / tests));
+    sample = chooseColumns(columns, std::max(kLeastColumns, affordable));
+  }
+  forEachNear(mesh, columns.frame, reach, sample,
+              [](SampledColumn& column, const NearTriangle& near) { column.near.push_back(near); });
+  return sample;
 }
 
 /// What the distance says about the grid at one height, in ascending order of gravity.
@@ -262,29 +301,51 @@ double effectiveTolerance(const Span& heights, double tolerance) {
   return std::max(tolerance, 2 * static_cast<double>(unit));
 }
 
+CastCheck checkColumn(const TriangleMesh& mesh, const Columns& columns,
+                      const SampledColumn& sampled, const BulletColumnCaster& caster,
+                      double tolerance) {
+  const GridFrame& frame = columns.frame;
+  const std::vector<Span> cast = caster.column(frame, sampled.at);
+  const Judge judge(mesh, frame, sampled, tolerance);
+  CastCheck result;
+  bool differs = false;
+  for (const Piece& piece : cutInPieces(frame.heights, columns.column(sampled.index), cast)) {
+    judgePiece(judge, piece, static_cast<double>(frame.radius), result);
+    differs |= piece.grid_free != piece.cast_free && piece.length() > tolerance;
+  }
+  result.columns = 1;
+  result.columns_differing = differs ? 1 : 0;
+  result.compared = static_cast<double>(frame.heights.hi) - static_cast<double>(frame.heights.lo);
+  return result;
+}
+
+void add(const CastCheck& one, CastCheck& sum) {
+  sum.columns += one.columns;
+  sum.columns_differing += one.columns_differing;
+  sum.compared += one.compared;
+  sum.method += one.method;
+  sum.ties += one.ties;
+  sum.errors += one.errors;
+  sum.longest = std::max(sum.longest, one.longest);
+  sum.longest_tie = std::max(sum.longest_tie, one.longest_tie);
+}
+
 }  // namespace
 
 CastCheck checkWithCasts(const TriangleMesh& mesh, const Columns& columns,
                          const BulletColumnCaster& caster, const CastCheckOptions& options) {
   const GridFrame& frame = columns.frame;
   const double tolerance = effectiveTolerance(frame.heights, options.tie_tolerance);
-  std::vector<SampledColumn> sample = chooseColumns(columns, options.columns);
   // Further triangles cannot bring any point of a column within the radius and the tolerance.
-  gatherTriangles(mesh, frame, static_cast<double>(frame.radius) + 2 * tolerance, sample);
+  const double reach = static_cast<double>(frame.radius) + 2 * tolerance;
+  const std::vector<SampledColumn> sample = sampleOf(mesh, columns, reach, options.columns);
+  std::vector<CastCheck> checks(sample.size());
+  parallelFor(options.jobs, sample.size(), [&](std::size_t n) {
+    checks[n] = checkColumn(mesh, columns, sample[n], caster.another(), tolerance);
+  });
+  // In the order of the columns: sums of fractions depend on it.
   CastCheck result;
-  for (const SampledColumn& column : sample) {
-    const std::vector<Span> cast = caster.column(frame, column.at);
-    const Judge judge(mesh, frame, column, tolerance);
-    bool differs = false;
-    for (const Piece& piece : cutInPieces(frame.heights, columns.column(column.index), cast)) {
-      judgePiece(judge, piece, static_cast<double>(frame.radius), result);
-      differs |= piece.grid_free != piece.cast_free && piece.length() > tolerance;
-    }
-    ++result.columns;
-    result.columns_differing += differs ? 1U : 0U;
-    result.compared +=
-        static_cast<double>(frame.heights.hi) - static_cast<double>(frame.heights.lo);
-  }
+  for (const CastCheck& check : checks) add(check, result);
   return result;
 }
 

@@ -46,6 +46,8 @@ TEST(SceneBaker, RefusesRadiiThatMakeNoWorkingSet) {
       {{0.05F, -0.1F}, "has the radius -0.1 m, expected a positive length"},
       {{0}, "has the radius 0 m, expected a positive length"},
       {{kNan}, "has the radius nan m, expected a positive length"},
+      {{10.5F}, "has the radius 10.5 m, expected at most 10 m; millimeters? Give meters"},
+      {{15, 50, 120}, "has the radius 15 m, expected at most 10 m; millimeters? Give meters"},
       {{0.05F, 0.05F}, "has 0.05 m after 0.05 m; list each radius once, in ascending order"},
       {{0.12F, 0.05F}, "has 0.05 m after 0.12 m; list each radius once, in ascending order"},
   };
@@ -55,6 +57,19 @@ TEST(SceneBaker, RefusesRadiiThatMakeNoWorkingSet) {
     EXPECT_EQ(error.where, "radii");
     EXPECT_EQ(error.message, message);
   }
+}
+
+TEST(SceneBaker, RefusesARadiusLargerThanTheScene) {
+  const SourceAsset block =
+      test::sourceAssetOf(test::MeshBuilder().box({0, 0, 0}, {1, 2, 0.5F}).build());
+  const auto refused = bake(block, {.radii = {0.05F, 2.1F}});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().where, "radii");
+  EXPECT_EQ(refused.error().message,
+            "has the radius 2.1 m, and the whole scene is 1 x 2 x 0.5 m; millimeters? Give meters, "
+            "or check the scene's unit (`scale`)");
+  const auto largest = bake(block, {.radii = {2}, .spacing = 0.5F, .check_columns = 1});
+  EXPECT_TRUE(largest);
 }
 
 TEST(SceneBaker, RefusesARadiusUnderHalfTheSpacing) {

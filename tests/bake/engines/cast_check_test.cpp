@@ -72,6 +72,22 @@ TEST_P(CastCheckOfARoom, GivesTheSameAnswerTwice) {
   EXPECT_EQ(one.ties, two.ties);
 }
 
+TEST_P(CastCheckOfARoom, DoesNotDependOnTheNumberOfThreads) {
+  const CastCheck one = check(columns_);
+  for (const unsigned jobs : {2U, 5U}) {
+    const CastCheck many =
+        checkWithCasts(mesh_, columns_, caster_, {.columns = kColumns, .jobs = jobs});
+    EXPECT_EQ(one.columns, many.columns);
+    EXPECT_EQ(one.columns_differing, many.columns_differing);
+    EXPECT_EQ(one.compared, many.compared);
+    EXPECT_EQ(one.method, many.method);
+    EXPECT_EQ(one.ties, many.ties);
+    EXPECT_EQ(one.errors, many.errors);
+    EXPECT_EQ(one.longest, many.longest);
+    EXPECT_EQ(one.longest_tie, many.longest_tie);
+  }
+}
+
 TEST_P(CastCheckOfARoom, SeesAMissingSpan) {
   const CastCheck result = check(edited(columns_, [](std::vector<Span>& spans) {
     if (spans.size() > 1) spans.erase(spans.begin() + 1);
@@ -113,6 +129,29 @@ TEST(CastCheck, FindsNoErrorInTheExactColumnsOfRandomTriangles) {
     EXPECT_EQ(result.errors, 0) << radius;
     EXPECT_GT(result.method, 0) << radius;
   }
+}
+
+/// A large ball among many triangles meets most of them at each of its steps.
+TEST(CastCheck, ReplaysFewerColumnsWhereManyTrianglesAreWithinReach) {
+  RecordProperty("seed", static_cast<int>(kSeed));
+  const TriangleMesh mesh = test::randomSoup(kSeed, 4000);
+  const BulletColumnCaster caster(mesh);
+  const auto replayed = [&](float radius, std::uint32_t wanted) {
+    const Columns columns = exactColumns(mesh, test::frameOver(mesh, radius, 0.03F)).columns;
+    const CastCheck result = checkWithCasts(mesh, columns, caster, {.columns = wanted});
+    EXPECT_EQ(result.errors, 0) << radius;
+    const Span heights = columns.frame.heights;
+    EXPECT_NEAR(result.compared, result.columns * static_cast<double>(heights.hi - heights.lo),
+                1e-3);
+    return result.columns;
+  };
+  EXPECT_EQ(replayed(0.05F, 24), 24U);
+  const std::uint32_t few = replayed(0.3F, 24);
+  EXPECT_GT(few, 4U);
+  EXPECT_LT(few, 18U);
+  // Who asks for more gets more.
+  EXPECT_GT(replayed(0.3F, 48), few);
+  EXPECT_EQ(replayed(0.3F, 2), 2U);
 }
 
 /// Both methods agree on nonsense: only the distance can tell.

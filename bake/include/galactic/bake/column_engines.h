@@ -56,11 +56,15 @@ class BulletColumnCaster {
   BulletColumnCaster(BulletColumnCaster&&) noexcept;
   BulletColumnCaster& operator=(BulletColumnCaster&&) noexcept;
 
+  /// Another one of the same mesh, which both share: for another thread.
+  [[nodiscard]] BulletColumnCaster another() const;
+
   /// Free spans of one column of `frame`, ascending.
   [[nodiscard]] std::vector<Span> column(const GridFrame& frame, ColumnIndex at) const;
 
  private:
   class World;
+  explicit BulletColumnCaster(std::unique_ptr<World> world);
   std::unique_ptr<World> world_;
 };
 
@@ -75,14 +79,18 @@ class BulletColumnCaster {
                                             unsigned jobs);
 
 struct CastCheckOptions {
-  /// Columns to replay, spread evenly over those that hold spans.
+  /// Columns to replay, spread evenly over those that hold spans. Fewer where very many triangles
+  /// are within reach of the balls, but not fewer than 4.
   std::uint32_t columns = 128;
   /// A surface whose distance differs from the radius by no more than this is a tie, meters.
   double tie_tolerance = 1e-5;
+  /// Threads; the result does not depend on it.
+  unsigned jobs = 1;
 };
 
 /// How replayed sphere casts compare with a grid; lengths in meters, summed over the sample.
 struct CastCheck {
+  /// That were replayed.
   std::uint32_t columns = 0;
   std::uint32_t columns_differing = 0;
   double compared = 0;
