@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 
+#include "common/folder_entries.h"
 #include "galactic/bake/assets.h"
 #include "support/try.h"
 
@@ -59,26 +61,95 @@ bool standsForFolder(const fs::path& path) {
          kFolderStems.end();
 }
 
+/// The mesh files of the folders at and below one of them.
+class MeshSearch {
+ public:
+  explicit MeshSearch(const fs::path& root) : root_(canonicalPath(root)) {}
+
+  /// Searches a folder. Links to folders wait: whoever searches them last knows which folders have
+  /// been found without them.
+  Result<void> search(const fs::path& folder) {
+    if (!seen_.insert(canonicalPath(folder)).second) return {};
+    ASSIGN_OR_RETURN(const auto entries, entriesOf(folder));
+    for (const FolderEntry& entry : entries) {
+      if (entry.kind == EntryKind::kFolder) {
+        if (entry.is_link) {
+          links_.push_back(entry.path);
+          continue;
+        }
+        RETURN_IF_ERROR(search(entry.path));
+      } else if (isMesh(entry.path)) {
+        if (entry.kind == EntryKind::kLostLink) return lostLink(entry.path);
+        if (entry.kind == EntryKind::kFile) folders_[folder].push_back(entry.path);
+      }
+    }
+    return {};
+  }
+
+  /// Then the folders behind links, but those that hold the root: they would lead around it.
+  Result<void> followLinks() {
+    while (!links_.empty()) {
+      std::vector<fs::path> links;
+      links.swap(links_);
+      for (const fs::path& link : links) {
+        if (liesWithin(root_, canonicalPath(link))) continue;
+        RETURN_IF_ERROR(search(link));
+      }
+    }
+    return {};
+  }
+
+  /// In each folder in the order of formats and names.
+  std::map<fs::path, std::vector<fs::path>> take() {
+    for (auto& [folder, files] : folders_) {
+      std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+        return std::pair(formatRank(a), a) < std::pair(formatRank(b), b);
+      });
+    }
+    return std::move(folders_);
+  }
+
+ private:
+  fs::path root_;
+  /// Canonical: each folder is searched once, by whatever names it can be reached.
+  std::set<fs::path> seen_;
+  std::vector<fs::path> links_;
+  std::map<fs::path, std::vector<fs::path>> folders_;
+};
+
 /// The mesh files of each folder at and below `root`, in the order of formats and names.
 Result<std::map<fs::path, std::vector<fs::path>>> meshesByFolder(const fs::path& root) {
-  std::map<fs::path, std::vector<fs::path>> folders;
-  std::error_code problem;
-  fs::recursive_directory_iterator walk(root, problem);
-  for (; !problem && walk != fs::recursive_directory_iterator(); walk.increment(problem)) {
-    std::error_code unknown;
-    if (walk->is_regular_file(unknown) && isMesh(walk->path())) {
-      folders[walk->path().parent_path()].push_back(walk->path());
-    }
+  MeshSearch meshes(root);
+  RETURN_IF_ERROR(meshes.search(root));
+  RETURN_IF_ERROR(meshes.followLinks());
+  return meshes.take();
+}
+
+constexpr std::string_view kVisual = "_visual";
+constexpr std::string_view kCollision = "_collision";
+
+/// NAME, where `stem` is NAME and `end`, and both NAME_visual and NAME_collision are among `stems`
+/// but not NAME itself: so Gazebo lays out its models.
+std::optional<std::string> nameOfPair(const std::string& stem, std::string_view end,
+                                      const std::set<std::string>& stems) {
+  if (!stem.ends_with(end) || stem.size() == end.size()) return std::nullopt;
+  std::string name = stem.substr(0, stem.size() - end.size());
+  const bool is_pair = stems.contains(name + std::string(kVisual)) &&
+                       stems.contains(name + std::string(kCollision)) && !stems.contains(name);
+  return is_pair ? std::optional(std::move(name)) : std::nullopt;
+}
+
+/// The objects of a folder in which no file stands for all of it, by their stems. Of a pair of
+/// visual and collision mesh the visual one is the object: it is the closer one.
+void addStems(const std::vector<fs::path>& files, std::vector<ObjectInput>& objects) {
+  std::set<std::string> stems;
+  for (const fs::path& file : files) stems.insert(file.stem().string());
+  std::set<std::string> taken;
+  for (const fs::path& file : files) {
+    const std::string stem = file.stem().string();
+    if (nameOfPair(stem, kCollision, stems) || !taken.insert(stem).second) continue;
+    objects.push_back({file, nameOfPair(stem, kVisual, stems).value_or(stem)});
   }
-  if (problem) {
-    return fail(ErrorCode::kIo, root.string(), "cannot be searched: " + problem.message());
-  }
-  for (auto& [folder, files] : folders) {
-    std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-      return std::pair(formatRank(a), a) < std::pair(formatRank(b), b);
-    });
-  }
-  return folders;
 }
 
 Result<void> addFolder(const fs::path& root, std::vector<ObjectInput>& objects) {
@@ -100,12 +171,7 @@ Result<void> addFolder(const fs::path& root, std::vector<ObjectInput>& objects) 
       if (!is_new && model.rank < known->second.rank) known->second = std::move(model);
       continue;
     }
-    std::set<std::string> stems;
-    for (const fs::path& file : files) {
-      if (stems.insert(file.stem().string()).second) {
-        objects.push_back({file, file.stem().string()});
-      }
-    }
+    addStems(files, objects);
   }
   for (auto& [folder, model] : models) objects.push_back(std::move(model.input));
   return {};

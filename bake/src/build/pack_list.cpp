@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/folder_entries.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -36,20 +37,6 @@ const std::vector<float>* radiiOf(const Job& job) {
 }
 
 std::string inputOf(const PackJob& pack) { return filesOf(pack.job).front().string(); }
-
-/// With links followed, as far as the path exists.
-fs::path canonicalOf(const fs::path& path) {
-  std::error_code problem;
-  fs::path canonical = fs::weakly_canonical(path, problem);
-  if (problem) return path.lexically_normal();
-  return canonical.has_filename() ? canonical : canonical.parent_path();
-}
-
-/// Whether `path` is `folder` or lies in it; both canonical.
-bool isWithin(const fs::path& path, const fs::path& folder) {
-  const fs::path relative = path.lexically_relative(folder);
-  return !relative.empty() && *relative.begin() != "..";
-}
 
 }  // namespace
 
@@ -122,9 +109,9 @@ Result<void> PackList::checkInputFolders() const {
                             "OTHER.pack",
                             list_.folder.string(), whose));
   };
-  const fs::path packs = canonicalOf(list_.folder);
+  const fs::path packs = canonicalPath(list_.folder);
   for (const fs::path& folder : input_folders_) {
-    if (isWithin(packs, canonicalOf(folder))) {
+    if (liesWithin(packs, canonicalPath(folder))) {
       return refuse("which is the folder of scans " + folder.string() + " or inside it");
     }
   }
@@ -132,7 +119,7 @@ Result<void> PackList::checkInputFolders() const {
   std::set<fs::path> seen;
   for (const PackJob& pack : list_.assets) {
     if (!seen.insert(pack.folder).second) continue;
-    if (isWithin(canonicalOf(pack.folder), packs)) {
+    if (liesWithin(canonicalPath(pack.folder), packs)) {
       return refuse("where the input " + inputOf(pack) + " is");
     }
   }

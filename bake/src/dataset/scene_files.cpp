@@ -8,11 +8,12 @@
 #include <set>
 #include <span>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
+#include "common/folder_entries.h"
 #include "common/lower_case.h"
 #include "dataset/config/dataset_paths.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -49,28 +50,25 @@ std::optional<Candidate> candidateOf(const fs::path& path) {
 }
 
 /// Adds the scenes' files in `folder` and below to `found`, the best for each scene.
-void search(const fs::path& folder, std::size_t depth, std::map<std::string, Candidate>& found,
-            std::error_code& error) {
-  std::vector<fs::path> folders;
-  fs::directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
-  std::error_code ignored;
-  while (!error && entry != fs::directory_iterator()) {
-    const fs::path path = entry->path();
-    const bool hidden = path.filename().string().starts_with('.');
-    if (entry->is_directory(ignored)) {
-      if (!hidden && !entry->is_symlink(ignored)) folders.push_back(path);
-    } else if (entry->is_regular_file(ignored) && !hidden) {
-      if (auto candidate = candidateOf(path)) {
-        const auto [known, is_new] = found.try_emplace(candidate->scene, *candidate);
-        if (!is_new && candidate->preference < known->second.preference) {
-          known->second = std::move(*candidate);
-        }
-      }
+Result<void> search(const fs::path& folder, std::size_t depth,
+                    std::map<std::string, Candidate>& found) {
+  ASSIGN_OR_RETURN(const auto entries, entriesOf(folder));
+  for (const FolderEntry& entry : entries) {
+    if (entry.kind == EntryKind::kFolder) {
+      if (entry.is_link || depth == kDeepest) continue;
+      RETURN_IF_ERROR(search(entry.path, depth + 1, found));
+      continue;
     }
-    entry.increment(error);
+    auto candidate = candidateOf(entry.path);
+    if (!candidate) continue;
+    if (entry.kind == EntryKind::kLostLink) return lostLink(entry.path);
+    if (entry.kind != EntryKind::kFile) continue;
+    const auto [known, is_new] = found.try_emplace(candidate->scene, *candidate);
+    if (!is_new && candidate->preference < known->second.preference) {
+      known->second = std::move(*candidate);
+    }
   }
-  if (depth == kDeepest) return;
-  for (const fs::path& inner : folders) search(inner, depth + 1, found, ignored);
+  return {};
 }
 
 /// The folders and the name that tell a scene from others: of SCENE/SCENE and SCENE/mesh only
@@ -120,12 +118,7 @@ void nameAll(const std::vector<std::vector<std::string>>& parts, std::vector<Sce
 
 Result<std::vector<SceneFile>> findSceneFiles(const fs::path& folder) {
   std::map<std::string, Candidate> found;
-  std::error_code error;
-  search(folder, 0, found, error);
-  if (error) {
-    return fail(ErrorCode::kIo, folder.string(),
-                fmt::format("the folder cannot be read: {}", error.message()));
-  }
+  RETURN_IF_ERROR(search(folder, 0, found));
   if (found.empty()) {
     return fail(
         ErrorCode::kInvalidInput, folder.string(),

@@ -26,10 +26,11 @@ struct SceneFile {
 ///
 /// Passed over: what belongs to a scene but is not its surface (*.semantic.glb, *_semantic.ply,
 /// *.navmesh and so on), SCENE.basis.glb beside SCENE.glb, SCENE.ply and SCENE.obj beside
-/// SCENE.glb, hidden folders, and links to folders. Habitat takes each GLB without attributes for
-/// Z up, against glTF, and for the three it is: these have up = kZ.
+/// SCENE.glb, hidden files and folders, and links to folders. Habitat takes each GLB without
+/// attributes for Z up, against glTF, and for the three it is: these have up = kZ.
 ///
-/// Fails with kIo where the folder cannot be read, and with kInvalidInput where there is no scene.
+/// Fails with kIo where a folder cannot be read or a link with a scene's name leads to nothing, and
+/// with kInvalidInput where there is no scene.
 [[nodiscard]] Result<std::vector<SceneFile>> findSceneFiles(const std::filesystem::path& folder);
 
 }  // namespace galactic::bake

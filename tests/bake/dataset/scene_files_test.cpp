@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 namespace galactic::test::scene_files_test {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::ElementsAre;
 
 std::vector<std::string> found(const ScratchFolder& folder, const std::vector<std::string>& files) {
@@ -74,6 +77,41 @@ TEST(SceneFiles, OfNothingAreAnError) {
   const auto absent = bake::findSceneFiles(folder.path() / "absent");
   ASSERT_FALSE(absent);
   EXPECT_EQ(absent.error().code, ErrorCode::kIo);
+}
+
+TEST(SceneFiles, LeaveOutLinksToFoldersAndRefuseThoseThatLeadNowhere) {
+  const ScratchFolder folder;
+  static_cast<void>(folder.write("store/b/b.glb", "any content"));
+  fs::create_directories(folder.path() / "scans");
+  fs::create_directory_symlink("../store", folder.path() / "scans/more");
+  fs::create_symlink("gone.navmesh", folder.path() / "scans/a.navmesh");
+  fs::create_symlink("gone_semantic.ply", folder.path() / "scans/a_semantic.ply");
+  static_cast<void>(folder.write("scans/a.glb", "any content"));
+  const auto scenes = bake::findSceneFiles(folder.path() / "scans");
+  ASSERT_TRUE(scenes) << scenes.error().message;
+  ASSERT_EQ(scenes->size(), 1U);
+  EXPECT_EQ(scenes->front().name, "a");
+  fs::create_symlink("gone.glb", folder.path() / "scans/c.glb");
+  const auto lost = bake::findSceneFiles(folder.path() / "scans");
+  ASSERT_FALSE(lost);
+  EXPECT_EQ(lost.error().code, ErrorCode::kIo);
+  EXPECT_EQ(lost.error().where, (folder.path() / "scans/c.glb").string());
+  EXPECT_EQ(lost.error().message,
+            "is a link to gone.glb, which is not there or cannot be looked at; restore that file, "
+            "or remove the link");
+}
+
+TEST(SceneFiles, OfAFolderThatCannotBeReadAreAnError) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const ScratchFolder folder;
+  static_cast<void>(folder.write("a/a.glb", "any content"));
+  static_cast<void>(folder.write("b/b.glb", "any content"));
+  fs::permissions(folder.path() / "b", fs::perms::none);
+  const auto scenes = bake::findSceneFiles(folder.path());
+  fs::permissions(folder.path() / "b", fs::perms::owner_all);
+  ASSERT_FALSE(scenes);
+  EXPECT_EQ(scenes.error().code, ErrorCode::kIo);
+  EXPECT_EQ(scenes.error().where, (folder.path() / "b").string());
 }
 
 }  // namespace

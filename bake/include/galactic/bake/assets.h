@@ -189,8 +189,10 @@ struct ObjectInput {
 /// The objects that `inputs` (mesh files, and folders that are searched) name, by ascending name.
 /// A file is an object named by its stem. In a folder below an input, a file whose stem is
 /// "textured" or "model" stands for the whole folder and takes its name: so are YCB and Google
-/// Scanned Objects laid out. Fails with kIo where a folder cannot be read, and with kInvalidInput
-/// where one holds no mesh or two objects have one name.
+/// Scanned Objects laid out. Of NAME_visual and NAME_collision side by side, Gazebo's layout, the
+/// first is the object NAME. Hidden files and folders are passed over, links to folders followed.
+/// Fails with kIo where a folder cannot be read or a link with a mesh's name leads to nothing, and
+/// with kInvalidInput where an input holds no mesh or two objects have one name.
 [[nodiscard]] Result<std::vector<ObjectInput>> findObjects(
     const std::vector<std::filesystem::path>& inputs);
 

@@ -1,0 +1,115 @@
+// Which objects are found in folders.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "galactic/bake/assets.h"
+#include "support/scratch_folder.h"
+
+namespace galactic::test::find_objects_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class FindObjects : public testing::Test {
+ protected:
+  void write(const std::vector<std::string>& files) const {
+    for (const std::string& file : files) static_cast<void>(folder_.write(file, "any content"));
+  }
+  [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
+  /// The objects in `set`, as NAME=FILE.
+  [[nodiscard]] std::vector<std::string> found() const {
+    const auto objects = bake::findObjects({path("set")});
+    EXPECT_TRUE(objects) << objects.error().where << ": " << objects.error().message;
+    std::vector<std::string> texts;
+    if (!objects) return texts;
+    for (const bake::ObjectInput& object : *objects) {
+      texts.push_back(fmt::format("{}={}", object.name,
+                                  object.path.lexically_relative(path("set")).generic_string()));
+    }
+    return texts;
+  }
+  [[nodiscard]] Error refused() const {
+    const auto objects = bake::findObjects({path("set")});
+    EXPECT_FALSE(objects);
+    return objects ? Error{} : objects.error();
+  }
+
+ private:
+  ScratchFolder folder_;
+};
+
+TEST_F(FindObjects, PassesOverHiddenFilesAndFolders) {
+  write({"set/mug.glb", "set/._mug.glb", "set/.thumbnails/mug.glb", "set/can/._model.obj",
+         "set/can/model.obj"});
+  EXPECT_THAT(found(), ElementsAre("can=can/model.obj", "mug=mug.glb"));
+}
+
+TEST_F(FindObjects, FollowsLinksToFolders) {
+  write({"store/can/model.obj", "store/cups/cup.glb", "set/mug.glb"});
+  fs::create_directory_symlink("../store", path("set/more"));
+  EXPECT_THAT(found(),
+              ElementsAre("can=more/can/model.obj", "cup=more/cups/cup.glb", "mug=mug.glb"));
+  // The input itself may be one, too.
+  fs::rename(path("set"), path("real"));
+  fs::create_directory_symlink("real", path("set"));
+  EXPECT_THAT(found(),
+              ElementsAre("can=more/can/model.obj", "cup=more/cups/cup.glb", "mug=mug.glb"));
+}
+
+TEST_F(FindObjects, SearchesEachFolderOnceWhateverLinksLeadToIt) {
+  write({"set/v2/can/model.obj", "set/v2/mug.glb", "outer.glb"});
+  // Under its own name, though the link comes first.
+  fs::create_directory_symlink("v2", path("set/latest"));
+  fs::create_directory_symlink("can", path("set/v2/again"));
+  fs::create_directory_symlink("../..", path("set/v2/out"));
+  fs::create_directory_symlink("../set", path("set/around"));
+  EXPECT_THAT(found(), ElementsAre("can=v2/can/model.obj", "mug=v2/mug.glb"));
+}
+
+TEST_F(FindObjects, RefusesALinkWithAMeshsNameThatLeadsNowhere) {
+  write({"set/mug.glb"});
+  fs::create_symlink("../store/notes.txt", path("set/notes.txt"));
+  EXPECT_THAT(found(), ElementsAre("mug=mug.glb"));
+  fs::create_symlink("../store/can.obj", path("set/can.obj"));
+  EXPECT_EQ(refused().code, ErrorCode::kIo);
+  EXPECT_EQ(refused().where, path("set/can.obj").string());
+  EXPECT_EQ(
+      refused().message,
+      "is a link to ../store/can.obj, which is not there or cannot be looked at; restore that "
+      "file, or remove the link");
+  write({"store/can.obj"});
+  EXPECT_THAT(found(), ElementsAre("can=can.obj", "mug=mug.glb"));
+}
+
+TEST_F(FindObjects, RefusesAFolderThatCannotBeRead) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  write({"set/mug.glb", "set/cups/cup.glb"});
+  fs::permissions(path("set/cups"), fs::perms::none);
+  EXPECT_EQ(refused().code, ErrorCode::kIo);
+  EXPECT_EQ(refused().where, path("set/cups").string());
+  EXPECT_THAT(refused().message, HasSubstr("the folder cannot be read: "));
+  fs::permissions(path("set/cups"), fs::perms::owner_all);
+}
+
+TEST_F(FindObjects, TakesTheVisualMeshOfGazebosPairs) {
+  write({"set/chair/meshes/chair_visual.DAE", "set/chair/meshes/chair_collision.DAE",
+         "set/desk/desk_visual.dae", "set/lamp/lamp_collision.dae", "set/sofa/sofa.glb",
+         "set/sofa/sofa_visual.dae", "set/sofa/sofa_collision.dae"});
+  EXPECT_THAT(found(), ElementsAre("chair=chair/meshes/chair_visual.DAE",
+                                   // Of those that are no pairs nothing is known.
+                                   "desk_visual=desk/desk_visual.dae",
+                                   "lamp_collision=lamp/lamp_collision.dae", "sofa=sofa/sofa.glb",
+                                   "sofa_collision=sofa/sofa_collision.dae",
+                                   "sofa_visual=sofa/sofa_visual.dae"));
+}
+
+}  // namespace
+}  // namespace galactic::test::find_objects_test
