@@ -260,6 +260,19 @@ TEST_F(PlanCli, EndsADryRunWithAnErrorWhenSomethingIsMissing) {
   EXPECT_THAT(whole.out, HasSubstr("nothing is missing\n"));
 }
 
+/// One fetch is to be enough.
+TEST_F(PlanCli, ListsAllUnreadableMeshesOfASceneInADryRun) {
+  constexpr const char* kPointer = "version https://git-lfs.github.com/spec/v1\nsize 12345\n";
+  write("data/meshes/apartment.glb", kPointer);
+  write("data/meshes/objects/mug.glb", kPointer);
+  const ProgramRun dry = bake("out", {"--dry-run", "--scenes", "a"});
+  EXPECT_EQ(dry.exit_code, 3);
+  const std::string missing = report().at("missing").dump();
+  for (const char* mesh : {"meshes/apartment.glb", "meshes/objects/mug.glb"}) {
+    EXPECT_THAT(missing, HasSubstr(std::string(mesh) + ": is a pointer of Git LFS"));
+  }
+}
+
 /// A world of the dataset's first scenes, an object and the sample robot.
 std::string recipe() {
   return test::quickRecipe(

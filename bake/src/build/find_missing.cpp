@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "dataset/mesh_library.h"
 #include "dataset/scene_dataset.h"
 #include "galactic/bake/build.h"
 #include "galactic/bake/mesh_import.h"
@@ -37,7 +38,10 @@ class Search {
     if (!job.instance) return lookIntoMesh(job.input, job.import);
     const InstancedScene& instance = *job.instance;
     const auto composed = instance.dataset->compose(instance.name, *instance.meshes);
-    if (!composed) return add(sentenceOf(composed.error()));
+    if (!composed) {
+      add(sentenceOf(composed.error()));
+      return lookForUnreadable(instance);
+    }
     for (const std::string& missing : composed->missing) add(missing);
     lookForTextures(composed->scene, instance.dataset->folder());
   }
@@ -57,6 +61,16 @@ class Search {
     const auto asset = importMesh(mesh, options);
     if (!asset) return add(sentenceOf(asset.error()));
     lookForTextures(*asset, mesh.parent_path());
+  }
+
+  /// What cannot be read ends the composition of a scene; behind the first there may be others.
+  void lookForUnreadable(const InstancedScene& scene) {
+    const auto survey = scene.dataset->survey(scene.name);
+    if (!survey) return;
+    for (const std::string& missing : survey->missing) add(missing);
+    for (const fs::path& mesh : survey->meshes) {
+      if (const auto asset = scene.meshes->load(mesh); !asset) add(sentenceOf(asset.error()));
+    }
   }
 
   void lookForTextures(const SourceAsset& asset, const fs::path& folder) {

@@ -42,6 +42,8 @@ struct SceneSurvey {
   /// As in ComposedScene.
   std::vector<std::string> missing;
   std::vector<DatasetObject> movable;
+  /// Of its stage and objects, each once, as far as they are there; not those in URDFs.
+  std::vector<std::filesystem::path> meshes;
   /// Size of all meshes that it places, each once.
   std::uint64_t bytes = 0;
 };

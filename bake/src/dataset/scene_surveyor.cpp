@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -51,6 +52,9 @@ Result<bool> SceneSurveyor::surveyMesh(TemplateKind kind, const SceneItem& item)
     noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun,
                             known.entry->name, nameRelativeTo(index_.config, mesh)));
     return false;
+  }
+  if (std::ranges::find(survey_.meshes, mesh) == survey_.meshes.end()) {
+    survey_.meshes.push_back(mesh);
   }
   if (kind == TemplateKind::kObject && item.motion == MotionType::kDynamic) {
     const Affine object_from_mesh = objectFromAsset(attributes, item.scale);

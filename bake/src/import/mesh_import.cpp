@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/lfs_pointer.h"
 #include "import/affine.h"
 #include "import/asset_transfer.h"
 #include "import/assimp_reader.h"
@@ -76,6 +77,10 @@ Result<void> checkMainFile(const fs::path& path) {
   if (fs::file_size(path, error) == 0) {
     return fail(ErrorCode::kInvalidInput, path.string(),
                 "the file is empty; export or download it again");
+  }
+  if (isLfsPointer(path)) {
+    return fail(ErrorCode::kInvalidInput, path.string(),
+                fmt::format("is {}; expected a mesh", kLfsPointer));
   }
   return {};
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/lfs_pointer.h"
 #include "galactic/bake/source_asset.h"
 #include "support/mapped_file.h"
 #include "support/try.h"
@@ -141,6 +143,13 @@ bool FileSearch::findsFolder(const fs::path& folder) {
   const fs::file_status status = fs::status(folder, unknown);
   if (status.type() == fs::file_type::not_found) absent_.push_back(folder);
   return fs::is_directory(status);
+}
+
+bool isLfsPointer(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string begin(kLfsSignature.size(), '\0');
+  return stream.read(begin.data(), static_cast<std::streamsize>(begin.size())) &&
+         begin == kLfsSignature;
 }
 
 std::string withoutUriEscapes(std::string_view uri) {

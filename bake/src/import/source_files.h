@@ -28,6 +28,9 @@ class FileSearch {
   std::vector<std::filesystem::path> absent_;
 };
 
+/// Whether Git LFS left a pointer in place of the file; false where it cannot be read.
+[[nodiscard]] bool isLfsPointer(const std::filesystem::path& file);
+
 /// `uri` with its escapes (%20) undone.
 [[nodiscard]] std::string withoutUriEscapes(std::string_view uri);
 

@@ -46,6 +46,18 @@ TEST(MeshErrors, SayThatAFileIsEmpty) {
   EXPECT_EQ(error.message, "the file is empty; export or download it again");
 }
 
+TEST(MeshErrors, TellAPointerOfGitLfsFromAMesh) {
+  for (const char* name : {"mug.glb", "mug.obj", "mug.DAE", "mug.ply", "mug.stl", "mug.fbx"}) {
+    const Error error = importError(name,
+                                    "version https://git-lfs.github.com/spec/v1\n"
+                                    "oid sha256:4d7a2146\nsize 12345\n");
+    EXPECT_EQ(error.code, ErrorCode::kInvalidInput) << name;
+    EXPECT_EQ(error.message,
+              "is a pointer of Git LFS (fetch it with git lfs pull); expected a mesh")
+        << name;
+  }
+}
+
 TEST(MeshErrors, ListTheFormatsWhenNoneFits) {
   const Error error = importError("letter.odt", "text");
   EXPECT_EQ(error.code, ErrorCode::kUnsupported);

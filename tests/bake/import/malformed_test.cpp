@@ -265,6 +265,10 @@ TEST(StatedCounts, OfGltfAreWhatIsThere) {
     EXPECT_THAT(cut.error().message,
                 testing::HasSubstr(fmt::format("buffer 0 states 96 bytes and has {}", size)));
   }
+  const auto pointer = import(json, "version https://git-lfs.github.com/spec/v1\n");
+  ASSERT_FALSE(pointer.has_value());
+  EXPECT_EQ(pointer.error().message,
+            "its buffer 'a.bin' is a pointer of Git LFS (fetch it with git lfs pull)");
   struct Fault {
     std::string before;
     int difference;

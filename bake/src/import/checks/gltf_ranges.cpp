@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/lfs_pointer.h"
 #include "import/checks/content_check.h"
 #include "import/source_files.h"
 #include "support/try.h"
@@ -143,6 +144,10 @@ class GltfRanges {
     }
     // The reader says that there is no such file.
     if (!found || *found >= *stated) return {};
+    if (!uri.empty() && isLfsPointer(path_.parent_path() / withoutUriEscapes(uri))) {
+      return fail(ErrorCode::kInvalidInput, path_.string(),
+                  fmt::format("its buffer '{}' is {}", uri, kLfsPointer));
+    }
     return broken(fmt::format("buffer {} states {} bytes and has {}", n, *stated, *found));
   }
 

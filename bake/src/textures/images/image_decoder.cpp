@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "common/lfs_pointer.h"
 #include "textures/images/image.h"
 
 namespace galactic::bake {
@@ -36,7 +37,7 @@ constexpr std::array kOtherFormats{
     Signature{"v/1\x01"sv, 0, "OpenEXR"},
     Signature{"#?RADIANCE"sv, 0, "Radiance HDR"},
     Signature{"TRUEVISION-XFILE.\0"sv, 0, "TGA"},
-    Signature{"version https://git-lfs"sv, 0, "a pointer of Git LFS (fetch it with git lfs pull)"},
+    Signature{kLfsSignature, 0, kLfsPointer},
 };
 
 bool hasAt(std::string_view file, std::size_t offset, std::string_view bytes) {
