@@ -20,7 +20,7 @@ struct Picture {
 /// What the color of a column in a plan says.
 enum class PlanValue {
   kTotalHeight,   ///< Sum of the heights of its free spans, meters.
-  kLowestHeight,  ///< Height of its lowest free span, meters.
+  kLowestHeight,  ///< Height of its lowest free span in the scene, meters; see plan_picture.cpp.
   kSpanCount,     ///< Number of its free spans.
 };
 

@@ -32,10 +32,23 @@ struct Panel {
   PixelRect plot;
 };
 
-float valueOf(const std::vector<Span>& spans, PlanValue value) {
+/// Spans that begin this close to the lower edge of the grid lie under the scene. Meters: more than
+/// the rounding of their ends, less than what a grid extends beyond its scene.
+constexpr float kAtEdge = 1e-3F;
+
+/// The height of the lowest span in the scene: what is free from the grid's lower edge on lies
+/// under the floor of a scene that is open to the outside, and counts only where nothing is above
+/// it.
+float lowestHeight(const std::vector<Span>& spans, float edge) {
+  const bool is_under = spans.front().lo <= edge + kAtEdge && spans.size() > 1;
+  const Span& lowest = is_under ? spans[1] : spans[0];
+  return lowest.hi - lowest.lo;
+}
+
+float valueOf(const std::vector<Span>& spans, PlanValue value, float edge) {
   if (spans.empty()) return kBlockedValue;
   if (value == PlanValue::kSpanCount) return static_cast<float>(spans.size());
-  if (value == PlanValue::kLowestHeight) return spans.front().hi - spans.front().lo;
+  if (value == PlanValue::kLowestHeight) return lowestHeight(spans, edge);
   float total = 0;
   for (const Span& span : spans) total += span.hi - span.lo;
   return total;
@@ -48,7 +61,7 @@ std::vector<float> planValues(const ColumnGrid& grid, PlanValue value) {
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
     for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
       pack_tool::readSpans(grid, {i, k}, spans);
-      values.push_back(valueOf(spans, value));
+      values.push_back(valueOf(spans, value, grid.heights().lo));
     }
   }
   return values;

@@ -59,6 +59,21 @@ TEST(PlanPicture, ColorsByTheLowestSpanOrTheNumberOfSpans) {
   EXPECT_EQ(cellColor(count, grid.view(), {4, 2}), scaleColor(1.0 / 3));
 }
 
+/// A scene that is open to the outside: the grid begins below its floor.
+TEST(PlanPicture, DoesNotTakeWhatLiesUnderTheFloorForTheLowestSpan) {
+  GridSpec spec;
+  const float edge = GridBuilder(spec).build().view().heights().lo;
+  const auto grid = GridBuilder(spec)
+                        .column(0, 0, {{edge, edge + 0.5F}, {edge + 1, edge + 5}})
+                        .column(1, 0, {{edge, edge + 2}})
+                        .column(2, 0, {{edge + 0.5F, edge + 1.5F}, {edge + 2, edge + 5}})
+                        .build();
+  const Picture lowest = drawPlan(std::vector{grid.view()}, {.value = PlanValue::kLowestHeight});
+  EXPECT_EQ(cellColor(lowest, grid.view(), {0, 0}), scaleColor(1));
+  EXPECT_EQ(cellColor(lowest, grid.view(), {1, 0}), scaleColor(0.5)) << "there is no other";
+  EXPECT_EQ(cellColor(lowest, grid.view(), {2, 0}), scaleColor(0.25));
+}
+
 TEST(PlanPicture, GivesEachCellAWholeNumberOfPixels) {
   const auto grid =
       GridBuilder(GridSpec{.spacing = 0.03125F, .columns_x = 250, .columns_z = 400}).build();
