@@ -167,8 +167,13 @@ Result<void> compareEpisodes(const PackFile& a, const PackFile& b, const DiffOpt
     difference.provenance =
         compareFields(descriptions.a.at("provenance"), descriptions.b.at("provenance"), 0);
   }
-  difference.content =
-      compareFields(namesAndCounts(descriptions.a), namesAndCounts(descriptions.b), 0);
+  Both<Json> names{namesAndCounts(descriptions.a), namesAndCounts(descriptions.b)};
+  if (options.scope == DiffScope::kContent) {
+    // The set's own name says which file it was; nothing is simulated by it.
+    names.a.erase("name");
+    names.b.erase("name");
+  }
+  difference.content = compareFields(names.a, names.b, 0);
   append(difference.content, EpisodeComparison(*set_a, *set_b, options.tolerance).run());
   return {};
 }

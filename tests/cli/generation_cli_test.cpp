@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "cli/bake_folder.h"
+#include "galactic/episode_set.h"
+#include "galactic/pack.h"
 #include "galactic/world.h"
 #include "support/journal.h"
 #include "support/source_folder.h"
@@ -87,9 +89,9 @@ TEST_F(GenerationCli, DoesNotCareAboutTheOrderOfPacksOfOneName) {
     return run({first, second, "objects.pack", "porter.pack", "--as", "episodes", "--count", "2",
                 "--objects", "1", "--solve", "0", "-o", to});
   };
-  ASSERT_EQ(draw_in("apartment.pack", "other/apartment.pack", "one.pack").exit_code, 0);
-  ASSERT_EQ(draw_in("other/apartment.pack", "apartment.pack", "two.pack").exit_code, 0);
-  EXPECT_TRUE(content("one.pack") == content("two.pack"));
+  ASSERT_EQ(draw_in("apartment.pack", "other/apartment.pack", "one/set.pack").exit_code, 0);
+  ASSERT_EQ(draw_in("other/apartment.pack", "apartment.pack", "two/set.pack").exit_code, 0);
+  EXPECT_TRUE(content("one/set.pack") == content("two/set.pack"));
 }
 
 TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
@@ -99,10 +101,20 @@ TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   EXPECT_THAT(drawn.out, HasSubstr("3 packs -> episodes.pack"));
   EXPECT_THAT(drawn.out, HasSubstr("3 episodes; 1 scene, 2 objects, 6 placements"));
   EXPECT_THAT(drawn.out, HasSubstr("drawn and not taken: "));
-  ASSERT_EQ(draw({"--seed", "7", "-o", "again.pack", "-j", "1"}).exit_code, 0);
-  ASSERT_EQ(draw({"--seed", "8", "-o", "other.pack"}).exit_code, 0);
-  EXPECT_TRUE(content("episodes.pack") == content("again.pack"));
-  EXPECT_FALSE(content("episodes.pack") == content("other.pack"));
+  ASSERT_EQ(draw({"--seed", "7", "-o", "again/episodes.pack", "-j", "1"}).exit_code, 0);
+  ASSERT_EQ(draw({"--seed", "8", "-o", "other/episodes.pack"}).exit_code, 0);
+  EXPECT_TRUE(content("episodes.pack") == content("again/episodes.pack"));
+  EXPECT_FALSE(content("episodes.pack") == content("other/episodes.pack"));
+  const auto pack = PackFile::open(path("episodes.pack"));
+  ASSERT_TRUE(pack.has_value());
+  EXPECT_EQ(EpisodeSet::from(*pack)->name(), "episodes") << "it is not of one scene alone";
+  // Under another name they are the same episodes.
+  ASSERT_EQ(draw({"--seed", "7", "-o", "tidy.pack"}).exit_code, 0);
+  EXPECT_FALSE(content("episodes.pack") == content("tidy.pack"));
+  EXPECT_EQ(test::runProgram(GALACTIC_PACK, path(""),
+                             {"diff", "episodes.pack", "tidy.pack", "--content-only"})
+                .exit_code,
+            0);
   const ProgramRun linked = run({"apartment.pack", "objects.pack", "porter.pack", "episodes.pack",
                                  "--as", "world", "-o", "world.pack"});
   ASSERT_EQ(linked.exit_code, 0) << linked.err;
@@ -139,8 +151,8 @@ TEST_F(GenerationCli, GoesOnWhereItWasKilled) {
     all.insert(all.end(), {"-o", pack});
     return all;
   };
-  ASSERT_EQ(draw(to("whole.pack")).exit_code, 0);
-  EXPECT_FALSE(has("whole.pack.partial"));
+  ASSERT_EQ(draw(to("whole/out.pack")).exit_code, 0);
+  EXPECT_FALSE(has("whole/out.pack.partial"));
   // Killed after the first of seven batches, and after one more.
   std::size_t kept = 0;
   for (const std::size_t wanted : {2U, 3U}) {
@@ -161,7 +173,7 @@ TEST_F(GenerationCli, GoesOnWhereItWasKilled) {
   ASSERT_EQ(draw({"--dry-run", "-o", "out.pack"}).exit_code, 0);
   EXPECT_THAT(recordsOf("out.pack.partial"), SizeIs(kept));
   ASSERT_EQ(draw(to("out.pack")).exit_code, 0);
-  EXPECT_TRUE(content("out.pack") == content("whole.pack"));
+  EXPECT_TRUE(content("out.pack") == content("whole/out.pack"));
   EXPECT_FALSE(has("out.pack.partial"));
 }
 

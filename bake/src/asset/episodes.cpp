@@ -128,6 +128,8 @@ Result<Made> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInputs& 
                           std::vector<SourceFile> files, const BakeContext& context) {
   const auto start = Clock::now();
   ASSIGN_OR_RETURN(auto generated, generate(job, inputs, context));
+  // As one that is exported and imported again is called.
+  generated.episodes.name = context.output.stem().string();
   context.show("episodes", "solve", 1);
   ASSIGN_OR_RETURN(auto sample,
                    solveSample(inputs.packs, generated.episodes,

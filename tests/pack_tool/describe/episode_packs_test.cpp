@@ -195,6 +195,14 @@ TEST(EpisodeDiff, TellsEachFieldOfAnEpisodeThatDiffers) {
           "episodes.1.goal: 3.5, 1.25, 1.5, 1, 0, 0, 0 | 3.5, 1.25, 2, 1, 0, 0, 0");
 }
 
+TEST(EpisodeDiff, OfContentLeavesOutTheNameOfTheSet) {
+  const auto rename = [](EpisodePackFields& f) { f.name = "neat"; };
+  EXPECT_EQ(episodeDiff(rename).exit_code, kExitDiffers);
+  EXPECT_EQ(episodeDiff(rename, {.scope = DiffScope::kContent}).exit_code, kExitOk);
+  const auto change = [](EpisodePackFields& f) { f.robot.clear(); };
+  EXPECT_EQ(episodeDiff(change, {.scope = DiffScope::kContent}).exit_code, kExitDiffers);
+}
+
 TEST(EpisodeDiff, TellsMissingEpisodesAndNames) {
   const Outcome outcome = episodeDiff([](EpisodePackFields& f) {
     f.episodes.pop_back();
