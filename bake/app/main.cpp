@@ -213,6 +213,8 @@ int printSceneNames(const BakeCommand& command, DatasetJobs dataset) {
 int printRecipeDraft(const BakeCommand& command) {
   auto job = std::get<RobotJob>(std::get<Job>(command.what));
   job.input = command.inputs.front();
+  // A draft is of links and joints, whether or not their meshes are there.
+  job.allow_missing = true;
   const auto robot = readRobotFile(job);
   if (!robot) return refuse(robot.error());
   fmt::print("{}", draftRobotRecipe(*robot));

@@ -176,6 +176,24 @@ TEST_F(RobotCli, DraftsARecipeThatBakes) {
   EXPECT_EQ(opened.robot->endEffector()->link, *opened.robot->findLink("hand"));
 }
 
+/// Who waits for the meshes may begin with the recipe.
+TEST_F(RobotCli, DraftsTheSameRecipeOfLinksAndJointsWhereMeshesAreMissing) {
+  std::string robot = content("arm.urdf");
+  const std::size_t end = robot.rfind("</robot>");
+  ASSERT_NE(end, std::string::npos);
+  robot.insert(end,
+               "<link name=\"lid\"><visual><geometry><mesh filename=\"none.stl\"/></geometry>"
+               "</visual></link><joint name=\"hinge\" type=\"fixed\"><parent link=\"hand\"/>"
+               "<child link=\"lid\"/></joint>");
+  write("lid.urdf", robot);
+  const ProgramRun refused = bake({"lid.urdf", "--recipe", "arm.toml"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("put the file there, or give --allow-missing\n"));
+  const ProgramRun printed = run({"lid.urdf", "--print-recipe"});
+  EXPECT_EQ(printed.exit_code, 0) << printed.err;
+  EXPECT_THAT(printed.out, HasSubstr("link = \"hand\""));
+}
+
 TEST_F(RobotCli, BakesARobotOfOtherSimulatorsWithWarnings) {
   std::string robot =
       "<robot name=\"cart\"><joint name=\"x\" type=\"prismatic\"><parent link=\"world\"/><child "

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <system_error>
 #include <utility>
 
 #include "dataset/config/placement.h"
+#include "galactic/bake/triangle_mesh.h"
 #include "import/affine.h"
 #include "import/source_files.h"
 #include "robot/robot_parts.h"
@@ -155,6 +157,17 @@ Result<Affine> SceneComposer::placement(const SceneItem& item, const TemplateAtt
   return compose(world_from_object, compose(centered, object_from_asset));
 }
 
+Result<void> SceneComposer::checkDistance(const SceneItem& item, const std::string& what) const {
+  double farthest = 0;
+  for (const double t : item.translation) farthest = std::max(farthest, std::abs(t));
+  if (farthest <= kMaxCoordinate) return {};
+  return fail(
+      ErrorCode::kInvalidInput, fmt::format("{}: {}", result_.scene.name, what),
+      fmt::format("the scene places it {:.6g} m away, at most {} m are possible; correct its "
+                  "translation",
+                  farthest, kMaxCoordinate));
+}
+
 void SceneComposer::addMesh(const fs::path& mesh, const SourceAsset& asset,
                             const Affine& world_from_asset, const std::string& name) {
   const std::uint32_t first = merger_.take(mesh.string(), asset, mesh.parent_path());
@@ -201,6 +214,7 @@ Result<void> SceneComposer::placeObject(const SceneItem& item) {
                                .world_from_mesh = world_from_mesh});
     return {};
   }
+  RETURN_IF_ERROR(checkDistance(item, fmt::format("object '{}'", entry->name)));
   if (!(*attributes)->collidable) {
     warnOnce(
         fmt::format("object '{}' collides with nothing in Habitat; here it does", entry->name));
@@ -255,6 +269,7 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
     noteAbsent(urdf);
     return {};
   }
+  RETURN_IF_ERROR(checkDistance(item, fmt::format("{} '{}'", namesOf(kKind).noun, entry->name)));
   const auto furniture = meshes_.loadFurniture(urdf);
   if (!furniture) return tl::unexpected(furniture.error());
   const fs::path folder = urdf.parent_path();

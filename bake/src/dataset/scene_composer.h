@@ -47,6 +47,8 @@ class SceneComposer {
   [[nodiscard]] Result<Affine> placement(const SceneItem& item,
                                          const TemplateAttributes& attributes,
                                          const std::filesystem::path& mesh);
+  /// Of what is placed too far away for any grid; the grids know no names.
+  [[nodiscard]] Result<void> checkDistance(const SceneItem& item, const std::string& what) const;
   void addMesh(const std::filesystem::path& mesh, const SourceAsset& asset,
                const Affine& world_from_asset, const std::string& name);
   /// "chair_:0001" for the second chair.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "recipe/world_recipe.h"
 
@@ -32,6 +33,11 @@ std::vector<fs::path> step(const std::vector<fs::path>& folders, const fs::path&
     }
   }
   return found;
+}
+
+bool isEmptyFolder(const fs::path& path) {
+  std::error_code unknown;
+  return fs::is_directory(path, unknown) && fs::is_empty(path, unknown);
 }
 
 std::vector<fs::path> matches(const fs::path& root, const fs::path& pattern) {
@@ -76,8 +82,12 @@ Result<std::vector<fs::path>> findInputs(const std::vector<std::string>& pattern
   for (const std::string& pattern : patterns) {
     std::vector<fs::path> matched;
     for (const fs::path& root : roots) {
-      matched = matches(root, pattern);
-      if (!matched.empty()) break;
+      std::vector<fs::path> here = matches(root, pattern);
+      if (here.empty()) continue;
+      // What is found first counts, but for empty folders: they hide nothing that is elsewhere.
+      const bool is_empty = std::ranges::all_of(here, isEmptyFolder);
+      if (matched.empty() || !is_empty) matched = std::move(here);
+      if (!is_empty) break;
     }
     if (matched.empty()) {
       std::string looked;

@@ -74,6 +74,10 @@ class WorldRecipeReader {
       }
       assets.is_dataset = entry.key == "dataset";
       assets.inputs = texts(entry);
+      if (std::ranges::find(assets.inputs, "") != assets.inputs.end()) {
+        errors_.at(entry.value.line,
+                   fmt::format("{}: a name is empty; name a file or a folder", entry.key));
+      }
     }
     assets.options = options(table);
     return assets;

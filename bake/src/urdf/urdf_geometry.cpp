@@ -309,7 +309,7 @@ Result<void> GeometryBuilder::addShapes(const UrdfLink& from, SourceLink& to) {
   if (lost_all && !options_.allow_missing) {
     return fail(ErrorCode::kInvalidInput, place,
                 fmt::format("it lost all its {} geometry: {}: {}; name the package's folder "
-                            "(`package` NAME=DIR), put the file there, or allow missing geometry",
+                            "(`package` NAME=DIR), put the file there, or give `allow-missing`",
                             from.collisions.empty() ? "visual" : "collision",
                             withoutUrdf(lost.front().place), lost.front().reason));
   }

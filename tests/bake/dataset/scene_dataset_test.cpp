@@ -446,5 +446,20 @@ TEST(SceneDataset, FingerprintChangesWithTheTemplatesThatAreThere) {
   EXPECT_NE(fingerprint(), before);
 }
 
+/// The grids, which have no names for what is in a scene, would only say that all of it is large.
+TEST(SceneDataset, NamesWhatIsPlacedTooFarAway) {
+  const SmallDataset small;
+  small.writeScene("far", R"({"stage_instance": {"template_name": "room"}, "object_instances": [
+      {"template_name": "table", "motion_type": "STATIC", "translation": [0, 5000, 0]}]})");
+  const auto dataset = SceneDataset::read(small.config());
+  ASSERT_TRUE(dataset) << textOf(dataset.error());
+  MeshLibrary meshes(bake::datasetMeshOptions());
+  const auto scene = dataset->compose("far", meshes);
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(textOf(scene.error()),
+            "far: object 'table': the scene places it 5000 m away, at most 800 m are possible; "
+            "correct its translation");
+}
+
 }  // namespace
 }  // namespace galactic::test::scene_dataset_test

@@ -103,6 +103,14 @@ TEST_F(FindInputs, TakesAbsolutePatterns) {
               ElementsAre("data/far/f.glb", "data/near/f.glb"));
 }
 
+TEST_F(FindInputs, DoesNotTakeAnEmptyFolderForOneThatIsElsewhere) {
+  std::filesystem::create_directories(at("own/near"));
+  EXPECT_THAT(found({"near"}), ElementsAre("data/near"));
+  // Where there is no other, its reader says what it misses in it.
+  std::filesystem::create_directories(at("own/void"));
+  EXPECT_THAT(found({"void"}), ElementsAre("own/void"));
+}
+
 TEST_F(FindInputs, NamesThePatternThatFitsNothingAndWhereItLooked) {
   const auto inputs = findInputs({"a.glb", "z*.glb"}, {at("own"), at("data")});
   ASSERT_FALSE(inputs.has_value());

@@ -210,20 +210,20 @@ std::vector<Fault> geometryFaults() {
       {"MeshWithEmptyName", robotText(linkText("a", "<mesh filename=\"\"/>")), "r.urdf: link 'a'",
        "it lost all its collision geometry: link 'a' collision 1: mesh '' is missing; looked for a "
        "file name, which is empty; name the package's folder (`package` NAME=DIR), put the file "
-       "there, or allow missing geometry"},
+       "there, or give `allow-missing`"},
       {"MeshFlattened", robotText(linkText("a", "<mesh filename=\"m.stl\" scale=\"1 0 1\"/>")),
        "r.urdf: link 'a' collision 1", "a mesh with scale 1 0 1: a scale of 0 flattens it"},
       {"MeshMissing", robotText(linkText("a", "<mesh filename=\"m.stl\"/>")), "r.urdf: link 'a'",
        "it lost all its collision geometry: link 'a' collision 1: mesh 'm.stl' is missing; looked "
        "for m.stl (from the URDF's folder); name the package's folder (`package` NAME=DIR), put "
-       "the file there, or allow missing geometry"},
+       "the file there, or give `allow-missing`"},
       {"MeshOfUnknownPackage",
        robotText(linkText("a", "<mesh filename=\"package://no_such_package/m.stl\"/>")),
        "r.urdf: link 'a'",
        "it lost all its collision geometry: link 'a' collision 1: mesh "
        "'package://no_such_package/m.stl' is missing; looked for a folder 'no_such_package' or a "
        "package.xml of that name in the search path and above the URDF; name the package's folder "
-       "(`package` NAME=DIR), put the file there, or allow missing geometry"},
+       "(`package` NAME=DIR), put the file there, or give `allow-missing`"},
   };
 }
 

@@ -213,6 +213,13 @@ TEST(EpisodeSetExport, NamesItsJointsAgainstTheCommandLine) {
   ASSERT_FALSE(refused.has_value());
   EXPECT_THAT(refused.error().message,
               testing::HasSubstr("names the start joints lift, and `start-joints` is elbow"));
+  set.start_joints.clear();
+  set.start_positions.clear();
+  const auto none = folder.write("none.episode_set.json", exported(set, FileUp::kZ));
+  const auto without = bake::readEpisodeSet(none, options);
+  ASSERT_FALSE(without.has_value());
+  EXPECT_THAT(without.error().message,
+              testing::HasSubstr("names no start joints, and `start-joints` is elbow; leave"));
 }
 
 TEST(EpisodeSetExport, HasTheKeysOfThePublishedFiles) {

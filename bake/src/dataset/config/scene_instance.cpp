@@ -12,7 +12,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Meters; more is checked when the scene is baked, which cannot name the instance.
+/// Meters; what is placed in a scene has to be nearer, which is checked when it is composed.
 constexpr double kFarthest = 1e6;
 constexpr double kLargestScale = 1e4;
 /// Radians or meters.

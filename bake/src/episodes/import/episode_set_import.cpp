@@ -179,10 +179,12 @@ void EpisodeSetReader::readRobot(const JsonNode& set) {
   }
   const bool is_asked_for = options_.start_joints != EpisodeImportOptions().start_joints;
   if (is_asked_for && options_.start_joints != file_.start_joints) {
-    json_.error(joints.place, fmt::format("names the start joints {}, and `start-joints` is {}; "
-                                          "leave that out",
-                                          fmt::join(file_.start_joints, ","),
-                                          fmt::join(options_.start_joints, ",")));
+    const std::string named =
+        file_.start_joints.empty()
+            ? "no start joints"
+            : fmt::format("the start joints {}", fmt::join(file_.start_joints, ","));
+    json_.error(joints.place, fmt::format("names {}, and `start-joints` is {}; leave that out",
+                                          named, fmt::join(options_.start_joints, ",")));
   }
 }
 
