@@ -36,7 +36,7 @@ bool isThere(const fs::path& pack) {
 }
 
 std::string hashText(const SourceFile& file) {
-  return fmt::format("{:016x}{:016x}\n", file.hash_high, file.hash_low);
+  return fmt::format("{:016x}{:016x}", file.hash_high, file.hash_low);
 }
 
 }  // namespace
@@ -60,11 +60,11 @@ Result<std::unique_ptr<Journal>> openJournal(const Job& job, std::span<const Sou
   const fs::path path = context.output.string() + ".partial";
   RETURN_IF_ERROR(context.log.checkNotRead(path));
   ASSIGN_OR_RETURN(const SourceFile program, describeFile("/proc/self/exe"));
-  std::string parts = hashText(program);
+  std::string parts = hashText(program) + "\n";
   for (const auto& [name, value] : contentOptions(job)) {
     parts += fmt::format("{}={}\n", name, value);
   }
-  for (const SourceFile& file : files) parts += hashText(file);
+  for (const SourceFile& file : files) parts += hashText(file) + "\n";
   const SourceFile all = describeBytes({}, std::as_bytes(std::span(parts)));
   return Journal::open(path, fmt::format("{} {}", kindOf(job), hashText(all)));
 }

@@ -139,7 +139,8 @@ Result<std::vector<SceneFile>> findSceneFiles(const fs::path& folder) {
     file.path = candidate.path;
     if (candidate.preference <= 1) file.up = UpAxis::kZ;
     const fs::path attributes = candidate.scene + ".stage_config.json";
-    if (fs::is_regular_file(attributes, error)) file.attributes = attributes;
+    std::error_code ignored;
+    if (fs::is_regular_file(attributes, ignored)) file.attributes = attributes;
   }
   nameAll(parts, files);
   return files;
