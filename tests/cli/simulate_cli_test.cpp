@@ -466,16 +466,17 @@ TEST_F(SimulateCli, WritesPagesUnderNamesOfPages) {
 }
 
 TEST_F(SimulateCli, WritesItsFilesNeitherToStandardOutputNorUnderADash) {
-  for (const char* option : {"--record", "--report", "--view"}) {
-    for (const char* name : {"-", "/dev/stdout"}) {
-      const ProgramRun result = run({"--envs", "1", "--steps", "1", option, name});
-      EXPECT_EQ(result.exit_code, 2) << option;
-      EXPECT_THAT(result.err, AllOf(StartsWith("galactic-run: " + std::string(name) + ": "),
-                                    HasSubstr("give a")))
-          << option;
-      EXPECT_THAT(result.out, IsEmpty());
-    }
+  const auto expectRefused = [this](const char* option, const std::string& name) {
+    const ProgramRun result = run({"--envs", "1", "--steps", "1", option, name});
+    EXPECT_EQ(result.exit_code, 2) << option;
+    EXPECT_THAT(result.err, AllOf(StartsWith("galactic-run: " + name + ": "), HasSubstr("give a")))
+        << option;
+    EXPECT_THAT(result.out, IsEmpty());
+  };
+  for (const char* option : {"--record", "--report", "--view", "--animation"}) {
+    expectRefused(option, "-");
   }
+  for (const char* option : {"--record", "--report"}) expectRefused(option, "/dev/stdout");
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "-"));
   EXPECT_EQ(run({"--envs", "1", "--steps", "1", "--report", "./-"}).exit_code, 0);
   EXPECT_THAT(content("-"), StartsWith("{"));

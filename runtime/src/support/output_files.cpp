@@ -50,19 +50,20 @@ std::string extensionOf(const fs::path& path) {
   return extension;
 }
 
-Result<void> checkExtension(const fs::path& output, const FileKind& kind) {
-  const std::string extension = extensionOf(output);
-  const bool is_short = !extension.empty() && extension == kind.short_extension;
-  if (extension == kind.extension || is_short) return {};
-  return fail(ErrorCode::kUnsupported, output.string(),
-              fmt::format("{}; end the name with {}", kind.sentence, kind.extension));
-}
-
 Result<void> checkNotDash(const fs::path& output) {
   if (output != "-") return {};
   return fail(
       ErrorCode::kIo, output.string(),
       "is not the standard output here; give a file's name, or ./- for a file of that name");
+}
+
+Result<void> checkExtension(const fs::path& output, const FileKind& kind) {
+  RETURN_IF_ERROR(checkNotDash(output));
+  const std::string extension = extensionOf(output);
+  const bool is_short = !extension.empty() && extension == kind.short_extension;
+  if (extension == kind.extension || is_short) return {};
+  return fail(ErrorCode::kUnsupported, output.string(),
+              fmt::format("{}; end the name with {}", kind.sentence, kind.extension));
 }
 
 Result<void> tryFile(const fs::path& path) {

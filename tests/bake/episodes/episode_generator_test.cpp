@@ -171,7 +171,7 @@ TEST(EpisodeGenerator, RefusesPacksThatDoNotGoTogether) {
   packs = world.packs();
   packs.push_back(packs[2]);
   EXPECT_THAT(refused(packs), HasSubstr("is a second robot, the first is stick"));
-  EXPECT_THAT(refused({packs[1], packs[2]}), HasSubstr("0 scenes, 1 objects and 1 robots are"));
+  EXPECT_THAT(refused({packs[1], packs[2]}), HasSubstr("found 0 scenes, 1 object and 1 robot;"));
 }
 
 }  // namespace

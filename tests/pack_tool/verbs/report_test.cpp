@@ -100,7 +100,7 @@ TEST(Report, EscapesWhatPacksSay) {
 
 TEST(Report, IsNotWrittenOverAPack) {
   const ScratchFolder folder;
-  const fs::path pack = writePack(folder, "kitchen.pack", kitchenScene());
+  const fs::path pack = writePack(folder, "kitchen.html", kitchenScene());
   const std::string before = contentOf(pack);
   const Ran ran = run({.packs = {pack}, .output = pack});
   EXPECT_EQ(ran.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
@@ -110,13 +110,13 @@ TEST(Report, IsNotWrittenOverAPack) {
 TEST(Report, IsNotWrittenOverATextureThatAWorldLists) {
   const ScratchFolder folder;
   WorldPackFields world = writePacks(folder, {});
-  world.packs.push_back(writeListed(folder, "wood.pack", buildPack(TexturePackFields{})));
+  world.packs.push_back(writeListed(folder, "wood.html", buildPack(TexturePackFields{})));
   const fs::path pack = folder.write("world.pack", textOf(buildPack(world)));
-  const fs::path texture = folder.path() / "wood.pack";
+  const fs::path texture = folder.path() / "wood.html";
   const std::string before = contentOf(texture);
   const Ran ran = run({.packs = {pack}, .output = texture});
   EXPECT_EQ(ran.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
-  EXPECT_NE(ran.err.find("wood.pack: is also an input"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("wood.html: is also an input"), std::string::npos) << ran.err;
   EXPECT_EQ(contentOf(texture), before);
   EXPECT_EQ(run({.packs = {pack}, .output = folder.path() / "page.html"}).exit_code, kExitOk);
 }
