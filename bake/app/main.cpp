@@ -125,7 +125,7 @@ std::size_t countOf(const JobList& list, const BuildOptions& options) {
   const std::size_t assets =
       (list.assets.size() + shard.count - 1 - std::min(shard.index, list.assets.size())) /
       shard.count;
-  return assets + (list.episodes && shard.count == 1 ? 1 : 0);
+  return assets + list.broken.size() + (list.episodes && shard.count == 1 ? 1 : 0);
 }
 
 BuildOutcome buildAll(const BakeCommand& command, const JobList& list) {
@@ -159,6 +159,10 @@ int exitCodeOf(const BuildOutcome& outcome) {
 std::vector<LeftOut> whatIsMissing(const JobList& list, unsigned threads) {
   std::vector<LeftOut> missing = findMissing(list, threads);
   missing.insert(missing.begin(), list.left_out.begin(), list.left_out.end());
+  for (const BrokenScene& scene : list.broken) {
+    const Error& error = scene.failure.error;
+    missing.push_back({scene.name, {error.where + ": " + error.message}});
+  }
   return missing;
 }
 

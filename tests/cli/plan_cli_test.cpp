@@ -316,8 +316,11 @@ TEST_F(PlanCli, TurnsScansAsTheirAttributesSay) {
   EXPECT_EQ(heightOf(R"({"up": [0, 0, 1]})"), lying);
   EXPECT_EQ(heightOf(R"({"friction_coefficient": 0.4})"), lying);
   write("scans/loft.stage_config.json", R"({"up": [1, 0, 0]})");
-  const ProgramRun odd = run({"scans", "--as", "dataset", "-o", "out.pack"});
+  write("scans/hall.glb", fileContent(sampleFile("apartment.glb")));
+  const ProgramRun odd = run({"scans", "--as", "dataset", "-o", "out.pack", "--radii", "0.12",
+                              "--check-columns", "0", "--keep-going", "--report", "report.json"});
   EXPECT_EQ(odd.exit_code, 3);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/hall.pack"));
   EXPECT_THAT(odd.err, HasSubstr("loft.stage_config.json: up: is neither [0, 1, 0] nor [0, 0, 1]; "
                                  "give --up"));
 }
@@ -336,6 +339,11 @@ TEST_F(PlanCli, WritesNoPacksIntoTheFolderOfTheirInputs) {
     EXPECT_FALSE(has("store/.cache"));
   };
   const std::string scans = ", which is the folder of scans scans or inside it";
+  // A folder that is not there yet, as its user names it who stands among the scans.
+  const ProgramRun inside =
+      test::runProgram(GALACTIC_BAKE, path("store"), {".", "--as", "dataset", "-o", "w.pack"});
+  EXPECT_EQ(inside.exit_code, 3);
+  EXPECT_THAT(inside.err, HasSubstr("into w, which is the folder of scans . or inside it"));
   expectRefused({"scans", "--as", "dataset"},
                 "galactic-bake: scans.pack: its packs would be written into scans" + scans);
   expectRefused({"scans", "--as", "dataset", "-o", "store.pack"}, "into store" + scans);

@@ -351,8 +351,11 @@ TEST_F(PlanFaults, GoesOnWithoutScenesWhoseFilesAreBroken) {
   const ProgramRun looks = bake("out", {"--missing", "skip", "--dry-run"});
   EXPECT_EQ(looks.exit_code, 3);
   EXPECT_THAT(looks.err, HasSubstr("b.scene_instance.json: it is not JSON"));
+  EXPECT_THAT(looks.out, HasSubstr("scenes/b.pack"));
+  EXPECT_THAT(looks.out, Not(HasSubstr("nothing is missing")));
   EXPECT_THAT(packsThatAre("planned"), Contains("scenes/c.pack"));
   const ProgramRun goes_on = bake("out", {"--missing", "skip", "--keep-going"});
+  EXPECT_THAT(goes_on.out, HasSubstr("[4/4] "));
   EXPECT_EQ(goes_on.exit_code, 3);
   EXPECT_THAT(goes_on.err, HasSubstr("b.scene_instance.json: it is not JSON"));
   EXPECT_THAT(packsThatAre("failed"), testing::ElementsAre("scenes/b.pack"));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <climits>
 #include <system_error>
 #include <utility>
 
@@ -56,8 +57,9 @@ Result<void> addSources(const std::vector<fs::path>& files, std::vector<SourceFi
 
 Result<std::unique_ptr<Journal>> openJournal(const Job& job, std::span<const SourceFile> files,
                                              const BakeContext& context) {
-  if (context.dry_run) return std::unique_ptr<Journal>();
   const fs::path path = context.output.string() + ".partial";
+  const bool is_possible = path.filename().string().size() <= NAME_MAX;
+  if (context.dry_run || !is_possible) return std::unique_ptr<Journal>();
   RETURN_IF_ERROR(context.log.checkNotRead(path));
   ASSIGN_OR_RETURN(const SourceFile program, describeFile("/proc/self/exe"));
   std::string parts = hashText(program) + "\n";

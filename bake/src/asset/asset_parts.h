@@ -22,8 +22,8 @@ namespace galactic::bake {
                                       std::vector<SourceFile>& sources);
 
 /// What a long bake has done, in OUTPUT.partial until the pack is written; null where nothing is
-/// written. All that decides what comes out: the options of `job`, the content of `files`, and this
-/// program, of which another build may bake other bytes.
+/// written, or where no file can have so long a name. All that decides what comes out: the options
+/// of `job`, the content of `files`, and this program, of which another build may bake other bytes.
 [[nodiscard]] Result<std::unique_ptr<Journal>> openJournal(const Job& job,
                                                            std::span<const SourceFile> files,
                                                            const BakeContext& context);

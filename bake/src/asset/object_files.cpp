@@ -13,6 +13,7 @@
 #include "galactic/bake/packs.h"
 #include "galactic/bake/parallel_for.h"
 #include "recipe/collection_shape.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -176,6 +177,8 @@ Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
   // One object is done or not.
   std::unique_ptr<Journal> kept;
   if (inputs.size() > 1) {
+    const std::filesystem::path partial = context.output.string() + ".partial";
+    for (const ObjectInput& input : inputs) RETURN_IF_ERROR(checkNotInput(partial, input.path));
     ASSIGN_OR_RETURN(kept, openJournal(Job(job), sources, context));
   }
   const ObjectJournal journal(std::move(kept), outcome.radii.size());

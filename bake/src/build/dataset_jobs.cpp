@@ -146,7 +146,12 @@ Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
     job.input = file.path;
     job.name = file.name;
     if (!job.import.up) {
-      ASSIGN_OR_RETURN(job.import.up, upOf(file));
+      auto up = upOf(file);
+      if (!up) {
+        packs.addBroken({"scenes/" + file.name + ".pack", {file.path, std::move(up.error())}});
+        continue;
+      }
+      job.import.up = *up;
     }
     packs.add("scenes/" + file.name, std::move(job), file.path);
   }

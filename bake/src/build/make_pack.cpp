@@ -182,13 +182,22 @@ fs::path inputOf(const PackJob& pack) {
   return files.empty() ? pack.output : files.front();
 }
 
+/// Exceptions of one pack, whose reader was killed for example, are no other's.
+Result<void> makeOrSay(Making& making, unsigned jobs) {
+  try {
+    return making.make(jobs);
+  } catch (const ErrorException& failure) {
+    return tl::unexpected(failure.error());
+  }
+}
+
 }  // namespace
 
 PackOutcome makePack(const PackJob& pack, unsigned jobs, const BuildTools& tools) {
   const auto start = std::chrono::steady_clock::now();
   tools.observer.begin(pack);
   Making making(pack, tools);
-  auto done = making.make(jobs);
+  auto done = makeOrSay(making, jobs);
   PackOutcome& outcome = making.outcome();
   // What was interrupted is still to be done.
   if (!done && done.error().code != ErrorCode::kInterrupted) {

@@ -143,6 +143,8 @@ Result<void> PackList::checkRadii() const {
 }
 
 Result<void> PackList::checkForEpisodes() const {
+  // What it lacks may be in what is broken.
+  if (!list_.broken.empty()) return {};
   const auto lacks = [](const char* what) {
     return fail(ErrorCode::kInvalidInput, "",
                 fmt::format("episodes are generated for a robot and objects, and there is no {}; "

@@ -1,7 +1,6 @@
 #include "import/isolated_process.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -221,9 +220,11 @@ void settleChild(int kept, pid_t parent, const ProcessLimits& limits) {
   // A parent that ended before that sends no signal any more.
   if (::getppid() != parent) ::_exit(kExitException);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGALRM, SIGXCPU,
-                           SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGUSR1, SIGUSR2}) {
+                           SIGPIPE, SIGUSR1, SIGUSR2}) {
     std::signal(signal, SIG_DFL);
   }
+  // Terminals and schedulers tell all of a group to end; the parent finishes what it has begun.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -314,18 +315,17 @@ int reapChild(pid_t child) {
 }
 
 /// Nothing that the child did: by the machine, or by somebody.
-[[noreturn]] void throwKilled(int signal) {
+[[noreturn]] void throwKilled() {
   throw ErrorException(
       {ErrorCode::kUnsupported, "a process that reads files",
-       fmt::format("was killed from outside (signal {}), as the system does where memory runs out; "
-                   "free some, or bake less at once (-j, --memory), and give the command again",
-                   signal)});
+       "was killed from outside, as the system does where memory runs out; free some, or bake less "
+       "at once (-j, --memory), and give the command again"});
 }
 
 std::optional<ProcessFailure> judgeExit(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    if (signal == SIGKILL || signal == SIGTERM) throwKilled(signal);
+    if (signal == SIGKILL) throwKilled();
     const auto end = signal == SIGXCPU ? ProcessEnd::kTimeLimit : ProcessEnd::kCrashed;
     return ProcessFailure{.end = end, .number = signal};
   }

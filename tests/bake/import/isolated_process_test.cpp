@@ -65,10 +65,19 @@ TEST(IsolatedProcess, ReportsTheSignalAndTheStageOfACrash) {
 }
 
 TEST(IsolatedProcess, BlamesNoFileForWhatKilledTheChild) {
-  for (const int signal : {SIGKILL, SIGTERM}) {
-    const auto killed = [&] { (void)failureOf([&](ProcessChannel&) { ::raise(signal); }); };
-    EXPECT_THROW(killed(), ErrorException) << signal;
-  }
+  const auto killed = [] { (void)failureOf([](ProcessChannel&) { ::raise(SIGKILL); }); };
+  EXPECT_THROW(killed(), ErrorException);
+}
+
+TEST(IsolatedProcess, FinishesWhenItsGroupIsToldToEnd) {
+  const auto output = runIsolated(
+      [](ProcessChannel& channel) {
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::raise(signal);
+        channel.write(std::as_bytes(std::span("whole", 5)));
+      },
+      {});
+  ASSERT_TRUE(output.has_value());
+  EXPECT_EQ(output->bytes().size(), 5U);
 }
 
 TEST(IsolatedProcess, ReportsExceptionsExitsAndLackOfMemoryApart) {

@@ -33,9 +33,10 @@ struct MeshImportOptions {
 
 /// Reads anything assimp reads (GLB, glTF, OBJ, PLY, STL, DAE and more): axes and unit converted to
 /// Y up and meters, node transforms and instances kept, materials and textures named.
-/// Fails with kIo (missing or unreadable file), kUnsupported (no reader for it) or kInvalidInput
-/// (broken, no triangles, NaN or infinite vertex that a triangle uses, index out of range, reader
-/// crashed or ran too long).
+/// Throws ErrorException where the system kills the process that reads, which says nothing of the
+/// file. Fails with kIo (missing or unreadable file), kUnsupported (no reader for it) or
+/// kInvalidInput (broken, no triangles, NaN or infinite vertex that a triangle uses, index out of
+/// range, reader crashed or ran too long).
 [[nodiscard]] Result<SourceAsset> importMesh(const std::filesystem::path& path,
                                              const MeshImportOptions& options = {});
 
