@@ -88,8 +88,8 @@ struct SphereTolerances {
                                                 Offset<schema::Provenance> provenance,
                                                 schema::Asset type, Offset<void> asset);
 
-/// Writes header and payload atomically; returns the file's size in bytes. Fails with kInternal, and
-/// writes nothing, where they do not pass what whoever opens the pack checks.
+/// Writes header and payload atomically; returns the file's size in bytes. Fails with kInternal,
+/// and writes nothing, where they do not pass what whoever opens the pack checks.
 [[nodiscard]] Result<std::uint64_t> writePackFile(const std::filesystem::path& path, PackKind kind,
                                                   std::span<const std::byte> payload);
 

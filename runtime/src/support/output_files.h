@@ -39,7 +39,8 @@ struct FileKind {
 
 inline constexpr FileKind kPageFile{".html", "pages are HTML files", ".htm"};
 
-/// Fails with kUnsupported when a file that will be of this kind has another extension; as checkNotDash.
+/// Fails with kUnsupported when a file that will be of this kind has another extension, and as
+/// checkNotDash.
 [[nodiscard]] Result<void> checkExtension(const std::filesystem::path& output,
                                           const FileKind& kind);
 

@@ -50,7 +50,7 @@ std::string endingOf(std::string_view file) {
 /// What stands for a target in the names of its parts.
 std::string standIn(const std::string& target) {
   // "-THREAD-NUMBER", of 32 bits each.
-  constexpr std::size_t kNumbers = 2 * 11;
+  constexpr std::size_t kNumbers = 22;
   constexpr std::size_t kHash = 1 + 16;
   const std::string ending = endingOf(target);
   const std::size_t most = NAME_MAX - kMark.size() - kMachineDigits - kNumbers - ending.size();

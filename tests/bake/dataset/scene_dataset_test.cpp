@@ -59,8 +59,8 @@ TEST(SceneNames, AreHandlesWhereSeveralHaveTheSame) {
 }
 
 TEST(SceneNames, LeadOutOfNoFolder) {
-  EXPECT_THAT(namesOfScenes({"../../../evil/x", "b/./x", "/root/x"}),
-              ElementsAre("b/x", "evil/x", "root/x"));
+  EXPECT_THAT(namesOfScenes({"../../../evil/x", "b/./x", "/home/me/x"}),
+              ElementsAre("b/x", "evil/x", "home/me/x"));
   EXPECT_THAT(namesOfScenes({"../x", "../../x", "a/x"}), ElementsAre("a/x", "x", "x_2"));
 }
 
