@@ -1,4 +1,4 @@
-"""A task of one's own, with its own reward and end, in episodes of one's own choice."""
+"""A task of one's own: what it pays, when it ends, what is observed beside, which episodes begin."""
 
 import sys
 
@@ -6,55 +6,61 @@ import numpy as np
 import galactic
 
 
-class Reach:
-    """Come near the target with the hand. Pays each meter nearer, ends within 30 cm of it.
+class Reach(galactic.Task):
+    """Come near the target with the hand. Pays each meter nearer, ends within `radius` meters of it.
 
-    `episodes` are those that begin from now on: change them while you train.
+    Each env begins with the `share` of episodes in which the target is nearest, and has all of them
+    after `easy_steps` steps.
     """
 
-    def __init__(self, world, num_envs, episodes):
-        self.homes = galactic.VectorEnv(
-            world, num_envs, task="none", episode_steps=100, observation="dict"
-        )
-        self.episodes = episodes
-        self.random = np.random.default_rng(1)
+    options = {"episode_steps": 100}
+    parts = {"distance": 1}
 
-    def reset(self):
-        return self._begin(np.ones(self.homes.num_envs, bool))
+    def __init__(self, radius=0.3, share=0.25, easy_steps=200):
+        self.radius = radius
+        self.share = share
+        self.easy_steps = easy_steps
 
-    def step(self, actions):
-        """Observations, rewards, terminations, truncations, and the last observations, which differ
-        from the first ones where episodes ended."""
-        last, _, _, truncations, infos = self.homes.step(actions)
-        for env in np.flatnonzero(truncations):
-            for name, value in infos["final_obs"][env].items():
-                last[name][env] = value
-        distances = np.linalg.norm(last["grip_target"], axis=1)
-        rewards = self.distances - distances
-        terminations = distances < 0.3
-        observations = self._begin(terminations | truncations)
-        return observations, rewards, terminations, truncations & ~terminations, last
+    def prepare(self, envs):
+        self.memory = {"distance": np.zeros(envs.num_envs, np.float32)}
+        # An env for each episode, at its start: how far away are the targets?
+        world = envs.world
+        starts = galactic.Simulator(world, envs=world.episodes, order="linear", task="none")
+        targets = starts.observations[:, starts.observation_parts["robot_target"]]
+        self.near_first = starts.episodes()[np.argsort(np.linalg.norm(targets, axis=1))]
 
-    def _begin(self, mask):
-        episodes = self.random.choice(self.episodes, self.homes.num_envs)
-        observations, _ = self.homes.reset(options={"reset_mask": mask, "episodes": episodes})
-        self.distances = np.linalg.norm(observations["grip_target"], axis=1)
-        return observations
+    def choose(self, envs, which):
+        share = self.share if envs.steps < self.easy_steps else 1.0
+        count = int(np.ceil(share * len(self.near_first)))
+        drawn = envs.uniform("episode")[which, 0]
+        return self.near_first[(drawn * count).astype(int)]
+
+    def begin(self, envs, which):
+        self.memory["distance"][which] = distances(envs)[which]
+
+    def step(self, envs):
+        now = distances(envs)
+        rewards = self.memory["distance"] - now
+        self.memory["distance"][:] = now
+        return galactic.Outcome(rewards, successes=now < self.radius)
+
+    def observe(self, envs):
+        return {"distance": self.memory["distance"][:, np.newaxis]}
 
 
-world = galactic.World(sys.argv[1])
-# An env for each episode, at its start: how far away are the targets?
-starts = galactic.Simulator(world, envs=world.episodes, order="linear", task="none")
-targets = starts.observations[:, starts.observation_parts["robot_target"]]
-near_first = starts.episodes()[np.argsort(np.linalg.norm(targets, axis=1))]
+def distances(envs):
+    """From the hands to the targets, meters."""
+    return np.linalg.norm(envs.observations["grip_target"], axis=1)
 
-task = Reach(world, 32, near_first[: len(near_first) // 4 + 1])
-random = np.random.default_rng(2)
-observations = task.reset()
-for step in range(400):
-    if step == 200:
-        task.episodes = near_first
-    actions = random.uniform(-1, 1, task.homes.action_space.shape)
-    observations, rewards, terminations, truncations, last = task.step(actions)
-    if terminations.any():
-        print(f"step {step}: reached in envs {np.flatnonzero(terminations).tolist()}")
+
+if __name__ == "__main__":
+    homes = galactic.VectorEnv(sys.argv[1], 32, task=Reach)
+    random = np.random.default_rng(2)
+    observations, _ = homes.reset()
+    print(f"observed: {', '.join(homes.observation_parts)}")
+    for step in range(400):
+        actions = random.uniform(-1, 1, homes.action_space.shape)
+        observations, rewards, terminations, truncations, infos = homes.step(actions)
+        if terminations.any():
+            reached = infos["final_info"]["episode_index"][terminations]
+            print(f"step {step}: reached the targets of episodes {sorted(set(reached.tolist()))}")

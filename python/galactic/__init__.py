@@ -1,7 +1,7 @@
 """Thousands of simulated homes at once, for learning.
 
 World opens packs, Simulator steps a batch of environments, Renderer draws them, VectorEnv is
-Gymnasium's vector environment over them, LearnedPolicy plays policy packs, ScriptedPolicy is an
+Gymnasium's vector environment over them, Task one of your own in it, LearnedPolicy plays policy packs, ScriptedPolicy is an
 expert to imitate, PlanningScene answers planners. docs/python.md has the tour.
 """
 
@@ -38,6 +38,7 @@ except ModuleNotFoundError as error:
     ) from None
 from galactic.env_states import EnvStates, Poses
 from galactic.errors import Error
+from galactic.task import Outcome, Task, TaskEnvs
 from galactic.vector_env import VectorEnv
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "Error",
     "ErrorCode",
     "LearnedPolicy",
+    "Outcome",
     "PlanningScene",
     "Pose",
     "Poses",
@@ -56,6 +58,8 @@ __all__ = [
     "ScriptedPolicy",
     "ScriptedTrouble",
     "Simulator",
+    "Task",
+    "TaskEnvs",
     "VectorEnv",
     "World",
     "__version__",

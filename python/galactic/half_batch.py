@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from galactic import spaces
 from galactic._core import EpisodeTally, ErrorCode, Renderer, Simulator, World
 from galactic.errors import Error
+from galactic.task import Task
+from galactic.task_runner import TaskRunner, options_of
 
 Array = NDArray[Any]
 #: An array or a dictionary of arrays, as observation_space says. No Union: which one it is depends
@@ -34,6 +36,7 @@ class HalfBatch:
         cameras: options of a Renderer for each camera, by its name, which begins those of its images;
             one called "" has images by their own names.
         copy: whether results are arrays of their own, and no views.
+        task: one of the caller's own, over the simulator's.
     """
 
     def __init__(
@@ -44,9 +47,15 @@ class HalfBatch:
         by_parts: bool,
         cameras: Mapping[str, Mapping[str, Any]],
         copy: bool,
+        task: Task | None = None,
     ) -> None:
-        # With images, envs wait where their episodes ended until that has been drawn.
-        self.simulator = Simulator(world, **options, auto_reset=not cameras)
+        if task is not None:
+            options = options_of(task, options)
+        # Envs wait where their episodes ended until that has been drawn, or a task has looked at it.
+        self._renews = bool(cameras) or task is not None
+        self.simulator = Simulator(world, **options, auto_reset=not self._renews)
+        self._task = None if task is None else TaskRunner(task, world, self.simulator)
+        self.observation_parts = self.simulator.observation_parts | self._task_parts()
         self.renderers = {name: Renderer(self.simulator, **cameras[name]) for name in cameras}
         self._image_shapes = {
             _image_name(camera, image): shape
@@ -54,8 +63,10 @@ class HalfBatch:
             for image, shape in renderer.shapes.items()
         }
         self._copy = copy
-        self._parts = self.simulator.observation_parts if by_parts else None
+        self._parts = self.observation_parts if by_parts else None
         envs = self.simulator.num_envs
+        # Of simulator and task together, where there is one.
+        self._rows = np.zeros((envs, self.observation_size), np.float32)
         self._tally = EpisodeTally(self.simulator)
         self._is_new = True
         self._in_use = threading.Lock()
@@ -67,10 +78,18 @@ class HalfBatch:
             if not copy
         }
 
+    def _task_parts(self) -> dict[str, slice]:
+        return {} if self._task is None else self._task.parts
+
+    @property
+    def observation_size(self) -> int:
+        """How many numbers the flat observation of an env has."""
+        return self.simulator.observation_size + (0 if self._task is None else self._task.size)
+
     @property
     def observation_space(self) -> spaces.Space:
         """Of one env."""
-        size = self.simulator.observation_size
+        size = self.observation_size
         if self._parts is None and not self.renderers:
             return _unbounded(size)
         parts = {"state": slice(0, size)} if self._parts is None else self._parts
@@ -81,7 +100,7 @@ class HalfBatch:
     def landing_shapes(self) -> dict[str, tuple[tuple[int, ...], Any]]:
         """What step() can write to: shape, without the env's axis, and type."""
         return {
-            "state": ((self.simulator.observation_size,), np.float32),
+            "state": ((self.observation_size,), np.float32),
             **self._image_shapes,
             "rewards": ((), np.float32),
             "terminations": ((), np.bool_),
@@ -96,13 +115,15 @@ class HalfBatch:
         with self._alone():
             if seed is not None:
                 self.simulator.restart(seed)
+                if self._task is not None:
+                    self._task.restart()
             untouched = self._is_new or seed is not None
             self._is_new = False
             if episodes is not None or not untouched:
                 next_one = Simulator.NEXT_EPISODE
                 chosen = np.full(len(mask), next_one, np.int64) if episodes is None else episodes
-                chosen = np.where(chosen < 0, Simulator.STAYS if untouched else next_one, chosen)
-                self.simulator.reset(np.where(mask, chosen, Simulator.STAYS))
+                begins = np.flatnonzero(mask & ((chosen >= 0) | (not untouched)))
+                self._begin(begins, chosen[begins])
             self._tally.restart(mask)
             self._began[mask] = time.perf_counter()
 
@@ -110,7 +131,7 @@ class HalfBatch:
         """What all envs see now."""
         with self._alone():
             images = self._draw(out)
-            return self._observed(self._landed("state", self.simulator.observations, out), images)
+            return self._observed(self._landed("state", self._state_rows(), out), images)
 
     def save_state(self) -> dict[str, Array]:
         """Arrays that restore_state() takes."""
@@ -128,11 +149,14 @@ class HalfBatch:
             self.simulator.restore_state(saved["simulator"].tobytes())
             self._tally.restore(saved["returns"], saved["lengths"])
             self._is_new = bool(saved["is_new"])
+            if self._task is not None:
+                self._task.restore(saved)
 
     def _own_state(self) -> dict[str, Array]:
         """What the simulator does not know."""
         tally, is_new = self._tally, np.array(self._is_new)
-        return {"returns": tally.returns, "lengths": tally.lengths, "is_new": is_new}
+        task = {} if self._task is None else self._task.state()
+        return {"returns": tally.returns, "lengths": tally.lengths, "is_new": is_new, **task}
 
     def step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
         """See VectorEnv.step, which has checked `actions` and `out`."""
@@ -153,22 +177,35 @@ class HalfBatch:
             self._in_use.release()
 
     def _step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
-        simulator = self.simulator
+        simulator, task = self.simulator, self._task
+        idle = None if task is None else simulator.idle.copy()
         simulator.step(actions)
         self._is_new = False
-        terminated, truncated, ended = self._tally.add()
+        if task is not None and idle is not None:
+            task.step(actions, idle)
+        paid, endings = (simulator.rewards, simulator.endings) if task is None else task.outcome
+        terminated, truncated, ended = self._tally.add(paid, endings)
         terminations = self._landed("terminations", terminated, out, True)
         truncations = self._landed("truncations", truncated, out, True)
-        rewards = self._landed("rewards", simulator.rewards, out)
+        rewards = self._landed("rewards", paid, out)
         if out is not None and "endings" in out:
-            self._landed("endings", simulator.endings, out)
+            self._landed("endings", endings, out)
         images = self._draw(out)
         infos = {}
         if len(ended):
             cameras = self._cameras(ended)
             infos = self._infos(ended, self._renew(ended, images), cameras)
-        observations = self._observed(self._landed("state", simulator.observations, out), images)
+        observations = self._observed(self._landed("state", self._state_rows(), out), images)
         return observations, rewards, terminations, truncations, infos
+
+    def _state_rows(self) -> Array:
+        """The flat observations of all envs, as they are now."""
+        if self._task is None:
+            return self.simulator.observations
+        size = self.simulator.observation_size
+        self._rows[:, :size] = self.simulator.observations
+        self._rows[:, size:] = self._task.observe()
+        return self._rows
 
     def _landed(
         self, name: str, values: Array, out: Mapping[str, Array] | None, is_own: bool = False
@@ -198,18 +235,27 @@ class HalfBatch:
     def _renew(self, which: NDArray[np.int64], images: dict[str, Array]) -> Observations:
         """The last observations of the envs `which` ended an episode; they are in the next one then,
         in `images`, too."""
-        if not self.renderers:
+        if not self._renews:
             return self._observed(self.simulator.final_observations[which], {})
         last = self._observed(
-            self.simulator.observations[which], {name: all[which] for name, all in images.items()}
+            self._state_rows()[which], {name: all[which] for name, all in images.items()}
         )
-        begins = np.full(self.simulator.num_envs, Simulator.STAYS, np.int32)
-        begins[which] = Simulator.NEXT_EPISODE
-        self.simulator.reset(begins)
+        self._begin(which, np.full(len(which), Simulator.NEXT_EPISODE))
         for camera, renderer in self.renderers.items():
             for image, drawn in renderer.render(envs=which).items():
                 images[_image_name(camera, image)][which] = drawn
         return last
+
+    def _begin(self, which: NDArray[np.int64], episodes: NDArray[np.int64]) -> None:
+        """Begins episodes of the world in the envs `which`; where none is named, the next that the task
+        chooses, or of the env's own."""
+        if self._task is not None:
+            episodes = np.where(episodes < 0, self._task.choose(which), episodes)
+        begins = np.full(self.simulator.num_envs, Simulator.STAYS, np.int64)
+        begins[which] = np.where(episodes < 0, Simulator.NEXT_EPISODE, episodes)
+        self.simulator.reset(begins)
+        if self._task is not None:
+            self._task.begin(which)
 
     def _cameras(self, which: NDArray[np.int64]) -> dict[str, Array]:
         """Where the images of the envs `which` were drawn from last, as Renderer.world_from_camera has

@@ -6,7 +6,7 @@ import io
 import numbers
 import os
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from enum import Enum
 from typing import Any, Literal, NoReturn, Union
@@ -19,6 +19,8 @@ from galactic._core import ErrorCode, Renderer, Simulator, World
 from galactic.env_states import EnvStates, joined
 from galactic.errors import Error
 from galactic.half_batch import HalfBatch, Observations, StepResult, check_places
+from galactic.task import Task
+from galactic.task_runner import made_by
 
 try:
     from gymnasium.vector import VectorEnv as _Base
@@ -97,6 +99,8 @@ class VectorEnv(_Base):
         copy: whether results are arrays of their own. Else they are views, overwritten by the next
             step, unless they were written to `out`.
         render_mode: None, or "rgb_array" for render().
+        task: the name of one of the simulation's tasks, such as "pick"; or one of your own, a class
+            that inherits from galactic.Task, or anything that makes one without arguments.
         threads, seed, order, rank, ranks, options: of galactic.Simulator. body_transforms=True
             lets you draw its `simulators` with a Renderer of your own, also without images.
     """
@@ -120,6 +124,7 @@ class VectorEnv(_Base):
         halves: Literal[1, 2] = 1,
         copy: bool = True,
         render_mode: str | None = None,
+        task: str | Callable[[], Task] | None = None,
         threads: int = 0,
         seed: int = 1,
         order: str = "shuffled",
@@ -149,6 +154,9 @@ class VectorEnv(_Base):
         draws = bool(cameras) or render_mode is not None
         self._render_threads = threads
         options |= {"threads": threads, "seed": seed, "order": order}
+        own_task = _own_task(task)
+        if task is not None and own_task is None:
+            options["task"] = task
         if draws:
             options["body_transforms"] = True
         cameras = {name: {"threads": threads, **camera} for name, camera in cameras.items()}
@@ -165,6 +173,7 @@ class VectorEnv(_Base):
                 by_parts=observation == "dict",
                 cameras=cameras,
                 copy=copy,
+                task=None if own_task is None else made_by(own_task),
             )
             for half in range(halves)
         ]
@@ -190,8 +199,16 @@ class VectorEnv(_Base):
         return self._world
 
     @property
+    def observation_parts(self) -> dict[str, slice]:
+        """Where in the flat observation of an env its parts are: the simulator's, and behind them those
+        of a task of one's own."""
+        self._require_open()
+        return self._halves[0].observation_parts
+
+    @property
     def simulators(self) -> tuple[Simulator, ...]:
-        """The simulator of each half: for its statistics and states."""
+        """The simulator of each half: for its statistics and states. Of a task of one's own, they know
+        nothing."""
         self._require_open()
         return tuple(half.simulator for half in self._halves)
 
@@ -450,6 +467,14 @@ class VectorEnv(_Base):
 def _require(holds: bool, name: str, found: object, wanted: str) -> None:
     if not holds:
         raise ValueError(f"{name} is {found!r}, expected {wanted}")
+
+
+def _own_task(task: Any) -> Callable[[], Task] | None:
+    """What makes tasks of one's own; None where `task` names one of the simulation's."""
+    if isinstance(task, Task):
+        name = type(task).__name__
+        raise TypeError(f"task is a {name}; give what makes one for each half, such as the class")
+    return task if callable(task) else None
 
 
 def _cameras_of(images: Any) -> dict[str, Mapping[str, Any]]:

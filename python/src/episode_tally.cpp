@@ -30,23 +30,24 @@ std::int32_t EpisodeTally::episodeOf(std::size_t env) const {
   return static_cast<std::int32_t>(simulator_.batch().envObjects(env).episode);
 }
 
-py::tuple EpisodeTally::add() {
+py::tuple EpisodeTally::add(const py::object& rewards, const py::object& endings) {
   const Confinement::Use use = simulator_.readState();
   const std::size_t envs = returns_.size();
-  const std::span<const float> rewards = simulator_.batch().rewards();
-  const std::span<const EpisodeEnd> endings = simulator_.batch().endings();
+  const auto paid = inputOf<float>(rewards, "rewards", {simulator_.envs()});
+  const auto ends = inputOf<std::uint8_t>(endings, "endings", {simulator_.envs()});
   py::array_t<bool> terminations = filled(envs, false);
   py::array_t<bool> truncations = filled(envs, false);
   ended_.clear();
   endings_.clear();
   for (std::size_t env = 0; env < envs; ++env) {
-    returns_[env] += static_cast<double>(rewards[env]);
+    const std::uint8_t end = ends.data()[env];
+    returns_[env] += static_cast<double>(paid.data()[env]);
     ++lengths_[env];
-    if (endings[env] == EpisodeEnd::kNone) continue;
-    const bool is_truncation = endings[env] == EpisodeEnd::kTimeOut;
+    if (end == static_cast<std::uint8_t>(EpisodeEnd::kNone)) continue;
+    const bool is_truncation = end == static_cast<std::uint8_t>(EpisodeEnd::kTimeOut);
     (is_truncation ? truncations : terminations).mutable_data()[env] = true;
     ended_.push_back(env);
-    endings_.push_back(endings[env]);
+    endings_.push_back(end);
   }
   py::array_t<std::int64_t> which(static_cast<py::ssize_t>(ended_.size()));
   std::copy(ended_.begin(), ended_.end(), which.mutable_data());
@@ -67,8 +68,8 @@ py::dict EpisodeTally::takeEnded() {
     ended.mutable_data()[env] = true;
     sums.mutable_data()[env] = static_cast<float>(returns_[env]);
     lengths.mutable_data()[env] = lengths_[env];
-    endings.mutable_data()[env] = static_cast<std::uint8_t>(endings_[n]);
-    successes.mutable_data()[env] = endings_[n] == EpisodeEnd::kSuccess;
+    endings.mutable_data()[env] = endings_[n];
+    successes.mutable_data()[env] = endings_[n] == static_cast<std::uint8_t>(EpisodeEnd::kSuccess);
     episodes.mutable_data()[env] = episodes_[env];
     returns_[env] = 0;
     lengths_[env] = 0;
@@ -110,7 +111,7 @@ void bindEpisodeTally(py::module_& module) {
   using Self = const py::object&;
   py::class_<EpisodeTally> type(module, "EpisodeTally");
   type.def(py::init<Simulator&>(), py::arg("simulator"), py::keep_alive<1, 2>())
-      .def("add", &EpisodeTally::add,
+      .def("add", &EpisodeTally::add, py::arg("rewards"), py::arg("endings"),
            "Takes the last step in: (terminations, truncations, the envs whose episodes ended).")
       .def("take_ended", &EpisodeTally::takeEnded,
            "What there is to say of the episodes that the last step ended; their sums begin anew.")

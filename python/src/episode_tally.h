@@ -18,9 +18,10 @@ class EpisodeTally {
   /// The simulator outlives it.
   explicit EpisodeTally(Simulator& simulator);
 
-  /// Takes the last step in. Returns terminations and truncations, bool (num_envs,), and the
-  /// numbers of the envs whose episodes ended, int64, in order.
-  [[nodiscard]] py::tuple add();
+  /// Takes the last step in, with what it paid, float32 (num_envs,), and how episodes ended in it,
+  /// uint8 (num_envs,): the simulator's, or those of a task of one's own. Returns terminations and
+  /// truncations, bool (num_envs,), and the numbers of the envs whose episodes ended, int64, in order.
+  [[nodiscard]] py::tuple add(const py::object& rewards, const py::object& endings);
 
   /// Of the episodes that the step taken in last ended, arrays (num_envs,) with zeros for all other
   /// envs: "ended" bool, "r" float32, "l" int64, "ending" uint8, "success" bool, "episode_index"
@@ -46,7 +47,7 @@ class EpisodeTally {
   std::vector<std::int32_t> episodes_;
   /// Envs whose episodes the step taken in last ended, and how.
   std::vector<std::size_t> ended_;
-  std::vector<EpisodeEnd> endings_;
+  std::vector<std::uint8_t> endings_;
 };
 
 }  // namespace galactic::python

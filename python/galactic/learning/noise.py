@@ -1,43 +1,22 @@
 """Random numbers that depend on (seed, env, step) only, or in evaluations on (seed, episode, step).
 
 A sample of an action must not depend on which rank, half-batch or order an env is stepped in, and a
-resumed run must go on with the numbers that it would have had. So there is no stream to keep: every
-number is a hash of what it is for, as in the simulator.
+resumed run must go on with the numbers that it would have had (galactic/hashing.py).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from galactic.hashing import hashed
 from galactic.learning.distributions import DECISIONS
-
-_GOLDEN = np.uint64(0x9E3779B97F4A7C15)
-
-
-def _mixed(bits: np.ndarray) -> np.ndarray:
-    """The finalizer of SplitMix64 (Steele, Lea, Flood 2014), in place."""
-    bits ^= bits >> np.uint64(30)
-    bits *= np.uint64(0xBF58476D1CE4E5B9)
-    bits ^= bits >> np.uint64(27)
-    bits *= np.uint64(0x94D049BB133111EB)
-    bits ^= bits >> np.uint64(31)
-    return bits
-
-
-def _hashed(seed: int, keys: np.ndarray, steps: np.ndarray, count: int) -> np.ndarray:
-    """uint64 [..., count] for keys and steps that broadcast to [...]."""
-    with np.errstate(over="ignore"):
-        start = _mixed(np.array([seed], np.uint64) + _GOLDEN)
-        key = _mixed(start + keys.astype(np.uint64) * _GOLDEN)
-        row = _mixed(key + steps.astype(np.uint64) * _GOLDEN)
-        return _mixed(row[..., None] + np.arange(1, count + 1, dtype=np.uint64) * _GOLDEN)
 
 
 def noise_of(seed: int, keys: np.ndarray, steps: np.ndarray, motions: int) -> np.ndarray:
     """float32 [..., motions + 2]: standard normal numbers, then two uniform in [0, 1), for each of
     `keys` and `steps`, whole numbers that broadcast to [...]."""
     pairs = (motions + 1) // 2
-    bits = _hashed(seed, keys, steps, pairs + 1)
+    bits = hashed(seed, keys, steps, pairs + 1)
     # The two halves of each hash, as 24 bits each: what a float in [0, 1) holds.
     scale = np.float32(2.0**-24)
     first = (bits >> np.uint64(40)).astype(np.float32) * scale
@@ -69,7 +48,7 @@ def mini_batch_envs(seed: int, epoch: int, envs: range, parts: int) -> np.ndarra
     counts from the start of the run; the numbers returned are relative to `envs`.
     """
     blocks = range(envs.start // parts, envs.stop // parts)
-    keys = _hashed(seed ^ 0x6D696E69, _numbers(blocks), np.array([epoch]), parts)
+    keys = hashed(seed ^ 0x6D696E69, _numbers(blocks), np.array([epoch]), parts)
     place = np.argsort(keys, axis=1, kind="stable")
     return (place + np.arange(len(blocks))[:, None] * parts).T.copy()
 

@@ -1,0 +1,137 @@
+"""Tasks of one's own: what pays, what ends an episode, and what is observed beside."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galactic._core import Simulator, World
+from galactic.env_states import EnvStates
+from galactic.hashing import hashed
+
+
+class Outcome(NamedTuple):
+    """What a step of n envs came to."""
+
+    rewards: NDArray[np.floating]
+    """(n,), finite."""
+    successes: NDArray[np.bool_] | None = None
+    """(n,), where the episode is solved and ends; None for nowhere."""
+    failures: NDArray[np.bool_] | None = None
+    """(n,), where it ends for worse; not where it is solved."""
+
+
+class TaskEnvs:
+    """The n envs that a Task is about: all of a VectorEnv, or one of its halves.
+
+    Arrays show what is now, after the latest step or beginning. Those of `observations`, `rewards` and
+    `endings` are views of the simulator's memory, which has other contents after the next step: copy
+    what you keep.
+    """
+
+    def __init__(self, world: World, simulator: Simulator) -> None:
+        self.world = world
+        self.simulator = simulator
+        """For what is not here; it must not be stepped or reset."""
+        self.num_envs = simulator.num_envs
+        options = simulator.options
+        first = options["rank"] * self.num_envs
+        self.numbers: NDArray[np.int64] = np.arange(first, first + self.num_envs)
+        """int64 (n,): numbers of the envs over all halves and ranks."""
+        self.seed: int = options["seed"]
+        self.steps = 0
+        """Steps since the envs were made, or reset with a seed."""
+        self.actions: NDArray[np.float32] = np.zeros(
+            (self.num_envs, simulator.action_count), np.float32
+        )
+        """float32 (n, action_count): those of the latest step, as they were given."""
+        self._states: EnvStates | None = None
+
+    @property
+    def observations(self) -> Mapping[str, NDArray[np.float32]]:
+        """What the simulator observes, by parts, each float32 (n, size): docs/simulation.md lists them."""
+        rows = self.simulator.observations
+        return {name: rows[:, part] for name, part in self.simulator.observation_parts.items()}
+
+    @property
+    def states(self) -> EnvStates:
+        """Where everything is: robots, objects, goals."""
+        if self._states is None:
+            self._states = self.simulator.env_states()
+        return self._states
+
+    @property
+    def rewards(self) -> NDArray[np.float32]:
+        """float32 (n,): what the simulation's own task paid for the latest step."""
+        return self.simulator.rewards
+
+    @property
+    def endings(self) -> NDArray[np.uint8]:
+        """uint8 (n,): how the simulation's own task ended episodes in it, as EpisodeEnd."""
+        return self.simulator.endings
+
+    def uniform(self, name: str, count: int = 1) -> NDArray[np.float64]:
+        """Random numbers in [0, 1), float64 (n, count). They depend on the seed, the env's number, the
+        steps done and `name`, which says what they are for, and on nothing else: the same for any number
+        of envs, halves and ranks, and in a resumed run. Of one name there is one draw in a step."""
+        salt = self.seed ^ (zlib.crc32(name.encode()) << 32)
+        bits = hashed(salt & (2**64 - 1), self.numbers, np.array([self.steps]), count)
+        return (bits >> np.uint64(11)).astype(np.float64) * 2.0**-53
+
+    def move_on(self, *, steps: int) -> None:
+        """What was known of the states is of before: for who drives the task, not for tasks."""
+        self.steps = steps
+        self._states = None
+
+
+class Task:
+    """A task of one's own, over the simulation's: inherit from it, and give the class to a VectorEnv
+    (`task=Reach`) or the trainer (`--task reach.py:Reach`).
+
+    A VectorEnv makes one for each of its halves, by calling what it was given without arguments. It
+    calls prepare() and begin() once the envs stand at the start of their first episodes; with each
+    step step(), then, where episodes ended, choose() and begin(); and observe() whenever somebody looks.
+
+    All is done for n envs at once, in arrays whose first axis is the env. Nothing but `memory` may be
+    kept from one call to the next: it is saved with the state of the envs, so that runs can be resumed,
+    and it is what makes results the same for any number of halves.
+    """
+
+    base: str = "none"
+    """The simulation's task below. Its rewards are in TaskEnvs.rewards, and how it ends episodes
+    counts, unless step() says otherwise of the same env. "none" pays nothing and ends episodes after
+    `episode_steps` alone."""
+
+    options: Mapping[str, Any] = {}
+    """Options of the simulation, as keywords of Simulator, that hold unless others are given."""
+
+    parts: Mapping[str, int] = {}
+    """Names and sizes of what observe() adds to the observation, in this order, behind all else."""
+
+    memory: dict[str, NDArray[Any]]
+    """What the task remembers of each env, arrays (n, ...) by name: made in prepare(), written in
+    begin() and step()."""
+
+    def prepare(self, envs: TaskEnvs) -> None:
+        """Makes `memory`, for episodes of which none has begun yet."""
+
+    def choose(self, envs: TaskEnvs, which: NDArray[np.int64]) -> NDArray[np.integer] | None:
+        """Which episodes of the world the envs `which` begin next, whole numbers, -1 for the next of
+        the env's own; None leaves it to the order of the VectorEnv. An episode in which the robot cannot
+        start (Simulator.skipped_episodes) is a ValueError."""
+        return None
+
+    def begin(self, envs: TaskEnvs, which: NDArray[np.int64]) -> None:
+        """Takes in that episodes begin in the envs `which`."""
+
+    def step(self, envs: TaskEnvs) -> Outcome:
+        """What the step that was just done came to. What is said of idle envs does not count."""
+        raise NotImplementedError(f"{type(self).__name__} has no step()")
+
+    def observe(self, envs: TaskEnvs) -> Mapping[str, NDArray[np.floating]]:
+        """The `parts`, each (n, size): of `envs` and `memory`, which it leaves as they are."""
+        return {}
