@@ -11,7 +11,7 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
-from galactic.learning import checkpoint, dynamics, evaluation
+from galactic.learning import checkpoint, dynamics, evaluation, own_tasks
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
 from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.reports import pictures
@@ -77,6 +77,17 @@ def make_parser() -> argparse.ArgumentParser:
         metavar="N",
         help="how many episodes the pictures show (8)",
     )
+    own = parser.add_argument_group("A task of your own, for what pays and what a success is")
+    own.add_argument(
+        "--task",
+        metavar="FILE.py:CLASS|MODULE:CLASS",
+        help="the class; needed for a policy that was trained with one, as no policy runs code by itself",
+    )
+    own.add_argument(
+        "--task-options",
+        metavar="OPTIONS",
+        help="what it is made with, as NAME=VALUE separated by spaces (those of the training)",
+    )
     massive = parser.add_argument_group("The same episodes where things have mass")
     massive.add_argument(
         "--dynamics",
@@ -114,10 +125,15 @@ def _require_uses(options: argparse.Namespace) -> None:
     for option, value, user, what, remedy in (
         ("--shown", options.shown, draws, "pictures", "--contact-sheet or --video"),
         ("--arm", options.arm, options.dynamics, "dynamics", "--dynamics"),
+        ("--task-options", options.task_options, options.task, "a task of your own", "--task"),
         ("--dynamics-data", options.dynamics_data, options.dynamics, "dynamics", "--dynamics"),
     ):
         if value is not None and not user:
             raise SettingsError(f"{option} applies to {what} only; add {remedy}")
+    if options.task is not None:
+        own_tasks.named(options.task)
+    if options.task and options.dynamics:
+        raise SettingsError("--dynamics knows no task of your own; leave one of them out")
 
 
 def _evaluate(options: argparse.Namespace) -> int:
@@ -143,6 +159,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     if options.video:
         pictures.require_video(options.video)
     saved = checkpoint.load_policy(options.policy)
+    task = _task(options, saved.settings)
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
     world = galactic.World(options.world)
@@ -153,7 +170,7 @@ def _evaluate(options: argparse.Namespace) -> int:
         mini_batches=1,
         seed=options.seed,
     )
-    homes = _homes(options, world, settings, threads)
+    homes = _homes(options, world, settings, threads, task)
     if homes.parts != saved.parts:
         raise checkpoint.CheckpointError(
             f"{options.policy} was trained on observations of {sizes_of(saved.parts)}, and "
@@ -181,13 +198,14 @@ def _evaluate(options: argparse.Namespace) -> int:
             "trained_steps": saved.steps,
             "deterministic": options.deterministic,
             "seed": options.seed,
+            **({"task": options.task} if options.task else {}),
             **summary,
             **({"dynamics": there} if there else {}),
         }
         write_json(options.report, contents)
     if draws and results:
         chosen = pictures.choose(results, options.shown or SHOWN)
-        films = pictures.film(world, settings, actor, chosen, threads)
+        films = pictures.film(world, settings, actor, chosen, threads, task)
         if options.contact_sheet:
             pictures.write_contact_sheet(films, options.contact_sheet)
         if options.video:
@@ -197,13 +215,36 @@ def _evaluate(options: argparse.Namespace) -> int:
     return OK
 
 
+def _task(options: argparse.Namespace, settings: Settings) -> Optional[own_tasks.MakeTask]:
+    """What makes the task that was asked for; None for the simulation's."""
+    if options.task:
+        given = settings.task_options if options.task_options is None else options.task_options
+        return own_tasks.maker(own_tasks.named(options.task), given)
+    if not settings.task:
+        return None
+    name = own_tasks.named(settings.task)
+    # Beside best.pt; a policy.pt is in checkpoints/STEPS.
+    copies = [folder / own_tasks.COPY for folder in options.policy.absolute().parents[:3]]
+    found = [copy for copy in copies if name.file and copy.is_file()]
+    place = f"{found[0]}:{name.name}" if found else settings.task
+    raise SettingsError(
+        f"{options.policy} was trained with a task of its own; if you trust it, add --task {place}"
+    )
+
+
 def _homes(
-    options: argparse.Namespace, world: galactic.World, settings: Settings, threads: int
+    options: argparse.Namespace,
+    world: galactic.World,
+    settings: Settings,
+    threads: int,
+    task: Optional[own_tasks.MakeTask],
 ) -> Homes:
     """The homes of the policy's training. Nobody has typed their options here."""
     try:
-        return Homes(world, settings, threads)
+        return Homes(world, settings, threads, task=task)
     except SettingsError as error:
+        if task is not None:
+            raise
         raise checkpoint.CheckpointError(
             f"{options.policy} was trained with options that this version does not have: {error}; "
             "take another policy, or train one"

@@ -34,7 +34,7 @@ from galactic.learning.networks import (
     StateEncoder,
 )
 from galactic.learning.normalization import MOST
-from galactic.learning.privileges import options_of_actor, parts_of_actor
+from galactic.learning.privileges import of_own_tasks, options_of_actor, parts_of_actor
 from galactic.learning.settings import Settings, typed
 from galactic.learning.sight import FARTHEST, SIGHT
 
@@ -177,6 +177,13 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
     """A saved policy as write_policy_pack() wants it. The critic is left out, with all that it alone
     sees."""
     policy, privileges = saved.policy, saved.settings.critic_only
+    observation = parts_of_actor(privileges, saved.parts)
+    own = of_own_tasks(observation)
+    if own:
+        raise ExportError(
+            f"the policy observes {', '.join(own)}, which its task {saved.settings.task} gives in Python "
+            "alone; train one that keeps it for the critic (--critic-only), or play this one in Python"
+        )
     layers = Layers()
     columns = [n for n in range(saved.shape.state) if n not in saved.shape.critic_only]
     seen = layers.seen(policy, layers.add("observation"), columns)
@@ -191,7 +198,7 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
         "name": name,
         "robot": robot,
         "options": options_of_actor(privileges, simulation_keywords(saved.settings.simulation)),
-        "observation": parts_of_actor(privileges, saved.parts),
+        "observation": observation,
         "image": _image(saved.settings) if SIGHT[saved.settings.network] else None,
         "layers": layers.list,
         **actions,

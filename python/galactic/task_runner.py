@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from traceback import walk_tb
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,11 @@ def made_by(factory: Callable[[], Task]) -> Task:
 def options_of(task: Task, given: Mapping[str, Any]) -> dict[str, Any]:
     """The options of the simulation below, of which those that were given go before the task's."""
     return {**task.options, **given, "task": task.base}
+
+
+def has_raised(error: BaseException) -> bool:
+    """Whether it comes out of a task, or of what is said of one here, and not of the options around it."""
+    return any(frame.f_code.co_filename == __file__ for frame, _ in walk_tb(error.__traceback__))
 
 
 class TaskRunner:

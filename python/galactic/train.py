@@ -15,7 +15,7 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
-from galactic.learning import checkpoint, evaluation
+from galactic.learning import checkpoint, evaluation, own_tasks
 from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
@@ -50,6 +50,7 @@ class Run:
     settings: Settings
     start_from: Optional[pathlib.Path] = None
     teacher: Optional[pathlib.Path] = None
+    task_file: Optional[pathlib.Path] = None
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -135,8 +136,11 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     threads = threads_of(settings.simulation_threads, local_ranks())
     sharing = 1 if settings.network == "state" else 0
     torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
-    envs = Homes(galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size)
-    validation = _validation(run, envs, threads, group)
+    task = _task_of(run, folder if options.resume else None)
+    envs = Homes(
+        galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size, task=task
+    )
+    validation = _validation(run, envs, threads, group, task)
     teacher = None
     if run.teacher:
         # A run keeps a copy, with which it can be resumed.
@@ -164,7 +168,9 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         group.raise_on_all(_take_folder(options, held) if group.rank == 0 else None)
         if options.resume:
             trainer.resume()
-        group.raise_on_all(_begin_folder(run, folder, teacher) if group.rank == 0 else None)
+        group.raise_on_all(
+            _begin_folder(run, folder, teacher, resumes=options.resume) if group.rank == 0 else None
+        )
         undisturbed = _carry_out(trainer, run, options)
     envs.close()
     if trainer.steps < settings.steps:
@@ -200,15 +206,42 @@ def _new_run(options: argparse.Namespace) -> Run:
             raise SettingsError(
                 f"{option_name(name)} goes with --teacher; name one, or leave it out"
             )
+    if "task_options" in given and not given.get("task"):
+        raise SettingsError("--task-options goes with --task; name one, or leave it out")
     settings = preset("paper" if options.preset is None else options.preset, **given)
     settings.require_pace()
-    return Run(
+    run = Run(
         options.world.resolve(),
         _absolute(options.validation),
         settings,
         _absolute(options.start_from),
         _absolute(options.teacher),
     )
+    return _with_task(run, given.get("simulation", "")) if settings.task else run
+
+
+def _with_task(run: Run, simulation: str) -> Run:
+    """The run with the task of one's own that its settings name, in the simulation that this task wants.
+    `simulation`: the options of it that were given, beside the preset's."""
+    name = own_tasks.named(run.settings.task)
+    task = own_tasks.maker(name, run.settings.task_options)()
+    settings = dataclasses.replace(
+        run.settings,
+        task=str(name),
+        simulation=own_tasks.simulation_below(task, run.settings.simulation, simulation),
+    )
+    return dataclasses.replace(run, settings=settings, task_file=_absolute(name.file))
+
+
+def _task_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_tasks.MakeTask]:
+    """What makes the run's task, if that is one's own; of the copy in `folder` if it is given."""
+    if not run.settings.task:
+        return None
+    name, siblings = own_tasks.named(run.settings.task), None
+    if run.task_file is not None:
+        file = run.task_file if folder is None else folder / own_tasks.COPY
+        name, siblings = name._replace(place=str(file)), run.task_file.parent
+    return own_tasks.maker(name, run.settings.task_options, siblings)
 
 
 def _require_no_run(folder: pathlib.Path) -> None:
@@ -247,7 +280,8 @@ def _read_run(file: pathlib.Path) -> Run:
     remedy = "begin another run, which can have the weights of best.pt (--start-from)"
     with checkpoint.refusing(f"{file} does not say what the run is", remedy):
         run = json.loads(file.read_text(encoding="utf-8"))
-        run, path = {"start_from": None, "teacher": None, **run}, (str, type(None))
+        blank = {"start_from": None, "teacher": None, "task_file": None}
+        run, path = {**blank, **run}, (str, type(None))
         checkpoint.require_types(
             run,
             {
@@ -255,6 +289,7 @@ def _read_run(file: pathlib.Path) -> Run:
                 "validation": path,
                 "start_from": path,
                 "teacher": path,
+                "task_file": path,
                 "settings": dict,
             },
         )
@@ -264,6 +299,7 @@ def _read_run(file: pathlib.Path) -> Run:
             Settings.from_dict(run["settings"]),
             pathlib.Path(run["start_from"]) if run["start_from"] else None,
             pathlib.Path(run["teacher"]) if run["teacher"] else None,
+            pathlib.Path(run["task_file"]) if run["task_file"] else None,
         )
 
 
@@ -284,16 +320,33 @@ def _take_folder(options: argparse.Namespace, held: contextlib.ExitStack) -> Opt
 
 
 def _begin_folder(
-    run: Run, folder: pathlib.Path, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]
+    run: Run,
+    folder: pathlib.Path,
+    teacher: Optional[tuple[SavedPolicy, pathlib.Path]],
+    *,
+    resumes: bool,
 ) -> Optional[Exception]:
     """Writes what the run is into its folder; why that is impossible."""
     try:
         if teacher is not None and teacher[1] != folder / TEACHER:
             checkpoint.save_policy(teacher[0], folder / TEACHER)
+        if run.task_file is not None:
+            _keep_task(run.task_file, folder / own_tasks.COPY, resumes)
         _write_run(run, folder)
     except (galactic.Error, OSError) as error:
         return error
     return None
+
+
+def _keep_task(file: pathlib.Path, copy: pathlib.Path, resumes: bool) -> None:
+    """Copies the file of the run's task, with which the run can be resumed whatever becomes of it."""
+    if resumes:
+        return  # with the copy
+    code = file.read_bytes()
+    if copy.exists() and copy.read_bytes() != code:
+        message = f"is there already, and is not {file}; move it, or choose another folder"
+        raise galactic.Error(galactic.ErrorCode.IO, str(copy), message)
+    checkpoint.write_atomically(copy, lambda handle: handle.write(code))
 
 
 def _write_run(run: Run, folder: pathlib.Path) -> None:
@@ -304,12 +357,15 @@ def _write_run(run: Run, folder: pathlib.Path) -> None:
             "validation": str(run.validation) if run.validation else None,
             "start_from": str(run.start_from) if run.start_from else None,
             "teacher": str(run.teacher) if run.teacher else None,
+            "task_file": str(run.task_file) if run.task_file else None,
             "settings": run.settings.to_dict(),
         },
     )
 
 
-def _validation(run: Run, trained: Homes, threads: int, group: Group) -> Optional[Validation]:
+def _validation(
+    run: Run, trained: Homes, threads: int, group: Group, task: Optional[own_tasks.MakeTask]
+) -> Optional[Validation]:
     """Plays the episodes held out, this rank's share of them, with sampled actions as in training, which
     is in the homes `trained`. Raises galactic.Error where a policy of these could not play there.
     """
@@ -318,7 +374,7 @@ def _validation(run: Run, trained: Homes, threads: int, group: Group) -> Optiona
         return None
     envs = min(settings.envs, evaluation.MOST_ENVS)
     held_out = dataclasses.replace(settings, envs=envs, halves=1, mini_batches=1)
-    homes = Homes(galactic.World(run.validation), held_out, threads)
+    homes = Homes(galactic.World(run.validation), held_out, threads, task=task)
     if homes.parts != trained.parts:
         raise galactic.Error(
             galactic.ErrorCode.INVALID_INPUT,

@@ -20,7 +20,8 @@ class EpisodeTally {
 
   /// Takes the last step in, with what it paid, float32 (num_envs,), and how episodes ended in it,
   /// uint8 (num_envs,): the simulator's, or those of a task of one's own. Returns terminations and
-  /// truncations, bool (num_envs,), and the numbers of the envs whose episodes ended, int64, in order.
+  /// truncations, bool (num_envs,), and the numbers of the envs whose episodes ended, int64, in
+  /// order.
   [[nodiscard]] py::tuple add(const py::object& rewards, const py::object& endings);
 
   /// Of the episodes that the step taken in last ended, arrays (num_envs,) with zeros for all other

@@ -212,16 +212,17 @@ void bindQueries(py::class_<Simulator>& type) {
 void bindSimulator(py::module_& module) {
   // Of tasks that are written in Python, of which the library knows nothing.
   constexpr int kFailure = static_cast<int>(kEpisodeEnds);
-  bindEnum(module, "EpisodeEnd",
-           {{"NONE", static_cast<int>(EpisodeEnd::kNone)},
-            {"SUCCESS", static_cast<int>(EpisodeEnd::kSuccess)},
-            {"WRONG_TERMINATE", static_cast<int>(EpisodeEnd::kWrongTerminate)},
-            {"WRONG_RELEASE", static_cast<int>(EpisodeEnd::kWrongRelease)},
-            {"WRONG_OBJECT", static_cast<int>(EpisodeEnd::kWrongObject)},
-            {"TIME_OUT", static_cast<int>(EpisodeEnd::kTimeOut)},
-            {"FAILURE", kFailure}},
-           "How an episode ended. TIME_OUT is a truncation, all others behind NONE are terminations; "
-           "FAILURE is what a galactic.Task calls one, and no Simulator says it.");
+  bindEnum(
+      module, "EpisodeEnd",
+      {{"NONE", static_cast<int>(EpisodeEnd::kNone)},
+       {"SUCCESS", static_cast<int>(EpisodeEnd::kSuccess)},
+       {"WRONG_TERMINATE", static_cast<int>(EpisodeEnd::kWrongTerminate)},
+       {"WRONG_RELEASE", static_cast<int>(EpisodeEnd::kWrongRelease)},
+       {"WRONG_OBJECT", static_cast<int>(EpisodeEnd::kWrongObject)},
+       {"TIME_OUT", static_cast<int>(EpisodeEnd::kTimeOut)},
+       {"FAILURE", kFailure}},
+      "How an episode ended. TIME_OUT is a truncation, all others behind NONE are terminations; "
+      "FAILURE is what a galactic.Task calls one, and no Simulator says it.");
   py::class_<Simulator> type(module, "Simulator");
   type.def(
       py::init([](const py::object& world, const py::object& envs, const py::kwargs& options) {

@@ -99,7 +99,7 @@ class Evaluator:
     def __init__(self, homes: Homes, actor: Actor):
         self._homes = homes
         self._actor = actor
-        self._seen = _rows(homes)
+        self._seen = rows_of(homes)
         self._holding = homes.env.simulators[0].observation_parts["is_holding"].start
         self._players: list[Optional[_Player]] = []
 
@@ -189,7 +189,7 @@ class _Player:
         self.result.slid = collisions[1] - self._collisions[1]
 
 
-def _rows(homes: Homes) -> Observation:
+def rows_of(homes: Homes) -> Observation:
     """Memory for what all envs see."""
     actions = homes.motions + 2
     return Rollout.empty(0, homes.count, homes.state_size, actions, homes.images).row(

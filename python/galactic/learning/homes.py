@@ -9,7 +9,9 @@ import numpy as np
 import torch
 
 import galactic
+from galactic import task_runner
 from galactic.learning.environments import Observation, Step, Timeouts
+from galactic.learning.own_tasks import MakeTask
 from galactic.learning.privileges import meaning_of
 from galactic.learning.settings import (
     CAMERA,
@@ -21,9 +23,11 @@ from galactic.learning.settings import (
 from galactic.learning.sight import SIGHT
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
+# Cameras, where there are two.
+_EYE, _ONLOOKER = "eye", "onlooker"
 # What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
 _CHOSEN_BY_TRAINER = {
-    *inspect.signature(galactic.VectorEnv).parameters,
+    *set(inspect.signature(galactic.VectorEnv).parameters) - {"task"},
     "envs",
     "auto_reset",
     "body_transforms",
@@ -71,12 +75,26 @@ def sizes_of(parts: Sequence[tuple[str, int]]) -> str:
 
 class Homes:
     """A galactic.VectorEnv as the trainer wants it. Observations land in the rollout: on a processor
-    they are written there by the simulator's threads, on a GPU they come by pinned memory."""
+    they are written there by the simulator's threads, on a GPU they come by pinned memory.
+
+    `task` makes tasks of one's own, in the place of the simulation's. `onlooker`: options of a camera
+    more, whose color images are in `shown`.
+    """
 
     def __init__(self, world: "galactic.World", settings: Settings, threads: int, *,
-                 rank: int = 0, ranks: int = 1, order: str = "shuffled"):  # fmt: skip
+                 rank: int = 0, ranks: int = 1, order: str = "shuffled",
+                 task: Optional[MakeTask] = None,
+                 onlooker: Optional[Mapping[str, Any]] = None):  # fmt: skip
         keywords = simulation_keywords(settings.simulation)
         images = camera_options(settings) if SIGHT[settings.network] else None
+        # What begins the names of the network's images.
+        self._eye = ""
+        if onlooker is not None:
+            images = {_ONLOOKER: {**onlooker, "depth": False}, **({_EYE: images} if images else {})}
+            self._eye = f"{_EYE}_" if _EYE in images else ""
+        self.shown: Optional[np.ndarray] = None
+        """What the onlooker saw last, uint8 [n, height, width, 3], the end of an episode before the
+        beginning of the next one."""
         try:
             self.env = galactic.VectorEnv(
                 world,
@@ -89,20 +107,21 @@ class Homes:
                 order=order,
                 rank=rank,
                 ranks=ranks,
-                **keywords,
+                **(keywords if task is None else {**keywords, "task": task}),
             )
         except (TypeError, ValueError) as problem:
+            if task_runner.has_raised(problem):
+                raise
             raise SettingsError(f"--simulation: {problem}") from problem
         except galactic.Error as error:
             raise _as_typed(error, keywords) from error
         first = self.env.simulators[0]
         self.count = settings.envs
-        self.images: Mapping[str, tuple[int, ...]] = _shapes(self.env)
-        self.state_size = first.observation_size
+        self.images: Mapping[str, tuple[int, ...]] = self._shapes()
+        parts = self.env.observation_parts
+        self.parts = [(name, part.stop - part.start) for name, part in parts.items()]
+        self.state_size = sum(size for _, size in self.parts)
         self.motions = first.action_count - 2
-        self.parts = [
-            (name, part.stop - part.start) for name, part in first.observation_parts.items()
-        ]
         self.meanings = meaning_of((name for name, _ in self.parts), first.options)
         self.decides_terminate = _decides_terminate(settings.terminate, first.options)
         self.halves: Sequence[slice] = [self.env.rows(half) for half in range(settings.halves)]
@@ -126,11 +145,12 @@ class Homes:
         landing = self._landings[half]
         for name, rows in host._asdict().items():
             if rows is not None:
-                landing[name] = rows.numpy()
+                landing[self._named(name)] = rows.numpy()
         self.env.send(actions, half, landing)
 
     def recv(self, half: int) -> Step:
-        _, rewards, terminated, truncated, infos = self.env.recv(half)
+        seen, rewards, terminated, truncated, infos = self.env.recv(half)
+        self._show(seen, infos)
         staged, into = self._staged[half], self._into[half]
         if staged is not None and into is not None:
             for host, device in zip(staged, into):
@@ -138,7 +158,7 @@ class Homes:
                     device.copy_(host, non_blocking=True)
         timeouts = None
         if infos and truncated.any():
-            timeouts = _timeouts(np.flatnonzero(truncated), infos["final_obs"])
+            timeouts = self._timeouts(np.flatnonzero(truncated), infos["final_obs"])
         successes = self._landings[half]["endings"] == SUCCESS
         return Step(rewards, terminated, truncated, successes, timeouts)
 
@@ -190,7 +210,38 @@ class Homes:
         rows = observations if isinstance(observations, dict) else {"state": observations}
         for name, target in into._asdict().items():
             if target is not None:
-                target.copy_(torch.from_numpy(np.array(rows[name])))
+                target.copy_(torch.from_numpy(np.array(rows[self._named(name)])))
+        self._show(rows, {})
+
+    def _named(self, name: str) -> str:
+        """What the env calls a part of an Observation."""
+        return name if name == "state" else f"{self._eye}{name}"
+
+    def _show(self, seen: Any, infos: Mapping[str, Any]) -> None:
+        """Keeps what an onlooker saw."""
+        name = f"{_ONLOOKER}_rgb"
+        if not isinstance(seen, dict) or name not in seen:
+            return
+        shown = seen[name].copy()
+        for env in np.flatnonzero(infos["_final_obs"]) if infos else ():
+            shown[env] = infos["final_obs"][env][name]
+        self.shown = shown
+
+    def _timeouts(self, envs: np.ndarray, final: np.ndarray) -> Timeouts:
+        """The last observations of some envs out of Gymnasium's array of objects."""
+        rows = [final[env] for env in envs]
+        if not isinstance(rows[0], dict):
+            return Timeouts(envs, np.stack(rows))
+        names = [name for name in Timeouts._fields[1:] if self._named(name) in rows[0]]
+        return Timeouts(envs, **{n: np.stack([row[self._named(n)] for row in rows]) for n in names})
+
+    def _shapes(self) -> dict[str, tuple[int, ...]]:
+        """Of the images of one env that the network sees."""
+        shapes = {}
+        for drawn in self.env.renderers[:1]:
+            eye = drawn.get(_EYE) if isinstance(drawn, dict) else drawn
+            shapes = {name: shape for name, (shape, _) in eye.shapes.items()} if eye else {}
+        return shapes
 
     def _stage(self, half: int, into: Observation) -> Observation:
         """Pinned memory that `into` is copied from."""
@@ -201,11 +252,6 @@ class Homes:
             )
             self._staged[half] = staged
         return staged
-
-
-def _shapes(env: "galactic.VectorEnv") -> dict[str, tuple[int, ...]]:
-    """Of the images of one env."""
-    return {name: shape for drawn in env.renderers[:1] for name, (shape, _) in drawn.shapes.items()}
 
 
 def _pinned(like: torch.Tensor) -> torch.Tensor:
@@ -220,14 +266,6 @@ def _landing(envs: int) -> dict[str, np.ndarray]:
         "truncations": np.zeros(envs, np.bool_),
         "endings": np.zeros(envs, np.uint8),
     }
-
-
-def _timeouts(envs: np.ndarray, final: np.ndarray) -> Timeouts:
-    """The last observations of some envs out of Gymnasium's array of objects."""
-    rows = [final[env] for env in envs]
-    if not isinstance(rows[0], dict):
-        return Timeouts(envs, np.stack(rows))
-    return Timeouts(envs, **{name: np.stack([row[name] for row in rows]) for name in rows[0]})
 
 
 def _decides_terminate(terminate: str, options: Mapping[str, Any]) -> bool:

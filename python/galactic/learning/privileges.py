@@ -7,8 +7,20 @@ from typing import Any, Iterable, Mapping, Sequence
 
 from galactic.learning.settings import SettingsError, did_you_mean
 
-# The parts that options of the simulation add to an observation, and these options. The others are
-# always there.
+# The parts of every observation.
+ALWAYS = (
+    "robot_target",
+    "grip_target",
+    "robot_grip",
+    "robot_goal",
+    "grip_goal",
+    "is_holding",
+    "joints",
+    "time",
+)
+
+# The parts that options of the simulation add to it, and these options. All others are of tasks of one's
+# own.
 _SENSORS: Mapping[str, tuple[str, ...]] = {
     "bump": ("bump",),
     "target_goal": ("target_goal",),
@@ -36,12 +48,13 @@ def names_of(critic_only: str) -> list[str]:
 
 def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[int, ...]:
     """Columns of these parts in a row of observations, whose parts are `parts`, names and sizes in
-    order. Raises SettingsError for a part that is no sensor's, or that is not there."""
+    order. Raises SettingsError for a part that is always there, or that is not there."""
     columns: list[int] = []
     names = names_of(critic_only)
+    known = [*_SENSORS, *of_own_tasks(parts)]
     for name in names:
-        if name not in _SENSORS:
-            hint = did_you_mean(name, _SENSORS) or f"; it can be of {', '.join(_SENSORS)}"
+        if name not in known:
+            hint = did_you_mean(name, known) or f"; it can be of {', '.join(known)}"
             raise SettingsError(f'critic_only: "{name}" is no sensor{hint}')
         if name not in dict(parts):
             raise SettingsError(
@@ -56,6 +69,11 @@ def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[
     return tuple(columns)
 
 
+def of_own_tasks(parts: Sequence[tuple[str, int]]) -> list[str]:
+    """Names of the parts that no simulation gives: a galactic.Task does."""
+    return [name for name, _ in parts if name not in ALWAYS and name not in _SENSORS]
+
+
 def parts_of_actor(critic_only: str, parts: Sequence[tuple[str, int]]) -> list[tuple[str, int]]:
     """The parts without those that the critic alone sees."""
     names = names_of(critic_only)
@@ -64,11 +82,11 @@ def parts_of_actor(critic_only: str, parts: Sequence[tuple[str, int]]) -> list[t
 
 def options_of_actor(critic_only: str, options: Mapping[str, Any]) -> dict[str, Any]:
     """Options of the simulation without those of sensors that the critic alone sees."""
-    left_out = {option for name in names_of(critic_only) for option in _SENSORS[name]}
+    left_out = {option for name in names_of(critic_only) for option in _SENSORS.get(name, ())}
     return {name: value for name, value in options.items() if name not in left_out}
 
 
 def meaning_of(names: Iterable[str], options: Mapping[str, Any]) -> dict[str, Any]:
-    """Those options of the simulation by which numbers of the parts `names` mean one thing or another."""
+    """Those options of the simulation by which numbers of its parts `names` mean one thing or another."""
     asked = ["observe_current", *(option for name in names for option in _SENSORS.get(name, ()))]
     return {name: options[name] for name in asked if name in options and name not in _NO_MEANING}

@@ -85,6 +85,15 @@ class Settings:
         "options of the simulation, as NAME=VALUE separated by spaces (those of galactic-run); each "
         "overrides the preset's of its name",
     )
+    task: str = _setting(
+        "",
+        "Run",
+        "a task of your own, which says what pays and what ends an episode: `FILE.py:CLASS` or "
+        "`MODULE:CLASS`",
+    )
+    task_options: str = _setting(
+        "", "Run", "what its class is made with, as NAME=VALUE separated by spaces"
+    )
     terminate: str = _setting(
         "auto",
         "Run",

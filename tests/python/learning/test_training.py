@@ -3,15 +3,12 @@ behind, and that a policy learns."""
 
 from __future__ import annotations
 
-import contextlib
-import io
 import json
 import math
 import os
 import pathlib
 import signal
 import subprocess
-import sys
 import time
 from typing import Any
 
@@ -19,57 +16,31 @@ import pytest
 import torch
 
 import galactic
-from galactic import evaluate, export, train
+from galactic import export, train
 from galactic.learning import checkpoint
 from galactic.learning.distributed import device_of
 from galactic.learning.homes import Homes
 from galactic.learning.reports.curves import read_curves
+from programs import (
+    HELD_OUT,
+    SMALL,
+    SMALL_OF_ANY_RANKS,
+    UPDATE,
+    WORLD,
+    call,
+    command,
+    curve,
+    needs_worlds,
+    run,
+)
 
-WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
-WORLD, HELD_OUT = WORLDS / "world.pack", WORLDS / "held_out.pack"
-SMALL_OF_ANY_RANKS = ["--preset", "quick", "--envs", "16", "--horizon", "8", "--log-every", "0"]
-SMALL = [*SMALL_OF_ANY_RANKS, "--ranks", "1"]
-UPDATE = 16 * 8
-PROGRAMS = {"train": train, "evaluate": evaluate}
 BLIND = "geodesic=false geodesic-weight=0 bump=false bump-penalty=0"
 LASER = "laser-beams=24 laser-heights=0.25,0.8 laser-range=4"
 SENSORS = "laser-beams=8 laser-noise=0.01 geodesic geodesic-weight=1 bump"
 TO_BE_CUT = [*SMALL, "--halves", "2", "--critic-only", "geodesic", "--simulation", f"task=pick episode-steps=60 {SENSORS}",
              "--checkpoint-every", 10 * UPDATE, "--steps", 80 * UPDATE]  # fmt: skip
 
-pytestmark = pytest.mark.skipif(
-    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
-)
-
-
-def command(program: str, *arguments: object) -> list[str]:
-    return [sys.executable, "-B", "-m", f"galactic.{program}", *map(str, arguments)]
-
-
-def run(program: str, *arguments: object) -> "subprocess.CompletedProcess[str]":
-    """As a user runs it: in processes of its own."""
-    return subprocess.run(
-        command(program, *arguments), capture_output=True, text=True, timeout=600, check=False
-    )
-
-
-def call(program: str, *arguments: object) -> "subprocess.CompletedProcess[str]":
-    """As run(), as the only rank, in this process, which has read torch: seconds less for each."""
-    words = list(map(str, arguments))
-    said = io.StringIO()
-    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stderr(said):
-        patch.setenv("RANK", "0")
-        patch.setenv("WORLD_SIZE", "1")
-        try:
-            code = PROGRAMS[program].main(words)
-        except SystemExit as stop:
-            code = stop.code
-    return subprocess.CompletedProcess(words, code, stderr=said.getvalue())
-
-
-def curve(folder: pathlib.Path) -> list[dict[str, float | None]]:
-    rows = read_curves(folder / "curves.csv")
-    return [{k: v for k, v in row.items() if k not in ("seconds", "sps")} for row in rows]
+pytestmark = needs_worlds
 
 
 def test_a_policy_learns_what_chance_does_not(tmp_path: pathlib.Path) -> None:

@@ -6,23 +6,22 @@ An evaluation plays too many episodes to draw them all, so a few of them are pla
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import pathlib
 import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass, field
-from typing import Any, Optional, Sequence
+from typing import Optional, Sequence
 
 import numpy as np
-import torch
 
 import galactic
 from galactic.learning.checkpoint import replacing, write_atomically
-from galactic.learning.environments import Observation
-from galactic.learning.evaluation import Actor, EpisodeResult
-from galactic.learning.homes import SUCCESS, camera_options, simulation_keywords
+from galactic.learning.evaluation import Actor, EpisodeResult, rows_of
+from galactic.learning.homes import SUCCESS, Homes
+from galactic.learning.own_tasks import MakeTask
 from galactic.learning.settings import Settings
-from galactic.learning.sight import SIGHT
 
 WIDTH, HEIGHT = 256, 192
 MOMENTS = 6
@@ -86,48 +85,31 @@ def choose(results: Sequence[EpisodeResult], count: int) -> list[int]:
 
 
 def film(world: "galactic.World", settings: Settings, actor: Actor, episodes: Sequence[int],
-         threads: int) -> list[Film]:  # fmt: skip
+         threads: int, task: Optional[MakeTask] = None) -> list[Film]:  # fmt: skip
     """Plays `episodes` side by side, one env for each. What a policy does may hang on the last bits of
     sums, and so on how many envs it acts for: how an episode ended here is told by its film."""
     envs = len(episodes)
-    simulator = galactic.Simulator(
-        world,
-        envs=envs,
-        threads=threads,
-        seed=settings.seed,
-        body_transforms=True,
-        auto_reset=False,
-        **simulation_keywords(settings.simulation),
-    )
-    simulator.reset(np.array(episodes, np.int32))
-    onlooker = galactic.Renderer(
-        simulator, camera="follow", width=WIDTH, height=HEIGHT, depth=False, threads=threads
-    )
-    eyes = None
-    if SIGHT[settings.network]:
-        eyes = galactic.Renderer(simulator, **camera_options(settings), threads=threads)
-    films = [Film(episode) for episode in episodes]
-    playing = np.arange(envs)
+    alone = dataclasses.replace(settings, envs=envs, halves=1, mini_batches=1)
+    onlooker = {"camera": "follow", "width": WIDTH, "height": HEIGHT}
+    homes = Homes(world, alone, threads, task=task, onlooker=onlooker)
+    seen = rows_of(homes)
+    homes.begin_episodes(dict(enumerate(episodes)), seen)
+    assert homes.shown is not None
+    films = [Film(episode, [frame]) for episode, frame in zip(episodes, homes.shown)]
     actor.begin(envs)
     step = 0
-    while True:
-        for env, frame in zip(playing, onlooker.render(envs=playing)["rgb"]):
-            films[env].frames.append(frame)
-        playing = np.array([env for env in playing if not films[env].ending], np.int64)
-        if not len(playing):
-            return films
-        simulator.step(
-            actor.act(
-                _seen(simulator, eyes),
-                np.full(envs, step == 0),
-                np.array(episodes),
-                np.full(envs, step),
-            )
-        )
+    while any(not one.ending for one in films):
+        at_start, steps = np.full(envs, step == 0), np.full(envs, step)
+        homes.send(0, actor.act(seen, at_start, np.array(episodes), steps), seen)
+        rewards, endings = homes.recv(0).rewards, homes.endings(0)
+        for env, one in enumerate(films):
+            if not one.ending:
+                one.frames.append(homes.shown[env])
+                one.ending = int(endings[env])
+                one.reward += float(rewards[env])
         step += 1
-        for env in playing:
-            films[env].ending = int(simulator.endings[env])
-            films[env].reward += float(simulator.rewards[env])
+    homes.close()
+    return films
 
 
 def write_contact_sheet(films: Sequence[Film], file: pathlib.Path) -> None:
@@ -183,15 +165,6 @@ def _encode(films: Sequence[Film], file: pathlib.Path) -> Optional[str]:
             process.stdin.close()
         said = process.stderr.read().decode(errors="replace").strip()
     return said if process.returncode else None
-
-
-def _seen(simulator: "galactic.Simulator", eyes: Any) -> Observation:
-    state = torch.from_numpy(simulator.observations.copy())
-    if eyes is None:
-        return Observation(state)
-    return Observation(
-        state, **{name: torch.from_numpy(rows) for name, rows in eyes.render().items()}
-    )
 
 
 def _label(text: str, color: tuple[int, int, int], width: int) -> np.ndarray:

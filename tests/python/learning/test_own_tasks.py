@@ -1,0 +1,317 @@
+"""Tasks of one's own in the trainer: galactic.train --task, and what uses its policies."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+import galactic
+from galactic import export
+from galactic.learning import checkpoint, own_tasks
+from galactic.learning.evaluation import Actor, Evaluator
+from galactic.learning.homes import Homes
+from galactic.learning.networks import PolicyShape
+from galactic.learning.reports import pictures
+from galactic.learning.settings import Settings, SettingsError
+from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
+
+TASK = '''
+"""A task that a test writes to a file."""
+
+import numpy as np
+import galactic
+from distances import hands
+
+class Approach(galactic.Task):
+    options = {"episode_steps": 40, "bump": True}
+    parts = {"way": 1, "dice": 1}
+
+    def __init__(self, radius=0.6, bonus=0.0):
+        self.radius, self.bonus = radius, bonus
+
+    def prepare(self, envs):
+        self.memory = {"way": np.zeros(envs.num_envs, np.float32)}
+
+    def begin(self, envs, which):
+        self.memory["way"][which] = hands(envs)[which]
+
+    def step(self, envs):
+        now = hands(envs)
+        paid = self.memory["way"] - now + self.bonus * envs.uniform("bonus")[:, 0]
+        self.memory["way"][:] = now
+        return galactic.Outcome(paid, now < self.radius, envs.uniform("end")[:, 0] < 0.01)
+
+    def observe(self, envs):
+        return {"way": self.memory["way"][:, np.newaxis], "dice": envs.uniform("dice")}
+
+class Near(Approach):
+    """Without chance."""
+
+    parts = {"way": 1}
+
+    def step(self, envs):
+        return super().step(envs)._replace(failures=None)
+
+    def observe(self, envs):
+        return {"way": self.memory["way"][:, np.newaxis]}
+
+class Idle(Approach):
+    base, options, parts = "pick", {}, {}
+
+not_a_task = 3
+'''
+DISTANCES = """
+import numpy as np
+
+def hands(envs):
+    return np.linalg.norm(envs.observations["grip_target"], axis=1)
+"""
+
+
+@pytest.fixture
+def task_file(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
+    """TASK in a file, beside a module that it imports."""
+    folder = tmp_path / "lab"
+    folder.mkdir()
+    (folder / "distances.py").write_text(DISTANCES, encoding="utf-8")
+    file = folder / "approach.py"
+    file.write_text(TASK, encoding="utf-8")
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.delitem(sys.modules, "distances", raising=False)
+    return file
+
+
+@needs_worlds
+def test_a_run_goes_on_with_the_task_that_it_began_with(
+    tmp_path: pathlib.Path, task_file: pathlib.Path
+) -> None:
+    """Bit for bit, whatever has become of the file; halves take turns."""
+    options = [
+        WORLD,
+        *SMALL,
+        "--halves",
+        "2",
+        "--steps",
+        30 * UPDATE,
+        "--task",
+        f"{task_file}:Approach",
+    ]
+    options += ["--task-options", "radius=0.7 bonus=0.1"]
+    options += ["--validation", HELD_OUT, "--validation-episodes", "4"]
+    whole, paused = tmp_path / "whole", tmp_path / "paused"
+    done = call("train", "-o", whole, *options)
+    assert done.returncode == 0, done.stderr
+    assert call("train", "-o", paused, *options, "--pause-at", 17 * UPDATE).returncode == 0
+    assert (paused / "task.py").read_text(encoding="utf-8") == TASK
+    task_file.write_text(TASK.replace("self.bonus *", "9 *"), encoding="utf-8")
+    resumed = call("train", "-o", paused, "--resume")
+    assert resumed.returncode == 0, resumed.stderr
+    # The row of the pause has its validation, which the other run has not.
+    assert [row for row in curve(paused) if row["kl"] is not None] == [
+        row for row in curve(whole) if row["kl"] is not None
+    ]
+    final = f"checkpoints/{30 * UPDATE:012d}/policy.pt"
+    one, two = (checkpoint.load_policy(folder / final) for folder in (whole, paused))
+    weights = two.policy.state_dict()
+    assert all(torch.equal(value, weights[name]) for name, value in one.policy.state_dict().items())
+    assert one.settings.task == "approach.py:Approach"
+    assert dict(one.parts)["way"] == 1 and one.parts[-2:] == [("way", 1), ("dice", 1)]
+    # The preset's options, over them the task's, and the task below.
+    words = one.settings.simulation.split()
+    assert {"task=none", "episode-steps=40", "bump", "geodesic"} <= set(words)
+
+
+@needs_worlds
+def test_an_evaluation_runs_a_task_only_when_told(
+    tmp_path: pathlib.Path, task_file: pathlib.Path
+) -> None:
+    run, report = tmp_path / "run", tmp_path / "report.json"
+    options = [*SMALL, "--steps", UPDATE, "--task", f"{task_file}:Approach"]
+    assert call("train", WORLD, "-o", run, *options).returncode == 0
+    policy = run / "best.pt"
+    refused = call("evaluate", policy, HELD_OUT)
+    assert refused.returncode == 1
+    assert refused.stderr == (
+        f"galactic.evaluate: command line: {policy} was trained with a task of its own; if you trust it, "
+        f"add --task {run / 'task.py'}:Approach\n"
+    )
+    inner = next(run.glob("checkpoints/*/policy.pt"))
+    assert f"add --task {run / 'task.py'}:Approach" in call("evaluate", inner, HELD_OUT).stderr
+    words = ["--task", f"{task_file}:Approach", "--task-options", "radius=99", "--report", report]
+    done = call("evaluate", policy, HELD_OUT, *words)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(report.read_text(encoding="utf-8"))
+    assert found["success"] == 1.0 and found["endings"] == {"success": 100}
+    assert {one["length"] for one in found["each"]} == {1}
+    assert found["task"] == f"{task_file}:Approach"
+    # Another task, which does not give what the policy observes.
+    done = call("evaluate", policy, HELD_OUT, "--task", f"{task_file}:Idle")
+    assert done.returncode == 3 and "way (1), dice (1)" in done.stderr
+
+
+@needs_worlds
+def test_any_policy_can_be_judged_by_a_task(
+    tmp_path: pathlib.Path, task_file: pathlib.Path
+) -> None:
+    assert call("train", WORLD, "-o", tmp_path / "run", *SMALL, "--steps", UPDATE).returncode == 0
+    report = tmp_path / "report.json"
+    judge = ["--task", f"{task_file}:Idle", "--task-options", "radius=0.5", "--report", report]
+    done = call("evaluate", tmp_path / "run" / "best.pt", HELD_OUT, *judge)
+    assert done.returncode == 0, done.stderr
+    endings = json.loads(report.read_text(encoding="utf-8"))["endings"]
+    assert endings["success"] > 0 and endings["failure"] > 0
+
+
+@needs_worlds
+def test_a_pack_has_what_the_simulation_gives(
+    tmp_path: pathlib.Path, task_file: pathlib.Path
+) -> None:
+    options = [*SMALL, "--steps", UPDATE, "--task", f"{task_file}:Approach"]
+    for name, private in (
+        ("seen", ["--critic-only", "dice"]),
+        ("unseen", ["--critic-only", "way,dice"]),
+    ):
+        done = call("train", WORLD, "-o", tmp_path / name, *options, *private)
+        assert done.returncode == 0, done.stderr
+    pack = tmp_path / "policy.pack"
+    with pytest.raises(
+        checkpoint.CheckpointError, match="observes way, which its task approach.py:App"
+    ):
+        export.write(tmp_path / "seen" / "best.pt", pack)
+    assert not pack.exists()
+    export.write(tmp_path / "unseen" / "best.pt", pack)
+    played = galactic.LearnedPolicy(pack, 4)
+    assert played.options["task"] == "none" and played.options["episode_steps"] == 40
+
+
+@needs_worlds
+@pytest.mark.parametrize("network", ["state", "depth"])
+def test_what_is_filmed_is_what_was_played(task_file: pathlib.Path, network: str) -> None:
+    """With the task's ends, and its columns in what the policy sees."""
+    sees = {"image_size": 36} if network == "depth" else {}
+    settings = Settings(
+        envs=6, halves=1, mini_batches=1, network=network, width=16, simulation="episode-steps=12", **sees
+    )  # fmt: skip
+    world = galactic.World(HELD_OUT)
+    starts = galactic.Simulator(world, envs=6, order="linear")
+    episodes = starts.episodes().tolist()
+    # Half of the targets are as near from the beginning.
+    ways = np.linalg.norm(starts.observations[:, starts.observation_parts["grip_target"]], axis=1)
+    near = own_tasks.TaskName(str(task_file), "Near")
+    task = own_tasks.maker(near, f"radius={np.median(ways) + 0.1}")
+    homes = Homes(world, settings, 1, task=task)
+    shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
+    torch.manual_seed(3)
+    policy = checkpoint.new_policy(settings, shape)
+    policy.action.linear.weight.data.normal_(0.0, 0.2)
+    actor = Actor(policy, deterministic=False)
+    played = Evaluator(homes, actor).play(episodes)
+    films = pictures.film(world, settings, actor, episodes, 1, task)
+    for one, film in zip(played, films):
+        assert galactic.EpisodeEnd(film.ending).name.lower() == one.ending
+        assert film.reward == pytest.approx(one.reward, abs=1e-3)
+        assert len(film.frames) == one.length + 1
+        assert not np.array_equal(film.frames[0], film.frames[-1])
+    assert {one.ending for one in played} == {"success", "time_out"}
+
+
+@needs_worlds
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["--task", "approach"], 'found "approach", expected FILE.py:CLASS or MODULE:CLASS'),
+        (["--task", "a-b:Approach"], 'found "a-b:Approach", expected FILE.py:CLASS or MODULE:CLASS'),
+        (["--task", "{lab}/none.py:Approach"], "/none.py is no file; name the one that the class is in"),
+        (["--task", "no_such.module:Approach"], "there is no module no_such.module; install it"),
+        (["--task", "{lab}/approach.py:Aproach"], "has no Aproach; did you mean Approach?"),
+        (["--task", "{lab}/approach.py:nothing"], "has no nothing; it has Approach, Near, Idle"),
+        (["--task", "{lab}/approach.py:not_a_task"], "is no class that inherits from galactic.Task"),
+        (["--task", "{lab}/approach.py:Approach", "--task-options", "radios=2"],
+         "approach.py:Approach cannot be made of them: got an unexpected keyword argument 'radios'"),
+        (["--task", "{lab}/approach.py:Approach", "--task-options", "radius"],
+         'found "radius", expected NAME=VALUE'),
+        (["--task", "{lab}/approach.py:Approach", "--simulation", "task=pick"],
+         "found task=pick beside --task; the class says which one is below (base)"),
+        (["--task-options", "radius=2"], "--task-options goes with --task; name one, or leave it out"),
+        (["--task", "{lab}/approach.py:Approach", "--critic-only", "wya"], 'did you mean way?'),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_with_a_sentence(
+    tmp_path: pathlib.Path, task_file: pathlib.Path, words: list[str], message: str
+) -> None:
+    given = [word.format(lab=task_file.parent) for word in words]
+    done = call("train", WORLD, "-o", tmp_path / "run", *SMALL, "--steps", UPDATE, *given)
+    assert done.returncode == 1
+    assert done.stderr.startswith("galactic.train: command line: ") and message in done.stderr
+    assert not (tmp_path / "run").exists()
+
+
+@needs_worlds
+def test_what_a_task_raises_comes_out_as_it_is(
+    tmp_path: pathlib.Path, task_file: pathlib.Path
+) -> None:
+    """With the lines of the class, where somebody has to look."""
+    task_file.write_text(
+        TASK.replace("def prepare(self, envs):", "def prepare(self, env):"), "utf-8"
+    )
+    with pytest.raises(NameError, match="name 'envs' is not defined"):
+        call("train", WORLD, "-o", tmp_path / "a", *SMALL, "--task", f"{task_file}:Approach")
+    task_file.write_text(TASK.replace('return {"way"', 'return {"road"'), "utf-8")
+    with pytest.raises(ValueError, match=r"Approach.observe\(\) returned \['dice', 'road'\]"):
+        call("train", WORLD, "-o", tmp_path / "b", *SMALL, "--task", f"{task_file}:Approach")
+    # Options around it are the command line's.
+    done = call("train", WORLD, "-o", tmp_path / "c", *SMALL, "--task", f"{task_file}:Approach",
+                "--simulation", "episode-stpes=3")  # fmt: skip
+    assert (
+        done.returncode == 1 and "--simulation: " in done.stderr and "did you mean" in done.stderr
+    )
+
+
+@needs_worlds
+def test_no_file_of_the_user_is_written_over(
+    tmp_path: pathlib.Path, task_file: pathlib.Path
+) -> None:
+    mine = tmp_path / "run" / "task.py"
+    mine.parent.mkdir()
+    mine.write_text("mine", encoding="utf-8")
+    options = [*SMALL, "--steps", UPDATE, "--task", f"{task_file}:Approach"]
+    done = call("train", WORLD, "-o", mine.parent, *options)
+    assert (
+        done.returncode == 2 and f"{mine}: is there already, and is not {task_file}" in done.stderr
+    )
+    assert mine.read_text(encoding="utf-8") == "mine"
+
+
+def test_options_become_keywords() -> None:
+    words = "radius=0.2 --kind=near most=3 places=[1,2] far-too=True empty="
+    assert own_tasks.keywords_of(words) == {
+        "radius": 0.2, "kind": "near", "most": 3, "places": [1, 2], "far_too": True, "empty": "",
+    }  # fmt: skip
+    with pytest.raises(SettingsError, match='found "=3", expected NAME=VALUE'):
+        own_tasks.keywords_of("=3")
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        ({"episode_steps": 9}, "episode-steps=9"),
+        ({"bump": True, "geodesic": False}, "bump geodesic=false"),
+        ({"laser_heights": [0.25, (0.4, 0.8)]}, "laser-heights=0.25,0.4-0.8"),
+        ({"slide": "published"}, "slide=published"),
+    ],
+)
+def test_options_of_a_class_are_typed_as_a_user_types_them(
+    options: dict[str, Any], words: str
+) -> None:
+    task = type("Some", (galactic.Task,), {"options": options, "base": "pick"})()
+    found = own_tasks.simulation_below(task, "task=rearrange bump-penalty=1", "laser-beams=8")
+    assert found == f"task=pick bump-penalty=1 {words} laser-beams=8"
+    # What was given goes first.
+    given = words.split("=")[0].split()[0]
+    assert f"{given}=1" in own_tasks.simulation_below(task, "", f"{given}=1").split()
