@@ -2,7 +2,7 @@
 
 World opens packs, Simulator steps a batch of environments, Renderer draws them, VectorEnv is
 Gymnasium's vector environment over them, Task one of your own in it, LearnedPolicy plays policy packs, ScriptedPolicy is an
-expert to imitate, PlanningScene answers planners. docs/python.md has the tour.
+expert to imitate, PlanningScene answers planners, PathFinder knows the ways along a floor. docs/python.md has the tour.
 """
 
 import sys
@@ -17,7 +17,9 @@ try:
         EnvState,
         EpisodeEnd,
         ErrorCode,
+        GeodesicFields,
         LearnedPolicy,
+        PathFinder,
         PlanningScene,
         Pose,
         Renderer,
@@ -37,6 +39,7 @@ except ModuleNotFoundError as error:
         name=error.name,
     ) from None
 from galactic.env_states import EnvStates, Poses
+from galactic.episode_table import EpisodeTable
 from galactic.errors import Error
 from galactic.task import Outcome, Task, TaskEnvs
 from galactic.vector_env import VectorEnv
@@ -46,10 +49,13 @@ __all__ = [
     "EnvState",
     "EnvStates",
     "EpisodeEnd",
+    "EpisodeTable",
     "Error",
     "ErrorCode",
+    "GeodesicFields",
     "LearnedPolicy",
     "Outcome",
+    "PathFinder",
     "PlanningScene",
     "Pose",
     "Poses",

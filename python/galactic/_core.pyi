@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from galactic.env_states import EnvStates
+from galactic.episode_table import EpisodeTable
 
 __version__: str
 
@@ -76,6 +77,7 @@ class World:
     def actions(self) -> tuple[Action, ...]: ...
     @property
     def episodes(self) -> int: ...
+    def episode_table(self) -> EpisodeTable: ...
     @property
     def radii(self) -> tuple[float, ...]: ...
     @property
@@ -210,6 +212,43 @@ class PlanningScene:
     @property
     def is_holding(self) -> bool: ...
     def landing(self, base: ArrayLike) -> Pose | None: ...
+
+class GeodesicFields:
+    def __len__(self) -> int: ...
+    @property
+    def goals(self) -> NDArray[np.float32]: ...  # (k, 3)
+    def distances(
+        self, bases: ArrayLike, goals: ArrayLike | None = None
+    ) -> NDArray[np.float32]: ...  # (n,)
+    def directions(
+        self, bases: ArrayLike, goals: ArrayLike | None = None
+    ) -> NDArray[np.float32]: ...  # (n, 3)
+    def path(self, base: ArrayLike, goal: int = 0) -> NDArray[np.float32]: ...  # (m, 3)
+
+class PathFinder:
+    cell_size: float
+    def __init__(
+        self,
+        world: World,
+        scene: int,
+        start: ArrayLike,
+        *,
+        floor_rise: float | None = None,
+        floor_drop: float | None = None,
+    ) -> None: ...
+    @property
+    def origin(self) -> tuple[float, float]: ...
+    @property
+    def navigable(self) -> NDArray[np.bool_]: ...  # (cells along Z, cells along X)
+    @property
+    def heights(self) -> NDArray[np.float32]: ...  # (cells along Z, cells along X)
+    @property
+    def places(self) -> NDArray[np.float32]: ...  # (m, 3)
+    def is_navigable(self, bases: ArrayLike) -> NDArray[np.bool_]: ...  # (n,)
+    def snap(self, points: ArrayLike) -> NDArray[np.float32]: ...  # (n, 3)
+    def fields(
+        self, goals: ArrayLike, *, hand: bool = False, threads: int = 0
+    ) -> GeodesicFields: ...
 
 class EpisodeTally:
     def __init__(self, simulator: Simulator) -> None: ...

@@ -15,6 +15,7 @@ void bindWorld(py::module_& module);
 void bindEnvState(py::module_& module);
 void bindSimulator(py::module_& module);
 void bindPlanningScene(py::module_& module);
+void bindPathFinder(py::module_& module);
 void bindEpisodeTally(py::module_& module);
 void bindPolicy(py::module_& module);
 void bindScriptedPolicy(py::module_& module);

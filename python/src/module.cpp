@@ -45,6 +45,7 @@ PYBIND11_MODULE(_core, module) {
   galactic::python::bindEnvState(module);
   galactic::python::bindSimulator(module);
   galactic::python::bindPlanningScene(module);
+  galactic::python::bindPathFinder(module);
   galactic::python::bindEpisodeTally(module);
   galactic::python::bindPolicy(module);
   galactic::python::bindScriptedPolicy(module);

@@ -18,6 +18,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "episode_table.h"
 #include "errors.h"
 #include "options.h"
 
@@ -187,6 +188,8 @@ void bindWorld(py::module_& module) {
       .def_property_readonly(
           "episodes", [](const World& world) { return world.episodes().episodes().size(); },
           "How many there are; their indices begin at 0.")
+      .def("episode_table", &episodeTableOf,
+           "Scene, start, target and goal of each episode, in arrays: a galactic.EpisodeTable.")
       .def_property_readonly(
           "radii",
           [](const World& world) {

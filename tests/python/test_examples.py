@@ -48,6 +48,14 @@ def test_own_task(world_path):
     assert min(steps) < 200 <= max(steps)
 
 
+def test_point_nav(world_path):
+    """In a small home, most goals are straight ahead."""
+    arrived, ended = re.search(
+        r"straight ahead, (\d+) of (\d+) robots", output_of("point_nav.py", world_path)
+    ).groups()
+    assert 0.6 * int(ended) < int(arrived) < int(ended)
+
+
 def test_demonstrations(world_path, tmp_path):
     """Played again, they solve the episodes."""
     printed = output_of("demonstrations.py", world_path, tmp_path)

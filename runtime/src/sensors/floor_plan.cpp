@@ -218,16 +218,17 @@ bool FloorPlan::isPassable(const PlanCell& cell) const {
   return isInside(cell) && !std::isnan(heights_[indexOf(cell)]);
 }
 
-bool FloorPlan::has(const FloorSeed& seed) const {
-  return isPassable(seed.cell) && std::fabs(middle(seed.cell).y - seed.height) < kStorey;
+bool FloorPlan::isOnStorey(const PlanCell& cell, float height) const {
+  return isPassable(cell) && std::fabs(middle(cell).y - height) < kStorey;
 }
+
+bool FloorPlan::has(const FloorSeed& seed) const { return isOnStorey(seed.cell, seed.height); }
 
 bool FloorPlan::covers(const Vec3& base) const {
   const PlanCell at = cellAt(base.x, base.z);
   for (std::int32_t k = -1; k <= 1; ++k) {
     for (std::int32_t i = -1; i <= 1; ++i) {
-      const PlanCell cell{at.i + i, at.k + k};
-      if (isPassable(cell) && std::fabs(middle(cell).y - base.y) < kStorey) return true;
+      if (isOnStorey({at.i + i, at.k + k}, base.y)) return true;
     }
   }
   return false;

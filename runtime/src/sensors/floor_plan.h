@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "galactic/robot.h"
@@ -93,6 +94,10 @@ class FloorPlan {
   [[nodiscard]] Vec3 middle(const PlanCell& cell) const;
   /// False outside.
   [[nodiscard]] bool isPassable(const PlanCell& cell) const;
+  /// Whether it is passable, and its floor no storey above or below a height.
+  [[nodiscard]] bool isOnStorey(const PlanCell& cell, float height) const;
+  /// Of the floor in each cell, meters, X first; NaN where the robot cannot go.
+  [[nodiscard]] std::span<const float> heights() const { return heights_; }
   /// Whether a base at `base` is on this plan's floor, or beside it by a cell at most.
   [[nodiscard]] bool covers(const Vec3& base) const;
   /// Whether the seed is on this plan's floor.

@@ -129,6 +129,32 @@ void beginAt(const FloorPlan& plan, const Scene& scene, const Vec3& point, Sprea
   }
 }
 
+/// Cells around a place on the floor.
+void beginAround(const FloorPlan& plan, const Vec3& place, Spreading& spreading) {
+  const PlanCell at = plan.cellAt(place.x, place.z);
+  for (std::int32_t k = at.k - 1; k <= at.k + 1; ++k) {
+    for (std::int32_t i = at.i - 1; i <= at.i + 1; ++i) {
+      if (!plan.isPassable({i, k})) continue;
+      spreading.begin({i, k}, across(place, plan.middle({i, k})));
+    }
+  }
+}
+
+/// The field of what has begun.
+std::vector<std::uint16_t> spreadOut(Spreading& spreading) {
+  spreading.run();
+  constexpr int kBeside = 3;
+  for (int n = 0; n < kBeside; ++n) spreading.widen();
+  std::vector<std::uint16_t> field(spreading.lengths().size(), kNoWay);
+  for (std::size_t n = 0; n < field.size(); ++n) {
+    const float length = spreading.lengths()[n];
+    if (length == kInfinity) continue;
+    field[n] =
+        static_cast<std::uint16_t>(std::min(std::lround(length / kWayUnit), long{kNoWay} - 1));
+  }
+  return field;
+}
+
 /// One value of a field; none for what has no way.
 float lengthAt(const FloorPlan& plan, std::span<const std::uint16_t> field, std::int32_t i,
                std::int32_t k) {
@@ -149,17 +175,13 @@ float slope(float before, float here, float after) {
 std::vector<std::uint16_t> wayField(const FloorPlan& plan, const Scene& scene, const Vec3& point) {
   Spreading spreading(plan);
   beginAt(plan, scene, point, spreading);
-  spreading.run();
-  constexpr int kBeside = 3;
-  for (int n = 0; n < kBeside; ++n) spreading.widen();
-  std::vector<std::uint16_t> field(plan.cellCount(), kNoWay);
-  for (std::size_t n = 0; n < field.size(); ++n) {
-    const float length = spreading.lengths()[n];
-    if (length == kInfinity) continue;
-    field[n] =
-        static_cast<std::uint16_t>(std::min(std::lround(length / kWayUnit), long{kNoWay} - 1));
-  }
-  return field;
+  return spreadOut(spreading);
+}
+
+std::vector<std::uint16_t> wayFieldToPlace(const FloorPlan& plan, const Vec3& place) {
+  Spreading spreading(plan);
+  beginAround(plan, place, spreading);
+  return spreadOut(spreading);
 }
 
 Way wayFrom(const FloorPlan& plan, std::span<const std::uint16_t> field, float x,

@@ -30,6 +30,9 @@ inline constexpr std::uint16_t kNoWay = 0xFFFF;
 [[nodiscard]] std::vector<std::uint16_t> wayField(const FloorPlan& plan, const Scene& scene,
                                                   const Vec3& point);
 
+/// The same to a place on the floor, for the base: the way begins in the cells around it.
+[[nodiscard]] std::vector<std::uint16_t> wayFieldToPlace(const FloorPlan& plan, const Vec3& place);
+
 /// How far a hand that stands on the floor is taken to reach, meters.
 inline constexpr float kLastLeg = 1.25F;
 

@@ -1,0 +1,241 @@
+#include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "bindings.h"
+#include "errors.h"
+#include "galactic/path_finder.h"
+#include "options.h"
+
+namespace galactic::python {
+namespace {
+
+constexpr py::ssize_t kNumbers = 3;
+
+/// `given` as points, float (n, 3); ValueError for another shape or numbers that are not finite.
+std::vector<Vec3> pointsOf(const py::handle& given, const char* name) {
+  const py::array shaped = py::array::ensure(given);
+  if (!shaped) PyErr_Clear();
+  if (!shaped || shaped.ndim() != 2 || shaped.shape(1) != kNumbers) {
+    const std::string found =
+        shaped ? shapeText({shaped.shape(), shaped.shape() + shaped.ndim()}) : "no array";
+    throw py::value_error(fmt::format("{} has the shape {}, expected (n, 3)", name, found));
+  }
+  const auto array = inputOf<float>(shaped, name, {shaped.shape(0), kNumbers});
+  const float* numbers = array.data();
+  std::vector<Vec3> points;
+  points.reserve(static_cast<std::size_t>(array.shape(0)));
+  for (py::ssize_t n = 0; n < array.shape(0); ++n, numbers += kNumbers) {
+    if (!std::all_of(numbers, numbers + kNumbers, [](float one) { return std::isfinite(one); })) {
+      throw py::value_error(fmt::format("{}[{}] holds a number that is not finite", name, n));
+    }
+    points.push_back({numbers[0], numbers[1], numbers[2]});
+  }
+  return points;
+}
+
+Vec3 pointOf(const py::handle& given, const char* name) {
+  const auto array = inputOf<float>(given, name, {kNumbers});
+  const Vec3 point{array.data()[0], array.data()[1], array.data()[2]};
+  if (!std::isfinite(point.x + point.y + point.z)) {
+    throw py::value_error(fmt::format("{} holds a number that is not finite", name));
+  }
+  return point;
+}
+
+/// float32 (n, 3).
+py::array_t<float> rowsOf(std::span<const Vec3> points) {
+  py::array_t<float> rows({static_cast<py::ssize_t>(points.size()), kNumbers});
+  float* numbers = rows.mutable_data();
+  for (const Vec3& point : points) {
+    *numbers++ = point.x;
+    *numbers++ = point.y;
+    *numbers++ = point.z;
+  }
+  return rows;
+}
+
+/// Which goal each of `count` bases goes to: `given`, or the first one.
+std::vector<std::size_t> goalsOf(const GeodesicFields& fields, const py::object& given,
+                                 std::size_t count) {
+  std::vector<std::size_t> which(count);
+  if (given.is_none()) {
+    if (count > 0 && fields.size() == 0) throw py::index_error("there is no goal");
+    return which;
+  }
+  const auto numbers = wholeNumbersOf(given, "goals", {static_cast<py::ssize_t>(count)});
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::int64_t goal = numbers.data()[n];
+    if (goal < 0 || static_cast<std::size_t>(goal) >= fields.size()) {
+      throw py::index_error(
+          fmt::format("goals[{}] is {}, and there are {}", n, goal, fields.size()));
+    }
+    which[n] = static_cast<std::size_t>(goal);
+  }
+  return which;
+}
+
+py::array_t<float> distances(const GeodesicFields& fields, const py::object& bases,
+                             const py::object& goals) {
+  const std::vector<Vec3> from = pointsOf(bases, "bases");
+  const std::vector<std::size_t> which = goalsOf(fields, goals, from.size());
+  py::array_t<float> lengths(static_cast<py::ssize_t>(from.size()));
+  for (std::size_t n = 0; n < from.size(); ++n) {
+    lengths.mutable_data()[n] = fields.way(which[n], from[n]).distance;
+  }
+  return lengths;
+}
+
+py::array_t<float> directions(const GeodesicFields& fields, const py::object& bases,
+                              const py::object& goals) {
+  const std::vector<Vec3> from = pointsOf(bases, "bases");
+  const std::vector<std::size_t> which = goalsOf(fields, goals, from.size());
+  std::vector<Vec3> ways;
+  ways.reserve(from.size());
+  for (std::size_t n = 0; n < from.size(); ++n) {
+    const GeodesicWay way = fields.way(which[n], from[n]);
+    ways.push_back({way.x, 0, way.z});
+  }
+  return rowsOf(ways);
+}
+
+py::array_t<float> path(const GeodesicFields& fields, const py::object& base,
+                        const py::object& goal) {
+  const std::uint64_t number = wholeOf("goal", goal, 0, std::numeric_limits<std::uint32_t>::max());
+  if (number >= fields.size()) {
+    throw py::index_error(fmt::format("there is no goal {}, there are {}", number, fields.size()));
+  }
+  return rowsOf(fields.path(number, pointOf(base, "base")));
+}
+
+std::unique_ptr<PathFinder> makeFinder(const World& world, const py::object& scene,
+                                       const py::object& start, const py::object& rise,
+                                       const py::object& drop) {
+  const std::uint64_t last = world.scenes().size() - 1;
+  const auto number = static_cast<std::uint32_t>(wholeOf("scene", scene, 0, last));
+  const Vec3 place = pointOf(start, "start");
+  py::dict keywords;
+  keywords["floor_rise"] = rise;
+  keywords["floor_drop"] = drop;
+  const GroundOptions ground = optionsOf(world, keywords).ground;
+  const py::gil_scoped_release unlocked;
+  return std::make_unique<PathFinder>(valueOf(PathFinder::make(world, number, place, ground)));
+}
+
+/// Floats or truths of all cells, (columns in Z, columns in X).
+Shape cellsOf(const PathFinder& finder) { return {finder.columnsZ(), finder.columnsX()}; }
+
+py::array_t<bool> navigable(const PathFinder& finder) {
+  py::array_t<bool> cells(cellsOf(finder));
+  std::ranges::transform(finder.heights(), cells.mutable_data(),
+                         [](float height) { return !std::isnan(height); });
+  return cells;
+}
+
+py::array_t<bool> areNavigable(const PathFinder& finder, const py::object& bases) {
+  const std::vector<Vec3> places = pointsOf(bases, "bases");
+  py::array_t<bool> result(static_cast<py::ssize_t>(places.size()));
+  std::ranges::transform(places, result.mutable_data(),
+                         [&](const Vec3& place) { return finder.isNavigable(place); });
+  return result;
+}
+
+py::array_t<float> snapped(const PathFinder& finder, const py::object& points) {
+  std::vector<Vec3> places = pointsOf(points, "points");
+  for (Vec3& place : places) place = finder.snap(place);
+  return rowsOf(places);
+}
+
+GeodesicFields fieldsTo(const PathFinder& finder, const py::object& goals, bool hand,
+                        const py::object& threads) {
+  const std::vector<Vec3> points = pointsOf(goals, "goals");
+  const GoalOf of = hand ? GoalOf::kHand : GoalOf::kBase;
+  const std::uint32_t count = threadsOf(threads);
+  const py::gil_scoped_release unlocked;
+  return valueOf(finder.fieldsTo(points, of, count));
+}
+
+void bindFields(py::module_& module) {
+  py::class_<GeodesicFields> type(module, "GeodesicFields");
+  type.def("__len__", &GeodesicFields::size)
+      .def_property_readonly(
+          "goals", [](const GeodesicFields& fields) { return rowsOf(fields.goals()); },
+          "float32 (k, 3), world frame, meters.")
+      .def(
+          "distances", &distances, py::arg("bases"), py::arg("goals") = py::none(),
+          "How long the ways are, meters: float32 (n,), inf where there is none.\n\n"
+          "bases: (n, 3), of bases or roots, at most three cells beside the floor and half a meter\n"
+          "above it. goals: int (n,), to which goal each of them goes; None: all to the first.")
+      .def("directions", &directions, py::arg("bases"), py::arg("goals") = py::none(),
+           "Unit directions in which the ways begin, world frame: float32 (n, 3), y is 0; zeros\n"
+           "without a way and at its end.")
+      .def("path", &path, py::arg("base"), py::arg("goal") = 0,
+           "Corners of a path along straight lines over the floor, float32 (m, 3), from the base,\n"
+           "(3,), to a goal, or to where the hand reaches it; (0, 3) where there is none.");
+  type.doc() =
+      "Shortest ways along a floor to k goals, from everywhere: what PathFinder.fields() returns.";
+  type.attr("__module__") = "galactic";
+  refusePickling(type, "make them with PathFinder.fields()");
+}
+
+}  // namespace
+
+void bindPathFinder(py::module_& module) {
+  bindFields(module);
+  py::class_<PathFinder> type(module, "PathFinder");
+  type.def(
+          py::init(&makeFinder), py::arg("world"), py::arg("scene"), py::arg("start"),
+          py::kw_only(), py::arg("floor_rise") = py::none(), py::arg("floor_drop") = py::none(),
+          py::keep_alive<1, 2>(),
+          "Where the robot of a world can drive on one floor of a scene, and shortest ways "
+          "there.\n\n"
+          "The floor is that at or under `start`, (3,), where a base or a root is, in cells of\n"
+          "`cell_size`: those in which the robot's start pose is free of the static scene in some\n"
+          "heading, a step (floor_rise, floor_drop) from one to the next. Objects are not in the\n"
+          "way. scene: index into World.scenes. galactic.Error where nothing can stand there.")
+      .def_property_readonly_static("cell_size",
+                                    [](const py::object&) { return PathFinder::cellSize(); })
+      .def_property_readonly(
+          "origin",
+          [](const PathFinder& finder) { return py::make_tuple(finder.minX(), finder.minZ()); },
+          "x and z of the corner of cell (0, 0), world frame, meters.")
+      .def_property_readonly("navigable", &navigable,
+                             "bool (cells along Z, cells along X): a map of the floor from above.")
+      .def_property_readonly(
+          "heights",
+          [](const PathFinder& finder) {
+            py::array_t<float> cells(cellsOf(finder));
+            std::ranges::copy(finder.heights(), cells.mutable_data());
+            return cells;
+          },
+          "float32, as `navigable`: of the floor, meters; NaN where the robot cannot go.")
+      .def_property_readonly(
+          "places", [](const PathFinder& finder) { return rowsOf(finder.places()); },
+          "float32 (m, 3): the middles of all navigable cells. Draw from them for random places.")
+      .def("is_navigable", &areNavigable, py::arg("bases"),
+           "Whether bases, (n, 3), may be there: bool (n,).")
+      .def("snap", &snapped, py::arg("points"),
+           "The nearest of `places` for each of the points, (n, 3): float32 (n, 3).")
+      .def("fields", &fieldsTo, py::arg("goals"), py::kw_only(),
+           py::arg("hand").noconvert() = false, py::arg("threads") = 0,
+           "Shortest ways to goals, (k, 3), from everywhere on the floor: GeodesicFields. Goals "
+           "are\n"
+           "navigable places of the base, or with hand=True points that the hand is to reach, as\n"
+           "the sensor `geodesic` has it. threads: 0 for all.")
+      .def("__repr__", [](const PathFinder& finder) {
+        return fmt::format("<galactic.PathFinder of {} places>", finder.places().size());
+      });
+  type.attr("__module__") = "galactic";
+  refusePickling(type, "make one from its world");
+}
+
+}  // namespace galactic::python

@@ -1,0 +1,209 @@
+#include "galactic/path_finder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "sensors/floor_plan.h"
+#include "sensors/way_field.h"
+#include "simulation/motion/motion_model.h"
+#include "simulation/phases/move.h"
+#include "support/workers.h"
+
+namespace galactic {
+namespace {
+
+using sensors::FloorPlan;
+using sensors::kNoWay;
+using sensors::kPlanCell;
+using sensors::PlanCell;
+
+/// How far beside a floor a base has a way, cells.
+constexpr std::int32_t kBeside = 3;
+constexpr std::array<PlanCell, 8> kNeighbors{
+    {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
+
+/// Whether a point has a cell at all: numbers that are none have not, nor others than any scene's.
+bool isPlace(const Vec3& point) {
+  constexpr float kFarthest = 1e6F;
+  const float farthest = std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)});
+  return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z) &&
+         farthest < kFarthest;
+}
+
+float squaredDistance(const Vec3& a, const Vec3& b) {
+  const Vec3 apart = a - b;
+  return dot(apart, apart);
+}
+
+/// The passable cell nearest to a base, of those within kBeside and on its storey.
+std::optional<PlanCell> cellBeside(const FloorPlan& plan, const Vec3& base) {
+  if (!isPlace(base)) return std::nullopt;
+  const PlanCell at = plan.cellAt(base.x, base.z);
+  std::optional<PlanCell> nearest;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::int32_t k = at.k - kBeside; k <= at.k + kBeside; ++k) {
+    for (std::int32_t i = at.i - kBeside; i <= at.i + kBeside; ++i) {
+      const PlanCell cell{i, k};
+      if (!plan.isOnStorey(cell, base.y)) continue;
+      const float squared = squaredDistance(plan.middle(cell), base);
+      if (squared < least) {
+        least = squared;
+        nearest = cell;
+      }
+    }
+  }
+  return nearest;
+}
+
+/// Whether a straight line in the ground plane stays on passable cells.
+bool isOpen(const FloorPlan& plan, const Vec3& a, const Vec3& b) {
+  constexpr float kStride = 0.02F;
+  const float x = b.x - a.x;
+  const float z = b.z - a.z;
+  const int steps = static_cast<int>(std::sqrt(x * x + z * z) / kStride) + 1;
+  for (int n = 0; n <= steps; ++n) {
+    const float share = static_cast<float>(n) / static_cast<float>(steps);
+    if (!plan.isPassable(plan.cellAt(a.x + share * x, a.z + share * z))) return false;
+  }
+  return true;
+}
+
+/// Of passable cells, the one around `cell` whose way is shortest, and shorter than its own.
+/// Corners are not cut.
+std::optional<PlanCell> nextCell(const FloorPlan& plan, std::span<const std::uint16_t> lengths,
+                                 const PlanCell& cell) {
+  std::optional<PlanCell> next;
+  std::uint16_t least = lengths[plan.indexOf(cell)];
+  for (const PlanCell& way : kNeighbors) {
+    const PlanCell there{cell.i + way.i, cell.k + way.k};
+    const bool is_passable = plan.isPassable(there) && plan.isPassable({there.i, cell.k}) &&
+                             plan.isPassable({cell.i, there.k});
+    if (!is_passable || lengths[plan.indexOf(there)] >= least) continue;
+    least = lengths[plan.indexOf(there)];
+    next = there;
+  }
+  return next;
+}
+
+/// Height of the floor at a start or up to half a meter under it, as episodes look for theirs.
+float floorBelow(const Scene& scene, const Vec3& start, GroundOptions ground) {
+  constexpr float kDeepestSearch = 0.5F;
+  ground.most_drop = std::max(ground.most_drop, kDeepestSearch);
+  const simulation::FloorUnder under = simulation::floorUnder(scene, start, ground);
+  return under.floor == simulation::Floor::kDrops ? start.y : under.height;
+}
+
+/// The corners that remain when straight lines over passable cells take the place of points between
+/// them.
+std::vector<Vec3> pulledTight(const FloorPlan& plan, const std::vector<Vec3>& points) {
+  std::vector<Vec3> corners{points.front()};
+  for (std::size_t n = 1; n + 1 < points.size(); ++n) {
+    if (!isOpen(plan, corners.back(), points[n + 1])) corners.push_back(points[n]);
+  }
+  if (points.size() > 1) corners.push_back(points.back());
+  return corners;
+}
+
+}  // namespace
+
+GeodesicWay GeodesicFields::way(std::size_t n, const Vec3& base) const {
+  if (!cellBeside(*plan_, base)) return {};
+  const sensors::Way way = sensors::wayFrom(*plan_, lengths_[n], base.x, base.z);
+  if (way.distance < 0) return {};
+  return {way.distance, way.x, way.z};
+}
+
+std::vector<Vec3> GeodesicFields::path(std::size_t n, const Vec3& base) const {
+  const std::span<const std::uint16_t> lengths = lengths_[n];
+  std::optional<PlanCell> cell = cellBeside(*plan_, base);
+  if (!cell || lengths[plan_->indexOf(*cell)] == kNoWay) return {};
+  std::vector<Vec3> points{base};
+  // From beside the floor, a path begins with a step onto it.
+  if (!plan_->isPassable(plan_->cellAt(base.x, base.z))) points.push_back(plan_->middle(*cell));
+  while ((cell = nextCell(*plan_, lengths, *cell))) points.push_back(plan_->middle(*cell));
+  if (are_places_) points.push_back(goals_[n]);
+  return pulledTight(*plan_, points);
+}
+
+Result<PathFinder> PathFinder::make(const World& world, std::uint32_t scene, const Vec3& start,
+                                    const GroundOptions& ground) {
+  const std::size_t count = world.scenes().size();
+  if (scene >= count) {
+    return fail(ErrorCode::kInvalidInput, "path finder",
+                fmt::format("there is no scene {}, the last is {}", scene, count - 1));
+  }
+  const Result<simulation::MotionModel> motion =
+      simulation::makeMotionModel(world.robot(), world.startPositionIndices());
+  if (!motion) return tl::unexpected<Error>(motion.error());
+  const sensors::StandingRobot robot(world.robot(), *motion, simulation::motionKernels());
+  const Scene& home = world.scenes()[scene];
+  std::optional<sensors::FloorSeed> seed;
+  if (isPlace(start)) {
+    seed =
+        FloorPlan::seedOf(home, robot, {start.x, floorBelow(home, start, ground), start.z}, ground);
+  }
+  if (!seed) {
+    return fail(
+        ErrorCode::kInvalidInput, "path finder",
+        fmt::format("the robot cannot stand at or near ({:.2f}, {:.2f}, {:.2f}) in scene {}; "
+                    "start where one does, such as at the start of an episode",
+                    start.x, start.y, start.z, home.name()));
+  }
+  return PathFinder(home, std::make_shared<const FloorPlan>(home, robot, *seed, ground));
+}
+
+float PathFinder::cellSize() { return kPlanCell; }
+std::int32_t PathFinder::columnsX() const { return plan_->columnsX(); }
+std::int32_t PathFinder::columnsZ() const { return plan_->columnsZ(); }
+float PathFinder::minX() const { return plan_->minX(); }
+float PathFinder::minZ() const { return plan_->minZ(); }
+std::span<const float> PathFinder::heights() const { return plan_->heights(); }
+
+bool PathFinder::isNavigable(const Vec3& base) const {
+  return isPlace(base) && plan_->isOnStorey(plan_->cellAt(base.x, base.z), base.y);
+}
+
+Vec3 PathFinder::snap(const Vec3& point) const {
+  const std::vector<Vec3> all = places();
+  return *std::ranges::min_element(
+      all, {}, [&](const Vec3& place) { return squaredDistance(place, point); });
+}
+
+std::vector<Vec3> PathFinder::places() const {
+  std::vector<Vec3> places;
+  for (std::int32_t k = 0; k < columnsZ(); ++k) {
+    for (std::int32_t i = 0; i < columnsX(); ++i) {
+      if (plan_->isPassable({i, k})) places.push_back(plan_->middle({i, k}));
+    }
+  }
+  return places;
+}
+
+Result<GeodesicFields> PathFinder::fieldsTo(std::span<const Vec3> goals, GoalOf of,
+                                            std::uint32_t threads) const {
+  GeodesicFields fields;
+  fields.plan_ = plan_;
+  fields.goals_.assign(goals.begin(), goals.end());
+  fields.are_places_ = of == GoalOf::kBase;
+  fields.lengths_.resize(goals.size());
+  for (std::size_t n = 0; n < goals.size(); ++n) {
+    if (fields.are_places_ ? isNavigable(goals[n]) : isPlace(goals[n])) continue;
+    return fail(ErrorCode::kInvalidInput, "path finder",
+                fmt::format("goal {}, ({:.2f}, {:.2f}, {:.2f}), is not navigable; take what snap() "
+                            "makes of it",
+                            n, goals[n].x, goals[n].y, goals[n].z));
+  }
+  detail::forEachPart(detail::threadCount(threads), goals.size(), [&](std::size_t n) {
+    fields.lengths_[n] = fields.are_places_ ? sensors::wayFieldToPlace(*plan_, goals[n])
+                                            : sensors::wayField(*plan_, *scene_, goals[n]);
+  });
+  return fields;
+}
+
+}  // namespace galactic
