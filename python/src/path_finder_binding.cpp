@@ -170,11 +170,11 @@ void bindFields(py::module_& module) {
       .def_property_readonly(
           "goals", [](const GeodesicFields& fields) { return rowsOf(fields.goals()); },
           "float32 (k, 3), world frame, meters.")
-      .def(
-          "distances", &distances, py::arg("bases"), py::arg("goals") = py::none(),
-          "How long the ways are, meters: float32 (n,), inf where there is none.\n\n"
-          "bases: (n, 3), of bases or roots, at most three cells beside the floor and half a meter\n"
-          "above it. goals: int (n,), to which goal each of them goes; None: all to the first.")
+      .def("distances", &distances, py::arg("bases"), py::arg("goals") = py::none(),
+           "How long the ways are, meters: float32 (n,), inf where there is none.\n\n"
+           "bases: (n, 3), of bases or roots, at most three cells beside the floor and half a "
+           "meter\n"
+           "above it. goals: int (n,), to which goal each of them goes; None: all to the first.")
       .def("directions", &directions, py::arg("bases"), py::arg("goals") = py::none(),
            "Unit directions in which the ways begin, world frame: float32 (n, 3), y is 0; zeros\n"
            "without a way and at its end.")
