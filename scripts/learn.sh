@@ -47,10 +47,22 @@ world homes 2000 101
 world validation 200 303
 world unseen 400 202
 
-# learn RUN PRESET OPTION...: one that was interrupted goes on; one that is complete stays as it is.
+# What the world to learn in consists of: the same bytes make the same runs.
+world_sum() { cat "${packs[@]}" "$sample/homes-episodes.pack" | sha256sum | cut -d ' ' -f 1; }
+
+# learn RUN PRESET OPTION...: one that was interrupted goes on; one that is complete stays as it is. One of
+# another world, which an earlier version made, is set aside.
 learn() {
   local run=$1 preset=$2
   shift 2
+  if [ -f "$run/settings.json" ] && [ "$(cat "$run/world.sha256" 2>/dev/null)" != "$(world_sum)" ]; then
+    local aside=$run-of-another-world
+    while [ -e "$aside" ]; do aside+=-before; done
+    echo "learn: $run is of another world; it is in $aside now"
+    mv "$run" "$aside"
+  fi
+  mkdir -p "$run"
+  world_sum >"$run/world.sha256"
   if [ -f "$run/settings.json" ]; then
     /usr/bin/python3 -m galactic.train -o "$run" --resume
   else

@@ -34,6 +34,7 @@ from galactic.learning.settings import (
     positive_integer,
     resumed,
 )
+from galactic.learning.streams import put
 from galactic.learning.trainer import Trainer, Validation, threads_of
 
 
@@ -116,6 +117,10 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
         if "RANK" in os.environ:
             follow_launcher()
         run = _resumed_run(options) if options.resume else _new_run(options)
+        if options.resume and _is_complete(run, options.out):
+            if os.environ.get("RANK", "0") == "0":
+                put(sys.stderr, f"{options.out} is complete; give it more --steps to go on\n")
+            return OK
         if "RANK" not in os.environ:
             device_of(options.device, 0, run.settings.ranks)
             checkpoint.require_folder(options.out)
@@ -270,6 +275,17 @@ def _resumed_run(options: argparse.Namespace) -> Run:
     if options.pause_at is not None and options.pause_at < done:
         raise SettingsError(_behind("--pause-at", options.pause_at, done) + "leave it out")
     return dataclasses.replace(run, settings=settings)
+
+
+def _is_complete(run: Run, folder: pathlib.Path) -> bool:
+    """Whether nothing is left to do: all steps are done, and the report was written after them. Of a report
+    that is none, the run writes another."""
+    done = CheckpointFolder(folder, run.settings.keep).steps
+    try:
+        reported = json.loads((folder / "report.json").read_text(encoding="utf-8"))["steps"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+    return done >= run.settings.steps and reported == done
 
 
 def _behind(option: str, found: int, done: int) -> str:

@@ -126,6 +126,8 @@ class Trainer:
         settings = self.settings
         end = settings.steps if pause_at is None else min(pause_at, settings.steps)
         if self.steps >= end:
+            # It may have been cut off behind its last checkpoint.
+            self._write_report()
             return True
         with _Signals(self._interrupt):
             while self.steps < end:

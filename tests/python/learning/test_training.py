@@ -148,6 +148,28 @@ def test_a_run_is_not_resumed_up_to_where_it_has_been(tmp_path: pathlib.Path) ->
     assert len(curve(folder)) == 2
 
 
+def test_a_complete_run_needs_nothing_but_its_folder(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "run"
+    assert call("train", WORLD, "-o", folder, *SMALL, "--steps", 2 * UPDATE).returncode == 0
+    before = {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+    with monkeypatch.context() as without:
+        without.setattr(train, "Homes", None)
+        done = call("train", "-o", folder, "--resume")
+    assert done.returncode == 0
+    assert done.stderr == f"{folder} is complete; give it more --steps to go on\n"
+    assert {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()} == before
+    # Without its report, or one of the latest steps, it is not.
+    for left in ("", "{}", "[]", '{"steps": 1}'):
+        (folder / "report.json").write_text(left, encoding="utf-8")
+        assert "report.json" in call("train", "-o", folder, "--resume").stderr
+        assert json.loads((folder / "report.json").read_text())["steps"] == 2 * UPDATE
+    more = call("train", "-o", folder, "--resume", "--steps", 3 * UPDATE)
+    assert more.returncode == 0 and "going on after" in more.stderr
+    assert len(curve(folder)) == 3
+
+
 def test_an_interrupt_saves_and_says_how_to_go_on(tmp_path: pathlib.Path) -> None:
     process = subprocess.Popen(
         command("train", WORLD, "-o", tmp_path / "run", *SMALL_OF_ANY_RANKS, "--ranks", "2"),
