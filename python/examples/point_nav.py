@@ -8,7 +8,8 @@ import galactic
 
 class PointNav(galactic.Task):
     """Drive to within `radius` meters of a goal that the robot is told of (PointGoal navigation:
-    Anderson et al. 2018). Pays each meter of the shortest way, and 2 for an arrival.
+    Anderson et al. 2018). Pays each meter of the shortest way, and 2 for an arrival. Measures SPL, the
+    success weighted by how much longer the driven way was than the shortest one.
 
     In each scene there are so many goals, anywhere on the floor of its first start.
     """
@@ -23,6 +24,7 @@ class PointNav(galactic.Task):
         "geodesic_weight": 0,
     }
     parts = {"to_goal": 2, "way": 3}
+    measures = ("spl",)
 
     def __init__(self, goals=100, radius=0.25, bump_penalty=0.03):
         self.goals = goals
@@ -45,7 +47,13 @@ class PointNav(galactic.Task):
             can_start[here] = np.isfinite(self.ways[scene].distances(starts))
         self.episodes = np.flatnonzero(can_start)
         count = envs.num_envs
-        self.memory = {"goal": np.zeros(count, np.int64), "way": np.zeros(count, np.float32)}
+        self.memory = {
+            "goal": np.zeros(count, np.int64),
+            "way": np.zeros(count, np.float32),
+            "shortest": np.zeros(count, np.float32),
+            "driven": np.zeros(count, np.float32),
+            "place": np.zeros((count, 3), np.float32),
+        }
 
     def choose(self, envs, which):
         drawn = envs.uniform("episode")[which, 0]
@@ -54,7 +62,10 @@ class PointNav(galactic.Task):
     def begin(self, envs, which):
         drawn = envs.uniform("goal")[which, 0]
         self.memory["goal"][which] = (drawn * self.goals).astype(int)
-        self.memory["way"][which] = self.way(envs)[which]
+        way, places = self.way(envs), envs.states.world_from_root.translation
+        self.memory["way"][which] = self.memory["shortest"][which] = way[which]
+        self.memory["driven"][which] = 0
+        self.memory["place"][which] = places[which]
 
     def step(self, envs):
         now = self.way(envs)
@@ -62,7 +73,15 @@ class PointNav(galactic.Task):
         rewards = self.memory["way"] - now + 2 * has_arrived
         rewards -= self.bump_penalty * envs.observations["bump"][:, 0]
         self.memory["way"][:] = now
+        places = envs.states.world_from_root.translation
+        self.memory["driven"] += np.linalg.norm(places - self.memory["place"], axis=1)
+        self.memory["place"][:] = places
         return galactic.Outcome(rewards, successes=has_arrived)
+
+    def measure(self, envs, which):
+        has_arrived = self.memory["way"][which] < self.radius
+        shortest, driven = self.memory["shortest"][which], self.memory["driven"][which]
+        return {"spl": has_arrived * shortest / np.maximum(np.maximum(shortest, driven), 1e-6)}
 
     def observe(self, envs):
         """Seen from the robot, ahead and to the right: where the goal is, meters, and in which direction

@@ -55,7 +55,10 @@ class HalfBatch:
         self._renews = bool(cameras) or task is not None
         self.simulator = Simulator(world, **options, auto_reset=not self._renews)
         self._task = None if task is None else TaskRunner(task, world, self.simulator)
-        self.observation_parts = self.simulator.observation_parts | self._task_parts()
+        self.observation_parts = self.simulator.observation_parts | (
+            {} if self._task is None else self._task.parts
+        )
+        self.measures: tuple[str, ...] = () if self._task is None else self._task.measures
         self.renderers = {name: Renderer(self.simulator, **cameras[name]) for name in cameras}
         self._image_shapes = {
             _image_name(camera, image): shape
@@ -77,9 +80,6 @@ class HalfBatch:
             for name, (shape, dtype) in self._image_shapes.items()
             if not copy
         }
-
-    def _task_parts(self) -> dict[str, slice]:
-        return {} if self._task is None else self._task.parts
 
     @property
     def observation_size(self) -> int:
@@ -193,8 +193,8 @@ class HalfBatch:
         images = self._draw(out)
         infos = {}
         if len(ended):
-            cameras = self._cameras(ended)
-            infos = self._infos(ended, self._renew(ended, images), cameras)
+            more = {**self._measures(ended), **self._cameras(ended)}
+            infos = self._infos(ended, self._renew(ended, images), more)
         observations = self._observed(self._landed("state", self._state_rows(), out), images)
         return observations, rewards, terminations, truncations, infos
 
@@ -267,16 +267,19 @@ class HalfBatch:
             places[_image_name(camera, "world_from_camera")] = place
         return places
 
+    def _measures(self, which: NDArray[np.int64]) -> dict[str, Array]:
+        return {} if self._task is None else self._task.measure(which)
+
     def blank_infos(self) -> dict[str, Any]:
         """The infos of a step in which episodes ended, but none of these envs'."""
         nobody = np.empty(0, np.int64)
-        return self._infos(nobody, None, self._cameras(nobody))
+        return self._infos(nobody, None, {**self._measures(nobody), **self._cameras(nobody)})
 
     def _infos(
-        self, which: NDArray[np.int64], last: Observations, cameras: Mapping[str, Array]
+        self, which: NDArray[np.int64], last: Observations, more: Mapping[str, Array]
     ) -> dict[str, Any]:
         """The infos of a step in which the episodes of the envs `which` ended, with these last
-        observations, drawn from there; their sums begin anew."""
+        observations, and `more` in final_info; their sums begin anew."""
         sums = self._tally.take_ended()
         ended = sums.pop("ended")
         final_obs = np.full(len(ended), None, object)
@@ -287,7 +290,7 @@ class HalfBatch:
         took = np.where(ended, now - self._began, 0.0)
         self._began[which] = now
         final_info = {"episode": episode, "_episode": ended}
-        for name, values in {**sums, **cameras}.items():
+        for name, values in {**sums, **more}.items():
             final_info[name] = values
             final_info["_" + name] = ended
         return {

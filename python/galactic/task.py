@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -94,7 +94,8 @@ class Task:
 
     A VectorEnv makes one for each of its halves, by calling what it was given without arguments. It
     calls prepare() and begin() once the envs stand at the start of their first episodes; with each
-    step step(), then, where episodes ended, choose() and begin(); and observe() whenever somebody looks.
+    step step(), then, where episodes ended, measure(), choose() and begin(); and observe() whenever
+    somebody looks.
 
     All is done for n envs at once, in arrays whose first axis is the env. Nothing but `memory` may be
     kept from one call to the next: it is saved with the state of the envs, so that runs can be resumed,
@@ -111,6 +112,9 @@ class Task:
 
     parts: Mapping[str, int] = {}
     """Names and sizes of what observe() adds to the observation, in this order, behind all else."""
+
+    measures: Sequence[str] = ()
+    """Names of what measure() says of each episode."""
 
     memory: dict[str, NDArray[Any]]
     """What the task remembers of each env, arrays (n, ...) by name: made in prepare(), written in
@@ -131,6 +135,13 @@ class Task:
     def step(self, envs: TaskEnvs) -> Outcome:
         """What the step that was just done came to. What is said of idle envs does not count."""
         raise NotImplementedError(f"{type(self).__name__} has no step()")
+
+    def measure(
+        self, envs: TaskEnvs, which: NDArray[np.int64]
+    ) -> Mapping[str, NDArray[np.floating]]:
+        """What there is to say of the episodes that this step ended in the envs `which`: the `measures`,
+        each (len(which),). They are in final_info, and in the report of galactic.evaluate."""
+        return {}
 
     def observe(self, envs: TaskEnvs) -> Mapping[str, NDArray[np.floating]]:
         """The `parts`, each (n, size): of `envs` and `memory`, which it leaves as they are."""

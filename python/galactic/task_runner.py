@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from traceback import walk_tb
 from typing import Any
 
@@ -13,6 +13,9 @@ from galactic._core import EpisodeEnd, Simulator, World
 from galactic.task import Outcome, Task, TaskEnvs
 
 Array = NDArray[Any]
+
+OF_EPISODES = ("episode", "ending", "success", "episode_index", "world_from_camera")
+"""What final_info says of every episode."""
 
 
 def made_by(factory: Callable[[], Task]) -> Task:
@@ -43,6 +46,7 @@ class TaskRunner:
         self._rewards = np.zeros(self._envs.num_envs, np.float32)
         self._endings = np.zeros(self._envs.num_envs, np.uint8)
         self.parts = _parts_of(task, self._name, simulator)
+        self.measures = _measures_of(task, self._name)
         sizes = [part.stop - part.start for part in self.parts.values()]
         self._columns = np.zeros((self._envs.num_envs, sum(sizes)), np.float32)
         self.restart()
@@ -109,12 +113,21 @@ class TaskRunner:
         self._endings[failures & ~idle] = EpisodeEnd.FAILURE
         self._endings[successes & ~idle] = EpisodeEnd.SUCCESS
 
+    def measure(self, which: NDArray[np.int64]) -> dict[str, NDArray[np.float32]]:
+        """What the task says of the episodes that have ended in the envs `which`, float32 (n,); zeros for
+        the others."""
+        found = self._task.measure(self._envs, which) if self.measures and len(which) else {}
+        if len(which):
+            self._require_names("measure", found, self.measures)
+        measured = {name: np.zeros(self._envs.num_envs, np.float32) for name in self.measures}
+        for name, values in found.items():
+            measured[name][which] = self._checked("measure", name, values, (len(which),))
+        return measured
+
     def observe(self) -> NDArray[np.float32]:
         """The task's columns of the observation, float32 (n, size), overwritten by the next call."""
         seen = self._task.observe(self._envs) if self.parts else {}
-        if seen.keys() != self.parts.keys():
-            found, wanted = sorted(seen), sorted(self.parts)
-            raise ValueError(f"{self._name}.observe() returned {found}, expected {wanted}")
+        self._require_names("observe", seen, self.parts)
         first = self._envs.simulator.observation_size
         for name, part in self.parts.items():
             shape = (self._envs.num_envs, part.stop - part.start)
@@ -158,6 +171,11 @@ class TaskRunner:
                     "array, or keep its type and shape"
                 )
 
+    def _require_names(self, method: str, found: Mapping[str, Any], wanted: Iterable[str]) -> None:
+        names = sorted(wanted)
+        if sorted(found) != names:
+            raise ValueError(f"{self._name}.{method}() returned {sorted(found)}, expected {names}")
+
     def _flags(self, name: str, given: Any) -> NDArray[np.bool_]:
         shape = (self._envs.num_envs,)
         if given is None:
@@ -189,6 +207,17 @@ def _described(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return f"{value.dtype} {value.shape}"
     return type(value).__name__
+
+
+def _measures_of(task: Task, name: str) -> tuple[str, ...]:
+    """ValueError for names that cannot be."""
+    for measure in task.measures:
+        is_name = isinstance(measure, str) and measure.isidentifier() and measure[0] != "_"
+        if isinstance(task.measures, str) or not is_name or measure in OF_EPISODES:
+            raise ValueError(
+                f"{name}.measures has {measure!r}, expected a name of its own, such as ways_lost"
+            )
+    return tuple(task.measures)
 
 
 def _parts_of(task: Task, name: str, simulator: Simulator) -> dict[str, slice]:

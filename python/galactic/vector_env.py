@@ -64,7 +64,8 @@ class VectorEnv(_Base):
     - final_info: {"episode": {"r", "l"}, "ending", "success", "episode_index"}, arrays
       (num_envs,): return and length of the episode, how it ended (EpisodeEnd), and which one of
       the world's it was; with images also "world_from_camera", float32 (num_envs, 4, 4): where those
-      of final_obs were drawn from, as Renderer has it of the images of the step,
+      of final_obs were drawn from, as Renderer has it of the images of the step; and the `measures` of
+      a task of one's own, float32 (num_envs,),
     - episode: the same {"r", "l"} again, and "t", the seconds that the episode took, as Gymnasium's
       RecordEpisodeStatistics has it,
 
@@ -204,6 +205,12 @@ class VectorEnv(_Base):
         of a task of one's own."""
         self._require_open()
         return self._halves[0].observation_parts
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """What final_info has of a task of one's own, by name."""
+        self._require_open()
+        return self._halves[0].measures
 
     @property
     def simulators(self) -> tuple[Simulator, ...]:

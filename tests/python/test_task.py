@@ -14,6 +14,7 @@ class Approach(Task):
 
     options = {"episode_steps": 20}
     parts = {"gained": 1, "dice": 2}
+    measures = ("twice_gained", "env")
 
     def prepare(self, envs):
         count = envs.num_envs
@@ -34,6 +35,9 @@ class Approach(Task):
     def observe(self, envs):
         gained = self.memory["gained"][:, np.newaxis]
         return {"dice": envs.uniform("dice", 2), "gained": gained}
+
+    def measure(self, envs, which):
+        return {"env": envs.numbers[which], "twice_gained": 2 * self.memory["gained"][which]}
 
 
 def distances(envs):
@@ -81,6 +85,8 @@ def test_outcomes(world):
             assert final["success"][row] == (end == EpisodeEnd.SUCCESS)
             assert final["episode"]["l"][row] == lengths[row] <= 20
             assert final["episode"]["r"][row] == pytest.approx(returns[row], abs=1e-5)
+            assert final["twice_gained"][row] == pytest.approx(2 * returns[row], abs=1e-5)
+            assert final["_env"][row] and final["env"][row] == row
             # The last observation still has what was gained; the next episode begins without.
             gained = env.observation_parts["gained"]
             assert infos["final_obs"][row][gained] == pytest.approx(returns[row], abs=1e-5)
@@ -126,6 +132,26 @@ def test_halves_and_ranks(world):
         np.testing.assert_array_equal(one, two)
         np.testing.assert_array_equal(one, three)
     assert whole[4].any()
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_measures(world, halves):
+    """Of the episodes that ended, with masks, by the same names in each step in which some did."""
+    env = VectorEnv(world, 16, task=Approach, halves=halves)
+    assert env.measures == ("twice_gained", "env")
+    assert VectorEnv(world, 16, task="pick").measures == ()
+    env.reset()
+    draw, some = drawing(), 0
+    for _ in range(40):
+        _, _, terminations, truncations, infos = env.step(draw(16, ACTIONS))
+        ended = terminations | truncations
+        some += 0 < ended.sum() < 16
+        if infos:
+            final = infos["final_info"]
+            np.testing.assert_array_equal(final["_twice_gained"], ended)
+            np.testing.assert_array_equal(final["env"][ended], np.flatnonzero(ended))
+            assert not final["twice_gained"][~ended].any()
+    assert some > 5
 
 
 @pytest.mark.parametrize("halves", [1, 2])
@@ -363,6 +389,10 @@ def zeros(envs):
     return np.zeros(envs.num_envs)
 
 
+def ends_all(self, envs):
+    return Outcome(zeros(envs), successes=np.ones(envs.num_envs, bool))
+
+
 @pytest.mark.parametrize(
     "task, error, message",
     [
@@ -371,6 +401,8 @@ def zeros(envs):
         (of(parts={"time": 1}), ValueError, "Faulty.parts has 'time', expected a name of its own"),
         (of(parts={"to door": 1}), ValueError, "Faulty.parts has 'to door'"),
         (of(parts={"door": 0}), ValueError, r"Faulty.parts\['door'\] is 0, expected how many"),
+        (of(measures=("success",)), ValueError, "Faulty.measures has 'success', expected a name of its"),
+        (of(measures="gained"), ValueError, "Faulty.measures has 'g', expected a name of its own"),
         (of(base="tidy"), galactic.Error, "tidy"),
         (of(options={"episode_stpes": 3}), TypeError, "did you mean episode_steps"),
         (
@@ -423,6 +455,16 @@ def test_refused_at_once(world, task, error, message):
             {"begin": lambda self, envs, which: self.memory.update(gained=zeros(envs))},
             TypeError,
             r"Faulty.memory\['gained'\] is float64 \(4,\), and prepare\(\) made float32 \(4,\)",
+        ),
+        (
+            {"step": ends_all, "measure": lambda self, envs, which: {"env": which}},
+            ValueError,
+            r"Faulty.measure\(\) returned \['env'\], expected \['env', 'twice_gained'\]",
+        ),
+        (
+            {"step": ends_all, "measure": lambda self, envs, which: dict.fromkeys(self.measures, which[1:])},
+            ValueError,
+            r"Faulty.measure\(\) returned .* int64 \(3,\), expected numbers \(4,\)",
         ),
         ({"step": Task.step}, NotImplementedError, r"Faulty has no step\(\)"),
     ],

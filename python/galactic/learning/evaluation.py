@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, Optional, Sequence
 
 import numpy as np
@@ -24,7 +24,8 @@ class EpisodeResult:
     """One episode. `path`: meters that the base went over the floor, but for the last step; `straight`:
     the length of the straight lines from where it started to where it first held something, and on to
     where it was last seen: no path by these places is shorter. `refused`, `slid`: steps in which the
-    robot stayed where it was, or was pushed clear, because it would have hit something."""
+    robot stayed where it was, or was pushed clear, because it would have hit something. `measures`: what
+    a task of one's own says of it."""
 
     episode: int
     success: bool
@@ -35,6 +36,7 @@ class EpisodeResult:
     straight: float
     refused: int
     slid: int
+    measures: dict[str, float] = field(default_factory=dict)
 
     @property
     def path_ratio(self) -> float:
@@ -153,6 +155,7 @@ class Evaluator:
             if ended[env]:
                 result.success = bool(successes[env])
                 result.ending = galactic.EpisodeEnd(self._homes.endings(0)[env]).name.lower()
+                result.measures = self._homes.measures(0, env)
                 if details:
                     player.finish(self._homes.collisions(env))
             elif details:
@@ -207,6 +210,15 @@ def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
     )
 
 
+def _means_of_measures(results: Sequence[EpisodeResult]) -> dict[str, Any]:
+    """Of a task of one's own, if there are any."""
+    names = results[0].measures if results else {}
+    means = {
+        name: sum(result.measures[name] for result in results) / len(results) for name in names
+    }
+    return {"measures": means} if means else {}
+
+
 def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
     """Means, counts of the endings, and every episode: the report of galactic.evaluate."""
     count = max(len(results), 1)
@@ -223,6 +235,7 @@ def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
         "path": sum(result.path for result in results) / count,
         "refused": sum(result.refused for result in results) / steps,
         "slid": sum(result.slid for result in results) / steps,
+        **_means_of_measures(results),
         "endings": dict(sorted(endings.items())),
         "each": [asdict(result) for result in results],
     }

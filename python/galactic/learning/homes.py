@@ -128,6 +128,7 @@ class Homes:
         self._landings = [_landing(half.stop - half.start) for half in self.halves]
         self._into: list[Optional[Observation]] = [None] * settings.halves
         self._staged: list[Optional[Observation]] = [None] * settings.halves
+        self._final_info: list[Mapping[str, Any]] = [{}] * settings.halves
 
     def restart(self, seed: int) -> None:
         """As if the homes had just been made with this seed."""
@@ -151,6 +152,7 @@ class Homes:
     def recv(self, half: int) -> Step:
         seen, rewards, terminated, truncated, infos = self.env.recv(half)
         self._show(seen, infos)
+        self._final_info[half] = infos["final_info"] if infos else {}
         staged, into = self._staged[half], self._into[half]
         if staged is not None and into is not None:
             for host, device in zip(staged, into):
@@ -184,6 +186,10 @@ class Homes:
     def endings(self, half: int) -> np.ndarray:
         """How episodes ended in the last step, as numbers of EpisodeEnd; [n]."""
         return self._landings[half]["endings"]
+
+    def measures(self, half: int, row: int) -> dict[str, float]:
+        """What a task of one's own says of the episode that the last step ended in an env of a half."""
+        return {name: float(self._final_info[half][name][row]) for name in self.env.measures}
 
     def base_position(self, env: int) -> np.ndarray:
         """Where the base of a robot stands, on the floor plane: x and z, meters."""
@@ -223,8 +229,9 @@ class Homes:
         if not isinstance(seen, dict) or name not in seen:
             return
         shown = seen[name].copy()
-        for env in np.flatnonzero(infos["_final_obs"]) if infos else ():
-            shown[env] = infos["final_obs"][env][name]
+        if infos:
+            for env in np.flatnonzero(infos["_final_obs"]):
+                shown[env] = infos["final_obs"][env][name]
         self.shown = shown
 
     def _timeouts(self, envs: np.ndarray, final: np.ndarray) -> Timeouts:

@@ -31,6 +31,7 @@ from distances import hands
 class Approach(galactic.Task):
     options = {"episode_steps": 40, "bump": True}
     parts = {"way": 1, "dice": 1}
+    measures = ["way_left"]
 
     def __init__(self, radius=0.6, bonus=0.0):
         self.radius, self.bonus = radius, bonus
@@ -46,6 +47,9 @@ class Approach(galactic.Task):
         paid = self.memory["way"] - now + self.bonus * envs.uniform("bonus")[:, 0]
         self.memory["way"][:] = now
         return galactic.Outcome(paid, now < self.radius, envs.uniform("end")[:, 0] < 0.01)
+
+    def measure(self, envs, which):
+        return {"way_left": self.memory["way"][which]}
 
     def observe(self, envs):
         return {"way": self.memory["way"][:, np.newaxis], "dice": envs.uniform("dice")}
@@ -149,6 +153,9 @@ def test_an_evaluation_runs_a_task_only_when_told(
     found = json.loads(report.read_text(encoding="utf-8"))
     assert found["success"] == 1.0 and found["endings"] == {"success": 100}
     assert {one["length"] for one in found["each"]} == {1}
+    left = [one["measures"]["way_left"] for one in found["each"]]
+    assert len(set(left)) > 50 and min(left) > 0
+    assert found["measures"] == {"way_left": pytest.approx(sum(left) / 100)}
     assert found["task"] == f"{task_file}:Approach"
     # Another task, which does not give what the policy observes.
     done = call("evaluate", policy, HELD_OUT, "--task", f"{task_file}:Idle")
