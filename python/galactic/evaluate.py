@@ -11,7 +11,7 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
-from galactic.learning import checkpoint, dynamics, evaluation, own_tasks
+from galactic.learning import checkpoint, dynamics, evaluation, own_code, own_tasks
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
 from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.reports import pictures
@@ -131,7 +131,7 @@ def _require_uses(options: argparse.Namespace) -> None:
         if value is not None and not user:
             raise SettingsError(f"{option} applies to {what} only; add {remedy}")
     if options.task is not None:
-        own_tasks.named(options.task)
+        own_code.named(options.task, "--task")
     if options.task and options.dynamics:
         raise SettingsError("--dynamics knows no task of your own; leave one of them out")
 
@@ -219,10 +219,10 @@ def _task(options: argparse.Namespace, settings: Settings) -> Optional[own_tasks
     """What makes the task that was asked for; None for the simulation's."""
     if options.task:
         given = settings.task_options if options.task_options is None else options.task_options
-        return own_tasks.maker(own_tasks.named(options.task), given)
+        return own_tasks.maker(own_code.named(options.task, "--task"), given)
     if not settings.task:
         return None
-    name = own_tasks.named(settings.task)
+    name = own_code.named(settings.task, "--task")
     # Beside best.pt; a policy.pt is in checkpoints/STEPS.
     copies = [folder / own_tasks.COPY for folder in options.policy.absolute().parents[:3]]
     found = [copy for copy in copies if name.file and copy.is_file()]

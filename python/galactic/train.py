@@ -15,7 +15,7 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
-from galactic.learning import checkpoint, evaluation, own_tasks
+from galactic.learning import checkpoint, evaluation, own_code, own_tasks
 from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
@@ -24,6 +24,7 @@ from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.launch import follow_launcher, launch
 from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, TAUGHT, preset
+from galactic.learning.reports import log
 from galactic.learning.reports.curves import write_json
 from galactic.learning.settings import (
     Settings,
@@ -105,6 +106,11 @@ def make_parser() -> argparse.ArgumentParser:
         choices=("auto", "cpu", "cuda"),
         help="where the networks run; auto: on CUDA devices, if there is one for each rank (auto)",
     )
+    parser.add_argument(
+        "--log-to",
+        metavar="FILE.py:NAME|MODULE:NAME",
+        help="hand each row of curves.csv to what this function of yours returns for (folder, settings)",
+    )
     add_options(parser)
     return parser
 
@@ -116,6 +122,8 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     def train() -> int:
         if "RANK" in os.environ:
             follow_launcher()
+        if options.log_to is not None:
+            own_code.named(options.log_to, "--log-to")
         run = _resumed_run(options) if options.resume else _new_run(options)
         if options.resume and _is_complete(run, options.out):
             if os.environ.get("RANK", "0") == "0":
@@ -173,6 +181,7 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         group.raise_on_all(_take_folder(options, held) if group.rank == 0 else None)
         if options.resume:
             trainer.resume()
+        group.raise_on_all(_begin_log(trainer, options) if group.rank == 0 else None)
         group.raise_on_all(
             _begin_folder(run, folder, teacher, resumes=options.resume) if group.rank == 0 else None
         )
@@ -186,6 +195,18 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         return OK if undisturbed else INTERRUPTED
     trainer.progress.say(f"{folder}: curves.html, curves.csv, report.json, best.pt")
     return OK
+
+
+def _begin_log(trainer: Trainer, options: argparse.Namespace) -> Optional[Exception]:
+    """Lets a function of the user's take the curves; why that is impossible."""
+    if options.log_to is None:
+        return None
+    try:
+        take = log.taker(options.log_to, options.out, trainer.settings.to_dict())
+    except SettingsError as error:
+        return error
+    trainer.log = log.Log(take, trainer.progress.say)
+    return None
 
 
 def _carry_out(trainer: Trainer, run: Run, options: argparse.Namespace) -> bool:
@@ -228,7 +249,7 @@ def _new_run(options: argparse.Namespace) -> Run:
 def _with_task(run: Run, simulation: str) -> Run:
     """The run with the task of one's own that its settings name, in the simulation that this task wants.
     `simulation`: the options of it that were given, beside the preset's."""
-    name = own_tasks.named(run.settings.task)
+    name = own_code.named(run.settings.task, "--task")
     task = own_tasks.maker(name, run.settings.task_options)()
     settings = dataclasses.replace(
         run.settings,
@@ -242,7 +263,7 @@ def _task_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_tasks.Mak
     """What makes the run's task, if that is one's own; of the copy in `folder` if it is given."""
     if not run.settings.task:
         return None
-    name, siblings = own_tasks.named(run.settings.task), None
+    name, siblings = own_code.named(run.settings.task, "--task"), None
     if run.task_file is not None:
         file = run.task_file if folder is None else folder / own_tasks.COPY
         name, siblings = name._replace(place=str(file)), run.task_file.parent

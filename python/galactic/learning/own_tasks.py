@@ -1,17 +1,15 @@
-"""Tasks of one's own, by what the command line calls them: `reach.py:Reach`, or `lab.tasks:Reach`."""
+"""Tasks of one's own, and what they are made with."""
 
 from __future__ import annotations
 
 import ast
 import functools
-import importlib
-import importlib.util
 import inspect
 import pathlib
-import sys
 from collections.abc import Mapping, Sequence
-from typing import Any, Callable, NamedTuple, Optional
+from typing import Any, Callable, Optional
 
+from galactic.learning.own_code import CodeName, members_of
 from galactic.learning.settings import SettingsError, did_you_mean, simulation_keyword
 from galactic.task import Task
 
@@ -21,34 +19,8 @@ COPY = "task.py"
 """The copy of the class's file in the folder of a run."""
 
 
-class TaskName(NamedTuple):
-    """A class, and the file or the module that it is in."""
-
-    place: str
-    name: str
-
-    @property
-    def file(self) -> Optional[pathlib.Path]:
-        """The file; None for a module."""
-        return pathlib.Path(self.place) if self.place.endswith(".py") else None
-
-    def __str__(self) -> str:
-        """What can be read again, without the folder of a file: runs are moved, files are copied."""
-        return f"{self.file.name if self.file else self.place}:{self.name}"
-
-
-def named(text: str) -> TaskName:
-    """Of `FILE.py:CLASS` or `MODULE:CLASS`. Raises SettingsError for another text."""
-    place, colon, name = text.rpartition(":")
-    is_module = all(part.isidentifier() for part in place.split("."))
-    if not colon or not name.isidentifier() or not (place.endswith(".py") or is_module):
-        raise SettingsError(f'--task: found "{text}", expected FILE.py:CLASS or MODULE:CLASS')
-    return TaskName(place, name)
-
-
-def maker(task: TaskName, options: str, siblings: Optional[pathlib.Path] = None) -> MakeTask:
-    """What makes the task with these options (keywords_of()). The class's file runs now; what it raises
-    is the caller's. `siblings`: where modules are that it imports, if not beside it."""
+def maker(task: CodeName, options: str, siblings: Optional[pathlib.Path] = None) -> MakeTask:
+    """What makes the task with these options (keywords_of()): see members_of()."""
     found = _class_of(task, siblings)
     keywords = keywords_of(options)
     try:
@@ -102,8 +74,8 @@ def _word(name: str, value: Any) -> str:
     return f"{name}={value}"
 
 
-def _class_of(task: TaskName, siblings: Optional[pathlib.Path]) -> Callable[..., Task]:
-    members = vars(_module_of(task, siblings))
+def _class_of(task: CodeName, siblings: Optional[pathlib.Path]) -> Callable[..., Task]:
+    members = members_of(task, siblings)
     found = members.get(task.name)
     if isinstance(found, type) and issubclass(found, Task):
         return found
@@ -120,34 +92,3 @@ def _hint(name: str, members: Mapping[str, Any]) -> str:
     ]
     known = f"; it has {', '.join(tasks)}" if tasks else "; it has no galactic.Task"
     return did_you_mean(name, tasks) or known
-
-
-def _module_of(task: TaskName, siblings: Optional[pathlib.Path]) -> Any:
-    if task.file is None:
-        try:
-            return importlib.import_module(task.place)
-        except ModuleNotFoundError as error:
-            if error.name not in _with_parents(task.place):
-                raise  # of what the module imports
-            raise SettingsError(
-                f"--task: there is no module {task.place}; install it, name its folder in PYTHONPATH, or "
-                "name a file (FILE.py:CLASS)"
-            ) from error
-    if not task.file.is_file():
-        raise SettingsError(f"--task: {task.file} is no file; name the one that the class is in")
-    folder = str((siblings or task.file.parent).resolve())
-    if folder not in sys.path:
-        sys.path.append(folder)
-    name = f"galactic_own_task_{task.file.stem}"
-    spec = importlib.util.spec_from_file_location(name, task.file)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-def _with_parents(module: str) -> list[str]:
-    """a, a.b and a.b.c of a.b.c."""
-    parts = module.split(".")
-    return [".".join(parts[: count + 1]) for count in range(len(parts))]

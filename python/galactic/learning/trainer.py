@@ -29,6 +29,7 @@ from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.ppo import Learner
 from galactic.learning.privileges import critic_columns
 from galactic.learning.reports.curves import COLUMNS, Curves, write_json
+from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
 from galactic.learning.stopwatch import Stopwatch
@@ -92,6 +93,8 @@ class Trainer:
         self.checkpoints = CheckpointFolder(folder, settings.keep) if folder else None
         self.curves = Curves(folder if group.rank == 0 else None, title)
         self.progress = ProgressLine(quiet=group.rank > 0)
+        self.log: Optional[Log] = None
+        """Who else takes rows of the curves."""
         self.steps = 0
         self.updates = 0
         self.best: Optional[float] = None
@@ -201,6 +204,12 @@ class Trainer:
         episode: those that are over first are the short ones, successes most of all."""
         return {} if self._waiting else _means(self.recent(), "")
 
+    def _add_row(self, values: dict[str, float]) -> None:
+        self.curves.add(values)
+        if self.log is not None:
+            with self.stopwatch.time("reports"):
+                self.log.add(values)
+
     def _log(self, losses: dict[str, float], is_last: bool = False) -> None:
         figures = self.figures()
         seconds, steps = self._logged
@@ -216,7 +225,7 @@ class Trainer:
             **losses,
             **figures,
         }
-        self.curves.add(values)
+        self._add_row(values)
         left = (self.settings.steps - self.steps) / max(speed, 1e-9)
         success = f"{100.0 * figures['success']:.1f} %" if figures else "-"
         earned = f"{figures['return']:.2f}" if figures else "-"
@@ -239,7 +248,7 @@ class Trainer:
             )
             found = EpisodeSums(*self.group.sum(sums).tolist())
         means = _means(found, "validation_")
-        self.curves.add({"steps": self.steps, "seconds": self.seconds, **means})
+        self._add_row({"steps": self.steps, "seconds": self.seconds, **means})
         self.progress.say(
             f"validation after {amount(self.steps)} steps: success "
             f"{100.0 * means['validation_success']:.1f} % of {found.episodes:.0f} episodes, return "

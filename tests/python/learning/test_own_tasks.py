@@ -13,7 +13,7 @@ import torch
 
 import galactic
 from galactic import export
-from galactic.learning import checkpoint, own_tasks
+from galactic.learning import checkpoint, own_code, own_tasks
 from galactic.learning.evaluation import Actor, Evaluator
 from galactic.learning.homes import Homes
 from galactic.learning.networks import PolicyShape
@@ -210,7 +210,7 @@ def test_what_is_filmed_is_what_was_played(task_file: pathlib.Path, network: str
     episodes = starts.episodes().tolist()
     # Half of the targets are as near from the beginning.
     ways = np.linalg.norm(starts.observations[:, starts.observation_parts["grip_target"]], axis=1)
-    near = own_tasks.TaskName(str(task_file), "Near")
+    near = own_code.named(f"{task_file}:Near", "--task")
     task = own_tasks.maker(near, f"radius={np.median(ways) + 0.1}")
     homes = Homes(world, settings, 1, task=task)
     shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
@@ -232,9 +232,9 @@ def test_what_is_filmed_is_what_was_played(task_file: pathlib.Path, network: str
 @pytest.mark.parametrize(
     "words, message",
     [
-        (["--task", "approach"], 'found "approach", expected FILE.py:CLASS or MODULE:CLASS'),
-        (["--task", "a-b:Approach"], 'found "a-b:Approach", expected FILE.py:CLASS or MODULE:CLASS'),
-        (["--task", "{lab}/none.py:Approach"], "/none.py is no file; name the one that the class is in"),
+        (["--task", "approach"], 'found "approach", expected FILE.py:NAME or MODULE:NAME'),
+        (["--task", "a-b:Approach"], 'found "a-b:Approach", expected FILE.py:NAME or MODULE:NAME'),
+        (["--task", "{lab}/none.py:Approach"], "/none.py is no file; name the one that Approach is in"),
         (["--task", "no_such.module:Approach"], "there is no module no_such.module; install it"),
         (["--task", "{lab}/approach.py:Aproach"], "has no Aproach; did you mean Approach?"),
         (["--task", "{lab}/approach.py:nothing"], "has no nothing; it has Approach, Near, Idle"),
