@@ -1,6 +1,4 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <system_error>
 
@@ -14,50 +12,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Keeps others from taking `part`, a second name of a file, for a leftover, while it lives.
-class HeldPart {
- public:
-  explicit HeldPart(const fs::path& part)
-      : descriptor_(::open(part.c_str(), O_RDONLY | O_CLOEXEC)) {
-    is_there_ = descriptor_ >= 0 && holdPart(descriptor_, part);
-  }
-  ~HeldPart() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  HeldPart(const HeldPart&) = delete;
-  HeldPart& operator=(const HeldPart&) = delete;
-  HeldPart(HeldPart&&) = delete;
-  HeldPart& operator=(HeldPart&&) = delete;
-  [[nodiscard]] bool isThere() const { return is_there_; }
-
- private:
-  int descriptor_;
-  bool is_there_ = false;
-};
-
 enum class LinkEnd { kLinked, kImpossible, kFailed };
 
 /// Gives `source` the name `target`, under which it appears at once. A second name of its own is
 /// renamed, which replaces what is there.
 LinkEnd linkOnto(const fs::path& source, const fs::path& target, std::error_code& problem) {
-  constexpr unsigned kNames = 16;
-  for (unsigned n = 0; n < kNames; ++n) {
-    const fs::path part = partPathOf(target, n);
-    fs::create_hard_link(source, part, problem);
-    if (problem == std::errc::file_exists) {
-      (void)removeStalePart(part);
-      continue;
-    }
-    if (problem) return LinkEnd::kImpossible;
-    const HeldPart held(part);
-    if (!held.isThere()) continue;
-    fs::rename(part, target, problem);
-    // Renaming does nothing where another thread has just made the target the same file.
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    return problem ? LinkEnd::kFailed : LinkEnd::kLinked;
-  }
-  return LinkEnd::kImpossible;
+  // Renaming does nothing where another thread has just made the target the same file; then the
+  // part goes at the end.
+  const PartFile part = PartFile::linkedTo(source, target);
+  if (part.error() != 0) return LinkEnd::kImpossible;
+  fs::rename(part.path(), target, problem);
+  return problem ? LinkEnd::kFailed : LinkEnd::kLinked;
 }
 
 tl::unexpected<Error> failure(const fs::path& target, const std::string& why) {

@@ -159,7 +159,7 @@ class VideoPipe::Child {
   }
 
   std::filesystem::path path_;
-  std::optional<LentPart> part_;
+  std::optional<PartFile> part_;
   int socket_ = -1;
   pid_t pid_ = 0;
 };

@@ -14,73 +14,46 @@
 
 namespace galactic {
 
-/// A file under a name of its own beside the target, removed unless it was renamed onto the target.
+/// A part of the target, and what becomes of it.
 class AtomicFile::Temporary {
  public:
   /// `path` is what the user named, `target` where it leads.
   Temporary(std::filesystem::path path, std::filesystem::path target)
-      : named_(std::move(path)), target_(std::move(target)) {
-    constexpr unsigned kNames = 16;
-    for (unsigned n = 0; n < kNames && descriptor_ < 0; ++n) {
-      path_ = partPathOf(target_, n);
-      int problem = open();
-      // A leftover of a killed thread with the same number makes way.
-      if (problem == EEXIST && removeStalePart(path_)) problem = open();
-      if (problem == 0 && !holdPart(descriptor_, path_)) close();
-      errno = problem;
-      if (problem != 0 && problem != EEXIST) return;
-    }
-  }
-  ~Temporary() {
-    if (descriptor_ < 0) return;
-    // First, so that it goes while it is held.
-    if (!renamed_) ::unlink(path_.c_str());
-    close();
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  Temporary(Temporary&&) = delete;
-  Temporary& operator=(Temporary&&) = delete;
+      : named_(std::move(path)), target_(std::move(target)), part_(target_) {}
 
-  [[nodiscard]] bool isOpen() const { return descriptor_ >= 0; }
+  /// Why there is none; 0 where it can be written.
+  [[nodiscard]] int error() const { return part_.error(); }
 
   [[nodiscard]] bool append(std::span<const std::byte> bytes) const {
     return writeAll(bytes, [this](std::span<const std::byte> rest) {
-      return ::write(descriptor_, rest.data(), rest.size());
+      return ::write(part_.descriptor(), rest.data(), rest.size());
     });
   }
 
   [[nodiscard]] bool overwrite(std::uint64_t offset, std::span<const std::byte> bytes) const {
     return writeAll(bytes, [&](std::span<const std::byte> rest) {
       const std::uint64_t done = bytes.size() - rest.size();
-      return ::pwrite(descriptor_, rest.data(), rest.size(), static_cast<off_t>(offset + done));
+      return ::pwrite(part_.descriptor(), rest.data(), rest.size(),
+                      static_cast<off_t>(offset + done));
     });
   }
 
   /// Makes the bytes durable, then visible under the target's name.
-  [[nodiscard]] bool publish() {
-    if (::fsync(descriptor_) != 0) return false;
-    renamed_ = ::rename(path_.c_str(), target_.c_str()) == 0;
-    if (renamed_) syncFolder();
-    return renamed_;
+  [[nodiscard]] bool publish() const {
+    if (::fsync(part_.descriptor()) != 0) return false;
+    if (::rename(part_.path().c_str(), target_.c_str()) != 0) return false;
+    syncFolder();
+    return true;
   }
 
-  /// What the last system call says about the failure.
-  [[nodiscard]] tl::unexpected<Error> failure() const {
+  /// `problem`: an error number, that of the last system call.
+  [[nodiscard]] tl::unexpected<Error> failure(int problem = errno) const {
     return fail(ErrorCode::kIo, named_.string(),
-                "cannot write the file: " + std::generic_category().message(errno) +
+                "cannot write the file: " + std::generic_category().message(problem) +
                     "; an existing file is left as it was");
   }
 
  private:
-  /// Exclusive, so that it neither follows a link nor shares a file. 0, or why it failed.
-  int open() {
-    constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-    descriptor_ = ::open(path_.c_str(), kFlags, 0666);
-    return descriptor_ < 0 ? errno : 0;
-  }
-  void close() { ::close(std::exchange(descriptor_, -1)); }
-
   template <class Write>
   static bool writeAll(std::span<const std::byte> bytes, const Write& write) {
     while (!bytes.empty()) {
@@ -103,9 +76,7 @@ class AtomicFile::Temporary {
 
   std::filesystem::path named_;
   std::filesystem::path target_;
-  std::filesystem::path path_;
-  int descriptor_ = -1;
-  bool renamed_ = false;
+  PartFile part_;
 };
 
 AtomicFile::AtomicFile(std::unique_ptr<Temporary> temporary) : temporary_(std::move(temporary)) {}
@@ -156,7 +127,7 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
                     "; an existing file is left as it was");
   }
   auto temporary = std::make_unique<Temporary>(path, target);
-  if (!temporary->isOpen()) return temporary->failure();
+  if (temporary->error() != 0) return temporary->failure(temporary->error());
   return AtomicFile(std::move(temporary));
 }
 

@@ -164,24 +164,47 @@ bool holdPart(int descriptor, const fs::path& part) {
   return ::fstat(descriptor, &open) == 0 && isAt(part, open);
 }
 
-LentPart::LentPart(const fs::path& target, PartEnding ending) {
+PartFile::PartFile(const fs::path& target, PartEnding ending)
+    : PartFile(target, ending, [](const fs::path& part) {
+        // Exclusive, so that it neither follows a link nor shares a file.
+        constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+        return ::open(part.c_str(), kFlags, 0666);
+      }) {}
+
+PartFile PartFile::linkedTo(const fs::path& source, const fs::path& target) {
+  return PartFile(target, PartEnding::kNumber, [&source](const fs::path& part) {
+    if (::link(source.c_str(), part.c_str()) != 0) return -1;
+    const int descriptor = ::open(part.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    if (descriptor >= 0) return descriptor;
+    const int problem = errno;
+    ::unlink(part.c_str());
+    // Removed as stale meanwhile, so that another name may do.
+    errno = problem == ENOENT ? EEXIST : problem;
+    return -1;
+  });
+}
+
+PartFile::PartFile(const fs::path& target, PartEnding ending, const Make& make) {
+  const auto try_to_make = [&] {
+    descriptor_ = make(path_);
+    error_ = descriptor_ < 0 ? errno : 0;
+  };
   constexpr unsigned kNames = 16;
   for (unsigned n = 0; n < kNames && descriptor_ < 0; ++n) {
     path_ = partPathOf(target, n, ending);
+    try_to_make();
     // What a killed thread of the same number left makes way.
-    (void)removeStalePart(path_);
-    constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-    descriptor_ = ::open(path_.c_str(), kFlags, 0666);
-    error_ = descriptor_ < 0 ? errno : 0;
+    if (error_ == EEXIST && removeStalePart(path_)) try_to_make();
     if (error_ != 0 && error_ != EEXIST) return;
     if (error_ == 0 && !holdPart(descriptor_, path_)) ::close(std::exchange(descriptor_, -1));
   }
   if (descriptor_ < 0) error_ = EEXIST;
 }
 
-LentPart::~LentPart() {
+PartFile::~PartFile() {
   if (descriptor_ < 0) return;
   struct stat open {};
+  // First, so that it goes while it is held.
   if (::fstat(descriptor_, &open) == 0 && isAt(path_, open)) ::unlink(path_.c_str());
   ::close(descriptor_);
 }

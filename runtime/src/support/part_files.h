@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace galactic {
@@ -34,23 +35,32 @@ enum class PartEnding {
 /// since it was made, and has then to be made again.
 [[nodiscard]] bool holdPart(int descriptor, const std::filesystem::path& part);
 
-/// A part that another program writes: made empty, and held while this lives.
-class LentPart {
+/// A part under a name that no other file had, held while this lives.
+class PartFile {
  public:
-  /// `error()` says why there is none.
-  LentPart(const std::filesystem::path& target, PartEnding ending);
+  /// An empty one, open for reading and writing. `error()` says why there is none.
+  explicit PartFile(const std::filesystem::path& target, PartEnding ending = PartEnding::kNumber);
+  /// A second name (hard link) of `source`, open for reading. `error()` says why there is none.
+  [[nodiscard]] static PartFile linkedTo(const std::filesystem::path& source,
+                                         const std::filesystem::path& target);
   /// Removes it, unless it was renamed.
-  ~LentPart();
-  LentPart(const LentPart&) = delete;
-  LentPart& operator=(const LentPart&) = delete;
-  LentPart(LentPart&&) = delete;
-  LentPart& operator=(LentPart&&) = delete;
+  ~PartFile();
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+  PartFile(PartFile&&) = delete;
+  PartFile& operator=(PartFile&&) = delete;
 
   /// An error number; 0 where the part is there.
   [[nodiscard]] int error() const { return error_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Closed by the destructor; -1 where there is no part.
+  [[nodiscard]] int descriptor() const { return descriptor_; }
 
  private:
+  /// Makes the file of a name and opens it: a descriptor, or -1 and `errno`.
+  using Make = std::function<int(const std::filesystem::path& part)>;
+  PartFile(const std::filesystem::path& target, PartEnding ending, const Make& make);
+
   std::filesystem::path path_;
   int descriptor_ = -1;
   int error_ = 0;

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "cache/bake_cache.h"
+#include "support/part_files.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
@@ -58,6 +59,15 @@ TEST_F(LinkOrCopy, LeavesTheTargetAsItWasWhereItFails) {
   fs::create_directory(at("c"));
   EXPECT_FALSE(linkOrCopy(source, at("c")).has_value()) << "a folder is not replaced";
   EXPECT_EQ(files(), 3U) << "and nothing is left over";
+}
+
+TEST_F(LinkOrCopy, LinksWhereAllNamesForItAreTakenByWhatWasLeftBehind) {
+  const fs::path source = folder_.write("a", "content");
+  for (unsigned n = 0; n < 20; ++n) {
+    (void)folder_.write(partPathOf("b", n).filename().string(), "half");
+  }
+  ASSERT_TRUE(linkOrCopy(source, at("b")).has_value());
+  EXPECT_TRUE(fs::equivalent(source, at("b")));
 }
 
 TEST_F(LinkOrCopy, CopiesToAnotherFileSystem) {

@@ -138,13 +138,13 @@ TEST_F(PartFiles, MayEndAsTheirTargetDoes) {
   const fs::path part = partPathOf(at("a.mp4"), 0, PartEnding::kOfTarget);
   EXPECT_EQ(part.extension(), ".mp4");
   {
-    const LentPart lent(at("a.mp4"), PartEnding::kOfTarget);
-    ASSERT_EQ(lent.error(), 0);
-    EXPECT_EQ(lent.path(), part);
+    const PartFile first(at("a.mp4"), PartEnding::kOfTarget);
+    ASSERT_EQ(first.error(), 0);
+    EXPECT_EQ(first.path(), part);
     // Whoever writes it opens it by its name.
     (void)folder_.write(part.filename().string(), "half");
     EXPECT_EQ(removeStaleParts(folder_.path(), {.age = kNow}), 0U);
-    const LentPart second(at("a.mp4"), PartEnding::kOfTarget);
+    const PartFile second(at("a.mp4"), PartEnding::kOfTarget);
     ASSERT_EQ(second.error(), 0);
     EXPECT_NE(second.path(), part);
     fs::rename(second.path(), at("a.mp4"));
