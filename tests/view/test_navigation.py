@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Ways through a page in a real browser: its list, its address, and whose the keys are.
+
+    test_navigation.py --packs PROGRAM --pack GALACTIC_PACK --run GALACTIC_RUN
+"""
+
+import sys
+
+from page_case import PageCase, run_tests
+
+
+class Navigation(PageCase):
+    pages = ("world", "run")
+
+    def test_the_list_is_searched(self):
+        page = self.open("world", "", "scene 0")
+        page.key("/", "Slash", "/")
+        page.call("Input.insertText", text="episode 1")
+        names = page.evaluate(
+            "[...document.querySelectorAll('#list li button')].map((one) => one.firstChild.textContent)"
+        )
+        self.assertEqual(names, ["Episode 1"])
+
+    def test_the_list_marks_what_is_shown(self):
+        page = self.open("world", "", "scene 0")
+        self.assertEqual(self.marked(page), ["kitchen"])
+        self.click(page, "#list li button", 1)
+        page.shown("object 0")
+        self.assertEqual(self.marked(page), ["bowl"])
+        page.evaluate("galactic.show(galactic.parts.find((one) => one.kind === 'episode'))")
+        page.shown("episode 0")
+        page.evaluate("galactic.view.go(2).then(() => 1)")
+        self.assertEqual(self.marked(page), ["Episode 2"])
+        # Also when the list is made anew.
+        page.evaluate("galactic.fillList('episode')")
+        self.assertEqual(self.marked(page), ["Episode 2"])
+
+    def test_an_address_names_an_episode_once(self):
+        page = self.open("world", "view=episode&n=2", "episode 2")
+        self.assertEqual(page.evaluate("galactic.view.number"), 2)
+        page.key("ArrowRight")
+        page.wait("location.hash.includes('n=3')")
+        self.assertNotIn("episode=", page.evaluate("location.hash"))
+        # What earlier pages wrote.
+        for link in ("view=episode&episode=1", "view=episode&n=1&episode=1"):
+            page = self.open("world", link, "episode 1")
+            self.assertEqual(page.evaluate("galactic.view.number"), 1)
+            page.wait("!location.hash.includes('episode=')")
+
+    def test_the_view_has_the_keys_after_a_click(self):
+        page = self.open("run", "env=0&t=10", "run 0")
+        self.click(page, "#list li button", 0)
+        page.key("ArrowRight")
+        page.wait("galactic.view.frame === 11")
+        # One step back and one step on.
+        self.click(page, "#timeline .transport button", 1)
+        page.wait("galactic.view.frame === 10")
+        page.key("End")
+        page.wait("galactic.view.frame === 60")
+        page.key("Home")
+        page.wait("galactic.view.frame === 0")
+        # A box of the panel, too.
+        self.click(page, "#panel label", 0)
+        self.assertFalse(page.evaluate("galactic.view.home.shown.scene"))
+        page.key(" ", "Space", " ")
+        page.wait("galactic.view.timeline.playing")
+        self.assertFalse(page.evaluate("galactic.view.home.shown.scene"))
+        self.click(page, "#timeline .transport button", 0)
+        page.wait("!galactic.view.timeline.playing")
+
+    def test_a_button_that_was_reached_by_keyboard_keeps_space_and_enter(self):
+        page = self.open("run", "env=0&t=10", "run 0")
+        page.evaluate("document.querySelectorAll('#timeline .transport button')[2].focus()")
+        page.key(" ", "Space", " ")
+        page.wait("galactic.view.frame === 11")
+        self.assertIsNone(page.evaluate("galactic.view.timeline.playing"))
+        page.key("ArrowRight")
+        page.wait("galactic.view.frame === 12")
+
+    def test_keys_are_the_dialogs_while_it_is_open(self):
+        page = self.open("run", "env=0&t=10", "run 0")
+        self.click(page, "#help")
+        page.key("ArrowRight")
+        page.key("Enter", "Enter", "\r")
+        page.wait("!document.getElementById('keys').open")
+        self.assertEqual(page.evaluate("galactic.view.frame"), 10)
+
+
+if __name__ == "__main__":
+    sys.exit(run_tests(__doc__))
