@@ -128,19 +128,6 @@ TEST(EpisodeCheck, RefusesWrongEpisodes) {
   });
 }
 
-TEST(EpisodeCheck, RefusesAnotherKindOfAssetThanTheHeaderSays) {
-  for (const PackKind kind : {PackKind::kScene, PackKind::kWorld}) {
-    Fields fields = smallEpisodes();
-    fields.kind = kind;
-    const AlignedBytes bytes = buildPack(fields);
-    const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-    ASSERT_FALSE(pack.has_value());
-    EXPECT_EQ(pack.error().where, "made.pack: asset");
-    EXPECT_EQ(pack.error().message,
-              "has type 4, the header says " + packKindName(kind) + "; bake the pack again");
-  }
-}
-
 TEST(DamagedEpisodePack, IsRefusedAtEachLengthOfATruncation) {
   expectEachTruncationRefused(buildPack(smallEpisodes()));
 }

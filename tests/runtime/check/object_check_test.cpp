@@ -206,19 +206,6 @@ TEST(ObjectCheck, RefusesWrongSurfaces) {
   });
 }
 
-TEST(ObjectCheck, RefusesAnotherKindOfAssetThanTheHeaderSays) {
-  for (const PackKind kind : {PackKind::kScene, PackKind::kRobot}) {
-    ObjectPackFields fields = smallObjects();
-    fields.kind = kind;
-    const AlignedBytes bytes = buildPack(fields);
-    const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-    ASSERT_FALSE(pack.has_value());
-    EXPECT_EQ(pack.error().where, "made.pack: asset");
-    EXPECT_EQ(pack.error().message,
-              "has type 2, the header says " + packKindName(kind) + "; bake the pack again");
-  }
-}
-
 TEST(DamagedObjectPack, IsRefusedAtEachLengthOfATruncation) {
   expectEachTruncationRefused(buildPack(smallObjects()));
 }

@@ -76,11 +76,6 @@ TEST(PackCheck, RefusesWrongProvenance) {
   });
 }
 
-TEST(PackCheck, RefusesAnAssetThatIsNotOfTheKindInTheHeader) {
-  expectRefused({"asset", "has type 5, the header says SCEN",
-                 [](ScenePackFields& f) { f.holds_world = true; }});
-}
-
 TEST(PackCheck, RefusesWrongValuesOfTheScene) {
   expectRefused({
       {"scene.name", "is empty, expected the scene's name",

@@ -308,16 +308,6 @@ TEST(RobotCheck, RefusesWrongSurfaces) {
   });
 }
 
-TEST(RobotCheck, RefusesAnotherKindOfAssetThanTheHeaderSays) {
-  RobotPackFields fields = smallRobotPack();
-  fields.kind = PackKind::kObjects;
-  const AlignedBytes bytes = buildPack(fields);
-  const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_FALSE(pack.has_value());
-  EXPECT_EQ(pack.error().where, "made.pack: asset");
-  EXPECT_EQ(pack.error().message, "has type 3, the header says OBJS; bake the pack again");
-}
-
 TEST(DamagedRobotPack, IsRefusedAtEachLengthOfATruncation) {
   expectEachTruncationRefused(buildPack(smallRobotPack()));
 }

@@ -107,16 +107,6 @@ TEST(WorldCheck, RefusesAListThatIsNoWorld) {
   });
 }
 
-TEST(WorldCheck, RefusesAnotherKindOfAssetThanTheHeaderSays) {
-  Fields fields = smallWorldPack();
-  fields.kind = PackKind::kEpisodes;
-  const AlignedBytes bytes = buildPack(fields);
-  const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_FALSE(pack.has_value());
-  EXPECT_EQ(pack.error().where, "made.pack: asset");
-  EXPECT_EQ(pack.error().message, "has type 5, the header says EPIS; bake the pack again");
-}
-
 WorldPackFields worldWithTask(TaskTexts task) {
   Fields fields = smallWorldPack();
   fields.task = std::move(task);

@@ -357,15 +357,6 @@ TEST(PolicyPack, IsRefusedWhenItWouldRunForEver) {
                                  "8589934592; bake the pack again"));
 }
 
-TEST(PolicyPack, OfAnotherKindThanItsHeaderSaysIsRefused) {
-  Fields fields;
-  fields.kind = PackKind::kWorld;
-  const AlignedBytes bytes = buildPack(fields);
-  const auto pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_FALSE(pack.has_value());
-  EXPECT_EQ(pack.error().message, "has type 7, the header says WRLD; bake the pack again");
-}
-
 TEST(DamagedPolicyPack, IsRefusedAtEachLengthOfATruncation) {
   expectEachTruncationRefused(buildPack(Fields{}));
 }
