@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <sstream>
 #include <thread>
+#include <utility>
 
 #include "cli/plan_folder.h"
 #include "galactic/error.h"
+#include "support/mesh_files.h"
 #include "support/part_files.h"
 
 namespace galactic::test::plan_faults_cli_test {
@@ -164,6 +168,107 @@ TEST_F(PlanFaults, StopsBetweenPacksAndGoesOnLater) {
     EXPECT_EQ(packsThatAre("unchanged"), done);
     expectSamePacks(packsIn("out"), packsIn("whole"));
   }
+}
+
+/// A file that whoever opens it waits for, until it is let go of: by a lease on it, which the
+/// kernel takes away after /proc/sys/fs/lease-break-time, 45 s.
+class WithheldFile {
+ public:
+  explicit WithheldFile(const fs::path& path)
+      : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    // That somebody waits is told by a signal: one that is ignored.
+    is_held_ = ::fcntl(descriptor_, F_SETSIG, SIGURG) == 0 &&
+               ::fcntl(descriptor_, F_SETLEASE, F_WRLCK) == 0;
+  }
+  ~WithheldFile() { letGo(); }
+  WithheldFile(const WithheldFile&) = delete;
+  WithheldFile& operator=(const WithheldFile&) = delete;
+  WithheldFile(WithheldFile&&) = delete;
+  WithheldFile& operator=(WithheldFile&&) = delete;
+
+  /// Not on all file systems.
+  [[nodiscard]] bool isHeld() const { return is_held_; }
+  [[nodiscard]] bool isWaitedFor() const {
+    return descriptor_ >= 0 && ::fcntl(descriptor_, F_GETLEASE) != F_WRLCK;
+  }
+  void letGo() {
+    if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));
+  }
+
+ private:
+  int descriptor_;
+  bool is_held_ = false;
+};
+
+/// The processes that `parent` has started and that have not ended, ascending.
+std::vector<pid_t> childrenOf(pid_t parent) {
+  std::vector<pid_t> children;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    // "ID (NAME) STATE PARENT ..."
+    const std::string status = fileContent(entry.path() / "stat");
+    const std::size_t end_of_name = status.rfind(')');
+    if (end_of_name == std::string::npos) continue;
+    std::istringstream rest(status.substr(end_of_name + 1));
+    char state = 0;
+    pid_t its_parent = 0;
+    rest >> state >> its_parent;
+    if (its_parent == parent && state != 'Z') children.push_back(std::stoi(name));
+  }
+  std::ranges::sort(children);
+  return children;
+}
+
+/// Looks again and again, for half a minute at most.
+template <class Condition>
+void waitFor(const Condition& condition) {
+  for (int n = 0; n < 6000 && !condition(); ++n) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+TEST_F(PlanFaults, FinishesWhatAReaderIsAtWhenItsWholeGroupIsToldToEnd) {
+  // Scenes with a box whose OBJ names an MTL, which none but the process that reads meshes opens
+  // before the OBJ is read.
+  write("data/objects/crate.object_config.json", R"({"render_asset": "../meshes/crate.obj"})");
+  write("data/meshes/crate.mtl", "newmtl red\nKd 1 0 0\n");
+  write("data/meshes/crate.obj", objFile(unevenBox(), "mtllib crate.mtl\nusemtl red\n"));
+  addScene("f", "flat", thing("crate", 1));
+  addScene("g", "flat", thing("crate", 2));
+  const auto arguments = [](const std::string& out) {
+    return datasetArguments(out, {"--scenes", "f", "--scenes", "g", "-j", "1"});
+  };
+  const ProgramRun whole = run(arguments("whole"));
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+
+  WithheldFile materials(path("data/meshes/crate.mtl"));
+  if (!materials.isHeld()) GTEST_SKIP() << "the file system has no leases";
+  const StartedProgram program(GALACTIC_BAKE, path(""), arguments("out"), {}, ProgramGroup::kOwn);
+  waitFor([&] { return materials.isWaitedFor(); });
+  const std::vector<pid_t> readers = childrenOf(program.id());
+  program.signalGroup(SIGINT);
+  const auto has_noticed = [&] {
+    return program.errSoFar().find("finishing what has begun") != std::string::npos;
+  };
+  waitFor(has_noticed);
+  EXPECT_TRUE(has_noticed());
+  EXPECT_TRUE(materials.isWaitedFor());
+  // The signal came while it was there, and it is still there.
+  EXPECT_THAT(readers, SizeIs(1));
+  EXPECT_EQ(childrenOf(program.id()), readers);
+  materials.letGo();
+  const ProgramRun stopped = program.wait();
+  EXPECT_EQ(stopped.exit_code, kExitInterrupted) << stopped.err;
+  EXPECT_FALSE(has("out/home.pack"));
+  EXPECT_THAT(partsBelow(path("out")), IsEmpty());
+  const std::vector<std::string> done = packsThatAre("baked");
+  EXPECT_THAT(done, SizeIs(1));
+  EXPECT_THAT(packsThatAre("planned"), SizeIs(1));
+
+  ASSERT_EQ(run(arguments("out")).exit_code, 0);
+  EXPECT_EQ(packsThatAre("unchanged"), done);
+  expectSamePacks(packsIn("out"), packsIn("whole"));
 }
 
 /// Bakes twice into a file system of its own, which is full the second time; "before" and "after"

@@ -28,13 +28,17 @@ inline std::string fileContent(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// Which group of processes a program belongs to: a terminal's Ctrl-C goes to all of a group.
+enum class ProgramGroup { kOfTest, kOwn };
+
 /// A program that runs in a folder, until somebody waits for it.
 class StartedProgram {
  public:
   /// Starts `program` in `folder` with these arguments. Its stdout goes to `out_path` when one is
   /// given.
   StartedProgram(const std::string& program, std::filesystem::path folder,
-                 std::vector<std::string> arguments, std::string out_path = {})
+                 std::vector<std::string> arguments, std::string out_path = {},
+                 ProgramGroup group = ProgramGroup::kOfTest)
       : folder_(std::move(folder)), out_path_(std::move(out_path)) {
     const std::string out = out_path_.empty() ? (folder_ / "stdout.txt").string() : out_path_;
     const std::string err = (folder_ / "stderr.txt").string();
@@ -50,8 +54,15 @@ class StartedProgram {
     posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
     posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode);
     posix_spawn_file_actions_addchdir_np(&actions, folder_.c_str());
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    if (group == ProgramGroup::kOwn) {
+      posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+      posix_spawnattr_setpgroup(&attributes, 0);
+    }
     const int spawned =
-        posix_spawn(&child_, program.c_str(), &actions, nullptr, argv.data(), environ);
+        posix_spawn(&child_, program.c_str(), &actions, &attributes, argv.data(), environ);
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     if (spawned == 0) return;
     child_ = 0;
@@ -62,6 +73,14 @@ class StartedProgram {
   void signal(int number) const {
     if (child_ != 0) ::kill(child_, number);
   }
+  /// Sends it to all of its group, which is its own.
+  void signalGroup(int number) const {
+    if (child_ != 0) ::kill(-child_, number);
+  }
+  /// 0 where it could not be started.
+  [[nodiscard]] pid_t id() const { return child_; }
+  /// What it has said on stderr so far.
+  [[nodiscard]] std::string errSoFar() const { return fileContent(folder_ / "stderr.txt"); }
   /// Waits for its end.
   [[nodiscard]] ProgramRun wait() const {
     if (child_ == 0) return {};
