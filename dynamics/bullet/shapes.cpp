@@ -152,7 +152,9 @@ std::vector<int> cornersThatMatter(const btConvexHullComputer& hull) {
   const auto missed = [](const Direction& a, const Direction& b) {
     return a.far - a.reached < b.far - b.reached;
   };
-  while (true) {
+  // Each round keeps another corner; but where the sums of huge coordinates overflow, what is
+  // missed is no number, and never small.
+  while (kept.size() < static_cast<std::size_t>(hull.vertices.size())) {
     const Direction most = *std::ranges::max_element(directions, missed);
     if (most.far - most.reached <= kRounding) break;
     kept.push_back(most.corner);

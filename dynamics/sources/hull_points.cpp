@@ -1,9 +1,13 @@
 #include "dynamics/sources/hull_points.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <variant>
+
+#include "galactic/bake/triangle_mesh.h"
 
 namespace galactic::dynamics {
 namespace {
@@ -126,6 +130,22 @@ std::vector<HullPoints> hullPointsOf(const bake::SourceRobot& source,
     std::visit(HullMaker(source, shape.link_from_shape, hulls), shape.geometry);
   }
   return hulls;
+}
+
+Result<void> checkExtents(std::span<const HullPoints> hulls, const std::string& where) {
+  for (const HullPoints& points : hulls) {
+    for (const Vec3& p : points) {
+      for (const float coordinate : {p.x, p.y, p.z}) {
+        const double away = std::abs(static_cast<double>(coordinate));
+        if (away <= bake::kMaxCoordinate) continue;
+        return fail(ErrorCode::kInvalidInput, where,
+                    fmt::format("it reaches {:.4g} m from the origin, but only {} m are possible; "
+                                "is its unit the meter?",
+                                away, bake::kMaxCoordinate));
+      }
+    }
+  }
+  return {};
 }
 
 }  // namespace galactic::dynamics

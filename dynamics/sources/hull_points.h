@@ -1,8 +1,11 @@
 #pragma once
+#include <span>
+#include <string>
 #include <vector>
 
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/source_robot.h"
+#include "galactic/error.h"
 #include "galactic/pose.h"
 
 namespace galactic::dynamics {
@@ -23,5 +26,10 @@ using HullPoints = std::vector<Vec3>;
 /// elements, or of its visuals where it has none. Meshes of URDFs lie in source.meshes.
 [[nodiscard]] std::vector<HullPoints> hullPointsOf(const bake::SourceRobot& source,
                                                    const bake::SourceLink& link);
+
+/// Fails with kInvalidInput where a point is farther than bake::kMaxCoordinate from the origin
+/// along an axis, or no number. `where`: whose points they are.
+[[nodiscard]] Result<void> checkExtents(std::span<const HullPoints> hulls,
+                                        const std::string& where);
 
 }  // namespace galactic::dynamics

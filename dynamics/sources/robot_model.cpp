@@ -8,6 +8,8 @@
 #include <optional>
 #include <string_view>
 
+#include "support/try.h"
+
 namespace galactic::dynamics {
 namespace {
 
@@ -264,6 +266,8 @@ Result<RobotParts> robotParts(const RobotSource& source, const Robot& robot,
     }
     LinkPart& part = parts.links.emplace_back();
     part.hulls = hullPointsOf(source.robot, *found->second);
+    RETURN_IF_ERROR(checkExtents(
+        part.hulls, fmt::format("{}: link '{}'", source.robot.name, robot.linkName(i))));
     const auto mass = stated.find(robot.linkName(i));
     part.inertia =
         inertias.of(robot.linkName(i), mass == stated.end() ? nullptr : mass->second, part.hulls);

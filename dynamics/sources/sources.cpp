@@ -140,6 +140,7 @@ class SourceReader {
       ASSIGN_OR_RETURN(const auto asset, readMesh(config.collision_asset, job));
       object.hulls = piecesOf(asset, config.joins_meshes);
       if (!object.hulls.empty()) {
+        RETURN_IF_ERROR(checkExtents(object.hulls, config.collision_asset.string()));
         // What is not read may still have changed.
         ASSIGN_OR_RETURN(auto files, filesOfMesh(mesh, packs_.listed(PackKind::kObjects, name)));
         RETURN_IF_ERROR(compareObject(name, std::move(files), job));
@@ -153,6 +154,7 @@ class SourceReader {
     ASSIGN_OR_RETURN(const auto asset, readMesh(mesh, job));
     RETURN_IF_ERROR(compareObject(name, asset.files, job));
     object.hulls = {cornersOf(asset)};
+    RETURN_IF_ERROR(checkExtents(object.hulls, mesh.string()));
     return object;
   }
   Result<bake::SourceAsset> readMesh(const std::filesystem::path& mesh,

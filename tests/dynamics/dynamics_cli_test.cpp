@@ -270,6 +270,21 @@ TEST_F(DynamicsCli, TakesTheHullOfTheMeshWhereNoPieceHasFourCorners) {
   }
 }
 
+TEST_F(DynamicsCli, RefusesCollisionAssetsThatAreFarTooLarge) {
+  const std::string data = copyOfSample("large");
+  // Whose sums are no numbers any more.
+  constexpr float kHuge = 3e38F;
+  write(
+      "large/objects/huge.obj",
+      objFile({{{0, 0, 0}, {kHuge, 0, 0}, {0, -kHuge, 0}, {0, 0, kHuge}}, {{0, 1, 2}, {0, 2, 3}}}));
+  write("large/objects/mug.object_config.json", R"({"collision_asset": "huge.obj"})");
+  const ProgramRun done = run({"--recording", "home.rec"}, data);
+  EXPECT_EQ(done.exit_code, kInvalid);
+  EXPECT_THAT(done.err,
+              HasSubstr("huge.obj: it reaches 3e+38 m from the origin, but only 800 m are "
+                        "possible; is its unit the meter?"));
+}
+
 TEST_F(DynamicsCli, SaysHowToGoOnWhenItIsInterrupted) {
   const ProgramRun stopped = interrupted("stopped.json");
   EXPECT_EQ(stopped.exit_code, kExitInterrupted) << stopped.err;

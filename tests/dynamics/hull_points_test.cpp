@@ -17,6 +17,7 @@ namespace galactic::test::hull_points_test {
 namespace {
 
 using bake::SourceAsset;
+using dynamics::checkExtents;
 using dynamics::cornersOf;
 using dynamics::HullPoints;
 using dynamics::piecesOf;
@@ -53,6 +54,24 @@ TEST(Corners, AreThoseOfTrianglesOnly) {
   EXPECT_NE(dynamics::makeObjectShape({.hulls = {corners}}), nullptr);
   ASSERT_EQ(piecesOf(asset, false).size(), 1U);
   expectSame(piecesOf(asset, false).front(), corners);
+}
+
+TEST(Corners, ReachAsFarAsBakesAllow) {
+  constexpr float kFar = 800;
+  constexpr float kFarther = 800.1F;
+  for (const Vec3& far : {Vec3{kFar, 0, 0}, Vec3{0, -kFar, 0}, Vec3{0, 0, kFar}}) {
+    EXPECT_TRUE(checkExtents(std::vector<HullPoints>{{{}, far}}, "mug.glb").has_value());
+  }
+  for (const Vec3& far : {Vec3{-kFarther, 0, 0}, Vec3{0, kFarther, 0}, Vec3{0, 0, -kFarther}}) {
+    const auto refused = checkExtents(std::vector<HullPoints>{{{}}, {{}, far}}, "mug.glb");
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+    EXPECT_EQ(refused.error().where, "mug.glb");
+    EXPECT_EQ(refused.error().message,
+              "it reaches 800.1 m from the origin, but only 800 m are possible; is its unit the "
+              "meter?");
+  }
+  EXPECT_FALSE(checkExtents(std::vector<HullPoints>{{{0, kNaN, 0}}}, "mug.glb").has_value());
 }
 
 TEST(Corners, LieWhereTheirMeshesArePlaced) {

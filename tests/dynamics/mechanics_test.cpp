@@ -60,6 +60,13 @@ TEST(ASleepingObject, StaysUntilSomethingComesNear) {
   EXPECT_LT(world.objectPose(1).translation.y, 0.16F) << "the third fell on it";
 }
 
+TEST(AHullOfHugeCoordinates, IsMadeThoughTheirSumsOverflow) {
+  // In the direction that is looked at first, among others.
+  constexpr float kHuge = 1.69e38F;
+  const dynamics::HullPoints points = boxPoints({kHuge, -kHuge, kHuge}, {kHuge, kHuge, kHuge});
+  EXPECT_NE(dynamics::makeObjectShape({.hulls = {points}, .mass = 0.5}), nullptr);
+}
+
 TEST(ABallOfManyCorners, KeepsItsSize) {
   dynamics::HullPoints points;
   for (int n = 0; n < 5000; ++n) {
