@@ -65,8 +65,9 @@ Result<void> tryOutputs(const Command& command, const World& world, const bake::
   if (!command.shown.view.empty()) outputs.push_back({"--view", command.shown.view});
   if (!command.shown.pictures.empty()) outputs.push_back({"--pictures", command.shown.pictures});
   RETURN_IF_ERROR(checkOutputs(outputs, inputs));
-  const std::filesystem::path& view = command.shown.view;
+  const auto& [view, pictures] = command.shown;
   if (!view.empty()) RETURN_IF_ERROR(checkExtension(view, kPageFile));
+  if (!pictures.empty()) RETURN_IF_ERROR(checkExtension(pictures, kPictureFile));
   for (const OutputFile& output : outputs) RETURN_IF_ERROR(tryFile(output.file));
   return {};
 }

@@ -72,7 +72,7 @@ Result<Image> draw(const PackFile& pack, const PictureOptions& options, AbsentTe
 }
 
 Result<void> makePicture(const PictureOptions& options, AbsentTextures& absent) {
-  RETURN_IF_ERROR(checkExtension(options.output, {".png", "pictures are PNG files"}));
+  RETURN_IF_ERROR(checkExtension(options.output, kPictureFile));
   ASSIGN_OR_RETURN(const auto pack, PackFile::open(options.pack, options.trust));
   ASSIGN_OR_RETURN(const auto image, draw(pack, options, absent));
   if (auto checked = checkOutput(pack, options.output); !checked) return checked;

@@ -398,12 +398,22 @@ TEST_F(DynamicsCli, TriesItsOutputsBeforeTheWork) {
   EXPECT_TRUE(report.out.empty()) << report.out;
 }
 
-TEST_F(DynamicsCli, WritesPagesUnderNamesOfPages) {
-  const ProgramRun done = run({"--policy", "scripted", "--view", "page.png"});
-  EXPECT_EQ(done.exit_code, 5) << done.err;
-  EXPECT_THAT(done.err, HasSubstr("page.png: pages are HTML files; end the name with .html"));
-  EXPECT_TRUE(done.out.empty()) << done.out;
-  EXPECT_FALSE(std::filesystem::exists(path("page.png")));
+TEST_F(DynamicsCli, WritesPagesAndPicturesUnderNamesThatSayWhatTheyAre) {
+  struct Misnamed {
+    const char* option;
+    const char* file;
+    const char* message;
+  };
+  for (const auto& [option, file, message] :
+       {Misnamed{"--view", "page.png", "page.png: pages are HTML files; end the name with .html"},
+        {"--pictures", "sheet.jpg", "sheet.jpg: pictures are PNG files; end the name with .png"},
+        {"--pictures", "sheet", "sheet: pictures are PNG files; end the name with .png"}}) {
+    const ProgramRun done = run({"--policy", "scripted", option, file});
+    EXPECT_EQ(done.exit_code, 5) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(message));
+    EXPECT_TRUE(done.out.empty()) << done.out;
+    EXPECT_FALSE(std::filesystem::exists(path(file)));
+  }
 }
 
 TEST_F(DynamicsCli, GroupsWarningsAndReportsAllOfThem) {

@@ -43,7 +43,7 @@ std::vector<OutputFile> filesOf(const RunOptions& options) {
 /// Whether the names of files of one kind say what they are.
 Result<void> checkExtensions(const RunOptions& options) {
   const std::string& sheet = options.drawing.contact_sheet;
-  if (!sheet.empty()) RETURN_IF_ERROR(checkExtension(sheet, {".png", "pictures are PNG files"}));
+  if (!sheet.empty()) RETURN_IF_ERROR(checkExtension(sheet, kPictureFile));
   if (!options.view.empty()) RETURN_IF_ERROR(checkExtension(options.view, kPageFile));
   if (options.animation.empty()) return {};
   return checkExtension(options.animation, {".glb", "animations are binary glTF files"});

@@ -38,6 +38,7 @@ struct FileKind {
 };
 
 inline constexpr FileKind kPageFile{".html", "pages are HTML files", ".htm"};
+inline constexpr FileKind kPictureFile{".png", "pictures are PNG files"};
 
 /// Fails with kUnsupported when a file that will be of this kind has another extension, and as
 /// checkNotDash.
