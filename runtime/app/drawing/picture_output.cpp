@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -52,8 +53,8 @@ std::size_t tileColumns(std::size_t count) {
   return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
 }
 
-std::string captionOf(std::size_t env, std::uint64_t step) {
-  return fmt::format("env {} step {}", env, step);
+std::string captionOf(std::size_t env, std::uint64_t step, bool is_idle) {
+  return fmt::format("env {}{} step {}", env, is_idle ? " (idle)" : "", step);
 }
 
 /// A tile as it will be, of nothing.
@@ -119,7 +120,8 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const R
 /// Before the run: it would be a pity afterwards.
 Result<void> PictureOutput::checkSheet(std::uint64_t steps) const {
   if (!sheet_) return {};
-  const std::string longest = captionOf(envs_ - 1, steps);
+  constexpr bool kIsIdle = true;
+  const std::string longest = captionOf(envs_ - 1, steps, kIsIdle);
   const SheetLayout layout =
       sheetLayout(envs_ * sheet_->planned(), envs_, emptyTile(options_), std::span(&longest, 1));
   constexpr const char* kAdvice = "show fewer envs (--frame-envs), or smaller images (--size)";
@@ -175,7 +177,13 @@ Result<void> PictureOutput::show(std::uint64_t step, std::span<const EnvFrame> f
   if (is_filmed) filmed = video_->append(videoFrame(tiles));
   // The video has ended, and the sheet goes on without it.
   if (!filmed) video_.reset();
-  if (is_on_sheet) sheet_->add({step, std::move(tiles)});
+  if (is_on_sheet) {
+    SheetMoments::Moment moment{.step = step, .cells = {}};
+    for (std::size_t env = 0; env < frames.size(); ++env) {
+      moment.cells.push_back({std::move(tiles[env]), captionOf(env, step, frames[env].is_idle)});
+    }
+    sheet_->add(std::move(moment));
+  }
   RETURN_IF_ERROR(written);
   return filmed;
 }
@@ -190,9 +198,7 @@ Result<void> PictureOutput::finish() {
 Result<void> PictureOutput::writeSheet() {
   std::vector<SheetCell> cells;
   for (SheetMoments::Moment& moment : sheet_->take()) {
-    for (std::size_t env = 0; env < moment.tiles.size(); ++env) {
-      cells.push_back({std::move(moment.tiles[env]), captionOf(env, moment.step)});
-    }
+    std::ranges::move(moment.cells, std::back_inserter(cells));
   }
   if (cells.empty()) return {};
   return pictures::writePng(options_.contact_sheet, contactSheet(cells, envs_));

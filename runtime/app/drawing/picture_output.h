@@ -22,6 +22,8 @@ struct EnvFrame {
   DrawnImage camera;
   std::optional<DrawnImage> debug;
   RenderCamera seen_from = {};
+  /// Whether the env is idle (BatchSimulator::idle()).
+  bool is_idle = false;
 };
 
 /// How long the run is that pictures are made of.

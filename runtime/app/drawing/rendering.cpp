@@ -130,6 +130,8 @@ struct Rendering::Parts {
   std::optional<ImageBatch> images;
   std::unique_ptr<DebugBatch> debug;
   std::vector<EnvFrame> frames;
+  /// Of the envs that are shown, at the last update().
+  std::vector<std::uint8_t> is_idle;
 };
 
 Rendering::Rendering(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -166,6 +168,8 @@ Result<Rendering> Rendering::create(const World& world, const BatchSimulator& si
 void Rendering::update(const BatchSimulator& simulator) {
   parts_->views->update(simulator);
   if (parts_->debug) parts_->debug->update(simulator);
+  const auto idle = simulator.idle().first(parts_->frames.size());
+  parts_->is_idle.assign(idle.begin(), idle.end());
 }
 void Rendering::begin() { parts_->images->begin(parts_->views->views()); }
 void Rendering::end() { parts_->images->end(); }
@@ -177,6 +181,7 @@ std::span<const EnvFrame> Rendering::frames() {
     frame.camera = parts_->images->image(env);
     frame.seen_from = parts_->views->views()[env].camera;
     if (parts_->debug) frame.debug = parts_->debug->image(env);
+    frame.is_idle = parts_->is_idle[env] != 0;
   }
   return parts_->frames;
 }

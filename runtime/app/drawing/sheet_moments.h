@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "pictures/image.h"
+#include "drawing/contact_sheet.h"
 
 namespace galactic {
 
@@ -16,10 +16,10 @@ class SheetMoments {
   /// Most moments of a sheet.
   static constexpr std::size_t kMost = 6;
 
-  /// The tiles of a moment, one for each env.
+  /// What is shown of a moment: a cell for each env.
   struct Moment {
     std::uint64_t step = 0;
-    std::vector<pictures::Image> tiles;
+    std::vector<SheetCell> cells;
   };
 
   /// Of a run of `steps` steps, all of them multiples of `every` but for the last.

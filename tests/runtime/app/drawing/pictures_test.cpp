@@ -12,11 +12,13 @@
 #include "drawing/contact_sheet.h"
 #include "drawing/frame_images.h"
 #include "drawing/picture_output.h"
+#include "drawing/rendering.h"
 #include "drawing/video_pipe.h"
 #include "galactic/world_views.h"
 #include "pictures/drawing.h"
 #include "pictures/palette.h"
 #include "support/homes/small_home.h"
+#include "support/homes/small_home_models.h"
 #include "support/part_files.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
@@ -147,13 +149,13 @@ std::vector<std::uint64_t> stepsOnSheet(std::uint64_t planned, std::uint64_t don
   std::size_t held = 0;
   for (std::uint64_t step = 0; step <= done; ++step) {
     if (step != done && !sheet.wants(step)) continue;
-    sheet.add({step, {Image(1, 1, {})}});
+    sheet.add({step, {{Image(1, 1, {}), "env 0"}}});
     ++held;
   }
   EXPECT_LT(held, 200U) << "few states are copied";
   std::vector<std::uint64_t> steps;
   for (const SheetMoments::Moment& moment : sheet.take()) {
-    EXPECT_EQ(moment.tiles.size(), 1U);
+    EXPECT_EQ(moment.cells.size(), 1U);
     steps.push_back(moment.step);
   }
   return steps;
@@ -302,6 +304,59 @@ TEST_F(Pictures, ASheetShowsSixMomentsFromTheFirstToTheLast) {
   EXPECT_EQ(height_of(100, 41), kSheetGap + 6 * row);
   EXPECT_EQ(height_of(1000000, 41), kSheetGap + 6 * row);
   EXPECT_EQ(height_of(1000000, 0), kSheetGap + 1 * row);
+}
+
+TEST_F(Pictures, ASheetSaysWhichEnvsAreIdle) {
+  DrawingOptions options = smallOptions();
+  options.contact_sheet = file("sheet.png");
+  const SmallImage small;
+  EnvFrame idle = small.frame();
+  idle.is_idle = true;
+  auto output = PictureOutput::open(options, {7, 2});
+  ASSERT_TRUE(output) << output.error().message;
+  ASSERT_TRUE(output->add(0, std::vector{small.frame(), small.frame()}));
+  ASSERT_TRUE(output->addLast(3, std::vector{small.frame(), idle}));
+  ASSERT_TRUE(output->finish());
+  const Image tile = tileOf(idle);
+  const Image wanted = contactSheet({{tile, "env 0 step 0"},
+                                     {tile, "env 1 step 0"},
+                                     {tile, "env 0 step 3"},
+                                     {tile, "env 1 (idle) step 3"}},
+                                    2);
+  ASSERT_TRUE(pictures::writePng(file("wanted.png"), wanted));
+  EXPECT_TRUE(test::fileContent(options.contact_sheet) == test::fileContent(file("wanted.png")));
+}
+
+TEST_F(Pictures, ShowWhoIsIdleInTheStateThatIsDrawn) {
+  const test::SmallHome home(test::smallHomeWorldWithModels());
+  SimulationOptions simulation;
+  simulation.envs = 2;
+  simulation.order = EpisodeOrder::kPartition;
+  simulation.task.most_steps = 2;
+  simulation.body_transforms = true;
+  auto simulator = BatchSimulator::create(home.world(), simulation).value();
+  RunOptions run;
+  run.drawing = smallOptions();
+  run.drawing.backend = RenderBackend::kSoft;
+  auto rendering = Rendering::create(home.world(), simulator, run, 2).value();
+  const std::vector<float> actions(simulator.envCount() * simulator.actionCount());
+  std::size_t idle = 0;
+  constexpr std::size_t kStates = 8;
+  for (std::size_t step = 0; step < kStates; ++step) {
+    const auto now = simulator.idle();
+    const std::vector<std::uint8_t> wanted(now.begin(), now.end());
+    rendering.update(simulator);
+    rendering.begin();
+    // As a run does, which draws and steps at once.
+    simulator.step(actions);
+    rendering.end();
+    for (std::size_t env = 0; env < wanted.size(); ++env) {
+      EXPECT_EQ(rendering.frames()[env].is_idle, wanted[env] != 0) << env << " at " << step;
+      idle += wanted[env];
+    }
+  }
+  // Three of four episodes can be played: one of the envs has two of them.
+  EXPECT_EQ(idle, 2 * kStates - 2 - 4);
 }
 
 TEST_F(Pictures, ASheetIsWrittenThoughFramesAndVideoCannotBe) {
