@@ -14,6 +14,7 @@
 #include "galactic/error.h"
 #include "support/mesh_files.h"
 #include "support/part_files.h"
+#include "support/recipe_text.h"
 
 namespace galactic::test::plan_faults_cli_test {
 namespace {

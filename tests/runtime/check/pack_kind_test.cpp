@@ -1,4 +1,5 @@
 // What the header says is inside, and what is: each kind of asset under the header of each other.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
