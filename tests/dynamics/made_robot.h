@@ -48,10 +48,12 @@ inline dynamics::LinkPart boxPart(double mass, const Vec3& center, const Vec3& h
   const double x = square(half.x);
   const double y = square(half.y);
   const double z = square(half.z);
-  return {.inertia = dynamics::Inertia{.mass = mass,
-                                       .center = {center.x, center.y, center.z},
-                                       .moments = {twelfth * (y + z), twelfth * (x + z),
-                                                   twelfth * (x + y), 0, 0, 0}},
+  return {.inertia =
+              dynamics::Inertia{
+                  .mass = mass,
+                  .center = {static_cast<double>(center.x), static_cast<double>(center.y),
+                             static_cast<double>(center.z)},
+                  .moments = {twelfth * (y + z), twelfth * (x + z), twelfth * (x + y), 0, 0, 0}},
           .hulls = {boxPoints(center, half)}};
 }
 
