@@ -9,6 +9,7 @@
 #include "galactic/error.h"
 #include "galactic/pose.h"
 #include "galactic/render_library.h"
+#include "galactic/sensor_noise.h"
 
 namespace galactic {
 
@@ -58,6 +59,8 @@ struct RenderOptions {
   std::uint32_t threads = 0;
   /// Whether to cull what cannot be seen. The images do not depend on it.
   bool culling = true;
+  /// What is done to the images after they are drawn.
+  ImageNoise noise = {};
 };
 
 /// A pinhole camera that looks along +X of its own frame; +Y is up in the image, +Z to the right.
@@ -99,6 +102,13 @@ struct AttachedModel {
   RigidTransform body_from_model;
 };
 
+/// What the random numbers of an image follow from.
+struct NoiseSource {
+  EnvMoment moment;
+  /// Tells the cameras of an env apart.
+  std::uint64_t camera = 0;
+};
+
 /// One image: a camera and what it sees. A camera whose numbers are not finite, or whose field of
 /// view is not within its range, sees nothing. Where two surfaces are in one place, the first one
 /// shows: instances come before posed models, and those before attached ones.
@@ -112,6 +122,8 @@ struct RenderView {
   std::span<const AttachedModel> attached = {};
   /// world_from_body.
   std::span<const RigidTransform> bodies = {};
+  /// Of RenderOptions::noise.
+  NoiseSource noise = {};
 };
 
 /// Where the images go: memory of the caller, view after view, rows from top to bottom. Leave a
@@ -135,15 +147,16 @@ struct RenderStatistics {
 };
 
 /// Draws many images of one library together (paper, appendix D). Every image depends on its view
-/// and the options only. Rendering neither allocates, nor throws, nor locks, once it has seen its
-/// largest load: until then it throws std::bad_alloc, or ErrorException with kUnsupported, where
-/// memory is lacking, and may be called with a smaller load afterwards. A graphics processor that
-/// fails is an ErrorException, too. Not safe to call from several threads at once.
+/// and the options only, with noise and without. Rendering neither allocates, nor throws, nor
+/// locks, once it has seen its largest load: until then it throws std::bad_alloc, or ErrorException
+/// with kUnsupported, where memory is lacking, and may be called with a smaller load afterwards. A
+/// graphics processor that fails is an ErrorException, too. Not safe to call from several threads
+/// at once.
 class BatchRenderer {
  public:
-  /// `library` must outlive the renderer. Fails with kInvalidInput on options out of range, with
-  /// kUnsupported when the backend or the device is not available; the message names what is
-  /// missing.
+  /// `library` must outlive the renderer. Fails with kInvalidInput on options out of range and on
+  /// noise of images that are not drawn, with kUnsupported when the backend or the device is not
+  /// available; the message names what is missing.
   [[nodiscard]] static Result<BatchRenderer> create(const RenderLibrary& library,
                                                     const RenderOptions& options);
   ~BatchRenderer();
@@ -162,9 +175,10 @@ class BatchRenderer {
   /// when this returns. `stream`: the one that uses them, as CUDA's cudaStream_t or CUstream; 0:
   /// CUDA's default stream. Work queued on it earlier finishes before the images change, so they
   /// stay valid until the next rendering on the same stream. The stream must belong to the
-  /// renderer's device and live until then. Fails with kUnsupported with the soft backend and
-  /// without CUDA; with the gl backend, which needs a CUDA context that is current on this thread,
-  /// also when its device is not the renderer's.
+  /// renderer's device and live until then. Fails with kUnsupported with the soft backend, without
+  /// CUDA, and with RenderOptions::noise, which is added in memory of the processor; with the gl
+  /// backend, which needs a CUDA context that is current on this thread, also when its device is
+  /// not the renderer's.
   [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
                                                     std::uintptr_t stream = 0);
 

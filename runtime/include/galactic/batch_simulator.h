@@ -9,6 +9,7 @@
 
 #include "galactic/error.h"
 #include "galactic/pose.h"
+#include "galactic/sensor_noise.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
 
@@ -242,6 +243,8 @@ class BatchSimulator {
   [[nodiscard]] EnvState envState(std::size_t env) const;
   /// The objects of one env, without copies: for rendering.
   [[nodiscard]] EnvObjects envObjects(std::size_t env) const noexcept;
+  /// What the random numbers of its sensors follow from.
+  [[nodiscard]] EnvMoment envMoment(std::size_t env) const noexcept;
   /// A body is a group of links that no joint moves against each other in this run (joints that
   /// neither actions nor episodes move count as fixed). The root's is body 0.
   [[nodiscard]] std::size_t bodyCount() const;

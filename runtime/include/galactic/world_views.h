@@ -12,6 +12,7 @@
 #include "galactic/error.h"
 #include "galactic/pose.h"
 #include "galactic/robot.h"
+#include "galactic/sensor_noise.h"
 #include "galactic/world_models.h"
 
 namespace galactic {
@@ -35,6 +36,10 @@ struct CameraMount {
   /// For kBase: the camera turns about the robot, or comes nearer, where something of the scene
   /// stands between the two, as the column grids can tell.
   bool keeps_sight = false;
+  /// Where it is instead, by episode.
+  CameraJitter jitter = {};
+  /// NoiseSource::camera: cameras with the same number have the same jitter and noise.
+  std::uint64_t number = 0;
 };
 
 /// The camera of the robot's recipe; none when it has none.
@@ -45,9 +50,11 @@ class MountedCamera {
  public:
   MountedCamera(const World& world, const BatchSimulator& simulator, const CameraMount& mount);
 
-  /// `bodies`: BatchSimulator::bodyTransforms() of one env, which is in World::scenes()[scene].
-  [[nodiscard]] RenderCamera at(std::span<const RigidTransform> bodies,
-                                std::uint32_t scene) const noexcept;
+  /// `bodies`: BatchSimulator::bodyTransforms() of one env, which is in World::scenes()[scene];
+  /// `moment`: its BatchSimulator::envMoment().
+  [[nodiscard]] RenderCamera at(std::span<const RigidTransform> bodies, std::uint32_t scene,
+                                const EnvMoment& moment) const noexcept;
+  [[nodiscard]] std::uint64_t number() const { return number_; }
 
  private:
   World world_;
@@ -59,6 +66,8 @@ class MountedCamera {
   float vertical_fov_;
   /// Of the root link above the floor, meters.
   float root_height_;
+  CameraJitter jitter_;
+  std::uint64_t number_;
 };
 
 /// What the semantic ids of objects tell apart.
@@ -115,6 +124,8 @@ struct CameraOptionNames {
   std::string position = "--camera-position";
   std::string rpy = "--camera-rpy";
   std::string near = "--near";
+  std::string jitter = "--camera-jitter";
+  std::string jitter_degrees = "--camera-jitter-degrees";
 };
 
 /// A camera as a user asks for it.
@@ -135,6 +146,8 @@ struct CameraWish {
   /// Meters in front of it that are cut off, kLeastNear to kMostNear; 0: what belongs to the
   /// camera.
   float near = 0;
+  /// Of where it is then.
+  CameraJitter jitter = {};
   CameraOptionNames options = {};
 };
 /// Narrower views than these show next to nothing, wider ones little but their edges.

@@ -1,10 +1,14 @@
 #include "galactic/batch_renderer.h"
 
+#include <fmt/format.h>
+
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "render/noise/noise_pass.h"
 #include "render/render_engine.h"
 #include "support/try.h"
 
@@ -27,6 +31,19 @@ Result<void> checkOptions(const RenderOptions& options) {
   }
   if (options.color == ColorFormat::kNone && !options.depth && !options.semantics) {
     return refuse("found no image to make; expected color, depth or semantics");
+  }
+  for (const SensorOption<ImageNoise>& option : kImageNoiseOptions) {
+    const float value = options.noise.*option.value;
+    if (isWithin(option, value)) continue;
+    return refuse(fmt::format("found {} of {}, expected 0 to {}", option.name, value, option.most));
+  }
+  if (options.noise.changesDepth() && !options.depth) {
+    return refuse(
+        "found noise or dropout of depth, and no depth images; draw depth, or leave it out");
+  }
+  if (options.noise.changesColor() && options.color == ColorFormat::kNone) {
+    return refuse(
+        "found noise or jitter of colors, and no color images; draw color, or leave it out");
   }
   return {};
 }
@@ -108,17 +125,29 @@ const char* backendName(RenderBackend backend) noexcept {
 class BatchRenderer::Impl {
  public:
   Impl(const RenderOptions& options, std::unique_ptr<render::RenderEngine> engine)
-      : options_(options), engine_(std::move(engine)), description_(engine_->description()) {}
+      : options_(options), engine_(std::move(engine)), description_(engine_->description()) {
+    if (options.noise.changesDepth() || options.noise.changesColor()) noise_.emplace(options);
+  }
 
   void begin(std::span<const RenderView> views, const RenderTargets& targets) {
     [[maybe_unused]] const std::size_t pixels = views.size() * options_.width * options_.height;
     assert(targets.color.size() == pixels * static_cast<std::size_t>(options_.color));
     assert(targets.depth.size() == (options_.depth ? pixels : 0));
     assert(targets.semantics.size() == (options_.semantics ? pixels : 0));
+    views_ = views;
+    targets_ = targets;
     engine_->begin(views, targets);
   }
-  void end() { engine_->end(); }
+  void end() {
+    engine_->end();
+    if (noise_) noise_->run(views_, targets_);
+  }
   Result<DeviceImages> renderToDevice(std::span<const RenderView> views, std::uintptr_t stream) {
+    if (noise_) {
+      return fail(ErrorCode::kUnsupported, "device images",
+                  "found noise of images, which is added in memory of the processor, and images "
+                  "that stay on the device; render into memory, or leave the noise out");
+    }
     return engine_->renderToDevice(views, stream);
   }
 
@@ -130,6 +159,10 @@ class BatchRenderer::Impl {
   RenderOptions options_;
   std::unique_ptr<render::RenderEngine> engine_;
   std::string description_;
+  std::optional<render::NoisePass> noise_;
+  /// Of the batch in work.
+  std::span<const RenderView> views_;
+  RenderTargets targets_;
 };
 
 Result<BatchRenderer> BatchRenderer::create(const RenderLibrary& library,

@@ -350,6 +350,14 @@ EnvObjects BatchSimulator::envObjects(std::size_t env) const noexcept {
   return simulation::envObjectsOf(impl_->model(), impl_->state(), env);
 }
 
+EnvMoment BatchSimulator::envMoment(std::size_t env) const noexcept {
+  const simulation::Model& model = impl_->model();
+  return {.seed = model.options.seed,
+          .env = model.globalEnv(env),
+          .step = impl_->state().env(env).step,
+          .episode = impl_->state().counters(env).begun};
+}
+
 std::size_t BatchSimulator::bodyCount() const { return impl_->model().motion.nodes.size() + 1; }
 
 LinkOnBody BatchSimulator::linkOnBody(std::size_t link) const {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -9,6 +10,8 @@
 #include <string_view>
 
 #include "galactic/world_views.h"
+#include "support/random_stream.h"
+#include "views/camera_offset.h"
 
 namespace galactic {
 namespace {
@@ -76,19 +79,15 @@ Result<ChosenCamera> cameraOf(const Robot& robot, const CameraWish& wish) {
   return ChosenCamera{{.frame = CameraFrame::kLink, .link = *link, .frame_from_camera = {}}};
 }
 
-/// Roll, pitch and yaw about axes ahead, to the left and up, in that order.
-Quat turned(const std::array<float, 3>& rpy_degrees) {
-  const auto half = [&](std::size_t n) { return rpy_degrees[n] * kRadiansPerDegree / 2; };
-  const Quat roll{.x = std::sin(half(0)), .y = 0, .z = 0, .w = std::cos(half(0))};
-  const Quat pitch{.x = 0, .y = 0, .z = -std::sin(half(1)), .w = std::cos(half(1))};
-  const Quat yaw{.x = 0, .y = std::sin(half(2)), .z = 0, .w = std::cos(half(2))};
-  return yaw * pitch * roll;
-}
-
-/// Where the wish has the camera, in the frame that it would have otherwise.
-Pose offsetOf(const CameraWish& wish) {
-  const auto& [ahead, left, up] = wish.position;
-  return {{ahead, up, -left}, turned(wish.rpy_degrees)};
+/// The same of the same place on the same link, another one elsewhere.
+std::uint64_t numberOf(const CameraWish& wish) {
+  std::uint64_t number = 0;
+  for (const char one : wish.name) number = mix(number ^ static_cast<unsigned char>(one)) + 1;
+  for (const std::array<float, 3>& three : {wish.position, wish.rpy_degrees}) {
+    // 0 and -0 are the same place.
+    for (const float one : three) number = mix(number ^ std::bit_cast<std::uint32_t>(one + 0)) + 1;
+  }
+  return number;
 }
 
 /// A comparison with NaN is false.
@@ -119,6 +118,14 @@ Result<void> checkNumbers(const CameraWish& wish) {
     return refuse(wish.options.rpy, fmt::format("found {} degrees, expected {} to {}", degrees,
                                                 -kMostCameraTurn, kMostCameraTurn));
   }
+  for (const SensorOption<CameraJitter>& option : kCameraJitterOptions) {
+    const float value = wish.jitter.*option.value;
+    if (isWithin(option, value)) continue;
+    const bool is_place = option.value == &CameraJitter::camera_jitter;
+    return refuse(is_place ? wish.options.jitter : wish.options.jitter_degrees,
+                  fmt::format("found {} {}, expected 0 to {}", value, is_place ? "m" : "degrees",
+                              option.most));
+  }
   return {};
 }
 
@@ -130,7 +137,10 @@ Result<ChosenCamera> chooseCamera(const Robot& robot, const CameraWish& wish) {
   if (const Result<void> checked = checkNumbers(wish); !checked) {
     return tl::unexpected<Error>(checked.error());
   }
-  camera->mount.frame_from_camera = camera->mount.frame_from_camera * offsetOf(wish);
+  camera->mount.frame_from_camera =
+      camera->mount.frame_from_camera * cameraOffset(wish.position, wish.rpy_degrees);
+  camera->mount.jitter = wish.jitter;
+  camera->mount.number = numberOf(wish);
   if (wish.fov_degrees != 0) camera->mount.vertical_fov = wish.fov_degrees * kRadiansPerDegree;
   if (wish.near != 0) camera->near = wish.near;
   return camera;

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "views/camera_offset.h"
 #include "views/camera_sight.h"
 
 namespace galactic {
@@ -36,15 +37,21 @@ MountedCamera::MountedCamera(const World& world, const BatchSimulator& simulator
       on_body_(simulator.linkOnBody(mount.frame == CameraFrame::kLink ? mount.link : 0)),
       frame_from_camera_(rigidTransform(mount.frame_from_camera)),
       vertical_fov_(mount.vertical_fov),
-      root_height_(world.robot().base() ? world.robot().base()->root_height : 0) {}
+      root_height_(world.robot().base() ? world.robot().base()->root_height : 0),
+      jitter_(mount.jitter),
+      number_(mount.number) {}
 
-RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies,
-                               std::uint32_t scene) const noexcept {
+RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies, std::uint32_t scene,
+                               const EnvMoment& moment) const noexcept {
   RenderCamera camera{frame_from_camera_, vertical_fov_};
+  if (jitter_.isOn()) {
+    camera.world_from_camera =
+        frame_from_camera_ * rigidTransform(drawOffset(jitter_, number_, moment));
+  }
   if (frame_ == CameraFrame::kWorld) return camera;
   const RigidTransform link = bodies[on_body_.body] * on_body_.place;
   const RigidTransform frame = frame_ == CameraFrame::kLink ? link : baseFrame(link, root_height_);
-  camera.world_from_camera = frame * frame_from_camera_;
+  camera.world_from_camera = frame * camera.world_from_camera;
   if (keeps_sight_) {
     camera.world_from_camera =
         inSight(world_.scenes()[scene], frame.origin, camera.world_from_camera).world_from_camera;
@@ -103,7 +110,8 @@ void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
   view.instances = scenes_[state.scene];
   view.posed = room.first(count);
   view.posed_semantics = ids.first(ids.empty() ? 0 : count);
-  view.camera = camera_.at(view.bodies, state.scene);
+  view.noise = {simulator.envMoment(env), camera_.number()};
+  view.camera = camera_.at(view.bodies, state.scene, view.noise.moment);
 }
 
 }  // namespace galactic

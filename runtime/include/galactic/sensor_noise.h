@@ -1,0 +1,88 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace galactic {
+
+/// Of one env, what the random numbers of its sensors follow from: the same moment, the same
+/// numbers, whatever else is in the batch.
+struct EnvMoment {
+  /// SimulationOptions::seed, or that of the last restart.
+  std::uint64_t seed = 0;
+  /// Among the envs of all ranks.
+  std::uint32_t env = 0;
+  /// Done in the episode.
+  std::uint32_t step = 0;
+  /// How many episodes the env has begun.
+  std::uint64_t episode = 0;
+};
+
+/// What real cameras do to images, for policies that are to see through real ones. All off by
+/// default.
+struct ImageNoise {
+  /// Standard deviation of depth at 1 m, meters. It grows with the square of depth, as with sensors
+  /// that triangulate (Khoshelham and Elberink 2012).
+  float depth_noise = 0;
+  /// Share of the pixels without depth.
+  float depth_dropout = 0;
+  /// Standard deviation of each channel of color, levels of 255.
+  float color_noise = 0;
+  /// Colors of an episode are multiplied by a number from 1 - this to 1 + this, each as likely.
+  float light_jitter = 0;
+
+  [[nodiscard]] constexpr bool changesDepth() const { return depth_noise > 0 || depth_dropout > 0; }
+  [[nodiscard]] constexpr bool changesColor() const { return color_noise > 0 || light_jitter > 0; }
+};
+
+/// How far a camera is from where it should be mounted, another way in each episode. Off by
+/// default.
+struct CameraJitter {
+  /// Either way along each of the camera's axes, meters.
+  float camera_jitter = 0;
+  /// Either way of each of roll, pitch and yaw.
+  float camera_jitter_degrees = 0;
+
+  [[nodiscard]] constexpr bool isOn() const {
+    return camera_jitter > 0 || camera_jitter_degrees > 0;
+  }
+};
+
+/// A number among `Options` as users know it: 0, its default, to `most`.
+template <class Options>
+struct SensorOption {
+  /// On command lines behind two dashes, in Python with '_' for '-'.
+  const char* name;
+  const char* unit;
+  const char* text;
+  float most;
+  float Options::*value;
+};
+
+inline constexpr std::array<SensorOption<ImageNoise>, 4> kImageNoiseOptions{{
+    {"depth-noise", "METERS", "Standard deviation of depth at 1 m; it grows with depth squared", 1,
+     &ImageNoise::depth_noise},
+    {"depth-dropout", "SHARE", "Share of the pixels without depth", 1, &ImageNoise::depth_dropout},
+    {"color-noise", "LEVELS", "Standard deviation of each channel, in levels of 255", 255,
+     &ImageNoise::color_noise},
+    {"light-jitter", "SHARE", "By how much an episode may be brighter or darker", 1,
+     &ImageNoise::light_jitter},
+}};
+
+inline constexpr std::array<SensorOption<CameraJitter>, 2> kCameraJitterOptions{{
+    {"camera-jitter", "METERS", "How far the camera may be off along each axis, by episode", 1,
+     &CameraJitter::camera_jitter},
+    {"camera-jitter-degrees", "DEGREES", "The same of its roll, pitch and yaw", 180,
+     &CameraJitter::camera_jitter_degrees},
+}};
+
+// No field without an option.
+static_assert(sizeof(ImageNoise) == sizeof(float) * kImageNoiseOptions.size());
+static_assert(sizeof(CameraJitter) == sizeof(float) * kCameraJitterOptions.size());
+
+/// Whether an option may have that value: not so what is no number.
+template <class Options>
+[[nodiscard]] constexpr bool isWithin(const SensorOption<Options>& option, float value) {
+  return value >= 0 && value <= option.most;
+}
+
+}  // namespace galactic
