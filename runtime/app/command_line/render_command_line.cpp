@@ -105,6 +105,35 @@ void addBackend(CLI::App& app, DrawingOptions& drawing) {
       ->type_name("TEXT");
 }
 
+template <class Options>
+void addSensor(CLI::App& app, const SensorOption<Options>& option, Options& options) {
+  app.add_option("--" + std::string(option.name), options.*option.value, option.text)
+      ->check(numberCheck(0, static_cast<double>(option.most)))
+      ->option_text(fmt::format("{} [0]", option.unit));
+}
+
+/// Whether an option of drawing counts for what a policy sees, too.
+bool isForPolicies(std::string_view name) {
+  const auto is_it = [name](const auto& option) { return name.substr(2) == option.name; };
+  return name == "--backend" || name == "--device" ||
+         std::ranges::any_of(kImageNoiseOptions, is_it) ||
+         std::ranges::any_of(kCameraJitterOptions, is_it);
+}
+
+/// Of noise of images that are not drawn.
+std::string noiseFault(const DrawingOptions& drawing) {
+  constexpr const char* kFault = "{} applies to {} only; draw it with --render {}, or leave {} out";
+  if (drawing.noise.changesDepth() && !drawing.hasDepth()) {
+    const char* name = drawing.noise.depth_noise > 0 ? "--depth-noise" : "--depth-dropout";
+    return fmt::format(kFault, name, "depth", "rgbd", name);
+  }
+  if (drawing.noise.changesColor() && !drawing.hasColor()) {
+    const char* name = drawing.noise.color_noise > 0 ? "--color-noise" : "--light-jitter";
+    return fmt::format(kFault, name, "color", "rgbd", name);
+  }
+  return {};
+}
+
 void addPictures(CLI::App& app, DrawingOptions& drawing) {
   app.add_option("--frames", drawing.frames, "Write PNG files of the first envs")
       ->type_name("FOLDER");
@@ -160,6 +189,8 @@ void addDrawingOptions(CLI::App& app, DrawingOptions& drawing) {
   app.add_option("--near", drawing.near, "What is nearer than this is not drawn, meters")
       ->check(numberCheck(static_cast<double>(kLeastNear), static_cast<double>(kMostNear)))
       ->option_text("METERS");
+  for (const auto& option : kImageNoiseOptions) addSensor(app, option, drawing.noise);
+  for (const auto& option : kCameraJitterOptions) addSensor(app, option, drawing.jitter);
   addPictures(app, drawing);
   addDebug(app, drawing);
   app.option_defaults()->group("Options");
@@ -170,9 +201,12 @@ std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app) {
     for (const CLI::Option* option : app.get_options()) {
       if (option->count() == 0 || option->get_group() != kGroup) continue;
       const std::string name = option->get_name();
-      if (drawing.policy_may_draw && (name == "--backend" || name == "--device")) continue;
+      if (drawing.policy_may_draw && isForPolicies(name)) continue;
       return fmt::format("{} applies to rendering only; add --render", name);
     }
+  }
+  if (drawing.draws() && !drawing.policy_may_draw) {
+    if (std::string fault = noiseFault(drawing); !fault.empty()) return fault;
   }
   if (drawing.backend == RenderBackend::kSoft && !drawing.device.empty()) {
     return "--device applies to --backend cuda and gl only; leave it out";

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "galactic/batch_renderer.h"
+#include "galactic/sensor_noise.h"
 
 namespace galactic {
 
@@ -25,9 +26,11 @@ struct DrawingOptions {
   std::array<float, 3> camera_position{};
   std::array<float, 3> camera_rpy_degrees{};
   float near = 0;
+  ImageNoise noise;
+  CameraJitter jitter;
 
-  /// Whether a policy pack is played, which may want images: then backend and device count, whether
-  /// or not anything else is drawn.
+  /// Whether a policy pack is played, which may want images: then backend, device, noise and jitter
+  /// count, whether or not anything else is drawn.
   bool policy_may_draw = false;
 
   /// Folder of PNG files, contact sheet and video; empty for none.
@@ -48,6 +51,9 @@ struct DrawingOptions {
   [[nodiscard]] bool hasColor() const { return images.starts_with("rgb"); }
   [[nodiscard]] bool hasDepth() const { return images == "depth" || images.starts_with("rgbd"); }
   [[nodiscard]] bool hasSemantics() const { return images == "rgbds"; }
+  [[nodiscard]] bool isNoisy() const {
+    return noise.changesDepth() || noise.changesColor() || jitter.isOn();
+  }
   [[nodiscard]] bool makesPictures() const {
     return !frames.empty() || !contact_sheet.empty() || !video.empty();
   }

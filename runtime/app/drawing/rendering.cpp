@@ -23,6 +23,13 @@ double bytesPerImage(const RenderOptions& options) {
 
 }  // namespace
 
+ImageNoise noiseFor(const ImageNoise& noise, const RenderOptions& images) {
+  ImageNoise result = noise;
+  if (!images.depth) result.depth_noise = result.depth_dropout = 0;
+  if (images.color == ColorFormat::kNone) result.color_noise = result.light_jitter = 0;
+  return result;
+}
+
 Result<ImageBatch> ImageBatch::create(const RenderLibrary& library, const RenderOptions& options,
                                       std::size_t images) {
   RETURN_IF_ERROR(
@@ -77,6 +84,7 @@ RenderOptions rendererOptions(const RunOptions& run, float near) {
   options.near = near;
   options.backend = drawing.backend;
   options.device = drawing.device;
+  options.noise = noiseFor(drawing.noise, options);
   options.threads = run.simulation.threads;
   return options;
 }
@@ -99,6 +107,7 @@ class DebugBatch {
     options.semantics = false;
     constexpr std::uint32_t kSky = 0xFFF4ECE4;
     options.background = kSky;
+    options.noise = {};
     ASSIGN_OR_RETURN(batch->images_, ImageBatch::create(batch->models_.library(), options, shown));
     batch->views_.emplace(world, batch->models_, simulator, camera->mount, shown);
     return batch;
@@ -147,7 +156,8 @@ Result<Rendering> Rendering::create(const World& world, const BatchSimulator& si
                                    .fov_degrees = drawing.fov_degrees,
                                    .position = drawing.camera_position,
                                    .rpy_degrees = drawing.camera_rpy_degrees,
-                                   .near = drawing.near});
+                                   .near = drawing.near,
+                                   .jitter = drawing.jitter});
   if (!camera) return tl::unexpected<Error>(camera.error());
   Result<WorldModels> models = WorldModels::from(world);
   if (!models) return tl::unexpected<Error>(models.error());

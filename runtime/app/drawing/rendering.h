@@ -15,6 +15,10 @@
 
 namespace galactic {
 
+/// The noise of those images that are drawn: what a policy sees and what is drawn beside it may be
+/// of different kinds.
+[[nodiscard]] ImageNoise noiseFor(const ImageNoise& noise, const RenderOptions& images);
+
 /// A renderer and the memory that its images go to.
 class ImageBatch {
  public:

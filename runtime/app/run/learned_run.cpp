@@ -18,12 +18,13 @@ namespace galactic {
 namespace {
 
 /// The camera that the policy in `pack` was trained with.
-CameraWish wishOf(const PolicyImage& image, const std::string& pack) {
+CameraWish wishOf(const PolicyImage& image, const CameraJitter& jitter, const std::string& pack) {
   return {.name = image.camera,
           .fov_degrees = image.fovDegrees(),
           .position = image.position,
           .rpy_degrees = image.rpy_degrees,
           .near = image.near,
+          .jitter = jitter,
           .options = {.camera = pack, .fov = pack, .position = pack, .rpy = pack, .near = pack}};
 }
 
@@ -33,7 +34,8 @@ class PolicyEyes {
   static Result<std::unique_ptr<PolicyEyes>> create(const PolicyImage& image, const World& world,
                                                     const BatchSimulator& simulator,
                                                     const RunOptions& run) {
-    const Result<ChosenCamera> camera = chooseCamera(world.robot(), wishOf(image, run.policy));
+    const Result<ChosenCamera> camera =
+        chooseCamera(world.robot(), wishOf(image, run.drawing.jitter, run.policy));
     if (!camera) return tl::unexpected<Error>(camera.error());
     Result<WorldModels> models = WorldModels::from(world);
     if (!models) return tl::unexpected<Error>(models.error());
@@ -46,6 +48,7 @@ class PolicyEyes {
     options.near = camera->near;
     options.backend = run.drawing.backend;
     options.device = run.drawing.device;
+    options.noise = noiseFor(run.drawing.noise, options);
     options.threads = run.simulation.threads;
     ASSIGN_OR_RETURN(eyes->images_,
                      ImageBatch::create(eyes->models_.library(), options, simulator.envCount()));
@@ -68,6 +71,24 @@ class PolicyEyes {
   std::optional<WorldViews> views_;
   std::optional<ImageBatch> images_;
 };
+
+/// Fails where noise is to be added to images that are drawn neither for the policy nor for people.
+Result<void> checkNoise(const OpenedPolicy& policy, const DrawingOptions& drawing) {
+  const std::optional<PolicyImage>& image = policy.needs.image;
+  const bool has_depth = drawing.hasDepth() || (image && image->depth);
+  const bool has_color = drawing.hasColor() || (image && image->color);
+  const auto refuse = [&](const char* images) {
+    return fail(
+        ErrorCode::kInvalidInput, policy.pack.where(),
+        fmt::format("this policy sees no {}, and nobody else does, but noise or jitter of it "
+                    "was asked for; leave that out, or add --render",
+                    images));
+  };
+  if (drawing.noise.changesDepth() && !has_depth) return refuse("depth");
+  if (drawing.noise.changesColor() && !has_color) return refuse("color");
+  if (drawing.jitter.isOn() && !has_depth && !has_color) return refuse("image");
+  return {};
+}
 
 /// The actions of a network, which sees what the simulator observes, and images of it.
 class NetworkPolicy final : public Policy {
@@ -130,6 +151,9 @@ Result<std::unique_ptr<Policy>> makeLearnedPolicy(const OpenedPolicy& policy, co
                              .threads = simulation.threads});
   if (!network) return tl::unexpected<Error>(network.error());
   std::unique_ptr<PolicyEyes> eyes;
+  if (Result<void> drawn = checkNoise(policy, options.drawing); !drawn) {
+    return tl::unexpected<Error>(drawn.error());
+  }
   if (policy.needs.image) {
     auto made = PolicyEyes::create(*policy.needs.image, world, simulator, options);
     if (!made) return tl::unexpected<Error>(made.error());

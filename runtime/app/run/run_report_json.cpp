@@ -22,6 +22,17 @@ void writeOptions(JsonWriter& json, const RunReport& report) {
     json.raw(option.name, option.is_word ? jsonString(option.value) : option.value);
   }
   json.end('}');
+  if (options.drawing.isNoisy()) {
+    json.begin("sensor_noise", '{');
+    const auto write = [&json](const auto& all, const auto& values) {
+      for (const auto& option : all) {
+        if (values.*option.value > 0) json.number(option.name, values.*option.value);
+      }
+    };
+    write(kImageNoiseOptions, options.drawing.noise);
+    write(kCameraJitterOptions, options.drawing.jitter);
+    json.end('}');
+  }
   json.begin("from_world", '[');
   for (const OptionText& option : report.world_task) {
     if (isInForce(option, options)) json.text("", option.name);
