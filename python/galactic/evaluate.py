@@ -164,7 +164,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     torch.set_num_threads(threads)
     world = galactic.World(options.world)
     settings = dataclasses.replace(
-        saved.settings,
+        saved.settings.without_noise(),
         envs=max(1, min(evaluation.MOST_ENVS, options.episodes or world.episodes)),
         halves=1,
         mini_batches=1,

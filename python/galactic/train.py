@@ -410,7 +410,7 @@ def _validation(
     if run.validation is None or not settings.validate_every:
         return None
     envs = min(settings.envs, evaluation.MOST_ENVS)
-    held_out = dataclasses.replace(settings, envs=envs, halves=1, mini_batches=1)
+    held_out = dataclasses.replace(settings.without_noise(), envs=envs, halves=1, mini_batches=1)
     homes = Homes(galactic.World(run.validation), held_out, threads, task=task)
     if homes.parts != trained.parts:
         raise galactic.Error(

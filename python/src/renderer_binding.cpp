@@ -89,10 +89,46 @@ constexpr Keyword kKeywords[] = {
     {"threads", [](CameraOptions& o, const py::handle& v) { o.render.threads = threadsOf(v); }},
 };
 
+/// What the keyword of an option is called.
+template <class Options>
+std::string keywordOf(const SensorOption<Options>& option) {
+  std::string name = option.name;
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
 std::vector<std::string> keywordNames() {
   std::vector<std::string> names;
   for (const auto& [name, take] : kKeywords) names.emplace_back(name);
+  for (const auto& option : kImageNoiseOptions) names.push_back(keywordOf(option));
+  for (const auto& option : kCameraJitterOptions) names.push_back(keywordOf(option));
   return names;
+}
+
+/// Gives `options` the value of a keyword. Returns whether it is that of one of `table`.
+template <std::size_t count, class Options>
+bool takeSensorOption(const std::array<SensorOption<Options>, count>& table,
+                      const std::string& keyword, const py::handle& value, Options& options) {
+  for (const SensorOption<Options>& option : table) {
+    if (keywordOf(option) != keyword) continue;
+    const double found = numberOf(keyword.c_str(), value);
+    options.*option.value = static_cast<float>(found);
+    if (isWithin(option, options.*option.value)) return true;
+    throw ErrorException{{ErrorCode::kInvalidInput, keyword,
+                          fmt::format("is {}, expected 0 to {}", found, option.most)}};
+  }
+  return false;
+}
+
+/// Whether it is a keyword, whose value `options` has then.
+bool takeKeyword(const std::string& keyword, const py::handle& value, CameraOptions& options) {
+  const auto* known = std::ranges::find(kKeywords, std::string_view(keyword), &Keyword::first);
+  if (known != std::end(kKeywords)) {
+    known->second(options, value);
+    return true;
+  }
+  return takeSensorOption(kImageNoiseOptions, keyword, value, options.render.noise) ||
+         takeSensorOption(kCameraJitterOptions, keyword, value, options.camera.jitter);
 }
 
 /// The keywords of Renderer, with their defaults.
@@ -104,12 +140,12 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
                                 .fov = "fov_degrees",
                                 .position = "position",
                                 .rpy = "rpy_degrees",
-                                .near = "near"}};
+                                .near = "near",
+                                .jitter = "camera_jitter",
+                                .jitter_degrees = "camera_jitter_degrees"}};
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
-    const auto* known = std::ranges::find(kKeywords, std::string_view(name), &Keyword::first);
-    if (known == std::end(kKeywords)) refuseKeyword(name, keywordNames());
-    known->second(options, value);
+    if (!takeKeyword(name, value, options)) refuseKeyword(name, keywordNames());
   }
   if (options.render.backend == RenderBackend::kSoft && !options.render.device.empty()) {
     throw ErrorException{
@@ -163,6 +199,13 @@ void bindRenderer(py::module_& module) {
       "which it is turned there, as in the [camera] of a robot's recipe; near, meters: what is\n"
       "nearer is not drawn, 0.01 to 100, or 0 for the camera's own; backend='auto', 'soft',\n"
       "'gl' or 'cuda'; device='', or an index; threads=0.\n\n"
+      "For images like those of real cameras, all 0 by default: depth_noise, the standard\n"
+      "deviation of depth at 1 m, meters, which grows with depth squared; depth_dropout, the\n"
+      "share of pixels without depth; color_noise, the standard deviation of each channel,\n"
+      "levels of 255; light_jitter, by which share an episode may be brighter or darker;\n"
+      "camera_jitter, meters, and camera_jitter_degrees, how far the camera may be from its\n"
+      "place in an episode. They follow from seed, env, episode and step: an image that is drawn\n"
+      "twice is the same.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
       "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
@@ -189,7 +232,7 @@ void bindRenderer(py::module_& module) {
       "stream: the number of the CUDA stream that uses them, as torch.cuda.current_stream()\n"
       "has it in cuda_stream; 0 is the default stream. What it was told to do with earlier\n"
       "images is done before they change.\n\n"
-      "Error (UNSUPPORTED) with the soft backend and without CUDA.");
+      "Error (UNSUPPORTED) with the soft backend, without CUDA, and with noise.");
   type.def_property_readonly("shapes", &Renderer::shapes,
                              "Of one env's images, by name: shape and dtype.");
   type.def_property_readonly(

@@ -141,6 +141,21 @@ TEST_F(PolicyCli, SeesFromWhereThePolicyWasTrained) {
   EXPECT_EQ(std::set<std::string>(views.begin(), views.end()).size(), views.size());
 }
 
+TEST_F(PolicyCli, SeesNoiseAndJitterWhereTheyAreAskedFor) {
+  const auto seen = [&](std::vector<std::string> noise) {
+    noise.insert(noise.end(), {"--policy", "seeing.pack", "--backend", "soft", "--deterministic"});
+    return recordingOf(noise);
+  };
+  const std::string plain = seen({});
+  const std::set<std::string> all{plain, seen({"--depth-noise", "0.1"}),
+                                  seen({"--color-noise", "40"}), seen({"--light-jitter", "0.8"}),
+                                  seen({"--camera-jitter", "0.2"})};
+  EXPECT_EQ(all.size(), 5U);
+  EXPECT_TRUE(seen({"--depth-noise", "0"}) == plain);
+  // Also beside images for people of another kind.
+  EXPECT_TRUE(all.contains(seen({"--color-noise", "40", "--render", "depth", "--size", "16"})));
+}
+
 TEST_F(PolicyCli, DrawsActionsOrTakesTheLikeliest) {
   const std::string sampled = recordingOf({"--policy", "blind.pack"});
   EXPECT_TRUE(recordingOf({"--policy", "blind.pack", "--sampled"}) == sampled);
@@ -220,6 +235,12 @@ TEST_F(PolicyCli, SaysWhatDoesNotFit) {
        3,
        "reads 3 numbers of the observation \"joints\", and the simulation has 4"},
       {{"--policy", "nose.pack", "--backend", "soft"}, 3, "found no link nose in helper"},
+      {{"--policy", "blind.pack", "--depth-noise", "0.1"},
+       3,
+       "blind.pack: this policy sees no depth, and nobody else does, but noise or jitter of it was "
+       "asked for; leave that out, or add --render"},
+      {{"--policy", "blind.pack", "--light-jitter", "0.1"}, 3, "this policy sees no color, and"},
+      {{"--policy", "blind.pack", "--camera-jitter", "0.1"}, 3, "this policy sees no image, and"},
       {{"--policy", "world.pack"}, 3, "is a pack of kind WRLD, expected a policy (PLCY)"},
       {{"--policy", "text.pack"}, 3, "has 14 bytes, a pack has at least 64"},
       {{"--policy", "none.pack"}, 2, "none.pack"},

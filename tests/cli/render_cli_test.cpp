@@ -163,6 +163,64 @@ TEST_F(RenderCli, DrawingDoesNotChangeTheRun) {
   EXPECT_THAT(content("replay.png"), StartsWith("\x89PNG"));
 }
 
+TEST_F(RenderCli, AddsNoiseThatDependsOnSeedEnvEpisodeAndStepAlone) {
+  const std::vector<std::string> noise{"--depth-noise",   "0.02", "--depth-dropout",         "0.05",
+                                       "--color-noise",   "8",    "--light-jitter",          "0.4",
+                                       "--camera-jitter", "0.02", "--camera-jitter-degrees", "3"};
+  const auto drawn = [&](const std::string& folder, const std::vector<std::string>& batch,
+                         bool is_noisy) {
+    std::vector<std::string> all{
+        "world.pack", "--backend",      "soft",     "--steps",      "9",
+        "--render",   "rgbds",          "--size",   "24x16",        "--frames",
+        folder,       "--frame-every",  "8",        "--frame-envs", "2",
+        "--report",   folder + ".json", "--record", folder + ".rec"};
+    all.insert(all.end(), batch.begin(), batch.end());
+    if (is_noisy) all.insert(all.end(), noise.begin(), noise.end());
+    const ProgramRun result = runBare(all);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  };
+  drawn("plain", {"--envs", "3"}, false);
+  drawn("noisy", {"--envs", "3", "--threads", "1"}, true);
+  drawn("larger", {"--envs", "7", "--threads", "3"}, true);
+  drawn("seeded", {"--envs", "3", "--seed", "2"}, true);
+  EXPECT_EQ(content("plain.rec"), content("noisy.rec")) << "noise changes nothing in the run";
+  for (const std::string& name : files("noisy")) {
+    EXPECT_EQ(content("noisy/" + name), content("larger/" + name)) << name;
+    if (name == "semantics.json") continue;
+    EXPECT_NE(content("noisy/" + name), content("plain/" + name)) << name;
+    EXPECT_NE(content("noisy/" + name), content("seeded/" + name)) << name;
+  }
+  EXPECT_FALSE(json::parse(content("plain.json")).contains("sensor_noise"));
+  const json told = json::parse(content("noisy.json"))["sensor_noise"];
+  EXPECT_EQ(told.size(), 6U);
+  EXPECT_EQ(told["depth-noise"], 0.02);
+  EXPECT_EQ(told["camera-jitter-degrees"], 3);
+}
+
+TEST_F(RenderCli, RefusesNoiseThatNobodyWouldSee) {
+  struct Refusal {
+    std::vector<std::string> arguments;
+    std::string message;
+  };
+  const std::vector<Refusal> refusals{
+      {{"--render", "rgb", "--depth-noise", "0.1"},
+       "--depth-noise applies to depth only; draw it with --render rgbd, or leave --depth-noise "
+       "out"},
+      {{"--render", "depth", "--light-jitter", "0.1"},
+       "--light-jitter applies to color only; draw it with --render rgbd, or leave --light-jitter "
+       "out"},
+      {{"--depth-dropout", "0.1"}, "--depth-dropout applies to rendering only; add --render"},
+      {{"--render", "rgb", "--color-noise", "300"},
+       "--color-noise: found 300, expected a number from 0 to 255"}};
+  for (const Refusal& refusal : refusals) {
+    std::vector<std::string> all{"world.pack"};
+    all.insert(all.end(), refusal.arguments.begin(), refusal.arguments.end());
+    const ProgramRun result = runBare(all);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.err, "galactic-run: command line: " + refusal.message + "; see --help\n");
+  }
+}
+
 TEST_F(RenderCli, SendsAVideoToFfmpeg) {
   const auto script =
       folder_.write("bin/ffmpeg", "#!/bin/sh\nfor last; do :; done\ncat > \"$last\"\n");

@@ -49,6 +49,16 @@ def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None
     )
 
 
+# Settings that change colors, and all that make the images of training unlike those that policies are
+# judged by.
+COLOR_NOISE = ("color_noise", "light_jitter")
+CAMERA_NOISE = (
+    "depth_noise",
+    "depth_dropout",
+    *COLOR_NOISE,
+    "camera_jitter",
+    "camera_jitter_degrees",
+)
 # Options of galactic.Renderer, and the settings that they are taken from.
 CAMERA = {
     "camera": "camera",
@@ -58,6 +68,7 @@ CAMERA = {
     "near": "near",
     "width": "image_size",
     "height": "image_size",
+    **{name: name for name in CAMERA_NOISE},
 }
 
 
@@ -145,6 +156,40 @@ class Settings:
         f"height and width of the images, pixels; the paper's networks are made for {IMAGE_SIZE}",
         low=SMALLEST_IMAGE,
         high=512,
+    )
+    depth_noise: float = _setting(
+        0.0,
+        "Network",
+        "standard deviation of the depth that the network sees, at 1 m, meters; it grows with depth squared",
+        low=0.0,
+        high=1.0,
+    )
+    depth_dropout: float = _setting(
+        0.0, "Network", "share of the pixels without depth", low=0.0, high=1.0
+    )
+    color_noise: float = _setting(
+        0.0,
+        "Network",
+        "standard deviation of each channel of color, levels of 255",
+        low=0.0,
+        high=255.0,
+    )
+    light_jitter: float = _setting(
+        0.0,
+        "Network",
+        "colors of an episode are multiplied by a number from 1 - this to 1 + this",
+        low=0.0,
+        high=1.0,
+    )
+    camera_jitter: float = _setting(
+        0.0,
+        "Network",
+        "how far the camera may be from its place in an episode, along each of its axes, meters",
+        low=0.0,
+        high=1.0,
+    )
+    camera_jitter_degrees: float = _setting(
+        0.0, "Network", "the same of its roll, pitch and yaw, degrees", low=0.0, high=180.0
     )
     recurrent: bool = _setting(
         False,
@@ -378,6 +423,12 @@ class Settings:
                     f"{field.name} applies only to networks that see images, and the network "
                     f"{self.network} does not; choose another one, such as depth"
                 )
+        for name in COLOR_NOISE:
+            if getattr(self, name) and "rgb" not in SIGHT[self.network]:
+                raise SettingsError(
+                    f"{name} applies only to networks that see colors, and the network {self.network} "
+                    "does not; choose another one, such as simple_cnn"
+                )
 
     def require_pace(self) -> None:
         """Raises SettingsError where nothing could be measured that paces the learning rate. Not so with
@@ -407,6 +458,10 @@ class Settings:
         if self.final_log_std >= 2.0:
             return 2.0
         return _between(self.initial_log_std, self.final_log_std, (progress - 0.2) / 0.8)
+
+    def without_noise(self) -> "Settings":
+        """The same with images as they are, which policies are judged by."""
+        return dataclasses.replace(self, **{name: 0.0 for name in CAMERA_NOISE})
 
     def to_dict(self) -> dict[str, Any]:
         return dataclasses.asdict(self)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -235,6 +236,108 @@ TEST_F(WorldViewsOfAHome, ACameraOfTheWorldStaysWhereItIs) {
   EXPECT_EQ(difference(views.views()[2].camera.world_from_camera,
                        rigidTransform(mount.frame_from_camera)),
             0);
+}
+
+TEST_F(WorldViewsOfAHome, SensorsHaveNumbersOfSeedEnvEpisodeAndStep) {
+  for (std::uint32_t n = 0; n < 3; ++n) {
+    for (std::uint32_t env = 0; env < kEnvs; ++env) {
+      const EnvMoment moment = simulator_->envMoment(env);
+      EXPECT_EQ(moment.seed, simulator_->options().seed);
+      EXPECT_EQ(moment.env, env);
+      EXPECT_EQ(moment.episode, 1U);
+      EXPECT_EQ(moment.step, n);
+    }
+    step();
+  }
+  const std::vector<std::byte> saved = simulator_->saveState();
+  simulator_->reset(
+      std::vector<std::int32_t>{BatchSimulator::kNextEpisode, 0, BatchSimulator::kStays});
+  EXPECT_EQ(simulator_->envMoment(0).episode, 2U);
+  EXPECT_EQ(simulator_->envMoment(0).step, 0U);
+  EXPECT_EQ(simulator_->envMoment(1).episode, 2U);
+  EXPECT_EQ(simulator_->envMoment(2).episode, 1U);
+  EXPECT_EQ(simulator_->envMoment(2).step, 3U);
+  ASSERT_TRUE(simulator_->restoreState(saved));
+  EXPECT_EQ(simulator_->envMoment(0).episode, 1U);
+  EXPECT_EQ(simulator_->envMoment(0).step, 3U);
+  simulator_->restart(99);
+  EXPECT_EQ(simulator_->envMoment(2).seed, 99U);
+  EXPECT_EQ(simulator_->envMoment(2).step, 0U);
+  SimulationOptions options = simulator_->options();
+  options.rank = 2;
+  options.ranks = 3;
+  const Result<BatchSimulator> third = BatchSimulator::create(*world_, options);
+  ASSERT_TRUE(third);
+  EXPECT_EQ(third->envMoment(1).env, 2 * kEnvs + 1);
+}
+
+TEST_F(WorldViewsOfAHome, WithJitterTheCameraIsElsewhereInEachEpisodeWithinLimits) {
+  constexpr float kMeters = 0.05F;
+  constexpr float kDegrees = 4;
+  CameraMount mount{.frame = CameraFrame::kLink,
+                    .link = 4,
+                    .frame_from_camera = {{0.01F, 0.02F, 0.03F}, test::yaw(0.7)}};
+  WorldViews plain(*world_, *models_, *simulator_, mount);
+  mount.jitter = {.camera_jitter = kMeters, .camera_jitter_degrees = kDegrees};
+  WorldViews jittered(*world_, *models_, *simulator_, mount);
+  mount.number = 1;
+  WorldViews of_another_camera(*world_, *models_, *simulator_, mount);
+  const auto offset = [&](const WorldViews& views, std::size_t env) {
+    return inverse(plain.views()[env].camera.world_from_camera) *
+           views.views()[env].camera.world_from_camera;
+  };
+  const auto update = [&] {
+    for (WorldViews* views : {&plain, &jittered, &of_another_camera}) views->update(*simulator_);
+  };
+  // Of places and angles: least, most and mean share of the limit.
+  std::array<float, 6> least{};
+  std::array<float, 6> most{};
+  std::array<float, 6> sum{};
+  constexpr std::uint64_t kSeeds = 200;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    simulator_->restart(seed);
+    update();
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const RigidTransform moved = offset(jittered, env);
+      ASSERT_GT(difference(moved, offset(of_another_camera, env)), 1e-4F);
+      // Yaw turns ahead to the left, pitch downwards; roll turns up to the right.
+      const float yaw = std::atan2(-moved.x_axis.z, moved.x_axis.x);
+      const float pitch = std::asin(-moved.x_axis.y);
+      const float roll = std::atan2(moved.z_axis.y, moved.y_axis.y);
+      const float radians = kDegrees * 3.14159265F / 180;
+      const std::array<float, 6> shares{moved.origin.x / kMeters, moved.origin.y / kMeters,
+                                        moved.origin.z / kMeters, roll / radians,
+                                        pitch / radians,          yaw / radians};
+      for (std::size_t n = 0; n < shares.size(); ++n) {
+        least.at(n) = std::min(least.at(n), shares.at(n));
+        most.at(n) = std::max(most.at(n), shares.at(n));
+        sum.at(n) += shares.at(n);
+      }
+    }
+  }
+  constexpr float kRounding = 1e-3F;
+  for (std::size_t n = 0; n < 6; ++n) {
+    EXPECT_GE(least.at(n), -1 - kRounding);
+    EXPECT_LT(least.at(n), -0.9F) << "part " << n;
+    EXPECT_GT(most.at(n), 0.9F) << "part " << n;
+    EXPECT_LE(most.at(n), 1 + kRounding);
+    // Four standard deviations of the mean of so many uniform numbers.
+    EXPECT_NEAR(sum.at(n) / (kSeeds * kEnvs), 0, 4 * std::sqrt(1.0F / 3 / (kSeeds * kEnvs)));
+  }
+  // The same in all of an episode, and as soon as that is begun again.
+  const std::vector<std::byte> saved = simulator_->saveState();
+  const RigidTransform first = offset(jittered, 0);
+  for (int n = 0; n < 5; ++n) {
+    step();
+    update();
+    EXPECT_LT(difference(offset(jittered, 0), first), kPlaceTolerance);
+  }
+  simulator_->reset(std::vector<std::int32_t>(kEnvs, BatchSimulator::kNextEpisode));
+  update();
+  EXPECT_GT(difference(offset(jittered, 0), first), 1e-3F);
+  ASSERT_TRUE(simulator_->restoreState(saved));
+  update();
+  EXPECT_EQ(difference(offset(jittered, 0), first), 0);
 }
 
 TEST_F(WorldViewsOfAHome, AViewHoldsTheSceneItsObjectsAndTheLinksThatShowSomething) {

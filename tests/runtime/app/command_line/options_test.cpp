@@ -265,7 +265,15 @@ TEST(RunCommandLine, DrawsWhenTold) {
                                      "0.2",
                                      "--camera-position",
                                      "-0.1,0,0.2",
-                                     "--camera-rpy=0,-20,90"})
+                                     "--camera-rpy=0,-20,90",
+                                     "--depth-noise",
+                                     "0.01",
+                                     "--depth-dropout",
+                                     "0.02",
+                                     "--camera-jitter",
+                                     "0.03",
+                                     "--camera-jitter-degrees",
+                                     "4"})
                                  .drawing;
   EXPECT_FALSE(all.hasColor());
   EXPECT_TRUE(all.hasDepth() && all.makesPictures());
@@ -277,7 +285,21 @@ TEST(RunCommandLine, DrawsWhenTold) {
   EXPECT_EQ(all.near, 0.2F);
   EXPECT_EQ(all.camera_position, (std::array{-0.1F, 0.0F, 0.2F}));
   EXPECT_EQ(all.camera_rpy_degrees, (std::array{0.0F, -20.0F, 90.0F}));
-  EXPECT_EQ(parsed({"--render", "rgb", "--size", "64"}).drawing.height, 64U);
+  EXPECT_TRUE(all.isNoisy());
+  EXPECT_EQ(all.noise.depth_noise, 0.01F);
+  EXPECT_EQ(all.noise.depth_dropout, 0.02F);
+  EXPECT_EQ(all.jitter.camera_jitter, 0.03F);
+  EXPECT_EQ(all.jitter.camera_jitter_degrees, 4);
+  const DrawingOptions color =
+      parsed({"--render", "rgb", "--size", "64", "--color-noise", "5", "--light-jitter", "0.3"})
+          .drawing;
+  EXPECT_EQ(color.height, 64U);
+  EXPECT_EQ(color.noise.color_noise, 5);
+  EXPECT_EQ(color.noise.light_jitter, 0.3F);
+  EXPECT_FALSE(plain.drawing.isNoisy());
+  // What a policy sees may be noisy where nothing else is drawn.
+  EXPECT_TRUE(parsed({"--policy", "eyes.pack", "--depth-noise", "0.1", "--camera-jitter", "0.1"})
+                  .drawing.isNoisy());
 }
 
 TEST(RunCommandLine, RefusesWhatMakesNoSense) {
@@ -295,6 +317,20 @@ TEST(RunCommandLine, RefusesWhatMakesNoSense) {
       {"--render", "rgb", "--camera-position", "1,2,3,4"},
       {"--render", "rgb", "--camera-rpy", "0,0,361"},
       {"--camera-rpy", "0,0,90"},
+      {"--render", "depth", "--depth-noise", "1.1"},
+      {"--render", "depth", "--depth-noise", "nan"},
+      {"--render", "depth", "--depth-dropout", "-0.1"},
+      {"--render", "rgb", "--color-noise", "256"},
+      {"--render", "rgb", "--light-jitter", "2"},
+      {"--render", "rgb", "--camera-jitter", "1.1"},
+      {"--render", "rgb", "--camera-jitter-degrees", "181"},
+      {"--render", "rgb", "--depth-noise", "0.1"},
+      {"--render", "rgb", "--depth-dropout", "0.1"},
+      {"--render", "depth", "--color-noise", "3"},
+      {"--render", "depth", "--light-jitter", "0.1"},
+      {"--depth-noise", "0.1"},
+      {"--camera-jitter", "0.1"},
+      {"--policy", "eyes.pack", "--fov", "70"},
       {"--render", "rgb", "--debug-view"},
       {"--render", "rgb", "--frame-every", "5"},
       {"--render", "rgb", "--frames", "f", "--debug-camera", "top"},

@@ -580,6 +580,37 @@ TEST(CameraChoice, RefusesPlacesThatAreNone) {
   }
 }
 
+TEST(CameraChoice, NumbersCamerasByTheirPlaces) {
+  const test::SmallHome home;
+  const auto number = [&](const CameraWish& wish) {
+    return chooseCamera(home.world().robot(), wish).value().mount.number;
+  };
+  const std::uint64_t hand = number({.name = "hand"});
+  EXPECT_EQ(number({.name = "hand",
+                    .fov_degrees = 50,
+                    .position = {0, -0.0F, 0},
+                    .near = 0.2F,
+                    .jitter = {0.1F, 2}}),
+            hand);
+  EXPECT_NE(number({.name = "head"}), hand);
+  EXPECT_NE(number({.name = "hand", .position = {0.1F, 0, 0}}), hand);
+  EXPECT_NE(number({.name = "hand", .rpy_degrees = {0.1F, 0, 0}}), hand);
+}
+
+TEST(CameraChoice, RefusesJitterOutOfRange) {
+  const test::SmallHome home;
+  const auto refusal = [&](const CameraJitter& jitter) {
+    const auto none = chooseCamera(home.world().robot(), {.name = "hand", .jitter = jitter});
+    return none ? "" : none.error().where + ": " + none.error().message;
+  };
+  EXPECT_EQ(refusal({.camera_jitter = 1, .camera_jitter_degrees = 180}), "");
+  EXPECT_EQ(refusal({.camera_jitter = -0.5F}), "--camera-jitter: found -0.5 m, expected 0 to 1");
+  EXPECT_EQ(refusal({.camera_jitter_degrees = 181}),
+            "--camera-jitter-degrees: found 181 degrees, expected 0 to 180");
+  EXPECT_EQ(refusal({.camera_jitter_degrees = std::nanf("")}),
+            "--camera-jitter-degrees: found nan degrees, expected 0 to 180");
+}
+
 TEST(CameraChoice, RefusesFieldsOfViewThatShowNothing) {
   const test::SmallHome home;
   const Robot& robot = home.world().robot();
