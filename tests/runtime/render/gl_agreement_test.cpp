@@ -51,5 +51,42 @@ TEST(BackendAgreement, ImagesOfTheOpenGlDriverAndOfTheRasterizerDifferLessThanCa
   EXPECT_LT(share(drawn), 0.9);
 }
 
+TEST(BackendAgreement, TheSameNoiseIsAddedToTheImagesOfBoth) {
+  GALACTIC_SKIP_WITHOUT_GL();
+  GlHome home;
+  std::vector<RenderView> views = home.views(6);
+  for (std::size_t n = 0; n < views.size(); ++n) {
+    views[n].noise.moment.env = static_cast<std::uint32_t>(n);
+  }
+  RenderOptions options = glOptions();
+  options.noise = {.depth_noise = 0.01F, .depth_dropout = 0.2F, .color_noise = 8};
+  const RenderImages gl = renderViews(home.library(), options, views);
+  RenderOptions plain = options;
+  plain.noise = {};
+  const RenderImages gl_plain = renderViews(home.library(), plain, views);
+  plain.backend = RenderBackend::kSoft;
+  options.backend = RenderBackend::kSoft;
+  const RenderImages soft = renderViews(home.library(), options, views);
+  const RenderImages soft_plain = renderViews(home.library(), plain, views);
+  std::size_t compared = 0;
+  std::size_t dropped = 0;
+  for (std::size_t i = 0; i < gl.depth.size(); ++i) {
+    if (gl_plain.depth[i] == 0 || soft_plain.depth[i] == 0) continue;
+    ++compared;
+    dropped += gl.depth[i] == 0 ? 1U : 0U;
+    ASSERT_EQ(gl.depth[i] == 0, soft.depth[i] == 0);
+    if (gl.depth[i] == 0 || std::abs(gl_plain.depth[i] - soft_plain.depth[i]) > 1e-3F) continue;
+    // A millimeter of depth changes noise by little, too.
+    ASSERT_NEAR(gl.depth[i], soft.depth[i], 2e-3F);
+  }
+  EXPECT_GT(dropped, compared / 10);
+  EXPECT_LT(dropped, compared / 3);
+  for (std::size_t i = 0; i < gl.color.size(); ++i) {
+    if (gl_plain.color[i] == soft_plain.color[i]) {
+      ASSERT_EQ(gl.color[i], soft.color[i]);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace galactic::test::gl_agreement_test
