@@ -1,0 +1,124 @@
+"""Policies that see through noisy cameras: what they are trained with, and judged by."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import os
+import pathlib
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+import galactic
+from galactic import evaluate, export, train
+from galactic.learning import checkpoint
+from galactic.learning.homes import Homes
+from galactic.learning.networks import PolicyShape
+from galactic.learning.presets import preset
+from galactic.learning.reports.curves import read_curves
+from galactic.learning.settings import CAMERA_NOISE, Settings, SettingsError
+
+WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
+WORLD, HELD_OUT = WORLDS / "world.pack", WORLDS / "held_out.pack"
+NOISE = {"depth_noise": 0.05, "depth_dropout": 0.2, "camera_jitter": 0.05}
+
+needs_world = pytest.mark.skipif(
+    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
+)
+
+
+def of_depth(**more: Any) -> Settings:
+    settings = {"network": "depth", "image_size": 36, "width": 16, "envs": 6, "halves": 1}
+    return Settings(**{**settings, "mini_batches": 1, "simulation": "task=pick", **more})
+
+
+def call(program: Any, *arguments: object) -> None:
+    said = io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stderr(said):
+        patch.setenv("RANK", "0")
+        patch.setenv("WORLD_SIZE", "1")
+        assert program.main(list(map(str, arguments))) == 0, said.getvalue()
+
+
+def untrained(settings: Settings) -> checkpoint.SavedPolicy:
+    """A policy that moves about, whatever the settings of its camera."""
+    homes = Homes(galactic.World(WORLD), settings, 1)
+    shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
+    torch.manual_seed(3)
+    policy = checkpoint.new_policy(settings, shape)
+    policy.action.linear.weight.data.normal_(0.0, 0.2)
+    return checkpoint.SavedPolicy(policy, settings, shape, homes.parts, 0, None)
+
+
+def test_noise_is_a_setting_of_networks_that_see_what_it_changes() -> None:
+    for name in CAMERA_NOISE:
+        with pytest.raises(
+            SettingsError, match=f"^{name} applies only to networks that see images"
+        ):
+            preset("quick", **{name: 0.1})
+        noisy = preset("quick", network="simple_cnn", **{name: 0.1})
+        assert getattr(noisy, name) == 0.1
+        assert noisy.without_noise() == preset("quick", network="simple_cnn")
+        with pytest.raises(SettingsError, match=f"{name}: found -0.1, expected a number from 0"):
+            preset("quick", network="simple_cnn", **{name: -0.1})
+    for name in ("color_noise", "light_jitter"):
+        with pytest.raises(
+            SettingsError, match=f"^{name} applies only to networks that see colors"
+        ):
+            of_depth(**{name: 0.1})
+
+
+@needs_world
+def test_a_network_is_trained_with_the_noise_of_its_settings() -> None:
+    def seen(settings: Settings) -> Any:
+        homes = Homes(galactic.World(WORLD), settings, 1)
+        return homes.env.reset()[0], homes.env.renderers[0].world_from_camera
+
+    plain, cameras = seen(of_depth())
+    noisy, jittered = seen(of_depth(**NOISE))
+    np.testing.assert_array_equal(noisy["state"], plain["state"])
+    # Of what it sees, a fifth has no depth.
+    assert abs((noisy["depth"] == 0).mean() - 0.2) < 0.05 and (plain["depth"] > 0).mean() > 0.95
+    moved = np.abs(jittered - cameras)[:, :3, 3]
+    assert 0.01 < moved.max() < 0.1
+
+
+@needs_world
+def test_a_policy_is_evaluated_without_the_noise_of_its_training(tmp_path: pathlib.Path) -> None:
+    reports = []
+    for number, settings in enumerate((of_depth(), of_depth(**NOISE))):
+        policy, report = tmp_path / f"{number}.pt", tmp_path / f"{number}.json"
+        checkpoint.save_policy(untrained(settings), policy)
+        call(evaluate, policy, HELD_OUT, "--episodes", 6, "--report", report)
+        reports.append(json.loads(report.read_text(encoding="utf-8"))["each"])
+    assert reports[0] == reports[1]
+    # And so it is played.
+    pack = tmp_path / "policy.pack"
+    call(export, tmp_path / "1.pt", "-o", pack)
+    images = galactic.LearnedPolicy(pack, 2).images
+    assert images is not None and not set(CAMERA_NOISE) & set(images)
+    assert b"depth-noise" in pack.read_bytes(), "what it was trained with stands in the pack"
+
+
+@needs_world
+def test_a_run_with_noise_goes_on_as_if_it_had_not_been_paused(tmp_path: pathlib.Path) -> None:
+    words = [WORLD, "--preset", "quick", "--network", "depth", "--image-size", 36, "--ranks", 1]
+    words += ["--envs", 8, "--horizon", 8, "--log-every", 0, "--steps", 4 * 64]
+    words += ["--simulation", "task=pick episode-steps=6", "--validation", HELD_OUT]
+    words += ["--validation-episodes", 4, "--validate-every", 2 * 64]
+    noise = ["--depth-noise", 0.05, "--depth-dropout", 0.2, "--camera-jitter-degrees", 3]
+    whole, paused, plain = (tmp_path / name for name in ("whole", "paused", "plain"))
+    call(train, "-o", whole, *words, *noise)
+    call(train, "-o", paused, *words, *noise, "--pause-at", 2 * 64)
+    call(train, "-o", paused, "--resume")
+    call(train, "-o", plain, *words)
+
+    def curve(folder: pathlib.Path) -> Any:
+        rows = read_curves(folder / "curves.csv")
+        return [{k: v for k, v in row.items() if k not in ("seconds", "sps")} for row in rows]
+
+    assert curve(whole) == curve(paused) != curve(plain)
