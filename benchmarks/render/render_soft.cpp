@@ -129,6 +129,20 @@ void softDepth(benchmark::State& state) {
   drawSoft(state, options);
 }
 
+/// The differences to `soft` and `softDepth` are the cost of noise.
+void softNoise(benchmark::State& state) {
+  RenderOptions options = softOptions(1);
+  options.noise = {
+      .depth_noise = 0.01F, .depth_dropout = 0.02F, .color_noise = 5, .light_jitter = 0.2F};
+  drawSoft(state, options);
+}
+void softDepthNoise(benchmark::State& state) {
+  RenderOptions options = softOptions(1);
+  options.color = ColorFormat::kNone;
+  options.noise = {.depth_noise = 0.01F, .depth_dropout = 0.02F};
+  drawSoft(state, options);
+}
+
 void softWithoutCulling(benchmark::State& state) {
   RenderOptions options = softOptions(1);
   options.culling = false;
@@ -153,6 +167,8 @@ void plain(benchmark::State& state) {
 BENCHMARK(plain)->Arg(32)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(soft)->Arg(32)->Arg(128)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(softDepth)->Arg(32)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK(softNoise)->Arg(32)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK(softDepthNoise)->Arg(32)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(softWithoutCulling)->Arg(32)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 BENCHMARK(softTwoThreads)->Arg(128)->Unit(benchmark::kMillisecond)->UseRealTime();
 

@@ -77,14 +77,14 @@ inline WordLanes noisyColor(const ColorNoise& noise, WordLanes color, std::size_
 /// Eight pixels, and the byte behind the last one, which stays as it is.
 inline void addToBlock(const ColorNoise& noise, std::uint8_t* color, std::uint32_t channels,
                        std::size_t pixel) {
-  std::uint32_t words[kLanes];
-  for (std::uint32_t n = 0; n < kLanes; ++n) {
-    __builtin_memcpy(words + n, color + std::size_t{channels} * n, sizeof(std::uint32_t));
-  }
-  store(words, noisyColor(noise, load<WordLanes>(words), pixel));
+  const auto word = [&](std::uint32_t n) {
+    return load<std::uint32_t>(color + std::size_t{channels} * n);
+  };
+  const WordLanes before{word(0), word(1), word(2), word(3), word(4), word(5), word(6), word(7)};
+  const WordLanes words = noisyColor(noise, before, pixel);
   // In this order: with three channels, the highest byte of a word is the next pixel's first.
   for (std::uint32_t n = 0; n < kLanes; ++n) {
-    __builtin_memcpy(color + std::size_t{channels} * n, words + n, sizeof(std::uint32_t));
+    store(color + std::size_t{channels} * n, words[n]);
   }
 }
 
