@@ -122,7 +122,7 @@ struct RenderView {
   std::span<const AttachedModel> attached = {};
   /// world_from_body.
   std::span<const RigidTransform> bodies = {};
-  /// Of RenderOptions::noise.
+  /// What RenderOptions::noise follows from.
   NoiseSource noise = {};
 };
 

@@ -4,14 +4,14 @@
 
 namespace galactic {
 
-/// Of one env, what the random numbers of its sensors follow from: the same moment, the same
-/// numbers, whatever else is in the batch.
+/// What the random numbers of an env's sensors follow from: the same moment, the same numbers,
+/// whatever else is in the batch.
 struct EnvMoment {
   /// SimulationOptions::seed, or that of the last restart.
   std::uint64_t seed = 0;
-  /// Among the envs of all ranks.
+  /// Number of the env among those of all ranks.
   std::uint32_t env = 0;
-  /// Done in the episode.
+  /// Steps done in the episode.
   std::uint32_t step = 0;
   /// How many episodes the env has begun.
   std::uint64_t episode = 0;
@@ -34,12 +34,12 @@ struct ImageNoise {
   [[nodiscard]] constexpr bool changesColor() const { return color_noise > 0 || light_jitter > 0; }
 };
 
-/// How far a camera is from where it should be mounted, another way in each episode. Off by
+/// How far a camera may be from where it should be mounted, elsewhere in each episode. Off by
 /// default.
 struct CameraJitter {
   /// Either way along each of the camera's axes, meters.
   float camera_jitter = 0;
-  /// Either way of each of roll, pitch and yaw.
+  /// Either way in roll, pitch and yaw, degrees.
   float camera_jitter_degrees = 0;
 
   [[nodiscard]] constexpr bool isOn() const {

@@ -36,7 +36,7 @@ struct CameraMount {
   /// For kBase: the camera turns about the robot, or comes nearer, where something of the scene
   /// stands between the two, as the column grids can tell.
   bool keeps_sight = false;
-  /// Where it is instead, by episode.
+  /// How far it may be from there.
   CameraJitter jitter = {};
   /// NoiseSource::camera: cameras with the same number have the same jitter and noise.
   std::uint64_t number = 0;
@@ -54,6 +54,7 @@ class MountedCamera {
   /// `moment`: its BatchSimulator::envMoment().
   [[nodiscard]] RenderCamera at(std::span<const RigidTransform> bodies, std::uint32_t scene,
                                 const EnvMoment& moment) const noexcept;
+  /// CameraMount::number.
   [[nodiscard]] std::uint64_t number() const { return number_; }
 
  private:
@@ -146,7 +147,7 @@ struct CameraWish {
   /// Meters in front of it that are cut off, kLeastNear to kMostNear; 0: what belongs to the
   /// camera.
   float near = 0;
-  /// Of where it is then.
+  /// How far it may be from there.
   CameraJitter jitter = {};
   CameraOptionNames options = {};
 };
