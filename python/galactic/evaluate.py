@@ -56,6 +56,11 @@ def make_parser() -> argparse.ArgumentParser:
         help="number of threads; 0: one per processor (0)",
     )
     parser.add_argument(
+        "--camera-noise",
+        action="store_true",
+        help="let it see with the noise and jitter of its training, not images as they are",
+    )
+    parser.add_argument(
         "--report", type=named_path, metavar="FILE.json", help="write the report to this file"
     )
     shown = parser.add_argument_group("Pictures of successes and failures, from behind the robot")
@@ -164,7 +169,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     torch.set_num_threads(threads)
     world = galactic.World(options.world)
     settings = dataclasses.replace(
-        saved.settings.without_noise(),
+        _seen_with(options, saved.settings),
         envs=max(1, min(evaluation.MOST_ENVS, options.episodes or world.episodes)),
         halves=1,
         mini_batches=1,
@@ -198,6 +203,7 @@ def _evaluate(options: argparse.Namespace) -> int:
             "trained_steps": saved.steps,
             "deterministic": options.deterministic,
             "seed": options.seed,
+            "camera_noise": options.camera_noise,
             **({"task": options.task} if options.task else {}),
             **summary,
             **({"dynamics": there} if there else {}),
@@ -213,6 +219,17 @@ def _evaluate(options: argparse.Namespace) -> int:
     if not is_told:
         raise lost_output()
     return OK
+
+
+def _seen_with(options: argparse.Namespace, settings: Settings) -> Settings:
+    """With the noise of the training, if that was asked for, or without."""
+    plain = settings.without_noise()
+    if options.camera_noise and plain == settings:
+        raise SettingsError(
+            f"--camera-noise: {options.policy} was trained without noise; leave it out, or play the "
+            "policy's pack with galactic-run --depth-noise and the like"
+        )
+    return settings if options.camera_noise else plain
 
 
 def _task(options: argparse.Namespace, settings: Settings) -> Optional[own_tasks.MakeTask]:

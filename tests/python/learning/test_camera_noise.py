@@ -96,6 +96,13 @@ def test_a_policy_is_evaluated_without_the_noise_of_its_training(tmp_path: pathl
         call(evaluate, policy, HELD_OUT, "--episodes", 6, "--report", report)
         reports.append(json.loads(report.read_text(encoding="utf-8"))["each"])
     assert reports[0] == reports[1]
+    # Unless that is asked for.
+    call(
+        evaluate, tmp_path / "1.pt", HELD_OUT, "--episodes", 6, "--report", report, "--camera-noise"
+    )
+    noisy = json.loads(report.read_text(encoding="utf-8"))
+    assert noisy["camera_noise"] and noisy["each"] != reports[1]
+    assert evaluate.main([str(tmp_path / "0.pt"), str(HELD_OUT), "--camera-noise"]) == 1
     # And so it is played.
     pack = tmp_path / "policy.pack"
     call(export, tmp_path / "1.pt", "-o", pack)
