@@ -58,7 +58,7 @@ learn() {
   if [ -f "$run/settings.json" ] && [ "$(cat "$run/world.sha256" 2>/dev/null)" != "$(world_sum)" ]; then
     local aside=$run-of-another-world
     while [ -e "$aside" ]; do aside+=-before; done
-    echo "learn: $run is of another world; it is in $aside now"
+    echo "learn: $run is of another world, or of an earlier version; it is in $aside now"
     mv "$run" "$aside"
   fi
   mkdir -p "$run"

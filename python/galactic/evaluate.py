@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import shlex
 import sys
 from typing import Optional, Sequence
 
@@ -91,7 +92,8 @@ def make_parser() -> argparse.ArgumentParser:
     own.add_argument(
         "--task-options",
         metavar="OPTIONS",
-        help="what it is made with, as NAME=VALUE separated by spaces (those of the training)",
+        help="what it is made with, as NAME=VALUE separated by spaces (for a class of the training's "
+        "name, those of the training)",
     )
     massive = parser.add_argument_group("The same episodes where things have mass")
     massive.add_argument(
@@ -155,7 +157,9 @@ def _evaluate(options: argparse.Namespace) -> int:
         "--video": options.video,
     }
     recipe = [options.dynamics] if options.dynamics else []
-    checkpoint.require_apart(outputs, [options.policy, options.world, *recipe])
+    task_file = own_code.named(options.task, "--task").file if options.task else None
+    code = [task_file] if task_file else []
+    checkpoint.require_apart(outputs, [options.policy, options.world, *recipe, *code])
     for file in outputs.values():
         if file:
             checkpoint.require_writable(file)
@@ -180,6 +184,7 @@ def _evaluate(options: argparse.Namespace) -> int:
         raise checkpoint.CheckpointError(
             f"{options.policy} was trained on observations of {sizes_of(saved.parts)}, and "
             f"{options.world} gives {sizes_of(homes.parts)}; evaluate it on worlds with the same robot"
+            + (", by a task that observes the same" if options.task else "")
         )
     if not homes.are_limited:
         raise checkpoint.CheckpointError(
@@ -204,7 +209,9 @@ def _evaluate(options: argparse.Namespace) -> int:
             "deterministic": options.deterministic,
             "seed": options.seed,
             "camera_noise": options.camera_noise,
-            **({"task": options.task} if options.task else {}),
+            **(
+                {"task": options.task, "task_options": options.task_options} if options.task else {}
+            ),
             **summary,
             **({"dynamics": there} if there else {}),
         }
@@ -235,17 +242,22 @@ def _seen_with(options: argparse.Namespace, settings: Settings) -> Settings:
 def _task(options: argparse.Namespace, settings: Settings) -> Optional[own_tasks.MakeTask]:
     """What makes the task that was asked for; None for the simulation's."""
     if options.task:
-        given = settings.task_options if options.task_options is None else options.task_options
-        return own_tasks.maker(own_code.named(options.task, "--task"), given)
+        name = own_code.named(options.task, "--task")
+        given = options.task_options
+        # Those of the training are for its class.
+        if given is None and str(name).rpartition(":")[2] == settings.task.rpartition(":")[2]:
+            given = settings.task_options
+        siblings = own_tasks.siblings_of(name.file) if name.file else None
+        return own_tasks.maker(name, given or "", siblings)
     if not settings.task:
         return None
-    name = own_code.named(settings.task, "--task")
-    # Beside best.pt; a policy.pt is in checkpoints/STEPS.
-    copies = [folder / own_tasks.COPY for folder in options.policy.absolute().parents[:3]]
-    found = [copy for copy in copies if name.file and copy.is_file()]
-    place = f"{found[0]}:{name.name}" if found else settings.task
+    copy = own_tasks.copy_beside(options.policy)
+    _, _, class_name = settings.task.rpartition(":")
+    # The policy may be a stranger's, and so is what it calls its task.
+    place = f"{copy}:{class_name}" if copy and class_name.isidentifier() else "FILE.py:CLASS"
     raise SettingsError(
-        f"{options.policy} was trained with a task of its own; if you trust it, add --task {place}"
+        f"{options.policy} was trained with a task of its own; if you trust it, add --task "
+        f"{shlex.quote(place)}"
     )
 
 

@@ -54,17 +54,18 @@ class HalfBatch:
         # Envs wait where their episodes ended until that has been drawn, or a task has looked at it.
         self._renews = bool(cameras) or task is not None
         self.simulator = Simulator(world, **options, auto_reset=not self._renews)
-        self._task = None if task is None else TaskRunner(task, world, self.simulator)
-        self.observation_parts = self.simulator.observation_parts | (
-            {} if self._task is None else self._task.parts
-        )
-        self.measures: tuple[str, ...] = () if self._task is None else self._task.measures
         self.renderers = {name: Renderer(self.simulator, **cameras[name]) for name in cameras}
         self._image_shapes = {
             _image_name(camera, image): shape
             for camera, renderer in self.renderers.items()
             for image, shape in renderer.shapes.items()
         }
+        taken = [*self._image_shapes, *(_image_name(one, "world_from_camera") for one in cameras)]
+        self._task = None if task is None else TaskRunner(task, world, self.simulator, taken)
+        self.observation_parts = self.simulator.observation_parts | (
+            {} if self._task is None else self._task.parts
+        )
+        self.measures: tuple[str, ...] = () if self._task is None else self._task.measures
         self._copy = copy
         self._parts = self.observation_parts if by_parts else None
         envs = self.simulator.num_envs
@@ -72,6 +73,8 @@ class HalfBatch:
         self._rows = np.zeros((envs, self.observation_size), np.float32)
         self._tally = EpisodeTally(self.simulator)
         self._is_new = True
+        self.is_cut_off = False
+        """Whether an exception has cut off a step, which envs, tasks and sums have taken in in part."""
         self._in_use = threading.Lock()
         # When the episodes began, by a clock that only goes forward.
         self._began = np.full(envs, time.perf_counter())
@@ -126,10 +129,12 @@ class HalfBatch:
                 self._begin(begins, chosen[begins])
             self._tally.restart(mask)
             self._began[mask] = time.perf_counter()
+            self.is_cut_off = False
 
     def observe(self, out: Mapping[str, Array] | None = None) -> Observations:
         """What all envs see now."""
         with self._alone():
+            self.require_whole()
             images = self._draw(out)
             return self._observed(self._landed("state", self._state_rows(), out), images)
 
@@ -151,6 +156,7 @@ class HalfBatch:
             self._is_new = bool(saved["is_new"])
             if self._task is not None:
                 self._task.restore(saved)
+            self.is_cut_off = False
 
     def _own_state(self) -> dict[str, Array]:
         """What the simulator does not know."""
@@ -161,7 +167,17 @@ class HalfBatch:
     def step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
         """See VectorEnv.step, which has checked `actions` and `out`."""
         with self._alone():
-            return self._step(actions, out)
+            self.require_whole()
+            result = self._step(actions, out)
+            self.is_cut_off = False
+            return result
+
+    def require_whole(self) -> None:
+        """Raises RuntimeError where a step was cut off."""
+        if self.is_cut_off:
+            raise RuntimeError(
+                "an exception has cut off the last step of this env; reset() all envs, or restore a state"
+            )
 
     @contextlib.contextmanager
     def _alone(self) -> Iterator[None]:
@@ -180,6 +196,7 @@ class HalfBatch:
         simulator, task = self.simulator, self._task
         idle = None if task is None else simulator.idle.copy()
         simulator.step(actions)
+        self.is_cut_off = True
         self._is_new = False
         if task is not None and idle is not None:
             task.step(actions, idle)
@@ -250,7 +267,7 @@ class HalfBatch:
         """Begins episodes of the world in the envs `which`; where none is named, the next that the task
         chooses, or of the env's own."""
         if self._task is not None:
-            episodes = np.where(episodes < 0, self._task.choose(which), episodes)
+            episodes = self._task.choose(which, episodes)
         begins = np.full(self.simulator.num_envs, Simulator.STAYS, np.int64)
         begins[which] = np.where(episodes < 0, Simulator.NEXT_EPISODE, episodes)
         self.simulator.reset(begins)

@@ -25,6 +25,37 @@ class Outcome(NamedTuple):
     """(n,), where it ends for worse; not where it is solved."""
 
 
+class Draws:
+    """What the random numbers of n envs follow from, beside the seed."""
+
+    def __init__(self, numbers: NDArray[np.int64]) -> None:
+        self._numbers = numbers
+        self.begun = np.zeros(len(numbers), np.int64)
+        """(n,), how many episodes each env has begun of which nobody has named one."""
+        self.keys = np.zeros(len(numbers), np.int64)
+        """(n,), one for each episode that there may be."""
+        self.ages = np.zeros(len(numbers), np.int64)
+        """(n,), steps of the episode."""
+        self.begin_first()
+
+    def begin_first(self) -> None:
+        """All envs begin their first episodes."""
+        self.begun[:] = -1
+        self.begin_next(np.arange(len(self._numbers)))
+
+    def begin_next(self, which: NDArray[np.int64]) -> None:
+        """The envs `which` are about to begin their next episodes."""
+        self.begun[which] += 1
+        self.keys[which] = (self._numbers[which] << 32) + self.begun[which]
+        self.ages[which] = 0
+
+    def begin_named(self, which: NDArray[np.int64], episodes: NDArray[np.int64]) -> None:
+        """The envs `which` are about to begin these episodes of the world, which somebody has named."""
+        # No env has a number below 0.
+        self.keys[which] = -1 - episodes
+        self.ages[which] = 0
+
+
 class TaskEnvs:
     """The n envs that a Task is about: all of a VectorEnv, or one of its halves.
 
@@ -44,11 +75,12 @@ class TaskEnvs:
         """int64 (n,): numbers of the envs over all halves and ranks."""
         self.seed: int = options["seed"]
         self.steps = 0
-        """Steps since the envs were made, or reset with a seed."""
+        """Steps since the envs were made, or reset with a seed: for curricula."""
         self.actions: NDArray[np.float32] = np.zeros(
             (self.num_envs, simulator.action_count), np.float32
         )
         """float32 (n, action_count): those of the latest step, as they were given."""
+        self.draws = Draws(self.numbers)
         self._states: EnvStates | None = None
 
     @property
@@ -75,16 +107,18 @@ class TaskEnvs:
         return self.simulator.endings
 
     def uniform(self, name: str, count: int = 1) -> NDArray[np.float64]:
-        """Random numbers in [0, 1), float64 (n, count). They depend on the seed, the env's number, the
-        steps done and `name`, which says what they are for, and on nothing else: the same for any number
-        of envs, halves and ranks, and in a resumed run. Of one name there is one draw in a step."""
+        """Random numbers in [0, 1), float64 (n, count). They depend on the seed, the env's number, how many
+        episodes it has begun, the steps of this one, and `name`, which says what they are for: the same
+        for any number of envs, halves and ranks, and in a resumed run. In an episode that the caller of
+        reset() has named, its index takes the place of the first two, so that evaluations of two policies
+        draw the same. Of one name there is one draw in a step; choose() draws for the next episode.
+        """
         salt = self.seed ^ (zlib.crc32(name.encode()) << 32)
-        bits = hashed(salt & (2**64 - 1), self.numbers, np.array([self.steps]), count)
+        bits = hashed(salt & (2**64 - 1), self.draws.keys, self.draws.ages, count)
         return (bits >> np.uint64(11)).astype(np.float64) * 2.0**-53
 
-    def move_on(self, *, steps: int) -> None:
+    def forget(self) -> None:
         """What was known of the states is of before: for who drives the task, not for tasks."""
-        self.steps = steps
         self._states = None
 
 
@@ -126,7 +160,8 @@ class Task:
     def choose(self, envs: TaskEnvs, which: NDArray[np.int64]) -> NDArray[np.integer] | None:
         """Which episodes of the world the envs `which` begin next, whole numbers, -1 for the next of
         the env's own; None leaves it to the order of the VectorEnv. An episode in which the robot cannot
-        start (Simulator.skipped_episodes) is a ValueError."""
+        start (Simulator.skipped_episodes) is a ValueError. Episodes that are named here have no end with
+        order="partition"."""
         return None
 
     def begin(self, envs: TaskEnvs, which: NDArray[np.int64]) -> None:

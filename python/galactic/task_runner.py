@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+import numbers
+from collections.abc import Callable, Iterable, Mapping, Set
 from traceback import walk_tb
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galactic._core import EpisodeEnd, Simulator, World
+from galactic.sensors import ALWAYS, SENSORS
 from galactic.task import Outcome, Task, TaskEnvs
 
 Array = NDArray[Any]
@@ -18,12 +20,31 @@ OF_EPISODES = ("episode", "ending", "success", "episode_index", "world_from_came
 """What final_info says of every episode."""
 
 
+_NO_OPTIONS = ("task", "envs", "seed", "order", "rank", "ranks", "threads", "auto_reset")
+
+
 def made_by(factory: Callable[[], Task]) -> Task:
     """A task of a VectorEnv's argument. TypeError where it makes none."""
     task = factory()
     if not isinstance(task, Task):
         raise TypeError(f"task makes a {type(task).__name__}, expected a galactic.Task")
+    require_options(task)
     return task
+
+
+def require_options(task: Task) -> None:
+    """ValueError for options that a task cannot give."""
+    name = type(task).__name__
+    for option in task.options:
+        if option in _NO_OPTIONS:
+            instead = "say it with base" if option == "task" else "it is the VectorEnv's"
+            raise ValueError(
+                f"{name}.options has {option!r}, which a task does not choose; {instead}"
+            )
+    if not isinstance(task.base, str):
+        raise ValueError(
+            f"{name}.base is {task.base!r}, expected a task of the simulation, or 'none'"
+        )
 
 
 def options_of(task: Task, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -39,14 +60,16 @@ def has_raised(error: BaseException) -> bool:
 class TaskRunner:
     """A task at work in the envs of a simulator that leaves envs where their episodes end."""
 
-    def __init__(self, task: Task, world: World, simulator: Simulator) -> None:
+    def __init__(
+        self, task: Task, world: World, simulator: Simulator, taken: Iterable[str] = ()
+    ) -> None:
         self._task = task
         self._envs = TaskEnvs(world, simulator)
         self._name = type(task).__name__
         self._rewards = np.zeros(self._envs.num_envs, np.float32)
         self._endings = np.zeros(self._envs.num_envs, np.uint8)
-        self.parts = _parts_of(task, self._name, simulator)
-        self.measures = _measures_of(task, self._name)
+        self.parts = _parts_of(task, self._name, simulator.observation_size, {*taken})
+        self.measures = _measures_of(task, self._name, {*taken})
         sizes = [part.stop - part.start for part in self.parts.values()]
         self._columns = np.zeros((self._envs.num_envs, sum(sizes)), np.float32)
         self.restart()
@@ -65,22 +88,38 @@ class TaskRunner:
     def restart(self) -> None:
         """Begins anew, with envs that have just been made or restarted with a seed."""
         simulator = self._envs.simulator
-        self._envs.seed = simulator.options["seed"]
-        self._envs.move_on(steps=0)
+        self._envs.steps = 0
         self._envs.actions[:] = 0.0
-        self._task.memory = {}
-        self._task.prepare(self._envs)
-        self._layout = self._memory_layout()
+        self._envs.draws.begin_first()
+        self._envs.forget()
+        self._prepare()
         everywhere = np.arange(self._envs.num_envs)
-        chosen = self.choose(everywhere)
+        chosen = self._chosen(everywhere)
         begins = np.where(chosen < 0, Simulator.STAYS, chosen)
         if (chosen >= 0).any():
             simulator.check_episodes(begins)
             simulator.reset(begins)
         self.begin(everywhere)
 
-    def choose(self, which: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The episodes that the envs `which` begin next; NEXT_EPISODE for the next of their own."""
+    def _prepare(self) -> None:
+        """Has the task make its memory, for the simulator's seed."""
+        self._envs.seed = self._envs.simulator.options["seed"]
+        self._task.memory = {}
+        self._task.prepare(self._envs)
+        self._layout = self._memory_layout()
+
+    def choose(self, which: NDArray[np.int64], named: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The episodes that the envs `which` begin next: those that are `named`, and where that is below 0
+        the task's choice; NEXT_EPISODE for the next of their own."""
+        is_named = named >= 0
+        self._envs.draws.begin_named(which[is_named], named[is_named])
+        self._envs.draws.begin_next(which[~is_named])
+        episodes = named.copy()
+        if not is_named.all():
+            episodes[~is_named] = self._chosen(which[~is_named])
+        return episodes
+
+    def _chosen(self, which: NDArray[np.int64]) -> NDArray[np.int64]:
         chosen = self._task.choose(self._envs, which)
         if chosen is None:
             return np.full(len(which), Simulator.NEXT_EPISODE, np.int64)
@@ -91,7 +130,7 @@ class TaskRunner:
 
     def begin(self, which: NDArray[np.int64]) -> None:
         """Takes in that the envs `which` are at the start of an episode, but for idle ones."""
-        self._envs.move_on(steps=self._envs.steps)
+        self._envs.forget()
         playing = which[~self._envs.simulator.idle[which]]
         if len(playing):
             self._task.begin(self._envs, playing)
@@ -100,9 +139,16 @@ class TaskRunner:
     def step(self, actions: NDArray[np.float32], idle: NDArray[np.bool_]) -> None:
         """Takes in the simulator's latest step, before which the envs `idle` were."""
         envs = self._envs
-        envs.move_on(steps=envs.steps + 1)
+        envs.steps += 1
+        envs.draws.ages += 1
+        envs.forget()
         np.copyto(envs.actions, actions)
-        outcome = Outcome(*self._task.step(envs))
+        outcome = self._task.step(envs)
+        if not isinstance(outcome, tuple) or not 1 <= len(outcome) <= 3:
+            raise TypeError(
+                f"{self._name}.step() returned {_described(outcome)}, expected an Outcome"
+            )
+        outcome = Outcome(*outcome)
         self._require_layout()
         shape = (envs.num_envs,)
         rewards = self._checked("step", "rewards", outcome.rewards, shape)
@@ -119,9 +165,10 @@ class TaskRunner:
         found = self._task.measure(self._envs, which) if self.measures and len(which) else {}
         if len(which):
             self._require_names("measure", found, self.measures)
+        of = self._envs.numbers[which]
         measured = {name: np.zeros(self._envs.num_envs, np.float32) for name in self.measures}
         for name, values in found.items():
-            measured[name][which] = self._checked("measure", name, values, (len(which),))
+            measured[name][which] = self._checked("measure", name, values, (len(which),), of)
         return measured
 
     def observe(self) -> NDArray[np.float32]:
@@ -137,12 +184,28 @@ class TaskRunner:
 
     def state(self) -> dict[str, Array]:
         """All that later steps depend on, of which restore() takes the same names, shapes and types."""
+        envs = self._envs
         memory = {f"task_memory_{name}": array for name, array in self._task.memory.items()}
-        return {"task_steps": np.array(self._envs.steps, np.int64), **memory}
+        return {
+            "task_steps": np.array(envs.steps, np.int64),
+            "task_actions": envs.actions,
+            "task_begun": envs.draws.begun,
+            "task_keys": envs.draws.keys,
+            "task_ages": envs.draws.ages,
+            **memory,
+        }
 
     def restore(self, saved: Mapping[str, Array]) -> None:
         """Goes on from what state() returned once, with the simulator of that moment."""
-        self._envs.move_on(steps=int(saved["task_steps"]))
+        envs = self._envs
+        envs.forget()
+        if envs.seed != envs.simulator.options["seed"]:
+            self._prepare()
+        envs.steps = int(saved["task_steps"])
+        np.copyto(envs.actions, saved["task_actions"])
+        np.copyto(envs.draws.begun, saved["task_begun"])
+        np.copyto(envs.draws.keys, saved["task_keys"])
+        np.copyto(envs.draws.ages, saved["task_ages"])
         for name, array in self._task.memory.items():
             np.copyto(array, saved[f"task_memory_{name}"])
 
@@ -151,7 +214,12 @@ class TaskRunner:
         layout = {}
         for name, array in self._task.memory.items():
             fits = isinstance(array, np.ndarray) and array.shape[:1] == (self._envs.num_envs,)
-            if not fits or array.dtype.hasobject:
+            if fits and not array.flags.writeable:
+                raise TypeError(
+                    f"{self._name}.memory[{name!r}] is a view that cannot be written, and shows what is now; "
+                    "copy what is to be remembered"
+                )
+            if not fits or array.dtype.hasobject or not isinstance(name, str):
                 raise TypeError(
                     f"{self._name}.memory[{name!r}] is {_described(array)}, expected an array of numbers "
                     f"whose first axis is the {self._envs.num_envs} envs"
@@ -171,8 +239,12 @@ class TaskRunner:
                     "array, or keep its type and shape"
                 )
 
-    def _require_names(self, method: str, found: Mapping[str, Any], wanted: Iterable[str]) -> None:
+    def _require_names(self, method: str, found: Any, wanted: Iterable[str]) -> None:
         names = sorted(wanted)
+        if not isinstance(found, Mapping):
+            raise TypeError(
+                f"{self._name}.{method}() returned {_described(found)}, expected {names}"
+            )
         if sorted(found) != names:
             raise ValueError(f"{self._name}.{method}() returned {sorted(found)}, expected {names}")
 
@@ -185,19 +257,29 @@ class TaskRunner:
             raise ValueError(self._fault("step", name, flags, f"bool {shape}"))
         return flags
 
-    def _checked(self, method: str, name: str, given: Any, shape: tuple[int, ...]) -> Array:
-        """Finite numbers of that shape."""
+    def _checked(
+        self,
+        method: str,
+        name: str,
+        given: Any,
+        shape: tuple[int, ...],
+        envs: NDArray[np.int64] | None = None,
+    ) -> NDArray[np.float32]:
+        """Finite numbers of that shape, of these envs, or all."""
         values = np.asarray(given)
         if values.shape != shape or values.dtype.kind not in "biuf":
             raise ValueError(self._fault(method, name, values, f"numbers {shape}"))
-        finite = np.isfinite(values)
+        with np.errstate(over="ignore"):
+            rows = values.astype(np.float32)
+        finite = np.isfinite(rows)
         if not finite.all():
             row = int(np.argwhere(~finite)[0, 0])
+            env = (self._envs.numbers if envs is None else envs)[row]
             raise ValueError(
-                f"{self._name}.{method}() returned {name} of which env {row} has {values[row]}, expected "
-                "finite numbers"
+                f"{self._name}.{method}() returned {name} of which env {env} has {values[row]}, expected "
+                "finite numbers of 32 bits"
             )
-        return values
+        return rows
 
     def _fault(self, method: str, name: str, found: Array, wanted: str) -> str:
         return f"{self._name}.{method}() returned {name} {_described(found)}, expected {wanted}"
@@ -209,31 +291,33 @@ def _described(value: Any) -> str:
     return type(value).__name__
 
 
-def _measures_of(task: Task, name: str) -> tuple[str, ...]:
+def _measures_of(task: Task, name: str, taken: Set[str]) -> tuple[str, ...]:
     """ValueError for names that cannot be."""
     for measure in task.measures:
         is_name = isinstance(measure, str) and measure.isidentifier() and measure[0] != "_"
-        if isinstance(task.measures, str) or not is_name or measure in OF_EPISODES:
+        is_taken = measure in OF_EPISODES or measure in taken
+        if isinstance(task.measures, str) or not is_name or is_taken:
             raise ValueError(
                 f"{name}.measures has {measure!r}, expected a name of its own, such as ways_lost"
             )
+    if len(set(task.measures)) < len(task.measures):
+        raise ValueError(f"{name}.measures has a name twice: {list(task.measures)}")
     return tuple(task.measures)
 
 
-def _parts_of(task: Task, name: str, simulator: Simulator) -> dict[str, slice]:
+def _parts_of(task: Task, name: str, first: int, taken: Set[str]) -> dict[str, slice]:
     """Where the task's parts are in an observation. ValueError for sizes and names that cannot be."""
     parts: dict[str, slice] = {}
-    first = simulator.observation_size
-    taken = {*simulator.observation_parts, "state", "rgb", "depth", "semantics"}
+    taken = {*taken, *ALWAYS, *SENSORS, "state", "rgb", "depth", "semantics"}
     for part, size in task.parts.items():
         if part in taken or not isinstance(part, str) or not part.isidentifier():
             raise ValueError(
                 f"{name}.parts has {part!r}, expected a name of its own, such as to_door"
             )
-        if not isinstance(size, int) or size < 1:
+        if not isinstance(size, numbers.Integral) or isinstance(size, bool) or size < 1:
             raise ValueError(
                 f"{name}.parts[{part!r}] is {size!r}, expected how many numbers it has"
             )
-        parts[part] = slice(first, first + size)
-        first += size
+        parts[part] = slice(first, first + int(size))
+        first += int(size)
     return parts

@@ -287,6 +287,9 @@ class VectorEnv(_Base):
         mask, episodes = _reset_options(options, self.num_envs)
         if seed is not None and options and options.get("reset_mask") is not None:
             raise ValueError("seed and reset_mask exclude each other: a seed is of all envs")
+        if seed is None and not mask.all():
+            for half in self._halves:
+                half.require_whole()
         chosen = [None if episodes is None else episodes[self.rows(n)] for n in range(self.halves)]
         for simulator, of_half in zip(self.simulators, chosen):
             if of_half is not None:
@@ -320,7 +323,8 @@ class VectorEnv(_Base):
             (num_envs,), and infos; of an env with one half, what landed in `out` as it lies there.
 
         Raises ValueError or TypeError for actions or places of another shape or type, and no env
-        has stepped then.
+        has stepped then. Where something else raises, such as a task of one's own or Ctrl-C, the step
+        is cut off: nothing goes on before reset() of all envs or restore_state().
         """
         self._require_idle()
         rows = self._action_rows(actions, self.num_envs)
@@ -380,6 +384,8 @@ class VectorEnv(_Base):
     def save_state(self) -> bytes:
         """All that later steps depend on, and the sums of the episodes under way."""
         self._require_idle()
+        for half in self._halves:
+            half.require_whole()
         arrays = {
             f"{name}_{number}": array
             for number, half in enumerate(self._halves)

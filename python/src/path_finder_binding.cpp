@@ -151,7 +151,10 @@ py::array_t<bool> areNavigable(const PathFinder& finder, const py::object& bases
 
 py::array_t<float> snapped(const PathFinder& finder, const py::object& points) {
   std::vector<Vec3> places = pointsOf(points, "points");
-  for (Vec3& place : places) place = finder.snap(place);
+  {
+    const py::gil_scoped_release unlocked;
+    for (Vec3& place : places) place = finder.snap(place);
+  }
   return rowsOf(places);
 }
 
@@ -171,7 +174,7 @@ void bindFields(py::module_& module) {
           "goals", [](const GeodesicFields& fields) { return rowsOf(fields.goals()); },
           "float32 (k, 3), world frame, meters.")
       .def("distances", &distances, py::arg("bases"), py::arg("goals") = py::none(),
-           "How long the ways are, meters: float32 (n,), inf where there is none.\n\n"
+           "How long the ways are, meters: float32 (n,), inf where there is none within 127 m.\n\n"
            "bases: (n, 3), of bases or roots, at most three cells beside the floor and half a "
            "meter\n"
            "above it. goals: int (n,), to which goal each of them goes; None: all to the first.")

@@ -170,6 +170,108 @@ def test_saved_states(world, halves):
         env.restore_state(VectorEnv(world, 16, task="none", halves=halves).save_state())
 
 
+class Remembers(Approach):
+    """Observes what was done, and the seed; pays by chance."""
+
+    parts = {"done": ACTIONS, "seeded": 1}
+    measures = ()
+
+    def prepare(self, envs):
+        super().prepare(envs)
+        self.seed = envs.seed
+
+    def step(self, envs):
+        return Outcome(envs.uniform("pay")[:, 0], successes=envs.uniform("end")[:, 0] < 0.1)
+
+    def observe(self, envs):
+        assert envs.seed == self.seed
+        return {"done": envs.actions, "seeded": np.full((envs.num_envs, 1), self.seed)}
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_a_state_has_all_that_a_task_may_look_at(world, halves):
+    """Its actions and its seed, too."""
+    env = VectorEnv(world, 8, task=Remembers, halves=halves)
+    env.reset(seed=7)
+    played(env, drawing(1), 12)
+    state, seen = env.save_state(), env.observe()
+    ahead = played(env, drawing(2), 30)
+    for other in (VectorEnv(world, 8, task=Remembers, halves=halves), env):
+        other.reset(seed=9)
+        other.restore_state(state)
+        np.testing.assert_array_equal(other.observe(), seen)
+        for one, two in zip(ahead, played(other, drawing(2), 30)):
+            np.testing.assert_array_equal(one, two)
+
+
+def test_named_episodes_draw_the_same(world):
+    """Whichever env, rank and wave plays them; episodes that nobody names draw anew."""
+
+    def rewards_of(env, episodes, rows):
+        env.reset(options={"episodes": np.full(env.num_envs, episodes)})
+        return played(env, drawing(5), 3)[1][:, rows]
+
+    few, many = VectorEnv(world, 2, task=Remembers), VectorEnv(
+        world, 6, task=Remembers, rank=1, ranks=2
+    )
+    few.reset()
+    many.reset()
+    first = rewards_of(few, 3, 0)
+    for again in (rewards_of(few, 3, 1), rewards_of(many, 3, 4), rewards_of(few, 3, 0)):
+        np.testing.assert_array_equal(first[0], again[0])
+    assert rewards_of(few, 0, 0)[0] != first[0]
+    drawn = []
+    for _ in range(4):
+        few.reset()
+        drawn.append(few.step(np.zeros((2, ACTIONS)))[1])
+    assert len(np.unique(drawn)) == 8
+
+
+def test_a_step_that_was_cut_off(world):
+    """Nothing goes on before all envs are reset, or a state is restored."""
+
+    class Fails(Approach):
+        def step(self, envs):
+            if fails:
+                raise KeyboardInterrupt
+            return super().step(envs)
+
+    fails = False
+    env, whole = VectorEnv(world, 4, task=Fails), VectorEnv(world, 4, task=Fails)
+    env.reset()
+    whole.reset()
+    state = env.save_state()
+    actions = np.zeros((4, ACTIONS))
+    fails = True
+    with pytest.raises(KeyboardInterrupt):
+        env.step(actions)
+    fails = False
+    some = {"reset_mask": np.array([True, False, True, True])}
+    for call in (
+        lambda: env.step(actions),
+        env.observe,
+        env.save_state,
+        lambda: env.reset(options=some),
+    ):
+        with pytest.raises(RuntimeError, match="has cut off the last step of this env; reset"):
+            call()
+    env.restore_state(state)
+    for one, two in zip(played(env, drawing(), 9), played(whole, drawing(), 9)):
+        np.testing.assert_array_equal(one, two)
+    fails = True
+    with pytest.raises(KeyboardInterrupt):
+        env.step(actions)
+    fails = False
+    env.reset()
+    lengths = []
+    for _ in range(21):
+        infos = env.step(actions)[4]
+        lengths += (
+            infos["final_info"]["episode"]["l"][infos["_final_info"]].tolist() if infos else []
+        )
+    assert lengths and max(lengths) <= 20
+
+
 def test_seeds(world):
     """reset(seed) is as good as another env, and seeds differ."""
     fresh = VectorEnv(world, 16, task=Approach, seed=9)
@@ -360,6 +462,16 @@ def test_images(world):
     assert ends
 
 
+def test_images_have_names_of_their_own(world):
+    camera = {"hand": {"camera": "head", "width": 8, "height": 8}}
+    for members, message in (
+        ({"parts": {"hand_rgb": 1}}, "Faulty.parts has 'hand_rgb'"),
+        ({"measures": ("hand_world_from_camera",)}, "Faulty.measures has 'hand_world_from_camera'"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            VectorEnv(world, 4, task=of(**members), images=camera)
+
+
 def test_landing(world):
     """Results in the caller's arrays are those of a step that returns its own."""
     one, two = (VectorEnv(world, 8, task=Approach, copy=copy) for copy in (True, False))
@@ -393,6 +505,10 @@ def ends_all(self, envs):
     return Outcome(zeros(envs), successes=np.ones(envs.num_envs, bool))
 
 
+def ends_odd(self, envs):
+    return Outcome(zeros(envs), successes=envs.numbers % 2 == 1)
+
+
 @pytest.mark.parametrize(
     "task, error, message",
     [
@@ -403,6 +519,21 @@ def ends_all(self, envs):
         (of(parts={"door": 0}), ValueError, r"Faulty.parts\['door'\] is 0, expected how many"),
         (of(measures=("success",)), ValueError, "Faulty.measures has 'success', expected a name of its"),
         (of(measures="gained"), ValueError, "Faulty.measures has 'g', expected a name of its own"),
+        (of(parts={"bump": 1}), ValueError, "Faulty.parts has 'bump', expected a name of its own"),
+        (of(measures=("env", "env")), ValueError, "Faulty.measures has a name twice"),
+        (of(base=None), ValueError, "Faulty.base is None, expected a task of the simulation"),
+        (of(options={"seed": 3}), ValueError, "Faulty.options has 'seed', which a task does not choose"),
+        (of(options={"task": "pick"}), ValueError, "Faulty.options has 'task', .*; say it with base"),
+        (
+            of(prepare=lambda self, envs: self.memory.update(a=envs.observations["time"])),
+            TypeError,
+            r"Faulty.memory\['a'\] is a view that cannot be written, .*; copy what is to be remembered",
+        ),
+        (
+            of(prepare=lambda self, envs: self.memory.update({5: np.zeros(4)})),
+            TypeError,
+            r"Faulty.memory\[5\] is float64",
+        ),
         (of(base="tidy"), galactic.Error, "tidy"),
         (of(options={"episode_stpes": 3}), TypeError, "did you mean episode_steps"),
         (
@@ -465,6 +596,26 @@ def test_refused_at_once(world, task, error, message):
             {"step": ends_all, "measure": lambda self, envs, which: dict.fromkeys(self.measures, which[1:])},
             ValueError,
             r"Faulty.measure\(\) returned .* int64 \(3,\), expected numbers \(4,\)",
+        ),
+        (
+            {"step": lambda self, envs: Outcome(np.array([0, 1, 2, 1e300]))},
+            ValueError,
+            "rewards of which env 3 has 1e.300, expected finite numbers of 32 bits",
+        ),
+        (
+            {"step": lambda self, envs: np.zeros((3, 4), bool)},
+            TypeError,
+            r"Faulty.step\(\) returned bool \(3, 4\), expected an Outcome",
+        ),
+        (
+            {"observe": lambda self, envs: None},
+            TypeError,
+            r"Faulty.observe\(\) returned NoneType, expected \['dice', 'gained'\]",
+        ),
+        (
+            {"step": ends_odd, "measure": lambda self, envs, which: dict.fromkeys(self.measures, which * np.nan)},
+            ValueError,
+            r"Faulty.measure\(\) returned .* of which env 1 has nan",
         ),
         ({"step": Task.step}, NotImplementedError, r"Faulty has no step\(\)"),
     ],

@@ -167,7 +167,8 @@ def _wait(processes: "Sequence[subprocess.Popen[bytes]]") -> tuple[int, int]:
     failure = (0, 0)
     deadline = float("inf")
     while True:
-        are_over = all(process.poll() is not None for process in processes)
+        # All of them are asked: only then is it known how each of them ended.
+        are_over = all([process.poll() is not None for process in processes])
         failed = [(one.returncode, rank) for rank, one in enumerate(processes) if one.returncode]
         if failed and failure == (0, 0):
             failure, deadline = min(failed), time.monotonic() + GRACE

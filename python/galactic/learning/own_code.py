@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import importlib.util
 import pathlib
 import sys
+from collections.abc import Iterator
 from typing import Any, NamedTuple, Optional
 
 from galactic.learning.settings import SettingsError
@@ -38,9 +40,21 @@ def named(text: str, option: str) -> CodeName:
 
 
 def members_of(code: CodeName, siblings: Optional[pathlib.Path] = None) -> dict[str, Any]:
-    """What the file or module has by name. It runs now; what it raises is the caller's. `siblings`: where
-    modules are that a file imports, if not beside it."""
-    return vars(_module_of(code, siblings))
+    """What the file or module has by name. It runs now; what it raises is the caller's, unless it ends the
+    program. `siblings`: where modules are that a file imports, if not beside it."""
+    with goes_on(
+        code, 'when it was imported; put what a program does behind: if __name__ == "__main__"'
+    ):
+        return vars(_module_of(code, siblings))
+
+
+@contextlib.contextmanager
+def goes_on(code: CodeName, when: str) -> Iterator[None]:
+    """Around code that has no say in whether the program ends. Raises SettingsError where it ends it."""
+    try:
+        yield
+    except SystemExit as end:
+        raise SettingsError(f"{code.option}: {code} ended the program {when}") from end
 
 
 def _module_of(code: CodeName, siblings: Optional[pathlib.Path]) -> Any:

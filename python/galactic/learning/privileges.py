@@ -6,36 +6,7 @@ from __future__ import annotations
 from typing import Any, Iterable, Mapping, Sequence
 
 from galactic.learning.settings import SettingsError, did_you_mean
-
-# The parts of every observation.
-ALWAYS = (
-    "robot_target",
-    "grip_target",
-    "robot_grip",
-    "robot_goal",
-    "grip_goal",
-    "is_holding",
-    "joints",
-    "time",
-)
-
-# The parts that options of the simulation add to it, and these options. All others are of tasks of one's
-# own.
-_SENSORS: Mapping[str, tuple[str, ...]] = {
-    "bump": ("bump",),
-    "target_goal": ("target_goal",),
-    "target_up": ("target_up",),
-    "near_objects": ("near_objects",),
-    "laser": (
-        "laser_beams",
-        "laser_fov",
-        "laser_heights",
-        "laser_range",
-        "laser_min_range",
-        "laser_noise",
-    ),
-    "geodesic": ("geodesic",),
-}
+from galactic.sensors import ALWAYS, SENSORS
 
 # Options that say how many numbers there are, or how exact.
 _NO_MEANING = ("laser_beams", "laser_noise")
@@ -51,7 +22,7 @@ def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[
     order. Raises SettingsError for a part that is always there, or that is not there."""
     columns: list[int] = []
     names = names_of(critic_only)
-    known = [*_SENSORS, *of_own_tasks(parts)]
+    known = [*SENSORS, *of_own_tasks(parts)]
     for name in names:
         if name not in known:
             hint = did_you_mean(name, known) or f"; it can be of {', '.join(known)}"
@@ -71,7 +42,7 @@ def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[
 
 def of_own_tasks(parts: Sequence[tuple[str, int]]) -> list[str]:
     """Names of the parts that no simulation gives: a galactic.Task does."""
-    return [name for name, _ in parts if name not in ALWAYS and name not in _SENSORS]
+    return [name for name, _ in parts if name not in ALWAYS and name not in SENSORS]
 
 
 def parts_of_actor(critic_only: str, parts: Sequence[tuple[str, int]]) -> list[tuple[str, int]]:
@@ -82,11 +53,11 @@ def parts_of_actor(critic_only: str, parts: Sequence[tuple[str, int]]) -> list[t
 
 def options_of_actor(critic_only: str, options: Mapping[str, Any]) -> dict[str, Any]:
     """Options of the simulation without those of sensors that the critic alone sees."""
-    left_out = {option for name in names_of(critic_only) for option in _SENSORS.get(name, ())}
+    left_out = {option for name in names_of(critic_only) for option in SENSORS.get(name, ())}
     return {name: value for name, value in options.items() if name not in left_out}
 
 
 def meaning_of(names: Iterable[str], options: Mapping[str, Any]) -> dict[str, Any]:
     """Those options of the simulation by which numbers of its parts `names` mean one thing or another."""
-    asked = ["observe_current", *(option for name in names for option in _SENSORS.get(name, ()))]
+    asked = ["observe_current", *(option for name in names for option in SENSORS.get(name, ()))]
     return {name: options[name] for name in asked if name in options and name not in _NO_MEANING}

@@ -601,15 +601,17 @@ def simulation_keyword(word: str) -> str:
     return word.partition("=")[0].lstrip("-").replace("-", "_")
 
 
+def latest_words(words: str) -> str:
+    """Words of Settings.simulation, of each name the last one, where the first one stood."""
+    return " ".join({simulation_keyword(word): word for word in words.split()}.values())
+
+
 def overriding(before: Settings, given: Mapping[str, Any]) -> dict[str, Any]:
     """What `given` sets over the settings `before`. Of the options of the simulation, too, it changes
     those that it names."""
     if "simulation" not in given:
         return dict(given)
-    words = f"{before.simulation} {given['simulation']}".split()
-    # The last word of a name counts, where the first one stood.
-    latest = {simulation_keyword(word): word for word in words}
-    return {**given, "simulation": " ".join(latest.values())}
+    return {**given, "simulation": latest_words(f"{before.simulation} {given['simulation']}")}
 
 
 def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
@@ -620,11 +622,16 @@ def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
         old = getattr(before, name)
         if value != old and not fields[name].metadata["may_change"]:
             raise SettingsError(
-                f"the run began with {option_name(name)} {typed(old)}, and cannot continue with "
+                f"the run began with {option_name(name)} {_shown(old)}, and cannot continue with "
                 f"{typed(value)}; "
                 "begin a new one"
             )
     return dataclasses.replace(before, **given)
+
+
+def _shown(value: Any) -> Any:
+    """As typed(), for a sentence."""
+    return "(nothing)" if value == "" else typed(value)
 
 
 def markdown_tables() -> str:

@@ -13,7 +13,7 @@ from galactic.learning.checkpoint import CheckpointError, SavedPolicy
 from galactic.learning.distributed import Group
 from galactic.learning.distributions import ActionDistribution
 from galactic.learning.networks import Inputs
-from galactic.learning.privileges import meaning_of, parts_of_actor
+from galactic.learning.privileges import meaning_of, of_own_tasks, parts_of_actor
 from galactic.learning.rollout import Rollout
 
 
@@ -47,9 +47,11 @@ class Teacher:
         sizes = dict(observed.parts)
         for name, size in saved.parts:
             if name not in sizes:
+                is_own = name in of_own_tasks(saved.parts)
+                source = "take the --task that gives it" if is_own else "turn the sensor on with --simulation"
                 raise CheckpointError(
-                    f"{file} sees {name}, which this run does not observe; turn the sensor on with "
-                    f"--simulation and keep it from the policy with --critic-only, or {remedy}"
+                    f"{file} sees {name}, which this run does not observe; {source} and keep it from the "
+                    f"policy with --critic-only, or {remedy}"
                 )
             if sizes[name] != size:
                 raise CheckpointError(

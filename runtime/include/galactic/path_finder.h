@@ -37,7 +37,7 @@ class GeodesicFields {
   [[nodiscard]] std::span<const Vec3> goals() const noexcept { return goals_; }
 
   /// The way of a base to goal `n`. A base may be three cells beside the floor, nearer to things
-  /// than the start pose can be, and half a meter above it. O(1).
+  /// than the start pose can be, and half a meter above it. Ways are known up to 127 m. O(1).
   [[nodiscard]] GeodesicWay way(std::size_t n, const Vec3& base) const;
   /// Corners of a path to goal `n` along straight lines over navigable cells, from `base` on; empty
   /// where there is none. It ends at the goal, or for GoalOf::kHand where the hand reaches it. Its
@@ -86,7 +86,7 @@ class PathFinder {
 
   /// Whether a base may be here: in a cell of the floor, and not a storey above or below.
   [[nodiscard]] bool isNavigable(const Vec3& base) const;
-  /// The middle of the cell of the floor that is nearest to a point. O(cells).
+  /// The middle of the cell of the floor that is nearest to a finite point. O(cells).
   [[nodiscard]] Vec3 snap(const Vec3& point) const;
   /// The middles of all cells of the floor.
   [[nodiscard]] std::vector<Vec3> places() const;

@@ -149,6 +149,7 @@ FloorPlan::FloorPlan(const Scene& scene) {
 FloorPlan::FloorPlan(const Scene& scene, const StandingRobot& robot, const FloorSeed& seed,
                      const GroundOptions& ground)
     : FloorPlan(scene) {
+  step_ = std::min(ground.most_rise, ground.most_drop);
   heights_.assign(static_cast<std::size_t>(columns_x_) * static_cast<std::size_t>(columns_z_),
                   kNowhere);
   const Stander stander(scene, robot, ground);
@@ -216,6 +217,13 @@ Vec3 FloorPlan::middle(const PlanCell& cell) const {
 
 bool FloorPlan::isPassable(const PlanCell& cell) const {
   return isInside(cell) && !std::isnan(heights_[indexOf(cell)]);
+}
+
+bool FloorPlan::areConnected(const PlanCell& a, const PlanCell& b) const {
+  // Beside rounding, a cell's floor is taken up to a third of a cell from its middle.
+  constexpr float kRounding = 1e-3F;
+  return isPassable(a) && isPassable(b) &&
+         std::fabs(heights_[indexOf(a)] - heights_[indexOf(b)]) <= step_ + kRounding;
 }
 
 bool FloorPlan::isOnStorey(const PlanCell& cell, float height) const {

@@ -94,6 +94,8 @@ class FloorPlan {
   [[nodiscard]] Vec3 middle(const PlanCell& cell) const;
   /// False outside.
   [[nodiscard]] bool isPassable(const PlanCell& cell) const;
+  /// Whether both are passable, and their floors within a step of each other.
+  [[nodiscard]] bool areConnected(const PlanCell& a, const PlanCell& b) const;
   /// Whether it is passable, and its floor no storey above or below a height.
   [[nodiscard]] bool isOnStorey(const PlanCell& cell, float height) const;
   /// Of the floor in each cell, meters, X first; NaN where the robot cannot go.
@@ -112,6 +114,8 @@ class FloorPlan {
   std::int32_t columns_z_ = 0;
   float min_x_ = 0;
   float min_z_ = 0;
+  /// The lesser of GroundOptions, meters.
+  float step_ = 0;
   /// Of the floor, meters; NaN where the robot cannot go.
   std::vector<float> heights_;
 };

@@ -25,15 +25,17 @@ using sensors::PlanCell;
 
 /// How far beside a floor a base has a way, cells.
 constexpr std::int32_t kBeside = 3;
+/// Of the lengths that fields hold, meters.
+constexpr float kFarthest = (kNoWay - 1) * sensors::kWayUnit;
 constexpr std::array<PlanCell, 8> kNeighbors{
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
 
 /// Whether a point has a cell at all: numbers that are none have not, nor others than any scene's.
 bool isPlace(const Vec3& point) {
-  constexpr float kFarthest = 1e6F;
+  constexpr float kMost = 1e6F;
   const float farthest = std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)});
   return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z) &&
-         farthest < kFarthest;
+         farthest < kMost;
 }
 
 float squaredDistance(const Vec3& a, const Vec3& b) {
@@ -61,15 +63,19 @@ std::optional<PlanCell> cellBeside(const FloorPlan& plan, const Vec3& base) {
   return nearest;
 }
 
-/// Whether a straight line in the ground plane stays on passable cells.
+/// Whether a straight line in the ground plane stays on passable cells, a step from one to the
+/// next.
 bool isOpen(const FloorPlan& plan, const Vec3& a, const Vec3& b) {
   constexpr float kStride = 0.02F;
   const float x = b.x - a.x;
   const float z = b.z - a.z;
   const int steps = static_cast<int>(std::sqrt(x * x + z * z) / kStride) + 1;
+  PlanCell before = plan.cellAt(a.x, a.z);
   for (int n = 0; n <= steps; ++n) {
     const float share = static_cast<float>(n) / static_cast<float>(steps);
-    if (!plan.isPassable(plan.cellAt(a.x + share * x, a.z + share * z))) return false;
+    const PlanCell cell = plan.cellAt(a.x + share * x, a.z + share * z);
+    if (!plan.areConnected(before, cell)) return false;
+    before = cell;
   }
   return true;
 }
@@ -82,9 +88,12 @@ std::optional<PlanCell> nextCell(const FloorPlan& plan, std::span<const std::uin
   std::uint16_t least = lengths[plan.indexOf(cell)];
   for (const PlanCell& way : kNeighbors) {
     const PlanCell there{cell.i + way.i, cell.k + way.k};
-    const bool is_passable = plan.isPassable(there) && plan.isPassable({there.i, cell.k}) &&
-                             plan.isPassable({cell.i, there.k});
-    if (!is_passable || lengths[plan.indexOf(there)] >= least) continue;
+    const PlanCell along_x{there.i, cell.k};
+    const PlanCell along_z{cell.i, there.k};
+    const bool is_connected = plan.areConnected(cell, along_x) &&
+                              plan.areConnected(along_x, there) &&
+                              plan.areConnected(cell, along_z) && plan.areConnected(along_z, there);
+    if (!is_connected || lengths[plan.indexOf(there)] >= least) continue;
     least = lengths[plan.indexOf(there)];
     next = there;
   }
@@ -115,14 +124,15 @@ std::vector<Vec3> pulledTight(const FloorPlan& plan, const std::vector<Vec3>& po
 GeodesicWay GeodesicFields::way(std::size_t n, const Vec3& base) const {
   if (!cellBeside(*plan_, base)) return {};
   const sensors::Way way = sensors::wayFrom(*plan_, lengths_[n], base.x, base.z);
-  if (way.distance < 0) return {};
+  if (way.distance < 0 || way.distance >= kFarthest) return {};
   return {way.distance, way.x, way.z};
 }
 
 std::vector<Vec3> GeodesicFields::path(std::size_t n, const Vec3& base) const {
   const std::span<const std::uint16_t> lengths = lengths_[n];
   std::optional<PlanCell> cell = cellBeside(*plan_, base);
-  if (!cell || lengths[plan_->indexOf(*cell)] == kNoWay) return {};
+  // Behind the farthest length, nothing tells the way.
+  if (!cell || lengths[plan_->indexOf(*cell)] >= kNoWay - 1) return {};
   std::vector<Vec3> points{base};
   // From beside the floor, a path begins with a step onto it.
   if (!plan_->isPassable(plan_->cellAt(base.x, base.z))) points.push_back(plan_->middle(*cell));
@@ -152,7 +162,7 @@ Result<PathFinder> PathFinder::make(const World& world, std::uint32_t scene, con
     return fail(
         ErrorCode::kInvalidInput, "path finder",
         fmt::format("the robot cannot stand at or near ({:.2f}, {:.2f}, {:.2f}) in scene {}; "
-                    "start where one does, such as at the start of an episode",
+                    "start where it can",
                     start.x, start.y, start.z, home.name()));
   }
   return PathFinder(home, std::make_shared<const FloorPlan>(home, robot, *seed, ground));
@@ -170,9 +180,20 @@ bool PathFinder::isNavigable(const Vec3& base) const {
 }
 
 Vec3 PathFinder::snap(const Vec3& point) const {
-  const std::vector<Vec3> all = places();
-  return *std::ranges::min_element(
-      all, {}, [&](const Vec3& place) { return squaredDistance(place, point); });
+  Vec3 nearest{};
+  // Of a point that is none, it is any place.
+  float least = std::numeric_limits<float>::quiet_NaN();
+  for (std::int32_t k = 0; k < columnsZ(); ++k) {
+    for (std::int32_t i = 0; i < columnsX(); ++i) {
+      if (!plan_->isPassable({i, k})) continue;
+      const Vec3 place = plan_->middle({i, k});
+      const float squared = squaredDistance(place, point);
+      if (squared >= least) continue;
+      least = squared;
+      nearest = place;
+    }
+  }
+  return nearest;
 }
 
 std::vector<Vec3> PathFinder::places() const {
@@ -195,9 +216,10 @@ Result<GeodesicFields> PathFinder::fieldsTo(std::span<const Vec3> goals, GoalOf 
   for (std::size_t n = 0; n < goals.size(); ++n) {
     if (fields.are_places_ ? isNavigable(goals[n]) : isPlace(goals[n])) continue;
     return fail(ErrorCode::kInvalidInput, "path finder",
-                fmt::format("goal {}, ({:.2f}, {:.2f}, {:.2f}), is not navigable; take what snap() "
-                            "makes of it",
-                            n, goals[n].x, goals[n].y, goals[n].z));
+                fmt::format("goal {}, ({:.2f}, {:.2f}, {:.2f}), is {}", n, goals[n].x, goals[n].y,
+                            goals[n].z,
+                            fields.are_places_ ? "not navigable; take what snap() makes of it"
+                                               : "no point of a scene; take one within 1000 km"));
   }
   detail::forEachPart(detail::threadCount(threads), goals.size(), [&](std::size_t n) {
     fields.lengths_[n] = fields.are_places_ ? sensors::wayFieldToPlace(*plan_, goals[n])

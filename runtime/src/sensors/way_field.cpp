@@ -59,7 +59,7 @@ class Spreading {
       const PlanCell cell = cellOf(index);
       for (const PlanCell& way : kAround) {
         const PlanCell next{cell.i + way.i, cell.k + way.k};
-        if (!plan_.isPassable(next)) continue;
+        if (!plan_.areConnected(cell, next)) continue;
         const float reached = reachedFrom(next);
         if (reached < lengths_[plan_.indexOf(next)]) put(next, reached);
       }
@@ -98,10 +98,13 @@ class Spreading {
     std::ranges::push_heap(waiting_, std::greater<>());
   }
 
-  /// The eikonal equation at a cell, upwind.
+  /// The eikonal equation at a cell, upwind, of the neighbors from which a base can come.
   [[nodiscard]] float reachedFrom(const PlanCell& cell) const {
-    const float a = std::min(at({cell.i - 1, cell.k}), at({cell.i + 1, cell.k}));
-    const float b = std::min(at({cell.i, cell.k - 1}), at({cell.i, cell.k + 1}));
+    const auto from = [&](const PlanCell& neighbor) {
+      return plan_.areConnected(cell, neighbor) ? at(neighbor) : kInfinity;
+    };
+    const float a = std::min(from({cell.i - 1, cell.k}), from({cell.i + 1, cell.k}));
+    const float b = std::min(from({cell.i, cell.k - 1}), from({cell.i, cell.k + 1}));
     const float apart = std::fabs(a - b);
     if (!(apart < kPlanCell)) return std::min(a, b) + kPlanCell;
     return 0.5F * (a + b + std::sqrt(2 * kPlanCell * kPlanCell - apart * apart));
@@ -134,7 +137,7 @@ void beginAround(const FloorPlan& plan, const Vec3& place, Spreading& spreading)
   const PlanCell at = plan.cellAt(place.x, place.z);
   for (std::int32_t k = at.k - 1; k <= at.k + 1; ++k) {
     for (std::int32_t i = at.i - 1; i <= at.i + 1; ++i) {
-      if (!plan.isPassable({i, k})) continue;
+      if (!plan.areConnected(at, {i, k})) continue;
       spreading.begin({i, k}, across(place, plan.middle({i, k})));
     }
   }

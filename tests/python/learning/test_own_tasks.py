@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import pathlib
 import sys
@@ -54,16 +55,9 @@ class Approach(galactic.Task):
     def observe(self, envs):
         return {"way": self.memory["way"][:, np.newaxis], "dice": envs.uniform("dice")}
 
-class Near(Approach):
-    """Without chance."""
-
-    parts = {"way": 1}
-
-    def step(self, envs):
-        return super().step(envs)._replace(failures=None)
-
-    def observe(self, envs):
-        return {"way": self.memory["way"][:, np.newaxis]}
+class Ends(Approach):
+    def __init__(self):
+        raise SystemExit(0)
 
 class Idle(Approach):
     base, options, parts = "pick", {}, {}
@@ -157,6 +151,22 @@ def test_an_evaluation_runs_a_task_only_when_told(
     assert len(set(left)) > 50 and min(left) > 0
     assert found["measures"] == {"way_left": pytest.approx(sum(left) / 100)}
     assert found["task"] == f"{task_file}:Approach"
+    # Nothing is written over what it is judged by.
+    written = task_file.read_bytes()
+    words[-1] = task_file
+    refused = call("evaluate", policy, HELD_OUT, *words)
+    assert refused.returncode == 3 and f"{task_file}: is also an input" in refused.stderr
+    assert task_file.read_bytes() == written
+    # Neither a file of another folder nor what a stranger calls the task is recommended.
+    stranger = checkpoint.load_policy(policy)
+    stranger.settings = dataclasses.replace(
+        stranger.settings, task="x.py; rm -r \x1b[31m.py:Approach"
+    )
+    checkpoint.save_policy(stranger, tmp_path / "stranger.pt")
+    (tmp_path / "task.py").write_text(TASK, encoding="utf-8")
+    assert (
+        "add --task FILE.py:CLASS\n" in call("evaluate", tmp_path / "stranger.pt", HELD_OUT).stderr
+    )
     # Another task, which does not give what the policy observes.
     done = call("evaluate", policy, HELD_OUT, "--task", f"{task_file}:Idle")
     assert done.returncode == 3 and "way (1), dice (1)" in done.stderr
@@ -210,8 +220,8 @@ def test_what_is_filmed_is_what_was_played(task_file: pathlib.Path, network: str
     episodes = starts.episodes().tolist()
     # Half of the targets are as near from the beginning.
     ways = np.linalg.norm(starts.observations[:, starts.observation_parts["grip_target"]], axis=1)
-    near = own_code.named(f"{task_file}:Near", "--task")
-    task = own_tasks.maker(near, f"radius={np.median(ways) + 0.1}")
+    name = own_code.named(f"{task_file}:Approach", "--task")
+    task = own_tasks.maker(name, f"radius={np.median(ways) + 0.1} bonus=0.1")
     homes = Homes(world, settings, 1, task=task)
     shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
     torch.manual_seed(3)
@@ -225,7 +235,14 @@ def test_what_is_filmed_is_what_was_played(task_file: pathlib.Path, network: str
         assert film.reward == pytest.approx(one.reward, abs=1e-3)
         assert len(film.frames) == one.length + 1
         assert not np.array_equal(film.frames[0], film.frames[-1])
-    assert {one.ending for one in played} == {"success", "time_out"}
+    assert {one.ending for one in played} >= {"success", "time_out"}
+    # With the same luck, in fewer envs, and another one first.
+    fewer = Homes(world, dataclasses.replace(settings, envs=2), 1, task=task, rank=1, ranks=2)
+    again = Evaluator(fewer, actor).play(episodes[::-1])[::-1]
+    assert [one.ending for one in again] == [one.ending for one in played]
+    np.testing.assert_allclose(
+        [one.reward for one in again], [one.reward for one in played], atol=1e-3
+    )
 
 
 @needs_worlds
@@ -237,7 +254,8 @@ def test_what_is_filmed_is_what_was_played(task_file: pathlib.Path, network: str
         (["--task", "{lab}/none.py:Approach"], "/none.py is no file; name the one that Approach is in"),
         (["--task", "no_such.module:Approach"], "there is no module no_such.module; install it"),
         (["--task", "{lab}/approach.py:Aproach"], "has no Aproach; did you mean Approach?"),
-        (["--task", "{lab}/approach.py:nothing"], "has no nothing; it has Approach, Near, Idle"),
+        (["--task", "{lab}/approach.py:nothing"], "has no nothing; it has Approach, Ends, Idle"),
+        (["--task", "{lab}/approach.py:Ends"], "approach.py:Ends ended the program when it was made"),
         (["--task", "{lab}/approach.py:not_a_task"], "is no class that inherits from galactic.Task"),
         (["--task", "{lab}/approach.py:Approach", "--task-options", "radios=2"],
          "approach.py:Approach cannot be made of them: got an unexpected keyword argument 'radios'"),
@@ -281,6 +299,16 @@ def test_what_a_task_raises_comes_out_as_it_is(
 
 
 @needs_worlds
+def test_a_file_that_ends_the_program_is_refused(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "ends.py").write_text("import sys\nsys.exit()\n", encoding="utf-8")
+    name = f"{tmp_path / 'ends.py'}:Approach"
+    said = "ended the program when it was imported; put what a program does behind: if __name__"
+    for option in ("--task", "--log-to"):
+        done = call("train", WORLD, "-o", tmp_path / "run", *SMALL, option, name)
+        assert done.returncode == 1 and f"{option}: ends.py:Approach {said}" in done.stderr
+
+
+@needs_worlds
 def test_no_file_of_the_user_is_written_over(
     tmp_path: pathlib.Path, task_file: pathlib.Path
 ) -> None:
@@ -296,9 +324,10 @@ def test_no_file_of_the_user_is_written_over(
 
 
 def test_options_become_keywords() -> None:
-    words = "radius=0.2 --kind=near most=3 places=[1,2] far-too=True empty="
+    words = "radius=0.2 --kind=near most=3 places=[1,2] far-too=True dense=false no=None empty="
     assert own_tasks.keywords_of(words) == {
-        "radius": 0.2, "kind": "near", "most": 3, "places": [1, 2], "far_too": True, "empty": "",
+        "radius": 0.2, "kind": "near", "most": 3, "places": [1, 2], "far_too": True, "dense": False,
+        "no": None, "empty": "",
     }  # fmt: skip
     with pytest.raises(SettingsError, match='found "=3", expected NAME=VALUE'):
         own_tasks.keywords_of("=3")

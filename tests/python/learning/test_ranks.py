@@ -13,6 +13,7 @@ import torch
 from torch.distributed import HashStore
 
 import galactic
+import galactic.learning.launch as launching
 from galactic.learning.distributed import Group, RankLost, Stragglers
 from galactic.learning.launch import launch
 from galactic.learning.reports.curves import read_curves
@@ -130,6 +131,16 @@ def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) 
     total = sum(steps[0]["rollouts"]) + sum(steps[1]["rollouts"])
     assert steps[0]["steps"] == steps[1]["steps"] == 16 * total
     assert torch.equal(steps[0]["parameters"], steps[1]["parameters"])
+
+
+def test_a_rank_that_fails_is_noticed_whichever_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that wait for it are ended."""
+    monkeypatch.setattr(launching, "GRACE", 0.2)
+    for failing in range(3):
+        commands = [["false"] if rank == failing else ["sleep", "100"] for rank in range(3)]
+        processes = [subprocess.Popen(command) for command in commands]
+        assert launching._wait(processes) == (failing, 1)
+        assert all(process.returncode is not None for process in processes)
 
 
 @pytest.mark.parametrize(

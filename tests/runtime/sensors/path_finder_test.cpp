@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -141,6 +142,30 @@ TEST(PathFinder, GivesPathsThatTheRobotCanDrive) {
   ASSERT_GT(beside.size(), 2U);
   EXPECT_FALSE(finder.isNavigable(beside[0]));
   EXPECT_TRUE(finder.isNavigable(beside[1]));
+}
+
+TEST(PathFinder, TakesTheStairsAndNotTheLedge) {
+  // A platform of 12 cm, and steps of 3 cm that lead up to it.
+  const std::vector<Block> blocks{plainFloor(),
+                                  {{1.5F, 0, 0}, {3, 0.12F, 1.5F}},
+                                  {{1.5F, 0, 1.5F}, {3, 0.09F, 1.8F}},
+                                  {{1.5F, 0, 1.8F}, {3, 0.06F, 2.1F}},
+                                  {{1.5F, 0, 2.1F}, {3, 0.03F, 2.4F}}};
+  const BoxWorld world = worldWith(blocks);
+  const PathFinder finder = finderIn(world);
+  const Vec3 up = finder.snap({2, 0.12F, 0.75F});
+  ASSERT_NEAR(up.y, 0.12F, 1e-3F);
+  const GeodesicFields fields = fieldsOf(finder, {up});
+  // From right below the ledge.
+  const Vec3 below = finder.snap({1.35F, 0, 0.75F});
+  ASSERT_NEAR(below.y, 0, 1e-3F);
+  EXPECT_GT(fields.way(0, below).distance, 2.5F);
+  const std::vector<Vec3> path = fields.path(0, below);
+  ASSERT_GT(path.size(), 2U);
+  EXPECT_GT(lengthOf(path), 2.5F);
+  float highest_z = 0;
+  for (const Vec3& corner : path) highest_z = std::max(highest_z, corner.z);
+  EXPECT_GT(highest_z, 1.9F) << "up the stairs";
 }
 
 TEST(PathFinder, SaysThatThereIsNoWay) {

@@ -20,7 +20,8 @@ def taker(text: str, folder: pathlib.Path, settings: Mapping[str, Any]) -> TakeR
     if not callable(make):
         found = f"{code.place} has no {code.name}" if make is None else f"{code} is no function"
         raise SettingsError(f"--log-to: {found}; name one that takes a folder and settings")
-    take = make(folder, settings)
+    with own_code.goes_on(code, "when it was called; return what takes a row"):
+        take = make(folder, settings)
     if not callable(take):
         raise SettingsError(
             f"--log-to: {code} returned a {type(take).__name__}, expected what takes a row"
@@ -29,7 +30,7 @@ def taker(text: str, folder: pathlib.Path, settings: Mapping[str, Any]) -> TakeR
 
 
 class Log:
-    """Hands rows on. Whatever is raised then is told once, and the run goes on without: a tracker that cannot
+    """Hands rows on. What is raised then is told, once of each kind, and the run goes on without: a tracker that cannot
     be reached costs no training."""
 
     def __init__(self, take: TakeRow, say: Callable[[str], None]):
@@ -41,7 +42,7 @@ class Log:
         try:
             self._take(dict(values))
         except Exception as error:  # of a stranger's code
-            fault = f"--log-to: {type(error).__name__}: {error}"
-            if fault not in self._told:
-                self._told.add(fault)
-                self._say(f"{fault}; the row is lost, and the run goes on")
+            kind = type(error).__name__
+            if kind not in self._told:
+                self._told.add(kind)
+                self._say(f"--log-to: {kind}: {error}; the row is lost, and the run goes on")
