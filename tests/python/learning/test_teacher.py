@@ -110,7 +110,12 @@ def test_a_teacher_reads_its_own_parts_of_what_is_observed() -> None:
         (
             [*PARTS, ("map", 5)],
             {},
-            "best.pt sees map, which this run does not observe; turn the sensor",
+            "best.pt sees map, which this run does not observe; take the --task that gives it",
+        ),
+        (
+            [*PARTS, ("laser", 5)],
+            {},
+            "best.pt sees laser, which this run does not observe; turn the sensor on",
         ),
         (
             [("way", 3)],
