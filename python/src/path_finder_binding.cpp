@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,6 +31,11 @@ std::vector<Vec3> pointsOf(const py::handle& given, const char* name) {
     const std::string found =
         shaped ? shapeText({shaped.shape(), shaped.shape() + shaped.ndim()}) : "no array";
     throw py::value_error(fmt::format("{} has the shape {}, expected (n, 3)", name, found));
+  }
+  // What numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
+  if (std::string_view("biuf").find(shaped.dtype().kind()) == std::string_view::npos) {
+    throw py::type_error(fmt::format("{} has the type {}, expected numbers", name,
+                                     py::str(shaped.dtype()).cast<std::string>()));
   }
   const auto array = inputOf<float>(shaped, name, {shaped.shape(0), kNumbers});
   const float* numbers = array.data();

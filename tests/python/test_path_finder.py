@@ -136,6 +136,8 @@ def test_it_outlives_what_it_was_made_of(world_path):
         (lambda f, w: galactic.PathFinder(w, 0, [0, 0]), ValueError, r"start has the shape \(2,\)"),
         (lambda f, w: galactic.PathFinder(w, 0, f.places[0], floor_rise=-1), galactic.Error, "floor_rise"),
         (lambda f, w: f.snap([0, 0, 0]), ValueError, r"points has the shape \(3,\), expected \(n, 3\)"),
+        (lambda f, w: f.snap([["1", "2", "3"]]), TypeError, "points has the type <U1, expected numbers"),
+        (lambda f, w: f.snap([[1, 2, 3j]]), TypeError, "points has the type complex128, expected numbers"),
         (lambda f, w: f.snap("here"), ValueError, r"points has the shape \(\), expected \(n, 3\)"),
         (lambda f, w: f.is_navigable([[0, np.inf, 0]]), ValueError, r"bases\[0\] holds a number that is not"),
         (lambda f, w: f.fields([[0, 50, 0]]), galactic.Error, r"goal 0, .* is not navigable; take what snap"),
