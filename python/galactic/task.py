@@ -59,9 +59,8 @@ class Draws:
 class TaskEnvs:
     """The n envs that a Task is about: all of a VectorEnv, or one of its halves.
 
-    Arrays show what is now, after the latest step or beginning. Those of `observations`, `rewards` and
-    `endings` are views of the simulator's memory, which has other contents after the next step: copy
-    what you keep.
+    Arrays show what is now, after the latest step or beginning. `observations`, `actions`, `rewards` and
+    `endings` are views, which have other contents after the next step: copy what you keep.
     """
 
     def __init__(self, world: World, simulator: Simulator) -> None:
@@ -76,10 +75,10 @@ class TaskEnvs:
         self.seed: int = options["seed"]
         self.steps = 0
         """Steps since the envs were made, or reset with a seed: for curricula."""
-        self.actions: NDArray[np.float32] = np.zeros(
-            (self.num_envs, simulator.action_count), np.float32
-        )
+        self._actions = np.zeros((self.num_envs, simulator.action_count), np.float32)
+        self.actions: NDArray[np.float32] = self._actions.view()
         """float32 (n, action_count): those of the latest step, as they were given."""
+        self.actions.flags.writeable = False
         self.draws = Draws(self.numbers)
         self._states: EnvStates | None = None
 
@@ -117,8 +116,12 @@ class TaskEnvs:
         bits = hashed(salt & (2**64 - 1), self.draws.keys, self.draws.ages, count)
         return (bits >> np.uint64(11)).astype(np.float64) * 2.0**-53
 
+    def take_actions(self, actions: NDArray[np.float32] | float) -> None:
+        """What `actions` is from now on: for who drives the task, not for tasks."""
+        self._actions[:] = actions
+
     def forget(self) -> None:
-        """What was known of the states is of before: for who drives the task, not for tasks."""
+        """What was known of the states is of before: the same."""
         self._states = None
 
 

@@ -89,7 +89,7 @@ class TaskRunner:
         """Begins anew, with envs that have just been made or restarted with a seed."""
         simulator = self._envs.simulator
         self._envs.steps = 0
-        self._envs.actions[:] = 0.0
+        self._envs.take_actions(0.0)
         self._envs.draws.begin_first()
         self._envs.forget()
         self._prepare()
@@ -142,7 +142,7 @@ class TaskRunner:
         envs.steps += 1
         envs.draws.ages += 1
         envs.forget()
-        np.copyto(envs.actions, actions)
+        envs.take_actions(actions)
         outcome = self._task.step(envs)
         if not isinstance(outcome, tuple) or not 1 <= len(outcome) <= 3:
             raise TypeError(
@@ -202,7 +202,7 @@ class TaskRunner:
         if envs.seed != envs.simulator.options["seed"]:
             self._prepare()
         envs.steps = int(saved["task_steps"])
-        np.copyto(envs.actions, saved["task_actions"])
+        envs.take_actions(saved["task_actions"])
         np.copyto(envs.draws.begun, saved["task_begun"])
         np.copyto(envs.draws.keys, saved["task_keys"])
         np.copyto(envs.draws.ages, saved["task_ages"])

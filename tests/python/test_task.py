@@ -530,6 +530,11 @@ def ends_odd(self, envs):
             r"Faulty.memory\['a'\] is a view that cannot be written, .*; copy what is to be remembered",
         ),
         (
+            of(prepare=lambda self, envs: self.memory.update(a=envs.actions)),
+            TypeError,
+            r"Faulty.memory\['a'\] is a view that cannot be written",
+        ),
+        (
             of(prepare=lambda self, envs: self.memory.update({5: np.zeros(4)})),
             TypeError,
             r"Faulty.memory\[5\] is float64",

@@ -48,7 +48,11 @@ class Teacher:
         for name, size in saved.parts:
             if name not in sizes:
                 is_own = name in of_own_tasks(saved.parts)
-                source = "take the --task that gives it" if is_own else "turn the sensor on with --simulation"
+                source = (
+                    "take the --task that gives it"
+                    if is_own
+                    else "turn the sensor on with --simulation"
+                )
                 raise CheckpointError(
                     f"{file} sees {name}, which this run does not observe; {source} and keep it from the "
                     f"policy with --critic-only, or {remedy}"
