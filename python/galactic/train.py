@@ -26,13 +26,11 @@ from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, TAUGHT, preset
 from galactic.learning.reports import log
 from galactic.learning.reports.curves import write_json
+from galactic.learning.setting_options import add_options, given_options, positive_integer
 from galactic.learning.settings import (
     Settings,
     SettingsError,
-    add_options,
-    given_options,
     option_name,
-    positive_integer,
     resumed,
 )
 from galactic.learning.streams import put

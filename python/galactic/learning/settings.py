@@ -3,12 +3,9 @@ the tables of docs/learning.md come."""
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
 import difflib
-import math
 import numbers
-import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
@@ -528,73 +525,6 @@ def typed(value: Any) -> Any:
     return ",".join(f"{number:.9g}" for number in value) if isinstance(value, tuple) else value
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """One option for each setting, without a default: what is not given stays as the preset has it."""
-    groups: dict[str, Any] = {}
-    for field in dataclasses.fields(Settings):
-        title = field.metadata["group"]
-        group = groups.setdefault(title, parser.add_argument_group(title))
-        keywords: dict[str, Any] = {"default": argparse.SUPPRESS, "dest": "setting_" + field.name}
-        keywords["help"] = f"{field.metadata['text']} ({typed(field.default)!r})".replace("%", "%%")
-        if isinstance(field.default, bool):
-            keywords["action"] = argparse.BooleanOptionalAction
-        else:
-            readers = {int: _integer, float: _real, str: str, tuple: _three}
-            keywords["type"] = readers[type(field.default)]
-            name = "N,N,N" if isinstance(field.default, tuple) else field.name.upper()
-            keywords["metavar"] = "|".join(field.metadata["choices"]) or name
-        group.add_argument(option_name(field.name), **keywords)
-
-
-def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The settings that the command line names."""
-    prefix = "setting_"
-    return {
-        name[len(prefix) :]: value
-        for name, value in vars(arguments).items()
-        if name.startswith(prefix)
-    }
-
-
-def positive_integer(text: str) -> int:
-    """The type of an option that takes a number of steps, as `--steps` does."""
-    value = _integer(text)
-    if not 1 <= value <= MOST_WHOLE:
-        raise argparse.ArgumentTypeError(f'found "{text}", expected 1 to {MOST_WHOLE}')
-    return value
-
-
-def _integer(text: str) -> int:
-    """Also 2e6 and 2_000_000."""
-    if re.fullmatch(r"-?[0-9]+(_[0-9]+)*", text):
-        return int(text)
-    value = _real(text, "a whole number")
-    if value != int(value):
-        raise argparse.ArgumentTypeError(f'found "{text}", expected a whole number')
-    return int(value)
-
-
-def _real(text: str, wanted: str = "a number") -> float:
-    """A finite number, without blanks around it."""
-    if re.fullmatch(r"[-+0-9._eE]+", text):
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if math.isfinite(value):
-            return value
-    raise argparse.ArgumentTypeError(f'found "{text}", expected {wanted}')
-
-
-def _three(text: str) -> tuple[float, ...]:
-    """Numbers with commas between."""
-    wanted = "three numbers with commas between, such as 0.1,0,-0.2"
-    parts = text.split(",")
-    if len(parts) != 3:
-        raise argparse.ArgumentTypeError(f'found "{text}", expected {wanted}')
-    return tuple(_real(part, wanted) for part in parts)
-
-
 def simulation_keyword(word: str) -> str:
     """The keyword of galactic.Simulator that a word of Settings.simulation names: no_terminate of
     "no-terminate" and of "no-terminate=false"."""
@@ -632,17 +562,3 @@ def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
 def _shown(value: Any) -> Any:
     """As typed(), for a sentence."""
     return "(nothing)" if value == "" else typed(value)
-
-
-def markdown_tables() -> str:
-    """The tables of docs/learning.md."""
-    lines: list[str] = []
-    group = ""
-    for field in dataclasses.fields(Settings):
-        if field.metadata["group"] != group:
-            group = field.metadata["group"]
-            lines += [*([""] if lines else []), f"**{group}**", ""]
-            lines += ["| option | default | what |", "|---|---|---|"]
-        default = f"`{typed(field.default)}`" if field.default != "" else ""
-        lines.append(f"| `{option_name(field.name)}` | {default} | {field.metadata['text']} |")
-    return "\n".join(lines) + "\n"

@@ -13,12 +13,10 @@ import pytest
 
 from galactic.learning.homes import simulation_keywords
 from galactic.learning.presets import PRESETS, preset
+from galactic.learning.setting_options import add_options, given_options, markdown_tables
 from galactic.learning.settings import (
     Settings,
     SettingsError,
-    add_options,
-    given_options,
-    markdown_tables,
     resumed,
     typed,
 )
