@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -73,8 +72,10 @@ class HalfBatch:
         self._rows = np.zeros((envs, self.observation_size), np.float32)
         self._tally = EpisodeTally(self.simulator)
         self._is_new = True
+        self._was_idle = np.zeros(envs, np.bool_)
         self.is_cut_off = False
-        """Whether an exception has cut off a step, which envs, tasks and sums have taken in in part."""
+        """Whether an exception has cut off a step or a reset, which envs, tasks and sums have taken in in
+        part."""
         self._in_use = threading.Lock()
         # When the episodes began, by a clock that only goes forward.
         self._began = np.full(envs, time.perf_counter())
@@ -116,8 +117,15 @@ class HalfBatch:
     ) -> None:
         """See VectorEnv.reset."""
         with self._alone():
+            was_cut_off, self.is_cut_off = self.is_cut_off, True
+            if self._task is not None and mask.all():
+                self._task.mend()
             if seed is not None:
-                self.simulator.restart(seed)
+                try:
+                    self.simulator.restart(seed)
+                except (Error, TypeError, ValueError):  # it has refused, and nothing has happened
+                    self.is_cut_off = was_cut_off
+                    raise
                 if self._task is not None:
                     self._task.restart()
             untouched = self._is_new or seed is not None
@@ -149,8 +157,9 @@ class HalfBatch:
         # States of earlier versions do not tell whether a reset() came before them; mostly one did.
         saved = {"simulator": np.empty(0, np.uint8), "is_new": np.array(False), **saved}
         with self._alone():
-            for name, mine in self._own_state().items():
+            for name, mine in self._own_state(blank=True).items():
                 _check_saved(name, saved.get(name), mine)
+            self.is_cut_off = True
             self.simulator.restore_state(saved["simulator"].tobytes())
             self._tally.restore(saved["returns"], saved["lengths"])
             self._is_new = bool(saved["is_new"])
@@ -158,48 +167,57 @@ class HalfBatch:
                 self._task.restore(saved)
             self.is_cut_off = False
 
-    def _own_state(self) -> dict[str, Array]:
-        """What the simulator does not know."""
+    def _own_state(self, *, blank: bool = False) -> dict[str, Array]:
+        """What the simulator does not know; `blank`: of a task, arrays of the same types and shapes."""
         tally, is_new = self._tally, np.array(self._is_new)
-        task = {} if self._task is None else self._task.state()
+        task = {} if self._task is None else self._task.state(blank=blank)
         return {"returns": tally.returns, "lengths": tally.lengths, "is_new": is_new, **task}
 
     def step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
         """See VectorEnv.step, which has checked `actions` and `out`."""
         with self._alone():
             self.require_whole()
-            result = self._step(actions, out)
+            self._move(actions)
+            result = self._taken_in(actions, out)
             self.is_cut_off = False
             return result
+
+    def _move(self, actions: NDArray[np.float32]) -> None:
+        """Steps the simulator. From then on the step is cut off until all of it is taken in: Ctrl-C comes as
+        soon as the simulator returns."""
+        was_new = self._is_new
+        self.is_cut_off, self._is_new = True, False
+        if self._task is not None:
+            self._was_idle = self.simulator.idle.copy()
+        try:
+            self.simulator.step(actions)
+        except (RuntimeError, TypeError, ValueError):  # it has refused, and nothing has happened
+            self.is_cut_off, self._is_new = False, was_new
+            raise
 
     def require_whole(self) -> None:
         """Raises RuntimeError where a step was cut off."""
         if self.is_cut_off:
             raise RuntimeError(
-                "an exception has cut off the last step of this env; reset() all envs, or restore a state"
+                "an exception has cut off what this env did last; reset() all envs, or restore a state"
             )
 
-    @contextlib.contextmanager
-    def _alone(self) -> Iterator[None]:
+    def _alone(self) -> threading.Lock:
         """Around each call: the simulator alone would notice a second thread too late, when the first
-        is drawing."""
-        if not self._in_use.acquire(blocking=False):
+        is drawing. The lock itself, which no exception leaves held."""
+        if self._in_use.locked():
             raise RuntimeError(
                 "another thread is using this galactic.VectorEnv; give each thread its own"
             )
-        try:
-            yield
-        finally:
-            self._in_use.release()
+        return self._in_use
 
-    def _step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
+    def _taken_in(
+        self, actions: NDArray[np.float32], out: Mapping[str, Array] | None
+    ) -> StepResult:
+        """What the step came to, with tasks, sums and images."""
         simulator, task = self.simulator, self._task
-        idle = None if task is None else simulator.idle.copy()
-        simulator.step(actions)
-        self.is_cut_off = True
-        self._is_new = False
-        if task is not None and idle is not None:
-            task.step(actions, idle)
+        if task is not None:
+            task.step(actions, self._was_idle)
         paid, endings = (simulator.rewards, simulator.endings) if task is None else task.outcome
         terminated, truncated, ended = self._tally.add(paid, endings)
         terminations = self._landed("terminations", terminated, out, True)

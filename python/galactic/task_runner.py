@@ -87,12 +87,8 @@ class TaskRunner:
 
     def restart(self) -> None:
         """Begins anew, with envs that have just been made or restarted with a seed."""
+        self._begin_anew()
         simulator = self._envs.simulator
-        self._envs.steps = 0
-        self._envs.take_actions(0.0)
-        self._envs.draws.begin_first()
-        self._envs.forget()
-        self._prepare()
         everywhere = np.arange(self._envs.num_envs)
         chosen = self._chosen(everywhere)
         begins = np.where(chosen < 0, Simulator.STAYS, chosen)
@@ -100,6 +96,21 @@ class TaskRunner:
             simulator.check_episodes(begins)
             simulator.reset(begins)
         self.begin(everywhere)
+
+    def _begin_anew(self) -> None:
+        """As if nothing had happened yet."""
+        self._envs.steps = 0
+        self._envs.take_actions(0.0)
+        self._envs.draws.begin_first()
+        self._envs.forget()
+        self._prepare()
+
+    def mend(self) -> None:
+        """Has memory that is no longer what prepare() made, so that no state of it fits, made anew."""
+        try:
+            self._require_layout()
+        except TypeError:
+            self._prepare()
 
     def _prepare(self) -> None:
         """Has the task make its memory, for the simulator's seed."""
@@ -151,7 +162,7 @@ class TaskRunner:
         outcome = Outcome(*outcome)
         self._require_layout()
         shape = (envs.num_envs,)
-        rewards = self._checked("step", "rewards", outcome.rewards, shape)
+        rewards = self._checked("step", "rewards", outcome.rewards, shape, ignored=idle)
         successes = self._flags("successes", outcome.successes)
         failures = self._flags("failures", outcome.failures)
         np.copyto(self._rewards, np.where(idle, 0.0, rewards))
@@ -175,17 +186,20 @@ class TaskRunner:
         """The task's columns of the observation, float32 (n, size), overwritten by the next call."""
         seen = self._task.observe(self._envs) if self.parts else {}
         self._require_names("observe", seen, self.parts)
-        first = self._envs.simulator.observation_size
+        first, idle = self._envs.simulator.observation_size, self._envs.simulator.idle
         for name, part in self.parts.items():
             shape = (self._envs.num_envs, part.stop - part.start)
-            values = self._checked("observe", name, seen[name], shape)
+            values = self._checked("observe", name, seen[name], shape, ignored=idle)
             self._columns[:, part.start - first : part.stop - first] = values
         return self._columns
 
-    def state(self) -> dict[str, Array]:
-        """All that later steps depend on, of which restore() takes the same names, shapes and types."""
-        envs = self._envs
-        memory = {f"task_memory_{name}": array for name, array in self._task.memory.items()}
+    def state(self, *, blank: bool = False) -> dict[str, Array]:
+        """All that later steps depend on, of which restore() takes the same names, shapes and types. `blank`:
+        with the memory that prepare() made, whatever is in it, and whatever has become of it."""
+        envs, remembered = self._envs, self._task.memory
+        if blank:
+            remembered = {name: np.empty(shape, of) for name, (of, shape) in self._layout.items()}
+        memory = {f"task_memory_{name}": array for name, array in remembered.items()}
         return {
             "task_steps": np.array(envs.steps, np.int64),
             "task_actions": envs.actions,
@@ -199,8 +213,9 @@ class TaskRunner:
         """Goes on from what state() returned once, with the simulator of that moment."""
         envs = self._envs
         envs.forget()
+        self.mend()
         if envs.seed != envs.simulator.options["seed"]:
-            self._prepare()
+            self._begin_anew()
         envs.steps = int(saved["task_steps"])
         envs.take_actions(saved["task_actions"])
         np.copyto(envs.draws.begun, saved["task_begun"])
@@ -264,14 +279,18 @@ class TaskRunner:
         given: Any,
         shape: tuple[int, ...],
         envs: NDArray[np.int64] | None = None,
+        ignored: NDArray[np.bool_] | None = None,
     ) -> NDArray[np.float32]:
-        """Finite numbers of that shape, of these envs, or all."""
+        """Finite numbers of that shape, of these envs, or all; 0 for what else is said of those `ignored`."""
         values = np.asarray(given)
         if values.shape != shape or values.dtype.kind not in "biuf":
             raise ValueError(self._fault(method, name, values, f"numbers {shape}"))
         with np.errstate(over="ignore"):
             rows = values.astype(np.float32)
         finite = np.isfinite(rows)
+        if ignored is not None and not finite.all():
+            rows[ignored] = np.where(finite[ignored], rows[ignored], 0.0)
+            finite = np.isfinite(rows)
         if not finite.all():
             row = int(np.argwhere(~finite)[0, 0])
             env = (self._envs.numbers if envs is None else envs)[row]

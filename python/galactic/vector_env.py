@@ -294,8 +294,13 @@ class VectorEnv(_Base):
         for simulator, of_half in zip(self.simulators, chosen):
             if of_half is not None:
                 simulator.check_episodes(of_half)
-        for number, half in enumerate(self._halves):
-            half.reset(seed, mask[self.rows(number)], chosen[number])
+        try:
+            for number, half in enumerate(self._halves):
+                half.reset(seed, mask[self.rows(number)], chosen[number])
+        except BaseException:
+            if any(half.is_cut_off for half in self._halves):
+                self._cut_off()
+            raise
         if seed is not None and _Base is not object:
             super().reset(seed=seed)
         return self.observe(), {}
@@ -331,6 +336,8 @@ class VectorEnv(_Base):
         self._check_out(out, self.num_envs)
         if self.halves == 1:
             return self._halves[0].step(rows, out)
+        for half in self._halves:
+            half.require_whole()
         under_way = [
             self._begin(half, rows[self.rows(half)], _part(out, self.rows(half)))
             for half in range(self.halves)
@@ -338,7 +345,13 @@ class VectorEnv(_Base):
         # All have to be done, whatever one of them raises: else the others would stay under way.
         wait(under_way)
         self._pending = [None] * self.halves
-        *arrays, infos = zip(*(step.result() for step in under_way))
+        try:
+            results = [step.result() for step in under_way]
+        except BaseException:
+            if any(half.is_cut_off for half in self._halves):
+                self._cut_off()
+            raise
+        *arrays, infos = zip(*results)
         observations, rewards, terminations, truncations = (_joined(list(each)) for each in arrays)
         return observations, rewards, terminations, truncations, self._joined_infos(infos)
 
@@ -400,13 +413,16 @@ class VectorEnv(_Base):
         saved; observe() shows it. Raises Error for bytes that are none, and changes nothing."""
         self._require_idle()
         arrays = _arrays_of(state, self.halves)
-        before = [half.save_state() for half in self._halves]
+        # Of one that was cut off, there is nothing to go back to.
+        before = [None if half.is_cut_off else half.save_state() for half in self._halves]
         try:
             for half, saved in zip(self._halves, arrays):
                 half.restore_state(saved)
-        except Error:
-            for half, saved in zip(self._halves, before):
-                half.restore_state(saved)
+        except BaseException:
+            for half, kept in zip(self._halves, before):
+                half.is_cut_off = True
+                if kept is not None:
+                    half.restore_state(kept)
             raise
 
     def close(self, **kwargs: Any) -> None:
@@ -449,6 +465,11 @@ class VectorEnv(_Base):
         busy = [half for half in asked if self._pending[half] is not None]
         if busy:
             raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
+
+    def _cut_off(self) -> None:
+        """Lets no half go on alone."""
+        for half in self._halves:
+            half.is_cut_off = True
 
     def _require_open(self) -> None:
         if self.closed:

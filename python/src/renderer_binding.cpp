@@ -112,8 +112,10 @@ bool takeSensorOption(const std::array<SensorOption<Options>, count>& table,
   for (const SensorOption<Options>& option : table) {
     if (keywordOf(option) != keyword) continue;
     const double found = numberOf(keyword.c_str(), value);
-    options.*option.value = static_cast<float>(found);
-    if (isWithin(option, options.*option.value)) return true;
+    if (isWithin(option, found)) {
+      options.*option.value = static_cast<float>(found);
+      return true;
+    }
     throw ErrorException{{ErrorCode::kInvalidInput, keyword,
                           fmt::format("is {}, expected 0 to {}", found, option.most)}};
   }

@@ -1,5 +1,7 @@
 """Tasks of one's own that are wrong, and steps that they cut off."""
 
+import signal
+
 import numpy as np
 import pytest
 
@@ -34,7 +36,7 @@ def test_a_step_that_was_cut_off(world):
         env.save_state,
         lambda: env.reset(options=some),
     ):
-        with pytest.raises(RuntimeError, match="has cut off the last step of this env; reset"):
+        with pytest.raises(RuntimeError, match="has cut off what this env did last; reset"):
             call()
     env.restore_state(state)
     for one, two in zip(played(env, drawing(), 9), played(whole, drawing(), 9)):
@@ -51,6 +53,164 @@ def test_a_step_that_was_cut_off(world):
             infos["final_info"]["episode"]["l"][infos["_final_info"]].tolist() if infos else []
         )
     assert lengths and max(lengths) <= 20
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_a_reset_that_was_cut_off(world, halves):
+    class Fails(Approach):
+        def begin(self, envs, which):
+            if fails and envs.numbers[0] == 0:
+                raise KeyError("begin")
+            super().begin(envs, which)
+
+    fails = False
+    env = VectorEnv(world, 4, task=Fails, halves=halves)
+    env.reset()
+    state = env.save_state()
+    fails = True
+    with pytest.raises(KeyError):
+        env.reset()
+    fails = False
+    with pytest.raises(RuntimeError, match="has cut off what this env did last"):
+        env.step(np.zeros((4, ACTIONS)))
+    # A state that does not fit changes nothing of that.
+    with pytest.raises(galactic.Error):
+        env.restore_state(VectorEnv(world, 6, task=Fails, halves=halves).save_state())
+    with pytest.raises(RuntimeError, match="has cut off what this env did last"):
+        env.step(np.zeros((4, ACTIONS)))
+    env.restore_state(state)
+    played(env, drawing(), 5)
+
+
+def test_no_half_goes_on_alone(world):
+    class Fails(Approach):
+        def step(self, envs):
+            if envs.numbers[0] == 0:
+                raise KeyError("step")
+            return super().step(envs)
+
+    env = VectorEnv(world, 4, task=Fails, halves=2)
+    env.reset()
+    with pytest.raises(KeyError):
+        env.step(np.zeros((4, ACTIONS)))
+    for _ in range(3):
+        with pytest.raises(RuntimeError, match="has cut off"):
+            env.step(np.zeros((4, ACTIONS)))
+    assert env.simulators[1].env_state(0).step == 1
+
+
+def test_memory_that_fits_no_longer_is_made_anew(world):
+    class Grows(Approach):
+        def step(self, envs):
+            outcome = super().step(envs)
+            if fails:
+                self.memory["gained"] = fails.pop()
+            return outcome
+
+    fails = []
+    env = VectorEnv(world, 4, task=Grows)
+    env.reset()
+    state = env.save_state()
+    ahead = played(env, drawing(), 9)
+    for recover in (lambda: env.restore_state(state), lambda: env.reset(seed=1)):
+        for wrong in (np.zeros((4, 2), np.float32), [1.0], None):
+            fails = [wrong]
+            with pytest.raises(TypeError):
+                env.step(np.zeros((4, ACTIONS)))
+            recover()
+            for one, two in zip(played(env, drawing(), 9), ahead):
+                np.testing.assert_array_equal(one, two)
+    fails = [np.zeros(3)]
+    with pytest.raises(TypeError):
+        env.step(np.zeros((4, ACTIONS)))
+    env.reset()
+    played(env, drawing(), 9)
+
+
+def test_a_state_that_a_task_cannot_take_changes_nothing(world):
+    class Fails(Approach):
+        def prepare(self, envs):
+            if fails:
+                raise KeyError("prepare")
+            super().prepare(envs)
+
+    fails = False
+    env = VectorEnv(world, 4, task=Fails)
+    env.reset(seed=5)
+    other = env.save_state()
+    env.reset(seed=6)
+    state = env.save_state()
+    fails = True
+    with pytest.raises(KeyError):
+        env.restore_state(other)
+    with pytest.raises((KeyError, RuntimeError)):
+        env.step(np.zeros((4, ACTIONS)))
+    fails = False
+    env.restore_state(state)
+    ahead = played(env, drawing(), 5)
+    env.reset(seed=6)
+    for one, two in zip(played(env, drawing(), 5), ahead):
+        np.testing.assert_array_equal(one, two)
+
+
+def test_interrupts_leave_nothing_half_done(world):
+    """Wherever they come: what has been taken in is whole, or is told to be cut off. No lock stays held."""
+    env = VectorEnv(world, 256, task=Approach, threads=1)
+    actions = np.zeros((256, ACTIONS))
+    random = np.random.default_rng(3)
+    interrupted = 0
+    for _ in range(60):
+        env.reset(seed=1)
+        try:
+            signal.setitimer(signal.ITIMER_REAL, random.uniform(0.0002, 0.004))
+            while True:
+                env.step(actions)
+        except Interrupted:
+            interrupted += 1
+        try:
+            env.observe()
+        except RuntimeError as refusal:
+            assert "has cut off" in str(refusal)
+        else:
+            lengths = env._halves[0]._tally.lengths
+            np.testing.assert_array_equal(lengths, env.simulators[0].env_states().step)
+    assert interrupted == 60
+
+
+class Interrupted(Exception):
+    """What a signal raises in the middle of anything."""
+
+
+@pytest.fixture(autouse=True)
+def signals():
+    def interrupt(*_):
+        raise Interrupted
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    yield
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, before)
+
+
+def test_idle_envs_may_say_anything(world):
+    class Pays(Approach):
+        def step(self, envs):
+            idle = envs.simulator.idle
+            return Outcome(np.where(idle, np.nan, 1.0), successes=envs.states.step >= 3)
+
+        def observe(self, envs):
+            nothing = np.where(envs.simulator.idle, np.nan, 2.0)[:, np.newaxis]
+            return {"gained": nothing, "dice": nothing.repeat(2, axis=1)}
+
+    env = VectorEnv(world, 6, task=Pays, order="partition", observation="dict")
+    seen, _ = env.reset()
+    for _ in range(9):
+        idle = env.simulators[0].idle
+        np.testing.assert_array_equal(seen["gained"][:, 0], np.where(idle, 0, 2))
+        was_idle = idle.copy()
+        seen, rewards, *_ = env.step(np.zeros((6, ACTIONS)))
+        np.testing.assert_array_equal(rewards, ~was_idle)
+    assert env.simulators[0].idle.all()
 
 
 def test_images_have_names_of_their_own(world):

@@ -81,8 +81,8 @@ static_assert(sizeof(CameraJitter) == sizeof(float) * kCameraJitterOptions.size(
 
 /// Whether an option may have that value: not so what is no number.
 template <class Options>
-[[nodiscard]] constexpr bool isWithin(const SensorOption<Options>& option, float value) {
-  return value >= 0 && value <= option.most;
+[[nodiscard]] constexpr bool isWithin(const SensorOption<Options>& option, double value) {
+  return value >= 0 && value <= static_cast<double>(option.most);
 }
 
 }  // namespace galactic

@@ -58,6 +58,9 @@ class MountedCamera {
   [[nodiscard]] std::uint64_t number() const { return number_; }
 
  private:
+  [[nodiscard]] RigidTransform withoutJitter(std::span<const RigidTransform> bodies,
+                                             std::uint32_t scene) const noexcept;
+
   World world_;
   CameraFrame frame_;
   bool keeps_sight_;

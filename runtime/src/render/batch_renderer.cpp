@@ -34,7 +34,7 @@ Result<void> checkOptions(const RenderOptions& options) {
   }
   for (const SensorOption<ImageNoise>& option : kImageNoiseOptions) {
     const float value = options.noise.*option.value;
-    if (isWithin(option, value)) continue;
+    if (isWithin(option, static_cast<double>(value))) continue;
     return refuse(fmt::format("found {} of {}, expected 0 to {}", option.name, value, option.most));
   }
   if (options.noise.changesDepth() && !options.depth) {

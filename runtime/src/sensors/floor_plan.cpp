@@ -219,11 +219,11 @@ bool FloorPlan::isPassable(const PlanCell& cell) const {
   return isInside(cell) && !std::isnan(heights_[indexOf(cell)]);
 }
 
-bool FloorPlan::areConnected(const PlanCell& a, const PlanCell& b) const {
-  // Beside rounding, a cell's floor is taken up to a third of a cell from its middle.
+bool FloorPlan::areApart(const PlanCell& a, const PlanCell& b, int steps) const {
   constexpr float kRounding = 1e-3F;
   return isPassable(a) && isPassable(b) &&
-         std::fabs(heights_[indexOf(a)] - heights_[indexOf(b)]) <= step_ + kRounding;
+         std::fabs(heights_[indexOf(a)] - heights_[indexOf(b)]) >
+             static_cast<float>(steps) * (step_ + kRounding);
 }
 
 bool FloorPlan::isOnStorey(const PlanCell& cell, float height) const {

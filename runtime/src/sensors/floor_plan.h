@@ -94,8 +94,12 @@ class FloorPlan {
   [[nodiscard]] Vec3 middle(const PlanCell& cell) const;
   /// False outside.
   [[nodiscard]] bool isPassable(const PlanCell& cell) const;
-  /// Whether both are passable, and their floors within a step of each other.
-  [[nodiscard]] bool areConnected(const PlanCell& a, const PlanCell& b) const;
+  /// Whether both are passable, and their floors further apart than so many steps.
+  [[nodiscard]] bool areApart(const PlanCell& a, const PlanCell& b, int steps = 1) const;
+  /// Whether both are passable, and a step leads from one to the other.
+  [[nodiscard]] bool areConnected(const PlanCell& a, const PlanCell& b) const {
+    return isPassable(a) && isPassable(b) && !areApart(a, b);
+  }
   /// Whether it is passable, and its floor no storey above or below a height.
   [[nodiscard]] bool isOnStorey(const PlanCell& cell, float height) const;
   /// Of the floor in each cell, meters, X first; NaN where the robot cannot go.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <tuple>
@@ -167,6 +168,13 @@ float lengthAt(const FloorPlan& plan, std::span<const std::uint16_t> field, std:
   return value == kNoWay ? kInfinity : static_cast<float>(value) * kWayUnit;
 }
 
+/// The same of a neighbor of `here`: none beyond a ledge.
+float lengthBeside(const FloorPlan& plan, std::span<const std::uint16_t> field,
+                   const PlanCell& here, const PlanCell& neighbor) {
+  if (plan.areApart(here, neighbor)) return kInfinity;
+  return lengthAt(plan, field, neighbor.i, neighbor.k);
+}
+
 /// Change per cell from one neighbor to the other; to one side where only that has a way.
 float slope(float before, float here, float after) {
   if (before == kInfinity) return after == kInfinity ? 0 : after - here;
@@ -195,6 +203,8 @@ Way wayFrom(const FloorPlan& plan, std::span<const std::uint16_t> field, float x
   const auto k0 = static_cast<std::int32_t>(std::floor(v));
   const float part_x = u - static_cast<float>(i0);
   const float part_z = v - static_cast<float>(k0);
+  // The cell that the point is in: those beyond a ledge do not count.
+  const PlanCell at = plan.cellAt(x, z);
   float weights = 0;
   float length = 0;
   float slope_x = 0;
@@ -205,13 +215,15 @@ Way wayFrom(const FloorPlan& plan, std::span<const std::uint16_t> field, float x
             {i0, k0 + 1, (1 - part_x) * part_z},
             {i0 + 1, k0 + 1, part_x * part_z}}}) {
     const float here = lengthAt(plan, field, i, k);
-    if (here == kInfinity) continue;
+    const PlanCell cell{i, k};
+    const int steps = std::abs(i - at.i) + std::abs(k - at.k);
+    if (here == kInfinity || plan.areApart(at, cell, std::max(steps, 1))) continue;
     weights += weight;
     length += weight * here;
-    slope_x +=
-        weight * slope(lengthAt(plan, field, i - 1, k), here, lengthAt(plan, field, i + 1, k));
-    slope_z +=
-        weight * slope(lengthAt(plan, field, i, k - 1), here, lengthAt(plan, field, i, k + 1));
+    slope_x += weight * slope(lengthBeside(plan, field, cell, {i - 1, k}), here,
+                              lengthBeside(plan, field, cell, {i + 1, k}));
+    slope_z += weight * slope(lengthBeside(plan, field, cell, {i, k - 1}), here,
+                              lengthBeside(plan, field, cell, {i, k + 1}));
   }
   if (!(weights > 0)) return {};
   const float steep = std::sqrt(slope_x * slope_x + slope_z * slope_z);

@@ -120,7 +120,7 @@ Result<void> checkNumbers(const CameraWish& wish) {
   }
   for (const SensorOption<CameraJitter>& option : kCameraJitterOptions) {
     const float value = wish.jitter.*option.value;
-    if (isWithin(option, value)) continue;
+    if (isWithin(option, static_cast<double>(value))) continue;
     const bool is_place = option.value == &CameraJitter::camera_jitter;
     return refuse(is_place ? wish.options.jitter : wish.options.jitter_degrees,
                   fmt::format("found {} {}, expected 0 to {}", value, is_place ? "m" : "degrees",

@@ -43,20 +43,21 @@ MountedCamera::MountedCamera(const World& world, const BatchSimulator& simulator
 
 RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies, std::uint32_t scene,
                                const EnvMoment& moment) const noexcept {
-  RenderCamera camera{frame_from_camera_, vertical_fov_};
-  if (jitter_.isOn()) {
-    camera.world_from_camera =
-        frame_from_camera_ * rigidTransform(drawOffset(jitter_, number_, moment));
-  }
-  if (frame_ == CameraFrame::kWorld) return camera;
+  const RigidTransform mounted = withoutJitter(bodies, scene);
+  if (!jitter_.isOn()) return {mounted, vertical_fov_};
+  return {mounted * rigidTransform(drawOffset(jitter_, number_, moment)), vertical_fov_};
+}
+
+RigidTransform MountedCamera::withoutJitter(std::span<const RigidTransform> bodies,
+                                            std::uint32_t scene) const noexcept {
+  if (frame_ == CameraFrame::kWorld) return frame_from_camera_;
   const RigidTransform link = bodies[on_body_.body] * on_body_.place;
   const RigidTransform frame = frame_ == CameraFrame::kLink ? link : baseFrame(link, root_height_);
-  camera.world_from_camera = frame * camera.world_from_camera;
+  const RigidTransform wanted = frame * frame_from_camera_;
   if (keeps_sight_) {
-    camera.world_from_camera =
-        inSight(world_.scenes()[scene], frame.origin, camera.world_from_camera).world_from_camera;
+    return inSight(world_.scenes()[scene], frame.origin, wanted).world_from_camera;
   }
-  return camera;
+  return wanted;
 }
 
 WorldViews::WorldViews(const World& world, const WorldModels& models,

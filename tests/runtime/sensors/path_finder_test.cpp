@@ -156,10 +156,22 @@ TEST(PathFinder, TakesTheStairsAndNotTheLedge) {
   const Vec3 up = finder.snap({2, 0.12F, 0.75F});
   ASSERT_NEAR(up.y, 0.12F, 1e-3F);
   const GeodesicFields fields = fieldsOf(finder, {up});
-  // From right below the ledge.
+  // From right below the ledge, wherever in a cell: along it, and not against it.
   const Vec3 below = finder.snap({1.35F, 0, 0.75F});
   ASSERT_NEAR(below.y, 0, 1e-3F);
-  EXPECT_GT(fields.way(0, below).distance, 2.5F);
+  for (const float x : {1.35F, 1.375F, 1.4F, 1.425F, 1.45F, 1.475F, 1.49F}) {
+    if (finder.snap({x, 0, 0.75F}).y > 0.01F || !finder.isNavigable({x, 0, 0.75F})) continue;
+    const GeodesicWay way = fields.way(0, {x, 0, 0.75F});
+    EXPECT_GT(way.distance, 2.5F) << x;
+    EXPECT_GT(way.z, 0.9F) << x;
+  }
+  // And from above, down.
+  const GeodesicFields down = fieldsOf(finder, {below});
+  for (const float x : {1.55F, 1.575F, 1.6F, 1.625F}) {
+    const GeodesicWay way = down.way(0, {x, 0.12F, 0.75F});
+    EXPECT_GT(way.distance, 2.5F) << x;
+    EXPECT_GT(way.z, 0.9F) << x;
+  }
   const std::vector<Vec3> path = fields.path(0, below);
   ASSERT_GT(path.size(), 2U);
   EXPECT_GT(lengthOf(path), 2.5F);
