@@ -117,6 +117,8 @@ class HalfBatch:
     ) -> None:
         """See VectorEnv.reset."""
         with self._alone():
+            if seed is None and not mask.all():
+                self.require_whole()
             was_cut_off, self.is_cut_off = self.is_cut_off, True
             if self._task is not None and mask.all():
                 self._task.mend()
@@ -149,6 +151,7 @@ class HalfBatch:
     def save_state(self) -> dict[str, Array]:
         """Arrays that restore_state() takes."""
         with self._alone():
+            self.require_whole()
             own = {name: array.copy() for name, array in self._own_state().items()}
             return {"simulator": np.frombuffer(self.simulator.save_state(), np.uint8), **own}
 

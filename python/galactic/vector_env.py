@@ -287,9 +287,6 @@ class VectorEnv(_Base):
         mask, episodes = _reset_options(options, self.num_envs)
         if seed is not None and options and options.get("reset_mask") is not None:
             raise ValueError("seed and reset_mask exclude each other: a seed is of all envs")
-        if seed is None and not mask.all():
-            for half in self._halves:
-                half.require_whole()
         chosen = [None if episodes is None else episodes[self.rows(n)] for n in range(self.halves)]
         for simulator, of_half in zip(self.simulators, chosen):
             if of_half is not None:
@@ -397,8 +394,6 @@ class VectorEnv(_Base):
     def save_state(self) -> bytes:
         """All that later steps depend on, and the sums of the episodes under way."""
         self._require_idle()
-        for half in self._halves:
-            half.require_whole()
         arrays = {
             f"{name}_{number}": array
             for number, half in enumerate(self._halves)
