@@ -291,12 +291,14 @@ class VectorEnv(_Base):
         for simulator, of_half in zip(self.simulators, chosen):
             if of_half is not None:
                 simulator.check_episodes(of_half)
+        done: list[HalfBatch] = []
         try:
             for number, half in enumerate(self._halves):
                 half.reset(seed, mask[self.rows(number)], chosen[number])
+                done.append(half)
         except BaseException:
-            if any(half.is_cut_off for half in self._halves):
-                self._cut_off()
+            for half in done:
+                half.is_cut_off = True
             raise
         if seed is not None and _Base is not object:
             super().reset(seed=seed)
@@ -333,21 +335,22 @@ class VectorEnv(_Base):
         self._check_out(out, self.num_envs)
         if self.halves == 1:
             return self._halves[0].step(rows, out)
-        for half in self._halves:
-            half.require_whole()
         under_way = [
             self._begin(half, rows[self.rows(half)], _part(out, self.rows(half)))
             for half in range(self.halves)
         ]
         # All have to be done, whatever one of them raises: else the others would stay under way.
         wait(under_way)
-        self._pending = [None] * self.halves
         try:
             results = [step.result() for step in under_way]
         except BaseException:
+            # No half goes on alone.
             if any(half.is_cut_off for half in self._halves):
-                self._cut_off()
+                for half in self._halves:
+                    half.is_cut_off = True
             raise
+        finally:
+            self._pending = [None] * self.halves
         *arrays, infos = zip(*results)
         observations, rewards, terminations, truncations = (_joined(list(each)) for each in arrays)
         return observations, rewards, terminations, truncations, self._joined_infos(infos)
@@ -460,11 +463,6 @@ class VectorEnv(_Base):
         busy = [half for half in asked if self._pending[half] is not None]
         if busy:
             raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
-
-    def _cut_off(self) -> None:
-        """Lets no half go on alone."""
-        for half in self._halves:
-            half.is_cut_off = True
 
     def _require_open(self) -> None:
         if self.closed:
