@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import json
-import os
 import pathlib
 from typing import Any
 
@@ -14,21 +11,14 @@ import pytest
 import torch
 
 import galactic
-from galactic import evaluate, export, train
 from galactic.learning import checkpoint
 from galactic.learning.homes import Homes
 from galactic.learning.networks import PolicyShape
 from galactic.learning.presets import preset
-from galactic.learning.reports.curves import read_curves
 from galactic.learning.settings import CAMERA_NOISE, Settings, SettingsError
+from programs import HELD_OUT, WORLD, call, curve, needs_worlds
 
-WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
-WORLD, HELD_OUT = WORLDS / "world.pack", WORLDS / "held_out.pack"
 NOISE = {"depth_noise": 0.05, "depth_dropout": 0.2, "camera_jitter": 0.05}
-
-needs_world = pytest.mark.skipif(
-    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
-)
 
 
 def of_depth(**more: Any) -> Settings:
@@ -36,12 +26,9 @@ def of_depth(**more: Any) -> Settings:
     return Settings(**{**settings, "mini_batches": 1, "simulation": "task=pick", **more})
 
 
-def call(program: Any, *arguments: object) -> None:
-    said = io.StringIO()
-    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stderr(said):
-        patch.setenv("RANK", "0")
-        patch.setenv("WORLD_SIZE", "1")
-        assert program.main(list(map(str, arguments))) == 0, said.getvalue()
+def run(program: str, *arguments: object) -> None:
+    done = call(program, *arguments)
+    assert done.returncode == 0, done.stderr
 
 
 def untrained(settings: Settings) -> checkpoint.SavedPolicy:
@@ -72,7 +59,7 @@ def test_noise_is_a_setting_of_networks_that_see_what_it_changes() -> None:
             of_depth(**{name: 0.1})
 
 
-@needs_world
+@needs_worlds
 def test_a_network_is_trained_with_the_noise_of_its_settings() -> None:
     def seen(settings: Settings) -> Any:
         homes = Homes(galactic.World(WORLD), settings, 1)
@@ -87,31 +74,38 @@ def test_a_network_is_trained_with_the_noise_of_its_settings() -> None:
     assert 0.01 < moved.max() < 0.1
 
 
-@needs_world
+@needs_worlds
 def test_a_policy_is_evaluated_without_the_noise_of_its_training(tmp_path: pathlib.Path) -> None:
     reports = []
     for number, settings in enumerate((of_depth(), of_depth(**NOISE))):
         policy, report = tmp_path / f"{number}.pt", tmp_path / f"{number}.json"
         checkpoint.save_policy(untrained(settings), policy)
-        call(evaluate, policy, HELD_OUT, "--episodes", 6, "--report", report)
+        run("evaluate", policy, HELD_OUT, "--episodes", 6, "--report", report)
         reports.append(json.loads(report.read_text(encoding="utf-8"))["each"])
     assert reports[0] == reports[1]
     # Unless that is asked for.
-    call(
-        evaluate, tmp_path / "1.pt", HELD_OUT, "--episodes", 6, "--report", report, "--camera-noise"
+    run(
+        "evaluate",
+        tmp_path / "1.pt",
+        HELD_OUT,
+        "--episodes",
+        6,
+        "--report",
+        report,
+        "--camera-noise",
     )
     noisy = json.loads(report.read_text(encoding="utf-8"))
     assert noisy["camera_noise"] and noisy["each"] != reports[1]
-    assert evaluate.main([str(tmp_path / "0.pt"), str(HELD_OUT), "--camera-noise"]) == 1
+    assert call("evaluate", tmp_path / "0.pt", HELD_OUT, "--camera-noise").returncode == 1
     # And so it is played.
     pack = tmp_path / "policy.pack"
-    call(export, tmp_path / "1.pt", "-o", pack)
+    run("export", tmp_path / "1.pt", "-o", pack)
     images = galactic.LearnedPolicy(pack, 2).images
     assert images is not None and not set(CAMERA_NOISE) & set(images)
     assert b"depth-noise" in pack.read_bytes(), "what it was trained with stands in the pack"
 
 
-@needs_world
+@needs_worlds
 def test_a_run_with_noise_goes_on_as_if_it_had_not_been_paused(tmp_path: pathlib.Path) -> None:
     words = [WORLD, "--preset", "quick", "--network", "depth", "--image-size", 36, "--ranks", 1]
     words += ["--envs", 8, "--horizon", 8, "--log-every", 0, "--steps", 4 * 64]
@@ -119,13 +113,8 @@ def test_a_run_with_noise_goes_on_as_if_it_had_not_been_paused(tmp_path: pathlib
     words += ["--validation-episodes", 4, "--validate-every", 2 * 64]
     noise = ["--depth-noise", 0.05, "--depth-dropout", 0.2, "--camera-jitter-degrees", 3]
     whole, paused, plain = (tmp_path / name for name in ("whole", "paused", "plain"))
-    call(train, "-o", whole, *words, *noise)
-    call(train, "-o", paused, *words, *noise, "--pause-at", 2 * 64)
-    call(train, "-o", paused, "--resume")
-    call(train, "-o", plain, *words)
-
-    def curve(folder: pathlib.Path) -> Any:
-        rows = read_curves(folder / "curves.csv")
-        return [{k: v for k, v in row.items() if k not in ("seconds", "sps")} for row in rows]
-
+    run("train", "-o", whole, *words, *noise)
+    run("train", "-o", paused, *words, *noise, "--pause-at", 2 * 64)
+    run("train", "-o", paused, "--resume")
+    run("train", "-o", plain, *words)
     assert curve(whole) == curve(paused) != curve(plain)
