@@ -55,9 +55,11 @@ class ScriptedPolicy::Impl {
     workers_ = std::make_unique<detail::Workers>(threads, [this](std::size_t n) { work(n); });
   }
 
-  void act(const BatchSimulator& simulator, std::span<float> actions) {
+  void act(const BatchSimulator& simulator, std::span<float> actions,
+           std::span<const std::uint8_t> where) {
     simulator_ = &simulator;
     actions_ = actions;
+    where_ = where;
     next_ = 0;
     if (workers_ == nullptr) {
       work(0);
@@ -81,7 +83,7 @@ class ScriptedPolicy::Impl {
     try {
       const std::size_t count = simulator_->actionCount();
       for (std::size_t env = next_++; env < envs_.size(); env = next_++) {
-        if (simulator_->idle()[env] != 0) continue;
+        if (simulator_->idle()[env] != 0 || (!where_.empty() && where_[env] == 0)) continue;
         act(simulator_->envState(env), envs_[env], actions_.subspan(env * count, count), n);
       }
     } catch (...) {
@@ -212,6 +214,7 @@ class ScriptedPolicy::Impl {
   // Of the current call:
   const BatchSimulator* simulator_ = nullptr;
   std::span<float> actions_;
+  std::span<const std::uint8_t> where_;
   std::atomic<std::size_t> next_{0};
   /// The last member: its threads see the others.
   std::unique_ptr<detail::Workers> workers_;
@@ -231,8 +234,9 @@ ScriptedPolicy::~ScriptedPolicy() = default;
 ScriptedPolicy::ScriptedPolicy(ScriptedPolicy&&) noexcept = default;
 ScriptedPolicy& ScriptedPolicy::operator=(ScriptedPolicy&&) noexcept = default;
 
-void ScriptedPolicy::act(const BatchSimulator& simulator, std::span<float> actions) {
-  impl_->act(simulator, actions);
+void ScriptedPolicy::act(const BatchSimulator& simulator, std::span<float> actions,
+                         std::span<const std::uint8_t> where) {
+  impl_->act(simulator, actions, where);
 }
 
 void ScriptedPolicy::expectLag(bool lags) { impl_->expectLag(lags); }

@@ -72,8 +72,11 @@ class ScriptedPolicy {
 
   /// The actions of the next step of all envs. Shape of `actions`: envs * actionCount(), as
   /// BatchSimulator::step takes them. Call it once before each step. Where others act meanwhile, or
-  /// have acted before, it plans from where the robot is then.
-  void act(const BatchSimulator& simulator, std::span<float> actions);
+  /// have acted before, it plans from where the robot is then. `where` (of size envs, or empty:
+  /// all) is 0 for envs in which others act: the policy leaves their actions as they are, and plans
+  /// nothing.
+  void act(const BatchSimulator& simulator, std::span<float> actions,
+           std::span<const std::uint8_t> where = {});
 
   /// How often it plans in an episode before it gives up.
   void allowPlans(std::uint32_t most);

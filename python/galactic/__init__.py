@@ -38,6 +38,7 @@ except ModuleNotFoundError as error:
         "it: cmake --build --preset release --target galactic_python (docs/python.md)",
         name=error.name,
     ) from None
+from galactic.demonstrations import Demonstration, Demonstrations
 from galactic.env_states import EnvStates, Poses
 from galactic.episode_table import EpisodeTable
 from galactic.errors import Error
@@ -46,6 +47,8 @@ from galactic.vector_env import VectorEnv
 
 __all__ = [
     "Action",
+    "Demonstration",
+    "Demonstrations",
     "EnvState",
     "EnvStates",
     "EpisodeEnd",

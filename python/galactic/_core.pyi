@@ -356,7 +356,9 @@ class LearnedPolicy:
 
 class ScriptedPolicy:
     def __init__(self, simulator: Simulator, *, most_plans: int = 8) -> None: ...
-    def act(self) -> NDArray[np.float32]: ...  # (num_envs, action_count)
+    def act(
+        self, mask: ArrayLike | None = None
+    ) -> NDArray[np.float32]: ...  # (num_envs, action_count)
     @property
     def phases(self) -> NDArray[np.uint8]: ...  # (num_envs,), of ScriptedPhase
     @property

@@ -15,6 +15,7 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
+from galactic.demonstrations import Demonstrations
 from galactic.learning import checkpoint, evaluation, own_code, own_tasks
 from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy
 from galactic.learning.collector import EpisodeSums
@@ -51,6 +52,7 @@ class Run:
     start_from: Optional[pathlib.Path] = None
     teacher: Optional[pathlib.Path] = None
     task_file: Optional[pathlib.Path] = None
+    demonstrations: Sequence[pathlib.Path] = ()
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -88,6 +90,15 @@ def make_parser() -> argparse.ArgumentParser:
         metavar="POLICY",
         help="learn at first what this best.pt or policy.pt would do, which may see sensors that the "
         "policy does not (--critic-only)",
+    )
+    parser.add_argument(
+        "--demonstrations",
+        type=named_path,
+        nargs="+",
+        default=(),
+        metavar="FOLDER",
+        help="imitate the expert of these, which galactic.demonstrate has made, instead of acting; --steps "
+        "are then steps of theirs",
     )
     parser.add_argument(
         "--resume", action="store_true", help="continue from the latest checkpoint in FOLDER"
@@ -148,8 +159,13 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     sharing = 1 if settings.network == "state" else 0
     torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
     task = _task_of(run, folder if options.resume else None)
+    shown = Demonstrations(*run.demonstrations) if run.demonstrations else None
+    # Of those in which nobody acts, one is enough.
+    played = (
+        dataclasses.replace(settings, envs=settings.halves, mini_batches=1) if shown else settings
+    )
     envs = Homes(
-        galactic.World(run.world), settings, threads, rank=group.rank, ranks=group.size, task=task
+        galactic.World(run.world), played, threads, rank=group.rank, ranks=group.size, task=task
     )
     validation = _validation(run, envs, threads, group, task)
     teacher = None
@@ -167,6 +183,7 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         folder,
         validation=validation,
         teacher=teacher,
+        demonstrations=shown,
         title=folder.resolve().name,
     )
     if run.start_from and not options.resume:
@@ -212,7 +229,7 @@ def _carry_out(trainer: Trainer, run: Run, options: argparse.Namespace) -> bool:
     if options.resume:
         trainer.progress.say(f"going on after {trainer.steps:,} steps")
     else:
-        if options.preset in TAUGHT and run.teacher is None:
+        if options.preset in TAUGHT and run.teacher is None and not run.demonstrations:
             trainer.progress.say(
                 f"the preset {options.preset} is made for a --teacher; without one, give it more --steps"
             )
@@ -234,14 +251,29 @@ def _new_run(options: argparse.Namespace) -> Run:
         raise SettingsError("--task-options goes with --task; name one, or leave it out")
     settings = preset("paper" if options.preset is None else options.preset, **given)
     settings.require_pace()
+    if options.demonstrations:
+        _require_imitation(options, settings)
     run = Run(
         options.world.resolve(),
         _absolute(options.validation),
         settings,
         _absolute(options.start_from),
         _absolute(options.teacher),
+        demonstrations=[folder.resolve() for folder in options.demonstrations],
     )
     return _with_task(run, given.get("simulation", "")) if settings.task else run
+
+
+def _require_imitation(options: argparse.Namespace, settings: Settings) -> None:
+    """Raises SettingsError for what a run that imitates has no use for."""
+    for is_given, option in (
+        (options.teacher is not None, "--teacher"),
+        (settings.target_kl > 0.0, "--target-kl"),
+    ):
+        if is_given:
+            raise SettingsError(
+                f"{option} is for a run that acts, and not for one with --demonstrations; leave one of them out"
+            )
 
 
 def _with_task(run: Run, simulation: str) -> Run:
@@ -276,10 +308,10 @@ def _require_no_run(folder: pathlib.Path) -> None:
 
 
 def _resumed_run(options: argparse.Namespace) -> Run:
-    policies = options.start_from or options.teacher
+    policies = options.start_from or options.teacher or options.demonstrations
     if options.world or options.preset or options.validation or policies:
         raise SettingsError(
-            "a resumed run keeps its world, its preset, its weights and its teacher; leave them out"
+            "a resumed run keeps its world, its preset, its weights, its teacher and its demonstrations; leave them out"
         )
     file = options.out / "settings.json"
     if not file.is_file():
@@ -315,8 +347,8 @@ def _read_run(file: pathlib.Path) -> Run:
     remedy = "begin another run, which can have the weights of best.pt (--start-from)"
     with checkpoint.refusing(f"{file} does not say what the run is", remedy):
         run = json.loads(file.read_text(encoding="utf-8"))
-        blank = {"start_from": None, "teacher": None, "task_file": None}
-        run, path = {**blank, **run}, (str, type(None))
+        blank = dict.fromkeys(("start_from", "teacher", "task_file"))
+        run, path = {**blank, "demonstrations": [], **run}, (str, type(None))
         checkpoint.require_types(
             run,
             {
@@ -325,6 +357,7 @@ def _read_run(file: pathlib.Path) -> Run:
                 "start_from": path,
                 "teacher": path,
                 "task_file": path,
+                "demonstrations": list,
                 "settings": dict,
             },
         )
@@ -335,6 +368,7 @@ def _read_run(file: pathlib.Path) -> Run:
             pathlib.Path(run["start_from"]) if run["start_from"] else None,
             pathlib.Path(run["teacher"]) if run["teacher"] else None,
             pathlib.Path(run["task_file"]) if run["task_file"] else None,
+            [pathlib.Path(folder) for folder in run["demonstrations"]],
         )
 
 
@@ -393,6 +427,7 @@ def _write_run(run: Run, folder: pathlib.Path) -> None:
             "start_from": str(run.start_from) if run.start_from else None,
             "teacher": str(run.teacher) if run.teacher else None,
             "task_file": str(run.task_file) if run.task_file else None,
+            "demonstrations": [str(folder) for folder in run.demonstrations],
             "settings": run.settings.to_dict(),
         },
     )

@@ -28,15 +28,20 @@ class Expert {
     policy_.allowPlans(static_cast<std::uint32_t>(wholeOf("most_plans", most_plans, 1, kMost)));
   }
 
-  py::array_t<float> act() {
+  py::array_t<float> act(const py::object& mask) {
     const Confinement::Use use = confinement_.enter();
     const Confinement::Use reading = simulator_->readState();
     const BatchSimulator& batch = simulator_->batch();
+    const auto chosen = mask.is_none()
+                            ? py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>()
+                            : inputOf<std::uint8_t>(mask, "mask", {simulator_->envs()});
+    const std::span<const std::uint8_t> where(chosen.data(),
+                                              static_cast<std::size_t>(chosen.size()));
     py::array_t<float> actions({batch.envCount(), batch.actionCount()});
     const std::span<float> rows(actions.mutable_data(), static_cast<std::size_t>(actions.size()));
     std::ranges::fill(rows, 0.0F);
     const py::gil_scoped_release unlocked;
-    policy_.act(batch, rows);
+    policy_.act(batch, rows, where);
     return actions;
   }
 
@@ -92,11 +97,13 @@ void bindScriptedPolicy(py::module_& module) {
       "simulator: in whose envs it acts; Error when its task is 'none'. most_plans: how often\n"
       "it plans in an episode before it gives up. A plan takes some tens of milliseconds; as\n"
       "many threads as the simulator has make them.");
-  type.def("act", &Expert::act,
-           "The actions of the next step of all envs: float32 (num_envs, action_count), for\n"
-           "Simulator.step. You may step with others, such as those of a policy that learns from\n"
-           "it: where the robot is not on the planned way, it plans anew from there. Where it has\n"
-           "given up, or an env is idle, actions are 0, but for a hand that keeps what it holds.");
+  type.def(
+      "act", &Expert::act, py::arg("mask") = py::none(),
+      "The actions of the next step of all envs: float32 (num_envs, action_count), for\n"
+      "Simulator.step. You may step with others, such as those of a policy that learns from\n"
+      "it: where the robot is not on the planned way, it plans anew from there. Where it has\n"
+      "given up, or an env is idle, actions are 0, but for a hand that keeps what it holds.\n\n"
+      "mask: bool or uint8 (num_envs,), the envs to plan and act in; in others, actions are 0.");
   type.def_property_readonly("phases", &Expert::phases,
                              "What the last act() was about, as numbers of ScriptedPhase: uint8\n"
                              "(num_envs,), a copy.");

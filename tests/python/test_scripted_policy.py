@@ -36,6 +36,24 @@ def test_solves_each_episode(simulator):
     assert repr(expert) == "<galactic.ScriptedPolicy in 3 envs>"
 
 
+def test_acts_only_where_it_is_asked_to(simulator):
+    """Where another one leads, it plans nothing, and goes on from there when it is asked."""
+    expert, everywhere = ScriptedPolicy(simulator), ScriptedPolicy(simulator)
+    mask = np.array([True, False, True])
+    wanted = everywhere.act()
+    assert wanted.any(axis=1).all()
+    np.testing.assert_array_equal(expert.act(mask), np.where(mask[:, np.newaxis], wanted, 0))
+    assert not expert.act(np.zeros(3, np.uint8)).any()
+    for _ in range(10):
+        actions = expert.act(mask)
+        assert not actions[1].any()
+        actions[1, -3] = 0.5  # a turn
+        simulator.step(actions)
+    assert solved_by(expert, simulator) == SOLVABLE
+    with pytest.raises(ValueError, match=r"mask.*\(2,\)"):
+        expert.act(mask[:2])
+
+
 def test_two_threads_cannot_use_one_policy_at_once(simulator):
     expert = ScriptedPolicy(simulator)
     is_acting = threading.Event()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from typing import Any, Optional, Sequence
+from typing import Any, Optional, Protocol, Sequence
 
 import numpy as np
 import torch
@@ -46,23 +46,11 @@ class EpisodeResult:
         return self.straight / max(self.path, self.straight) if self.path > 0.0 else 1.0
 
 
-class Actor:
-    """A policy that acts and does not learn, with its memory of each env. Its samples depend on seed,
-    episode and step, not on where an episode is played. `device` is the policy's."""
-
-    def __init__(self, policy: Policy, *, deterministic: bool, seed: int = 1,
-                 device: torch.device = torch.device("cpu")):  # fmt: skip
-        self.policy = policy
-        self._deterministic = deterministic
-        self._seed = seed
-        self._device = device
-        self.begin(0)
+class Player(Protocol):
+    """Who plays episodes, in many envs at a time."""
 
     def begin(self, envs: int) -> None:
         """Forgets all, and acts in so many envs from now on."""
-        actions = self.policy.action.motions + 2
-        self._hidden = self.policy.initial_hidden(envs, self._device)
-        self._previous = torch.zeros(1, envs, actions, device=self._device)
 
     def act(
         self, seen: Observation, starts: np.ndarray, episodes: np.ndarray, steps: np.ndarray
@@ -72,15 +60,55 @@ class Actor:
         Args:
             seen: rows of all envs.
             starts: bool [n], where an episode begins.
-            episodes: int [n], which episode each env is in.
+            episodes: int [n], which episode each env plays; NO_EPISODE where what it does counts nowhere.
             steps: int [n], how many steps it has done.
         """
+
+
+NO_EPISODE = -1
+
+
+class Witness(Protocol):
+    """Who looks on while episodes are played."""
+
+    def sees(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
+        """Before each step: what Player.act() was told, and what it said. Only for the time of the call."""
+
+    def hears(self, rewards: np.ndarray) -> None:
+        """After it: what it paid, float32 [n]."""
+
+
+class Actor:
+    """A policy that acts and does not learn, with its memory of each env: a Player. Its samples depend on
+    seed, episode and step, not on where an episode is played. `device` is the policy's. `columns` are those
+    of a row of observations that it sees; None: all."""
+
+    def __init__(self, policy: Policy, *, deterministic: bool, seed: int = 1,
+                 device: torch.device = torch.device("cpu"),
+                 columns: Optional[Sequence[int]] = None):  # fmt: skip
+        self.policy = policy
+        self._columns = None if columns is None else torch.tensor(columns, device=device)
+        self._deterministic = deterministic
+        self._seed = seed
+        self._device = device
+        self.begin(0)
+
+    def begin(self, envs: int) -> None:
+        actions = self.policy.action.motions + 2
+        self._hidden = self.policy.initial_hidden(envs, self._device)
+        self._previous = torch.zeros(1, envs, actions, device=self._device)
+
+    def act(
+        self, seen: Observation, starts: np.ndarray, episodes: np.ndarray, steps: np.ndarray
+    ) -> np.ndarray:
         self.policy.eval()
         with torch.inference_mode():
             state, rgb, depth = (
                 None if rows is None else rows.to(self._device).unsqueeze(0) for rows in seen
             )
             assert state is not None
+            if self._columns is not None:
+                state = state.index_select(-1, self._columns)
             begun = torch.from_numpy(starts).to(self._device).unsqueeze(0)
             previous = self._previous * (~begun).unsqueeze(-1)
             outputs = self.policy.act(Inputs(state, rgb, depth, previous), self._hidden, begun)
@@ -96,35 +124,41 @@ class Actor:
 
 
 class Evaluator:
-    """Plays episodes in `homes`, of one half."""
+    """Has episodes played in `homes`, of one half."""
 
-    def __init__(self, homes: Homes, actor: Actor):
+    def __init__(self, homes: Homes, player: Player):
         self._homes = homes
-        self._actor = actor
+        self._player = player
         self._seen = rows_of(homes)
         self._holding = homes.env.simulators[0].observation_parts["is_holding"].start
-        self._players: list[Optional[_Player]] = []
+        self._played: list[Optional[_Played]] = []
 
-    def play(self, episodes: Sequence[int], *, details: bool = True) -> list[EpisodeResult]:
-        """Plays each of `episodes` once, and returns what came of them, in their order. Without
+    def play(self, episodes: Sequence[int], *, details: bool = True,
+             witness: Optional[Witness] = None) -> list[EpisodeResult]:  # fmt: skip
+        """Has each of `episodes` played once, and returns what came of them, in their order. Without
         `details`, paths and collisions are left out, which is faster."""
         homes, waiting = self._homes, list(reversed(episodes))
         results: dict[int, EpisodeResult] = {}
-        self._players = [None] * homes.count
+        self._played = [None] * homes.count
         starts = np.ones(homes.count, bool)
         self._start(starts, waiting, details)
-        self._actor.begin(homes.count)
-        while any(self._players):
-            none = _Player(0)
-            players = [(player or none).result for player in self._players]
-            keys = np.array([result.episode for result in players])
-            ages = np.array([result.length for result in players])
-            homes.send(0, self._actor.act(self._seen, starts, keys, ages), self._seen)
+        self._player.begin(homes.count)
+        while any(self._played):
+            none = _Played(NO_EPISODE)
+            played = [(one or none).result for one in self._played]
+            keys = np.array([result.episode for result in played])
+            ages = np.array([result.length for result in played])
+            actions = self._player.act(self._seen, starts, keys, ages)
+            if witness is not None:
+                witness.sees(keys, self._seen, actions)
+            homes.send(0, actions, self._seen)
             step = homes.recv(0)
+            if witness is not None:
+                witness.hears(step.rewards)
             ended = step.terminated | step.truncated
             self._follow(step.rewards, ended, step.successes, details)
-            for player in (p for p, over in zip(self._players, ended) if p is not None and over):
-                results[player.result.episode] = player.result
+            for one in (p for p, over in zip(self._played, ended) if p is not None and over):
+                results[one.result.episode] = one.result
             if ended.any():
                 self._start(ended, waiting, details)
             starts = ended.copy()
@@ -134,22 +168,22 @@ class Evaluator:
         """Gives the next episodes to the envs `where` one ended; those without one idle on."""
         homes, wanted = self._homes, dict[int, int]()
         for env in np.flatnonzero(where):
-            self._players[env] = None
+            self._played[env] = None
             if waiting:
                 wanted[int(env)] = waiting.pop()
         homes.begin_episodes(wanted, self._seen)
         for env, episode in wanted.items():
-            self._players[env] = _Player(episode)
+            self._played[env] = _Played(episode)
             if details:
                 place, collisions = homes.base_position(env), homes.collisions(env)
-                self._players[env] = _Player(episode, place, collisions)
+                self._played[env] = _Played(episode, place, collisions)
 
     def _follow(self, rewards: np.ndarray, ended: np.ndarray, successes: np.ndarray,
                 details: bool) -> None:  # fmt: skip
-        for env, player in enumerate(self._players):
-            if player is None:
+        for env, one in enumerate(self._played):
+            if one is None:
                 continue
-            result = player.result
+            result = one.result
             result.reward += float(rewards[env])
             result.length += 1
             if ended[env]:
@@ -157,14 +191,14 @@ class Evaluator:
                 result.ending = galactic.EpisodeEnd(self._homes.endings(0)[env]).name.lower()
                 result.measures = self._homes.measures(0, env)
                 if details:
-                    player.finish(self._homes.collisions(env))
+                    one.finish(self._homes.collisions(env))
             elif details:
                 # Behind its end, the env is in the next episode.
                 holds = bool(self._seen.state[env, self._holding])
-                player.follow(self._homes.base_position(env), holds)
+                one.follow(self._homes.base_position(env), holds)
 
 
-class _Player:
+class _Played:
     """An episode that is being played in one env."""
 
     def __init__(self, episode: int, place: Optional[np.ndarray] = None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Optional
 
@@ -11,10 +10,8 @@ from torch import Tensor
 
 from galactic.learning.distributed import Group
 from galactic.learning.distributions import ActionDistribution
-from galactic.learning.flat_adam import FlatAdam
+from galactic.learning.learner import Learner
 from galactic.learning.networks import Outputs, Policy
-from galactic.learning.noise import mini_batch_envs
-from galactic.learning.precision import Precision
 from galactic.learning.rollout import Rollout, advantages
 from galactic.learning.settings import Settings
 from galactic.learning.teacher import Teacher
@@ -77,49 +74,16 @@ class Lesson:
     weight: float
 
 
-class PacedRate:
-    """The share of the scheduled learning rate that keeps the divergence of an update, which grows with
-    the square of the rate, at `target_kl`: PPO's adaptive penalty (Schulman et al. 2017, section 4)
-    with the rate in the penalty's place. Precise policies need it most: the less noise they act with,
-    the further a step of the same length leads away. The divergence of an update is the mean over its
-    mini-batches of what it was before each one's step: 0 before the first."""
-
-    FIRST = 0.01
-    """Adam's first steps are the longest it makes, and may lead a trained policy far away."""
-    LEAST = 1e-3
-
-    def __init__(self, target_kl: float):
-        self.target_kl = target_kl
-        self.share = 1.0 if target_kl == 0.0 else self.FIRST
-
-    def follow(self, kl: float) -> None:
-        """After an update of divergence `kl`. Falls at once, rises slowly."""
-        if self.target_kl == 0.0 or not math.isfinite(kl):
-            return
-        wanted = math.sqrt(self.target_kl / max(kl, 1e-12))
-        self.share = min(max(self.share * min(max(wanted, 0.5), 1.2), self.LEAST), 1.0)
-
-
-class Learner:
-    """Improves a policy by the rollouts of all ranks. All ranks keep the same parameters, bit for
-    bit: they start from the first rank's, and apply the same sum of gradients."""
+class PpoLearner(Learner):
+    """Improves a policy by what its rollouts earned, and by what a teacher would have done in them."""
 
     def __init__(self, policy: Policy, settings: Settings, group: Group,
                  teacher: Optional[Teacher] = None):  # fmt: skip
-        self.policy = policy
+        super().__init__(policy, settings, group)
         self.teacher = teacher
-        self.settings = settings
-        self.group = group
-        self.precision = Precision(settings.precision, group.device)
-        self.optimizer = FlatAdam(policy, settings.learning_rate, settings.adam_epsilon)
-        self.rate = PacedRate(settings.target_kl)
-        group.copy_from_first(self.optimizer.parameters)
 
     def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
-        """One update; returns its losses. `update` counts from 0; `progress` is the share of the run
-        that is done, for the schedules."""
-        settings = self.settings
-        steps, envs = rollout.steps, rollout.actions.shape[1]
+        settings, steps = self.settings, rollout.steps
         self.optimizer.learning_rate = self.rate.share * settings.learning_rate_at(progress)
         entropy_coefficient = settings.entropy_at(progress)
         raw = advantages(
@@ -134,23 +98,17 @@ class Learner:
         per_mini_batch = all_steps / settings.mini_batches
         lesson = self._lesson(rollout, progress)
         totals = torch.zeros(len(Loss.NAMES) + 2, dtype=torch.float64, device=raw.device)
-        for epoch in range(settings.epochs):
-            numbers = range(self.group.rank * envs, (self.group.rank + 1) * envs)
-            parts = mini_batch_envs(
-                settings.seed, update * settings.epochs + epoch, numbers, settings.mini_batches
+        for chosen in self._mini_batches(rollout, update):
+            batch = Batch(
+                rollout.actions[:steps, chosen],
+                rollout.log_probs[:steps, chosen],
+                rollout.values[:steps, chosen],
+                scaled[:, chosen],
+                returns[:, chosen],
             )
-            for part in parts:
-                chosen = torch.from_numpy(part).to(raw.device)
-                batch = Batch(
-                    rollout.actions[:steps, chosen],
-                    rollout.log_probs[:steps, chosen],
-                    rollout.values[:steps, chosen],
-                    scaled[:, chosen],
-                    returns[:, chosen],
-                )
-                totals += self._step(
-                    rollout, chosen, batch, lesson, entropy_coefficient, per_mini_batch
-                )
+            totals += self._step(
+                rollout, chosen, batch, lesson, entropy_coefficient, per_mini_batch
+            )
         self._limit_exploration(progress)
         self._absorb_observations(rollout)
         report = self._report(totals, raw, returns)
@@ -170,18 +128,13 @@ class Learner:
         """One step of the optimizer; the sums of its losses, the divergence from the teacher, and the
         norm of the gradient."""
         self.optimizer.clear()
-        with self.precision.autocast():
-            hidden = None if rollout.first_hidden is None else rollout.first_hidden[chosen]
-            inputs = rollout.inputs(0, rollout.steps, chosen, self.policy.needs_previous)
-            outputs = self.policy(inputs, hidden, rollout.starts[: rollout.steps, chosen])
+        outputs = self._outputs(rollout, chosen)
         loss = ppo_loss(outputs, batch, self.settings, entropy_coefficient, steps_of_all)
         total, divergence = loss.total, loss.sums.new_zeros(())
         if lesson is not None:
             divergence = lesson.actions.of(chosen).divergence(outputs.actions).sum()
             total = total + (lesson.weight / steps_of_all) * divergence
-        total.backward()
-        self.group.sum(self.optimizer.gradients)
-        norm = self.optimizer.step(self.settings.max_grad_norm)
+        norm = self._descend(total)
         return torch.cat([loss.sums, divergence.detach().reshape(1), norm.reshape(1)]).double()
 
     def _normalized(self, raw: Tensor) -> tuple[Tensor, float]:
@@ -201,12 +154,6 @@ class Learner:
         if log_std is not None:
             with torch.no_grad():
                 log_std.clamp_(max=self.settings.log_std_limit_at(progress))
-
-    def _absorb_observations(self, rollout: Rollout) -> None:
-        if self.policy.normalize is not None:
-            seen = rollout.state[: rollout.steps]
-            sums = self.policy.normalize.sums(seen, self.policy.normalize.center)
-            self.policy.normalize.absorb(self.group.sum(sums))
 
     def _report(self, totals: Tensor, raw: Tensor, returns: Tensor) -> dict[str, float]:
         """Means over all ranks, mini-batches and epochs."""

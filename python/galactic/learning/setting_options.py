@@ -6,15 +6,18 @@ import argparse
 import dataclasses
 import math
 import re
-from typing import Any
+from typing import Any, Collection, Optional
 
 from galactic.learning.settings import MOST_WHOLE, Settings, option_name, typed
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """One option for each setting, without a default: what is not given stays as the preset has it."""
+def add_options(parser: argparse.ArgumentParser, names: Optional[Collection[str]] = None) -> None:
+    """One option for each setting, or for those of `names`, without a default: what is not given stays as
+    the preset has it."""
     groups: dict[str, Any] = {}
     for field in dataclasses.fields(Settings):
+        if names is not None and field.name not in names:
+            continue
         title = field.metadata["group"]
         group = groups.setdefault(title, parser.add_argument_group(title))
         keywords: dict[str, Any] = {"default": argparse.SUPPRESS, "dest": "setting_" + field.name}

@@ -8,10 +8,11 @@ import os
 import pathlib
 import signal
 import time
-from typing import Any, Callable, ContextManager, Optional
+from typing import Any, Callable, ContextManager, Optional, Union
 
 import torch
 
+from galactic.demonstrations import Demonstrations
 from galactic.errors import Error
 from galactic.learning import checkpoint
 from galactic.learning.checkpoint import (
@@ -25,15 +26,18 @@ from galactic.learning.checkpoint import (
 from galactic.learning.collector import Collector, CollectorOptions, EpisodeSums
 from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
+from galactic.learning.fitting import Observed
+from galactic.learning.imitation import ImitationLearner, Streams, require_same
+from galactic.learning.learner import Learner
 from galactic.learning.networks import Policy, PolicyShape
-from galactic.learning.ppo import Learner
+from galactic.learning.ppo import PpoLearner
 from galactic.learning.privileges import critic_columns
 from galactic.learning.reports.curves import COLUMNS, Curves, write_json
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
 from galactic.learning.stopwatch import Stopwatch
-from galactic.learning.teacher import Observed, Teacher
+from galactic.learning.teacher import Teacher
 
 Validation = Callable[[Policy], EpisodeSums]
 """Runs the episodes for validation that are this rank's, and returns their sums."""
@@ -47,13 +51,14 @@ class Trainer:
     """A run: all that `python3 -m galactic.train` does after it has read its command line.
 
     `folder` None writes nothing. `parts` are names and sizes of the parts of an observation, for those
-    who use the policy. `teacher`: see Teacher, with the file it comes from. Every rank makes one, and
-    calls the same methods.
+    who use the policy. `teacher`: see Teacher, with the file it comes from. `demonstrations`: what it learns
+    from, instead of what it does in `envs`. Every rank makes one, and calls the same methods.
     """
 
     def __init__(self, settings: Settings, envs: Environments, group: Group,
                  folder: Optional[pathlib.Path], *, validation: Optional[Validation] = None,
                  teacher: Optional[tuple[SavedPolicy, pathlib.Path]] = None,
+                 demonstrations: Optional[Demonstrations] = None,
                  title: str = "run"):  # fmt: skip
         self.settings = settings
         self.envs = envs
@@ -75,21 +80,18 @@ class Trainer:
         self.policy = new_policy(settings, self.shape).to(group.device)
         if envs.images:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
-        taught_by = None
-        if teacher is not None:
-            observed = Observed(self.parts, self.meanings)
-            taught_by = Teacher(*teacher, observed, envs.motions, group)
-        self.learner = Learner(self.policy, settings, group, taught_by)
-        options = CollectorOptions(
-            settings.horizon,
-            settings.seed,
-            settings.gamma,
-            group.rank * settings.envs,
-            settings.cuda_graphs,
-        )
-        self.collector = Collector(envs, self.policy, options, self.learner.precision, group.device)
+        self.learner: Learner
+        self.source: Union[Collector, Streams]
+        if demonstrations is not None:
+            observed = Observed(self.parts, self.meanings, envs.motions)
+            require_same(demonstrations, observed, envs.images)
+            self.learner = ImitationLearner(self.policy, settings, group)
+            self.source = Streams(demonstrations, settings, self.policy, group)
+        else:
+            self.learner = PpoLearner(self.policy, settings, group, self._taught_by(teacher))
+            self.source = self._collector()
         self.stragglers = group.stragglers(settings.sync_fraction, settings.shortest_rollout)
-        self.stopwatch = self.collector.stopwatch
+        self.stopwatch = self.source.stopwatch
         self.checkpoints = CheckpointFolder(folder, settings.keep) if folder else None
         self.curves = Curves(folder if group.rank == 0 else None, title)
         self.progress = ProgressLine(quiet=group.rank > 0)
@@ -107,6 +109,23 @@ class Trainer:
         self._logged = (0.0, 0)
         self._interrupted = False
 
+    def _taught_by(self, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]) -> Optional[Teacher]:
+        if teacher is None:
+            return None
+        return Teacher(*teacher, Observed(self.parts, self.meanings, self.envs.motions), self.group)
+
+    def _collector(self) -> Collector:
+        settings = self.settings
+        options = CollectorOptions(
+            settings.horizon,
+            settings.seed,
+            settings.gamma,
+            self.group.rank * settings.envs,
+            settings.cuda_graphs,
+        )
+        precision = self.learner.precision
+        return Collector(self.envs, self.policy, options, precision, self.group.device)
+
     @property
     def seconds(self) -> float:
         """Wall clock since the run began, over all its parts."""
@@ -119,7 +138,7 @@ class Trainer:
 
     def begin(self) -> None:
         """Starts at the first step."""
-        self.collector.reset()
+        self.source.reset()
         self._started = time.perf_counter()
 
     def train(self, pause_at: Optional[int] = None) -> bool:
@@ -152,19 +171,19 @@ class Trainer:
     def _iterate(self) -> tuple[dict[str, float], bool]:
         """One rollout and one update. Returns the losses and whether some rank was told to stop."""
         horizon, update = self.settings.horizon, self.updates
-        rollout = self.collector.collect(
+        rollout = self.source.collect(
             update, lambda step: self.stragglers.should_stop(update, step, horizon)
         )
         if rollout.steps == horizon:
             self.stragglers.finished(update)
         with self.stopwatch.time("update"):
             losses = self.learner.update(rollout, update, self.steps / self.settings.steps)
-        sums = self.collector.episodes
+        sums = self.source.episodes
         shared = torch.tensor(
             [
                 float(rollout.steps * self.settings.envs),
                 float(self._interrupted),
-                float(self.collector.waiting),
+                float(self.source.waiting),
                 *dataclasses.astuple(sums),
             ],
             dtype=torch.float64,
@@ -227,12 +246,15 @@ class Trainer:
         }
         self._add_row(values)
         left = (self.settings.steps - self.steps) / max(speed, 1e-9)
-        success = f"{100.0 * figures['success']:.1f} %" if figures else "-"
-        earned = f"{figures['return']:.2f}" if figures else "-"
+        if isinstance(self.source, Streams):
+            goes = f"loss {losses['policy_loss']:.2f}"
+        elif figures:
+            goes = f"success {100.0 * figures['success']:.1f} %  return {figures['return']:.2f}"
+        else:
+            goes = "success -  return -"
         self.progress.show(
             f"{amount(self.steps)} of {amount(self.settings.steps)} steps  "
-            f"{amount(speed)} steps/s  success {success}  "
-            f"return {earned}  {duration(left)} left"
+            f"{amount(speed)} steps/s  {goes}  {duration(left)} left"
         )
         with self.stopwatch.time("reports"):
             self.curves.write(self.settings.to_dict(), self.breakdown(), is_last=is_last)
@@ -275,7 +297,7 @@ class Trainer:
                 self.checkpoints.begin(self.steps)
             self.group.wait_for_all()
             folder = self.checkpoints.unfinished(self.steps)
-            checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.collector.state_dict())
+            checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.source.state_dict())
             if self.group.rank == 0:
                 checkpoint.save_policy(self._saved_policy(None), folder / "policy.pt")
                 optimizer = {"optimizer": self.learner.optimizer.state_dict()}
@@ -317,7 +339,7 @@ class Trainer:
         file = folder / f"rank-{self.group.rank}.pt"
         _, state = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
-            self.collector.load_state_dict(state)
+            self.source.load_state_dict(state)
         self.steps = saved.steps
         self._started = time.perf_counter()
         self._logged = (self.seconds, self.steps)
@@ -375,7 +397,7 @@ class Trainer:
         rollout = {
             name: value / self.settings.horizon
             for name, value in per_update.items()
-            if name in Collector.PHASES
+            if name in self.source.PHASES
         }
         return {
             "rollout_step_ms": {**rollout, "total": sum(rollout.values())},

@@ -55,7 +55,7 @@ def straggle(group: Group, folder: pathlib.Path) -> None:
     lengths = []
     for _ in range(3):
         trainer._iterate()
-        lengths.append(trainer.collector.rollout.steps)
+        lengths.append(trainer.source.rollout.steps)
     found = {
         "rollouts": lengths,
         "steps": trainer.steps,

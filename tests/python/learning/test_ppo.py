@@ -11,7 +11,8 @@ from galactic.learning.distributed import Group
 from galactic.learning.networks import Outputs, Policy, PolicyShape, make_policy
 from galactic.learning.noise import action_noise, mini_batch_envs
 from galactic.learning.distributions import ActionDistribution
-from galactic.learning.ppo import Batch, Learner, PacedRate, ppo_loss
+from galactic.learning.learner import PacedRate
+from galactic.learning.ppo import Batch, PpoLearner, ppo_loss
 from galactic.learning.precision import Precision
 from galactic.learning.rollout import advantages
 from galactic.learning.settings import Settings, SettingsError
@@ -171,7 +172,7 @@ def train(envs: ReachAndGrasp, settings: Settings, updates: int) -> list[float]:
     policy = make_policy(settings.network, shape, image_size=settings.image_size,
                          recurrent=settings.recurrent, width=settings.width,
                          initial_log_std=-0.5)  # fmt: skip
-    learner = Learner(policy, settings, Group.alone())
+    learner = PpoLearner(policy, settings, Group.alone())
     options = CollectorOptions(settings.horizon, settings.seed, settings.gamma)
     collector = Collector(envs, policy, options, learner.precision, CPU)
     collector.reset()
@@ -220,7 +221,7 @@ def test_exploration_is_limited_along_the_schedule() -> None:
     assert limits == pytest.approx([-0.5, -0.5, -1.25, -2.0])
     assert Settings().log_std_limit_at(1.0) == 2.0
     policy = make_policy("state", PolicyShape(state=4, motions=2), initial_log_std=-0.5)
-    learner = Learner(policy, settings, Group.alone())
+    learner = PpoLearner(policy, settings, Group.alone())
     learner._limit_exploration(0.6)
     assert policy.action.log_std is not None
     assert policy.action.log_std.tolist() == pytest.approx([-1.25, -1.25])
@@ -264,7 +265,7 @@ def test_a_policy_of_little_noise_stays_near_itself_where_the_rate_is_paced() ->
                             mini_batches=4, **TOY)  # fmt: skip
         shape = PolicyShape(envs.state_size, envs.motions, False, settings.normalize)
         policy = make_policy("state", shape, width=settings.width, initial_log_std=-3.0)
-        learner = Learner(policy, settings, Group.alone())
+        learner = PpoLearner(policy, settings, Group.alone())
         collector = Collector(envs, policy, CollectorOptions(settings.horizon, 1, settings.gamma),
                               learner.precision, CPU)  # fmt: skip
         collector.reset()

@@ -16,10 +16,11 @@ from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.distributions import ActionDistribution
 from galactic.learning.networks import Inputs, PolicyShape
-from galactic.learning.ppo import Learner
+from galactic.learning.ppo import PpoLearner
 from galactic.learning.rollout import Rollout
 from galactic.learning.settings import Settings
-from galactic.learning.teacher import Observed, Teacher
+from galactic.learning.fitting import Observed
+from galactic.learning.teacher import Teacher
 from toys import ReachAndGrasp
 
 CPU = torch.device("cpu")
@@ -83,7 +84,7 @@ def test_a_teacher_reads_its_own_parts_of_what_is_observed() -> None:
     rollout = Rollout.empty(6, 3, 4, 4)
     rollout.state.normal_()
     rollout.steps = 5
-    found = Teacher(teacher, FILE, Observed(PARTS, {}), 2, Group.alone()).actions(rollout)
+    found = Teacher(teacher, FILE, Observed(PARTS, {}, 2), Group.alone()).actions(rollout)
     own = rollout.state[:5][..., [2, 0, 1]]
     expected = teacher.policy(Inputs(own), None, rollout.starts[:5]).actions
     torch.testing.assert_close(found.mean, expected.mean)
@@ -128,7 +129,7 @@ def test_a_teacher_that_could_not_play_is_refused(
     parts: list[tuple[str, int]], options: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(CheckpointError, match="give another --teacher") as refused:
-        Teacher(saved(parts, **options), FILE, Observed(PARTS, {}), 2, Group.alone())
+        Teacher(saved(parts, **options), FILE, Observed(PARTS, {}, 2), Group.alone())
     assert str(refused.value).startswith(message)
 
 
@@ -177,7 +178,7 @@ def test_a_teacher_whose_numbers_mean_something_else_is_refused(
     made = dataclasses.replace(saved(parts, critic_only=critic_only), meanings=theirs)
     refusal = pytest.raises(CheckpointError, match=f"^best.pt learned with {message}")
     with refusal if message else contextlib.nullcontext():
-        Teacher(made, FILE, Observed(parts, ours), 2, Group.alone())
+        Teacher(made, FILE, Observed(parts, ours, 2), Group.alone())
 
 
 class Blindfold(ReachAndGrasp):
@@ -195,7 +196,7 @@ def learned(
     torch.manual_seed(settings.seed)
     shape = PolicyShape(envs.state_size, envs.motions, False, settings.normalize)
     policy = new_policy(settings, shape)
-    learner = Learner(policy, settings, Group.alone(), teacher)
+    learner = PpoLearner(policy, settings, Group.alone(), teacher)
     options = CollectorOptions(settings.horizon, settings.seed, settings.gamma)
     collector = Collector(envs, policy, options, learner.precision, CPU)
     collector.reset()
@@ -213,7 +214,7 @@ def test_a_policy_learns_what_its_teacher_would_do_where_no_reward_tells() -> No
     assert sum(rates[-5:]) > 4.5
     shape = PolicyShape(4, 2, False, SETTINGS.normalize)
     made = SavedPolicy(policy, SETTINGS, shape, PARTS, 0, None)
-    teacher = Teacher(made, FILE, Observed(PARTS, {}), 2, Group.alone())
+    teacher = Teacher(made, FILE, Observed(PARTS, {}, 2), Group.alone())
     pupil = dataclasses.replace(SETTINGS, seed=2, teacher_share=0.8)
     _, losses, rates = learned(teacher, Blindfold(64, halves=2), pupil, 30)
     taught = [one["teacher_kl"] for one in losses if "teacher_kl" in one]

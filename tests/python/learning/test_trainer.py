@@ -397,7 +397,7 @@ def test_a_checkpoint_of_before_the_curves_waited_is_taken_up(tmp_path: pathlib.
         (values if key in values else tensors).pop(key)
         checkpoint.save(file, values, tensors)
     resumed.resume()
-    assert resumed.collector.waiting == 0 and resumed.steps == 2 * UPDATE
+    assert resumed.source.waiting == 0 and resumed.steps == 2 * UPDATE
 
 
 def test_a_resumed_run_counts_the_processor_time_of_all_its_parts(
@@ -554,5 +554,5 @@ def test_a_rank_that_is_late_from_the_start_takes_one_step(tmp_path: pathlib.Pat
     trainer.begin()
     for _ in range(3):
         trainer._iterate()
-        assert trainer.collector.rollout.steps == 1
+        assert trainer.source.rollout.steps == 1
     assert trainer.steps == 3 * SETTINGS.envs

@@ -1,0 +1,291 @@
+"""Makes demonstrations to learn from: `python3 -m galactic.demonstrate world.pack -o demos --preset quick`."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import os
+import pathlib
+import shutil
+import sys
+import time
+from typing import Optional, Sequence
+
+import numpy as np
+import torch
+
+import galactic
+from galactic import demonstrations
+from galactic.demonstrations import About, Demonstration, Demonstrations
+from galactic.learning import checkpoint
+from galactic.learning.checkpoint import SavedPolicy
+from galactic.learning.command import (
+    EXIT_CODES,
+    INTERRUPTED,
+    OK,
+    Parser,
+    lost_output,
+    named_path,
+    told,
+    whole,
+)
+from galactic.learning.evaluation import MOST_ENVS, Actor, Evaluator
+from galactic.learning.experts import Expert, Recorder, make_expert
+from galactic.learning.fitting import Observed, columns_of
+from galactic.learning.homes import Homes
+from galactic.learning.presets import PRESETS, preset
+from galactic.learning.reports.progress import ProgressLine, duration
+from galactic.learning.setting_options import add_options, given_options
+from galactic.learning.settings import (
+    CAMERA,
+    CAMERA_NOISE,
+    Settings,
+    SettingsError,
+    option_name,
+    typed,
+)
+from galactic.learning.sight import SIGHT
+from galactic.learning.streams import put
+from galactic.learning.trainer import threads_of
+
+SCRIPTED = "scripted"
+
+# Settings that demonstrations depend on.
+_SETTINGS = ("seed", "simulation", "network", *dict.fromkeys(CAMERA.values()))
+# How many episodes make a part: what an interrupt may cost, and what memory has to hold at a time.
+_EPISODES_OF_PART = 256
+_EPISODES_WITH_IMAGES = 64
+
+
+def make_parser() -> argparse.ArgumentParser:
+    parser = Parser(
+        prog="python3 -m galactic.demonstrate",
+        description="Has an expert play each episode of a world once, and keeps what it saw and did, for "
+        "galactic.train --demonstrations. Run again, it makes what is missing.",
+        epilog=EXIT_CODES,
+    )
+    parser.add_argument("world", type=named_path, help="world pack")
+    parser.add_argument(
+        "-o",
+        "--out",
+        type=named_path,
+        required=True,
+        metavar="FOLDER",
+        help="folder of the demonstrations",
+    )
+    parser.add_argument(
+        "--expert",
+        default=SCRIPTED,
+        metavar=f"{SCRIPTED}|POLICY",
+        help="who acts: the scripted policy, which plans by all that the simulation knows, or the best.pt or "
+        f"policy.pt of a run ({SCRIPTED})",
+    )
+    parser.add_argument(
+        "--learner",
+        type=named_path,
+        metavar="POLICY",
+        help="this best.pt or policy.pt plays the beginning of each episode, and the expert goes on where it "
+        "has led, which may be a place to which no expert comes",
+    )
+    parser.add_argument(
+        "--learner-steps",
+        type=whole(1, 1 << 30),
+        metavar="STEPS",
+        help="the most that it plays; how many in an episode is random (half of an episode's limit)",
+    )
+    parser.add_argument(
+        "--deterministic",
+        action="store_true",
+        help="an expert that is a policy takes its likeliest actions, instead of samples",
+    )
+    parser.add_argument(
+        "--episodes",
+        type=whole(1, 1 << 30),
+        metavar="N",
+        help="only the first N episodes of the world (all)",
+    )
+    parser.add_argument(
+        "--preset", default=None, metavar="|".join(PRESETS), help="settings to start from (paper)"
+    )
+    parser.add_argument(
+        "--threads", type=whole(0, 4096), default=0, metavar="N", help="0: all processors (0)"
+    )
+    add_options(parser, _SETTINGS)
+    return parser
+
+
+def main(arguments: Optional[Sequence[str]] = None) -> int:
+    options = make_parser().parse_args(arguments)
+    return told("galactic.demonstrate", lambda: _demonstrate(options))
+
+
+def _demonstrate(options: argparse.Namespace) -> int:
+    _require_uses(options)
+    chosen = preset("paper" if options.preset is None else options.preset, **given_options(options))
+    has_images = bool(SIGHT[chosen.network])
+    of_part = _EPISODES_WITH_IMAGES if has_images else _EPISODES_OF_PART
+    settings = dataclasses.replace(
+        chosen, envs=min(of_part, MOST_ENVS), halves=1, mini_batches=1, critic_only=""
+    )
+    threads = threads_of(options.threads, 1)
+    torch.set_num_threads(threads)
+    homes = Homes(galactic.World(options.world), settings, threads)
+    _require_limit(homes, options)
+    learner = _actor(options.learner, homes, settings, deterministic=False)
+    policy = None
+    if options.expert != SCRIPTED:
+        policy = _actor(pathlib.Path(options.expert), homes, settings, options.deterministic)
+    limit = int(homes.env.simulators[0].options["episode_steps"])
+    most = options.learner_steps or max(1, limit // 2)
+    expert = make_expert(homes, policy, learner, most, settings.seed)
+    episodes = homes.playable_episodes()[: options.episodes]
+    about = About(
+        world=str(options.world.resolve()),
+        episodes=len(episodes),
+        expert=options.expert if policy is None else str(pathlib.Path(options.expert).resolve()),
+        parts=homes.parts,
+        meanings=homes.meanings,
+        images=dict(homes.images),
+        motions=homes.motions,
+        made_with={
+            "learner": str(options.learner.resolve()) if learner else None,
+            "learner_steps": most if learner else None,
+            "deterministic": options.deterministic,
+            "settings": {name: getattr(settings, name) for name in _SETTINGS},
+        },
+    )
+    folder: pathlib.Path = options.out
+    checkpoint.require_folder(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    with checkpoint.alone_in(folder):
+        _begin(folder, about)
+        parts = [episodes[first : first + of_part] for first in range(0, len(episodes), of_part)]
+        try:
+            _make(folder, parts, Evaluator(homes, expert), expert)
+        except KeyboardInterrupt:
+            put(sys.stderr, "interrupted; the same command makes what is missing\n")
+            return INTERRUPTED
+    homes.close()
+    made = Demonstrations(folder)
+    solved = [one for one in made if one.is_solved]
+    steps = sum(int(one.by_expert.sum()) for one in solved)
+    text = f"{folder}: {len(solved):,} of {len(made):,} episodes are solved, by {steps:,} steps of the expert\n"
+    if not put(sys.stdout, text):
+        raise lost_output()
+    return OK
+
+
+def _require_uses(options: argparse.Namespace) -> None:
+    if options.learner_steps is not None and options.learner is None:
+        raise SettingsError("--learner-steps goes with --learner; name one, or leave it out")
+    if options.deterministic and options.expert == SCRIPTED:
+        raise SettingsError("--deterministic is for an --expert that is a policy; leave it out")
+
+
+def _require_limit(homes: Homes, options: argparse.Namespace) -> None:
+    """Raises SettingsError where an episode may never end, as that of an expert that has given up."""
+    if not homes.are_limited:
+        raise SettingsError(
+            "--simulation: found episode-steps=0, which lets episodes go on without end; give them a limit"
+        )
+
+
+def _actor(file: Optional[pathlib.Path], homes: Homes, settings: Settings,
+           deterministic: bool) -> Optional[Actor]:  # fmt: skip
+    """The policy of a file, that plays in these homes; None for no file."""
+    if file is None:
+        return None
+    saved = checkpoint.load_policy(file)
+    _require_sight(saved, file, settings)
+    observed = Observed(homes.parts, homes.meanings, homes.motions)
+    columns = columns_of(saved, file, observed, "take another policy")
+    return Actor(saved.policy, deterministic=deterministic, seed=settings.seed, columns=columns)
+
+
+def _require_sight(saved: SavedPolicy, file: pathlib.Path, settings: Settings) -> None:
+    """Raises CheckpointError where a policy that sees images would see others here."""
+    needed = SIGHT[saved.settings.network]
+    if set(needed) - set(SIGHT[settings.network]):
+        raise checkpoint.CheckpointError(
+            f"{file} sees images ({', '.join(needed)}), which the network {settings.network} does not; give "
+            f"--network {saved.settings.network}, or take another policy"
+        )
+    for name in dict.fromkeys(CAMERA.values()) if needed else ():
+        found, wanted = getattr(settings, name), getattr(saved.settings, name)
+        if found != wanted and name not in CAMERA_NOISE:
+            raise checkpoint.CheckpointError(
+                f"{file} learned with {option_name(name)} {typed(wanted)}, found {typed(found)} here; give both "
+                "the same, or take another policy"
+            )
+
+
+def _begin(folder: pathlib.Path, about: About) -> None:
+    """Says what the demonstrations are, if nobody has yet, and that they are these if somebody has."""
+    file = folder / demonstrations.INDEX
+    if not file.exists():
+        text = demonstrations.text_of(about)
+        checkpoint.write_atomically(file, lambda handle: handle.write(text), "w")
+        return
+    found = demonstrations.read_about(folder)
+    wanted = demonstrations.about_of(demonstrations.text_of(about), file)
+    if found != wanted:
+        raise SettingsError(
+            f"{folder} holds other demonstrations ({_difference(found, wanted)}); choose another folder, or "
+            "give the same options to go on"
+        )
+
+
+def _difference(found: About, wanted: About) -> str:
+    """The first thing that they do not have in common."""
+    ones, others = dataclasses.asdict(found), dataclasses.asdict(wanted)
+    for made in (ones, others):
+        made.update(made.pop("made_with"))
+        made.update(made.pop("settings", {}))
+    for name, value in others.items():
+        if ones.get(name) != value:
+            return f"{name}: found {ones.get(name)}, expected {value}"
+    return "made with something more"
+
+
+def _make(
+    folder: pathlib.Path, parts: list[list[int]], evaluator: Evaluator, expert: Expert
+) -> None:
+    """Has the parts played that are missing."""
+    progress, begun = ProgressLine(), time.monotonic()
+    missing = [
+        (number, episodes)
+        for number, episodes in enumerate(parts)
+        if not demonstrations.part_folder(folder, number).exists()
+    ]
+    solved = played = 0
+    for count, (number, episodes) in enumerate(missing):
+        recorder = Recorder(expert)
+        results = evaluator.play(episodes, details=False, witness=recorder)
+        _write_part(demonstrations.part_folder(folder, number), recorder.demonstrations(results))
+        played += len(results)
+        solved += sum(result.success for result in results)
+        spent = time.monotonic() - begun
+        left = spent / (count + 1) * (len(missing) - count - 1)
+        progress.show(
+            f"{number + 1} of {len(parts)} parts  {100.0 * solved / played:.1f} % solved  "
+            f"{duration(left)} left"
+        )
+    progress.close()
+
+
+def _write_part(part: pathlib.Path, episodes: Sequence[Demonstration]) -> None:
+    """Writes a part, which appears whole."""
+    unfinished = part.with_name(f".{part.name}.unfinished")
+    try:
+        shutil.rmtree(unfinished, ignore_errors=True)
+        unfinished.mkdir()
+        for name, array in demonstrations.arrays_of(episodes).items():
+            with checkpoint.replacing(unfinished / f"{name}.npy") as file:
+                np.save(file, array)
+        os.replace(unfinished, part)
+    except OSError as error:
+        raise checkpoint.unwritable(part, error) from None
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,61 @@
+"""Whether a policy can act by what is observed elsewhere than in its own training."""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Any, Mapping, NamedTuple, Sequence
+
+from galactic.learning.checkpoint import CheckpointError, SavedPolicy
+from galactic.learning.privileges import meaning_of, of_own_tasks, parts_of_actor
+
+
+class Observed(NamedTuple):
+    """What is observed: names and sizes of the parts, what their numbers mean (privileges.meaning_of()),
+    and how many motions there are."""
+
+    parts: Sequence[tuple[str, int]]
+    meanings: Mapping[str, Any]
+    motions: int
+
+
+def columns_of(
+    saved: SavedPolicy, file: pathlib.Path, observed: Observed, remedy: str
+) -> list[int]:
+    """Where the numbers that a policy sees are in a row of what is observed, which may have more. `file`:
+    where it was saved, and `remedy` what to do, for messages. Raises CheckpointError where something is
+    missing, or means something else."""
+    if saved.shape.motions != observed.motions:
+        raise CheckpointError(
+            f"{file} decides {saved.shape.motions} motions, found {observed.motions} in this run; "
+            f"{remedy}, of this robot"
+        )
+    sizes = dict(observed.parts)
+    for name, size in saved.parts:
+        if name not in sizes:
+            is_own = name in of_own_tasks(saved.parts)
+            source = (
+                "take the --task that gives it"
+                if is_own
+                else "turn the sensor on with --simulation"
+            )
+            raise CheckpointError(
+                f"{file} sees {name}, which this run does not observe; {source} and keep it from the "
+                f"policy with --critic-only, or {remedy}"
+            )
+        if sizes[name] != size:
+            raise CheckpointError(
+                f"{file} sees {size} numbers of {name}, found {sizes[name]} in this run; give "
+                f"both the same robot and options of the simulation, or {remedy}"
+            )
+    seen = [name for name, _ in parts_of_actor(saved.settings.critic_only, saved.parts)]
+    for option, theirs in meaning_of(seen, saved.meanings).items():
+        if theirs != observed.meanings.get(option, theirs):
+            raise CheckpointError(
+                f"{file} learned with {option}={theirs}, found {observed.meanings[option]} in this run, "
+                f"where the same numbers mean something else; give both the same, or {remedy}"
+            )
+    columns, first = {}, 0
+    for name, size in observed.parts:
+        columns[name] = range(first, first + size)
+        first += size
+    return [column for name, _ in saved.parts for column in columns[name]]

@@ -1,0 +1,287 @@
+"""Learning by imitation: what demonstrations show becomes what a policy is likeliest to do (behavioral
+cloning: Pomerleau 1989; with a memory, as in Wijmans et al. 2020, over stretches of episodes)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Callable, Mapping, Optional
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from galactic._core import EpisodeEnd
+from galactic.demonstrations import Demonstrations
+from galactic.hashing import hashed
+from galactic.learning.checkpoint import CheckpointError, require_tensors
+from galactic.learning.collector import EpisodeSums
+from galactic.learning.distributed import Group
+from galactic.learning.fitting import Observed
+from galactic.learning.homes import sizes_of
+from galactic.learning.learner import Learner
+from galactic.learning.networks import Policy
+from galactic.learning.rollout import Rollout
+from galactic.learning.settings import Settings
+from galactic.learning.sight import SIGHT
+from galactic.learning.stopwatch import Stopwatch
+
+
+@dataclass
+class Shown(Rollout):
+    """A rollout that comes out of demonstrations. Values, rewards and log-probabilities are not filled."""
+
+    returns: Tensor = field(default_factory=lambda: torch.zeros(0))
+    """[T, N]: what the episode paid from there on, discounted."""
+    by_expert: Tensor = field(default_factory=lambda: torch.zeros(0, dtype=torch.bool))
+    """[T, N] bool: the steps to learn from."""
+    last_hidden: Tensor = field(default_factory=lambda: torch.zeros(0))
+    """[N, H]: the memory after the last step, which the learner fills."""
+
+
+class Streams:
+    """Fills rollouts with solved episodes: in the place of each of N envs there is a stream of episodes, one
+    after the other. Each rank has a share of the episodes, and shuffles it anew for each pass."""
+
+    PHASES = ("reading",)
+
+    def __init__(
+        self, demonstrations: Demonstrations, settings: Settings, policy: Policy, group: Group
+    ):
+        """Raises CheckpointError where a rank has nothing to learn from."""
+        solved = np.flatnonzero(demonstrations.endings == EpisodeEnd.SUCCESS)
+        if len(solved) < group.size:
+            raise CheckpointError(
+                f"{_named(demonstrations)}: found {len(solved)} solved episodes, expected one for each of "
+                f"{group.size} ranks at least; let galactic.demonstrate make more"
+            )
+        self._demonstrations = demonstrations
+        self._share = solved[group.rank :: group.size]
+        self._seed = settings.seed
+        self._returns = _returns_of(demonstrations, settings.gamma)
+        self._device = group.device
+        self.episodes = EpisodeSums()
+        self.waiting = settings.envs
+        """No env has finished an episode: none is played."""
+        self.stopwatch = Stopwatch()
+        about = demonstrations.about
+        images = {name: about.images[name] for name in SIGHT[settings.network]}
+        empty = Rollout.empty(
+            settings.horizon,
+            settings.envs,
+            about.state_size,
+            about.motions + 2,
+            images,
+            policy.hidden_size,
+            group.device,
+        )
+        self.rollout = Shown(
+            **vars(empty),
+            returns=torch.zeros_like(empty.rewards),
+            by_expert=torch.zeros_like(empty.ends),
+            last_hidden=empty.rewards.new_zeros(settings.envs, policy.hidden_size),
+        )
+        # How many episodes the streams have begun, of all passes, and where each is: which of the share it
+        # has begun as, in these numbers, and how many steps of it are over.
+        self._begun = 0
+        self._at = np.zeros((settings.envs, 2), np.int64)
+        self._orders: dict[int, np.ndarray] = {}
+
+    def reset(self) -> None:
+        """Begins a first episode in each stream."""
+        streams = len(self._at)
+        self._at[:, 0] = np.arange(streams)
+        self._at[:, 1] = 0
+        self._begun = streams
+
+    def collect(
+        self, update: int, should_stop: Callable[[int], bool] = lambda step: False
+    ) -> Shown:
+        """The next `horizon` steps of each stream; overwritten by the next call."""
+        rollout = self.rollout
+        with self.stopwatch.time("reading"):
+            if rollout.steps:
+                self._begin_again()
+            self._fill(self._next_rows())
+            rollout.steps = len(rollout.actions)
+        return rollout
+
+    def state_dict(self) -> dict[str, Tensor]:
+        """All that the next collect() depends on."""
+        state = {
+            "share": torch.tensor(len(self._share)),
+            "begun": torch.tensor(self._begun),
+            "at": torch.from_numpy(self._at.copy()),
+            "previous": self._previous_after().cpu(),
+        }
+        first = self.rollout.first_hidden
+        if first is not None:
+            state["hidden"] = (self.rollout.last_hidden if self.rollout.steps else first).cpu()
+        return state
+
+    def load_state_dict(self, state: dict[str, Tensor]) -> None:
+        """Raises ValueError where it is not the state of as many streams of as many episodes."""
+        require_tensors(state, self.state_dict())
+        if int(state["share"]) != len(self._share):
+            raise ValueError(
+                f"found {len(self._share)} solved episodes, expected the {int(state['share'])} with which the "
+                "run began"
+            )
+        self._begun = int(state["begun"])
+        self._at[:] = state["at"].numpy()
+        if self.rollout.first_hidden is not None:
+            self.rollout.first_hidden.copy_(state["hidden"])
+        self.rollout.first_previous.copy_(state["previous"])
+        self.rollout.steps = 0
+
+    def _begin_again(self) -> None:
+        rollout = self.rollout
+        rollout.first_previous.copy_(self._previous_after())
+        if rollout.first_hidden is not None:
+            rollout.first_hidden.copy_(rollout.last_hidden)
+        rollout.steps = 0
+
+    def _previous_after(self) -> Tensor:
+        """[N, A]: the action before the step that comes; where an episode begins, nobody looks at it."""
+        rollout = self.rollout
+        return rollout.actions[-1] if rollout.steps else rollout.first_previous
+
+    def _next_rows(self) -> np.ndarray:
+        """int64 [T, N]: which steps of all demonstrations come next. Marks where episodes begin."""
+        starts = np.zeros(self.rollout.actions.shape[:2], np.bool_)
+        rows = np.empty(starts.shape, np.int64)
+        horizon, streams = rows.shape
+        demonstrations = self._demonstrations
+        for stream in range(streams):
+            step = 0
+            while step < horizon:
+                number, position = self._at[stream]
+                episode = self._episode(int(number))
+                count = min(int(demonstrations.lengths[episode]) - position, horizon - step)
+                first = demonstrations.first_rows[episode] + position
+                rows[step : step + count, stream] = np.arange(first, first + count)
+                starts[step, stream] = position == 0
+                step += count
+                self._at[stream, 1] += count
+                if self._at[stream, 1] == demonstrations.lengths[episode]:
+                    self._at[stream] = self._begun, 0
+                    self._begun += 1
+        self.rollout.starts[:horizon] = torch.from_numpy(starts).to(self._device)
+        return rows
+
+    def _fill(self, rows: np.ndarray) -> None:
+        rollout, horizon = self.rollout, len(rows)
+        for name in ("state", "rgb", "depth", "actions", "by_expert"):
+            target = getattr(rollout, name)
+            if target is not None:
+                source = torch.from_numpy(self._demonstrations.take(name, rows))
+                target[:horizon].copy_(source)
+        rollout.returns.copy_(torch.from_numpy(self._returns[rows]))
+
+    def _episode(self, number: int) -> int:
+        """Which demonstration is begun as the `number`-th of all passes over the share."""
+        share = self._share
+        one, place = divmod(number, len(share))
+        if one not in self._orders:
+            keys = hashed(self._seed ^ 0x73686F77, share, np.full_like(share, one), 1)[:, 0]
+            # Streams are seldom more than a pass apart.
+            self._orders = {p: order for p, order in self._orders.items() if p + 1 >= one}
+            self._orders[one] = share[np.argsort(keys, kind="stable")]
+        return int(self._orders[one][place])
+
+
+def _returns_of(demonstrations: Demonstrations, gamma: float) -> np.ndarray:
+    """float32 [steps of all of them]: the sum of what is paid from each on, discounted."""
+    steps = int(demonstrations.lengths.sum())
+    rewards = demonstrations.take("rewards", np.arange(steps)).astype(np.float64)
+    returns = rewards.copy()
+    ends = np.zeros(steps, np.bool_)
+    ends[demonstrations.first_rows + demonstrations.lengths - 1] = True
+    for step in range(steps - 2, -1, -1):
+        if not ends[step]:
+            returns[step] += gamma * returns[step + 1]
+    return returns.astype(np.float32)
+
+
+class ImitationLearner(Learner):
+    """Makes what an expert did likelier, and the values what its episodes paid."""
+
+    _NAMES = ("policy_loss", "value_loss", "entropy")
+
+    def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
+        assert isinstance(rollout, Shown)
+        settings = self.settings
+        self.optimizer.learning_rate = settings.learning_rate_at(progress)
+        shown = rollout.by_expert[: rollout.steps]
+        kept = rollout.returns[: rollout.steps][shown]
+        moments = [torch.ones_like(kept).sum(), kept.sum(), kept.square().sum()]
+        steps, first, second = self.group.sum(torch.stack(moments).double()).tolist()
+        per_mini_batch = max(steps, 1.0) / settings.mini_batches
+        totals = torch.zeros(len(self._NAMES) + 1, dtype=torch.float64, device=kept.device)
+        for chosen in self._mini_batches(rollout, update):
+            totals += self._step(rollout, chosen, per_mini_batch)
+        self._absorb_observations(rollout)
+        rounds = settings.epochs * settings.mini_batches
+        *sums, norm = self.group.sum(totals).tolist()
+        count = max(steps, 1.0) * settings.epochs
+        report = {name: total / count for name, total in zip(self._NAMES, sums)}
+        report["grad_norm"] = norm / (rounds * self.group.size)
+        variance = second / count - (first / count) ** 2
+        report["explained_variance"] = 1.0 - 2.0 * report["value_loss"] / max(variance, 1e-12)
+        if self.policy.action.log_std is not None:
+            report["log_std"] = float(self.policy.action.log_std.mean())
+        return report
+
+    def _step(self, rollout: Shown, chosen: Tensor, steps_of_all: float) -> Tensor:
+        """One step of the optimizer; sums over the expert's steps in the order of _NAMES, and the norm of
+        the gradient."""
+        steps = rollout.steps
+        self.optimizer.clear()
+        outputs = self._outputs(rollout, chosen)
+        weights = rollout.by_expert[:steps, chosen].float()
+        surprise = -(outputs.actions.log_prob(rollout.actions[:steps, chosen]) * weights).sum()
+        error = (outputs.values - rollout.returns[:steps, chosen]).square()
+        value_loss = 0.5 * (error * weights).sum()
+        norm = self._descend(
+            (surprise + self.settings.value_coefficient * value_loss) / steps_of_all
+        )
+        if outputs.hidden is not None:
+            rollout.last_hidden[chosen] = outputs.hidden.detach().float()
+        with torch.no_grad():
+            entropy = (outputs.actions.entropy() * weights).sum()
+            return torch.stack([surprise, value_loss, entropy, norm]).double()
+
+
+def require_same(demonstrations: Demonstrations, observed: Observed,
+                 images: Mapping[str, tuple[int, ...]]) -> None:  # fmt: skip
+    """Raises CheckpointError where a run, whose network sees `images`, observes or does other things than
+    its demonstrations."""
+    about, folder = demonstrations.about, _named(demonstrations)
+    remedy = "give both the same --preset, --simulation, --network and robot"
+    if about.motions != observed.motions:
+        raise CheckpointError(
+            f"{folder} has actions of {about.motions} motions, found {observed.motions} in this run; {remedy}"
+        )
+    if about.parts != list(observed.parts):
+        raise CheckpointError(
+            f"{folder} has observations of {sizes_of(about.parts)}, found {sizes_of(observed.parts)} in this "
+            f"run; {remedy}"
+        )
+    for option, theirs in about.meanings.items():
+        if observed.meanings.get(option, theirs) != theirs:
+            raise CheckpointError(
+                f"{folder} was made with {option}={theirs}, found {observed.meanings[option]} in this run; "
+                f"{remedy}"
+            )
+    for name, shape in images.items():
+        if about.images.get(name) != shape:
+            raise CheckpointError(
+                f"{folder} has {name} of {_edges(about.images.get(name))}, expected {_edges(shape)}; {remedy}"
+            )
+
+
+def _named(demonstrations: Demonstrations) -> str:
+    return ", ".join(map(str, demonstrations.folders))
+
+
+def _edges(shape: Optional[tuple[int, ...]]) -> str:
+    return "x".join(map(str, shape)) if shape else "no size"

@@ -1,0 +1,89 @@
+"""What improves a policy, by rollouts of all ranks: see ppo.py and imitation.py."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import torch
+from torch import Tensor
+
+from galactic.learning.distributed import Group
+from galactic.learning.flat_adam import FlatAdam
+from galactic.learning.networks import Outputs, Policy
+from galactic.learning.noise import mini_batch_envs
+from galactic.learning.precision import Precision
+from galactic.learning.rollout import Rollout
+from galactic.learning.settings import Settings
+
+
+class PacedRate:
+    """The share of the scheduled learning rate that keeps the divergence of an update, which grows with
+    the square of the rate, at `target_kl`: PPO's adaptive penalty (Schulman et al. 2017, section 4)
+    with the rate in the penalty's place. Precise policies need it most: the less noise they act with,
+    the further a step of the same length leads away. The divergence of an update is the mean over its
+    mini-batches of what it was before each one's step: 0 before the first."""
+
+    FIRST = 0.01
+    """Adam's first steps are the longest it makes, and may lead a trained policy far away."""
+    LEAST = 1e-3
+
+    def __init__(self, target_kl: float):
+        self.target_kl = target_kl
+        self.share = 1.0 if target_kl == 0.0 else self.FIRST
+
+    def follow(self, kl: float) -> None:
+        """After an update of divergence `kl`. Falls at once, rises slowly."""
+        if self.target_kl == 0.0 or not math.isfinite(kl):
+            return
+        wanted = math.sqrt(self.target_kl / max(kl, 1e-12))
+        self.share = min(max(self.share * min(max(wanted, 0.5), 1.2), self.LEAST), 1.0)
+
+
+class Learner:
+    """Improves a policy by the rollouts of all ranks. All ranks keep the same parameters, bit for
+    bit: they start from the first rank's, and apply the same sum of gradients."""
+
+    def __init__(self, policy: Policy, settings: Settings, group: Group):
+        self.policy = policy
+        self.settings = settings
+        self.group = group
+        self.precision = Precision(settings.precision, group.device)
+        self.optimizer = FlatAdam(policy, settings.learning_rate, settings.adam_epsilon)
+        self.rate = PacedRate(settings.target_kl)
+        group.copy_from_first(self.optimizer.parameters)
+
+    def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
+        """One update; returns its losses. `update` counts from 0; `progress` is the share of the run
+        that is done, for the schedules."""
+        raise NotImplementedError
+
+    def _mini_batches(self, rollout: Rollout, update: int) -> Iterator[Tensor]:
+        """The envs of each mini-batch of each epoch."""
+        settings, envs = self.settings, rollout.actions.shape[1]
+        numbers = range(self.group.rank * envs, (self.group.rank + 1) * envs)
+        for epoch in range(settings.epochs):
+            parts = mini_batch_envs(
+                settings.seed, update * settings.epochs + epoch, numbers, settings.mini_batches
+            )
+            for part in parts:
+                yield torch.from_numpy(part).to(rollout.actions.device)
+
+    def _outputs(self, rollout: Rollout, chosen: Tensor) -> Outputs:
+        """What the policy makes of some envs of a rollout."""
+        with self.precision.autocast():
+            hidden = None if rollout.first_hidden is None else rollout.first_hidden[chosen]
+            inputs = rollout.inputs(0, rollout.steps, chosen, self.policy.needs_previous)
+            return self.policy(inputs, hidden, rollout.starts[: rollout.steps, chosen])
+
+    def _descend(self, loss: Tensor) -> Tensor:
+        """One step of the optimizer, after optimizer.clear(); the norm of the gradient of all ranks."""
+        loss.backward()
+        self.group.sum(self.optimizer.gradients)
+        return self.optimizer.step(self.settings.max_grad_norm)
+
+    def _absorb_observations(self, rollout: Rollout) -> None:
+        if self.policy.normalize is not None:
+            seen = rollout.state[: rollout.steps]
+            sums = self.policy.normalize.sums(seen, self.policy.normalize.center)
+            self.policy.normalize.absorb(self.group.sum(sums))

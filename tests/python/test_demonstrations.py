@@ -1,0 +1,198 @@
+"""Folders of demonstrations: what was written is read, and what is none is refused."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import pathlib
+
+import numpy as np
+import pytest
+
+import galactic
+from galactic import demonstrations
+from galactic.demonstrations import About, Demonstration, Demonstrations
+
+ABOUT = About(
+    world="/worlds/world.pack",
+    episodes=6,
+    expert="scripted",
+    parts=[("way", 2), ("is_holding", 1)],
+    meanings={"observe_current": False},
+    images={"depth": (4, 5)},
+    motions=2,
+    made_with={"settings": {"seed": 1, "camera_position": (0.0, 0.5, 0.0)}},
+)
+
+
+def episode(number: int, length: int, ending: galactic.EpisodeEnd) -> Demonstration:
+    random = np.random.default_rng(number)
+    return Demonstration(
+        number,
+        ending,
+        state=random.normal(size=(length, 3)).astype(np.float32),
+        actions=random.uniform(-1, 1, (length, 4)).astype(np.float32),
+        by_expert=np.arange(length) >= number % 3,
+        rewards=random.normal(size=length).astype(np.float32),
+        depth=random.uniform(0, 10, (length, 4, 5)).astype(np.float16),
+    )
+
+
+EPISODES = [
+    episode(number, 1 + 2 * number, ending)
+    for number, ending in enumerate(
+        [galactic.EpisodeEnd.SUCCESS, galactic.EpisodeEnd.TIME_OUT, galactic.EpisodeEnd.SUCCESS] * 2
+    )
+]
+
+
+def write(folder: pathlib.Path, *parts: list[Demonstration]) -> pathlib.Path:
+    folder.mkdir(exist_ok=True)
+    (folder / demonstrations.INDEX).write_text(demonstrations.text_of(ABOUT))
+    for number, part in enumerate(parts):
+        place = demonstrations.part_folder(folder, number)
+        place.mkdir()
+        for name, array in demonstrations.arrays_of(part).items():
+            np.save(place / f"{name}.npy", array)
+    return folder
+
+
+@pytest.fixture
+def folder(tmp_path: pathlib.Path) -> pathlib.Path:
+    return write(tmp_path, EPISODES[:4], EPISODES[4:])
+
+
+def require_equal(found: Demonstration, wanted: Demonstration) -> None:
+    assert (found.episode, found.ending, len(found)) == (wanted.episode, wanted.ending, len(wanted))
+    for name in ("state", "actions", "by_expert", "rewards", "depth"):
+        ours, theirs = getattr(found, name), getattr(wanted, name)
+        assert ours.dtype == theirs.dtype
+        np.testing.assert_array_equal(ours, theirs)
+    assert found.rgb is None
+
+
+def test_what_was_written_is_read(folder: pathlib.Path) -> None:
+    found = Demonstrations(folder)
+    assert len(found) == len(EPISODES)
+    for one, wanted in zip(found, EPISODES):
+        require_equal(one, wanted)
+    require_equal(found[-1], EPISODES[-1])
+    assert [one.episode for one in found[1:3]] == [1, 2]
+    assert [one.is_solved for one in found] == [True, False, True] * 2
+    assert found.lengths.tolist() == [len(one) for one in EPISODES]
+    assert found.about == dataclasses.replace(
+        ABOUT, made_with={"settings": {"seed": 1, "camera_position": [0.0, 0.5, 0.0]}}
+    )
+    assert repr(found) == f"<galactic.Demonstrations of 6 episodes in {folder}>"
+    with pytest.raises(IndexError):
+        found[6]
+    with pytest.raises(ValueError, match="read-only"):
+        found[0].state[0] = 1
+
+
+def test_folders_are_read_one_after_the_other(tmp_path: pathlib.Path) -> None:
+    folders = [write(tmp_path / "one", EPISODES[:4]), write(tmp_path / "two", EPISODES[4:])]
+    found = Demonstrations(*folders)
+    assert len(found) == len(EPISODES) and len(found.abouts) == 2
+    for one, wanted in zip(found, EPISODES):
+        require_equal(one, wanted)
+    rewards = np.concatenate([one.rewards for one in EPISODES])
+    np.testing.assert_array_equal(found.take("rewards", np.arange(len(rewards))), rewards)
+    about = dataclasses.replace(ABOUT, meanings={"observe_current": True})
+    (folders[1] / demonstrations.INDEX).write_text(demonstrations.text_of(about))
+    with pytest.raises(
+        galactic.Error, match="two.*found meanings .*True.*those of the first folder"
+    ):
+        Demonstrations(*folders)
+
+
+def test_rows_are_those_of_all_episodes_together(folder: pathlib.Path) -> None:
+    found = Demonstrations(folder)
+    states = np.concatenate([one.state for one in EPISODES])
+    rows = np.random.default_rng(1).integers(len(states), size=(7, 5))
+    np.testing.assert_array_equal(found.take("state", rows), states[rows])
+    depth = np.concatenate([one.depth for one in EPISODES])
+    np.testing.assert_array_equal(found.take("depth", rows[0]), depth[rows[0]])
+    for number, one in enumerate(EPISODES):
+        np.testing.assert_array_equal(
+            found.take("rewards", found.first_rows[number] + np.arange(len(one))), one.rewards
+        )
+
+
+def test_a_folder_without_parts_holds_no_episode(tmp_path: pathlib.Path) -> None:
+    found = Demonstrations(write(tmp_path))
+    assert len(found) == 0 and found.lengths.shape == (0,)
+    # Nor do parts that are being written count.
+    (tmp_path / ".part-000000.unfinished").mkdir()
+    assert len(Demonstrations(tmp_path)) == 0
+
+
+def resaved(name: str, change) -> object:
+    def damage(folder: pathlib.Path) -> None:
+        file = folder / "part-000001" / f"{name}.npy"
+        np.save(file, change(np.load(file)))
+
+    return damage
+
+
+def truncate(folder: pathlib.Path) -> None:
+    file = folder / "part-000001" / "state.npy"
+    file.write_bytes(file.read_bytes()[:-1])
+
+
+def pickled(folder: pathlib.Path) -> None:
+    np.save(folder / "part-000001" / "state.npy", np.array([{}], dtype=object), allow_pickle=True)
+
+
+def archived(folder: pathlib.Path) -> None:
+    file = folder / "part-000001" / "state.npy"
+    with open(file, "wb") as handle:
+        np.savez(handle, state=np.zeros(3))
+
+
+def reindexed(**changes: object) -> object:
+    def damage(folder: pathlib.Path) -> None:
+        file = folder / demonstrations.INDEX
+        values = {**json.loads(file.read_text()), **changes}
+        file.write_text(json.dumps({name: v for name, v in values.items() if v is not None}))
+
+    return damage
+
+
+@pytest.mark.parametrize(
+    "damage, message",
+    [
+        (lambda folder: (folder / demonstrations.INDEX).unlink(), "galactic.demonstrate has made"),
+        (lambda folder: (folder / demonstrations.INDEX).write_text("{"), "does not say what"),
+        (lambda folder: (folder / demonstrations.INDEX).write_text("[]"), "does not say what"),
+        (lambda folder: (folder / demonstrations.INDEX).write_bytes(b"\xff"), "does not say what"),
+        (reindexed(format=2), "expected format 1"),
+        (reindexed(format=None), "'format'"),
+        (reindexed(motions=-1), "found -1"),
+        (reindexed(motions=True), "found True"),
+        (reindexed(parts=[["way", 1 << 40]]), f"found {1 << 40}"),
+        (reindexed(parts=7), "not iterable"),
+        (reindexed(images={"depth": "large"}), "found 'l'"),
+        (reindexed(images={"heat": [4, 5]}), "heat"),
+        (reindexed(episodes=None), "episodes"),
+        (reindexed(more=1), "more"),
+        (reindexed(motions=3), r"actions.npy: found float32 \[16, 4\], expected float32 \[16, 5\]"),
+        (lambda f: (f / "part-000001" / "rewards.npy").unlink(), "rewards.npy: cannot be read"),
+        (truncate, "state.npy: is no array of numpy"),
+        (pickled, "state.npy: is no array of numpy"),
+        (archived, "state.npy: found others"),
+        (resaved("state", lambda rows: rows[:-1]), r"state.npy: found float32 \[19, 3\]"),
+        (resaved("state", lambda rows: rows.astype(float)), r"found float64 \[20, 3\]"),
+        (resaved("depth", lambda rows: rows[..., 0]), r"depth.npy: found float16 \[20, 4\]"),
+        (resaved("lengths", lambda rows: rows - 9), "episodes without steps"),
+        (resaved("lengths", lambda rows: rows[:1]), r"lengths.npy: found int32 \[1\], expected"),
+        (resaved("endings", lambda rows: rows + 77), "endings.npy: holds numbers that are no"),
+        (resaved("episodes", lambda rows: rows[:0]), "lengths.npy: found"),
+        (resaved("rewards", lambda rows: rows * np.nan), "rewards.npy: holds numbers that are not"),
+        (resaved("actions", lambda rows: rows + np.inf), "actions.npy: holds numbers that are not"),
+    ],
+)
+def test_other_contents_are_refused(folder: pathlib.Path, damage, message: str) -> None:
+    damage(folder)
+    with pytest.raises(galactic.Error, match=message):
+        Demonstrations(folder)
