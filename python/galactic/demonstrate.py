@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import hashlib
 import os
 import pathlib
 import shutil
@@ -17,7 +18,7 @@ import torch
 import galactic
 from galactic import demonstrations
 from galactic.demonstrations import About, Demonstration, Demonstrations
-from galactic.learning import checkpoint
+from galactic.learning import checkpoint, own_code, own_tasks
 from galactic.learning.checkpoint import SavedPolicy
 from galactic.learning.command import (
     EXIT_CODES,
@@ -30,9 +31,9 @@ from galactic.learning.command import (
     whole,
 )
 from galactic.learning.evaluation import MOST_ENVS, Actor, Evaluator
-from galactic.learning.experts import Expert, Recorder, make_expert
+from galactic.learning.experts import Expert, LearnedExpert, Recorder, RolledIn, ScriptedExpert
 from galactic.learning.fitting import Observed, columns_of
-from galactic.learning.homes import Homes
+from galactic.learning.homes import Homes, camera_options, simulation_keywords
 from galactic.learning.presets import PRESETS, preset
 from galactic.learning.reports.progress import ProgressLine, duration
 from galactic.learning.setting_options import add_options, given_options
@@ -51,7 +52,14 @@ from galactic.learning.trainer import threads_of
 SCRIPTED = "scripted"
 
 # Settings that demonstrations depend on.
-_SETTINGS = ("seed", "simulation", "network", *dict.fromkeys(CAMERA.values()))
+_SETTINGS = (
+    "seed",
+    "simulation",
+    "task",
+    "task_options",
+    "network",
+    *dict.fromkeys(CAMERA.values()),
+)
 # How many episodes make a part: what an interrupt may cost, and what memory has to hold at a time.
 _EPISODES_OF_PART = 256
 _EPISODES_WITH_IMAGES = 64
@@ -121,45 +129,21 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 
 def _demonstrate(options: argparse.Namespace) -> int:
     _require_uses(options)
-    chosen = preset("paper" if options.preset is None else options.preset, **given_options(options))
-    has_images = bool(SIGHT[chosen.network])
-    of_part = _EPISODES_WITH_IMAGES if has_images else _EPISODES_OF_PART
-    settings = dataclasses.replace(
-        chosen, envs=min(of_part, MOST_ENVS), halves=1, mini_batches=1, critic_only=""
-    )
+    settings, task = _settings(options)
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
-    homes = Homes(galactic.World(options.world), settings, threads)
-    _require_limit(homes, options)
-    learner = _actor(options.learner, homes, settings, deterministic=False)
-    policy = None
-    if options.expert != SCRIPTED:
-        policy = _actor(pathlib.Path(options.expert), homes, settings, options.deterministic)
-    limit = int(homes.env.simulators[0].options["episode_steps"])
-    most = options.learner_steps or max(1, limit // 2)
-    expert = make_expert(homes, policy, learner, most, settings.seed)
+    homes = Homes(galactic.World(options.world), settings, threads, task=task)
+    _require_limit(homes)
+    expert = _expert(options, homes, settings)
     episodes = homes.playable_episodes()[: options.episodes]
-    about = About(
-        world=str(options.world.resolve()),
-        episodes=len(episodes),
-        expert=options.expert if policy is None else str(pathlib.Path(options.expert).resolve()),
-        parts=homes.parts,
-        meanings=homes.meanings,
-        images=dict(homes.images),
-        motions=homes.motions,
-        made_with={
-            "learner": str(options.learner.resolve()) if learner else None,
-            "learner_steps": most if learner else None,
-            "deterministic": options.deterministic,
-            "settings": {name: getattr(settings, name) for name in _SETTINGS},
-        },
-    )
+    about = _about(options, homes, settings, len(episodes))
     folder: pathlib.Path = options.out
     checkpoint.require_folder(folder)
     folder.mkdir(parents=True, exist_ok=True)
     with checkpoint.alone_in(folder):
         _begin(folder, about)
-        parts = [episodes[first : first + of_part] for first in range(0, len(episodes), of_part)]
+        size = _episodes_of_part(settings)
+        parts = [episodes[first : first + size] for first in range(0, len(episodes), size)]
         try:
             _make(folder, parts, Evaluator(homes, expert), expert)
         except KeyboardInterrupt:
@@ -175,6 +159,82 @@ def _demonstrate(options: argparse.Namespace) -> int:
     return OK
 
 
+def _episodes_of_part(settings: Settings) -> int:
+    return _EPISODES_WITH_IMAGES if SIGHT[settings.network] else _EPISODES_OF_PART
+
+
+def _settings(options: argparse.Namespace) -> tuple[Settings, Optional[own_tasks.MakeTask]]:
+    """Those of homes to play in, and what makes a task of one's own in them."""
+    given = given_options(options)
+    chosen = preset("paper" if options.preset is None else options.preset, **given)
+    envs = min(_episodes_of_part(chosen), MOST_ENVS)
+    settings = dataclasses.replace(chosen, envs=envs, halves=1, mini_batches=1, critic_only="")
+    if not settings.task:
+        return settings, None
+    name = own_code.named(settings.task, "--task")
+    make = own_tasks.maker(name, settings.task_options)
+    simulation = own_tasks.simulation_below(make(), chosen.simulation, given.get("simulation", ""))
+    return dataclasses.replace(settings, task=str(name), simulation=simulation), make
+
+
+def _expert(options: argparse.Namespace, homes: Homes, settings: Settings) -> Expert:
+    expert: Expert
+    if options.expert == SCRIPTED:
+        expert = ScriptedExpert(homes)
+    else:
+        expert = LearnedExpert(
+            _actor(pathlib.Path(options.expert), homes, settings, options.deterministic)
+        )
+    if options.learner is None:
+        return expert
+    learner = _actor(options.learner, homes, settings, deterministic=False)
+    return RolledIn(learner, expert, _learner_steps(options, homes), settings.seed)
+
+
+def _learner_steps(options: argparse.Namespace, homes: Homes) -> int:
+    """The most that a learner plays of an episode."""
+    limit = int(homes.env.simulators[0].options["episode_steps"])
+    return options.learner_steps or max(1, limit // 2)
+
+
+def _about(options: argparse.Namespace, homes: Homes, settings: Settings, episodes: int) -> About:
+    has_learner = options.learner is not None
+    is_learned = options.expert != SCRIPTED
+    keywords = simulation_keywords(settings.simulation)
+    task_file = own_code.named(options.setting_task, "--task").file if settings.task else None
+    if settings.task:
+        del keywords["task"]  # of which VectorEnv takes the class
+    read = {
+        "world": options.world,
+        "expert": pathlib.Path(options.expert) if is_learned else None,
+        "learner": options.learner,
+        "task": task_file,
+    }
+    return About(
+        world=str(options.world.resolve()),
+        episodes=episodes,
+        expert=str(pathlib.Path(options.expert).resolve()) if is_learned else SCRIPTED,
+        parts=homes.parts,
+        options=keywords,
+        camera=camera_options(settings) if SIGHT[settings.network] else None,
+        meanings=homes.meanings,
+        images=dict(homes.images),
+        motions=homes.motions,
+        made_with={
+            "learner": str(options.learner.resolve()) if has_learner else None,
+            "learner_steps": _learner_steps(options, homes) if has_learner else None,
+            "deterministic": options.deterministic,
+            "settings": {name: getattr(settings, name) for name in _SETTINGS},
+            "sha256": {name: _sha256(file) for name, file in read.items() if file is not None},
+        },
+    )
+
+
+def _sha256(file: pathlib.Path) -> str:
+    """Of what a file holds; a world's says what is in all of its packs."""
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
 def _require_uses(options: argparse.Namespace) -> None:
     if options.learner_steps is not None and options.learner is None:
         raise SettingsError("--learner-steps goes with --learner; name one, or leave it out")
@@ -182,7 +242,7 @@ def _require_uses(options: argparse.Namespace) -> None:
         raise SettingsError("--deterministic is for an --expert that is a policy; leave it out")
 
 
-def _require_limit(homes: Homes, options: argparse.Namespace) -> None:
+def _require_limit(homes: Homes) -> None:
     """Raises SettingsError where an episode may never end, as that of an expert that has given up."""
     if not homes.are_limited:
         raise SettingsError(
@@ -190,11 +250,8 @@ def _require_limit(homes: Homes, options: argparse.Namespace) -> None:
         )
 
 
-def _actor(file: Optional[pathlib.Path], homes: Homes, settings: Settings,
-           deterministic: bool) -> Optional[Actor]:  # fmt: skip
-    """The policy of a file, that plays in these homes; None for no file."""
-    if file is None:
-        return None
+def _actor(file: pathlib.Path, homes: Homes, settings: Settings, deterministic: bool) -> Actor:
+    """The policy of a file, that plays in these homes."""
     saved = checkpoint.load_policy(file)
     _require_sight(saved, file, settings)
     observed = Observed(homes.parts, homes.meanings, homes.motions)
@@ -239,8 +296,11 @@ def _difference(found: About, wanted: About) -> str:
     """The first thing that they do not have in common."""
     ones, others = dataclasses.asdict(found), dataclasses.asdict(wanted)
     for made in (ones, others):
+        # Those of the settings say more.
+        del made["options"], made["camera"]
         made.update(made.pop("made_with"))
         made.update(made.pop("settings", {}))
+        made.update({f"sha256 of the {name}": sum for name, sum in made.pop("sha256", {}).items()})
     for name, value in others.items():
         if ones.get(name) != value:
             return f"{name}: found {ones.get(name)}, expected {value}"

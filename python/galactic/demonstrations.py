@@ -85,6 +85,10 @@ class About:
     """Who acts: `scripted`, or a policy's file."""
     parts: list[tuple[str, int]]
     """Names and sizes of the parts of a row of observations, in order."""
+    options: dict[str, Any]
+    """Keywords of galactic.VectorEnv that give the same observations."""
+    camera: Optional[dict[str, Any]]
+    """Its `images`, that give the same images; None where there are none."""
     meanings: dict[str, Any]
     """Options of the simulation by which numbers of these parts mean one thing or another."""
     images: dict[str, tuple[int, ...]]
@@ -280,6 +284,8 @@ def about_of(text: str, file: pathlib.Path) -> About:
         if values.pop("format") != FORMAT:
             raise ValueError(f"expected format {FORMAT}")
         about = About(**values)
+        if not isinstance(about.options, dict) or not isinstance(about.camera, (dict, type(None))):
+            raise ValueError("options or camera are no keywords")
         if not set(about.images) <= {"rgb", "depth"}:
             raise ValueError(f"found images {', '.join(about.images)}, expected rgb and depth")
         return dataclasses.replace(

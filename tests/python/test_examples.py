@@ -9,8 +9,6 @@ import sys
 import numpy as np
 import pytest
 
-from galactic import Simulator, World
-
 ROOT = pathlib.Path(os.environ["GALACTIC_SOURCE_DIR"])
 
 
@@ -54,21 +52,6 @@ def test_point_nav(world_path):
         r"straight ahead, (\d+) of (\d+) robots", output_of("point_nav.py", world_path)
     ).groups()
     assert 0.6 * int(ended) < int(arrived) < int(ended)
-
-
-def test_demonstrations(world_path, tmp_path):
-    """Played again, they solve the episodes."""
-    printed = output_of("demonstrations.py", world_path, tmp_path)
-    assert "3 of 3 episodes solved" in printed
-    saved = np.load(tmp_path / "demonstrations.npz")
-    simulator = Simulator(World(world_path), envs=1, task="rearrange")
-    for episode in (0, 1, 3):
-        rows = saved["episodes"] == episode
-        simulator.reset([episode])
-        for seen, actions in zip(saved["observations"][rows], saved["actions"][rows]):
-            np.testing.assert_array_equal(simulator.observations[0], seen)
-            simulator.step(actions[np.newaxis])
-        assert simulator.successes[0]
 
 
 def test_draw_data_set(world_path, tmp_path):

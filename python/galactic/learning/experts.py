@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Mapping, Optional, Protocol, Sequence
+from typing import Mapping, Protocol, Sequence
 
 import numpy as np
 
@@ -66,7 +66,8 @@ class RolledIn:
         self._learner = learner
         self._expert = expert
         self._most = most
-        self._seed = seed
+        # Not the numbers that a policy's actions are sampled with.
+        self._seed = seed ^ 0x726F6C6C
         self.acted = np.zeros(0, np.bool_)
 
     def begin(self, envs: int) -> None:
@@ -140,12 +141,3 @@ class Recorder:
 def _as_executed(actions: np.ndarray) -> np.ndarray:
     """As the simulation takes them: samples of a policy may be outside of its limits."""
     return np.clip(actions, -1.0, 1.0)
-
-
-def make_expert(homes: Homes, policy: Optional[Player], learner: Optional[Player], most: int,
-                seed: int) -> Expert:  # fmt: skip
-    """The scripted one, or `policy`; where a learner rolls in, behind it, up to `most` steps later."""
-    expert: Expert = ScriptedExpert(homes)
-    if policy is not None:
-        expert = LearnedExpert(policy)
-    return expert if learner is None else RolledIn(learner, expert, most, seed)

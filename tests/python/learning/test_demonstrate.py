@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import json
 import pathlib
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ import torch
 import galactic
 from galactic import Demonstrations, demonstrate
 from galactic.learning import checkpoint
-from programs import SMALL, UPDATE, WORLD, call, curve, needs_worlds, run
+from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds, run
 
 pytestmark = needs_worlds
 QUICK = ["--preset", "quick"]
@@ -40,10 +42,8 @@ def test_demonstrations_are_what_happens_when_their_actions_are_done(shown: path
     assert np.mean([one.is_solved for one in made]) > 0.7
     about = made.about
     assert about.expert == "scripted" and about.world == str(WORLD.resolve())
-    keywords = dict(task="pick", episode_steps=200, geodesic=True, geodesic_weight=1.0)
-    homes = galactic.VectorEnv(
-        WORLD, len(made), bump=True, bump_penalty=0.03, order="partition", **keywords
-    )
+    assert about.options["task"] == "pick" and about.camera is None
+    homes = galactic.VectorEnv(WORLD, len(made), order="partition", **about.options)
     episodes = np.array([one.episode for one in made])
     seen, _ = homes.reset(options={"reset_mask": np.ones(len(made), bool), "episodes": episodes})
     assert dict(about.parts) == {
@@ -228,6 +228,10 @@ def test_images_are_kept(tmp_path: pathlib.Path) -> None:
     assert done.returncode == 0, done.stderr
     made = Demonstrations(folder)
     assert made.about.images == {"depth": (36, 36)}
+    homes = galactic.VectorEnv(WORLD, 1, images=made.about.camera, **made.about.options)
+    episodes = np.array([made[0].episode])
+    seen, _ = homes.reset(options={"reset_mask": np.ones(1, bool), "episodes": episodes})
+    np.testing.assert_array_equal(seen["depth"][0].astype(np.float16), made[0].depth[0])
     for one in made:
         assert one.depth is not None and one.depth.shape == (len(one), 36, 36)
         assert 0.0 < one.depth.max() < 20.0
@@ -240,6 +244,58 @@ def test_images_are_kept(tmp_path: pathlib.Path) -> None:
         "train", WORLD, "-o", tmp_path / "other", *sight[:2], *options, "--demonstrations", folder
     )
     assert done.returncode == 3 and "depth of 36x36, expected 64x64" in done.stderr
+
+
+TASK = """
+import numpy as np
+import galactic
+
+class Hold(galactic.Task):
+    base, parts = "pick", {"reach": 1}
+
+    def step(self, envs):
+        return galactic.Outcome(envs.rewards + 1.0)
+
+    def observe(self, envs):
+        return {"reach": np.linalg.norm(envs.observations["grip_target"], axis=1, keepdims=True)}
+"""
+
+
+def test_they_may_be_of_a_task_of_ones_own(tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "hold.py"
+    file.write_text(TASK, encoding="utf-8")
+    task = ["--task", f"{file}:Hold"]
+    options = [WORLD, "-o", tmp_path / "demos", *QUICK, "--episodes", 6, *task]
+    done = call("demonstrate", *options)
+    assert done.returncode == 0, done.stderr
+    made = Demonstrations(tmp_path / "demos")
+    assert dict(made.about.parts)["reach"] == 1 and "task" not in made.about.options
+    assert min(one.rewards.mean() for one in made) > 0.5
+    done = call("train", WORLD, "-o", tmp_path / "clone", *SMALL, "--steps", UPDATE, *task,
+                "--demonstrations", tmp_path / "demos")  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    # Another class of the same name would pay something else.
+    file.write_text(TASK.replace("1.0", "2.0"), encoding="utf-8")
+    done = call("demonstrate", *options)
+    assert done.returncode == 1 and "sha256 of the task" in done.stderr
+
+
+def test_a_network_of_ones_own_learns_from_them(shown: pathlib.Path) -> None:
+    """The example: it says what it has read, learns, and plays all episodes."""
+    example = pathlib.Path(__file__).parents[3] / "python/examples/clone.py"
+    done = subprocess.run(
+        [sys.executable, "-B", example, shown, HELD_OUT],
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    first, *losses, last = done.stdout.splitlines()
+    assert first.startswith(f"{sum(one.is_solved for one in Demonstrations(shown))} of 24 episodes")
+    figures = [float(line.rpartition(" ")[2]) for line in losses]
+    assert len(figures) == 4 and figures[-1] < figures[0]
+    assert last.endswith(" episodes solved")
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,16 @@ SETTINGS = Settings(
     learning_rate_end=1e-3,
 )
 ABOUT = About(
-    "world.pack", 20, "scripted", [("way", 3)], {"observe_current": False}, {}, MOTIONS, {}
+    "world.pack",
+    20,
+    "scripted",
+    [("way", 3)],
+    {},
+    None,
+    {"observe_current": False},
+    {},
+    MOTIONS,
+    {},
 )
 Act = Callable[[np.ndarray], np.ndarray]
 
