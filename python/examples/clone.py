@@ -50,10 +50,10 @@ def act(observations):
 
 
 homes = galactic.VectorEnv(sys.argv[2], 64, order="partition", **shown.about.options)
-observations, _ = homes.reset(seed=1)
+observations, infos = homes.reset(seed=1)
 successes = episodes = 0
 while not homes.simulators[0].idle.all():
-    observations, _, terminations, truncations, _ = homes.step(act(observations))
+    observations, rewards, terminations, truncations, infos = homes.step(act(observations))
     successes += int(homes.simulators[0].successes.sum())
     episodes += int((terminations | truncations).sum())
 print(f"{successes} of {episodes} episodes solved")
