@@ -18,6 +18,7 @@ import torch
 import galactic
 from galactic import demonstrations
 from galactic.demonstrations import About, Demonstration, Demonstrations
+from galactic.hashing import hashed
 from galactic.learning import checkpoint, own_code, own_tasks
 from galactic.learning.checkpoint import SavedPolicy
 from galactic.learning.command import (
@@ -33,7 +34,7 @@ from galactic.learning.command import (
 from galactic.learning.evaluation import MOST_ENVS, Actor, Evaluator
 from galactic.learning.experts import Expert, LearnedExpert, Recorder, RolledIn, ScriptedExpert
 from galactic.learning.fitting import Observed, columns_of
-from galactic.learning.homes import Homes, camera_options, simulation_keywords
+from galactic.learning.homes import Homes, exact_camera, simulation_keywords
 from galactic.learning.presets import PRESETS, preset
 from galactic.learning.reports.progress import ProgressLine, duration
 from galactic.learning.setting_options import add_options, given_options
@@ -136,6 +137,9 @@ def _demonstrate(options: argparse.Namespace) -> int:
     _require_limit(homes)
     expert = _expert(options, homes, settings)
     episodes = homes.playable_episodes()[: options.episodes]
+    if not episodes:
+        message = "has no episode in which the robot can start; take another world"
+        raise galactic.Error(galactic.ErrorCode.INVALID_INPUT, str(options.world), message)
     about = _about(options, homes, settings, len(episodes))
     folder: pathlib.Path = options.out
     checkpoint.require_folder(folder)
@@ -144,11 +148,14 @@ def _demonstrate(options: argparse.Namespace) -> int:
         _begin(folder, about)
         size = _episodes_of_part(settings)
         parts = [episodes[first : first + size] for first in range(0, len(episodes), size)]
+        progress = ProgressLine()
         try:
-            _make(folder, parts, Evaluator(homes, expert), expert)
+            _make(folder, parts, homes, expert, settings.seed, progress)
         except KeyboardInterrupt:
-            put(sys.stderr, "interrupted; the same command makes what is missing\n")
+            progress.say("interrupted; the same command makes what is missing")
             return INTERRUPTED
+        finally:
+            progress.close()
     homes.close()
     made = Demonstrations(folder)
     solved = [one for one in made if one.is_solved]
@@ -166,6 +173,7 @@ def _episodes_of_part(settings: Settings) -> int:
 def _settings(options: argparse.Namespace) -> tuple[Settings, Optional[own_tasks.MakeTask]]:
     """Those of homes to play in, and what makes a task of one's own in them."""
     given = given_options(options)
+    own_tasks.require_use(given)
     chosen = preset("paper" if options.preset is None else options.preset, **given)
     envs = min(_episodes_of_part(chosen), MOST_ENVS)
     settings = dataclasses.replace(chosen, envs=envs, halves=1, mini_batches=1, critic_only="")
@@ -216,7 +224,7 @@ def _about(options: argparse.Namespace, homes: Homes, settings: Settings, episod
         expert=str(pathlib.Path(options.expert).resolve()) if is_learned else SCRIPTED,
         parts=homes.parts,
         options=keywords,
-        camera=camera_options(settings) if SIGHT[settings.network] else None,
+        camera=exact_camera(settings) if SIGHT[settings.network] else None,
         meanings=homes.meanings,
         images=dict(homes.images),
         motions=homes.motions,
@@ -236,6 +244,8 @@ def _sha256(file: pathlib.Path) -> str:
 
 
 def _require_uses(options: argparse.Namespace) -> None:
+    if not options.expert:
+        raise SettingsError(f"--expert is empty; name a policy, or {SCRIPTED}")
     if options.learner_steps is not None and options.learner is None:
         raise SettingsError("--learner-steps goes with --learner; name one, or leave it out")
     if options.deterministic and options.expert == SCRIPTED:
@@ -280,6 +290,11 @@ def _begin(folder: pathlib.Path, about: About) -> None:
     """Says what the demonstrations are, if nobody has yet, and that they are these if somebody has."""
     file = folder / demonstrations.INDEX
     if not file.exists():
+        if demonstrations.parts_in(folder):
+            raise SettingsError(
+                f"{folder} holds parts of demonstrations, but no {demonstrations.INDEX} that says which; "
+                "choose another folder"
+            )
         text = demonstrations.text_of(about)
         checkpoint.write_atomically(file, lambda handle: handle.write(text), "w")
         return
@@ -307,18 +322,20 @@ def _difference(found: About, wanted: About) -> str:
     return "made with something more"
 
 
-def _make(
-    folder: pathlib.Path, parts: list[list[int]], evaluator: Evaluator, expert: Expert
-) -> None:
+def _make(folder: pathlib.Path, parts: list[list[int]], homes: Homes, expert: Expert, seed: int,
+          progress: ProgressLine) -> None:  # fmt: skip
     """Has the parts played that are missing."""
-    progress, begun = ProgressLine(), time.monotonic()
+    begun, evaluator = time.monotonic(), Evaluator(homes, expert)
     missing = [
         (number, episodes)
         for number, episodes in enumerate(parts)
-        if not demonstrations.part_folder(folder, number).exists()
+        if not os.path.lexists(demonstrations.part_folder(folder, number))
     ]
-    solved = played = 0
+    endings = Demonstrations(folder).endings
+    solved, played = int((endings == galactic.EpisodeEnd.SUCCESS).sum()), len(endings)
     for count, (number, episodes) in enumerate(missing):
+        # Its noise does not depend on which parts were made before it.
+        homes.restart(int(hashed(seed, np.array(number), np.array(0), 1)[0] >> np.uint64(32)))
         recorder = Recorder(expert)
         results = evaluator.play(episodes, details=False, witness=recorder)
         _write_part(demonstrations.part_folder(folder, number), recorder.demonstrations(results))
@@ -327,10 +344,9 @@ def _make(
         spent = time.monotonic() - begun
         left = spent / (count + 1) * (len(missing) - count - 1)
         progress.show(
-            f"{number + 1} of {len(parts)} parts  {100.0 * solved / played:.1f} % solved  "
-            f"{duration(left)} left"
+            f"{len(parts) - len(missing) + count + 1} of {len(parts)} parts  "
+            f"{100.0 * solved / played:.1f} % solved  {duration(left)} left"
         )
-    progress.close()
 
 
 def _write_part(part: pathlib.Path, episodes: Sequence[Demonstration]) -> None:
@@ -339,12 +355,24 @@ def _write_part(part: pathlib.Path, episodes: Sequence[Demonstration]) -> None:
     try:
         shutil.rmtree(unfinished, ignore_errors=True)
         unfinished.mkdir()
-        for name, array in demonstrations.arrays_of(episodes).items():
-            with checkpoint.replacing(unfinished / f"{name}.npy") as file:
-                np.save(file, array)
+        for name, array in demonstrations.arrays_of(episodes):
+            _write_array(unfinished / f"{name}.npy", array)
+        checkpoint.sync(unfinished)
         os.replace(unfinished, part)
+        checkpoint.sync(part.parent)
     except OSError as error:
         raise checkpoint.unwritable(part, error) from None
+    finally:
+        shutil.rmtree(unfinished, ignore_errors=True)
+
+
+def _write_array(file: pathlib.Path, array: np.ndarray) -> None:
+    """As numpy.save() does, which does not say why a disk takes no more."""
+    with open(file, "wb") as handle:
+        header = np.lib.format.header_data_from_array_1_0(array)
+        np.lib.format.write_array_header_1_0(handle, header)
+        handle.write(array.view(np.uint8).data)
+    checkpoint.sync(file)
 
 
 if __name__ == "__main__":

@@ -21,9 +21,10 @@ A part appears whole or not at all.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
 import pathlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Optional, overload
 
 import numpy as np
@@ -34,8 +35,10 @@ from galactic.errors import Error
 INDEX = "demonstrations.json"
 FORMAT = 1
 
-_OF_EPISODES = {"episodes": np.int32, "lengths": np.int32, "endings": np.uint8}
-_OF_STEPS = {
+_REMEDY = "remove its folder, and run galactic.demonstrate again to make what is missing"
+
+_OF_EPISODES: Mapping[str, Any] = {"episodes": np.int32, "lengths": np.int32, "endings": np.uint8}
+_OF_STEPS: Mapping[str, Any] = {
     "state": np.float32,
     "rgb": np.uint8,
     "depth": np.float16,
@@ -45,7 +48,7 @@ _OF_STEPS = {
 }
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Demonstration:
     """One episode of L steps. Arrays of a Demonstrations are read-only views of its files."""
 
@@ -88,7 +91,7 @@ class About:
     options: dict[str, Any]
     """Keywords of galactic.VectorEnv that give the same observations."""
     camera: Optional[dict[str, Any]]
-    """Its `images`, that give the same images; None where there are none."""
+    """Its `images`, that give the same images but for noise; None where there are none."""
     meanings: dict[str, Any]
     """Options of the simulation by which numbers of these parts mean one thing or another."""
     images: dict[str, tuple[int, ...]]
@@ -102,29 +105,45 @@ class About:
     def state_size(self) -> int:
         return sum(size for _, size in self.parts)
 
+    @property
+    def shapes(self) -> dict[str, tuple[int, ...]]:
+        """Of what each step has, by name."""
+        return {
+            "state": (self.state_size,),
+            "actions": (self.motions + 2,),
+            "by_expert": (),
+            "rewards": (),
+            **self.images,
+        }
+
 
 class Demonstrations(Sequence[Demonstration]):
     """The episodes of a folder of demonstrations in the order of the world, or of several, one after the
     other.
 
     Raises Error where a folder holds none, or others than it says, and where folders have other
-    observations or actions than the first one. Of a folder in which not all have been made yet, it has
-    those that are there.
+    observations, cameras or actions than the first one. Of a folder in which not all have been made yet,
+    it has those that are there.
     """
 
-    def __init__(self, *folders: "str | pathlib.Path") -> None:
-        self.folders = [pathlib.Path(folder) for folder in folders]
-        self.abouts = [read_about(folder) for folder in self.folders]
+    def __init__(self, folder: "str | pathlib.Path", *more: "str | pathlib.Path") -> None:
+        self.folders = [pathlib.Path(one) for one in (folder, *more)]
+        self.abouts = [read_about(one) for one in self.folders]
         """What each folder holds."""
-        for folder, about in zip(self.folders[1:], self.abouts[1:]):
-            _require_alike(self.abouts[0], about, folder)
-        self._parts = [_Part(self.about, part) for one in self.folders for part in parts_in(one)]
+        self._parts: list[_Part] = []
+        for number, (one, about) in enumerate(zip(self.folders, self.abouts)):
+            if one.resolve() in [other.resolve() for other in self.folders[:number]]:
+                raise Error(ErrorCode.INVALID_INPUT, str(one), "is named twice; name it once")
+            require_alike(self.about, about, one)
+            parts = [_Part(about, part) for part in parts_in(one)]
+            _require_once(parts, about, one)
+            self._parts += parts
         # Which part each episode is in, and as which of its episodes.
         self._places = [(part, n) for part in self._parts for n in range(len(part.lengths))]
         self._ends = np.cumsum([part.steps for part in self._parts], dtype=np.int64)
-        self.lengths = _joined([part.lengths for part in self._parts])
+        self.lengths = _joined([part.lengths for part in self._parts], np.int32)
         """int32 [episodes]: their steps."""
-        self.endings = _joined([part.endings for part in self._parts])
+        self.endings = _joined([part.endings for part in self._parts], np.uint8)
         """uint8 [episodes]: how they ended, as numbers of EpisodeEnd."""
         self.first_rows = np.cumsum(self.lengths, dtype=np.int64) - self.lengths
         """int64 [episodes]: where the steps of each begin, in those of all of them together."""
@@ -133,6 +152,11 @@ class Demonstrations(Sequence[Demonstration]):
     def about(self) -> About:
         """What observations and actions are: the same in all folders."""
         return self.abouts[0]
+
+    @property
+    def steps(self) -> int:
+        """Those of all episodes together."""
+        return int(self.lengths.sum())
 
     def __len__(self) -> int:
         return len(self._places)
@@ -151,35 +175,62 @@ class Demonstrations(Sequence[Demonstration]):
         part, number = self._places[index]
         return part.episode(number)
 
-    def take(self, name: str, rows: np.ndarray) -> np.ndarray:
-        """An array of Demonstration at these steps of all of them together (first_rows): shape
-        [*rows.shape, ...]. A copy."""
-        flat = rows.ravel()
+    def take(self, name: str, rows: Any) -> np.ndarray:
+        """An array of Demonstration at these steps of all of them together, whole numbers from 0 to
+        `steps` - 1 (first_rows): shape [*rows.shape, ...]. A copy."""
+        wanted = np.asarray(rows)
+        flat = wanted.ravel().astype(np.int64)
+        if flat.size and not 0 <= flat.min() <= flat.max() < self.steps:
+            raise IndexError(f"rows are from {flat.min()} to {flat.max()}, of {self.steps} steps")
+        shapes = self.about.shapes
+        if name not in shapes:
+            raise KeyError(f"found {name!r}, expected one of {', '.join(shapes)}")
+        taken = np.empty((flat.size, *shapes[name]), _OF_STEPS[name])
         parts = np.searchsorted(self._ends, flat, side="right")
-        taken: Optional[np.ndarray] = None
         for number in np.unique(parts):
             part, chosen = self._parts[number], parts == number
-            found = part.arrays[name][flat[chosen] - (self._ends[number] - part.steps)]
-            if taken is None:
-                taken = np.empty((flat.size, *found.shape[1:]), found.dtype)
-            taken[chosen] = found
-        assert taken is not None, "no rows"
-        return taken.reshape(*rows.shape, *taken.shape[1:])
+            taken[chosen] = part.array(name)[flat[chosen] - (self._ends[number] - part.steps)]
+        if name == "depth" and not np.isfinite(taken).all():
+            raise Error(
+                ErrorCode.INVALID_INPUT,
+                f"{', '.join(map(str, self.folders))}: depth.npy",
+                f"holds numbers that are not finite; {_REMEDY}",
+            )
+        return taken.reshape(*wanted.shape, *shapes[name])
 
     def __repr__(self) -> str:
         places = ", ".join(map(str, self.folders))
         return f"<galactic.Demonstrations of {len(self)} episodes in {places}>"
 
 
-def _require_alike(first: About, about: About, folder: pathlib.Path) -> None:
-    for name in ("parts", "meanings", "images", "motions"):
-        found, wanted = getattr(about, name), getattr(first, name)
-        if found != wanted:
-            message = (
-                f"found {name} {found}, expected those of the first folder, {wanted}; make both with the same "
-                "--preset and --simulation"
-            )
-            raise Error(ErrorCode.INVALID_INPUT, str(folder / INDEX), message)
+def require_alike(wanted: About, found: About, folder: pathlib.Path) -> None:
+    """Raises Error where what is found in a folder was observed or done otherwise than is wanted."""
+    for name in ("motions", "parts", "meanings", "images"):
+        _require_equal(folder, name, getattr(found, name), getattr(wanted, name))
+    ones, others = found.camera or {}, wanted.camera or {}
+    for name in dict.fromkeys([*ones, *others]):
+        _require_equal(folder, f"camera: {name}", ones.get(name), others.get(name))
+
+
+def _require_equal(folder: pathlib.Path, name: str, found: Any, wanted: Any) -> None:
+    # JSON knows no tuples.
+    if json.dumps(found) != json.dumps(wanted):
+        message = (
+            f"found {name} {found}, expected {wanted}; give both the same robot, --preset, --simulation, "
+            "--network and camera"
+        )
+        raise Error(ErrorCode.INVALID_INPUT, str(folder / INDEX), message)
+
+
+def _require_once(parts: "list[_Part]", about: About, folder: pathlib.Path) -> None:
+    """Raises Error where parts are not of one making."""
+    episodes = _joined([part.episodes for part in parts], np.int32)
+    if len(episodes) > about.episodes or len(set(episodes.tolist())) < len(episodes):
+        message = (
+            f"holds {len(episodes)} episodes, some of them twice or more than the {about.episodes} that "
+            f"{INDEX} says; remove the parts that do not belong there"
+        )
+        raise Error(ErrorCode.INVALID_INPUT, str(folder), message)
 
 
 def parts_in(folder: pathlib.Path) -> list[pathlib.Path]:
@@ -191,65 +242,63 @@ def part_folder(folder: pathlib.Path, number: int) -> pathlib.Path:
     return folder / f"part-{number:06d}"
 
 
-def arrays_of(episodes: Sequence[Demonstration]) -> dict[str, np.ndarray]:
-    """The arrays of a part, by the names of their files."""
-    arrays = {
-        "episodes": np.array([one.episode for one in episodes]),
-        "lengths": np.array([len(one) for one in episodes]),
-        "endings": np.array([int(one.ending) for one in episodes]),
+def arrays_of(episodes: Sequence[Demonstration]) -> Iterator[tuple[str, np.ndarray]]:
+    """The arrays of a part with the names of their files, one after the other."""
+    of_episodes = {
+        "episodes": [one.episode for one in episodes],
+        "lengths": [len(one) for one in episodes],
+        "endings": [int(one.ending) for one in episodes],
     }
-    for name in _OF_STEPS:
+    for name, numbers in of_episodes.items():
+        yield name, np.array(numbers, _OF_EPISODES[name])
+    for name, kind in _OF_STEPS.items():
         if getattr(episodes[0], name) is not None:
-            arrays[name] = np.concatenate([getattr(one, name) for one in episodes])
-    types: dict[str, Any] = {**_OF_EPISODES, **_OF_STEPS}
-    return {name: array.astype(types[name], copy=False) for name, array in arrays.items()}
+            joined = np.concatenate([getattr(one, name) for one in episodes])
+            yield name, joined.astype(kind, copy=False)
 
 
 class _Part:
-    """The files of a part, mapped into memory and checked."""
+    """The files of a part, checked; those of steps are mapped into memory where they are looked at."""
 
     def __init__(self, about: About, folder: pathlib.Path) -> None:
         self._folder = folder
-        self._episodes = self._load("episodes", np.int32, (None,))
-        count = len(self._episodes)
-        self.lengths = self._load("lengths", np.int32, (count,))
-        self.endings = self._load("endings", np.uint8, (count,))
+        self._shapes = about.shapes
+        self.episodes = np.array(self._load("episodes", np.int32, (None,)))
+        count = len(self.episodes)
+        self.lengths = np.array(self._load("lengths", np.int32, (count,)))
+        self.endings = np.array(self._load("endings", np.uint8, (count,)))
         if count == 0 or self.lengths.min() < 1:
             raise _invalid(folder / "lengths.npy", "holds episodes without steps")
         if not np.isin(self.endings, [int(end) for end in EpisodeEnd.__members__.values()]).all():
             raise _invalid(folder / "endings.npy", "holds numbers that are no EpisodeEnd")
         self._bounds = np.concatenate([[0], np.cumsum(self.lengths, dtype=np.int64)])
-        self.steps = steps = int(self._bounds[-1])
-        shapes: dict[str, tuple[Optional[int], ...]] = {
-            "state": (steps, about.state_size),
-            "actions": (steps, about.motions + 2),
-            "by_expert": (steps,),
-            "rewards": (steps,),
-            **{name: (steps, *shape) for name, shape in about.images.items()},
-        }
-        self.arrays = {name: self._load(name, _OF_STEPS[name], shapes[name]) for name in shapes}
-        for name in ("state", "actions", "rewards"):
-            if not np.isfinite(self.arrays[name]).all():
+        self.steps = int(self._bounds[-1])
+        for name in self._shapes:
+            array = self.array(name)
+            if name in ("state", "rewards") and not np.isfinite(array).all():
                 raise _invalid(folder / f"{name}.npy", "holds numbers that are not finite")
+            if name == "actions" and not (np.abs(array) <= 1).all():
+                raise _invalid(folder / f"{name}.npy", "holds numbers that are not from -1 to 1")
+
+    def array(self, name: str) -> np.ndarray:
+        """That of all steps of the part."""
+        return self._load(name, _OF_STEPS[name], (self.steps, *self._shapes[name]))
 
     def episode(self, number: int) -> Demonstration:
         rows = slice(self._bounds[number], self._bounds[number + 1])
-        arrays = {name: steps[rows] for name, steps in self.arrays.items()}
-        return Demonstration(
-            int(self._episodes[number]), EpisodeEnd(int(self.endings[number])), **arrays
-        )
+        arrays = {name: self.array(name)[rows] for name in self._shapes}
+        ending = EpisodeEnd(int(self.endings[number]))
+        return Demonstration(int(self.episodes[number]), ending, **arrays)
 
     def _load(self, name: str, kind: Any, shape: tuple[Optional[int], ...]) -> np.ndarray:
         """An array of this type and shape; None stands for any size."""
         file = self._folder / f"{name}.npy"
         try:
-            array = np.load(file, mmap_mode="r", allow_pickle=False)
+            seen = file.stat()
         except OSError as error:
-            raise Error(
-                ErrorCode.IO, str(file), f"cannot be read: {error.strerror or error}"
-            ) from None
-        except Exception as error:  # numpy raises whatever its readers do
-            raise _invalid(file, f"is no array of numpy: {error}") from None
+            message = f"cannot be read: {error.strerror}; {_REMEDY}"
+            raise Error(ErrorCode.IO, str(file), message) from None
+        array = _mapped(file, seen.st_ino, seen.st_mtime_ns)
         fits = isinstance(array, np.ndarray) and array.dtype == kind and array.ndim == len(shape)
         if not fits or any(w is not None and w != f for w, f in zip(shape, array.shape)):
             found = (
@@ -260,6 +309,19 @@ class _Part:
             )
             raise _invalid(file, f"found {found}, expected {wanted}")
         return array
+
+
+# A mapped file is an open one, of which a process may have a thousand.
+@functools.lru_cache(maxsize=256)
+def _mapped(file: pathlib.Path, inode: int, changed: int) -> Any:
+    """What a file holds that has not been replaced since."""
+    try:
+        return np.load(file, mmap_mode="r", allow_pickle=False)
+    except OSError as error:
+        message = f"cannot be read: {error.strerror or error}; {_REMEDY}"
+        raise Error(ErrorCode.IO, str(file), message) from None
+    except Exception as error:  # numpy raises whatever its readers do
+        raise _invalid(file, f"is no array of numpy: {error}") from None
 
 
 def read_about(folder: pathlib.Path) -> About:
@@ -281,11 +343,11 @@ def about_of(text: str, file: pathlib.Path) -> About:
     """What text_of() wrote; `file` is for messages."""
     try:
         values = json.loads(text)
+        _require_types(values, {"format": int, **_ABOUT})
         if values.pop("format") != FORMAT:
             raise ValueError(f"expected format {FORMAT}")
+        _require_types(values["made_with"], {"settings": dict, "sha256": dict})
         about = About(**values)
-        if not isinstance(about.options, dict) or not isinstance(about.camera, (dict, type(None))):
-            raise ValueError("options or camera are no keywords")
         if not set(about.images) <= {"rgb", "depth"}:
             raise ValueError(f"found images {', '.join(about.images)}, expected rgb and depth")
         return dataclasses.replace(
@@ -295,9 +357,31 @@ def about_of(text: str, file: pathlib.Path) -> About:
             motions=_size(about.motions),
             episodes=_size(about.episodes),
         )
-    except (ValueError, TypeError, KeyError, AttributeError) as error:
+    except (ValueError, TypeError, RecursionError) as error:
         message = f"does not say what the demonstrations are: {error}; make them again, elsewhere"
         raise Error(ErrorCode.INVALID_INPUT, str(file), message) from None
+
+
+# Types that JSON gives what an About has.
+_ABOUT = {
+    "world": str,
+    "episodes": int,
+    "expert": str,
+    "parts": list,
+    "options": dict,
+    "camera": (dict, type(None)),
+    "meanings": dict,
+    "images": dict,
+    "motions": int,
+    "made_with": dict,
+}
+
+
+def _require_types(values: Any, types: Mapping[str, Any]) -> None:
+    for name, kind in types.items():
+        found = values.get(name, "nothing") if isinstance(values, dict) else "nothing"
+        if not isinstance(found, kind) or isinstance(found, bool):
+            raise ValueError(f"{name}: found {found!r}, which is of another type")
 
 
 def text_of(about: About) -> str:
@@ -312,11 +396,8 @@ def _size(value: Any) -> int:
 
 
 def _invalid(file: pathlib.Path, fault: str) -> Error:
-    message = (
-        f"{fault}; remove its folder, and run galactic.demonstrate again to make what is missing"
-    )
-    return Error(ErrorCode.INVALID_INPUT, str(file), message)
+    return Error(ErrorCode.INVALID_INPUT, str(file), f"{fault}; {_REMEDY}")
 
 
-def _joined(arrays: list[np.ndarray]) -> np.ndarray:
-    return np.concatenate(arrays) if arrays else np.zeros(0, np.int32)
+def _joined(arrays: list[np.ndarray], kind: Any) -> np.ndarray:
+    return np.concatenate(arrays) if arrays else np.zeros(0, kind)

@@ -247,8 +247,7 @@ def _new_run(options: argparse.Namespace) -> Run:
             raise SettingsError(
                 f"{option_name(name)} goes with --teacher; name one, or leave it out"
             )
-    if "task_options" in given and not given.get("task"):
-        raise SettingsError("--task-options goes with --task; name one, or leave it out")
+    own_tasks.require_use(given)
     settings = preset("paper" if options.preset is None else options.preset, **given)
     settings.require_pace()
     if options.demonstrations:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import json
 import pathlib
+import resource
+import shutil
 
 import numpy as np
 import pytest
@@ -23,7 +25,7 @@ ABOUT = About(
     meanings={"observe_current": False},
     images={"depth": (4, 5)},
     motions=2,
-    made_with={"settings": {"seed": 1, "camera_position": (0.0, 0.5, 0.0)}},
+    made_with={"settings": {"seed": 1, "camera_position": (0.0, 0.5, 0.0)}, "sha256": {}},
 )
 
 
@@ -54,7 +56,7 @@ def write(folder: pathlib.Path, *parts: list[Demonstration]) -> pathlib.Path:
     for number, part in enumerate(parts):
         place = demonstrations.part_folder(folder, number)
         place.mkdir()
-        for name, array in demonstrations.arrays_of(part).items():
+        for name, array in demonstrations.arrays_of(part):
             np.save(place / f"{name}.npy", array)
     return folder
 
@@ -83,7 +85,7 @@ def test_what_was_written_is_read(folder: pathlib.Path) -> None:
     assert [one.is_solved for one in found] == [True, False, True] * 2
     assert found.lengths.tolist() == [len(one) for one in EPISODES]
     assert found.about == dataclasses.replace(
-        ABOUT, made_with={"settings": {"seed": 1, "camera_position": [0.0, 0.5, 0.0]}}
+        ABOUT, made_with={"settings": {"seed": 1, "camera_position": [0.0, 0.5, 0.0]}, "sha256": {}}
     )
     assert repr(found) == f"<galactic.Demonstrations of 6 episodes in {folder}>"
     with pytest.raises(IndexError):
@@ -100,12 +102,18 @@ def test_folders_are_read_one_after_the_other(tmp_path: pathlib.Path) -> None:
         require_equal(one, wanted)
     rewards = np.concatenate([one.rewards for one in EPISODES])
     np.testing.assert_array_equal(found.take("rewards", np.arange(len(rewards))), rewards)
-    about = dataclasses.replace(ABOUT, meanings={"observe_current": True})
-    (folders[1] / demonstrations.INDEX).write_text(demonstrations.text_of(about))
-    with pytest.raises(
-        galactic.Error, match="two.*found meanings .*True.*those of the first folder"
+    with pytest.raises(galactic.Error, match="one: is named twice"):
+        Demonstrations(*folders, tmp_path / "two" / ".." / "one")
+    camera = {**(ABOUT.camera or {}), "fov_degrees": 90.0}
+    for changes, message in (
+        ({"meanings": {"observe_current": True}}, "two.*found meanings .*True.*, expected .*False"),
+        ({"camera": camera}, "fov_degrees 90.0, expected None"),
+        ({"camera": None}, "camera: camera None, expected head"),
     ):
-        Demonstrations(*folders)
+        about = dataclasses.replace(ABOUT, **changes)
+        (folders[1] / demonstrations.INDEX).write_text(demonstrations.text_of(about))
+        with pytest.raises(galactic.Error, match=message):
+            Demonstrations(*folders)
 
 
 def test_rows_are_those_of_all_episodes_together(folder: pathlib.Path) -> None:
@@ -119,6 +127,50 @@ def test_rows_are_those_of_all_episodes_together(folder: pathlib.Path) -> None:
         np.testing.assert_array_equal(
             found.take("rewards", found.first_rows[number] + np.arange(len(one))), one.rewards
         )
+
+
+def test_rows_that_are_not_there_are_refused(folder: pathlib.Path) -> None:
+    found = Demonstrations(folder)
+    assert found.steps == sum(len(one) for one in EPISODES)
+    for rows in ([-1], [0, found.steps], np.array([[found.steps]])):
+        with pytest.raises(IndexError, match="of 36 steps"):
+            found.take("state", rows)
+    assert found.take("depth", []).shape == (0, 4, 5)
+    with pytest.raises(KeyError, match="expected one of state"):
+        found.take("rgb", [0])
+
+
+def test_a_file_that_is_replaced_is_read_again(folder: pathlib.Path) -> None:
+    before = Demonstrations(folder)[0].rewards
+    file = folder / "part-000000" / "rewards.npy"
+    changed = np.load(file) + 1
+    file.unlink()
+    np.save(file, changed)
+    np.testing.assert_array_equal(Demonstrations(folder)[0].rewards, before + 1)
+
+
+def test_more_parts_than_files_may_be_open_are_read(tmp_path: pathlib.Path) -> None:
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    many = [
+        dataclasses.replace(EPISODES[number % 3], episode=number)
+        for number in range(ABOUT.episodes * 20)
+    ]
+    write(tmp_path, *([one] for one in many))
+    about = dataclasses.replace(ABOUT, episodes=len(many))
+    (tmp_path / demonstrations.INDEX).write_text(demonstrations.text_of(about))
+    resource.setrlimit(resource.RLIMIT_NOFILE, (400, hard))
+    try:
+        found = Demonstrations(tmp_path)
+        for one, wanted in zip(found, many):
+            require_equal(one, wanted)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+def test_parts_that_do_not_belong_together_are_refused(folder: pathlib.Path) -> None:
+    shutil.copytree(folder / "part-000001", folder / "part-000007")
+    with pytest.raises(galactic.Error, match="8 episodes, some of them twice or more than the 6"):
+        Demonstrations(folder)
 
 
 def test_a_folder_without_parts_holds_no_episode(tmp_path: pathlib.Path) -> None:
@@ -169,19 +221,28 @@ def reindexed(**changes: object) -> object:
         (lambda folder: (folder / demonstrations.INDEX).write_text("[]"), "does not say what"),
         (lambda folder: (folder / demonstrations.INDEX).write_bytes(b"\xff"), "does not say what"),
         (reindexed(format=2), "expected format 1"),
-        (reindexed(format=None), "'format'"),
+        (reindexed(format=None), "format: found 'nothing'"),
         (reindexed(motions=-1), "found -1"),
         (reindexed(motions=True), "found True"),
         (reindexed(parts=[["way", 1 << 40]]), f"found {1 << 40}"),
-        (reindexed(parts=7), "not iterable"),
+        (reindexed(parts=7), "parts: found 7"),
+        (reindexed(parts=[7]), "unpack"),
         (reindexed(images={"depth": "large"}), "found 'l'"),
         (reindexed(images={"heat": [4, 5]}), "heat"),
         (reindexed(episodes=None), "episodes"),
-        (reindexed(options=[1]), "options or camera"),
-        (reindexed(camera="head"), "options or camera"),
+        (reindexed(options=[1]), r"options: found \[1\]"),
+        (reindexed(camera="head"), "camera: found 'head'"),
+        (reindexed(meanings=[]), r"meanings: found \[\]"),
+        (reindexed(made_with="x"), "made_with: found 'x'"),
+        (reindexed(made_with={"settings": 5}), "settings: found 5"),
+        (reindexed(format=True), "format: found True"),
+        (lambda f: (f / demonstrations.INDEX).write_text("[" * 100_000), "does not say what"),
         (reindexed(more=1), "more"),
         (reindexed(motions=3), r"actions.npy: found float32 \[16, 4\], expected float32 \[16, 5\]"),
-        (lambda f: (f / "part-000001" / "rewards.npy").unlink(), "rewards.npy: cannot be read"),
+        (
+            lambda f: (f / "part-000001" / "rewards.npy").unlink(),
+            "rewards.npy: cannot be read.*; remove its folder",
+        ),
         (truncate, "state.npy: is no array of numpy"),
         (pickled, "state.npy: is no array of numpy"),
         (archived, "state.npy: found others"),
@@ -193,7 +254,8 @@ def reindexed(**changes: object) -> object:
         (resaved("endings", lambda rows: rows + 77), "endings.npy: holds numbers that are no"),
         (resaved("episodes", lambda rows: rows[:0]), "lengths.npy: found"),
         (resaved("rewards", lambda rows: rows * np.nan), "rewards.npy: holds numbers that are not"),
-        (resaved("actions", lambda rows: rows + np.inf), "actions.npy: holds numbers that are not"),
+        (resaved("actions", lambda rows: rows + np.inf), "actions.npy: holds .* not from -1 to 1"),
+        (resaved("actions", lambda rows: rows * 100), "actions.npy: holds .* not from -1 to 1"),
     ],
 )
 def test_other_contents_are_refused(folder: pathlib.Path, damage, message: str) -> None:

@@ -399,9 +399,9 @@ def replacing(file: pathlib.Path) -> Iterator[pathlib.Path]:
     temporary = _temporary(file)
     try:
         yield temporary
-        _sync(temporary)
+        sync(temporary)
         os.replace(temporary, file)
-        _sync(file.parent)
+        sync(file.parent)
     except OSError as error:
         raise unwritable(file, error) from None
     finally:
@@ -443,7 +443,7 @@ class CheckpointFolder:
         final = self.folder / f"{steps:012d}"
         shutil.rmtree(final, ignore_errors=True)
         os.replace(self._unfinished(steps), final)
-        _sync(self.folder)
+        sync(self.folder)
         for old in self.complete()[: -self._keep]:
             shutil.rmtree(old, ignore_errors=True)
         return final
@@ -483,7 +483,7 @@ class CheckpointFolder:
         return self.folder / f".{steps:012d}.unfinished"
 
 
-def _sync(path: pathlib.Path) -> None:
+def sync(path: pathlib.Path) -> None:
     """Puts a file, or the names in a folder, on the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:

@@ -122,6 +122,11 @@ class Actor:
             self._previous = actions.clamp(-1.0, 1.0)
             return actions[0].cpu().numpy()
 
+    def hears(self, actions: np.ndarray) -> None:
+        """That these were done in the last step, float32 [n, motions + 2], where others have acted."""
+        done = torch.from_numpy(actions).to(self._device).unsqueeze(0)
+        self._previous = done.clamp(-1.0, 1.0)
+
 
 class Evaluator:
     """Has episodes played in `homes`, of one half."""

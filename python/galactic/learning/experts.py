@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Mapping, Protocol, Sequence
+from typing import Protocol, Sequence
 
 import numpy as np
 
 import galactic
+from galactic._core import EpisodeEnd
 from galactic.demonstrations import Demonstration
 from galactic.hashing import hashed
 from galactic.learning.environments import Observation
-from galactic.learning.evaluation import NO_EPISODE, EpisodeResult, Player
+from galactic.learning.evaluation import NO_EPISODE, Actor, EpisodeResult, Player
 from galactic.learning.homes import Homes
 
 
@@ -19,6 +20,9 @@ class Expert(Player, Protocol):
 
     acted: np.ndarray
     """bool [n]: in which envs it was the expert who acted last, and not who led to where it begins."""
+
+    def hears(self, actions: np.ndarray) -> None:
+        """What was done in the last step, float32 [n, motions + 2], where others have acted."""
 
 
 class ScriptedExpert:
@@ -38,11 +42,14 @@ class ScriptedExpert:
         self.acted = episodes != NO_EPISODE
         return self._policy.act(self.acted)
 
+    def hears(self, actions: np.ndarray) -> None:
+        pass  # it looks at where that has led
+
 
 class LearnedExpert:
     """A policy that has learned before."""
 
-    def __init__(self, policy: Player):
+    def __init__(self, policy: Actor):
         self._policy = policy
         self.acted = np.zeros(0, np.bool_)
 
@@ -55,6 +62,9 @@ class LearnedExpert:
         self.acted = episodes != NO_EPISODE
         return self._policy.act(seen, starts, episodes, steps)
 
+    def hears(self, actions: np.ndarray) -> None:
+        self._policy.hears(actions)
+
 
 class RolledIn:
     """An expert that begins where a learner has led: the learner plays the first steps of an episode, none
@@ -62,7 +72,7 @@ class RolledIn:
     the learner's own mistakes, which no expert makes (Ross et al. 2011; one switch in an episode: Ross and
     Bagnell 2014)."""
 
-    def __init__(self, learner: Player, expert: Expert, most: int, seed: int):
+    def __init__(self, learner: Actor, expert: Expert, most: int, seed: int):
         self._learner = learner
         self._expert = expert
         self._most = most
@@ -83,7 +93,13 @@ class RolledIn:
         shown = np.where(by_learner, NO_EPISODE, episodes)
         by_expert = self._expert.act(seen, starts, shown, steps)
         self.acted = self._expert.acted
-        return np.where(self.acted[:, np.newaxis], by_expert, actions)
+        done = np.where(self.acted[:, np.newaxis], by_expert, actions)
+        self.hears(done)
+        return done
+
+    def hears(self, actions: np.ndarray) -> None:
+        self._learner.hears(actions)
+        self._expert.hears(actions)
 
 
 class Recorder:
@@ -91,7 +107,7 @@ class Recorder:
 
     def __init__(self, expert: Expert):
         self._expert = expert
-        self._steps: list[Mapping[str, np.ndarray]] = []
+        self._steps: list[dict[str, np.ndarray]] = []
 
     def sees(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
         playing = episodes != NO_EPISODE
@@ -114,28 +130,28 @@ class Recorder:
         )
 
     def hears(self, rewards: np.ndarray) -> None:
-        self._steps[-1] = {**self._steps[-1], "rewards": rewards[self._playing]}
+        self._steps[-1]["rewards"] = rewards[self._playing]
 
     def demonstrations(self, results: Sequence[EpisodeResult]) -> list[Demonstration]:
         """Those of the episodes whose results are given, in their order."""
         if not results:
             return []
-        arrays = {
-            name: np.concatenate([step[name] for step in self._steps]) for name in self._steps[0]
-        }
+        # One copy is let go of while the next one is made: images are large.
+        names = list(self._steps[0])
+        arrays = {name: np.concatenate([step.pop(name) for step in self._steps]) for name in names}
         episodes = arrays.pop("episodes")
         order = np.argsort(episodes, kind="stable")
         first = np.searchsorted(episodes[order], [result.episode for result in results])
-        kept = []
-        for result, begin in zip(results, first):
-            rows = order[begin : begin + result.length]
-            ending = galactic.EpisodeEnd.__members__[result.ending.upper()]
-            kept.append(
-                Demonstration(
-                    result.episode, ending, **{name: all[rows] for name, all in arrays.items()}
-                )
-            )
-        return kept
+        rows = [order[begin : begin + result.length] for begin, result in zip(first, results)]
+        of_each: list[dict[str, np.ndarray]] = [{} for _ in results]
+        for name in list(arrays):
+            of_all = arrays.pop(name)
+            for one, chosen in zip(of_each, rows):
+                one[name] = of_all[chosen]
+        return [
+            Demonstration(result.episode, EpisodeEnd.__members__[result.ending.upper()], **one)
+            for result, one in zip(results, of_each)
+        ]
 
 
 def _as_executed(actions: np.ndarray) -> np.ndarray:

@@ -18,11 +18,10 @@ class Observed(NamedTuple):
     motions: int
 
 
-def columns_of(
-    saved: SavedPolicy, file: pathlib.Path, observed: Observed, remedy: str
-) -> list[int]:
+def columns_of(saved: SavedPolicy, file: pathlib.Path, observed: Observed, remedy: str,
+               hiding: str = "") -> list[int]:  # fmt: skip
     """Where the numbers that a policy sees are in a row of what is observed, which may have more. `file`:
-    where it was saved, and `remedy` what to do, for messages. Raises CheckpointError where something is
+    where it was saved, `remedy` what to do, and `hiding` how to keep more from others, for messages. Raises CheckpointError where something is
     missing, or means something else."""
     if saved.shape.motions != observed.motions:
         raise CheckpointError(
@@ -39,8 +38,7 @@ def columns_of(
                 else "turn the sensor on with --simulation"
             )
             raise CheckpointError(
-                f"{file} sees {name}, which this run does not observe; {source} and keep it from the "
-                f"policy with --critic-only, or {remedy}"
+                f"{file} sees {name}, which this run does not observe; {source}{hiding}, or {remedy}"
             )
         if sizes[name] != size:
             raise CheckpointError(

@@ -15,6 +15,7 @@ from galactic.learning.own_tasks import MakeTask
 from galactic.learning.privileges import meaning_of
 from galactic.learning.settings import (
     CAMERA,
+    CAMERA_NOISE,
     Settings,
     SettingsError,
     option_name,
@@ -56,6 +57,12 @@ def camera_options(settings: Settings) -> dict[str, Any]:
     color = "rgb" if "rgb" in SIGHT[settings.network] else None
     chosen = {option: getattr(settings, name) for option, name in CAMERA.items()}
     return {"color": color, **chosen}
+
+
+def exact_camera(settings: Settings) -> dict[str, Any]:
+    """The same without what makes noise."""
+    options = camera_options(settings)
+    return {name: value for name, value in options.items() if name not in CAMERA_NOISE}
 
 
 def _as_typed(error: galactic.Error, keywords: Mapping[str, Any]) -> galactic.Error:

@@ -3,21 +3,22 @@ cloning: Pomerleau 1989; with a memory, as in Wijmans et al. 2020, over stretche
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Callable, Mapping, Optional
+import dataclasses
+import hashlib
+from typing import Callable, Mapping
 
 import numpy as np
 import torch
 from torch import Tensor
 
 from galactic._core import EpisodeEnd
-from galactic.demonstrations import Demonstrations
+from galactic.demonstrations import Demonstrations, require_alike
 from galactic.hashing import hashed
 from galactic.learning.checkpoint import CheckpointError, require_tensors
 from galactic.learning.collector import EpisodeSums
 from galactic.learning.distributed import Group
 from galactic.learning.fitting import Observed
-from galactic.learning.homes import sizes_of
+from galactic.learning.homes import exact_camera
 from galactic.learning.learner import Learner
 from galactic.learning.networks import Policy
 from galactic.learning.rollout import Rollout
@@ -26,15 +27,15 @@ from galactic.learning.sight import SIGHT
 from galactic.learning.stopwatch import Stopwatch
 
 
-@dataclass
+@dataclasses.dataclass
 class Shown(Rollout):
     """A rollout that comes out of demonstrations. Values, rewards and log-probabilities are not filled."""
 
-    returns: Tensor = field(default_factory=lambda: torch.zeros(0))
+    returns: Tensor = dataclasses.field(default_factory=lambda: torch.zeros(0))
     """[T, N]: what the episode paid from there on, discounted."""
-    by_expert: Tensor = field(default_factory=lambda: torch.zeros(0, dtype=torch.bool))
+    by_expert: Tensor = dataclasses.field(default_factory=lambda: torch.zeros(0, dtype=torch.bool))
     """[T, N] bool: the steps to learn from."""
-    last_hidden: Tensor = field(default_factory=lambda: torch.zeros(0))
+    last_hidden: Tensor = dataclasses.field(default_factory=lambda: torch.zeros(0))
     """[N, H]: the memory after the last step, which the learner fills."""
 
 
@@ -51,11 +52,12 @@ class Streams:
         solved = np.flatnonzero(demonstrations.endings == EpisodeEnd.SUCCESS)
         if len(solved) < group.size:
             raise CheckpointError(
-                f"{_named(demonstrations)}: found {len(solved)} solved episodes, expected one for each of "
-                f"{group.size} ranks at least; let galactic.demonstrate make more"
+                f"{_named(demonstrations)}: found {len(solved)} solved episodes, expected {group.size} at "
+                "least, one for each rank; let galactic.demonstrate make more"
             )
         self._demonstrations = demonstrations
         self._share = solved[group.rank :: group.size]
+        self._digest = _digest_of(demonstrations)
         self._seed = settings.seed
         self._returns = _returns_of(demonstrations, settings.gamma)
         self._device = group.device
@@ -108,7 +110,7 @@ class Streams:
     def state_dict(self) -> dict[str, Tensor]:
         """All that the next collect() depends on."""
         state = {
-            "share": torch.tensor(len(self._share)),
+            "digest": self._digest,
             "begun": torch.tensor(self._begun),
             "at": torch.from_numpy(self._at.copy()),
             "previous": self._previous_after().cpu(),
@@ -121,13 +123,17 @@ class Streams:
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
         """Raises ValueError where it is not the state of as many streams of as many episodes."""
         require_tensors(state, self.state_dict())
-        if int(state["share"]) != len(self._share):
+        if not torch.equal(state["digest"], self._digest):
             raise ValueError(
-                f"found {len(self._share)} solved episodes, expected the {int(state['share'])} with which the "
-                "run began"
+                f"{_named(self._demonstrations)}: found other demonstrations than those with which the run "
+                "began; put those back"
             )
-        self._begun = int(state["begun"])
-        self._at[:] = state["at"].numpy()
+        begun, at = int(state["begun"]), state["at"].numpy()
+        lengths = [self._length(int(number)) for number in at[:, 0] if 0 <= number < begun]
+        if len(lengths) < len(at) or (at[:, 1] < 0).any() or (at[:, 1] >= lengths).any():
+            raise ValueError("found places that are in no episode")
+        self._begun = begun
+        self._at[:] = at
         if self.rollout.first_hidden is not None:
             self.rollout.first_hidden.copy_(state["hidden"])
         self.rollout.first_previous.copy_(state["previous"])
@@ -144,6 +150,9 @@ class Streams:
         """[N, A]: the action before the step that comes; where an episode begins, nobody looks at it."""
         rollout = self.rollout
         return rollout.actions[-1] if rollout.steps else rollout.first_previous
+
+    def _length(self, number: int) -> int:
+        return int(self._demonstrations.lengths[self._episode(number)])
 
     def _next_rows(self) -> np.ndarray:
         """int64 [T, N]: which steps of all demonstrations come next. Marks where episodes begin."""
@@ -189,9 +198,20 @@ class Streams:
         return int(self._orders[one][place])
 
 
+def _digest_of(demonstrations: Demonstrations) -> Tensor:
+    """uint8 [32]: what is learned of them, but for images."""
+    digest = hashlib.sha256()
+    for array in (demonstrations.lengths, demonstrations.endings):
+        digest.update(array.tobytes())
+    every = np.arange(demonstrations.steps)
+    for name in ("state", "actions", "by_expert", "rewards"):
+        digest.update(demonstrations.take(name, every).tobytes())
+    return torch.from_numpy(np.frombuffer(digest.digest(), np.uint8).copy())
+
+
 def _returns_of(demonstrations: Demonstrations, gamma: float) -> np.ndarray:
     """float32 [steps of all of them]: the sum of what is paid from each on, discounted."""
-    steps = int(demonstrations.lengths.sum())
+    steps = demonstrations.steps
     rewards = demonstrations.take("rewards", np.arange(steps)).astype(np.float64)
     returns = rewards.copy()
     ends = np.zeros(steps, np.bool_)
@@ -213,19 +233,20 @@ class ImitationLearner(Learner):
         self.optimizer.learning_rate = settings.learning_rate_at(progress)
         shown = rollout.by_expert[: rollout.steps]
         kept = rollout.returns[: rollout.steps][shown]
+        kept = kept.double()
         moments = [torch.ones_like(kept).sum(), kept.sum(), kept.square().sum()]
-        steps, first, second = self.group.sum(torch.stack(moments).double()).tolist()
-        per_mini_batch = max(steps, 1.0) / settings.mini_batches
+        found, first, second = self.group.sum(torch.stack(moments)).tolist()
+        steps = max(found, 1.0)
+        per_mini_batch = steps / settings.mini_batches
         totals = torch.zeros(len(self._NAMES) + 1, dtype=torch.float64, device=kept.device)
         for chosen in self._mini_batches(rollout, update):
             totals += self._step(rollout, chosen, per_mini_batch)
         self._absorb_observations(rollout)
         rounds = settings.epochs * settings.mini_batches
         *sums, norm = self.group.sum(totals).tolist()
-        count = max(steps, 1.0) * settings.epochs
-        report = {name: total / count for name, total in zip(self._NAMES, sums)}
+        report = {name: total / (steps * settings.epochs) for name, total in zip(self._NAMES, sums)}
         report["grad_norm"] = norm / (rounds * self.group.size)
-        variance = second / count - (first / count) ** 2
+        variance = second / steps - (first / steps) ** 2
         report["explained_variance"] = 1.0 - 2.0 * report["value_loss"] / max(variance, 1e-12)
         if self.policy.action.log_std is not None:
             report["log_std"] = float(self.policy.action.log_std.mean())
@@ -251,37 +272,24 @@ class ImitationLearner(Learner):
             return torch.stack([surprise, value_loss, entropy, norm]).double()
 
 
-def require_same(demonstrations: Demonstrations, observed: Observed,
+def require_same(demonstrations: Demonstrations, settings: Settings, observed: Observed,
                  images: Mapping[str, tuple[int, ...]]) -> None:  # fmt: skip
-    """Raises CheckpointError where a run, whose network sees `images`, observes or does other things than
-    its demonstrations."""
-    about, folder = demonstrations.about, _named(demonstrations)
-    remedy = "give both the same --preset, --simulation, --network and robot"
-    if about.motions != observed.motions:
-        raise CheckpointError(
-            f"{folder} has actions of {about.motions} motions, found {observed.motions} in this run; {remedy}"
-        )
-    if about.parts != list(observed.parts):
-        raise CheckpointError(
-            f"{folder} has observations of {sizes_of(about.parts)}, found {sizes_of(observed.parts)} in this "
-            f"run; {remedy}"
-        )
-    for option, theirs in about.meanings.items():
-        if observed.meanings.get(option, theirs) != theirs:
-            raise CheckpointError(
-                f"{folder} was made with {option}={theirs}, found {observed.meanings[option]} in this run; "
-                f"{remedy}"
-            )
-    for name, shape in images.items():
-        if about.images.get(name) != shape:
-            raise CheckpointError(
-                f"{folder} has {name} of {_edges(about.images.get(name))}, expected {_edges(shape)}; {remedy}"
-            )
+    """Raises Error where a run, whose network sees `images`, observes or does other things than its
+    demonstrations, which may have more images."""
+    about = demonstrations.about
+    camera = about.camera
+    if images and camera is not None:
+        camera = {**exact_camera(settings), "color": camera.get("color")}
+    wanted = dataclasses.replace(
+        about,
+        parts=list(observed.parts),
+        meanings=dict(observed.meanings),
+        motions=observed.motions,
+        images={**about.images, **images},
+        camera=camera,
+    )
+    require_alike(wanted, about, demonstrations.folders[0])
 
 
 def _named(demonstrations: Demonstrations) -> str:
     return ", ".join(map(str, demonstrations.folders))
-
-
-def _edges(shape: Optional[tuple[int, ...]]) -> str:
-    return "x".join(map(str, shape)) if shape else "no size"

@@ -44,6 +44,12 @@ def siblings_of(file: pathlib.Path) -> Optional[pathlib.Path]:
         return None
 
 
+def require_use(given: Mapping[str, Any]) -> None:
+    """Raises SettingsError where settings that were given make a class that nobody named."""
+    if "task_options" in given and not given.get("task"):
+        raise SettingsError("--task-options goes with --task; name one, or leave it out")
+
+
 def maker(task: CodeName, options: str, siblings: Optional[pathlib.Path] = None) -> MakeTask:
     """What makes the task with these options (keywords_of()): see members_of()."""
     found = _class_of(task, siblings)

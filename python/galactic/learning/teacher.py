@@ -28,7 +28,8 @@ class Teacher:
                 f"{file} has {has}, expected a teacher of the network state without --recurrent, which "
                 f"judges each observation by itself; {remedy}"
             )
-        columns = columns_of(saved, file, observed, remedy)
+        hiding = " and keep it from the policy with --critic-only"
+        columns = columns_of(saved, file, observed, remedy, hiding)
         self._policy = saved.policy.to(group.device).eval()
         # The file may have been replaced between two ranks.
         for tensor in self._policy.state_dict().values():

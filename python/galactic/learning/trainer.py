@@ -84,7 +84,7 @@ class Trainer:
         self.source: Union[Collector, Streams]
         if demonstrations is not None:
             observed = Observed(self.parts, self.meanings, envs.motions)
-            require_same(demonstrations, observed, envs.images)
+            require_same(demonstrations, settings, observed, envs.images)
             self.learner = ImitationLearner(self.policy, settings, group)
             self.source = Streams(demonstrations, settings, self.policy, group)
         else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -15,6 +16,9 @@ import torch
 import galactic
 from galactic import Demonstrations, demonstrate
 from galactic.learning import checkpoint
+from galactic.learning.evaluation import NO_EPISODE
+from galactic.learning.experts import RolledIn
+from galactic.learning.homes import Homes
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds, run
 
 pytestmark = needs_worlds
@@ -93,6 +97,108 @@ def test_they_are_the_same_bytes_whoever_makes_them(
     # Complete, there is nothing left to do.
     assert call("demonstrate", *options).returncode == 0
     assert contents(tmp_path / "demos") == contents(shown)
+
+
+@pytest.mark.parametrize(
+    "sight",
+    [
+        [*QUICK, "--simulation", "laser-beams=8 laser-noise=0.1"],
+        [
+            "--preset",
+            "quick-depth",
+            "--image-size",
+            36,
+            "--depth-noise",
+            0.05,
+            "--camera-jitter",
+            0.02,
+        ],
+    ],
+)
+def test_noise_is_the_same_after_an_interrupt(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, sight: list[object]
+) -> None:
+    for name in ("_EPISODES_OF_PART", "_EPISODES_WITH_IMAGES"):
+        monkeypatch.setattr(demonstrate, name, 2)
+    options = [WORLD, "-o", tmp_path / "demos", *sight, "--episodes", 6]
+    assert call("demonstrate", *options).returncode == 0
+    before = contents(tmp_path / "demos")
+    assert before["part-000000/state.npy"] != before["part-000001/state.npy"]
+    shutil.rmtree(tmp_path / "demos/part-000001")
+    done = call("demonstrate", *options)
+    assert done.returncode == 0 and "3 of 3 parts" in done.stderr
+    assert contents(tmp_path / "demos") == before
+
+
+def test_a_full_disk_leaves_nothing_unfinished(tmp_path: pathlib.Path) -> None:
+    """In a process of its own, whose files may have 60 kB."""
+    limited = (
+        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000));"
+        "from galactic import demonstrate; sys.exit(demonstrate.main())"
+    )
+    folder = tmp_path / "demos"
+    done = subprocess.run(
+        [sys.executable, "-B", "-c", limited, WORLD, "-o", folder, *QUICK, "--episodes", "12"],
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert "part-000000: cannot write the file: File too large" in done.stderr
+    assert {file.name for file in folder.iterdir()} == {"demonstrations.json", ".lock"}
+
+
+def test_parts_of_nobody_knows_what_are_left_alone(
+    shown: pathlib.Path, tmp_path: pathlib.Path
+) -> None:
+    folder = tmp_path / "demos"
+    shutil.copytree(shown, folder)
+    (folder / "demonstrations.json").unlink()
+    done = call("demonstrate", WORLD, "-o", folder, *QUICK, "--episodes", 24)
+    assert done.returncode == 1 and "holds parts of demonstrations" in done.stderr
+
+
+def test_a_world_in_which_no_robot_can_start_is_refused(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Homes, "playable_episodes", lambda self: [])
+    done = call("demonstrate", WORLD, "-o", tmp_path / "demos", *QUICK)
+    assert done.returncode == 3 and "no episode in which the robot can start" in done.stderr
+
+
+class _Fake:
+    """Acts by a number of its own, and remembers what it heard was done."""
+
+    def __init__(self, number: float) -> None:
+        self.number = number
+        self.heard: list[np.ndarray] = []
+        self.acted = np.zeros(2, np.bool_)
+
+    def begin(self, envs: int) -> None:
+        pass
+
+    def act(self, seen, starts, episodes, steps) -> np.ndarray:
+        self.acted = episodes != NO_EPISODE
+        return np.full((2, 4), self.number, np.float32)
+
+    def hears(self, actions: np.ndarray) -> None:
+        self.heard.append(actions.copy())
+
+
+def test_both_hear_what_was_done() -> None:
+    """A memory of what it would have done itself would be one of another episode."""
+    learner, expert = _Fake(0.25), _Fake(0.75)
+    both = RolledIn(learner, expert, most=5, seed=3)
+    both.begin(2)
+    for step in range(8):
+        done = both.act(None, np.zeros(2, np.bool_), np.array([4, 9]), np.full(2, step))
+        np.testing.assert_array_equal(done[:, 0], np.where(both.acted, 0.75, 0.25))
+        for one in (learner, expert):
+            np.testing.assert_array_equal(one.heard[-1], done)
+    assert both.acted.all()
+    assert len({tuple(heard[:, 0]) for heard in expert.heard}) == 3, "they switched at once"
 
 
 def test_others_are_not_mixed_with_them(shown: pathlib.Path) -> None:
@@ -243,7 +349,13 @@ def test_images_are_kept(tmp_path: pathlib.Path) -> None:
     done = call(
         "train", WORLD, "-o", tmp_path / "other", *sight[:2], *options, "--demonstrations", folder
     )
-    assert done.returncode == 3 and "depth of 36x36, expected 64x64" in done.stderr
+    assert done.returncode == 3 and "found images {'depth': (36, 36)}, expected" in done.stderr
+    done = call("train", WORLD, "-o", tmp_path / "wide", *sight, "--fov", 120, *options,
+                "--demonstrations", folder)  # fmt: skip
+    assert done.returncode == 3 and "fov_degrees 0.0, expected 120.0" in done.stderr
+    done = call("train", WORLD, "-o", tmp_path / "noisy", *sight, "--depth-noise", 0.01, *options,
+                "--demonstrations", folder)  # fmt: skip
+    assert done.returncode == 0, done.stderr
 
 
 TASK = """
@@ -308,6 +420,8 @@ def test_a_network_of_ones_own_learns_from_them(shown: pathlib.Path) -> None:
         (["--expert", "nobody.pt"], 2, "nobody.pt: cannot open the file"),
         (["--learner", WORLD], 3, "is a pack"),
         (["--episodes", 0], 1, "expected a whole number"),
+        (["--expert", ""], 1, "--expert is empty"),
+        (["--task-options", "x=1"], 1, "--task-options goes with --task"),
         (["--envs", 8], 1, "unrecognized arguments: --envs"),
         (["--network", "resnet9", "--recurrent"], 1, "unrecognized arguments: --recurrent"),
     ],
