@@ -48,6 +48,15 @@ ChosenCamera topCamera() {
           kHeight - kHighestShown};
 }
 
+/// Whether it names a camera that is no link of the robot.
+bool isNoLink(std::string_view name) { return name == "head" || name == "follow" || name == "top"; }
+
+/// The link of a camera, which may be called `link:NAME` or just NAME.
+std::string_view linkIn(std::string_view name) {
+  constexpr std::string_view kPrefix = "link:";
+  return name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : name;
+}
+
 std::string linkNames(const Robot& robot) {
   std::string names;
   for (std::size_t link = 0; link < robot.links().size(); ++link) {
@@ -67,9 +76,7 @@ Result<ChosenCamera> cameraOf(const Robot& robot, const CameraWish& wish) {
                             "take follow, top or one of its links",
                             robot.name()));
   }
-  constexpr std::string_view kLinkPrefix = "link:";
-  const std::string_view link_name =
-      name.starts_with(kLinkPrefix) ? name.substr(kLinkPrefix.size()) : name;
+  const std::string_view link_name = linkIn(name);
   const std::optional<std::uint32_t> link = robot.findLink(link_name);
   if (!link) {
     return fail(ErrorCode::kInvalidInput, wish.options.camera,
@@ -79,10 +86,12 @@ Result<ChosenCamera> cameraOf(const Robot& robot, const CameraWish& wish) {
   return ChosenCamera{{.frame = CameraFrame::kLink, .link = *link, .frame_from_camera = {}}};
 }
 
-/// The same of the same place on the same link, another one elsewhere.
+/// The same of the same place on the same link, however it is called, another one elsewhere.
 std::uint64_t numberOf(const CameraWish& wish) {
+  const std::string_view link = linkIn(wish.name);
+  const std::string_view name = isNoLink(link) ? wish.name : link;
   std::uint64_t number = 0;
-  for (const char one : wish.name) number = mix(number ^ static_cast<unsigned char>(one)) + 1;
+  for (const char one : name) number = mix(number ^ static_cast<unsigned char>(one)) + 1;
   for (const std::array<float, 3>& three : {wish.position, wish.rpy_degrees}) {
     // 0 and -0 are the same place.
     for (const float one : three) number = mix(number ^ std::bit_cast<std::uint32_t>(one + 0)) + 1;

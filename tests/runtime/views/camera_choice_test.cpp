@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -109,6 +110,22 @@ TEST(CameraChoice, NumbersCamerasByTheirPlaces) {
   EXPECT_NE(number({.name = "head"}), hand);
   EXPECT_NE(number({.name = "hand", .position = {0.1F, 0, 0}}), hand);
   EXPECT_NE(number({.name = "hand", .rpy_degrees = {0.1F, 0, 0}}), hand);
+  // It is the same camera by its longer name.
+  EXPECT_EQ(number({.name = "link:hand"}), hand);
+  const std::array<float, 3> ahead{0.1F, 0, 0};
+  EXPECT_EQ(number({.name = "link:hand", .position = ahead}),
+            number({.name = "hand", .position = ahead}));
+  EXPECT_NE(number({.name = "link:arm"}), hand);
+}
+
+TEST(CameraChoice, ALinkThatIsCalledLikeACameraHasAnotherNumber) {
+  test::WorldFields fields = test::smallHomeWorld();
+  fields.robot.link_names = {"base", "mast", "turret", "arm", "head"};
+  const test::SmallHome home(fields);
+  const Robot& robot = home.world().robot();
+  const CameraMount link = chooseCamera(robot, {.name = "link:head"}).value().mount;
+  EXPECT_EQ(link.link, 4U);
+  EXPECT_NE(link.number, chooseCamera(robot, {.name = "head"}).value().mount.number);
 }
 
 TEST(CameraChoice, RefusesJitterOutOfRange) {
