@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import importlib
 import importlib.util
+import os
 import pathlib
 import sys
 from collections.abc import Iterator
@@ -75,13 +77,19 @@ def _module_of(code: CodeName, siblings: Optional[pathlib.Path]) -> Any:
     folder = str((siblings or code.file.parent).resolve())
     if folder not in sys.path:
         sys.path.append(folder)
-    name = f"galactic_own_{code.file.stem}"
+    name = _module_name(code.file)
     spec = importlib.util.spec_from_file_location(name, code.file)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)
     return module
+
+
+def _module_name(file: pathlib.Path) -> str:
+    """Another one for each file, and none that anything else could be imported by."""
+    digest = hashlib.sha256(os.fsencode(file.resolve())).hexdigest()
+    return f"galactic_own_{file.stem}_{digest[:16]}"
 
 
 def _with_parents(module: str) -> list[str]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import json
 import pathlib
+import pickle
 import sys
 from typing import Any
 
@@ -321,6 +323,35 @@ def test_no_file_of_the_user_is_written_over(
         done.returncode == 2 and f"{mine}: is there already, and is not {task_file}" in done.stderr
     )
     assert mine.read_text(encoding="utf-8") == "mine"
+
+
+def test_files_of_one_name_are_two_modules(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each finds itself by the name of its module: there dataclasses look for types, and pickle for classes."""
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    found = {}
+    for lab in ("a", "b"):
+        file = tmp_path / lab / "run.py"
+        file.parent.mkdir()
+        file.write_text(f"class Home:\n    lab = {lab!r}\n", encoding="utf-8")
+        found[lab] = own_code.members_of(own_code.named(f"{file}:Home", "--task"))["Home"]
+    for lab, home in found.items():
+        assert home.lab == lab and pickle.loads(pickle.dumps(home)) is home
+
+
+def test_a_file_that_is_called_like_a_library_does_not_hide_it(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    for name in ("json", "torch", "colorsys"):
+        file = tmp_path / f"{name}.py"
+        file.write_text("import json\nmine = json.dumps([1])\n", encoding="utf-8")
+        members = own_code.members_of(own_code.named(f"{file}:mine", "--log-to"))
+        assert members["mine"] == "[1]"
+    monkeypatch.delitem(sys.modules, "colorsys", raising=False)
+    for name in ("colorsys", "torch"):
+        assert not hasattr(importlib.import_module(name), "mine")
 
 
 def test_options_become_keywords() -> None:
