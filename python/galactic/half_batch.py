@@ -72,7 +72,6 @@ class HalfBatch:
         self._rows = np.zeros((envs, self.observation_size), np.float32)
         self._tally = EpisodeTally(self.simulator)
         self._is_new = True
-        self._was_idle = np.zeros(envs, np.bool_)
         self.is_cut_off = False
         """Whether an exception has cut off a step or a reset, which envs, tasks and sums have taken in in
         part."""
@@ -180,8 +179,9 @@ class HalfBatch:
         """See VectorEnv.step, which has checked `actions` and `out`."""
         with self._alone():
             self.require_whole()
+            was_idle = self.simulator.idle.copy()
             self._move(actions)
-            result = self._taken_in(actions, out)
+            result = self._taken_in(actions, was_idle, out)
             self.is_cut_off = False
             return result
 
@@ -190,8 +190,6 @@ class HalfBatch:
         soon as the simulator returns."""
         was_new = self._is_new
         self.is_cut_off, self._is_new = True, False
-        if self._task is not None:
-            self._was_idle = self.simulator.idle.copy()
         try:
             self.simulator.step(actions)
         except (RuntimeError, TypeError, ValueError):  # it has refused, and nothing has happened
@@ -215,12 +213,15 @@ class HalfBatch:
         return self._in_use
 
     def _taken_in(
-        self, actions: NDArray[np.float32], out: Mapping[str, Array] | None
+        self,
+        actions: NDArray[np.float32],
+        was_idle: NDArray[np.bool_],
+        out: Mapping[str, Array] | None,
     ) -> StepResult:
         """What the step came to, with tasks, sums and images."""
         simulator, task = self.simulator, self._task
         if task is not None:
-            task.step(actions, self._was_idle)
+            task.step(actions, was_idle)
         paid, endings = (simulator.rewards, simulator.endings) if task is None else task.outcome
         terminated, truncated, ended = self._tally.add(paid, endings)
         terminations = self._landed("terminations", terminated, out, True)
