@@ -7,9 +7,10 @@ expert to imitate, PlanningScene answers planners, PathFinder knows the ways alo
 
 import sys
 
-from galactic import interrupts
+from galactic import interrupts, programs
 
 interrupts.end_while_loading()
+programs.end_without_libraries()
 
 try:
     from galactic._core import (

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import signal
-import sys
 import threading
 from types import FrameType
 from typing import Iterator, Optional
+
+from galactic import programs
 
 INTERRUPTED = 130
 """The exit code of what a Ctrl-C has ended."""
@@ -22,9 +22,7 @@ INTERRUPTED = 130
 def end_while_loading() -> None:
     """Called first of all. Does nothing unless Python is about to run a program of the package, as in
     `python3 -m galactic.train`: whoever imports it handles interrupts as they see fit."""
-    # The first is what Python has there until it has found the module of -m.
-    is_program = sys.argv[:1] == ["-m"]
-    if is_program and any(re.fullmatch(r"(-\w*m)?galactic\.\w+", word) for word in sys.orig_argv):
+    if programs.loading():
         # Where they are to be ignored, they are.
         if signal.getsignal(signal.SIGINT) == signal.default_int_handler:
             signal.signal(signal.SIGINT, _end)

@@ -15,9 +15,10 @@ from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.distributed import RankLost
 from galactic.learning.settings import SettingsError, did_you_mean
 from galactic.learning.streams import put
+from galactic.programs import UNSUPPORTED
 
 # Those of all tools of the project.
-OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL, UNSUPPORTED = 0, 1, 2, 3, 4, 5
+OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL = 0, 1, 2, 3, 4
 EXIT_CODES = (
     "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, "
     "130 interrupted"

@@ -1,0 +1,44 @@
+"""Before a program of the package runs: which one it is, and whether Python has the libraries that it needs.
+
+Without them, Python alone would print where they were to be imported.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import sys
+from typing import Optional
+
+from galactic.learning.streams import put
+
+UNSUPPORTED = 5
+"""The exit code where something is not there that a program needs."""
+
+_DEBIAN = {"numpy": "python3-numpy", "torch": "python3-torch"}
+"""The libraries of all programs, and the packages that have them."""
+
+
+def loading() -> Optional[str]:
+    """`galactic.train` where Python is about to run it, as in `python3 -m galactic.train`; None where
+    somebody else imports the package."""
+    # This is what Python has there until it has found the module of -m.
+    if sys.argv[:1] != ["-m"]:
+        return None
+    found = (re.fullmatch(r"(?:-\w*m)?(galactic\.\w+)", word) for word in sys.orig_argv)
+    return next((match[1] for match in found if match), None)
+
+
+def end_without_libraries() -> None:
+    """Ends a program that is about to run where one of its libraries is missing, and says which. Whoever
+    else imports the package gets Python's own exception where it is."""
+    program = loading()
+    missing = [name for name in _DEBIAN if program and importlib.util.find_spec(name) is None]
+    if missing:
+        packages = " ".join(_DEBIAN[name] for name in missing)
+        put(
+            sys.stderr,
+            f"{program}: needs {' and '.join(missing)}, which {sys.executable} does not have; install "
+            f"{'it' if len(missing) == 1 else 'them'} (Debian: {packages})\n",
+        )
+        sys.exit(UNSUPPORTED)
