@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "arrays.h"
 
@@ -96,18 +98,40 @@ void refuseOtherCalls(const py::handle& type, const std::string& name, const py:
   definition.ml_doc = strdup(documentation.c_str());
 }
 
+/// Of pybind11: no enums.
+std::vector<py::type> classesOf(const py::module_& module) {
+  std::vector<py::type> classes;
+  for (const auto& [_, member] : py::dict(module.attr("__dict__"))) {
+    if (typeName(member) != "pybind11_type") continue;
+    classes.push_back(py::reinterpret_borrow<py::type>(member));
+  }
+  return classes;
+}
+
 }  // namespace
 
 void refuseOtherCalls(const py::module_& module) {
-  for (const auto& [_, type] : py::dict(module.attr("__dict__"))) {
-    // Classes of pybind11, and no enums.
-    if (typeName(type) != "pybind11_type") continue;
+  for (const py::type& type : classesOf(module)) {
     for (const auto& [key, member] : py::dict(type.attr("__dict__"))) {
       const auto name = key.cast<std::string>();
       const bool is_called_by_name = name == "__init__" || name.front() != '_';
       const bool is_method = PyInstanceMethod_Check(member.ptr());
       if (is_method && is_called_by_name) refuseOtherCalls(type, name, member);
     }
+  }
+}
+
+void refuseBlankObjects(const py::module_& module) {
+  for (const py::type& type : classesOf(module)) {
+    // What pybind11 calls where it is to hand on an object that has not been constructed, and for
+    // nothing else.
+    py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(type.ptr()))->operator_new =
+        [](std::size_t) -> void* {
+      throw py::type_error(
+          "an object of galactic is blank, as its __init__() was not called; make it by calling "
+          "its "
+          "class, and in a subclass call super().__init__() first");
+    };
   }
 }
 

@@ -51,4 +51,5 @@ PYBIND11_MODULE(_core, module) {
   galactic::python::bindScriptedPolicy(module);
   galactic::python::bindRenderer(module);
   galactic::python::refuseOtherCalls(module);
+  galactic::python::refuseBlankObjects(module);
 }

@@ -230,6 +230,8 @@ void bindSimulator(py::module_& module) {
           throw py::type_error(
               fmt::format("world is a {}, expected a galactic.World", typeName(world)));
         }
+        // A blank one is refused by its reference alone, not by its pointer.
+        (void)world.cast<const World&>();
         if (!envs.is_none()) options["envs"] = envs;
         return Simulator::create(world.cast<std::shared_ptr<World>>(), options);
       }),
