@@ -26,12 +26,14 @@ std::string typeText(const py::handle& type) { return py::str(type).cast<std::st
   throw py::type_error(fmt::format("{} is {}, expected an array of whole numbers", name, found));
 }
 
-/// Throws for an array of numbers that whole ones would cut off.
+/// Throws for an array of numbers that whole ones would cut off. An empty list has no fractions,
+/// though numpy's type for it has.
 void requireNoFractions(const py::handle& given, const char* name) {
   const py::array array = py::array::ensure(given);
   if (!array) return PyErr_Clear();
   const char kind = array.dtype().kind();
-  if (kind == 'f' || kind == 'c') refuseNumbers(name, typeText(array.dtype()) + " numbers");
+  if (array.size() > 0 && (kind == 'f' || kind == 'c'))
+    refuseNumbers(name, typeText(array.dtype()) + " numbers");
 }
 
 }  // namespace
@@ -69,7 +71,8 @@ py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumber
   const py::array array = py::array::ensure(given);
   if (!array) PyErr_Clear();
   const char kind = array ? array.dtype().kind() : '?';
-  if (kind != 'i' && kind != 'u') {
+  const bool is_empty = array && array.size() == 0;
+  if (kind != 'i' && kind != 'u' && !is_empty) {
     refuseNumbers(name, array ? typeText(array.dtype()) + " numbers" : "a " + typeName(given));
   }
   auto numbers = inputOf<std::int64_t>(array, name, shape);

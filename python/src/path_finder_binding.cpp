@@ -23,10 +23,12 @@ namespace {
 
 constexpr py::ssize_t kNumbers = 3;
 
-/// `given` as points, float (n, 3); ValueError for another shape or numbers that are not finite.
+/// `given` as points, float (n, 3), or an empty list; ValueError for another shape or numbers that
+/// are not finite.
 std::vector<Vec3> pointsOf(const py::handle& given, const char* name) {
   const py::array shaped = py::array::ensure(given);
   if (!shaped) PyErr_Clear();
+  if (shaped && shaped.ndim() == 1 && shaped.size() == 0) return {};
   if (!shaped || shaped.ndim() != 2 || shaped.shape(1) != kNumbers) {
     const std::string found =
         shaped ? shapeText({shaped.shape(), shaped.shape() + shaped.ndim()}) : "no array";

@@ -118,6 +118,23 @@ def test_hands(world):
         np.testing.assert_allclose(np.where(np.isinf(found), -1, found), sensed, atol=0.02)
 
 
+@pytest.mark.parametrize("none", [[], np.zeros((0, 3)), np.zeros((0, 3), np.float32)], ids=repr)
+@pytest.mark.parametrize("hand", [False, True])
+def test_nothing_is_asked_of_nothing(finder, none, hand):
+    """An empty list is an array of no points, and of no whole numbers."""
+    blank, fields = finder.fields(none, hand=hand), finder.fields(finder.places[:2])
+    assert len(blank) == 0
+    results = [blank.goals, finder.snap(none)]
+    for one in (blank, fields):
+        for goals in (None, [], np.zeros(0, np.int32)):
+            lengths = one.distances(none, goals)
+            assert lengths.shape == (0,) and lengths.dtype == np.float32
+            results.append(one.directions(none, goals))
+    for result in results:
+        assert result.shape == (0, 3) and result.dtype == np.float32
+    assert finder.is_navigable(none).shape == (0,) and finder.is_navigable(none).dtype == np.bool_
+
+
 def test_it_outlives_what_it_was_made_of(world_path):
     world = galactic.World(world_path)
     finder = galactic.PathFinder(world, 0, world.episode_table().base[0, :3])
@@ -145,6 +162,8 @@ def test_it_outlives_what_it_was_made_of(world_path):
         (lambda f, w: f.fields(f.places[:2]).distances(f.places[:3], [0, 1, 2]), IndexError, r"goals\[2\] is 2, and there are 2"),
         (lambda f, w: f.fields(f.places[:2]).distances(f.places[:1], [-1]), IndexError, r"goals\[0\] is -1"),
         (lambda f, w: f.fields(f.places[:2]).distances(f.places[:1], [0.5]), TypeError, "goals"),
+        (lambda f, w: f.fields(f.places[:2]).distances(f.places[:1], []), ValueError, r"goals has the shape \(0,\), expected \(1,\)"),
+        (lambda f, w: f.snap(np.zeros((0, 2))), ValueError, r"points has the shape \(0, 2\), expected \(n, 3\)"),
         (lambda f, w: f.fields(f.places[:0]).distances(f.places[:1]), IndexError, "there is no goal"),
         (lambda f, w: f.fields(f.places[:2]).path(f.places[0], 2), IndexError, "there is no goal 2, there are 2"),
     ],
