@@ -295,7 +295,11 @@ TEST_F(PlanCli, BakesAFolderOfScans) {
   EXPECT_FALSE(has("homes/scenes/loft.pack"));
   const ProgramRun habitat = bake("out", {"--up", "z"});
   EXPECT_EQ(habitat.exit_code, 3);
-  EXPECT_THAT(habitat.err, HasSubstr("says itself how its meshes stand; leave out --up"));
+  EXPECT_THAT(
+      habitat.err,
+      HasSubstr("says itself how its meshes stand; leave out --up, --scale and --transform, "
+                "or correct up, front and scale in the attributes of its stages and "
+                "objects"));
 }
 
 TEST_F(PlanCli, TurnsScansAsTheirAttributesSay) {

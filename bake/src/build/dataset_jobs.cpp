@@ -222,8 +222,10 @@ Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
   if (isFolder(dataset.input)) return addScans(dataset, packs);
   const MeshImportOptions& import = dataset.scene.import;
   if (import.up || import.scale || import.transform) {
-    return fail(ErrorCode::kInvalidInput, dataset.input.string(),
-                "says itself how its meshes stand; leave out `up`, `scale` and `transform`");
+    return fail(
+        ErrorCode::kInvalidInput, dataset.input.string(),
+        "says itself how its meshes stand; leave out `up`, `scale` and `transform`, or correct "
+        "up, front and scale in the attributes of its stages and objects");
   }
   ASSIGN_OR_RETURN(auto read,
                    SceneDataset::read(dataset.input, {.allow_outside = import.allow_outside}));

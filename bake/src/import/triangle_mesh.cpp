@@ -139,7 +139,7 @@ Result<void> Placement::checkExtents() const {
                               "meter, give `scale` 0.01 (centimeters) or `scale` 0.001 "
                               "(millimeters)"
                             : "is its unit the meter? Give `scale` 0.01 for centimeters or `scale` "
-                              "0.001 for millimeters"));
+                              "0.001 for millimeters, or cut what is so large into parts"));
 }
 
 Result<TriangleMesh> Placement::run() {

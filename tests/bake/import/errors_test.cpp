@@ -140,7 +140,7 @@ TEST(MeshErrors, AskForTheUnitOfAnAbsurdlyLargeScene) {
       clean.error().message,
       "it is 9000 m large and reaches 9000 m from the origin, but only 800 m are possible; is "
       "its unit the meter? Give `scale` 0.01 for centimeters or `scale` 0.001 for "
-      "millimeters");
+      "millimeters, or cut what is so large into parts");
 }
 
 TEST(MeshErrors, SuggestMovingASceneThatIsFarFromTheOrigin) {
