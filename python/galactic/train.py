@@ -277,7 +277,8 @@ def _require_imitation(options: argparse.Namespace, settings: Settings) -> None:
 
 def _with_task(run: Run, simulation: str) -> Run:
     """The run with the task of one's own that its settings name, in the simulation that this task wants.
-    `simulation`: the options of it that were given, beside the preset's."""
+    `simulation`: the options of it that were given, beside the preset's. Makes the task, which alone knows
+    its options: in the process that launches ranks, too, so that it tells once what is wrong with it."""
     name = own_code.named(run.settings.task, "--task")
     task = own_tasks.maker(name, run.settings.task_options)()
     settings = dataclasses.replace(
