@@ -144,8 +144,8 @@ class CommandLine {
     app_.get_formatter()->column_width(34);
     app_.add_option("INPUT", inputs_,
                     "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, URDF robots, "
-                    "published episodes (episode sets, Habitat's), a scene dataset, a world's "
-                    "recipe, or packs")
+                    "published episodes (episode sets, Habitat's), a scene dataset, a folder of "
+                    "scans, a world's recipe, or packs")
         ->type_name("");
     app_.add_option("--as", as_,
                     "What to make (default: robot of .urdf, episodes of .episode_set.json and "

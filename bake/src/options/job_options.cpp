@@ -274,7 +274,7 @@ void visitOptions(RobotJob& job, OptionVisitor& v) {
   v.option({"spheres", "FILE",
             "Hand-made spheres: a spherized URDF or an SRDF; they replace the fitted ones"},
            path(spheres));
-  v.option({"package", "NAME=DIR", "Folder of a ROS package (may be repeated): NAME=DIR"},
+  v.option({"package", "NAME=DIR", "Folder of a ROS package (may be repeated)"},
            namedPaths(packages, "NAME=DIR"));
   v.option({"allow-missing", "", "Links that lost all their geometry are warnings, not errors"},
            flag(allow_missing));
