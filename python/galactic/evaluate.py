@@ -40,14 +40,14 @@ def make_parser() -> argparse.ArgumentParser:
         type=whole(0, 1 << 31),
         default=0,
         metavar="N",
-        help="play the first N episodes; 0: all",
+        help="play the first N episodes; 0: all (0)",
     )
     parser.add_argument(
         "--seed",
         type=whole(0, 2**63 - 1),
         metavar="N",
         default=1,
-        help="seed of sampled actions (1)",
+        help="seed of everything random, such as sampled actions (1)",
     )
     parser.add_argument(
         "--threads",

@@ -73,7 +73,10 @@ def make_parser() -> argparse.ArgumentParser:
         help="folder of the run",
     )
     parser.add_argument(
-        "--preset", default=None, metavar="|".join(PRESETS), help="settings to start from (paper)"
+        "--preset",
+        default=None,
+        metavar="|".join(PRESETS),
+        help="settings to start from (paper, whose settings stand in parentheses)",
     )
     parser.add_argument(
         "--validation", type=named_path, metavar="WORLD", help="world with held-out episodes"
@@ -278,7 +281,8 @@ def _require_imitation(options: argparse.Namespace, settings: Settings) -> None:
 def _with_task(run: Run, simulation: str) -> Run:
     """The run with the task of one's own that its settings name, in the simulation that this task wants.
     `simulation`: the options of it that were given, beside the preset's. Makes the task, which alone knows
-    its options: in the process that launches ranks, too, so that it tells once what is wrong with it."""
+    its options: in the process that launches ranks, too, so that it tells once what is wrong with it.
+    """
     name = own_code.named(run.settings.task, "--task")
     task = own_tasks.maker(name, run.settings.task_options)()
     settings = dataclasses.replace(

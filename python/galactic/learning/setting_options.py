@@ -21,7 +21,8 @@ def add_options(parser: argparse.ArgumentParser, names: Optional[Collection[str]
         title = field.metadata["group"]
         group = groups.setdefault(title, parser.add_argument_group(title))
         keywords: dict[str, Any] = {"default": argparse.SUPPRESS, "dest": "setting_" + field.name}
-        keywords["help"] = f"{field.metadata['text']} ({typed(field.default)!r})".replace("%", "%%")
+        default = "" if field.default == "" else f" ({typed(field.default)})"
+        keywords["help"] = (field.metadata["text"] + default).replace("%", "%%")
         if isinstance(field.default, bool):
             keywords["action"] = argparse.BooleanOptionalAction
         else:

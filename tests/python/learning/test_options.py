@@ -34,6 +34,18 @@ def options_of(name: str) -> list[argparse.Action]:
     return options
 
 
+def test_defaults_are_shown_as_one_types_them() -> None:
+    help_text = " ".join(train.make_parser().format_help().split())
+    assert (
+        "a task of your own, which says what pays and what ends an episode: `FILE.py:CLASS`"
+        in help_text
+    )
+    assert "('" not in help_text
+    assert (
+        "meters ahead, to the left and up (0,0,0)" in help_text and "(`auto`) (auto)" in help_text
+    )
+
+
 CASES = [
     pytest.param(name, action, id=f"{name} {action.option_strings[-1]}")
     for name in PROGRAMS
