@@ -85,6 +85,16 @@ Result<std::string> hashOf(const std::filesystem::path& path) {
   return fmt::format("{:016x}{:016x}", hash.high, hash.low);
 }
 
+/// What moves things here is off by itself; noise of motion would be lost.
+Result<void> requireExactMotions(const SimulationOptions& options, const std::string& where,
+                                 const std::string& remedy) {
+  if (!options.noise.changesMotion()) return {};
+  return fail(ErrorCode::kUnsupported, where,
+              fmt::format("has motion-noise {} and motion-bias {}, which things with mass do not "
+                          "have; {}",
+                          options.noise.motion, options.noise.motion_bias, remedy));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<EpisodePlan>> EpisodePlan::create(const Command& command,
@@ -107,6 +117,9 @@ Result<void> EpisodePlan::openRecording(const Command& command) {
                 "finishes no episode, so there is nothing to replay; record more steps");
   }
   options_ = recording.subject().options;
+  RETURN_IF_ERROR(requireExactMotions(options_, command.recording.string(),
+                                      "record a run without, with --motion-noise 0 and "
+                                      "--motion-bias 0"));
   ASSIGN_OR_RETURN(source_, hashOf(command.recording));
   return {};
 }
@@ -129,6 +142,8 @@ Result<void> EpisodePlan::openLoop(const Command& command) {
                             "of galactic-run",
                             option.name, option.value));
   }
+  RETURN_IF_ERROR(requireExactMotions(options_, "the task",
+                                      "add --set motion-noise=0 --set motion-bias=0"));
   options_.seed = command.seed;
   ASSIGN_OR_RETURN(const auto lane, makeLane());
   const std::span<const std::uint32_t> skipped = lane->simulator().skippedEpisodes();

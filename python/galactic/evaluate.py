@@ -62,6 +62,11 @@ def make_parser() -> argparse.ArgumentParser:
         help="let it see with the noise and jitter of its training, not images as they are",
     )
     parser.add_argument(
+        "--robot-noise",
+        action="store_true",
+        help="let robots move and know their place with the noise of its training, not exactly",
+    )
+    parser.add_argument(
         "--report", type=named_path, metavar="FILE.json", help="write the report to this file"
     )
     shown = parser.add_argument_group("Pictures of successes and failures, from behind the robot")
@@ -173,7 +178,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     torch.set_num_threads(threads)
     world = galactic.World(options.world)
     settings = dataclasses.replace(
-        _seen_with(options, saved.settings),
+        _judged_with(options, saved.settings),
         envs=max(1, min(evaluation.MOST_ENVS, options.episodes or world.episodes)),
         halves=1,
         mini_batches=1,
@@ -209,6 +214,7 @@ def _evaluate(options: argparse.Namespace) -> int:
             "deterministic": options.deterministic,
             "seed": options.seed,
             "camera_noise": options.camera_noise,
+            "robot_noise": options.robot_noise,
             **(
                 {"task": options.task, "task_options": options.task_options} if options.task else {}
             ),
@@ -228,15 +234,31 @@ def _evaluate(options: argparse.Namespace) -> int:
     return OK
 
 
-def _seen_with(options: argparse.Namespace, settings: Settings) -> Settings:
-    """With the noise of the training, if that was asked for, or without."""
-    plain = settings.without_noise()
-    if options.camera_noise and plain == settings:
-        raise SettingsError(
-            f"--camera-noise: {options.policy} was trained without noise; leave it out, or play the "
-            "policy's pack with galactic-run --depth-noise and the like"
-        )
-    return settings if options.camera_noise else plain
+def _judged_with(options: argparse.Namespace, settings: Settings) -> Settings:
+    """With the noise of the training that was asked for, and without the other."""
+    judged = settings
+    for option, is_asked, plain, its_own in (
+        (
+            "--camera-noise",
+            options.camera_noise,
+            Settings.without_camera_noise,
+            "--depth-noise and the like",
+        ),
+        (
+            "--robot-noise",
+            options.robot_noise,
+            Settings.without_robot_noise,
+            "--motion-noise and the like",
+        ),
+    ):
+        if is_asked and plain(settings) == settings:
+            raise SettingsError(
+                f"{option}: {options.policy} was trained without such noise; leave it out, or play the "
+                f"policy's pack with galactic-run {its_own}"
+            )
+        if not is_asked:
+            judged = plain(judged)
+    return judged
 
 
 def _task(options: argparse.Namespace, settings: Settings) -> Optional[own_tasks.MakeTask]:

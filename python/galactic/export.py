@@ -197,7 +197,9 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
     return {
         "name": name,
         "robot": robot,
-        "options": options_of_actor(privileges, simulation_keywords(saved.settings.simulation)),
+        "options": options_of_actor(
+            privileges, simulation_keywords(saved.settings.without_robot_noise().simulation)
+        ),
         "observation": observation,
         "image": _image(saved.settings) if SIGHT[saved.settings.network] else None,
         "layers": layers.list,

@@ -282,6 +282,48 @@ TEST_F(SimulateCli, ReplaysARecordingBitForBit) {
   EXPECT_THAT(fewer.out, HasSubstr("7 steps, bit for bit the same"));
 }
 
+TEST_F(SimulateCli, ReplaysTheNoiseOfARecording) {
+  const std::vector<std::string> noise{"--motion-noise", "0.2", "--motion-bias", "0.1",
+                                       "--localization-noise", "0.1"};
+  const std::vector<std::string> plain{"--envs", "5", "--steps", "60", "--seed", "9"};
+  std::vector<std::string> noisy = plain;
+  noisy.insert(noisy.end(), noise.begin(), noise.end());
+  const json report = reportOf(noisy);
+  EXPECT_EQ(report["options"]["motion-noise"], 0.2);
+  EXPECT_NE(report["reward"], reportOf(plain)["reward"]);
+  noisy.insert(noisy.end(), {"--record", "noisy.rec"});
+  ASSERT_EQ(run(noisy).exit_code, 0);
+  for (const char* threads : {"1", "2"}) {
+    const ProgramRun replay = run({"--policy", "replay:noisy.rec", "--threads", threads});
+    EXPECT_EQ(replay.exit_code, 0) << replay.err;
+    EXPECT_THAT(replay.out, HasSubstr("replay        60 steps, bit for bit the same\n"));
+  }
+  // It has the actions that were asked for: those of the same policy without noise.
+  std::vector<std::string> exact = plain;
+  exact.insert(exact.end(), {"--record", "exact.rec"});
+  ASSERT_EQ(run(exact).exit_code, 0);
+  const auto first_actions = [&](const char* name) {
+    Result<RecordingReader> reader = RecordingReader::open(folder_.path() / name);
+    std::vector<float> actions(reader->subject().actionCount());
+    EXPECT_TRUE(reader->next(actions));
+    return actions;
+  };
+  EXPECT_EQ(first_actions("noisy.rec"), first_actions("exact.rec"));
+  const ProgramRun other = run({"--policy", "replay:noisy.rec", "--motion-noise", "0.3"});
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_THAT(other.err, HasSubstr("was recorded with motion-noise 0.2"));
+}
+
+TEST_F(SimulateCli, RefusesNoiseThatIsNoShare) {
+  for (const char* option : {"--motion-noise", "--motion-bias", "--localization-noise"}) {
+    for (const char* value : {"-0.1", "1.1", "nan", "much"}) {
+      const ProgramRun result = run({"--steps", "1", option, value});
+      EXPECT_EQ(result.exit_code, 1) << option << " " << value;
+      EXPECT_THAT(result.err, HasSubstr(option));
+    }
+  }
+}
+
 TEST_F(SimulateCli, RefusesAReplayOfSomethingElse) {
   record();
   const auto refused = [&](std::vector<std::string> arguments, const std::string& message) {

@@ -325,6 +325,7 @@ TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
       {{"--policy", "scripted", "--episodes", "-1"}, kUsage, "--episodes"},
       {{"--policy", "scripted", "--report", ""}, kUsage, "--report has an empty value"},
       {{"--policy", "scripted", "--set", "gravity=1"}, kInvalid, "gravity=1 is no option"},
+      {{"--policy", "scripted", "--set", "motion-noise=0.1"}, 5, "--set motion-noise=0"},
       {{"--policy", "home.pack"}, kInvalid, "home.pack"},
       {{"--recording", "home.rec", "--report", "home.rec"}, kInvalid, "is also an input"},
       {{"--policy", "scripted", "--report", "home/episodes.pack"}, kInvalid, "is also an input"},

@@ -56,6 +56,8 @@ CAMERA_NOISE = (
     "camera_jitter",
     "camera_jitter_degrees",
 )
+# Options of the simulation that make robots unlike those that policies are judged by.
+ROBOT_NOISE = ("motion_noise", "motion_bias", "localization_noise")
 # Options of galactic.Renderer, and the settings that they are taken from.
 CAMERA = {
     "camera": "camera",
@@ -456,9 +458,20 @@ class Settings:
             return 2.0
         return _between(self.initial_log_std, self.final_log_std, (progress - 0.2) / 0.8)
 
-    def without_noise(self) -> "Settings":
-        """The same with images as they are, which policies are judged by."""
+    def without_camera_noise(self) -> "Settings":
+        """The same with images as they are."""
         return dataclasses.replace(self, **{name: 0.0 for name in CAMERA_NOISE})
+
+    def without_robot_noise(self) -> "Settings":
+        """The same with robots that do what they are asked to and know where they are, unless the world
+        says otherwise."""
+        words = self.simulation.split()
+        kept = [word for word in words if not _is_robot_noise(word)]
+        return self if kept == words else dataclasses.replace(self, simulation=" ".join(kept))
+
+    def without_noise(self) -> "Settings":
+        """The same without either noise: what policies are judged by."""
+        return self.without_camera_noise().without_robot_noise()
 
     def to_dict(self) -> dict[str, Any]:
         return dataclasses.asdict(self)
@@ -529,6 +542,17 @@ def simulation_keyword(word: str) -> str:
     """The keyword of galactic.Simulator that a word of Settings.simulation names: no_terminate of
     "no-terminate" and of "no-terminate=false"."""
     return word.partition("=")[0].lstrip("-").replace("-", "_")
+
+
+def _is_robot_noise(word: str) -> bool:
+    """Whether a word of Settings.simulation adds such noise; one that switches that of a world off does
+    not."""
+    if simulation_keyword(word) not in ROBOT_NOISE:
+        return False
+    try:
+        return float(word.partition("=")[2]) != 0.0
+    except ValueError:  # no number, which the simulation refuses
+        return False
 
 
 def latest_words(words: str) -> str:

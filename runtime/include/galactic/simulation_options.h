@@ -162,6 +162,22 @@ struct SensorOptions {
   std::uint32_t geodesic_megabytes = 1024;
 };
 
+/// How far real robots are from doing what they are asked to, and from knowing where they are: for
+/// policies that are to work on them. All off by default; see docs/simulation.md. Numbers are
+/// standard deviations, as shares of the motion, so that a robot that is asked to stand still
+/// stands still.
+struct RobotNoise {
+  /// Of each motion in each step: base and joints. Driving a whole step also turns the base by such
+  /// a share of a whole turn.
+  float motion = 0;
+  /// The same of what stays for an episode: gains that are off.
+  float motion_bias = 0;
+  /// Of what odometry adds up to where the robot takes itself to be.
+  float localization = 0;
+
+  [[nodiscard]] constexpr bool changesMotion() const { return motion > 0 || motion_bias > 0; }
+};
+
 /// In which order an env takes the episodes of a world.
 enum class EpisodeOrder : std::uint8_t {
   /// A new permutation of all its episodes each time round.
@@ -199,6 +215,7 @@ struct SimulationOptions {
   SlideOptions slide;
   PlacementOptions placement;
   GroundOptions ground;
+  RobotNoise noise;
   SensorOptions sensors;
   TaskOptions task;
 };

@@ -78,18 +78,6 @@ std::vector<std::vector<float>> floorsOf(std::span<const StoodOn> stood_on, std:
   return heights;
 }
 
-/// The sum of four uniform numbers: within 1 % of the normal distribution's, and never further out
-/// than 3.5 deviations. Mean 0, deviation 1.
-float nearlyNormal(RandomStream& random) {
-  constexpr std::uint64_t kPart = 0xffff;
-  // 65536 / sqrt(3).
-  constexpr float kInverseDeviation = 1.0F / 37837.228F;
-  const std::uint64_t bits = random.next();
-  std::int64_t sum = -2 * static_cast<std::int64_t>(kPart);
-  for (unsigned n = 0; n < 4; ++n) sum += static_cast<std::int64_t>((bits >> (16 * n)) & kPart);
-  return static_cast<float>(sum) * kInverseDeviation;
-}
-
 }  // namespace
 
 Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& robot,
@@ -233,7 +221,8 @@ void Laser::finish(std::span<const float> distances, RandomStream& random,
   for (std::size_t n = 0; n < out.size(); ++n) {
     float distance = distances[n];
     // What returns nothing has nothing to be wrong about.
-    if (settings_.noise > 0 && distance < range) distance += settings_.noise * nearlyNormal(random);
+    if (settings_.noise > 0 && distance < range)
+      distance += settings_.noise * random.nearlyNormal();
     out[n] = std::clamp(distance, settings_.least_range, range) / range;
   }
 }

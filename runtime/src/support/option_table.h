@@ -159,6 +159,16 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   v.real("place-jitter", o.placement.jitter, kMeters, "Length of a jitter, in box diagonals");
 }
 
+/// The same, of what is off about the robot.
+template <class Visitor>
+void visitNoiseOptions(RobotNoise& n, Visitor& v) {
+  constexpr Within<float> kShare{0, 1};
+  v.group("Noise of motion and localization (standard deviations, as shares of motions)");
+  v.real("motion-noise", n.motion, kShare, "Of what the robot does in a step");
+  v.real("motion-bias", n.motion_bias, kShare, "Of what it does in all steps of an episode");
+  v.real("localization-noise", n.localization, kShare, "Of odometry, which tells it where it is");
+}
+
 /// The same, of what the robot senses.
 template <class Visitor>
 void visitSensorOptions(SensorOptions& s, Visitor& v) {
@@ -194,6 +204,7 @@ template <class Visitor>
 void visitWorldTask(SimulationOptions& options, Visitor& visitor) {
   visitTaskOptions(options.task, visitor);
   visitMotionOptions(options, visitor);
+  visitNoiseOptions(options.noise, visitor);
   visitSensorOptions(options.sensors, visitor);
 }
 

@@ -27,6 +27,18 @@ class RandomStream {
   /// Uniform in [0, 1), a multiple of 2^-24.
   [[nodiscard]] float unit() { return static_cast<float>(next() >> 40U) * 0x1p-24F; }
 
+  /// The sum of four uniform numbers: within 1 % of the normal distribution's, and never further
+  /// out than 3.5 deviations. Mean 0, deviation 1.
+  [[nodiscard]] float nearlyNormal() {
+    constexpr std::uint64_t kPart = 0xffff;
+    // 65536 / sqrt(3).
+    constexpr float kInverseDeviation = 1.0F / 37837.228F;
+    const std::uint64_t bits = next();
+    std::int64_t sum = -2 * static_cast<std::int64_t>(kPart);
+    for (unsigned n = 0; n < 4; ++n) sum += static_cast<std::int64_t>((bits >> (16 * n)) & kPart);
+    return static_cast<float>(sum) * kInverseDeviation;
+  }
+
  private:
   static constexpr std::uint64_t kGamma = 0x9E3779B97F4A7C15ULL;
 

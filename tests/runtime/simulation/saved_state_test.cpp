@@ -37,6 +37,7 @@ SimulationOptions homeOptions(std::uint32_t envs, std::uint32_t threads = 1) {
   options.task.geodesic_weight = 0.5F;
   options.sensors.laser.beams = 8;
   options.sensors.laser.noise = 0.01F;
+  options.noise = {.motion = 0.1F, .motion_bias = 0.1F, .localization = 0.1F};
   return options;
 }
 
@@ -249,7 +250,7 @@ TEST_F(DamagedState, IsRefusedWithWhatIsWrong) {
   expectRefused(other, "is none");
   other = state_;
   other[8] = std::byte{9};
-  expectRefused(other, "has format version 9, expected 6");
+  expectRefused(other, "has format version 9, expected 7");
   other = state_;
   other[40] ^= std::byte{1};
   sign(other);

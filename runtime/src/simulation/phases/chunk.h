@@ -63,6 +63,9 @@ class Chunk {
   /// Actions of the chunk's envs, each in [-1, 1]. Shape: actions.
   [[nodiscard]] std::span<EnvRow> actions() { return actions_; }
   [[nodiscard]] float& action(std::size_t n, std::size_t env) { return actions_[n].values[env]; }
+  /// Room for what the robots do of the actions that move them: joints, forward, turn. Empty where
+  /// they do just these.
+  [[nodiscard]] std::span<EnvRow> motions() { return motions_; }
   /// Room for the actions of the chunk as a caller gives them.
   [[nodiscard]] std::span<float> givenActions() { return given_actions_; }
   /// Candidates of the envs from `first` of the chunk on.
@@ -152,6 +155,7 @@ class Chunk {
   bool wants_bodies_ = false;
   std::span<const RadiusRange> ranges_;
   std::vector<EnvRow> actions_;
+  std::vector<EnvRow> motions_;
   std::vector<float> given_actions_;
   /// As those of a BatchState begin.
   std::vector<EnvRow> rows_;

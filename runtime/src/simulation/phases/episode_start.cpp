@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "simulation/phases/observe.h"
+#include "simulation/phases/robot_noise.h"
 #include "simulation/phases/task.h"
 #include "simulation/state/episode_order.h"
 
@@ -27,6 +28,7 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
   std::ranges::copy(std::span(model.start_bodies).subspan(start * bodies, bodies),
                     state.bodyTransforms(n).begin());
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) state.setLastAction(j, n, 0);
+  beginOdometry(state, n);
 }
 
 void placeObjects(const Model& model, BatchState& state, std::size_t n, std::uint32_t start) {
@@ -74,6 +76,7 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
          .events = {},
          .reward_sum = env.reward_sum};
   ++state.counters(n).begun;
+  state.counters(n).is_named = true;
   state.held(n) = {};
   state.setErrand(n, target, episode.goal.translation);
   std::ranges::fill(state.leaving(n), 0U);
@@ -89,6 +92,7 @@ void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) no
   const bool has_begun = state.counters(env).begun > 0;
   if (next || !has_begun) {
     beginEpisode(model, state, env, next.value_or(static_cast<std::uint32_t>(number % count)));
+    state.counters(env).is_named = false;
     ++state.counters(env).turns;
   }
   state.idle()[env] = next ? 0 : 1;

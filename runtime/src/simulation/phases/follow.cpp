@@ -7,6 +7,7 @@
 #include "simulation/phases/hand.h"
 #include "simulation/phases/move.h"
 #include "simulation/phases/observe.h"
+#include "simulation/phases/robot_noise.h"
 #include "simulation/phases/step.h"
 #include "simulation/phases/task.h"
 #include "simulation/state/grip_frame.h"
@@ -114,6 +115,7 @@ void followChunk(const ChunkStep& step, std::span<const float> actions,
     followHand(step, e, state);
   }
   judge(step, {});
+  followOdometry(step);
   observe(step.model, step.state, step.first);
   senseAll(step);
   renewEpisodes(step);

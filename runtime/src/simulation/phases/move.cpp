@@ -6,6 +6,7 @@
 
 #include "simulation/collision/collision.h"
 #include "simulation/phases/contacts.h"
+#include "simulation/phases/robot_noise.h"
 #include "simulation/phases/slide.h"
 #include "simulation/phases/walk.h"
 
@@ -201,7 +202,7 @@ FloorUnder floorUnder(const ChunkStep& step, std::size_t e, const Vec3& base) no
 }
 
 void proposePoses(const ChunkStep& step) noexcept {
-  step.model.kernels.move(step.model.tables, {.actions = step.chunk.actions().front().values,
+  step.model.kernels.move(step.model.tables, {.actions = motionsOf(step).front().values,
                                               .joints = step.model.motion.controlled.size(),
                                               .from = step.state.poses(step.first),
                                               .to = step.chunk.candidates(0),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 
+#include "simulation/phases/robot_noise.h"
 #include "simulation/phases/task.h"
 #include "simulation/state/grip_frame.h"
 #include "support/random_stream.h"
@@ -107,6 +108,47 @@ void senseWays(const Model& model, const BatchState& state, std::size_t n, std::
   add(model.geodesic.toGoal(env.start, base));
 }
 
+/// Room for points as robots see them that know by odometry alone where they are.
+class BelievedPoints {
+ public:
+  /// They take the place of those of a batch.
+  void put(const BatchState& state, std::size_t first, ObserveBatch& batch) {
+    const bool is_one_target = batch.targets == batch.current_targets;
+    copy(batch.goals, goals_);
+    displace(state, first, goals_);
+    batch.goals = goals_.front().values;
+    copy(batch.current_targets, current_);
+    displace(state, first, current_);
+    // What is in the hand is where the hand is.
+    for (std::size_t e = 0; e < kChunk; ++e) {
+      const Env& env = state.env(first + e);
+      if (env.held != static_cast<std::int32_t>(env.target)) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        current_[axis].values[e] = batch.current_targets[axis * kChunk + e];
+      }
+    }
+    batch.current_targets = current_.front().values;
+    if (is_one_target) {
+      batch.targets = current_.front().values;
+      return;
+    }
+    copy(batch.targets, starts_);
+    displace(state, first, starts_);
+    batch.targets = starts_.front().values;
+  }
+
+ private:
+  static void copy(const float* from, PointRows& to) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::copy_n(from + axis * kChunk, kChunk, to[axis].values);
+    }
+  }
+
+  PointRows goals_;
+  PointRows current_;
+  PointRows starts_;
+};
+
 }  // namespace
 
 std::vector<ObservationPart> observationParts(std::size_t joints, const SensorSizes& sensors) {
@@ -151,24 +193,29 @@ void observe(const Model& model, BatchState& state, std::size_t first) noexcept 
                                           : 1.0F - static_cast<float>(env.step) /
                                                        static_cast<float>(task.most_steps);
   }
-  TargetRows now;
-  if (task.observes_current_target || sensors.target_goal) now = targetsNow(state, first);
-  model.kernels.observe(
-      {.pose = state.poses(first),
-       .controlled = model.motion.controlled.data(),
-       .controlled_count = model.motion.controlled.size(),
-       .grips = state.grips(first),
-       .targets = task.observes_current_target ? now.front().values : state.targetStarts(first),
-       .current_targets = now.front().values,
-       .goals = state.goals(first),
-       .holds = holds.values,
-       .left = left.values,
-       .bumps = bumps.values,
-       .observes_bump = sensors.bump,
-       .observes_target_goal = sensors.target_goal,
-       .out = state.observation(first).data(),
-       .out_stride = model.observation_size,
-       .envs = kChunk});
+  const bool is_target_wanted =
+      task.observes_current_target || sensors.target_goal || state.hasOdometry();
+  PointRows now;
+  if (is_target_wanted) now = targetsNow(state, first);
+  ObserveBatch batch{
+      .pose = state.poses(first),
+      .controlled = model.motion.controlled.data(),
+      .controlled_count = model.motion.controlled.size(),
+      .grips = state.grips(first),
+      .targets = task.observes_current_target ? now.front().values : state.targetStarts(first),
+      .current_targets = now.front().values,
+      .goals = state.goals(first),
+      .holds = holds.values,
+      .left = left.values,
+      .bumps = bumps.values,
+      .observes_bump = sensors.bump,
+      .observes_target_goal = sensors.target_goal,
+      .out = state.observation(first).data(),
+      .out_stride = model.observation_size,
+      .envs = kChunk};
+  BelievedPoints believed;
+  if (state.hasOdometry()) believed.put(state, first, batch);
+  model.kernels.observe(batch);
 }
 
 void sense(const Model& model, const BatchState& state, std::size_t env_number,

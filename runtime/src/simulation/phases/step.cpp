@@ -6,6 +6,7 @@
 #include "simulation/phases/hand.h"
 #include "simulation/phases/move.h"
 #include "simulation/phases/observe.h"
+#include "simulation/phases/robot_noise.h"
 #include "simulation/phases/task.h"
 #include "support/thread_clock.h"
 
@@ -57,6 +58,7 @@ void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) no
   lap(5);
   judge(step, input.resets);
   lap(6);
+  followOdometry(step);
   observe(step.model, step.state, step.first);
   lap(7);
   senseAll(step);

@@ -68,8 +68,8 @@ float shapingOf(const TaskOptions& task, const Env& env, const WayLeft& way) {
 
 }  // namespace
 
-TargetRows targetsNow(const BatchState& state, std::size_t first) noexcept {
-  TargetRows targets;
+PointRows targetsNow(const BatchState& state, std::size_t first) noexcept {
+  PointRows targets;
   std::memcpy(targets.data(), state.targets(first), sizeof(targets));
   for (std::size_t e = 0; e < kChunk; ++e) {
     const Env& env = state.env(first + e);
@@ -123,7 +123,7 @@ Measured measure(const ChunkStep& step) {
   for (std::size_t e = 0; e < kChunk; ++e) {
     active[e] = step.state.idle()[step.first + e] == 0 ? ~std::uint32_t{0} : 0;
   }
-  const TargetRows targets = targetsNow(step.state, step.first);
+  const PointRows targets = targetsNow(step.state, step.first);
   Measured measured;
   step.model.kernels.judge({.actions = step.chunk.actions().front().values,
                             .last_actions = step.state.lastActions(step.first),

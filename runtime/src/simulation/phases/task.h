@@ -7,9 +7,8 @@
 
 namespace galactic::simulation {
 
-/// Where the targets of a chunk's envs are: rows of x, y and z.
-using TargetRows = std::array<EnvRow, 3>;
-[[nodiscard]] TargetRows targetsNow(const BatchState& state, std::size_t first) noexcept;
+/// Where the targets of a chunk's envs are.
+[[nodiscard]] PointRows targetsNow(const BatchState& state, std::size_t first) noexcept;
 
 /// How far the target is from grip and goal, meters.
 struct TargetDistances {

@@ -8,10 +8,14 @@
 namespace galactic::simulation {
 namespace {
 
-/// Rows of a chunk: its robots, three points, and the joint actions of the step before.
+std::size_t odometryRows(const Model& model) {
+  return model.options.noise.localization > 0 ? kOdometryRows : 0;
+}
+
+/// Rows of a chunk: its robots, three points, the joint actions of the step before, and odometry.
 std::size_t rowCount(const Model& model) {
   return kBaseRows + model.variableCount() + kGripNumbers + std::size_t{3} * 3 +
-         model.motion.controlled.size();
+         model.motion.controlled.size() + odometryRows(model);
 }
 
 /// What the vectors of one env take, so that a batch asks for its memory at once.
@@ -87,6 +91,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
       body_words_(model.bodyWords()),
       variable_count_(model.variableCount()),
       row_count_(rowCount(model)),
+      has_odometry_(odometryRows(model) != 0),
       observation_size_(model.observation_size),
       body_count_(model.bodyCount()) {
   const std::size_t padded = paddedToChunks(env_count_);

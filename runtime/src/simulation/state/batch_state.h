@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
@@ -18,6 +19,24 @@ inline constexpr std::size_t kChunk = kMostWidth;
 
 /// Rows of a base: x, y, z and yaw.
 inline constexpr std::size_t kBaseRows = 4;
+
+/// A point of each env of a chunk: rows of x, y and z.
+using PointRows = std::array<EnvRow, 3>;
+
+/// Where a base stands on its floor.
+struct PlanarPose {
+  float x = 0;
+  float z = 0;
+  float yaw = 0;
+};
+
+/// What a robot knows by odometry: where it was when it was last asked, and where it took itself to
+/// be then.
+struct Odometry {
+  PlanarPose was;
+  PlanarPose believed;
+};
+inline constexpr std::size_t kOdometryRows = sizeof(Odometry) / sizeof(float);
 
 /// Of rows that begin with those of a base, and go on with variables.
 [[nodiscard]] inline PoseArrays posesAt(float* x) {
@@ -44,7 +63,10 @@ struct alignas(64) EnvCounters {
   std::uint64_t nan_actions = 0;
   /// Steps in which the env was idle.
   std::uint64_t idle_steps = 0;
+  /// Whether the caller has named the episode that the env is in; else its turn had come.
+  bool is_named = false;
 };
+static_assert(sizeof(EnvCounters) == 64);
 
 /// How moves of an env ended; added up like EnvCounters. Apart from these, because robots that
 /// drive slide in most steps: those of a chunk lie together.
@@ -206,6 +228,22 @@ class BatchState {
   void setLastAction(std::size_t joint, std::size_t n, float action) {
     *number(lastActionRow() + joint, n) = action;
   }
+  /// Whether robots know by odometry alone where they are; else nobody may ask for any.
+  [[nodiscard]] bool hasOdometry() const { return has_odometry_; }
+  [[nodiscard]] Odometry odometry(std::size_t n) const {
+    const float* row = number(row_count_ - kOdometryRows, n);
+    return {.was = {row[0], row[kChunk], row[2 * kChunk]},
+            .believed = {row[3 * kChunk], row[4 * kChunk], row[5 * kChunk]}};
+  }
+  void setOdometry(std::size_t n, const Odometry& odometry) {
+    float* row = number(row_count_ - kOdometryRows, n);
+    for (const PlanarPose& pose : {odometry.was, odometry.believed}) {
+      for (const float value : {pose.x, pose.z, pose.yaw}) {
+        *row = value;
+        row += kChunk;
+      }
+    }
+  }
   /// Base and variables of the envs of a chunk from `first` on.
   [[nodiscard]] PoseArrays poses(std::size_t first) { return posesAt(number(0, first)); }
   [[nodiscard]] float variable(std::size_t v, std::size_t n) const {
@@ -213,6 +251,9 @@ class BatchState {
   }
   [[nodiscard]] Vec3 base(std::size_t n) const { return point(0, n); }
   [[nodiscard]] float yaw(std::size_t n) const { return *number(3, n); }
+  [[nodiscard]] PlanarPose planarPose(std::size_t n) const {
+    return {base(n).x, base(n).z, yaw(n)};
+  }
 
   /// Rows of the chunk whose first env is `first`: what changes with the pose of the robot, which
   /// is base, variables and grip; the parts of it; the points that matter; the joint actions of the
@@ -326,6 +367,7 @@ class BatchState {
   std::size_t variable_count_ = 0;
   /// Of a chunk.
   std::size_t row_count_ = 0;
+  bool has_odometry_ = false;
   /// Whether steps ask the memory ahead: where there is much to read.
   bool asks_ahead_ = false;
   std::size_t observation_size_ = 0;
@@ -339,7 +381,8 @@ class BatchState {
   std::pmr::vector<std::uint64_t> ignored_{&memory_};
   std::pmr::vector<std::uint64_t> leaving_{&memory_};
   /// Chunk after chunk, so that a step reads them as one stream: x, y, z, yaw, variables and grip
-  /// of its envs, then goals, targets, where targets were at the start, and last actions.
+  /// of its envs, then goals, targets, where targets were at the start, and last actions; at the
+  /// end odometry, where there is any.
   std::pmr::vector<EnvRow> rows_{&memory_};
   std::pmr::vector<float> observations_{&memory_};
   std::pmr::vector<float> final_observations_{&memory_};

@@ -23,7 +23,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 /// Far beyond any world, meters, and any joint; keeps arithmetic on what comes from outside finite.
 constexpr float kLargest = 1e6F;
 constexpr const char* kWhere = "saved state";
@@ -67,7 +67,7 @@ struct EnvRecord {
   std::uint16_t has_picked = 0;
   std::uint16_t was_refused = 0;
   std::uint32_t is_idle = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t is_named = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
               sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 16 + sizeof(GripFrame) + 20);
@@ -194,9 +194,11 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .ending = static_cast<std::uint32_t>(state.endings()[n]),
       .has_picked = static_cast<std::uint16_t>(env.has_picked ? 1 : 0),
       .was_refused = static_cast<std::uint16_t>(env.refused ? 1 : 0),
-      .is_idle = state.idle()[n]});
+      .is_idle = state.idle()[n],
+      .is_named = counters.is_named ? 1U : 0U});
   for (std::size_t v = 0; v < model.variableCount(); ++v) out.add(state.variable(v, n));
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) out.add(state.lastAction(j, n));
+  if (state.hasOdometry()) out.add(state.odometry(n).believed);
   out.add(state.ignored(n));
   out.add(state.leaving(n).first(env.objects * model.bodyWords()));
   out.add(state.objects(n).first(env.objects));
@@ -229,7 +231,7 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
   }
   if (record.ending >= kEpisodeEnds) return fmt::format("ended in way {}", record.ending);
   if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 ||
-      record.ordinal == 0 || record.turns > record.ordinal)
+      record.is_named > 1 || record.ordinal == 0 || record.turns > record.ordinal)
     return "has a wrong flag or count";
   const bool is_held_plain = record.held < 0 || isPlain(record.grip_from_held);
   if (!isPlain(record.base) || !isPlain(record.yaw) || !arePlain(record.grip) ||
@@ -264,7 +266,8 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
                     .successes = successes,
                     .failures = failures,
                     .nan_actions = record.nan_actions,
-                    .idle_steps = record.idle_steps};
+                    .idle_steps = record.idle_steps,
+                    .is_named = record.is_named != 0};
   saved.moves = {.refused = refused, .slid = slid};
   saved.base = record.base;
   saved.yaw = record.yaw;
@@ -301,6 +304,7 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
   SavedEnv saved = envOf(model, record);
   saved.variables = in.takeMany<float>(model.variableCount());
   saved.last_actions = in.takeMany<float>(model.motion.controlled.size());
+  if (model.options.noise.localization > 0) in.take(saved.believed);
   saved.ignored = in.takeMany<std::uint64_t>(model.heldWords());
   saved.leaving = in.takeMany<std::uint64_t>(saved.env.objects * model.bodyWords());
   saved.objects = in.takeMany<Pose>(saved.env.objects);
@@ -313,7 +317,9 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
     return refused(fmt::format("env {} leaves other objects than it says; it is damaged", n));
   }
   const auto plain = [](const auto& one) { return isPlain(one); };
-  if (!arePlain(saved.variables) || !arePlain(saved.last_actions) ||
+  const PlanarPose& believed = saved.believed;
+  if (!arePlain(saved.variables) || !arePlain(saved.last_actions) || !isPlain(believed.x) ||
+      !isPlain(believed.z) || !isPlain(believed.yaw) ||
       !std::ranges::all_of(saved.objects, plain) || !std::ranges::all_of(saved.bodies, plain)) {
     return refused(fmt::format("env {} has a number that no simulation leaves; it is damaged", n));
   }
@@ -417,6 +423,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
     to.variables[v * to.stride] = saved.variables[v];
   }
   state.setGrip(n, saved.grip);
+  if (state.hasOdometry()) state.setOdometry(n, {state.planarPose(n), saved.believed});
   for (std::size_t j = 0; j < saved.last_actions.size(); ++j) {
     state.setLastAction(j, n, saved.last_actions[j]);
   }

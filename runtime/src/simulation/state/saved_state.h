@@ -29,6 +29,8 @@ struct SavedEnv {
   Held held;
   Vec3 base;
   float yaw = 0;
+  /// Where the robot takes itself to be; where there is odometry.
+  PlanarPose believed;
   GripFrame grip{};
   float reward = 0;
   EpisodeEnd ending = EpisodeEnd::kNone;

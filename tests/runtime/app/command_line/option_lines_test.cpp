@@ -31,6 +31,7 @@ SimulationOptions unusualOptions() {
                        .direction_spread = 3.14159265F,
                        .jitter = 1e-8F};
   options.ground = {.most_rise = 0.2F, .most_drop = 0.4F};
+  options.noise = {.motion = 0.1F, .motion_bias = 0.03F, .localization = 0.2F};
   options.sensors = {.bump = true,
                      .target_goal = true,
                      .target_up = true,

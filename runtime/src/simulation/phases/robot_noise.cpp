@@ -1,0 +1,113 @@
+#include "simulation/phases/robot_noise.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "support/random_stream.h"
+
+namespace galactic::simulation {
+namespace {
+
+// Apart from each other, and from the numbers of sensors.
+constexpr std::uint64_t kMotionSalt = 0x4D6F74696F6E2D31ULL;
+constexpr std::uint64_t kBiasSalt = 0x426961732D2D3031ULL;
+constexpr std::uint64_t kOdometrySalt = 0x4F646F6D2D2D3031ULL;
+
+/// The luck of an env in a step of its episode: its own or, in an episode that the caller has
+/// named, the same in whatever env that is played.
+RandomStream luckOf(const Model& model, const BatchState& state, std::size_t n, std::uint64_t salt,
+                    std::uint32_t step) {
+  const EnvCounters& counters = state.counters(n);
+  const std::uint64_t seed = model.options.seed ^ salt;
+  if (!counters.is_named) return {seed, model.globalEnv(n), counters.begun, step};
+  // No env begins so many.
+  return {seed, 0, ~std::uint64_t{model.starts[state.env(n).start].episode}, step};
+}
+
+/// By which share each motion is off, one after the other.
+class Errors {
+ public:
+  Errors(float deviation, const RandomStream& random) : deviation_(deviation), random_(random) {}
+
+  float next() { return deviation_ > 0 ? deviation_ * random_.nearlyNormal() : 0; }
+
+ private:
+  float deviation_;
+  RandomStream random_;
+};
+
+/// The motions of one env.
+void disturb(const ChunkStep& step, std::size_t e) {
+  const RobotNoise& noise = step.model.options.noise;
+  const std::size_t n = step.first + e;
+  const auto luck = [&](std::uint64_t salt, std::uint32_t at) {
+    return luckOf(step.model, step.state, n, salt, at);
+  };
+  Errors fleeting(noise.motion, luck(kMotionSalt, step.state.env(n).step));
+  Errors lasting(noise.motion_bias, luck(kBiasSalt, 0));
+  const std::span<EnvRow> motions = step.chunk.motions();
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    motions[m].values[e] = step.chunk.action(m, e) * (1 + fleeting.next() + lasting.next());
+  }
+  // Wheels that differ turn a base that drives.
+  const float drift = fleeting.next() + lasting.next();
+  const std::size_t forward = motions.size() - 2;
+  motions[forward + 1].values[e] += step.chunk.action(forward, e) * drift;
+}
+
+/// A way along the floor, turned.
+Vec3 turned(const Vec3& way, float angle) {
+  const auto cosine = static_cast<float>(std::cos(static_cast<double>(angle)));
+  const auto sine = static_cast<float>(std::sin(static_cast<double>(angle)));
+  return {cosine * way.x + sine * way.z, 0, cosine * way.z - sine * way.x};
+}
+
+float wrapped(float angle) { return std::remainder(angle, 2 * std::numbers::pi_v<float>); }
+
+}  // namespace
+
+std::span<const EnvRow> motionsOf(const ChunkStep& step) noexcept {
+  if (!step.model.options.noise.changesMotion()) return step.chunk.actions();
+  for (std::size_t e = 0; e < kChunk; ++e) disturb(step, e);
+  return step.chunk.motions();
+}
+
+void beginOdometry(BatchState& state, std::size_t n) noexcept {
+  if (!state.hasOdometry()) return;
+  const PlanarPose known = state.planarPose(n);
+  state.setOdometry(n, {known, known});
+}
+
+void followOdometry(const ChunkStep& step) noexcept {
+  if (!step.state.hasOdometry()) return;
+  const RobotBase& steps = step.model.motion.base;
+  for (std::size_t n = step.first; n < step.first + kChunk; ++n) {
+    const auto [was, believed] = step.state.odometry(n);
+    const PlanarPose now = step.state.planarPose(n);
+    const Vec3 way{now.x - was.x, 0, now.z - was.z};
+    const float turn = wrapped(now.yaw - was.yaw);
+    const float length = std::sqrt(dot(way, way));
+    if (length == 0 && turn == 0) continue;
+    Errors errors(step.model.options.noise.localization,
+                  luckOf(step.model, step.state, n, kOdometrySalt, step.state.env(n).step));
+    // As motions are off: see disturb().
+    const float felt_turn = turn * (1 + errors.next());
+    const float drift = length / steps.forward_step * steps.turn_step * errors.next();
+    const float yaw = wrapped(believed.yaw + felt_turn + drift);
+    const Vec3 felt_way = turned(way, yaw - now.yaw) * (1 + errors.next());
+    step.state.setOdometry(n, {now, {believed.x + felt_way.x, believed.z + felt_way.z, yaw}});
+  }
+}
+
+void displace(const BatchState& state, std::size_t first, PointRows& points) noexcept {
+  auto& [x, y, z] = points;
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    const auto [is, believed] = state.odometry(first + e);
+    const Vec3 away{x.values[e] - believed.x, 0, z.values[e] - believed.z};
+    const Vec3 seen = turned(away, is.yaw - believed.yaw);
+    x.values[e] = is.x + seen.x;
+    z.values[e] = is.z + seen.z;
+  }
+}
+
+}  // namespace galactic::simulation
