@@ -142,8 +142,8 @@ Result<void> EpisodePlan::openLoop(const Command& command) {
                             "of galactic-run",
                             option.name, option.value));
   }
-  RETURN_IF_ERROR(requireExactMotions(options_, "the task",
-                                      "add --set motion-noise=0 --set motion-bias=0"));
+  RETURN_IF_ERROR(
+      requireExactMotions(options_, "the task", "add --set motion-noise=0 --set motion-bias=0"));
   options_.seed = command.seed;
   ASSIGN_OR_RETURN(const auto lane, makeLane());
   const std::span<const std::uint32_t> skipped = lane->simulator().skippedEpisodes();

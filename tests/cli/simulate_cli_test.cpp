@@ -283,7 +283,7 @@ TEST_F(SimulateCli, ReplaysARecordingBitForBit) {
 }
 
 TEST_F(SimulateCli, ReplaysTheNoiseOfARecording) {
-  const std::vector<std::string> noise{"--motion-noise", "0.2", "--motion-bias", "0.1",
+  const std::vector<std::string> noise{"--motion-noise",       "0.2", "--motion-bias", "0.1",
                                        "--localization-noise", "0.1"};
   const std::vector<std::string> plain{"--envs", "5", "--steps", "60", "--seed", "9"};
   std::vector<std::string> noisy = plain;
