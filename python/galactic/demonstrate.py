@@ -114,7 +114,10 @@ def make_parser() -> argparse.ArgumentParser:
         help="only the first N episodes of the world (all)",
     )
     parser.add_argument(
-        "--preset", default=None, metavar="|".join(PRESETS), help="settings to start from (paper)"
+        "--preset",
+        default=None,
+        metavar="|".join(PRESETS),
+        help="settings to start from (the paper's, but without images: --network state)",
     )
     parser.add_argument(
         "--threads", type=whole(0, 4096), default=0, metavar="N", help="0: all processors (0)"
@@ -174,7 +177,10 @@ def _settings(options: argparse.Namespace) -> tuple[Settings, Optional[own_tasks
     """Those of homes to play in, and what makes a task of one's own in them."""
     given = given_options(options)
     own_tasks.require_use(given)
-    chosen = preset("paper" if options.preset is None else options.preset, **given)
+    if options.preset is None:
+        chosen = preset("paper", **{"network": "state", **given})
+    else:
+        chosen = preset(options.preset, **given)
     envs = min(_episodes_of_part(chosen), MOST_ENVS)
     settings = dataclasses.replace(chosen, envs=envs, halves=1, mini_batches=1, critic_only="")
     if not settings.task:

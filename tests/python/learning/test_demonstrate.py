@@ -373,6 +373,21 @@ class Hold(galactic.Task):
 """
 
 
+def test_without_a_preset_they_are_of_the_papers_task(tmp_path: pathlib.Path) -> None:
+    """And have no images, which nobody has asked for."""
+    done = call("demonstrate", WORLD, "-o", tmp_path / "demos", "--episodes", 3)
+    assert done.returncode == 0, done.stderr
+    made = Demonstrations(tmp_path / "demos")
+    assert made.about.images == {} and made.about.made_with["settings"]["network"] == "state"
+    homes = galactic.VectorEnv(WORLD, 1, **made.about.options)
+    assert homes.simulators[0].options["task"] == "rearrange"
+    done = call(
+        "demonstrate", WORLD, "-o", tmp_path / "seen", "--episodes", 1, "--network", "depth"
+    )
+    assert done.returncode == 0, done.stderr
+    assert Demonstrations(tmp_path / "seen").about.images == {"depth": (128, 128)}
+
+
 def test_they_may_be_of_a_task_of_ones_own(tmp_path: pathlib.Path) -> None:
     file = tmp_path / "hold.py"
     file.write_text(TASK, encoding="utf-8")
