@@ -146,6 +146,8 @@ def _require_uses(options: argparse.Namespace) -> None:
         own_code.named(options.task, "--task")
     if options.task and options.dynamics:
         raise SettingsError("--dynamics knows no task of your own; leave one of them out")
+    if options.robot_noise and options.dynamics:
+        raise SettingsError("--dynamics knows no noise of robots; leave one of them out")
 
 
 def _evaluate(options: argparse.Namespace) -> int:

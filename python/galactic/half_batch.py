@@ -288,11 +288,14 @@ class HalfBatch:
     def _begin(self, which: NDArray[np.int64], episodes: NDArray[np.int64]) -> None:
         """Begins episodes of the world in the envs `which`; where none is named, the next that the task
         chooses, or of the env's own."""
+        is_named = episodes >= 0
         if self._task is not None:
             episodes = self._task.choose(which, episodes)
-        begins = np.full(self.simulator.num_envs, Simulator.STAYS, np.int64)
-        begins[which] = np.where(episodes < 0, Simulator.NEXT_EPISODE, episodes)
-        self.simulator.reset(begins)
+        for drawn, chosen in ((False, is_named), (True, ~is_named)):
+            begins = np.full(self.simulator.num_envs, Simulator.STAYS, np.int64)
+            begins[which[chosen]] = np.where(episodes < 0, Simulator.NEXT_EPISODE, episodes)[chosen]
+            if chosen.any():
+                self.simulator.reset(begins, drawn=drawn)
         if self._task is not None:
             self._task.begin(which)
 

@@ -25,7 +25,8 @@ def loading() -> Optional[str]:
     # This is what Python has there until it has found the module of -m.
     if sys.argv[:1] != ["-m"]:
         return None
-    found = (re.fullmatch(r"(?:-\w*m)?(galactic\.\w+)", word) for word in sys.orig_argv)
+    names = "train|evaluate|export|demonstrate"
+    found = (re.fullmatch(rf"(?:-\w*m)?(galactic\.(?:{names}))", word) for word in sys.orig_argv)
     return next((match[1] for match in found if match), None)
 
 

@@ -94,7 +94,7 @@ class TaskRunner:
         begins = np.where(chosen < 0, Simulator.STAYS, chosen)
         if (chosen >= 0).any():
             simulator.check_episodes(begins)
-            simulator.reset(begins)
+            simulator.reset(begins, drawn=True)
         self.begin(everywhere)
 
     def _begin_anew(self) -> None:

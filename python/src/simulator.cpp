@@ -84,7 +84,7 @@ void Simulator::endStep() {
   input_ = {};
 }
 
-void Simulator::reset(const py::object& episodes) {
+void Simulator::reset(const py::object& episodes, bool are_drawn) {
   EpisodeNumbers chosen(envs());
   if (episodes.is_none()) {
     std::fill_n(chosen.mutable_data(), chosen.size(), BatchSimulator::kNextEpisode);
@@ -95,7 +95,7 @@ void Simulator::reset(const py::object& episodes) {
   const std::span<const std::int32_t> values{chosen.data(),
                                              static_cast<std::size_t>(chosen.size())};
   const py::gil_scoped_release unlocked;
-  batch_.reset(values);
+  batch_.reset(values, are_drawn ? EpisodeChoice::kDrawn : EpisodeChoice::kNamed);
 }
 
 void Simulator::checkEpisodes(const py::object& episodes) const {

@@ -34,7 +34,7 @@ class Simulator {
   void endStep();
   /// `episodes`: see BatchSimulator::reset; all are looked at before anything is done. IndexError
   /// for numbers that are none, ValueError for those of episodes that are skipped.
-  void reset(const py::object& episodes);
+  void reset(const py::object& episodes, bool are_drawn);
   /// Raises what reset() would, and does nothing.
   void checkEpisodes(const py::object& episodes) const;
   void restart(const py::object& seed);

@@ -98,12 +98,15 @@ void bindStepping(py::class_<Simulator>& type) {
            "end_step() returns.");
   type.def("end_step", &Simulator::endStep, "The second half: helps, and waits for the end.");
   type.def(
-      "reset", &Simulator::reset, py::arg("episodes") = py::none(),
+      "reset", &Simulator::reset, py::arg("episodes") = py::none(), py::kw_only(),
+      py::arg("drawn") = false,
       "Begins episodes between two steps. A new simulator is at the start of the first ones.\n\n"
       "episodes: int32 (num_envs,), for each env the index of an episode, NEXT_EPISODE for the\n"
       "one whose turn it is, or STAYS; None: the next one in every env. Nothing begins if one is\n"
       "wrong: IndexError for those that the world does not have, ValueError for\n"
-      "skipped_episodes.");
+      "skipped_episodes. drawn: whether chance has chosen these episodes, as the draws of a task\n"
+      "do, and not somebody who compares policies by them: their noise of motion and\n"
+      "localization is then the env's, another one each time, and not the episode's.");
   type.def("check_episodes", &Simulator::checkEpisodes, py::arg("episodes"),
            "Raises what reset() would raise for these episodes, and does nothing else.");
   type.def("restart", &Simulator::restart, py::arg("seed"),

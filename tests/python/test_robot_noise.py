@@ -86,6 +86,36 @@ def test_a_named_episode_has_the_same_noise_wherever_it_is_played(world) -> None
     np.testing.assert_array_equal(played(9, 7, 5), alone)
 
 
+class Again(galactic.Task):
+    """Has the same episode again and again."""
+
+    base = "pick"
+    options = {"episode_steps": 5}
+
+    def choose(self, envs, which):
+        return np.full(len(which), 1)
+
+    def step(self, envs):
+        return galactic.Outcome(envs.rewards)
+
+
+def test_an_episode_that_a_task_draws_has_other_noise_each_time(world) -> None:
+    """Else robots would learn the noise of episodes by heart. Those that the caller names have theirs."""
+    envs = VectorEnv(world, 4, task=Again, seed=6, **NOISE)
+    actions = np.zeros((4, 8), np.float32)
+    actions[:, 0] = 0.5
+
+    def moved(**reset) -> np.ndarray:
+        before = envs.reset(**reset)[0].copy()
+        part = envs.observation_parts["joints"].start
+        return envs.step(actions)[0][:, part] - before[:, part]
+
+    drawn = np.array([moved() for _ in range(3)]).ravel()
+    assert len(np.unique(drawn)) == drawn.size
+    named = {"options": {"reset_mask": np.ones(4, bool), "episodes": np.ones(4, int)}}
+    assert len(np.unique([moved(**named) for _ in range(3)])) == 1
+
+
 @pytest.mark.parametrize("name", NOISE)
 @pytest.mark.parametrize("value", (-0.1, 1.5, float("nan")))
 def test_what_is_no_share_is_refused(world, name, value) -> None:

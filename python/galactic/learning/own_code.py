@@ -78,17 +78,23 @@ def _module_of(code: CodeName, siblings: Optional[pathlib.Path]) -> Any:
     if folder not in sys.path:
         sys.path.append(folder)
     name = _module_name(code.file)
+    if name in sys.modules:
+        return sys.modules[name]  # another one would have other classes, which pickle refuses
     spec = importlib.util.spec_from_file_location(name, code.file)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
     return module
 
 
 def _module_name(file: pathlib.Path) -> str:
-    """Another one for each file, and none that anything else could be imported by."""
-    digest = hashlib.sha256(os.fsencode(file.resolve())).hexdigest()
+    """Another one for each file, and for what it says now; none that anything else could be imported by."""
+    digest = hashlib.sha256(os.fsencode(file.resolve()) + b"\0" + file.read_bytes()).hexdigest()
     return f"galactic_own_{file.stem}_{digest[:16]}"
 
 

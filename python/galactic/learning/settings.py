@@ -465,9 +465,13 @@ class Settings:
     def without_robot_noise(self) -> "Settings":
         """The same with robots that do what they are asked to and know where they are, unless the world
         says otherwise."""
-        words = self.simulation.split()
+        words = latest_words(self.simulation).split()
         kept = [word for word in words if not _is_robot_noise(word)]
-        return self if kept == words else dataclasses.replace(self, simulation=" ".join(kept))
+        return (
+            self
+            if len(kept) == len(words)
+            else dataclasses.replace(self, simulation=" ".join(kept))
+        )
 
     def without_noise(self) -> "Settings":
         """The same without either noise: what policies are judged by."""

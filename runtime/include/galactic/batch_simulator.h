@@ -129,6 +129,15 @@ struct PhaseTime {
   double seconds = 0;
 };
 
+/// Who has chosen an episode that begins, and so whose RobotNoise it has.
+enum class EpisodeChoice : std::uint8_t {
+  /// Somebody who compares policies by it: the episode's own, the same in whatever env it is
+  /// played.
+  kNamed,
+  /// Chance, as where its turn has come or a task draws it: the env's, another one each time.
+  kDrawn,
+};
+
 /// N environments of one world, stepped together (paper, section 3.2 and appendices A, G and I).
 /// What an env does depends on (world, options, seed, env number, actions) only: bit for bit the
 /// same for any number of threads and of other envs. A step neither allocates, nor throws, nor
@@ -196,7 +205,7 @@ class BatchSimulator {
   /// kNextEpisode; where a number is neither, or of skippedEpisodes(), the env stays, too. What the
   /// last step returned stays, but for the observations of these envs; where that step ended an
   /// episode, the one before is their final observation.
-  void reset(std::span<const std::int32_t> episodes);
+  void reset(std::span<const std::int32_t> episodes, EpisodeChoice choice = EpisodeChoice::kNamed);
   /// All envs stand at the start of their first episode, as if the simulator had just been made
   /// with this seed; the statistics begin anew, too.
   void restart(std::uint64_t seed);

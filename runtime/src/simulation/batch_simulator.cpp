@@ -85,7 +85,7 @@ class BatchSimulator::Impl {
     states_ = {};
   }
 
-  void reset(std::span<const std::int32_t> episodes) {
+  void reset(std::span<const std::int32_t> episodes, EpisodeChoice choice) {
     assert(episodes.size() == model_.options.envs);
     for (std::size_t env = 0; env < episodes.size(); ++env) {
       const bool is_next = episodes[env] == kNextEpisode;
@@ -96,7 +96,7 @@ class BatchSimulator::Impl {
       if (is_next) {
         simulation::beginNextEpisode(model_, state_, env);
       } else {
-        simulation::beginEpisode(model_, state_, env, *start);
+        simulation::beginEpisode(model_, state_, env, *start, choice);
       }
     }
   }
@@ -265,7 +265,9 @@ void BatchSimulator::endStep() { impl_->end(); }
 void BatchSimulator::follow(std::span<const float> actions, std::span<const FollowedState> states) {
   impl_->follow(actions, states);
 }
-void BatchSimulator::reset(std::span<const std::int32_t> episodes) { impl_->reset(episodes); }
+void BatchSimulator::reset(std::span<const std::int32_t> episodes, EpisodeChoice choice) {
+  impl_->reset(episodes, choice);
+}
 void BatchSimulator::restart(std::uint64_t seed) { impl_->restart(seed); }
 
 std::vector<std::byte> BatchSimulator::saveState() const { return saveState(allEnvs(envCount())); }

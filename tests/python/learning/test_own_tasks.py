@@ -338,6 +338,11 @@ def test_files_of_one_name_are_two_modules(
         found[lab] = own_code.members_of(own_code.named(f"{file}:Home", "--task"))["Home"]
     for lab, home in found.items():
         assert home.lab == lab and pickle.loads(pickle.dumps(home)) is home
+    # The same file is the same module, until it says something else.
+    again = own_code.members_of(own_code.named(f"{file}:Home", "--log-to"))["Home"]
+    assert again is found["b"]
+    file.write_text("class Home:\n    lab = 'c'\n", encoding="utf-8")
+    assert own_code.members_of(own_code.named(f"{file}:Home", "--task"))["Home"].lab == "c"
 
 
 def test_a_file_that_is_called_like_a_library_does_not_hide_it(

@@ -31,7 +31,7 @@ class OneRobot {
   explicit OneRobot(const simulation::Model& model)
       : model_(model), state_(model, 1), chunk_(model) {
     for (std::size_t n = 0; n < state_.paddedCount(); ++n) {
-      simulation::beginEpisode(model, state_, n, 0);
+      simulation::beginEpisode(model, state_, n, 0, EpisodeChoice::kNamed);
     }
   }
 

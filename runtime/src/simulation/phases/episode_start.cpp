@@ -61,8 +61,8 @@ void takeStock(const Model& model, BatchState& state, std::size_t n) noexcept {
   sense(model, state, n, state.observation(n));
 }
 
-void beginEpisode(const Model& model, BatchState& state, std::size_t n,
-                  std::uint32_t start) noexcept {
+void beginEpisode(const Model& model, BatchState& state, std::size_t n, std::uint32_t start,
+                  EpisodeChoice choice) noexcept {
   const Episode& episode = model.episodeOf(start);
   placeRobot(model, state, n, start);
   placeObjects(model, state, n, start);
@@ -76,7 +76,7 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n,
          .events = {},
          .reward_sum = env.reward_sum};
   ++state.counters(n).begun;
-  state.counters(n).is_named = true;
+  state.counters(n).is_named = choice == EpisodeChoice::kNamed;
   state.held(n) = {};
   state.setErrand(n, target, episode.goal.translation);
   std::ranges::fill(state.leaving(n), 0U);
@@ -91,8 +91,8 @@ void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) no
   // An env that never has one stands somewhere, too.
   const bool has_begun = state.counters(env).begun > 0;
   if (next || !has_begun) {
-    beginEpisode(model, state, env, next.value_or(static_cast<std::uint32_t>(number % count)));
-    state.counters(env).is_named = false;
+    const std::uint32_t start = next.value_or(static_cast<std::uint32_t>(number % count));
+    beginEpisode(model, state, env, start, EpisodeChoice::kDrawn);
     ++state.counters(env).turns;
   }
   state.idle()[env] = next ? 0 : 1;
@@ -113,7 +113,7 @@ void renewEpisodes(const ChunkStep& step) noexcept {
 void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   for (std::size_t n = step.first; n < std::min(step.first + kChunk, resets.size()); ++n) {
     const OptionalIndex start = step.model.startOf(resets[n]);
-    if (start) beginEpisode(step.model, step.state, n, *start);
+    if (start) beginEpisode(step.model, step.state, n, *start, EpisodeChoice::kNamed);
   }
 }
 

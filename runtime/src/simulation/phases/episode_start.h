@@ -13,8 +13,8 @@ namespace galactic::simulation {
 void takeStock(const Model& model, BatchState& state, std::size_t env) noexcept;
 
 /// Env `env` stands at the start `start` (index into Model::starts) and its observation is written.
-void beginEpisode(const Model& model, BatchState& state, std::size_t env,
-                  std::uint32_t start) noexcept;
+void beginEpisode(const Model& model, BatchState& state, std::size_t env, std::uint32_t start,
+                  EpisodeChoice choice) noexcept;
 /// The same at the start of the episode that is the env's next. Without one it is idle from now on,
 /// and stays as it is: see BatchSimulator::idle().
 void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept;

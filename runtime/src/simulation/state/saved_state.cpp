@@ -402,7 +402,7 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
 
 void restoreEnv(const Model& model, BatchState& state, std::size_t n, const SavedEnv& saved) {
   // Brings what the episode says; all that has changed since follows.
-  beginEpisode(model, state, n, saved.env.start);
+  beginEpisode(model, state, n, saved.env.start, EpisodeChoice::kDrawn);
   Env& env = state.env(n);
   env.step = saved.env.step;
   env.held = saved.env.held;
