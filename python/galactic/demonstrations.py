@@ -73,6 +73,7 @@ class Demonstration:
 
     @property
     def is_solved(self) -> bool:
+        """Whether it ended in success."""
         return self.ending == EpisodeEnd.SUCCESS
 
 

@@ -151,8 +151,9 @@ TEST_F(MeshReferences, MayHaveUriEscapes) {
 }
 
 TEST_F(MeshReferences, ThatLeadNowhereSayWhereTheyWereLookedFor) {
-  options_.packages["pkg"] = folder_.path() / "elsewhere";
-  const MeshResolution named = resolve("package://pkg/meshes/m.stl");
+  // Folders of this name above the test's are looked into, too.
+  options_.packages["of_this_test"] = folder_.path() / "elsewhere";
+  const MeshResolution named = resolve("package://of_this_test/meshes/m.stl");
   EXPECT_TRUE(named.file.empty());
   EXPECT_EQ(named.how, "../../../../elsewhere/meshes/m.stl (from the URDF's folder)");
   const MeshResolution unknown = resolve("package://other/m.stl");
