@@ -444,7 +444,7 @@ def test_a_run_learns_from_a_teacher_that_sees_more(tmp_path: pathlib.Path) -> N
     refuse(3, f"{copy} sees bump, which this run does not observe; turn the sensor on", *blind)
     refuse(3, f"{folder / 'best.pt'} has a memory, expected a teacher", *new, folder / "best.pt")
     refuse(1, "--teacher-share goes with --teacher", *new[:-1], "--teacher-share", "0.3")
-    refuse(1, "its weights and its teacher", "-o", folder, "--resume", "--teacher", copy)
+    refuse(1, "its teacher and its demonstrations", "-o", folder, "--resume", "--teacher", copy)
     assert not (tmp_path / "new").exists()
     copy.unlink()
     gone = (
