@@ -21,8 +21,8 @@ class Observed(NamedTuple):
 def columns_of(saved: SavedPolicy, file: pathlib.Path, observed: Observed, remedy: str,
                hiding: str = "") -> list[int]:  # fmt: skip
     """Where the numbers that a policy sees are in a row of what is observed, which may have more. `file`:
-    where it was saved, `remedy` what to do, and `hiding` how to keep more from others, for messages. Raises CheckpointError where something is
-    missing, or means something else."""
+    where it was saved, `remedy` what to do, and `hiding` how to keep more from others, for messages. Raises
+    CheckpointError where something is missing, or means something else."""
     if saved.shape.motions != observed.motions:
         raise CheckpointError(
             f"{file} decides {saved.shape.motions} motions, found {observed.motions} in this run; "
