@@ -7,10 +7,26 @@ namespace galactic::scripted {
 namespace {
 
 constexpr float kTurn = 6.28318531F;
-/// A base this far off the plan's line is astray, meters.
-constexpr float kStray = 5e-3F;
+/// A base this far from where the plan has it while the arm moves is off, meters and radians.
+constexpr float kOff = 5e-3F;
+constexpr float kOffYaw = 5e-3F;
+/// A base this far off the line of a drive is astray, meters: what is around it there, nobody has
+/// looked at.
+constexpr float kStray = 0.15F;
+/// How far ahead on its line a base is steered to, meters.
+constexpr float kLookAhead = 0.3F;
+/// A base that looks past that place by less than this drives straight on, and one that does by
+/// more than that turns before it drives, radians.
+constexpr float kStraight = 5e-3F;
+constexpr float kAskew = 0.2F;
 /// So much of an action is nothing left to do.
 constexpr float kNothing = 1e-3F;
+/// What may be left after the action that should have been the last one, where it is made good
+/// later, and where a hand has to be in its place.
+constexpr float kRoughRest = 0.25F;
+constexpr float kFineRest = 0.02F;
+/// Actions without getting any further before the robot is stuck.
+constexpr int kMostVain = 2;
 /// Joints this far from where they were asked to be, in actions, have arrived; and so far while the
 /// arm moves, they are waited for: it would cut the corners of its plan.
 constexpr float kArrived = 0.02F;
@@ -22,10 +38,18 @@ constexpr int kMostIdleWaits = 5;
 /// Joints that are further behind then are held by something.
 constexpr float kHeldBack = 1;
 
+/// On the ground.
+Vec3 flat(const Vec3& v) { return {v.x, 0, v.z}; }
+
 float planeDistance(const Vec3& a, const Vec3& b) {
-  const float x = a.x - b.x;
-  const float z = a.z - b.z;
-  return std::sqrt(x * x + z * z);
+  const Vec3 way = flat(a - b);
+  return std::sqrt(dot(way, way));
+}
+
+/// Moves nothing.
+void clear(const ActionRow& row) {
+  std::ranges::fill(row.joints, 0.0F);
+  row.forward = row.turn = 0;
 }
 
 /// Sets what a step that moves nothing decides. Whether it is one.
@@ -53,44 +77,90 @@ ActionRow rowOf(std::span<float> actions) {
           actions[joints + 3]};
 }
 
-PlanPlayer::Way PlanPlayer::moveBase(const RobotBase& robot_base, const BasePlace& at,
-                                     const ActionRow& row) const {
+PlanPlayer::Way PlanPlayer::turn(const RobotBase& robot_base, const BasePlace& at,
+                                 const ActionRow& row) const {
   const BasePlace& to = plan_.steps[next_].base;
-  const float turn = std::remainder(to.yaw - at.yaw, kTurn) / robot_base.turn_step;
-  const Vec3 way = to.position - at.position;
-  const Vec3 heading = headingOf(at.yaw);
-  const float along = way.x * heading.x + way.z * heading.z;
-  const float across = way.x * heading.z - way.z * heading.x;
-  const float forward = along / robot_base.forward_step;
-  const bool turns = std::fabs(turn) > kNothing;
-  const bool drives = std::fabs(forward) > kNothing;
+  const float left = std::remainder(to.yaw - at.yaw, kTurn) / robot_base.turn_step;
+  Way result;
+  result.rest = kRoughRest;
+  result.strays = planeDistance(at.position, to.position) > kStray;
+  result.remaining = std::fabs(left);
   // Positive turns are clockwise, positive yaw is not. Turns are spread over their actions evenly,
   // as the search looks at them.
   constexpr float kSlack = 1e-3F;
-  if (turns) row.turn = -turn / std::max(std::ceil(std::fabs(turn) - kSlack), 1.0F);
-  if (drives && !turns) row.forward = std::clamp(forward, -1.0F, 1.0F);
+  row.turn = -left / std::max(std::ceil(result.remaining - kSlack), 1.0F);
+  return result;
+}
+
+PlanPlayer::Way PlanPlayer::drive(const RobotBase& robot_base, const BasePlace& at,
+                                  const ActionRow& row) const {
+  const PlanStep& step = plan_.steps[next_];
+  const Vec3 line = flat(step.base.position - step.from);
+  const Vec3 way = line * (1 / std::sqrt(dot(line, line)));
+  const float sign = dot(way, headingOf(step.base.yaw)) < 0 ? -1.0F : 1.0F;
+  const Vec3 to_end = flat(step.base.position - at.position);
+  const float left = dot(to_end, way);
+  const Vec3 to_line = to_end - way * left;
+  const Vec3 aim = (way * kLookAhead + to_line) * sign;
+  const float askew = std::remainder(std::atan2(-aim.z, aim.x) - at.yaw, kTurn);
   Way result;
-  result.remaining = (turns ? std::fabs(turn) : 0) + (drives ? std::fabs(forward) : 0);
-  result.strays = std::fabs(across) > kStray || (turns && drives);
+  result.rest = kRoughRest;
+  result.strays = dot(to_line, to_line) > kStray * kStray;
+  result.remaining = std::fabs(left) / robot_base.forward_step;
+  if (std::fabs(askew) > kStraight) {
+    result.steering = std::fabs(askew) / robot_base.turn_step;
+    row.turn = std::clamp(-askew / robot_base.turn_step, -1.0F, 1.0F);
+  }
+  const bool looks_there = std::fabs(askew) <= kAskew + robot_base.turn_step;
+  if (looks_there) row.forward = sign * std::clamp(left / robot_base.forward_step, -1.0F, 1.0F);
   return result;
 }
 
 PlanPlayer::Way PlanPlayer::moveArm(const Arm& arm, const BasePlace& at,
                                     std::span<const float> asked, const ActionRow& row) const {
   const PlanStep& step = plan_.steps[next_];
-  const float actions = arm.actionsBetween(asked, step.joints);
+  const bool goes_on =
+      next_ + 1 < plan_.steps.size() && plan_.steps[next_ + 1].kind == PlanStep::Kind::kMoveArm;
   Way result;
-  result.strays = planeDistance(at.position, step.base.position) > kStray;
-  if (actions <= kNothing) return result;
-  result.remaining = actions;
+  result.rest = goes_on ? kRoughRest : kFineRest;
+  result.remaining = arm.actionsBetween(asked, step.joints);
+  result.strays = planeDistance(at.position, step.base.position) > kOff ||
+                  std::fabs(std::remainder(at.yaw - step.base.yaw, kTurn)) > kOffYaw;
   // All joints arrive together, so that the arm stays on the planned line.
-  const float share = 1 / std::max(actions, 1.0F);
+  const float share = 1 / std::max(result.remaining, 1.0F);
   for (std::size_t joint = 0; joint < arm.joints().size(); ++joint) {
     const float step_size = arm.joints()[joint].step;
     if (!(step_size > 0)) continue;
     row.joints[joint] = share * arm.difference(joint, asked, step.joints) / step_size;
   }
   return result;
+}
+
+PlanPlayer::Way PlanPlayer::advance(const Arm& arm, const RobotBase& robot_base,
+                                    const BasePlace& at, std::span<const float> asked,
+                                    const ActionRow& row) const {
+  switch (plan_.steps[next_].kind) {
+    case PlanStep::Kind::kTurn:
+      return turn(robot_base, at, row);
+    case PlanStep::Kind::kDrive:
+      return drive(robot_base, at, row);
+    default:
+      return moveArm(arm, at, asked, row);
+  }
+}
+
+bool PlanPlayer::isOver(const Way& way) const {
+  const bool was_last = remaining_ >= 0 && remaining_ <= 1;
+  return way.remaining <= (was_last ? std::max(way.rest, kNothing) : kNothing);
+}
+
+bool PlanPlayer::getsOn(const Way& way) {
+  const float left = way.remaining + way.steering;
+  const bool is_less = remaining_ < 0 || left < least_left_ - kNothing / 2;
+  if (is_less) least_left_ = left;
+  vain_ = is_less ? 0 : vain_ + 1;
+  remaining_ = way.remaining;
+  return vain_ <= kMostVain;
 }
 
 bool PlanPlayer::waitsFor(float lag, bool is_arm_next) {
@@ -129,12 +199,10 @@ PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_bas
       goOn();
       return Progress::kActs;
     }
-    const Way way = is_arm_next ? moveArm(arm, at, asked, row) : moveBase(robot_base, at, row);
-    if (way.strays) return Progress::kStuck;
-    if (way.remaining == 0) continue;
-    const bool moved = remaining_ < 0 || way.remaining < remaining_ - kNothing / 2;
-    remaining_ = way.remaining;
-    return moved ? Progress::kActs : Progress::kStuck;
+    const Way way = advance(arm, robot_base, at, asked, row);
+    if (way.strays) return is_arm_next ? Progress::kOff : Progress::kStuck;
+    if (!isOver(way)) return getsOn(way) ? Progress::kActs : Progress::kStuck;
+    clear(row);
   }
   return Progress::kDone;
 }
@@ -142,6 +210,7 @@ PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_bas
 void PlanPlayer::goOn() {
   ++next_;
   remaining_ = -1;
+  vain_ = 0;
 }
 
 }  // namespace galactic::scripted

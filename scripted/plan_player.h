@@ -18,7 +18,9 @@ struct ActionRow {
 };
 [[nodiscard]] ActionRow rowOf(std::span<float> actions);
 
-/// Turns a plan into actions, one step after the other.
+/// Turns a plan into actions, one step after the other. A base that is off the line of a drive is
+/// steered back to it (pure pursuit: Coulter 1992), as where motions are not quite what was asked
+/// for.
 class PlanPlayer {
  public:
   enum class Progress : std::uint8_t {
@@ -26,6 +28,8 @@ class PlanPlayer {
     kActs,
     /// Nothing is left to do.
     kDone,
+    /// The arm is to move, but the base is not quite where the plan has it then.
+    kOff,
     /// The robot is not where the plan wants it, or does not move.
     kStuck,
   };
@@ -41,14 +45,27 @@ class PlanPlayer {
                 std::span<const float> asked, const ActionRow& row);
 
  private:
+  /// What is left of a step, in actions.
   struct Way {
     float remaining = 0;
+    /// What may be left after the action that should have been the last one.
+    float rest = 0;
     bool strays = false;
+    /// Actions that bring the base back to its line; none of those that remain.
+    float steering = 0;
   };
-  [[nodiscard]] Way moveBase(const RobotBase& robot_base, const BasePlace& at,
-                             const ActionRow& row) const;
+  [[nodiscard]] Way turn(const RobotBase& robot_base, const BasePlace& at,
+                         const ActionRow& row) const;
+  [[nodiscard]] Way drive(const RobotBase& robot_base, const BasePlace& at,
+                          const ActionRow& row) const;
   [[nodiscard]] Way moveArm(const Arm& arm, const BasePlace& at, std::span<const float> asked,
                             const ActionRow& row) const;
+  [[nodiscard]] Way advance(const Arm& arm, const RobotBase& robot_base, const BasePlace& at,
+                            std::span<const float> asked, const ActionRow& row) const;
+  /// Whether nothing that counts is left of the current step.
+  [[nodiscard]] bool isOver(const Way& way) const;
+  /// Whether the current step gets on.
+  [[nodiscard]] bool getsOn(const Way& way);
   /// Whether to wait for joints that are `lag` actions from where they were asked to be.
   [[nodiscard]] bool waitsFor(float lag, bool is_arm_next);
   /// Whether something holds the joints back, after all this waiting.
@@ -60,6 +77,9 @@ class PlanPlayer {
   std::size_t next_ = 0;
   /// Actions left of the current step when it was last played; negative: not played yet.
   float remaining_ = -1;
+  /// The least that was left of it, steering included, and the actions since.
+  float least_left_ = 0;
+  int vain_ = 0;
   /// Steps that the joints were waited for, the least lag in that time, and the steps since.
   int waits_ = 0;
   float least_lag_ = 0;

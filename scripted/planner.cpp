@@ -66,7 +66,7 @@ int mostFreedoms(Arm& arm, const ReachTable& table, const Joints& others, Movers
 std::vector<PlanStep> stepsOf(const BasePlace& base, const ArmPath& path) {
   std::vector<PlanStep> steps;
   steps.reserve(path.size());
-  for (const Joints& joints : path) steps.push_back({PlanStep::Kind::kMoveArm, base, joints});
+  for (const Joints& joints : path) steps.push_back({PlanStep::Kind::kMoveArm, base, {}, joints});
   return steps;
 }
 
@@ -75,16 +75,27 @@ void prepend(const BasePlace& base, const ArmPath& path, Plan& plan) {
   plan.steps.insert(plan.steps.begin(), steps.begin(), steps.end());
 }
 
+/// The way from one place of a route to the next. A turn may end on a place of the lattice that is
+/// next to the same.
+PlanStep baseStep(const BasePlace& from, const BasePlace& to) {
+  const Vec3 way = to.position - from.position;
+  const bool drives = to.yaw == from.yaw && (way.x != 0 || way.z != 0);
+  return {drives ? PlanStep::Kind::kDrive : PlanStep::Kind::kTurn, to, from.position, {}};
+}
+
 /// Drives, moves the arm, and does the last.
-Plan planOf(const BaseRoute& route, const ArmPath& path, PlanStep::Kind last) {
+Plan planOf(const BasePlace& start, const BaseRoute& route, const ArmPath& path,
+            PlanStep::Kind last) {
   Plan plan;
   plan.steps.reserve(route.size() + path.size() + 1);
+  BasePlace at = start;
   for (const BasePlace& place : route) {
-    plan.steps.push_back({PlanStep::Kind::kMoveBase, place, {}});
+    plan.steps.push_back(baseStep(at, place));
+    at = place;
   }
-  const std::vector<PlanStep> steps = stepsOf(route.back(), path);
+  const std::vector<PlanStep> steps = stepsOf(at, path);
   plan.steps.insert(plan.steps.end(), steps.begin(), steps.end());
-  plan.steps.push_back({last, route.back(), {}});
+  plan.steps.push_back({last, at, {}, {}});
   return plan;
 }
 
@@ -328,21 +339,46 @@ std::optional<ArmPath> Planner::liftAndFold(const BasePlace& base, const Joints&
   return std::nullopt;
 }
 
-Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
+void Planner::takeOver(const EnvState& state, std::uint32_t attempt, std::uint32_t draw) {
   state_ = &state;
+  seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000 + draw;
+  scene_.update(state);
+}
+
+void Planner::intendToPick() {
   view_ = &pick_view_;
   hand_options_ = {};
-  seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000;
-  scene_.update(state);
+  is_thorough_ = is_stiff_;
+  failed_motions_ = 0;
+}
+
+Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
+  takeOver(state, attempt, 0);
+  intendToPick();
   const BasePlace start = scene_.baseOf(state);
   std::vector<Joints> carries = carriesOf(state);
   // Where there is no room to fold the arm it may still be driven as it is.
   carries.push_back(state.joint_positions);
-  is_thorough_ = is_stiff_;
   Plan plan = pickFolded(start, carries);
   if (plan.trouble != ScriptedTrouble::kNoGrasp || is_thorough_) return plan;
   is_thorough_ = true;
   return pickFolded(start, carries);
+}
+
+Plan Planner::planPickFromHere(const EnvState& state, std::uint32_t attempt) {
+  takeOver(state, attempt, 250);
+  intendToPick();
+  BasePlace base = scene_.baseOf(state);
+  const std::optional<ArmPath> reaching = reachTarget(base, state.joint_positions);
+  return planFromHere(reaching, base, PlanStep::Kind::kGrasp, ScriptedTrouble::kNoGrasp);
+}
+
+Plan Planner::planFromHere(const std::optional<ArmPath>& reaching, const BasePlace& turned,
+                           PlanStep::Kind last, ScriptedTrouble not_reached) const {
+  if (!reaching) return {{}, not_reached};
+  const BasePlace start = scene_.baseOf(*state_);
+  const BaseRoute route = turned.yaw == start.yaw ? BaseRoute{} : BaseRoute{turned};
+  return planOf(start, route, *reaching, last);
 }
 
 Plan Planner::pickFolded(const BasePlace& start, std::span<const Joints> carries) {
@@ -382,16 +418,29 @@ Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
     return {{},
             troubleOf(answer.outcome, ScriptedTrouble::kNoWayToTarget, ScriptedTrouble::kNoGrasp)};
   }
-  return planOf(answer.route, *reaching, PlanStep::Kind::kGrasp);
+  return planOf(start, answer.route, *reaching, PlanStep::Kind::kGrasp);
+}
+
+ReachView Planner::placeView() const {
+  const Vec3 up_of_object = rotate(conjugate(state_->goal.rotation), kUp);
+  return {reach_table_, scene_.gripFromObject().translation,
+          rotate(scene_.gripFromObject().rotation, up_of_object)};
+}
+
+Plan Planner::planPlaceFromHere(const EnvState& state, std::uint32_t attempt) {
+  takeOver(state, attempt, 750);
+  const ReachView view = placeView();
+  view_ = &view;
+  return leaning([&] {
+    BasePlace base = scene_.baseOf(state);
+    const std::optional<ArmPath> reaching = reachGoal(base, state.joint_positions);
+    return planFromHere(reaching, base, PlanStep::Kind::kRelease, ScriptedTrouble::kNoPlacement);
+  });
 }
 
 Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
-  state_ = &state;
-  seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000 + 500;
-  scene_.update(state);
-  const Vec3 up_of_object = rotate(conjugate(state.goal.rotation), kUp);
-  const ReachView view(reach_table_, scene_.gripFromObject().translation,
-                       rotate(scene_.gripFromObject().rotation, up_of_object));
+  takeOver(state, attempt, 500);
+  const ReachView view = placeView();
   view_ = &view;
   const BasePlace start = scene_.baseOf(state);
   Plan plan{{}, ScriptedTrouble::kNoFold};
@@ -399,7 +448,7 @@ Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
     failed_motions_ = 0;
     const std::optional<ArmPath> folding = liftAndFold(start, state.joint_positions, carried);
     if (!folding) continue;
-    plan = placeLeaning(start, carried);
+    plan = leaning([&] { return placeWith(start, carried); });
     if (plan.trouble == ScriptedTrouble::kNone) prepend(start, *folding, plan);
     // What the arm does not reach it does not reach from another fold.
     if (plan.trouble != ScriptedTrouble::kNoWayToGoal) break;
@@ -407,13 +456,14 @@ Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
   return plan;
 }
 
-Plan Planner::placeLeaning(const BasePlace& start, const Joints& carried) {
+template <class Attempt>
+Plan Planner::leaning(const Attempt& attempt) {
   Plan plan;
   // Upright, else leaning, else as it comes, radians.
-  for (const float leaning : {0.15F, 0.6F, -1.0F}) {
-    hand_options_.direction_tolerance = leaning;
+  for (const float tolerance : {0.15F, 0.6F, -1.0F}) {
+    hand_options_.direction_tolerance = tolerance;
     failed_motions_ = 0;
-    plan = placeWith(start, carried);
+    plan = attempt();
     if (plan.trouble != ScriptedTrouble::kNoPlacement) break;
   }
   return plan;
@@ -432,7 +482,7 @@ Plan Planner::placeWith(const BasePlace& start, const Joints& carried) {
         {},
         troubleOf(answer.outcome, ScriptedTrouble::kNoWayToGoal, ScriptedTrouble::kNoPlacement)};
   }
-  return planOf(answer.route, *reaching, PlanStep::Kind::kRelease);
+  return planOf(start, answer.route, *reaching, PlanStep::Kind::kRelease);
 }
 
 }  // namespace galactic::scripted

@@ -23,6 +23,9 @@ class Planner {
   [[nodiscard]] Plan planPick(const EnvState& state, std::uint32_t attempt);
   /// From anywhere with the target in the hand, to its release at the goal.
   [[nodiscard]] Plan planPlace(const EnvState& state, std::uint32_t attempt);
+  /// The same from where the base stands: it turns at most.
+  [[nodiscard]] Plan planPickFromHere(const EnvState& state, std::uint32_t attempt);
+  [[nodiscard]] Plan planPlaceFromHere(const EnvState& state, std::uint32_t attempt);
 
  private:
   /// What the arm has to do at a place where the robot may stand: as HandGoal has it, but with
@@ -36,6 +39,11 @@ class Planner {
     bool any_direction = false;
   };
 
+  /// `draw` tells plans of one attempt apart.
+  void takeOver(const EnvState& state, std::uint32_t attempt, std::uint32_t draw);
+  void intendToPick();
+  /// What reaches the goal with what is held.
+  [[nodiscard]] ReachView placeView() const;
   /// Poses of the arm for driving, the best first: controlled joints from `carries_`, the others
   /// from the env.
   [[nodiscard]] std::vector<Joints> carriesOf(const EnvState& state) const;
@@ -57,7 +65,12 @@ class Planner {
   [[nodiscard]] Plan pickWith(const BasePlace& start, const Joints& carried);
   /// Where the base may stand for a reach to this point of the world.
   [[nodiscard]] FloorSearch::Target standsFor(const Vec3& point) const;
-  [[nodiscard]] Plan placeLeaning(const BasePlace& start, const Joints& carried);
+  /// The plan of `attempt` with what is held upright, or else as upright as one is found.
+  template <class Attempt>
+  [[nodiscard]] Plan leaning(const Attempt& attempt);
+  /// Of a base that was turned to where it is reached from; none: there is no such.
+  [[nodiscard]] Plan planFromHere(const std::optional<ArmPath>& reaching, const BasePlace& turned,
+                                  PlanStep::Kind last, ScriptedTrouble not_reached) const;
   [[nodiscard]] Plan placeWith(const BasePlace& start, const Joints& carried);
   /// From where the arm is to its pose for driving; empty when it is there.
   [[nodiscard]] std::optional<ArmPath> fold(const BasePlace& base, const Joints& from,

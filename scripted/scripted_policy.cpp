@@ -123,7 +123,8 @@ class ScriptedPolicy::Impl {
       const std::span<const float> asked = env.asked.empty() ? state.joint_positions : env.asked;
       const Progress progress = env.player.play(arm_, *world_.robot().base(), state, asked, row);
       if (progress == Progress::kActs) return;
-      if (progress == Progress::kStuck) {
+      if (progress == Progress::kOff && planFromHere(state, env, thread)) continue;
+      if (progress != Progress::kDone) {
         std::ranges::fill(actions, 0.0F);
         env.trouble = ScriptedTrouble::kStuck;
       }
@@ -151,7 +152,7 @@ class ScriptedPolicy::Impl {
   static void finish(EnvPlan& env) {
     env.phase = ScriptedPhase::kFinish;
     scripted::Plan plan;
-    plan.steps.push_back({scripted::PlanStep::Kind::kTerminate, {}, {}});
+    plan.steps.push_back({scripted::PlanStep::Kind::kTerminate, {}, {}, {}});
     env.player = scripted::PlanPlayer(std::move(plan));
   }
 
@@ -180,6 +181,19 @@ class ScriptedPolicy::Impl {
     if (is_done && !holds_target && !isAtGoal(state)) env.trouble = ScriptedTrouble::kMissed;
     ++env.plans;
     plan(planned(state, env, is_done), env, thread);
+  }
+
+  /// The base has arrived, if not quite where it should: from there, the arm may do as well.
+  /// Whether it does.
+  bool planFromHere(const EnvState& state, EnvPlan& env, std::size_t thread) {
+    const EnvState from = planned(state, env, true);
+    scripted::Planner& planner = this->planner(thread);
+    scripted::Plan plan = env.phase == ScriptedPhase::kPlace
+                              ? planner.planPlaceFromHere(from, env.plans)
+                              : planner.planPickFromHere(from, env.plans);
+    if (plan.trouble != ScriptedTrouble::kNone) return false;
+    env.player = scripted::PlanPlayer(std::move(plan));
+    return true;
   }
 
   /// From where the env is.

@@ -35,7 +35,7 @@ enum class ScriptedTrouble : std::uint8_t {
   kNoPlacement = 4,
   /// The arm cannot be folded for driving.
   kNoFold = 5,
-  /// The simulation did not move the robot as planned.
+  /// The robot did not get on with the plan.
   kStuck = 6,
   /// The hand closed on nothing or on another object, or the target came to rest elsewhere.
   kMissed = 7,
@@ -54,8 +54,10 @@ enum class ScriptedTrouble : std::uint8_t {
 /// Works for any arm, also one of few joints, with slides, or that reaches sideways: the base turns
 /// the side on which the arm reaches towards what it is about, and helps with a turn where the arm
 /// cannot choose place and direction of the hand alone.
-/// Where the simulation moves the robot otherwise than planned, it plans again, a few times; when
-/// nothing is found it gives up: its actions are zero, but for the hand, which keeps what it holds.
+/// Where the simulation moves the robot otherwise than planned, it steers back to the plan, lets
+/// the arm reach from where the base has come to, or plans again, a few times; when nothing is
+/// found it gives up: its actions are zero, but for the hand, which keeps what it holds. So it
+/// bears noise of motion (RobotNoise).
 ///
 /// Deterministic: what it does in an env depends on that env's states only. Plans take some tens of
 /// milliseconds and allocate; `options.threads` threads make them. Not safe to call from several
@@ -72,9 +74,9 @@ class ScriptedPolicy {
 
   /// The actions of the next step of all envs. Shape of `actions`: envs * actionCount(), as
   /// BatchSimulator::step takes them. Call it once before each step. Where others act meanwhile, or
-  /// have acted before, it plans from where the robot is then. `where` (of size envs, or empty:
-  /// all) is 0 for envs in which others act: the policy leaves their actions as they are, and plans
-  /// nothing.
+  /// have acted before, it goes on, or plans, from where the robot is then. `where` (of size envs,
+  /// or empty: all) is 0 for envs in which others act: the policy leaves their actions as they are,
+  /// and plans nothing.
   void act(const BatchSimulator& simulator, std::span<float> actions,
            std::span<const std::uint8_t> where = {});
 

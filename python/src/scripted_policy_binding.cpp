@@ -101,7 +101,7 @@ void bindScriptedPolicy(py::module_& module) {
       "act", &Expert::act, py::arg("mask") = py::none(),
       "The actions of the next step of all envs: float32 (num_envs, action_count), for\n"
       "Simulator.step. You may step with others, such as those of a policy that learns from\n"
-      "it: where the robot is not on the planned way, it plans anew from there. Where it has\n"
+      "it: where the robot is not on the planned way, it steers back or plans anew. Where it has\n"
       "given up, or an env is idle, actions are 0, but for a hand that keeps what it holds.\n\n"
       "mask: bool or uint8 (num_envs,), the envs to plan and act in; in others, actions are 0.");
   type.def_property_readonly("phases", &Expert::phases,

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
@@ -117,6 +120,21 @@ TEST_F(ScriptedPolicyInTheSampleWorld, SolvesMostEpisodesTheSameWayEachTime) {
       }
     }
   }
+}
+
+TEST_F(ScriptedPolicyInTheSampleWorld, SteersARobotThatDoesNotDoQuiteWhatItIsAsked) {
+  SimulationOptions inexact = options();
+  inexact.noise.motion = 0.1F;
+  inexact.noise.motion_bias = 0.1F;
+  const Outcomes outcomes = play(world(), inexact);
+  EXPECT_GE(outcomes.successCount(), kEpisodes * 8 / 10);
+
+  // Other threads, other number of envs.
+  inexact.envs = 3;
+  inexact.threads = 2;
+  const Outcomes again = play(world(), inexact);
+  const auto same_steps = std::ranges::equal(again.steps, std::span(outcomes.steps).first(3));
+  EXPECT_TRUE(same_steps);
 }
 
 TEST_F(ScriptedPolicyInTheSampleWorld, PicksAndWaitsWhereThatIsTheTask) {
