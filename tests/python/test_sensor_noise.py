@@ -62,6 +62,23 @@ def test_an_image_that_is_drawn_twice_is_the_same(simulator, draw_actions):
     assert (renderer.render()["depth"] != first["depth"]).any(axis=(1, 2)).all()
 
 
+def test_an_episode_that_is_named_has_the_same_noise_in_any_env(simulator):
+    renderer = Renderer(simulator, **ALL)
+
+    def images_of(episodes, **options):
+        simulator.reset(np.array(episodes, np.int32), **options)
+        seen = {**renderer.render(), "cameras": renderer.world_from_camera}
+        return {name: {one.tobytes() for one in images} for name, images in seen.items()}
+
+    ones = images_of([1] * ENVS)
+    assert all(len(found) == 1 for found in ones.values())
+    assert ones == images_of([1] * ENVS)
+    mixed = images_of([0, 1, 1, 0, 1, 0])
+    assert all(len(found) == 2 and ones[name] < found for name, found in mixed.items())
+    drawn = images_of([1] * ENVS, drawn=True)
+    assert all(len(found) == ENVS for found in drawn.values())
+
+
 def test_noise_depends_on_neither_batch_nor_halves_nor_threads(world, draw_actions):
     actions = [draw_actions(ENVS, 8) for _ in range(20)]
     options = {"images": ALL, "episode_steps": 7, "threads": 1}

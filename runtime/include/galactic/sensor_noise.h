@@ -4,16 +4,16 @@
 
 namespace galactic {
 
-/// What the random numbers of an env's sensors follow from: the same moment, the same numbers,
-/// whatever else is in the batch.
+/// What the random numbers of an env's noise follow from: the same moment, the same numbers,
+/// whatever else is in the batch. An episode that was named has them wherever it is played.
 struct EnvMoment {
   /// SimulationOptions::seed, or that of the last restart.
   std::uint64_t seed = 0;
-  /// Number of the env among those of all ranks.
+  /// Number of the env among those of all ranks; 0 in an episode that was named.
   std::uint32_t env = 0;
   /// Steps done in the episode.
   std::uint32_t step = 0;
-  /// How many episodes the env has begun.
+  /// How many episodes the env has begun; of one that was named, all bits of its index inverted.
   std::uint64_t episode = 0;
 };
 

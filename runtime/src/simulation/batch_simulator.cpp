@@ -14,6 +14,7 @@
 #include "simulation/phases/follow.h"
 #include "simulation/phases/step.h"
 #include "simulation/state/batch_state.h"
+#include "simulation/state/env_moment.h"
 #include "simulation/state/env_state.h"
 #include "simulation/state/grip_frame.h"
 #include "simulation/state/model.h"
@@ -353,11 +354,7 @@ EnvObjects BatchSimulator::envObjects(std::size_t env) const noexcept {
 }
 
 EnvMoment BatchSimulator::envMoment(std::size_t env) const noexcept {
-  const simulation::Model& model = impl_->model();
-  return {.seed = model.options.seed,
-          .env = model.globalEnv(env),
-          .step = impl_->state().env(env).step,
-          .episode = impl_->state().counters(env).begun};
+  return simulation::momentOf(impl_->model(), impl_->state(), env);
 }
 
 std::size_t BatchSimulator::bodyCount() const { return impl_->model().motion.nodes.size() + 1; }

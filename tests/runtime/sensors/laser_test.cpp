@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -270,6 +271,31 @@ TEST(Laser, HasNoiseOfTheGivenDeviation) {
               0.05 * static_cast<double>(kNoise));
   // A normal distribution has 31.7 % beyond one deviation.
   EXPECT_NEAR(static_cast<double>(beyond_one) / count, 0.317, 0.04);
+}
+
+TEST(Laser, HasTheSameNoiseInAnyEnvWhereAnEpisodeIsNamed) {
+  const BoxWorld world(walls(), {middle(), middle()});
+  SimulationOptions options = withLaser({.beams = 21, .noise = 0.02F});
+  options.envs = 9;
+  BatchSimulator batch = BatchSimulator::create(world.world(), options).value();
+  const auto scans = [&] {
+    std::set<std::vector<float>> found;
+    for (std::size_t env = 0; env < 9; ++env) {
+      const std::span<const float> scan = scanOf(batch, env);
+      found.emplace(scan.begin(), scan.end());
+    }
+    return found;
+  };
+  EXPECT_EQ(scans().size(), 9U);
+  // The second that each env begins.
+  batch.reset(std::vector<std::int32_t>(9, BatchSimulator::kNextEpisode));
+  batch.reset(std::vector<std::int32_t>{1, 0, 1, 0, 1, 0, 1, 0, 1});
+  EXPECT_EQ(scans().size(), 2U);
+  const std::vector<float> actions(9 * kCartActions, 0);
+  batch.step(actions);
+  EXPECT_EQ(scans().size(), 2U);
+  batch.reset(std::vector<std::int32_t>(9, 1), EpisodeChoice::kDrawn);
+  EXPECT_EQ(scans().size(), 9U);
 }
 
 TEST(Laser, DependsOnTheEnvAlone) {

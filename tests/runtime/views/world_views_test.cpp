@@ -238,7 +238,7 @@ TEST_F(WorldViewsOfAHome, ACameraOfTheWorldStaysWhereItIs) {
             0);
 }
 
-TEST_F(WorldViewsOfAHome, SensorsHaveNumbersOfSeedEnvEpisodeAndStep) {
+TEST_F(WorldViewsOfAHome, SensorsHaveNumbersOfSeedEnvEpisodeAndStepOrOfANamedEpisode) {
   for (std::uint32_t n = 0; n < 3; ++n) {
     for (std::uint32_t env = 0; env < kEnvs; ++env) {
       const EnvMoment moment = simulator_->envMoment(env);
@@ -254,7 +254,8 @@ TEST_F(WorldViewsOfAHome, SensorsHaveNumbersOfSeedEnvEpisodeAndStep) {
       std::vector<std::int32_t>{BatchSimulator::kNextEpisode, 0, BatchSimulator::kStays});
   EXPECT_EQ(simulator_->envMoment(0).episode, 2U);
   EXPECT_EQ(simulator_->envMoment(0).step, 0U);
-  EXPECT_EQ(simulator_->envMoment(1).episode, 2U);
+  EXPECT_EQ(simulator_->envMoment(1).episode, ~std::uint64_t{0});
+  EXPECT_EQ(simulator_->envMoment(1).env, 0U);
   EXPECT_EQ(simulator_->envMoment(2).episode, 1U);
   EXPECT_EQ(simulator_->envMoment(2).step, 3U);
   ASSERT_TRUE(simulator_->restoreState(saved));

@@ -6,6 +6,7 @@
 
 #include "simulation/phases/robot_noise.h"
 #include "simulation/phases/task.h"
+#include "simulation/state/env_moment.h"
 #include "simulation/state/grip_frame.h"
 #include "support/random_stream.h"
 
@@ -233,6 +234,7 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
     return part;
   };
   const SensorOptions& sensors = model.options.sensors;
+  const EnvMoment moment = momentOf(model, state, env_number);
   if (sensors.target_up) senseUp(model, state, env_number, next(kTargetUpSize));
   if (sensors.near_objects != 0) {
     senseNearObjects(model, state, env_number, next(kWaySize * sensors.near_objects));
@@ -243,8 +245,7 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
        .cosine = headingCosine(grip),
        .sine = headingSine(grip),
        .objects = state.resting(env_number),
-       .random = RandomStream(model.options.seed ^ kLaserSalt, model.globalEnv(env_number),
-                              state.counters(env_number).begun, env.step)},
+       .random = RandomStream(moment.seed ^ kLaserSalt, moment.env, moment.episode, moment.step)},
       next(model.laser.size()));
   if (sensors.geodesic) senseWays(model, state, env_number, next(sensors::kGeodesicSize));
   assert(rest.empty());

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/state/env_moment.h"
 #include "support/random_stream.h"
 
 namespace galactic::simulation {
@@ -13,15 +14,14 @@ constexpr std::uint64_t kMotionSalt = 0x4D6F74696F6E2D31ULL;
 constexpr std::uint64_t kBiasSalt = 0x426961732D2D3031ULL;
 constexpr std::uint64_t kOdometrySalt = 0x4F646F6D2D2D3031ULL;
 
-/// The luck of an env in a step of its episode: its own or, in an episode that the caller has
-/// named, the same in whatever env that is played.
-RandomStream luckOf(const Model& model, const BatchState& state, std::size_t n, std::uint64_t salt,
-                    std::uint32_t step) {
-  const EnvCounters& counters = state.counters(n);
-  const std::uint64_t seed = model.options.seed ^ salt;
-  if (!counters.is_named) return {seed, model.globalEnv(n), counters.begun, step};
-  // No env begins so many.
-  return {seed, 0, ~std::uint64_t{model.starts[state.env(n).start].episode}, step};
+/// The luck of a moment.
+RandomStream luckOf(const EnvMoment& moment, std::uint64_t salt) {
+  return {moment.seed ^ salt, moment.env, moment.episode, moment.step};
+}
+
+/// The luck of all of a moment's episode.
+RandomStream lastingLuckOf(const EnvMoment& moment, std::uint64_t salt) {
+  return {moment.seed ^ salt, moment.env, moment.episode, 0};
 }
 
 /// By which share each motion is off, one after the other.
@@ -39,12 +39,9 @@ class Errors {
 /// The motions of one env.
 void disturb(const ChunkStep& step, std::size_t e) {
   const RobotNoise& noise = step.model.options.noise;
-  const std::size_t n = step.first + e;
-  const auto luck = [&](std::uint64_t salt, std::uint32_t at) {
-    return luckOf(step.model, step.state, n, salt, at);
-  };
-  Errors fleeting(noise.motion, luck(kMotionSalt, step.state.env(n).step));
-  Errors lasting(noise.motion_bias, luck(kBiasSalt, 0));
+  const EnvMoment moment = momentOf(step.model, step.state, step.first + e);
+  Errors fleeting(noise.motion, luckOf(moment, kMotionSalt));
+  Errors lasting(noise.motion_bias, lastingLuckOf(moment, kBiasSalt));
   const std::span<EnvRow> motions = step.chunk.motions();
   for (std::size_t m = 0; m < motions.size(); ++m) {
     motions[m].values[e] = step.chunk.action(m, e) * (1 + fleeting.next() + lasting.next());
@@ -89,7 +86,7 @@ void followOdometry(const ChunkStep& step) noexcept {
     const float length = std::sqrt(dot(way, way));
     if (length == 0 && turn == 0) continue;
     Errors errors(step.model.options.noise.localization,
-                  luckOf(step.model, step.state, n, kOdometrySalt, step.state.env(n).step));
+                  luckOf(momentOf(step.model, step.state, n), kOdometrySalt));
     // As motions are off: see disturb().
     const float felt_turn = turn * (1 + errors.next());
     const float drift = length / steps.forward_step * steps.turn_step * errors.next();
