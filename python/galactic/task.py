@@ -178,7 +178,8 @@ class Task:
         self, envs: TaskEnvs, which: NDArray[np.int64]
     ) -> Mapping[str, NDArray[np.floating]]:
         """What there is to say of the episodes that this step ended in the envs `which`: the `measures`,
-        each (len(which),). They are in final_info, and in the report of galactic.evaluate."""
+        each (len(which),). They are in final_info, in the report of galactic.evaluate, and as means in the
+        curves of galactic.train."""
         return {}
 
     def observe(self, envs: TaskEnvs) -> Mapping[str, NDArray[np.floating]]:

@@ -18,9 +18,9 @@ import galactic
 from galactic.demonstrations import Demonstrations
 from galactic.learning import checkpoint, evaluation, own_code, own_tasks
 from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy
-from galactic.learning.collector import EpisodeSums
 from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
 from galactic.learning.distributed import Group, device_of, local_ranks
+from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.launch import follow_launcher, launch
 from galactic.learning.networks import Policy

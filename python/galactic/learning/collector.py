@@ -10,23 +10,14 @@ import torch
 from torch import Tensor
 
 from galactic.learning.checkpoint import require_tensors, require_types
-from galactic.learning.environments import Environments, Timeouts
+from galactic.learning.environments import Environments, Step, Timeouts
+from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
 from galactic.learning.networks import Inputs, Policy
 from galactic.learning.noise import action_noise
 from galactic.learning.precision import Precision
 from galactic.learning.rollout import Rollout
 from galactic.learning.stopwatch import Stopwatch
-
-
-@dataclass
-class EpisodeSums:
-    """Of the episodes that ended in one rollout."""
-
-    episodes: float = 0.0
-    successes: float = 0.0
-    returns: float = 0.0
-    lengths: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -56,6 +47,7 @@ class Collector:
         self.precision = precision
         self.device = device
         self.episodes = EpisodeSums()
+        """Of those that ended in the latest rollout."""
         self.stopwatch = Stopwatch()
         self.rollout = Rollout.empty(
             options.horizon,
@@ -223,16 +215,19 @@ class Collector:
             self._returns[envs] += result.rewards
             self._lengths[envs] += 1
             if ended.any():
-                self._count(envs, ended, result.successes)
+                self._count(envs, ended, result)
             if result.timeouts is not None:
                 self._timeouts.append(self._timeout(envs, step, result.timeouts))
 
-    def _count(self, envs: slice, ended: np.ndarray, successes: np.ndarray) -> None:
-        returns, lengths = self._returns[envs], self._lengths[envs]
-        self.episodes.episodes += float(ended.sum())
-        self.episodes.successes += float(successes[ended].sum())
-        self.episodes.returns += float(returns[ended].sum())
-        self.episodes.lengths += float(lengths[ended].sum())
+    def _count(self, envs: slice, ended: np.ndarray, result: Step) -> None:
+        returns, lengths, sums = self._returns[envs], self._lengths[envs], self.episodes
+        sums.episodes += float(ended.sum())
+        sums.successes += float(result.successes[ended].sum())
+        sums.returns += float(returns[ended].sum())
+        sums.lengths += float(lengths[ended].sum())
+        for name, values in result.measures.items():
+            measured = float(values[ended].sum(dtype=np.float64))
+            sums.measures[name] = sums.measures.get(name, 0.0) + measured
         returns[ended] = 0.0
         lengths[ended] = 0
         self._waits[envs][ended] = False

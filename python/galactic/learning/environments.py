@@ -33,6 +33,8 @@ class Step(NamedTuple):
     truncated: np.ndarray  # [n] bool: time did
     successes: np.ndarray  # [n] bool: it ended in success
     timeouts: Optional[Timeouts] = None  # None: truncated is false everywhere
+    # Where an episode ended, what there is to measure of it: [n] each, by the names of Environments.measures.
+    measures: Mapping[str, np.ndarray] = {}
 
 
 class Environments(Protocol):
@@ -49,6 +51,7 @@ class Environments(Protocol):
     images: Mapping[str, tuple[int, ...]]  # shapes of an env's rgb and depth, of one, or of none
     decides_terminate: bool  # whether the task asks for the terminate action
     halves: Sequence[slice]
+    measures: Sequence[str]  # names of what a task of one's own says of each episode
 
     def reset(self, into: Observation) -> None:
         """Starts all envs on their first episodes, and writes what they see: rows of all envs."""

@@ -9,8 +9,8 @@ import numpy as np
 import torch
 
 import galactic
-from galactic.learning.collector import EpisodeSums
-from galactic.learning.environments import Observation
+from galactic.learning.environments import Observation, Step
+from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.homes import Homes
 from galactic.learning.networks import Inputs, Policy
 from galactic.learning.noise import noise_of
@@ -161,7 +161,7 @@ class Evaluator:
             if witness is not None:
                 witness.hears(step.rewards)
             ended = step.terminated | step.truncated
-            self._follow(step.rewards, ended, step.successes, details)
+            self._follow(step, ended, details)
             for one in (p for p, over in zip(self._played, ended) if p is not None and over):
                 results[one.result.episode] = one.result
             if ended.any():
@@ -183,18 +183,17 @@ class Evaluator:
                 place, collisions = homes.base_position(env), homes.collisions(env)
                 self._played[env] = _Played(episode, place, collisions)
 
-    def _follow(self, rewards: np.ndarray, ended: np.ndarray, successes: np.ndarray,
-                details: bool) -> None:  # fmt: skip
+    def _follow(self, step: Step, ended: np.ndarray, details: bool) -> None:
         for env, one in enumerate(self._played):
             if one is None:
                 continue
             result = one.result
-            result.reward += float(rewards[env])
+            result.reward += float(step.rewards[env])
             result.length += 1
             if ended[env]:
-                result.success = bool(successes[env])
+                result.success = bool(step.successes[env])
                 result.ending = galactic.EpisodeEnd(self._homes.endings(0)[env]).name.lower()
-                result.measures = self._homes.measures(0, env)
+                result.measures = {name: float(row[env]) for name, row in step.measures.items()}
                 if details:
                     one.finish(self._homes.collisions(env))
             elif details:
@@ -241,21 +240,14 @@ def rows_of(homes: Homes) -> Observation:
 
 def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
     """What the curves want to know."""
+    names = results[0].measures if results else {}
     return EpisodeSums(
         float(len(results)),
         float(sum(result.success for result in results)),
         sum(result.reward for result in results),
         float(sum(result.length for result in results)),
+        {name: sum(result.measures[name] for result in results) for name in names},
     )
-
-
-def _means_of_measures(results: Sequence[EpisodeResult]) -> dict[str, Any]:
-    """Of a task of one's own, if there are any."""
-    names = results[0].measures if results else {}
-    means = {
-        name: sum(result.measures[name] for result in results) / len(results) for name in names
-    }
-    return {"measures": means} if means else {}
 
 
 def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
@@ -265,6 +257,7 @@ def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
     for result in results:
         endings[result.ending] = endings.get(result.ending, 0) + 1
     steps = max(sum(result.length for result in results), 1)
+    measures = {name: total / count for name, total in sums_of(results).measures.items()}
     return {
         "episodes": len(results),
         "success": sum(result.success for result in results) / count,
@@ -274,7 +267,7 @@ def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
         "path": sum(result.path for result in results) / count,
         "refused": sum(result.refused for result in results) / steps,
         "slid": sum(result.slid for result in results) / steps,
-        **_means_of_measures(results),
+        **({"measures": measures} if measures else {}),
         "endings": dict(sorted(endings.items())),
         "each": [asdict(result) for result in results],
     }

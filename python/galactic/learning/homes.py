@@ -128,6 +128,7 @@ class Homes:
         parts = self.env.observation_parts
         self.parts = [(name, part.stop - part.start) for name, part in parts.items()]
         self.state_size = sum(size for _, size in self.parts)
+        self.measures: Sequence[str] = self.env.measures
         self.motions = first.action_count - 2
         self.meanings = meaning_of((name for name, _ in self.parts), first.options)
         self.decides_terminate = _decides_terminate(settings.terminate, first.options)
@@ -135,7 +136,6 @@ class Homes:
         self._landings = [_landing(half.stop - half.start) for half in self.halves]
         self._into: list[Optional[Observation]] = [None] * settings.halves
         self._staged: list[Optional[Observation]] = [None] * settings.halves
-        self._final_info: list[Mapping[str, Any]] = [{}] * settings.halves
 
     def restart(self, seed: int) -> None:
         """As if the homes had just been made with this seed."""
@@ -159,7 +159,6 @@ class Homes:
     def recv(self, half: int) -> Step:
         seen, rewards, terminated, truncated, infos = self.env.recv(half)
         self._show(seen, infos)
-        self._final_info[half] = infos["final_info"] if infos else {}
         staged, into = self._staged[half], self._into[half]
         if staged is not None and into is not None:
             for host, device in zip(staged, into):
@@ -169,7 +168,8 @@ class Homes:
         if infos and truncated.any():
             timeouts = self._timeouts(np.flatnonzero(truncated), infos["final_obs"])
         successes = self._landings[half]["endings"] == SUCCESS
-        return Step(rewards, terminated, truncated, successes, timeouts)
+        measures = {name: infos["final_info"][name] for name in self.measures} if infos else {}
+        return Step(rewards, terminated, truncated, successes, timeouts, measures)
 
     def begin_episodes(self, episodes: Mapping[int, int], into: Observation) -> None:
         """Begins an episode of the world, by its index, in some envs; the others stay. Writes what all
@@ -193,10 +193,6 @@ class Homes:
     def endings(self, half: int) -> np.ndarray:
         """How episodes ended in the last step, as numbers of EpisodeEnd; [n]."""
         return self._landings[half]["endings"]
-
-    def measures(self, half: int, row: int) -> dict[str, float]:
-        """What a task of one's own says of the episode that the last step ended in an env of a half."""
-        return {name: float(self._final_info[half][name][row]) for name in self.env.measures}
 
     def base_position(self, env: int) -> np.ndarray:
         """Where the base of a robot stands, on the floor plane: x and z, meters."""

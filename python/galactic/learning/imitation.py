@@ -15,8 +15,8 @@ from galactic._core import EpisodeEnd
 from galactic.demonstrations import Demonstrations, require_alike
 from galactic.hashing import hashed
 from galactic.learning.checkpoint import CheckpointError, require_tensors
-from galactic.learning.collector import EpisodeSums
 from galactic.learning.distributed import Group
+from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.fitting import Observed
 from galactic.learning.homes import exact_camera
 from galactic.learning.learner import Learner

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import collections
-import dataclasses
+import math
 import os
 import pathlib
 import signal
@@ -23,16 +23,17 @@ from galactic.learning.checkpoint import (
     refusing,
     require_types,
 )
-from galactic.learning.collector import Collector, CollectorOptions, EpisodeSums
+from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
+from galactic.learning.episode_sums import MEASURE, EpisodeSums
 from galactic.learning.fitting import Observed
 from galactic.learning.imitation import ImitationLearner, Streams, require_same
 from galactic.learning.learner import Learner
 from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.ppo import PpoLearner
 from galactic.learning.privileges import critic_columns
-from galactic.learning.reports.curves import COLUMNS, Curves, write_json
+from galactic.learning.reports.curves import COLUMNS, VALIDATION, Curves, columns_of, write_json
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
@@ -65,6 +66,7 @@ class Trainer:
         self.group = group
         self.folder = folder
         self.validation = validation
+        self.measures = tuple(envs.measures)
         torch.manual_seed(settings.seed)
         self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
         self.meanings: dict[str, Any] = dict(getattr(envs, "meanings", {}))
@@ -93,7 +95,7 @@ class Trainer:
         self.stragglers = group.stragglers(settings.sync_fraction, settings.shortest_rollout)
         self.stopwatch = self.source.stopwatch
         self.checkpoints = CheckpointFolder(folder, settings.keep) if folder else None
-        self.curves = Curves(folder if group.rank == 0 else None, title)
+        self.curves = Curves(folder if group.rank == 0 else None, title, self.measures)
         self.progress = ProgressLine(quiet=group.rank > 0)
         self.log: Optional[Log] = None
         """Who else takes rows of the curves."""
@@ -178,13 +180,12 @@ class Trainer:
             self.stragglers.finished(update)
         with self.stopwatch.time("update"):
             losses = self.learner.update(rollout, update, self.steps / self.settings.steps)
-        sums = self.source.episodes
         shared = torch.tensor(
             [
                 float(rollout.steps * self.settings.envs),
                 float(self._interrupted),
                 float(self.source.waiting),
-                *dataclasses.astuple(sums),
+                *self.source.episodes.numbers(self.measures),
             ],
             dtype=torch.float64,
             device=self.group.device,
@@ -194,7 +195,7 @@ class Trainer:
         self.steps += int(steps)
         self.updates += 1
         self._waiting = int(waiting)
-        self._remember(EpisodeSums(*episodes))
+        self._remember(EpisodeSums.of(episodes, self.measures))
         if not all(abs(value) < float("inf") for value in losses.values()):
             raise TrainingError(
                 f"update {self.updates} gave a loss that is not a number ({losses}); a lower "
@@ -214,14 +215,13 @@ class Trainer:
 
     def recent(self) -> EpisodeSums:
         """The latest episodes of training, `window` or a few more."""
-        return EpisodeSums(
-            *(sum(column) for column in zip(*map(dataclasses.astuple, self._window)))
-        )
+        return EpisodeSums.total(self._window, self.measures)
 
     def figures(self) -> dict[str, float]:
-        """Success, return and length, means over recent(); none before every env has finished an
-        episode: those that are over first are the short ones, successes most of all."""
-        return {} if self._waiting else _means(self.recent(), "")
+        """Success, return, length and what the task measures, means over recent(); none before every env
+        has finished an episode: those that are over first are the short ones, successes most of all.
+        """
+        return {} if self._waiting else self.recent().means()
 
     def _add_row(self, values: dict[str, float]) -> None:
         self.curves.add(values)
@@ -255,6 +255,7 @@ class Trainer:
         self.progress.show(
             f"{amount(self.steps)} of {amount(self.settings.steps)} steps  "
             f"{amount(speed)} steps/s  {goes}  {duration(left)} left"
+            + "".join(f"  {one}" for one in _measured(figures))
         )
         with self.stopwatch.time("reports"):
             self.curves.write(self.settings.to_dict(), self.breakdown(), is_last=is_last)
@@ -264,19 +265,20 @@ class Trainer:
             return
         with self.stopwatch.time("validation"):
             sums = torch.tensor(
-                dataclasses.astuple(self.validation(self.policy)),
+                self.validation(self.policy).numbers(self.measures),
                 dtype=torch.float64,
                 device=self.group.device,
             )
-            found = EpisodeSums(*self.group.sum(sums).tolist())
-        means = _means(found, "validation_")
-        self._add_row({"steps": self.steps, "seconds": self.seconds, **means})
+            found = EpisodeSums.of(self.group.sum(sums).tolist(), self.measures)
+        means = found.means()
+        named = {VALIDATION + name: value for name, value in means.items()}
+        self._add_row({"steps": self.steps, "seconds": self.seconds, **named})
         self.progress.say(
             f"validation after {amount(self.steps)} steps: success "
-            f"{100.0 * means['validation_success']:.1f} % of {found.episodes:.0f} episodes, return "
-            f"{means['validation_return']:.2f}"
+            f"{100.0 * means['success']:.1f} % of {found.episodes:.0f} episodes, return "
+            f"{means['return']:.2f}" + "".join(f", {one}" for one in _measured(means))
         )
-        self._keep_if_best(means["validation_success"])
+        self._keep_if_best(means["success"])
 
     def _keep_if_best(self, success: Optional[float]) -> None:
         """Writes best.pt when none was better; equal ones replace it, being trained longer."""
@@ -323,13 +325,20 @@ class Trainer:
         counters, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
             # Checkpoints of before do not know who waits, as in Collector.load_state_dict(), nor of a
-            # paced rate or of processor time.
-            counters = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0, **counters}
+            # paced rate, of processor time or of measures.
+            before = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0, "measures": []}
+            counters = {**before, **counters}
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
                 raise CheckpointError(
                     f"{folder} is of {counters['ranks']} ranks, not {self.group.size}; start as many"
                 )
+            for name in counters["measures"]:
+                if name not in self.measures:
+                    raise CheckpointError(
+                        f"{folder} is of a task that measured {name}, and the task does so no longer; put "
+                        "its class back as it was, or begin another run"
+                    )
             self._take_counters(counters)
             self.learner.optimizer.load_state_dict(tensors.get("optimizer", {}))
         file = folder / "policy.pt"
@@ -351,11 +360,16 @@ class Trainer:
         for row in counters["rows"]:
             if isinstance(row, list) and len(row) == _COLUMNS_OF_BEFORE:
                 row += [None] * (len(COLUMNS) - len(row))
-        self.curves.rows = _rows(counters, "rows", len(COLUMNS), (float, int, type(None)))
-        width = len(dataclasses.fields(EpisodeSums))
-        self._window = collections.deque(
-            EpisodeSums(*sums) for sums in _rows(counters, "window", width, (float, int))
-        )
+        measures = counters["measures"]
+        columns = columns_of(measures)
+        rows = _rows(counters, "rows", len(columns), (float, int, type(None)))
+        self.curves.take_up(rows, columns)
+        width = len(EpisodeSums().numbers(measures))
+        self._window.clear()
+        for numbers in _rows(counters, "window", width, (float, int)):
+            sums = EpisodeSums.of(numbers, measures)
+            sums.measures = {**dict.fromkeys(self.measures, math.nan), **sums.measures}
+            self._window.append(sums)
         require_types(counters["stopwatch"], dict.fromkeys(counters["stopwatch"], (float, int)))
         self.stopwatch.seconds = dict(counters["stopwatch"])
         self._waiting, self._seconds_before = counters["waiting"], counters["seconds"]
@@ -375,7 +389,8 @@ class Trainer:
             "rate_share": self.learner.rate.share,
             "rows": self.curves.rows,
             "waiting": self._waiting,
-            "window": [dataclasses.astuple(sums) for sums in self._window],
+            "measures": self.measures,
+            "window": [sums.numbers(self.measures) for sums in self._window],
             "seconds": self.seconds,
             "processor_seconds": self.processor_seconds,
             "stopwatch": self.stopwatch.seconds,
@@ -424,6 +439,7 @@ class Trainer:
                 "steps_per_second": self.steps / max(self.seconds, 1e-9),
                 "best_success": self.best,
                 "training": self.figures(),
+                "validation": self.curves.latest_validation(),
                 "timing": self.timing(),
             },
         )
@@ -445,6 +461,7 @@ _COUNTERS = {
     "rate_share": (float, int),
     "rows": list,
     "waiting": int,
+    "measures": list,
     "window": list,
     "seconds": (float, int),
     "processor_seconds": (float, int),
@@ -482,14 +499,13 @@ class _Signals:
             signal.signal(number, before)
 
 
-def _means(sums: EpisodeSums, prefix: str) -> dict[str, float]:
-    if not sums.episodes:
-        return {}
-    return {
-        prefix + "success": sums.successes / sums.episodes,
-        prefix + "return": sums.returns / sums.episodes,
-        prefix + "length": sums.lengths / sums.episodes,
-    }
+def _measured(means: dict[str, float]) -> list[str]:
+    """What a task of one's own measures, for a line."""
+    return [
+        f"{name.removeprefix(MEASURE)} {value:.3g}"
+        for name, value in means.items()
+        if name.startswith(MEASURE)
+    ]
 
 
 def threads_of(wanted: int, local_ranks: int) -> int:

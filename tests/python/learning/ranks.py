@@ -16,7 +16,7 @@ from galactic.learning.distributed import Group  # noqa: E402
 from galactic.learning.environments import Step  # noqa: E402
 from galactic.learning.trainer import Trainer  # noqa: E402
 from test_trainer import SETTINGS  # noqa: E402
-from toys import ReachAndGrasp, Uneven  # noqa: E402
+from toys import Measured, ReachAndGrasp, Uneven  # noqa: E402
 
 
 def train(group: Group, folder: pathlib.Path, envs: int) -> None:
@@ -24,7 +24,7 @@ def train(group: Group, folder: pathlib.Path, envs: int) -> None:
     settings = dataclasses.replace(
         SETTINGS, envs=envs, steps=8 * 32 * 10, sync_fraction=1.0, adam_epsilon=1e-2
     )
-    toy = ReachAndGrasp(envs, halves=2, first_env=group.rank * envs)
+    toy = Measured(envs, halves=2, first_env=group.rank * envs)
     trainer = Trainer(settings, toy, group, folder)
     if group.size == 1:
         torch.save(trainer.learner.optimizer.parameters.detach(), folder / "start.pt")

@@ -128,6 +128,43 @@ def test_a_run_goes_on_with_the_task_that_it_began_with(
 
 
 @needs_worlds
+def test_the_curves_tell_what_a_task_measures(
+    tmp_path: pathlib.Path, task_file: pathlib.Path
+) -> None:
+    """And whoever else takes them. A validation measures what an evaluation does."""
+    run, report, lines = tmp_path / "run", tmp_path / "report.json", tmp_path / "rows.jsonl"
+    (tmp_path / "lab.py").write_text(
+        "import json\n"
+        "def to_lines(folder, settings):\n"
+        f"    file = open({str(lines)!r}, 'w')\n"
+        "    return lambda row: print(json.dumps(row), file=file, flush=True)\n",
+        encoding="utf-8",
+    )
+    task = ["--task", f"{task_file}:Approach"]
+    options = [*SMALL, "--steps", 12 * UPDATE, *task, "--log-to", f"{tmp_path / 'lab.py'}:to_lines"]
+    options += ["--validation", HELD_OUT, "--validation-episodes", 8]
+    done = call("train", WORLD, "-o", run, *options)
+    assert done.returncode == 0, done.stderr
+    rows = [json.loads(line) for line in lines.read_text(encoding="utf-8").splitlines()]
+    *_, validated, trained = rows
+    assert 0.6 < trained["measure_way_left"] < 10.0
+    for given, row in zip(rows, curve(run)):
+        for name in ("measure_way_left", "validation_measure_way_left"):
+            assert row[name] == (pytest.approx(given[name]) if name in given else None)
+    kept = json.loads((run / "report.json").read_text(encoding="utf-8"))
+    assert kept["training"]["measure_way_left"] == trained["measure_way_left"]
+    left = validated["validation_measure_way_left"]
+    assert kept["validation"]["measure_way_left"] == left
+    assert f", way_left {left:.3g}\n" in done.stderr
+    assert '"title":"way_left"' in (run / "curves.html").read_text(encoding="utf-8")
+    policy = next(run.glob("checkpoints/*/policy.pt"))
+    done = call("evaluate", policy, HELD_OUT, "--episodes", 8, *task, "--report", report)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(report.read_text(encoding="utf-8"))["measures"]["way_left"]
+    assert found == pytest.approx(left, abs=1e-3)
+
+
+@needs_worlds
 def test_an_evaluation_runs_a_task_only_when_told(
     tmp_path: pathlib.Path, task_file: pathlib.Path
 ) -> None:

@@ -120,6 +120,7 @@ def test_two_ranks_are_one_of_twice_the_envs(tmp_path: pathlib.Path) -> None:
         # Measured ones differ.
         for name in row.keys() - {"seconds", "sps"}:
             assert row[name] == pytest.approx(other[name], rel=1e-3, abs=1e-4), name
+    assert one[-1]["measure_steps"] == one[-1]["length"] > 1.0
 
 
 def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import io
 import json
 import os
 import pathlib
@@ -24,12 +25,14 @@ from galactic.learning.checkpoint import (
     new_policy,
 )
 from galactic.learning.distributed import Group, Stragglers
+from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.networks import PolicyShape
 from galactic.learning.reports import curves as curves_module
 from galactic.learning.reports.curves import Curves, read_curves
+from galactic.learning.reports.progress import ProgressLine
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
-from toys import ReachAndGrasp, Remember, Uneven
+from toys import Measured, ReachAndGrasp, Remember, Uneven
 
 UPDATE = 16 * 10
 SETTINGS = Settings(
@@ -69,7 +72,8 @@ def curve(folder: pathlib.Path) -> list[dict[str, float | None]]:
 
 
 @pytest.mark.parametrize(
-    "toy, recurrent", [(ReachAndGrasp, False), (Remember, True), (Uneven, False)]
+    "toy, recurrent",
+    [(ReachAndGrasp, False), (Remember, True), (Uneven, False), (Measured, False)],
 )
 def test_a_resumed_run_is_the_same_run_bit_for_bit(
     tmp_path: pathlib.Path, toy: Any, recurrent: bool
@@ -119,12 +123,59 @@ def test_the_curves_begin_when_every_env_has_finished_an_episode(
     assert 0.4 < rows[4]["success"] < 0.7
 
 
+def test_the_curves_have_what_a_task_measures(tmp_path: pathlib.Path, capsys: Any) -> None:
+    """Means of the same episodes as success and length: of the latest ones, and of validations. The columns
+    are those of the task, whatever it calls them."""
+
+    def validate(_: Any) -> EpisodeSums:
+        return EpisodeSums(4.0, 3.0, 20.0, 40.0, {"kl": 1.0, "validation_success": -2.0})
+
+    settings = dataclasses.replace(SETTINGS, validate_every=4 * UPDATE)
+    trainer = make_trainer(tmp_path, settings, Measured, validation=validate)
+    trainer.progress._live = True
+    trainer.begin()
+    trainer.train()
+    rows = curve(tmp_path)
+    assert list(rows[0])[-6:] == [
+        "measure_kl",
+        "measure_validation_success",
+        "measure_steps",
+        "validation_measure_kl",
+        "validation_measure_validation_success",
+        "validation_measure_steps",
+    ]
+    trained = [row for row in rows if row["kl"] is not None]
+    validated = [row for row in rows if row["validation_success"] is not None]
+    assert (len(trained), len(validated)) == (8, 2)
+    for row in trained:
+        assert row["measure_steps"] == row["length"]
+        assert row["measure_validation_success"] == row["success"]
+        assert all(row[f"validation_measure_{name}"] is None for name in Measured.measures)
+    assert any(row["measure_kl"] not in (row["success"], row["kl"], None) for row in trained)
+    for row in validated:
+        found = [row[f"validation_measure_{name}"] for name in Measured.measures]
+        assert found == [0.25, -0.5, 0.0] and row["measure_steps"] is None
+    said = capsys.readouterr().err
+    assert "75.0 % of 4 episodes, return 5.00, kl 0.25, validation_success -0.5, steps 0\n" in said
+    assert f" left  kl {trained[-1]['measure_kl']:.3g}  validation_success " in said
+    report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    assert report["training"] == trainer.figures() and "measure_kl" in report["training"]
+    assert report["validation"] == {
+        "success": 0.75,
+        "return": 5.0,
+        "length": 10.0,
+        "measure_kl": 0.25,
+        "measure_validation_success": -0.5,
+        "measure_steps": 0.0,
+    }
+
+
 def test_a_report_has_no_figures_before_the_curves_have(tmp_path: pathlib.Path) -> None:
     trainer = make_trainer(tmp_path, dataclasses.replace(SETTINGS, steps=UPDATE), Uneven)
     trainer.begin()
     trainer.train()
     report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
-    assert report["training"] == {} and report["best_success"] is None
+    assert report["training"] == report["validation"] == {} and report["best_success"] is None
 
 
 def test_a_checkpoint_holds_a_policy_that_acts_the_same(tmp_path: pathlib.Path) -> None:
@@ -334,6 +385,8 @@ GONE = "gone"
         ),
         ("trainer.pt", {"window": [[1, 2, 3, "4"]]}, r"window\[0\]: found \[1, 2, 3, '4'\], exp"),
         ("trainer.pt", {"window": [4]}, r"window\[0\]: found 4, expected 4 numbers"),
+        ("trainer.pt", {"measures": "kl"}, "measures: found 'kl', expected list"),
+        ("trainer.pt", {"measures": [[]]}, r"is of a task that measured \[\], and"),
         ("trainer.pt", {"seconds": GONE}, "seconds: found nothing, expected float or int"),
         ("trainer.pt", {"stopwatch": {"update": "long"}}, "update: found 'long', expected float"),
         ("trainer.pt", {"optimizer": GONE}, "step: found nothing, expected float32 "),
@@ -386,6 +439,49 @@ def test_a_checkpoint_of_before_there_were_teachers_is_taken_up(tmp_path: pathli
     checkpoint.save(file, values, tensors)
     with pytest.raises(CheckpointError, match="rows.0.: found"):
         resumed.resume()
+
+
+def test_a_checkpoint_of_before_there_were_measures_is_taken_up(tmp_path: pathlib.Path) -> None:
+    """Means of them begin when all episodes that count have been measured."""
+    saved = saved_run(tmp_path, window=250)
+    file = saved.checkpoints.latest() / "trainer.pt"
+    values, tensors = checkpoint.load(file)
+    assert values.pop("measures") == []
+    checkpoint.save(file, values, tensors)
+    resumed = make_trainer(tmp_path, saved.settings, Measured)
+    resumed.resume()
+    # From a checkpoint of its own, too.
+    resumed.train(pause_at=3 * UPDATE)
+    again = make_trainer(tmp_path, saved.settings, Measured)
+    again.resume()
+    assert again.train()
+    rows = curve(tmp_path)
+    assert len(rows) == 8 and all(row["length"] is not None for row in rows)
+    known = [row["measure_steps"] for row in rows]
+    missing = known.count(None)
+    assert 2 < missing < 8 and known[:missing] == [None] * missing
+    assert known[missing:] == [row["length"] for row in rows[missing:]]
+
+
+def test_a_task_that_measures_something_else_is_another_run(tmp_path: pathlib.Path) -> None:
+    saved = make_trainer(tmp_path, dataclasses.replace(SETTINGS, steps=UPDATE), Measured)
+    saved.begin()
+    saved.train()
+    latest = saved.checkpoints.latest()
+    with pytest.raises(CheckpointError) as refused:
+        make_trainer(tmp_path).resume()
+    assert str(refused.value) == (
+        f"{latest} is of a task that measured kl, and the task does so no longer; put its class back as it "
+        "was, or begin another run"
+    )
+
+    class MeasuresMore(Measured):
+        measures = ("steps", "more", "kl", "validation_success")
+
+    more = make_trainer(tmp_path, toy=MeasuresMore)
+    more.resume()
+    row = dict(zip(more.curves.columns, more.curves.rows[0]))
+    assert row["measure_steps"] == row["length"] and row["measure_more"] is None
 
 
 def test_a_checkpoint_of_before_the_curves_waited_is_taken_up(tmp_path: pathlib.Path) -> None:
@@ -455,6 +551,39 @@ def test_the_page_of_the_curves_asks_for_nothing(tmp_path: pathlib.Path) -> None
     assert page.count("</script>") == 1 and "prefers-color-scheme: dark" in page
     with open(tmp_path / "curves.csv", encoding="utf-8") as file:
         assert len(list(csv.reader(file))) == 1 + 8
+
+
+def test_the_page_of_the_curves_draws_what_a_task_measures(tmp_path: pathlib.Path) -> None:
+    def charts(toy: Any) -> dict[str, Any]:
+        trainer = make_trainer(tmp_path, toy=toy)
+        trainer.begin()
+        trainer.train()
+        page = (tmp_path / "curves.html").read_text(encoding="utf-8")
+        data = json.loads(page.split("const data = ")[1].split(";\n")[0])
+        drawn = {name for chart in data["charts"] for name, _ in chart["lines"]}
+        assert drawn <= set(data["columns"])
+        return {chart["title"]: chart for chart in data["charts"]}
+
+    plain, measured = charts(ReachAndGrasp), charts(Measured)
+    assert list(measured) == [*list(plain)[:3], *Measured.measures, *list(plain)[3:]]
+    assert measured["steps"]["lines"] == [
+        ["measure_steps", "training"],
+        ["validation_measure_steps", "validation"],
+    ]
+
+
+def test_a_line_of_progress_fits_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A longer one would leave its beginning behind each time."""
+
+    class Terminal(io.StringIO):
+        isatty = lambda self: True
+        fileno = lambda self: 7
+
+    said = Terminal()
+    for columns, shown in ((20, "x" * 19), (0, "x" * 30)):
+        monkeypatch.setattr(os, "get_terminal_size", lambda _: os.terminal_size((columns, 24)))
+        ProgressLine(said).show("x" * 30)
+        assert said.getvalue().endswith(f"\x1b[K{shown}")
 
 
 def test_the_table_of_the_curves_keeps_every_digit_of_whole_numbers(tmp_path: pathlib.Path) -> None:

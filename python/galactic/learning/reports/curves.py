@@ -12,6 +12,7 @@ from typing import Any, Mapping, Optional, Sequence
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.checkpoint import write_atomically
+from galactic.learning.episode_sums import MEASURE
 from galactic.learning.reports.page import curves_page
 
 COLUMNS = (
@@ -42,6 +43,13 @@ row before. Success, return and length: means of the latest episodes of training
 has finished one; `validation_...`: of the episodes for validation, in rows that have them. Log_std:
 the mean of the policy's, where they are parameters. Teacher_kl: the divergence from what the teacher
 would do, nats per step, while it counts. New columns come last: see Trainer."""
+VALIDATION = "validation_"
+
+
+def columns_of(measures: Sequence[str]) -> tuple[str, ...]:
+    """COLUMNS, and behind them means of what a task of one's own measures, of training and validations."""
+    means = [MEASURE + name for name in measures]
+    return (*COLUMNS, *means, *(VALIDATION + name for name in means))
 
 
 PAGE_SHARE = 0.01
@@ -49,20 +57,36 @@ PAGE_SHARE = 0.01
 
 
 class Curves:
-    """Rows of COLUMNS, and the files that show them. Not given values are None."""
+    """Rows of columns_of(measures), and the files that show them. Not given values are None."""
 
-    def __init__(self, folder: Optional[pathlib.Path], title: str):
+    def __init__(self, folder: Optional[pathlib.Path], title: str, measures: Sequence[str] = ()):
         self._folder = folder
         self._title = title
+        self.columns = columns_of(measures)
         self.rows: list[list[Optional[float]]] = []
         # How many of them the table has; None: it is none of this run's yet, or of its time before.
         self._in_table: Optional[int] = None
         self._next_page = 0.0
 
     def add(self, values: Mapping[str, float]) -> None:
-        unknown = set(values) - set(COLUMNS)
+        unknown = set(values) - set(self.columns)
         assert not unknown, unknown
-        self.rows.append([values.get(name) for name in COLUMNS])
+        self.rows.append([values.get(name) for name in self.columns])
+
+    def take_up(self, rows: Sequence[Sequence[Optional[float]]], columns: Sequence[str]) -> None:
+        """Goes on behind these rows, which may lack some of the columns."""
+        before = [dict(zip(columns, row)) for row in rows]
+        self.rows = [[values.get(name) for name in self.columns] for values in before]
+
+    def latest_validation(self) -> dict[str, float]:
+        """Means of the latest validation, by their names in training; nothing where there was none."""
+        of_validation = [n for n, name in enumerate(self.columns) if name.startswith(VALIDATION)]
+        for row in reversed(self.rows):
+            found = [(self.columns[n], row[n]) for n in of_validation]
+            means = {name[len(VALIDATION) :]: value for name, value in found if value is not None}
+            if means:
+                return means
+        return {}
 
     def write(self, settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]],
               *, is_last: bool = True) -> None:  # fmt: skip
@@ -73,7 +97,7 @@ class Curves:
         self._write_table(self._folder / "curves.csv")
         begin = time.monotonic()
         if is_last or begin >= self._next_page:
-            page = curves_page(self._title, COLUMNS, self.rows, settings, breakdown)
+            page = curves_page(self._title, self.columns, self.rows, settings, breakdown)
             write_atomically(self._folder / "curves.html", lambda file: file.write(page), "w")
             end = time.monotonic()
             self._next_page = end + (end - begin) / PAGE_SHARE
@@ -84,7 +108,7 @@ class Curves:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         if self._in_table is None:
-            writer.writerow(COLUMNS)
+            writer.writerow(self.columns)
         for row in self.rows[self._in_table or 0 :]:
             writer.writerow([_cell(value) for value in row])
         if self._in_table is None:

@@ -9,7 +9,7 @@ from galactic.learning import own_code
 from galactic.learning.settings import SettingsError
 
 TakeRow = Callable[[Mapping[str, float]], object]
-"""Takes a row: what is known of reports.curves.COLUMNS, by name."""
+"""Takes a row: what is known of the columns of reports.curves, by name."""
 
 
 def taker(text: str, folder: pathlib.Path, settings: Mapping[str, Any]) -> TakeRow:

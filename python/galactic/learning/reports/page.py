@@ -2,32 +2,60 @@
 
 from __future__ import annotations
 
+import dataclasses
 import html
 import json
 import math
+from dataclasses import dataclass
 from typing import Any, Mapping, Optional, Sequence
 
+from galactic.learning.episode_sums import MEASURE
 from galactic.learning.settings import typed
 
-# Title, unit of the vertical axis, columns with their names in the legend.
-CHARTS: Sequence[tuple[str, str, Sequence[tuple[str, str]]]] = (
-    (
-        "Success",
-        "share of episodes",
-        (("success", "training"), ("validation_success", "validation")),
-    ),
-    ("Return", "reward per episode", (("return", "training"), ("validation_return", "validation"))),
-    ("Length", "steps per episode", (("length", "training"), ("validation_length", "validation"))),
-    ("Speed", "steps per second", (("sps", "training"),)),
-    ("Value loss", "", (("value_loss", "value loss"),)),
-    ("Policy loss", "", (("policy_loss", "policy loss"),)),
-    ("Entropy", "nats", (("entropy", "entropy"),)),
-    ("Divergence of an update", "nats", (("kl", "KL"),)),
-    ("Clipped", "share of steps", (("clipped", "clipped"),)),
-    ("Norm of the gradient", "", (("grad_norm", "norm"),)),
-    ("Explained variance", "of the returns", (("explained_variance", "explained"),)),
-    ("Learning rate", "", (("learning_rate", "rate"),)),
+
+@dataclass(frozen=True)
+class Chart:
+    """`unit`: of the vertical axis, which has all the numbers of `axis` in any case. `lines`: columns with
+    their names in the legend."""
+
+    title: str
+    unit: str
+    lines: Sequence[tuple[str, str]]
+    axis: Sequence[float] = ()
+
+
+def _of_episodes(title: str, unit: str, column: str, axis: Sequence[float] = ()) -> Chart:
+    lines = (column, "training"), (f"validation_{column}", "validation")
+    return Chart(title, unit, lines, axis)
+
+
+EPISODES = (
+    _of_episodes("Success", "share of episodes", "success", (0.0, 0.1)),
+    _of_episodes("Return", "reward per episode", "return"),
+    _of_episodes("Length", "steps per episode", "length", (0.0,)),
 )
+LEARNING = (
+    Chart("Speed", "steps per second", (("sps", "training"),), (0.0,)),
+    Chart("Value loss", "", (("value_loss", "value loss"),)),
+    Chart("Policy loss", "", (("policy_loss", "policy loss"),)),
+    Chart("Entropy", "nats", (("entropy", "entropy"),)),
+    Chart("Divergence of an update", "nats", (("kl", "KL"),)),
+    Chart("Clipped", "share of steps", (("clipped", "clipped"),), (0.0, 0.1)),
+    Chart("Norm of the gradient", "", (("grad_norm", "norm"),)),
+    Chart("Explained variance", "of the returns", (("explained_variance", "explained"),)),
+    Chart("Learning rate", "", (("learning_rate", "rate"),)),
+)
+
+
+def _charts(columns: Sequence[str]) -> list[Chart]:
+    """What a task measures stands beside what every task has."""
+    measured = [
+        _of_episodes(name.removeprefix(MEASURE), "mean of episodes", name)
+        for name in columns
+        if name.startswith(MEASURE)
+    ]
+    return [*EPISODES, *measured, *LEARNING]
+
 
 MOST_POINTS = 1500
 """Longer runs are thinned out for the page; the CSV has all."""
@@ -48,10 +76,7 @@ def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[Opti
     data = {
         "columns": list(columns),
         "rows": [[_short(value) for value in row] for row in kept],
-        "charts": [
-            {"title": name, "unit": unit, "lines": [list(line) for line in lines]}
-            for name, unit, lines in CHARTS
-        ],
+        "charts": [dataclasses.asdict(chart) for chart in _charts(columns)],
     }
     # "<" would let a string end the script.
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
@@ -146,9 +171,7 @@ function chart(spec, axis) {{
   if (!lines.length) return null;
   const all = lines.flatMap(line => line.points), ys = all.map(p => p[1]);
   const right = Math.max(...all.map(p => p[0])) || 1;
-  let low = Math.min(...ys), high = Math.max(...ys);
-  if (spec.title === "Success" || spec.title === "Clipped") {{ low = 0; high = Math.max(high, .1); }}
-  if (spec.title === "Speed" || spec.title === "Length") low = 0;
+  let low = Math.min(...ys, ...spec.axis), high = Math.max(...ys, ...spec.axis);
   if (high - low < 1e-12) {{ low -= .5; high += .5; }}
   const W = 400, H = 220, L = 46, R = 8, T = 10, B = 24;
   const px = v => L + (W - L - R) * v / right, py = v => T + (H - T - B) * (high - v) / (high - low);

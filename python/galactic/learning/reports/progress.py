@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from typing import Optional, TextIO
@@ -41,7 +42,7 @@ class ProgressLine:
         if self._quiet:
             return
         if self._live:
-            put(self._stream, f"\r\x1b[K{text}")
+            put(self._stream, f"\r\x1b[K{self._cut(text)}")
             self._open = True
         elif time.monotonic() - self._last >= self._plain_every:
             self._last = time.monotonic()
@@ -52,6 +53,14 @@ class ProgressLine:
         self.close()
         if not self._quiet:
             put(self._stream, f"{text}\n")
+
+    def _cut(self, text: str) -> str:
+        """What fits on a line of the terminal: a longer one could not be written over."""
+        try:
+            columns = os.get_terminal_size(self._stream.fileno()).columns
+        except OSError:
+            columns = 0  # as those say that do not know
+        return text[: columns - 1] if columns else text
 
     def close(self) -> None:
         if self._open:
