@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-import torch
 
 import galactic
 from galactic.learning import checkpoint
 from galactic.learning.homes import Homes
-from galactic.learning.networks import PolicyShape
 from galactic.learning.presets import preset
 from galactic.learning.settings import CAMERA_NOISE, Settings, SettingsError
+from policies import untrained
 from programs import HELD_OUT, WORLD, call, curve, needs_worlds
 
 NOISE = {"depth_noise": 0.05, "depth_dropout": 0.2, "camera_jitter": 0.05}
@@ -29,16 +28,6 @@ def of_depth(**more: Any) -> Settings:
 def run(program: str, *arguments: object) -> None:
     done = call(program, *arguments)
     assert done.returncode == 0, done.stderr
-
-
-def untrained(settings: Settings) -> checkpoint.SavedPolicy:
-    """A policy that moves about, whatever the settings of its camera."""
-    homes = Homes(galactic.World(WORLD), settings, 1)
-    shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
-    torch.manual_seed(3)
-    policy = checkpoint.new_policy(settings, shape)
-    policy.action.linear.weight.data.normal_(0.0, 0.2)
-    return checkpoint.SavedPolicy(policy, settings, shape, homes.parts, 0, None)
 
 
 def test_noise_is_a_setting_of_networks_that_see_what_it_changes() -> None:

@@ -22,6 +22,7 @@ from galactic.learning.networks import Inputs, PolicyShape  # noqa: E402
 from galactic.learning.privileges import critic_columns  # noqa: E402
 from galactic.learning.settings import Settings  # noqa: E402
 from galactic.learning.sight import SIGHT  # noqa: E402
+from policies import untrained  # noqa: E402
 
 WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"
 needs_world = pytest.mark.skipif(
@@ -373,12 +374,7 @@ def test_galactic_run_sees_what_a_placed_camera_saw_in_training(tmp_path: pathli
     for name, chosen in cameras.items():
         settings = Settings(envs=envs, halves=1, mini_batches=1, simulation="task=pick", **chosen)
         homes = Homes(galactic.World(WORLD), settings, 1)
-        torch.manual_seed(3)
-        shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
-        policy = checkpoint.new_policy(settings, shape)
-        policy.action.linear.weight.data.normal_(0.0, 0.2)
-        saved = checkpoint.SavedPolicy(policy, settings, shape, homes.parts, 0, None)
-        checkpoint.save_policy(saved, tmp_path / "best.pt")
+        checkpoint.save_policy(untrained(settings, homes), tmp_path / "best.pt")
         pack = tmp_path / f"{name}.pack"
         assert export.main([str(tmp_path / "best.pt"), "-o", str(pack)]) == 0
         player = galactic.LearnedPolicy(pack, envs, deterministic=True)

@@ -19,9 +19,9 @@ from galactic import export
 from galactic.learning import checkpoint, own_code, own_tasks
 from galactic.learning.evaluation import Actor, Evaluator
 from galactic.learning.homes import Homes
-from galactic.learning.networks import PolicyShape
 from galactic.learning.reports import pictures
 from galactic.learning.settings import Settings, SettingsError
+from policies import untrained
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
 
 TASK = '''
@@ -262,11 +262,7 @@ def test_what_is_filmed_is_what_was_played(task_file: pathlib.Path, network: str
     name = own_code.named(f"{task_file}:Approach", "--task")
     task = own_tasks.maker(name, f"radius={np.median(ways) + 0.1} bonus=0.1")
     homes = Homes(world, settings, 1, task=task)
-    shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
-    torch.manual_seed(3)
-    policy = checkpoint.new_policy(settings, shape)
-    policy.action.linear.weight.data.normal_(0.0, 0.2)
-    actor = Actor(policy, deterministic=False)
+    actor = Actor(untrained(settings, homes).policy, deterministic=False)
     played = Evaluator(homes, actor).play(episodes)
     films = pictures.film(world, settings, actor, episodes, 1, task)
     for one, film in zip(played, films):

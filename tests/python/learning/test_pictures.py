@@ -10,16 +10,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-import torch
 
 import galactic
 from galactic import evaluate
 from galactic.learning import checkpoint
 from galactic.learning.evaluation import Actor, EpisodeResult, Evaluator
 from galactic.learning.homes import Homes
-from galactic.learning.networks import PolicyShape
 from galactic.learning.reports import pictures
 from galactic.learning.settings import Settings
+from policies import untrained
 
 WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"
 SIMULATION = "task=pick episode-steps=12"
@@ -33,17 +32,13 @@ def result(episode: int, success: bool) -> EpisodeResult:
     return EpisodeResult(episode, success, "", 0.0, 1, 0.0, 0.0, 0, 0)
 
 
-def untrained(network: str, **more: Any) -> tuple[Settings, Homes, checkpoint.SavedPolicy]:
-    """A policy that moves about, and the homes that it is for."""
+def policy_of(network: str, **more: Any) -> tuple[Settings, Homes, checkpoint.SavedPolicy]:
+    """An untrained policy, and the homes that it is for."""
     settings = Settings(
         envs=6, halves=1, mini_batches=1, network=network, width=16, simulation=SIMULATION, **more
     )
     homes = Homes(galactic.World(WORLD), settings, 1)
-    shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
-    torch.manual_seed(3)
-    policy = checkpoint.new_policy(settings, shape)
-    policy.action.linear.weight.data.normal_(0.0, 0.2)
-    return settings, homes, checkpoint.SavedPolicy(policy, settings, shape, homes.parts, 0, None)
+    return settings, homes, untrained(settings, homes)
 
 
 @pytest.mark.parametrize(
@@ -72,7 +67,7 @@ def test_half_of_the_episodes_shown_are_successes(
     ],
 )
 def test_what_is_filmed_is_what_was_played(network: str, more: dict[str, Any]) -> None:
-    settings, homes, saved = untrained(network, **more)
+    settings, homes, saved = policy_of(network, **more)
     actor = Actor(saved.policy, deterministic=False)
     episodes = homes.playable_episodes()[:6]
     played = Evaluator(homes, actor).play(episodes)
@@ -91,7 +86,7 @@ def test_what_is_filmed_is_what_was_played(network: str, more: dict[str, Any]) -
 
 @needs_world
 def test_a_network_sees_through_the_camera_of_its_settings() -> None:
-    _, homes, _ = untrained("simple_cnn", camera="follow", fov=90.0)
+    _, homes, _ = policy_of("simple_cnn", camera="follow", fov=90.0)
     drawn = homes.env.reset()[0]["rgb"]
     wanted = galactic.Renderer(homes.env.simulators[0], camera="follow", fov_degrees=90)
     np.testing.assert_array_equal(drawn, wanted.render()["rgb"])
@@ -101,13 +96,13 @@ def test_a_network_sees_through_the_camera_of_its_settings() -> None:
         ({"fov": 0.5}, "^--fov: found a vertical field of view of 0.5 degrees"),
     ):
         with pytest.raises(galactic.Error, match=message):
-            untrained("simple_cnn", **wrong)
+            policy_of("simple_cnn", **wrong)
 
 
 @needs_world
 def test_an_evaluation_draws_a_contact_sheet_and_a_video(tmp_path: pathlib.Path) -> None:
     image = pytest.importorskip("PIL.Image")
-    _, _, saved = untrained("state")
+    _, _, saved = policy_of("state")
     checkpoint.save_policy(saved, tmp_path / "policy.pt")
     command = [str(tmp_path / "policy.pt"), str(WORLD), "--episodes", "5", "--shown", "3"]
     assert evaluate.main([*command, "--contact-sheet", str(tmp_path / "sheet.png")]) == 0
@@ -189,7 +184,7 @@ def test_a_policy_of_other_options_is_named(
     code: int,
     fault: str,
 ) -> None:
-    _, _, saved = untrained(str(changes.get("network", "state")))
+    _, _, saved = policy_of(str(changes.get("network", "state")))
     saved.settings = dataclasses.replace(saved.settings, **changes)
     file = tmp_path / "policy.pt"
     checkpoint.save_policy(saved, file)

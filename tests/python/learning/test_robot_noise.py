@@ -5,13 +5,10 @@ from __future__ import annotations
 import json
 import pathlib
 
-import torch
-
 import galactic
 from galactic.learning import checkpoint
-from galactic.learning.homes import Homes
-from galactic.learning.networks import PolicyShape
 from galactic.learning.settings import ROBOT_NOISE, Settings
+from policies import untrained
 from programs import HELD_OUT, WORLD, call, curve, needs_worlds
 
 PLAIN = "task=pick episode-steps=30"
@@ -22,16 +19,6 @@ def of_state(simulation: str) -> Settings:
     return Settings(
         network="state", width=16, envs=6, halves=1, mini_batches=1, simulation=simulation
     )
-
-
-def untrained(settings: Settings) -> checkpoint.SavedPolicy:
-    """A policy that moves about."""
-    homes = Homes(galactic.World(WORLD), settings, 1)
-    shape = PolicyShape(homes.state_size, homes.motions, homes.decides_terminate)
-    torch.manual_seed(3)
-    policy = checkpoint.new_policy(settings, shape)
-    policy.action.linear.weight.data.normal_(0.0, 0.2)
-    return checkpoint.SavedPolicy(policy, settings, shape, homes.parts, 0, None)
 
 
 def test_what_a_training_adds_is_left_out_and_nothing_else() -> None:
