@@ -198,6 +198,8 @@ def _evaluate(options: argparse.Namespace) -> int:
             f"{options.policy} was trained in episodes without a limit (episode-steps=0), of which an "
             "evaluation may never end; export it, and play it with galactic-run --episode-steps N"
         )
+    if options.dynamics:
+        _tell_what_is_left_out(homes)
     episodes = homes.playable_episodes()[: options.episodes or None]
     actor = evaluation.Actor(saved.policy, deterministic=options.deterministic, seed=options.seed)
     results = evaluation.Evaluator(homes, actor).play(episodes)
@@ -305,6 +307,14 @@ def _homes(
     except galactic.Error as error:
         where = f"{options.policy} in {options.world}: {error.where}"
         raise galactic.Error(error.code, where, error.message) from error
+
+
+def _tell_what_is_left_out(homes: Homes) -> None:
+    """Where the dynamics are exact and the world's own task is not."""
+    noise = dynamics.noise_left_out(homes.env.simulators[0].options)
+    if noise:
+        message = f"robots there move without the noise of the world's task ({noise})"
+        put(sys.stderr, f"galactic.evaluate: --dynamics: {message}\n")
 
 
 def _play_there(options: argparse.Namespace) -> dict[str, object]:

@@ -340,6 +340,25 @@ TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
   }
 }
 
+TEST_F(DynamicsCli, PlaysAWorldWhoseNoiseOfMotionIsSwitchedOff) {
+  std::ofstream(path("noisy.toml"))
+      << fileContent(path("home.toml")) << "[task]\nmotion-noise = 0.1\nmotion-bias = 0.05\n";
+  const std::filesystem::path folder = path("").parent_path();
+  const ProgramRun baked = runProgram(GALACTIC_BAKE, folder, {"noisy.toml", "--data", sample()});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  const auto play = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words{name + ".toml", name + ".pack", "--data",     sample(),
+                                   "--policy",     "scripted",     "--episodes", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return runProgram(GALACTIC_DYNAMICS, folder, words);
+  };
+  EXPECT_EQ(play("noisy", {}).exit_code, 5);
+  EXPECT_EQ(play("noisy", {"--set", "motion-noise=0"}).exit_code, 5);
+  const ProgramRun done = play("noisy", {"--set", "motion-noise=0", "--set", "motion-bias=0"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.out, play("home", {}).out);
+}
+
 TEST_F(DynamicsCli, ReplacesNothingThatIsReadOrWritten) {
   // Its own sources, so that nothing is lost if one is replaced.
   ASSERT_EQ(copyOfSample("sources"), "sources");

@@ -9,13 +9,16 @@ import signal
 import subprocess
 import tempfile
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Mapping, Optional
 
 import galactic
 from galactic import export
 from galactic.learning.command import INTERRUPTED
 
 TOOL = "galactic-dynamics"
+EXACT = {"motion_noise": 0, "motion_bias": 0}
+"""Options of the simulation, without which the tool refuses a world: what moves things there is off by
+itself."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +64,8 @@ def play(run: DynamicsRun) -> dict[str, Any]:
                    "--threads", str(run.threads), "--report", str(report)]  # fmt: skip
         command += ["--data", str(run.data)] if run.data else []
         command += ["--deterministic"] if run.deterministic else []
+        for name, value in EXACT.items():
+            command += ["--set", f"{_typed(name)}={value}"]
         code = subprocess.run(command, check=False).returncode
         if code == INTERRUPTED:
             raise KeyboardInterrupt
@@ -72,6 +77,16 @@ def play(run: DynamicsRun) -> dict[str, Any]:
                 _error_of(code), TOOL, f"ended with exit code {code}; it has said why"
             )
         return dict(json.loads(report.read_text(encoding="utf-8")))
+
+
+def noise_left_out(options: Mapping[str, Any]) -> str:
+    """What the tool leaves out of a simulation with these options, as a user types it; "" for nothing."""
+    left_out = [name for name, value in EXACT.items() if options[name] != value]
+    return " ".join(f"{_typed(name)}={options[name]:.3g}" for name in left_out)
+
+
+def _typed(name: str) -> str:
+    return name.replace("_", "-")
 
 
 def _error_of(code: int) -> "galactic.ErrorCode":

@@ -37,7 +37,6 @@ from galactic.learning.reports.curves import COLUMNS, VALIDATION, Curves, column
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
-from galactic.learning.stopwatch import Stopwatch
 from galactic.learning.teacher import Teacher
 
 Validation = Callable[[Policy], EpisodeSums]

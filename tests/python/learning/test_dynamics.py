@@ -3,6 +3,7 @@ The tool itself is tested in tests/dynamics and tests/cli; here a program stands
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import pathlib
 import sys
@@ -11,7 +12,11 @@ import pytest
 
 import galactic
 from galactic import evaluate
-from galactic.learning import command, dynamics
+from galactic.learning import checkpoint, command, dynamics
+from galactic.learning.homes import Homes
+from galactic.learning.settings import Settings
+from policies import untrained
+from programs import HELD_OUT, needs_worlds
 
 STAND_IN = f"""#!{sys.executable}
 import json, pathlib, sys
@@ -57,8 +62,43 @@ def test_the_tool_is_asked_for_what_was_asked_for(tool: pathlib.Path) -> None:
     for wanted in ("--arm kinematic", "--data d", "--deterministic", "--seed 7", "--episodes 20"):
         assert wanted in said, (tool, said)
     assert dynamics.told(report) == {"success_there": 0.5, "after_2_s": 0.25, "picked_there": 0.75}
+    # It has no noise of motion, and refuses a world that has some.
+    assert said.endswith("--set motion-noise=0 --set motion-bias=0")
     plain = " ".join(dynamics.play(run_of())["words"])
     assert "--arm motors" in plain and "--data" not in plain and "--deterministic" not in plain
+
+
+@needs_worlds
+def test_a_world_with_noise_of_motion_is_played_without_it(
+    tool: pathlib.Path,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """And that is said before anything is played."""
+    settings = Settings(network="state", width=16, simulation="task=pick episode-steps=5")
+    policy = tmp_path / "best.pt"
+    checkpoint.save_policy(untrained(settings), policy)
+    words = [str(policy), str(HELD_OUT), "--episodes", "4", "--dynamics", "world.toml"]
+    assert evaluate.main(words) == 0
+    plain = capfd.readouterr()
+    assert plain.err == "" and "success_there 0.5\n" in plain.out
+
+    def homes_of(_: object, world: galactic.World, settings: Settings, *rest: object) -> Homes:
+        """Those of a world whose own task has noise."""
+        simulation = f"{settings.simulation} motion-bias=0.25"
+        return Homes(world, dataclasses.replace(settings, simulation=simulation), 1)
+
+    monkeypatch.setattr(evaluate, "_homes", homes_of)
+    assert evaluate.main(words) == 0
+    noisy = capfd.readouterr()
+    assert noisy.err == (
+        "galactic.evaluate: --dynamics: robots there move without the noise of the world's task "
+        "(motion-bias=0.25)\n"
+    )
+    assert "success_there 0.5\n" in noisy.out and noisy.out != plain.out
+    assert evaluate.main(words[:-2]) == 0
+    assert capfd.readouterr().err == ""
 
 
 def test_its_exit_codes_are_passed_on(tool: pathlib.Path) -> None:
