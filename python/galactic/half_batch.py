@@ -111,10 +111,8 @@ class HalfBatch:
             "endings": ((), np.uint8),
         }
 
-    def reset(
-        self, seed: int | None, mask: NDArray[np.bool_], episodes: NDArray[np.int64] | None
-    ) -> None:
-        """See VectorEnv.reset."""
+    def reset(self, seed: int | None, mask: NDArray[np.bool_], episodes: NDArray[np.int64]) -> None:
+        """Begins the `episodes` where `mask` says: see episodes_to_begin()."""
         with self._alone():
             if seed is None and not mask.all():
                 self.require_whole()
@@ -131,11 +129,9 @@ class HalfBatch:
                     self._task.restart()
             untouched = self._is_new or seed is not None
             self._is_new = False
-            if episodes is not None or not untouched:
-                next_one = Simulator.NEXT_EPISODE
-                chosen = np.full(len(mask), next_one, np.int64) if episodes is None else episodes
-                begins = np.flatnonzero(mask & ((chosen >= 0) | (not untouched)))
-                self._begin(begins, chosen[begins])
+            # Envs that nobody has touched stand at the start of their next ones.
+            begins = np.flatnonzero(mask & ((episodes >= 0) | (not untouched)))
+            self._begin(begins, episodes[begins])
             self._tally.restart(mask)
             self._began[mask] = time.perf_counter()
             self.is_cut_off = False
@@ -375,34 +371,3 @@ def _check_saved(name: str, found: Array | None, mine: Array) -> None:
         there = "missing" if found is None else f"{found.dtype} {found.shape}"
         message = f"{name}: found {there}, expected {mine.dtype} {mine.shape}; give what save_state() returned"
         raise Error(ErrorCode.INVALID_INPUT, "saved state", message)
-
-
-def check_places(
-    out: Mapping[str, Array], known: Mapping[str, tuple[tuple[int, ...], Any]], envs: int
-) -> None:
-    """Refuses places that results cannot land in, before anything is done."""
-    if not isinstance(out, Mapping):
-        raise TypeError(f"out is a {type(out).__name__}, expected a dictionary of arrays by name")
-    for name, place in out.items():
-        if name not in known:
-            raise ValueError(f"out has no place for {name!r}; expected any of {list(known)}")
-        shape, dtype = known[name]
-        if not isinstance(place, np.ndarray) or place.dtype != dtype:
-            found = getattr(place, "dtype", type(place).__name__)
-            raise TypeError(f"{name} has the type {found}, expected {np.dtype(dtype)}")
-        if place.shape != (envs, *shape):
-            raise ValueError(f"{name} has the shape {place.shape}, expected {(envs, *shape)}")
-        if not place.flags.c_contiguous or not place.flags.writeable:
-            fault = "read-only" if place.flags.c_contiguous else "not contiguous"
-            raise ValueError(f"{name} is {fault}; results are written in place")
-    _check_apart(out)
-
-
-def _check_apart(out: Mapping[str, Array]) -> None:
-    """Refuses places that share memory, where the one result would lie on the other."""
-    spans = sorted(
-        (place.__array_interface__["data"][0], place.nbytes, name) for name, place in out.items()
-    )
-    for (start, size, name), (next_start, next_size, other) in zip(spans, spans[1:]):
-        if next_start < start + size and next_size:
-            raise ValueError(f"{name} and {other} share memory; give each result its own place")

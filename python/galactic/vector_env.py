@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import numbers
 import os
 import threading
 from collections.abc import Callable, Mapping, Sequence
@@ -18,9 +17,19 @@ from galactic import spaces
 from galactic._core import ErrorCode, Renderer, Simulator, World
 from galactic.env_states import EnvStates, joined
 from galactic.errors import Error
-from galactic.half_batch import HalfBatch, Observations, StepResult, check_places
+from galactic.half_batch import HalfBatch, Observations, StepResult
 from galactic.task import Task
 from galactic.task_runner import made_by
+from galactic.vector_env_arguments import (
+    Actions,
+    cameras_of,
+    check_places,
+    episodes_to_begin,
+    own_task_of,
+    require,
+    require_envs,
+    require_simulator_options,
+)
 
 try:
     from gymnasium.vector import VectorEnv as _Base
@@ -42,14 +51,6 @@ except ImportError:
 Paths = Union[str, os.PathLike, Sequence[Union[str, os.PathLike]]]
 #: Places for the results of one step: see VectorEnv.step.
 Row = Mapping[str, NDArray[Any]]
-
-#: Options of a Simulator that are none here, and what to do instead.
-_NO_OPTIONS = {
-    "envs": "give num_envs",
-    "auto_reset": "its envs begin the next episode by themselves, those of a Simulator need not",
-}
-
-_OF_THE_PAPER = 'a dictionary of "continuous" and "discrete": actions="paper"'
 
 
 class VectorEnv(_Base):
@@ -133,32 +134,23 @@ class VectorEnv(_Base):
         ranks: int = 1,
         **options: Any,
     ) -> None:
-        _require(observation in ("flat", "dict"), "observation", observation, '"flat" or "dict"')
-        _require(actions in ("box", "paper"), "actions", actions, '"box" or "paper"')
-        _require(halves in (1, 2), "halves", halves, "1 or 2")
-        is_whole = isinstance(num_envs, numbers.Integral) and not isinstance(num_envs, bool)
-        _require(is_whole and num_envs > 0, "num_envs", num_envs, "a whole number above 0")
-        _require(num_envs % halves == 0, "num_envs", num_envs, "an even number for two halves")
-        _require(isinstance(copy, bool), "copy", copy, "True or False")
-        cameras = _cameras_of(images)
-        _require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
-        for name in options:
-            if name in _NO_OPTIONS:
-                raise TypeError(f"VectorEnv has no option {name}; {_NO_OPTIONS[name]}")
-            if name in Renderer.OPTIONS:
-                instead = f"give images={{{name!r}: {options[name]!r}}}"
-                raise TypeError(f"VectorEnv has no option {name}; {instead}")
+        require(observation in ("flat", "dict"), "observation", observation, '"flat" or "dict"')
+        require(actions in ("box", "paper"), "actions", actions, '"box" or "paper"')
+        require(halves in (1, 2), "halves", halves, "1 or 2")
+        require_envs(num_envs, halves)
+        require(isinstance(copy, bool), "copy", copy, "True or False")
+        cameras = cameras_of(images)
+        require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
+        require_simulator_options(options)
         self._world = world if isinstance(world, World) else World(world)
         self.num_envs = num_envs
         self.render_mode = render_mode
-        self._actions = actions
-        draws = bool(cameras) or render_mode is not None
         self._render_threads = threads
         options |= {"threads": threads, "seed": seed, "order": order}
-        own_task = _own_task(task)
+        own_task = own_task_of(task)
         if task is not None and own_task is None:
             options["task"] = task
-        if draws:
+        if cameras or render_mode is not None:
             options["body_transforms"] = True
         cameras = {name: {"threads": threads, **camera} for name, camera in cameras.items()}
         # Half h of batch r is batch 2 r + h of twice as many: the same envs as undivided.
@@ -186,7 +178,8 @@ class VectorEnv(_Base):
         first = self._halves[0]
         self.single_observation_space = first.observation_space
         self.observation_space = spaces.batch_space(first.observation_space, num_envs)
-        self.single_action_space = _action_space(first.simulator.action_count, actions)
+        self._actions = Actions(actions, first.simulator.action_count)
+        self.single_action_space = self._actions.space
         self.action_space = spaces.batch_space(self.single_action_space, num_envs)
         self.closed = False
 
@@ -284,17 +277,14 @@ class VectorEnv(_Base):
             The observations of all envs, and an empty dictionary.
         """
         self._require_idle()
-        mask, episodes = _reset_options(options, self.num_envs)
-        if seed is not None and options and options.get("reset_mask") is not None:
-            raise ValueError("seed and reset_mask exclude each other: a seed is of all envs")
-        chosen = [None if episodes is None else episodes[self.rows(n)] for n in range(self.halves)]
-        for simulator, of_half in zip(self.simulators, chosen):
-            if of_half is not None:
-                simulator.check_episodes(of_half)
+        mask, episodes = episodes_to_begin(seed, options, self.num_envs)
+        parts = [self.rows(number) for number in range(self.halves)]
+        for half, part in zip(self._halves, parts):
+            half.simulator.check_episodes(episodes[part])
         done: list[HalfBatch] = []
         try:
-            for number, half in enumerate(self._halves):
-                half.reset(seed, mask[self.rows(number)], chosen[number])
+            for half, part in zip(self._halves, parts):
+                half.reset(seed, mask[part], episodes[part])
                 done.append(half)
         except BaseException:
             for half in done:
@@ -331,7 +321,7 @@ class VectorEnv(_Base):
         is cut off: nothing goes on before reset() of all envs or restore_state().
         """
         self._require_idle()
-        rows = self._action_rows(actions, self.num_envs)
+        rows = self._actions.rows(actions, self.num_envs)
         self._check_out(out, self.num_envs)
         if self.halves == 1:
             return self._halves[0].step(rows, out)
@@ -368,7 +358,7 @@ class VectorEnv(_Base):
         self._require_half(half)
         self._require_idle(half)
         envs = self.num_envs // self.halves
-        rows = self._action_rows(actions, envs)
+        rows = self._actions.rows(actions, envs)
         self._check_out(out, envs)
         self._begin(half, rows, out)
 
@@ -475,97 +465,6 @@ class VectorEnv(_Base):
     def _check_out(self, out: Row | None, envs: int) -> None:
         if out is not None:
             check_places(out, self._halves[0].landing_shapes(), envs)
-
-    def _action_rows(self, actions: Any, envs: int) -> NDArray[np.float32]:
-        """Actions as the simulator takes them. Raises where they have another shape."""
-        count = self._halves[0].simulator.action_count
-        if self._actions == "box":
-            return _rows_of("actions", actions, (envs, count))
-        if not isinstance(actions, Mapping):
-            raise TypeError(
-                f"actions has the type {type(actions).__name__}, expected {_OF_THE_PAPER}"
-            )
-        if not {"continuous", "discrete"} <= actions.keys():
-            raise ValueError(f"actions has {list(actions)}, expected {_OF_THE_PAPER}")
-        moves = _rows_of("continuous", actions["continuous"], (envs, count - 2))
-        return np.hstack([moves, _rows_of("discrete", actions["discrete"], (envs, 2))])
-
-
-def _require(holds: bool, name: str, found: object, wanted: str) -> None:
-    if not holds:
-        raise ValueError(f"{name} is {found!r}, expected {wanted}")
-
-
-def _own_task(task: Any) -> Callable[[], Task] | None:
-    """What makes tasks of one's own; None where `task` names one of the simulation's."""
-    if isinstance(task, Task):
-        name = type(task).__name__
-        raise TypeError(f"task is a {name}; give what makes one for each half, such as the class")
-    return task if callable(task) else None
-
-
-def _cameras_of(images: Any) -> dict[str, Mapping[str, Any]]:
-    """The cameras of VectorEnv(images=...) by name: "" for a single one, none for None."""
-    if images is None:
-        return {}
-    wanted = "options of galactic.Renderer, those of each camera by its name, or None for no images"
-    _require(isinstance(images, Mapping), "images", images, wanted)
-    named = {name for name, value in images.items() if isinstance(value, Mapping)}
-    if not named:
-        return {"": images}
-    for name, value in images.items():
-        _require(name in named, f"images[{name!r}]", value, "options, as the other cameras have")
-        is_name = isinstance(name, str) and name.isidentifier()
-        _require(is_name, "a camera of images", name, "a name, such as hand")
-    return {name: {"camera": name, **value} for name, value in images.items()}
-
-
-def _action_space(count: int, kind: str) -> spaces.Space:
-    if kind == "box":
-        return spaces.Box(-1.0, 1.0, (count,), np.float32)
-    return spaces.Dict(
-        {
-            "continuous": spaces.Box(-1.0, 1.0, (count - 2,), np.float32),
-            "discrete": spaces.MultiDiscrete([2, 2]),
-        }
-    )
-
-
-def _reset_options(
-    options: Mapping[str, Any] | None, envs: int
-) -> tuple[NDArray[np.bool_], NDArray[np.int64] | None]:
-    """Which envs begin an episode, and which, if that is asked for: as Simulator.reset takes them."""
-    options = options or {}
-    unknown = set(options) - {"reset_mask", "episodes"}
-    if unknown:
-        raise ValueError(
-            f"reset() has no option {unknown.pop()!r}; expected reset_mask or episodes"
-        )
-    mask = options.get("reset_mask")
-    mask = np.ones(envs, np.bool_) if mask is None else np.asarray(mask)
-    if mask.shape != (envs,) or mask.dtype != np.bool_:
-        raise ValueError(f"reset_mask is {mask.dtype} {mask.shape}, expected bool ({envs},)")
-    episodes = options.get("episodes")
-    if episodes is None:
-        return mask, None
-    episodes = np.asarray(episodes)
-    if episodes.shape != (envs,) or not np.issubdtype(episodes.dtype, np.integer):
-        raise ValueError(f"episodes are {episodes.dtype} {episodes.shape}, expected int ({envs},)")
-    if episodes.dtype == np.uint64:
-        # What 64 bits with a sign do not hold must not become negative.
-        episodes = np.minimum(episodes, np.uint64(2**63 - 1))
-    chosen = episodes.astype(np.int64)
-    return mask, np.where(mask & (chosen >= 0), chosen, Simulator.NEXT_EPISODE)
-
-
-def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float32]:
-    rows = np.asarray(given)
-    # What numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
-    if rows.dtype.kind not in "biufO":
-        raise TypeError(f"{name} has the type {rows.dtype}, expected numbers, such as float32")
-    if rows.shape != shape:
-        raise ValueError(f"{name} has the shape {rows.shape}, expected {shape}")
-    return rows.astype(np.float32, copy=False)
 
 
 def _arrays_of(state: bytes, halves: int) -> list[dict[str, NDArray[Any]]]:

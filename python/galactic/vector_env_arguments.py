@@ -1,0 +1,167 @@
+"""What a VectorEnv is given: reads it, and refuses what cannot be before anything happens."""
+
+from __future__ import annotations
+
+import numbers
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galactic import spaces
+from galactic._core import Renderer, Simulator
+from galactic.task import Task
+
+Array = NDArray[Any]
+
+#: Options of a Simulator that are none of a VectorEnv, and what to do instead.
+_NO_OPTIONS = {
+    "envs": "give num_envs",
+    "auto_reset": "its envs begin the next episode by themselves, those of a Simulator need not",
+}
+_OF_THE_PAPER = 'a dictionary of "continuous" and "discrete": actions="paper"'
+
+
+def require(holds: bool, name: str, found: object, wanted: str) -> None:
+    """ValueError for an argument that is not what is wanted."""
+    if not holds:
+        raise ValueError(f"{name} is {found!r}, expected {wanted}")
+
+
+def require_envs(num_envs: Any, halves: int) -> None:
+    """ValueError where there cannot be as many."""
+    is_whole = isinstance(num_envs, numbers.Integral) and not isinstance(num_envs, bool)
+    require(is_whole and num_envs > 0, "num_envs", num_envs, "a whole number above 0")
+    require(num_envs % halves == 0, "num_envs", num_envs, "an even number for two halves")
+
+
+def require_simulator_options(options: Mapping[str, Any]) -> None:
+    """TypeError for options that a VectorEnv chooses itself, or takes elsewhere."""
+    for name, value in options.items():
+        instead = _NO_OPTIONS.get(name)
+        if name in Renderer.OPTIONS:
+            instead = f"give images={{{name!r}: {value!r}}}"
+        if instead is not None:
+            raise TypeError(f"VectorEnv has no option {name}; {instead}")
+
+
+def own_task_of(task: Any) -> Callable[[], Task] | None:
+    """What makes tasks of one's own; None where `task` names one of the simulation's."""
+    if isinstance(task, Task):
+        name = type(task).__name__
+        raise TypeError(f"task is a {name}; give what makes one for each half, such as the class")
+    return task if callable(task) else None
+
+
+def cameras_of(images: Any) -> dict[str, Mapping[str, Any]]:
+    """The cameras of VectorEnv(images=...) by name: "" for a single one, none for None."""
+    if images is None:
+        return {}
+    wanted = "options of galactic.Renderer, those of each camera by its name, or None for no images"
+    require(isinstance(images, Mapping), "images", images, wanted)
+    named = {name for name, value in images.items() if isinstance(value, Mapping)}
+    if not named:
+        return {"": images}
+    for name, value in images.items():
+        require(name in named, f"images[{name!r}]", value, "options, as the other cameras have")
+        is_name = isinstance(name, str) and name.isidentifier()
+        require(is_name, "a camera of images", name, "a name, such as hand")
+    return {name: {"camera": name, **value} for name, value in images.items()}
+
+
+class Actions:
+    """Actions as VectorEnv(actions=kind) takes them, of robots that have `count` of them."""
+
+    def __init__(self, kind: str, count: int) -> None:
+        self._is_of_the_paper = kind == "paper"
+        self._count = count
+
+    @property
+    def space(self) -> spaces.Space:
+        """Of one env."""
+        if not self._is_of_the_paper:
+            return spaces.Box(-1.0, 1.0, (self._count,), np.float32)
+        motions = spaces.Box(-1.0, 1.0, (self._count - 2,), np.float32)
+        return spaces.Dict({"continuous": motions, "discrete": spaces.MultiDiscrete([2, 2])})
+
+    def rows(self, given: Any, envs: int) -> NDArray[np.float32]:
+        """What `given` asks of so many envs, as the simulator takes it: (envs, count). Raises where it has
+        another shape."""
+        if not self._is_of_the_paper:
+            return _rows_of("actions", given, (envs, self._count))
+        if not isinstance(given, Mapping):
+            found = type(given).__name__
+            raise TypeError(f"actions has the type {found}, expected {_OF_THE_PAPER}")
+        if not {"continuous", "discrete"} <= given.keys():
+            raise ValueError(f"actions has {list(given)}, expected {_OF_THE_PAPER}")
+        moves = _rows_of("continuous", given["continuous"], (envs, self._count - 2))
+        return np.hstack([moves, _rows_of("discrete", given["discrete"], (envs, 2))])
+
+
+def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float32]:
+    rows = np.asarray(given)
+    # What numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
+    if rows.dtype.kind not in "biufO":
+        raise TypeError(f"{name} has the type {rows.dtype}, expected numbers, such as float32")
+    if rows.shape != shape:
+        raise ValueError(f"{name} has the shape {rows.shape}, expected {shape}")
+    return rows.astype(np.float32, copy=False)
+
+
+def episodes_to_begin(
+    seed: int | None, options: Mapping[str, Any] | None, envs: int
+) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+    """Which of so many envs VectorEnv.reset(seed, options) has begin an episode, and which one,
+    Simulator.NEXT_EPISODE where none is named."""
+    options = options or {}
+    unknown = set(options) - {"reset_mask", "episodes"}
+    if unknown:
+        raise ValueError(
+            f"reset() has no option {unknown.pop()!r}; expected reset_mask or episodes"
+        )
+    mask, named = options.get("reset_mask"), options.get("episodes")
+    if mask is not None and seed is not None:
+        raise ValueError("seed and reset_mask exclude each other: a seed is of all envs")
+    mask = np.ones(envs, np.bool_) if mask is None else np.asarray(mask)
+    if mask.shape != (envs,) or mask.dtype != np.bool_:
+        raise ValueError(f"reset_mask is {mask.dtype} {mask.shape}, expected bool ({envs},)")
+    episodes = np.full(envs, Simulator.NEXT_EPISODE) if named is None else np.asarray(named)
+    if episodes.shape != (envs,) or not np.issubdtype(episodes.dtype, np.integer):
+        raise ValueError(f"episodes are {episodes.dtype} {episodes.shape}, expected int ({envs},)")
+    if episodes.dtype == np.uint64:
+        # What 64 bits with a sign do not hold must not become negative.
+        episodes = np.minimum(episodes, np.uint64(2**63 - 1))
+    chosen = episodes.astype(np.int64)
+    return mask, np.where(mask & (chosen >= 0), chosen, Simulator.NEXT_EPISODE)
+
+
+def check_places(
+    out: Mapping[str, Array], known: Mapping[str, tuple[tuple[int, ...], Any]], envs: int
+) -> None:
+    """Refuses places that results cannot land in, before anything is done."""
+    if not isinstance(out, Mapping):
+        raise TypeError(f"out is a {type(out).__name__}, expected a dictionary of arrays by name")
+    for name, place in out.items():
+        if name not in known:
+            raise ValueError(f"out has no place for {name!r}; expected any of {list(known)}")
+        shape, dtype = known[name]
+        if not isinstance(place, np.ndarray) or place.dtype != dtype:
+            found = getattr(place, "dtype", type(place).__name__)
+            raise TypeError(f"{name} has the type {found}, expected {np.dtype(dtype)}")
+        if place.shape != (envs, *shape):
+            raise ValueError(f"{name} has the shape {place.shape}, expected {(envs, *shape)}")
+        if not place.flags.c_contiguous or not place.flags.writeable:
+            fault = "read-only" if place.flags.c_contiguous else "not contiguous"
+            raise ValueError(f"{name} is {fault}; results are written in place")
+    _check_apart(out)
+
+
+def _check_apart(out: Mapping[str, Array]) -> None:
+    """Refuses places that share memory, where the one result would lie on the other."""
+    spans = sorted(
+        (place.__array_interface__["data"][0], place.nbytes, name) for name, place in out.items()
+    )
+    for (start, size, name), (next_start, next_size, other) in zip(spans, spans[1:]):
+        if next_start < start + size and next_size:
+            raise ValueError(f"{name} and {other} share memory; give each result its own place")
