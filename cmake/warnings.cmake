@@ -13,6 +13,11 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(galactic_warnings INTERFACE -Wno-subobject-linkage)
 endif()
 
+# GCC collects its garbage later: it takes a tenth less time, and a fourth more memory.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(galactic_warnings INTERFACE --param=ggc-min-heapsize=524288)
+endif()
+
 # Tests are compiled for longer than they run: in Release, -O1 takes half as long to compile as -O3, and no result
 # depends on it.
 add_library(galactic_not_hot INTERFACE)
