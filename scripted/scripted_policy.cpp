@@ -113,6 +113,9 @@ class ScriptedPolicy::Impl {
   }
 
   void playOn(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
+    // Where actions are too large to bring the base to where it is needed, trying on does not,
+    // either.
+    bool may_reach_from_here = true;
     while (true) {
       std::ranges::fill(actions, 0.0F);
       const scripted::ActionRow row = scripted::rowOf(actions);
@@ -123,7 +126,10 @@ class ScriptedPolicy::Impl {
       const std::span<const float> asked = env.asked.empty() ? state.joint_positions : env.asked;
       const Progress progress = env.player.play(arm_, *world_.robot().base(), state, asked, row);
       if (progress == Progress::kActs) return;
-      if (progress == Progress::kOff && planFromHere(state, env, thread)) continue;
+      const bool is_off = progress == Progress::kOff;
+      if (is_off && std::exchange(may_reach_from_here, false) && planFromHere(state, env, thread)) {
+        continue;
+      }
       if (progress != Progress::kDone) {
         std::ranges::fill(actions, 0.0F);
         env.trouble = ScriptedTrouble::kStuck;

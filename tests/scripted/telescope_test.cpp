@@ -248,19 +248,20 @@ TEST(Telescope, TurnsTheHandWithTheBaseWhereItHasNoWristForThat) {
   EXPECT_GE(solved, kCases * 95 / 100);
 }
 
-/// Carries a cube from one end of a table to the other; the steps of the episode, none where it was
-/// not solved.
-std::optional<int> stepsOnATable(const TelescopeOptions& options, float height, float along) {
+/// A cube has to be carried from one end of a table to the other.
+ScriptedWorld tableWorld(const RobotPackFields& robot, float height, float along) {
   MeshBuilder room = madeRoom(4, 4);
   room.box({1, 0, 3}, {3, height, 4});
-  const ScriptedWorld made =
-      stickWorld(room.build(), {1.2F, 0, 1.0F}, {1.3F, height + 0.001F, 3.2F},
-                 {1.3F + along, height + 0.001F, 3.3F}, telescopeRobot(options));
-  SimulationOptions simulation;
+  return stickWorld(room.build(), {1.2F, 0, 1.0F}, {1.3F, height + 0.001F, 3.2F},
+                    {1.3F + along, height + 0.001F, 3.3F}, robot);
+}
+
+/// The steps of the episode, none where it was not solved.
+std::optional<int> stepsOf(const World& world, SimulationOptions simulation) {
   simulation.envs = 1;
   simulation.threads = 1;
-  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), simulation));
-  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(made.world(), simulation));
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(world, simulation));
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(world, simulation));
   std::vector<float> actions(simulator.actionCount());
   for (int step = 1;; ++step) {
     policy.act(simulator, actions);
@@ -269,6 +270,10 @@ std::optional<int> stepsOnATable(const TelescopeOptions& options, float height, 
     if (simulator.successes()[0] != 0) return step;
     return std::nullopt;
   }
+}
+
+std::optional<int> stepsOnATable(const TelescopeOptions& options, float height, float along) {
+  return stepsOf(tableWorld(telescopeRobot(options), height, along).world(), {});
 }
 
 TEST(ScriptedPolicyWithATelescope, CarriesACubeAlongATable) {
@@ -286,6 +291,27 @@ TEST(ScriptedPolicyWithATelescope, CarriesACubeAlongATable) {
     }
   }
   std::printf("%d of %d episodes solved\n", solved, played);
+}
+
+TEST(ScriptedPolicyWithATelescope, TurnsToWhereItReachesFromWhereMotionsAreOff) {
+  SimulationOptions inexact;
+  inexact.noise.motion = 0.1F;
+  for (const float along : {0.4F, 1.2F}) {
+    EXPECT_TRUE(stepsOf(tableWorld(telescopeRobot({}), 0.6F, along).world(), inexact)) << along;
+  }
+}
+
+TEST(ScriptedPolicyWithATelescope, DoesNotPlanForeverWhereTurnsAreTooCoarseToArrive) {
+  RobotPackFields robot = telescopeRobot({.with_wrist = false});
+  robot.base->turn_step = 10;
+  SimulationOptions inexact;
+  inexact.noise.motion = 0.1F;
+  const ScriptedWorld made = tableWorld(robot, 0.6F, 0.4F);
+  int solved = 0;
+  for (inexact.seed = 1; inexact.seed < 10; ++inexact.seed) {
+    solved += stepsOf(made.world(), inexact) ? 1 : 0;
+  }
+  EXPECT_LT(solved, 9);
 }
 
 TEST(ScriptedPolicyWithATelescope, DoesTheSameEachTime) {
