@@ -187,7 +187,7 @@ bool FloorSearch::isFree(std::uint32_t cell, std::uint32_t fine) {
   return known == kFree;
 }
 
-bool FloorSearch::canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t to) {
+bool FloorSearch::canTurnOnLattice(std::uint32_t cell, std::uint32_t from, std::uint32_t to) {
   const std::uint32_t left = (to + fines_ - from) % fines_;
   const bool goes_left = left <= fines_ / 2;
   const std::uint32_t count = goes_left ? left : fines_ - left;
@@ -198,7 +198,7 @@ bool FloorSearch::canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t 
   return true;
 }
 
-bool FloorSearch::canTurnFreely(const BasePlace& at, float to) {
+bool FloorSearch::canTurn(const BasePlace& at, float to) {
   const float way = wrapped(to - at.yaw);
   const int looks = static_cast<int>(actionsFor(way, std::max(turn_step_, kFinestTurn)));
   for (int n = 1; n <= looks; ++n) {
@@ -239,8 +239,8 @@ void FloorSearch::tryEntry(const BasePlace& start, std::uint32_t cell) {
     const BasePlace arrived{stays ? start.position : at.position, yaw};
     const std::uint32_t heading = (fineOf(yaw) + eighth_ / 2) / eighth_ % kHeadings;
     const BasePlace settled = placeOf(cell, heading * eighth_);
-    if (!canTurnFreely(start, yaw) || (!stays && !canDrive(facing, arrived))) continue;
-    if (!canTurnFreely({settled.position, yaw}, settled.yaw)) continue;
+    if (!canTurn(start, yaw) || (!stays && !canDrive(facing, arrived))) continue;
+    if (!canTurn({settled.position, yaw}, settled.yaw)) continue;
     Entry entry{cell * kHeadings + heading, 0, {}};
     entry.cost = actionsFor(wrapped(yaw - start.yaw), turn_step_) +
                  actionsFor(length, forward_step_) +
@@ -300,7 +300,7 @@ void FloorSearch::expand(std::uint32_t node) {
   for (const std::uint32_t turned : {1U, kHeadings - 1}) {
     const std::uint32_t to = (heading + turned) % kHeadings;
     if (nodes_[cell * kHeadings + to].settled) continue;
-    if (!canTurn(cell, heading * eighth_, to * eighth_)) continue;
+    if (!canTurnOnLattice(cell, heading * eighth_, to * eighth_)) continue;
     reach(cell * kHeadings + to, nodes_[node].cost + eighth_cost_, node);
   }
 }
@@ -316,7 +316,7 @@ std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& ac
   for (const float beside : {0.0F, 0.44F, -0.44F, 0.87F, -0.87F}) {
     const std::uint32_t fine = fineOf(facing + beside);
     std::uint8_t& offered = offered_[static_cast<std::size_t>(cell) * fines_ + fine];
-    if (offered != 0 || !canTurn(cell, heading * eighth_, fine)) continue;
+    if (offered != 0 || !canTurnOnLattice(cell, heading * eighth_, fine)) continue;
     offered = 1;
     ++offers_;
     BasePlace stance = placeOf(cell, fine);
@@ -324,7 +324,7 @@ std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& ac
     const bool accepted = accept(stance);
     // The answer may have moved the arm.
     scene_.setJoints(*carried_);
-    if (accepted && (stance.yaw == yaw || canTurnFreely(place, stance.yaw))) return stance;
+    if (accepted && (stance.yaw == yaw || canTurn(place, stance.yaw))) return stance;
   }
   return std::nullopt;
 }

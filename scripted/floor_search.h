@@ -50,6 +50,9 @@ class FloorSearch {
   /// the way.
   [[nodiscard]] Answer search(const BasePlace& start, const Joints& carried, const Target& target,
                               const Accept& accept);
+  /// Whether the base can turn on the spot to this yaw, the shorter way round, with the joints that
+  /// the scene has.
+  [[nodiscard]] bool canTurn(const BasePlace& at, float to);
 
  private:
   static constexpr std::uint32_t kHeadings = 8;
@@ -91,8 +94,7 @@ class FloorSearch {
   [[nodiscard]] bool isFreeOfScene(std::uint32_t cell, std::uint32_t fine);
   [[nodiscard]] bool isFree(std::uint32_t cell, std::uint32_t fine);
   /// Turning on the spot, the shorter way round; both ends are looked at.
-  [[nodiscard]] bool canTurn(std::uint32_t cell, std::uint32_t from, std::uint32_t to);
-  [[nodiscard]] bool canTurnFreely(const BasePlace& at, float to);
+  [[nodiscard]] bool canTurnOnLattice(std::uint32_t cell, std::uint32_t from, std::uint32_t to);
   [[nodiscard]] bool canDrive(const BasePlace& from, const BasePlace& to);
   void findEntries(const BasePlace& start);
   void tryEntry(const BasePlace& start, std::uint32_t cell);

@@ -6,7 +6,7 @@
 namespace galactic::scripted {
 namespace {
 
-constexpr float kTurn = 6.28318531F;
+constexpr float kFullTurn = 6.28318531F;
 /// A base this far from where the plan has it while the arm moves is off, meters and radians.
 constexpr float kOff = 5e-3F;
 constexpr float kOffYaw = 5e-3F;
@@ -21,8 +21,8 @@ constexpr float kStraight = 5e-3F;
 constexpr float kAskew = 0.2F;
 /// So much of an action is nothing left to do.
 constexpr float kNothing = 1e-3F;
-/// What may be left after the action that should have been the last one, where it is made good
-/// later, and where a hand has to be in its place.
+/// What may be left after the action that should have been the last one, in actions: where it is
+/// made good later, and where a hand has to be in its place.
 constexpr float kRoughRest = 0.25F;
 constexpr float kFineRest = 0.02F;
 /// Actions without getting any further before the robot is stuck.
@@ -77,13 +77,19 @@ ActionRow rowOf(std::span<float> actions) {
           actions[joints + 3]};
 }
 
+bool PlanPlayer::isBeforeArm() const {
+  const std::size_t after = next_ + 1;
+  return after < plan_.steps.size() && plan_.steps[after].kind == PlanStep::Kind::kMoveArm;
+}
+
 PlanPlayer::Way PlanPlayer::turn(const RobotBase& robot_base, const BasePlace& at,
                                  const ActionRow& row) const {
   const BasePlace& to = plan_.steps[next_].base;
-  const float left = std::remainder(to.yaw - at.yaw, kTurn) / robot_base.turn_step;
+  const float left = std::remainder(to.yaw - at.yaw, kFullTurn) / robot_base.turn_step;
   Way result;
-  result.rest = kRoughRest;
-  result.strays = planeDistance(at.position, to.position) > kStray;
+  // Another drive makes a turn good that is not quite right.
+  const float off = 0.9F * kOffYaw / robot_base.turn_step;
+  result.rest = isBeforeArm() ? std::min(off, kRoughRest) : kRoughRest;
   result.remaining = std::fabs(left);
   // Positive turns are clockwise, positive yaw is not. Turns are spread over their actions evenly,
   // as the search looks at them.
@@ -102,7 +108,7 @@ PlanPlayer::Way PlanPlayer::drive(const RobotBase& robot_base, const BasePlace& 
   const float left = dot(to_end, way);
   const Vec3 to_line = to_end - way * left;
   const Vec3 aim = (way * kLookAhead + to_line) * sign;
-  const float askew = std::remainder(std::atan2(-aim.z, aim.x) - at.yaw, kTurn);
+  const float askew = std::remainder(std::atan2(-aim.z, aim.x) - at.yaw, kFullTurn);
   Way result;
   result.rest = kRoughRest;
   result.strays = dot(to_line, to_line) > kStray * kStray;
@@ -119,13 +125,11 @@ PlanPlayer::Way PlanPlayer::drive(const RobotBase& robot_base, const BasePlace& 
 PlanPlayer::Way PlanPlayer::moveArm(const Arm& arm, const BasePlace& at,
                                     std::span<const float> asked, const ActionRow& row) const {
   const PlanStep& step = plan_.steps[next_];
-  const bool goes_on =
-      next_ + 1 < plan_.steps.size() && plan_.steps[next_ + 1].kind == PlanStep::Kind::kMoveArm;
   Way result;
-  result.rest = goes_on ? kRoughRest : kFineRest;
+  result.rest = isBeforeArm() ? kRoughRest : kFineRest;
   result.remaining = arm.actionsBetween(asked, step.joints);
   result.strays = planeDistance(at.position, step.base.position) > kOff ||
-                  std::fabs(std::remainder(at.yaw - step.base.yaw, kTurn)) > kOffYaw;
+                  std::fabs(std::remainder(at.yaw - step.base.yaw, kFullTurn)) > kOffYaw;
   // All joints arrive together, so that the arm stays on the planned line.
   const float share = 1 / std::max(result.remaining, 1.0F);
   for (std::size_t joint = 0; joint < arm.joints().size(); ++joint) {

@@ -18,9 +18,9 @@ struct ActionRow {
 };
 [[nodiscard]] ActionRow rowOf(std::span<float> actions);
 
-/// Turns a plan into actions, one step after the other. A base that is off the line of a drive is
-/// steered back to it (pure pursuit: Coulter 1992), as where motions are not quite what was asked
-/// for.
+/// Turns a plan into actions, one step after the other. A base that is off the line of a drive
+/// turns towards a point on that line, somewhat ahead, as where motions are not quite what was
+/// asked for.
 class PlanPlayer {
  public:
   enum class Progress : std::uint8_t {
@@ -54,6 +54,8 @@ class PlanPlayer {
     /// Actions that bring the base back to its line; none of those that remain.
     float steering = 0;
   };
+  /// Whether the arm moves in the next step of the plan.
+  [[nodiscard]] bool isBeforeArm() const;
   [[nodiscard]] Way turn(const RobotBase& robot_base, const BasePlace& at,
                          const ActionRow& row) const;
   [[nodiscard]] Way drive(const RobotBase& robot_base, const BasePlace& at,

@@ -25,6 +25,12 @@ constexpr int kAllFreedoms = 5;
 /// Half of what lies between the headings that the search of the floor offers, radians.
 constexpr float kMostTurn = 0.22F;
 
+/// What tells the random numbers of plans of one attempt apart.
+constexpr std::uint32_t kPickDraw = 0;
+constexpr std::uint32_t kPickFromHereDraw = 250;
+constexpr std::uint32_t kPlaceDraw = 500;
+constexpr std::uint32_t kPlaceFromHereDraw = 750;
+
 constexpr Vec3 kUp{0, 1, 0};
 
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
@@ -76,10 +82,11 @@ void prepend(const BasePlace& base, const ArmPath& path, Plan& plan) {
 }
 
 /// The way from one place of a route to the next. A turn may end on a place of the lattice that is
-/// next to the same.
+/// almost the same.
 PlanStep baseStep(const BasePlace& from, const BasePlace& to) {
+  constexpr float kSamePlace = 1e-3F;
   const Vec3 way = to.position - from.position;
-  const bool drives = to.yaw == from.yaw && (way.x != 0 || way.z != 0);
+  const bool drives = way.x * way.x + way.z * way.z > kSamePlace * kSamePlace;
   return {drives ? PlanStep::Kind::kDrive : PlanStep::Kind::kTurn, to, from.position, {}};
 }
 
@@ -353,7 +360,7 @@ void Planner::intendToPick() {
 }
 
 Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
-  takeOver(state, attempt, 0);
+  takeOver(state, attempt, kPickDraw);
   intendToPick();
   const BasePlace start = scene_.baseOf(state);
   std::vector<Joints> carries = carriesOf(state);
@@ -365,20 +372,30 @@ Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
   return pickFolded(start, carries);
 }
 
-Plan Planner::planPickFromHere(const EnvState& state, std::uint32_t attempt) {
-  takeOver(state, attempt, 250);
+Plan Planner::planPickFromHere(const EnvState& state, std::uint32_t attempt, std::uint32_t reach) {
+  takeOver(state, attempt, kPickFromHereDraw + reach);
   intendToPick();
-  BasePlace base = scene_.baseOf(state);
-  const std::optional<ArmPath> reaching = reachTarget(base, state.joint_positions);
+  Plan plan = pickFromHere();
+  if (plan.trouble == ScriptedTrouble::kNone || is_thorough_) return plan;
+  is_thorough_ = true;
+  failed_motions_ = 0;
+  return pickFromHere();
+}
+
+Plan Planner::pickFromHere() {
+  BasePlace base = scene_.baseOf(*state_);
+  const std::optional<ArmPath> reaching = reachTarget(base, state_->joint_positions);
   return planFromHere(reaching, base, PlanStep::Kind::kGrasp, ScriptedTrouble::kNoGrasp);
 }
 
 Plan Planner::planFromHere(const std::optional<ArmPath>& reaching, const BasePlace& turned,
-                           PlanStep::Kind last, ScriptedTrouble not_reached) const {
+                           PlanStep::Kind last, ScriptedTrouble not_reached) {
   if (!reaching) return {{}, not_reached};
   const BasePlace start = scene_.baseOf(*state_);
-  const BaseRoute route = turned.yaw == start.yaw ? BaseRoute{} : BaseRoute{turned};
-  return planOf(start, route, *reaching, last);
+  if (turned.yaw == start.yaw) return planOf(start, {}, *reaching, last);
+  scene_.setJoints(state_->joint_positions);
+  if (!floor_search_.canTurn(start, turned.yaw)) return {{}, not_reached};
+  return planOf(start, {turned}, *reaching, last);
 }
 
 Plan Planner::pickFolded(const BasePlace& start, std::span<const Joints> carries) {
@@ -427,8 +444,8 @@ ReachView Planner::placeView() const {
           rotate(scene_.gripFromObject().rotation, up_of_object)};
 }
 
-Plan Planner::planPlaceFromHere(const EnvState& state, std::uint32_t attempt) {
-  takeOver(state, attempt, 750);
+Plan Planner::planPlaceFromHere(const EnvState& state, std::uint32_t attempt, std::uint32_t reach) {
+  takeOver(state, attempt, kPlaceFromHereDraw + reach);
   const ReachView view = placeView();
   view_ = &view;
   return leaning([&] {
@@ -439,7 +456,7 @@ Plan Planner::planPlaceFromHere(const EnvState& state, std::uint32_t attempt) {
 }
 
 Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
-  takeOver(state, attempt, 500);
+  takeOver(state, attempt, kPlaceDraw);
   const ReachView view = placeView();
   view_ = &view;
   const BasePlace start = scene_.baseOf(state);

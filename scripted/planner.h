@@ -23,9 +23,12 @@ class Planner {
   [[nodiscard]] Plan planPick(const EnvState& state, std::uint32_t attempt);
   /// From anywhere with the target in the hand, to its release at the goal.
   [[nodiscard]] Plan planPlace(const EnvState& state, std::uint32_t attempt);
-  /// The same from where the base stands: it turns at most.
-  [[nodiscard]] Plan planPickFromHere(const EnvState& state, std::uint32_t attempt);
-  [[nodiscard]] Plan planPlaceFromHere(const EnvState& state, std::uint32_t attempt);
+  /// The same from where the base stands: it turns at most. `reach` counts these plans of the
+  /// attempt.
+  [[nodiscard]] Plan planPickFromHere(const EnvState& state, std::uint32_t attempt,
+                                      std::uint32_t reach);
+  [[nodiscard]] Plan planPlaceFromHere(const EnvState& state, std::uint32_t attempt,
+                                       std::uint32_t reach);
 
  private:
   /// What the arm has to do at a place where the robot may stand: as HandGoal has it, but with
@@ -68,9 +71,11 @@ class Planner {
   /// The plan of `attempt` with what is held upright, or else as upright as one is found.
   template <class Attempt>
   [[nodiscard]] Plan leaning(const Attempt& attempt);
-  /// Of a base that was turned to where it is reached from; none: there is no such.
+  [[nodiscard]] Plan pickFromHere();
+  /// `turned`: the base as the arm reaches from it by the path `reaching`; nothing reaches where
+  /// there is none.
   [[nodiscard]] Plan planFromHere(const std::optional<ArmPath>& reaching, const BasePlace& turned,
-                                  PlanStep::Kind last, ScriptedTrouble not_reached) const;
+                                  PlanStep::Kind last, ScriptedTrouble not_reached);
   [[nodiscard]] Plan placeWith(const BasePlace& start, const Joints& carried);
   /// From where the arm is to its pose for driving; empty when it is there.
   [[nodiscard]] std::optional<ArmPath> fold(const BasePlace& base, const Joints& from,

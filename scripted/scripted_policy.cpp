@@ -18,6 +18,8 @@ namespace galactic {
 namespace {
 
 constexpr std::uint32_t kNoEpisode = 0xffff'ffff;
+/// How often the arm's part of a plan is planned again before all of it is.
+constexpr std::uint32_t kMostReaches = 6;
 
 struct EnvPlan {
   /// What it was asked about last.
@@ -30,6 +32,8 @@ struct EnvPlan {
   ScriptedPhase phase = ScriptedPhase::kPick;
   ScriptedTrouble trouble = ScriptedTrouble::kNone;
   std::uint32_t plans = 0;
+  /// Since the last plan: how often the arm's part of it was planned again.
+  std::uint32_t reaches = 0;
 };
 
 }  // namespace
@@ -113,9 +117,6 @@ class ScriptedPolicy::Impl {
   }
 
   void playOn(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
-    // Where actions are too large to bring the base to where it is needed, trying on does not,
-    // either.
-    bool may_reach_from_here = true;
     while (true) {
       std::ranges::fill(actions, 0.0F);
       const scripted::ActionRow row = scripted::rowOf(actions);
@@ -126,10 +127,7 @@ class ScriptedPolicy::Impl {
       const std::span<const float> asked = env.asked.empty() ? state.joint_positions : env.asked;
       const Progress progress = env.player.play(arm_, *world_.robot().base(), state, asked, row);
       if (progress == Progress::kActs) return;
-      const bool is_off = progress == Progress::kOff;
-      if (is_off && std::exchange(may_reach_from_here, false) && planFromHere(state, env, thread)) {
-        continue;
-      }
+      if (progress == Progress::kOff && reachFromHere(state, env, thread)) continue;
       if (progress != Progress::kDone) {
         std::ranges::fill(actions, 0.0F);
         env.trouble = ScriptedTrouble::kStuck;
@@ -186,17 +184,20 @@ class ScriptedPolicy::Impl {
     const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
     if (is_done && !holds_target && !isAtGoal(state)) env.trouble = ScriptedTrouble::kMissed;
     ++env.plans;
+    env.reaches = 0;
     plan(planned(state, env, is_done), env, thread);
   }
 
-  /// The base has arrived, if not quite where it should: from there, the arm may do as well.
-  /// Whether it does.
-  bool planFromHere(const EnvState& state, EnvPlan& env, std::size_t thread) {
+  /// The base is near to where the plan has it: from where it is, the arm may do as well. Whether
+  /// it does.
+  bool reachFromHere(const EnvState& state, EnvPlan& env, std::size_t thread) {
+    if (env.reaches >= kMostReaches) return false;
     const EnvState from = planned(state, env, true);
     scripted::Planner& planner = this->planner(thread);
     scripted::Plan plan = env.phase == ScriptedPhase::kPlace
-                              ? planner.planPlaceFromHere(from, env.plans)
-                              : planner.planPickFromHere(from, env.plans);
+                              ? planner.planPlaceFromHere(from, env.plans, env.reaches)
+                              : planner.planPickFromHere(from, env.plans, env.reaches);
+    ++env.reaches;
     if (plan.trouble != ScriptedTrouble::kNone) return false;
     env.player = scripted::PlanPlayer(std::move(plan));
     return true;

@@ -87,7 +87,7 @@ def test_plans_again_where_others_act_in_between(world, draw_actions):
         steps = iter(range(10_000))
 
         def astray(actions):
-            if next(steps) < 15:
+            if next(steps) < 40:
                 actions[:, :-2] = draw_actions(3, actions.shape[1])[:, :-2]
             return actions
 
