@@ -1,4 +1,4 @@
-"""What each rank does in the tests of test_trainer.py; started by torch.distributed.run."""
+"""What each rank does in the tests of test_ranks.py; started by torch.distributed.run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from galactic.learning.distributed import Group  # noqa: E402
 from galactic.learning.environments import Step  # noqa: E402
 from galactic.learning.trainer import Trainer  # noqa: E402
-from test_trainer import SETTINGS  # noqa: E402
+from trainers import SETTINGS  # noqa: E402
 from toys import Measured, ReachAndGrasp, Uneven  # noqa: E402
 
 

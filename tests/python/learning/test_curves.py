@@ -1,0 +1,221 @@
+"""What a run says of itself: table, page and report of its curves, and the line of progress."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import json
+import os
+import pathlib
+from typing import Any
+
+import pytest
+
+from galactic.learning.checkpoint import load_policy
+from galactic.learning.episode_sums import EpisodeSums
+from galactic.learning.reports import curves as curves_module
+from galactic.learning.reports.curves import Curves, read_curves
+from galactic.learning.reports.progress import ProgressLine
+from toys import Measured, ReachAndGrasp, Uneven
+from trainers import SETTINGS, UPDATE, curve, make_trainer, saved_run
+
+
+def test_the_curves_begin_when_every_env_has_finished_an_episode(
+    tmp_path: pathlib.Path, capsys: Any
+) -> None:
+    """Before, the short episodes would count alone: all of them successes."""
+    trainer = make_trainer(tmp_path, toy=Uneven)
+    trainer.begin()
+    trainer._iterate()
+    trainer._log({})
+    assert "success -  return -  " in capsys.readouterr().err
+    trainer.save()
+    assert load_policy(tmp_path / "best.pt").success is None
+    trainer.train()
+    rows = curve(tmp_path)
+    assert len(rows) == 8 and all(row["episodes"] > 0 for row in rows)
+    for name in ("success", "return", "length"):
+        # Of 45 steps, in rollouts of ten.
+        assert [row[name] is None for row in rows] == [True] * 4 + [False] * 4, name
+    # Four envs make 13 or 14 successes in a rollout, and twelve failed in the fifth.
+    assert 0.4 < rows[4]["success"] < 0.7
+
+
+def test_the_curves_have_what_a_task_measures(tmp_path: pathlib.Path, capsys: Any) -> None:
+    """Means of the same episodes as success and length: of the latest ones, and of validations. The columns
+    are those of the task, whatever it calls them."""
+
+    def validate(_: Any) -> EpisodeSums:
+        return EpisodeSums(4.0, 3.0, 20.0, 40.0, {"kl": 1.0, "validation_success": -2.0})
+
+    settings = dataclasses.replace(SETTINGS, validate_every=4 * UPDATE)
+    trainer = make_trainer(tmp_path, settings, Measured, validation=validate)
+    trainer.progress._live = True
+    trainer.begin()
+    trainer.train()
+    rows = curve(tmp_path)
+    assert list(rows[0])[-6:] == [
+        "measure_kl",
+        "measure_validation_success",
+        "measure_steps",
+        "validation_measure_kl",
+        "validation_measure_validation_success",
+        "validation_measure_steps",
+    ]
+    trained = [row for row in rows if row["kl"] is not None]
+    validated = [row for row in rows if row["validation_success"] is not None]
+    assert (len(trained), len(validated)) == (8, 2)
+    for row in trained:
+        assert row["measure_steps"] == row["length"]
+        assert row["measure_validation_success"] == row["success"]
+        assert all(row[f"validation_measure_{name}"] is None for name in Measured.measures)
+    assert any(row["measure_kl"] not in (row["success"], row["kl"], None) for row in trained)
+    for row in validated:
+        found = [row[f"validation_measure_{name}"] for name in Measured.measures]
+        assert found == [0.25, -0.5, 0.0] and row["measure_steps"] is None
+    said = capsys.readouterr().err
+    assert "75.0 % of 4 episodes, return 5.00, kl 0.25, validation_success -0.5, steps 0\n" in said
+    assert f" left  kl {trained[-1]['measure_kl']:.3g}  validation_success " in said
+    report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    assert report["training"] == trainer.figures() and "measure_kl" in report["training"]
+    assert report["validation"] == {
+        "success": 0.75,
+        "return": 5.0,
+        "length": 10.0,
+        "measure_kl": 0.25,
+        "measure_validation_success": -0.5,
+        "measure_steps": 0.0,
+    }
+
+
+def test_a_report_has_no_figures_before_the_curves_have(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path, dataclasses.replace(SETTINGS, steps=UPDATE), Uneven)
+    trainer.begin()
+    trainer.train()
+    report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    assert report["training"] == report["validation"] == {} and report["best_success"] is None
+
+
+def test_the_page_of_the_curves_asks_for_nothing(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path, title="</script> & <b>")
+    trainer.begin()
+    trainer.train()
+    page = (tmp_path / "curves.html").read_text(encoding="utf-8")
+    assert "http" not in page.replace("http://www.w3.org/2000/svg", "")
+    assert page.count("</script>") == 1 and "prefers-color-scheme: dark" in page
+    with open(tmp_path / "curves.csv", encoding="utf-8") as file:
+        assert len(list(csv.reader(file))) == 1 + 8
+
+
+def test_the_page_of_the_curves_draws_what_a_task_measures(tmp_path: pathlib.Path) -> None:
+    def charts(toy: Any) -> dict[str, Any]:
+        trainer = make_trainer(tmp_path, toy=toy)
+        trainer.begin()
+        trainer.train()
+        page = (tmp_path / "curves.html").read_text(encoding="utf-8")
+        data = json.loads(page.split("const data = ")[1].split(";\n")[0])
+        drawn = {name for chart in data["charts"] for name, _ in chart["lines"]}
+        assert drawn <= set(data["columns"])
+        return {chart["title"]: chart for chart in data["charts"]}
+
+    plain, measured = charts(ReachAndGrasp), charts(Measured)
+    assert list(measured) == [*list(plain)[:3], *Measured.measures, *list(plain)[3:]]
+    assert measured["steps"]["lines"] == [
+        ["measure_steps", "training"],
+        ["validation_measure_steps", "validation"],
+    ]
+
+
+def test_a_line_of_progress_fits_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A longer one would leave its beginning behind each time."""
+
+    class Terminal(io.StringIO):
+        isatty = lambda self: True
+        fileno = lambda self: 7
+
+    said = Terminal()
+    for columns, shown in ((20, "x" * 19), (0, "x" * 30)):
+        monkeypatch.setattr(os, "get_terminal_size", lambda _: os.terminal_size((columns, 24)))
+        ProgressLine(said).show("x" * 30)
+        assert said.getvalue().endswith(f"\x1b[K{shown}")
+
+
+def test_the_table_of_the_curves_keeps_every_digit_of_whole_numbers(tmp_path: pathlib.Path) -> None:
+    curves = Curves(tmp_path, "long run")
+    curves.add({"steps": 2_500_000_128, "seconds": 1 / 3, "success": 0.5})
+    curves.write({}, [])
+    (row,) = read_curves(tmp_path / "curves.csv")
+    assert row["steps"] == 2_500_000_128
+    assert row["seconds"] == pytest.approx(1 / 3, rel=1e-8)
+    assert row["success"] == 0.5 and row["return"] is None
+
+
+def test_the_table_of_the_curves_grows_row_by_row(tmp_path: pathlib.Path) -> None:
+    """It is not written again: that takes longer with each row."""
+    curves = Curves(tmp_path, "long run")
+    table = tmp_path / "curves.csv"
+    files = set()
+    for step in range(1, 5):
+        curves.add({"steps": step})
+        if step != 2:  # as rows of validations, which wait for the next one
+            curves.write({}, [])
+            files.add(table.stat().st_ino)
+            assert [row["steps"] for row in read_curves(table)] == list(range(1, step + 1))
+    assert len(files) == 1
+
+
+def test_a_torn_row_of_the_curves_is_ignored_and_mended(tmp_path: pathlib.Path) -> None:
+    resumed = saved_run(tmp_path)
+    table = tmp_path / "curves.csv"
+    whole = table.read_bytes()
+    assert len(read_curves(table)) == 2
+    later = whole.splitlines(keepends=True)[-1]
+    for damaged, rows in ((whole + later[:9], 2), (whole[:-2], 1), (whole + later, 3)):
+        table.write_bytes(damaged)
+        assert len(read_curves(table)) == rows
+        resumed = make_trainer(tmp_path, resumed.settings)
+        resumed.resume()
+        resumed.curves.write({}, [])
+        assert table.read_bytes() == whole
+
+
+def test_the_page_of_the_curves_takes_a_hundredth_of_the_time(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = [1000.0]
+    pages = []
+
+    def draw(*arguments: Any) -> str:
+        clock[0] += 0.5
+        pages.append(clock[0])
+        return "page"
+
+    monkeypatch.setattr(curves_module.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(curves_module, "curves_page", draw)
+    curves = Curves(tmp_path, "long run")
+    for step in range(1000):
+        clock[0] += 2.0
+        curves.add({"steps": step})
+        curves.write({}, [], is_last=False)
+    assert clock[0] - 1000.0 == pytest.approx(2000.0 + 0.5 * len(pages))
+    assert 2000.0 / 52 - 1 <= len(pages) <= 2000.0 / 50 + 1
+    curves.write({}, [], is_last=True)
+    assert pages[-1] == clock[0]
+
+
+@pytest.mark.parametrize("log_std", ["parameter", "output"])
+def test_the_curves_show_standard_deviations_that_are_parameters(
+    tmp_path: pathlib.Path, log_std: str
+) -> None:
+    trainer = make_trainer(tmp_path, dataclasses.replace(SETTINGS, log_std=log_std))
+    trainer.begin()
+    trainer.train()
+    shown = [row["log_std"] for row in read_curves(tmp_path / "curves.csv")]
+    if log_std == "output":
+        assert shown == [None] * 8
+        return
+    parameter = trainer.policy.action.log_std
+    assert parameter is not None
+    assert shown[-1] == pytest.approx(parameter.mean().item())
+    assert shown[0] != shown[-1]
