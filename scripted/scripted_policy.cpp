@@ -18,6 +18,8 @@ namespace galactic {
 namespace {
 
 constexpr std::uint32_t kNoEpisode = 0xffff'ffff;
+/// EnvState::held of an empty hand.
+constexpr std::int32_t kNothingHeld = -1;
 /// How often the arm's part of a plan is planned again before all of it is.
 constexpr std::uint32_t kMostReaches = 6;
 
@@ -191,12 +193,14 @@ class ScriptedPolicy::Impl {
   /// The base is near to where the plan has it: from where it is, the arm may do as well. Whether
   /// it does.
   bool reachFromHere(const EnvState& state, EnvPlan& env, std::size_t thread) {
-    if (env.reaches >= kMostReaches) return false;
+    const bool places = env.phase == ScriptedPhase::kPlace;
+    const std::int32_t needed = places ? static_cast<std::int32_t>(state.target) : kNothingHeld;
+    // Others may have opened or closed the hand meanwhile.
+    if (state.held != needed || env.reaches >= kMostReaches) return false;
     const EnvState from = planned(state, env, true);
     scripted::Planner& planner = this->planner(thread);
-    scripted::Plan plan = env.phase == ScriptedPhase::kPlace
-                              ? planner.planPlaceFromHere(from, env.plans, env.reaches)
-                              : planner.planPickFromHere(from, env.plans, env.reaches);
+    scripted::Plan plan = places ? planner.planPlaceFromHere(from, env.plans, env.reaches)
+                                 : planner.planPickFromHere(from, env.plans, env.reaches);
     ++env.reaches;
     if (plan.trouble != ScriptedTrouble::kNone) return false;
     env.player = scripted::PlanPlayer(std::move(plan));
