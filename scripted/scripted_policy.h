@@ -80,7 +80,8 @@ class ScriptedPolicy {
   void act(const BatchSimulator& simulator, std::span<float> actions,
            std::span<const std::uint8_t> where = {});
 
-  /// How often it plans in an episode before it gives up.
+  /// How often it plans in an episode before it gives up. The arm's part of a plan may be planned a
+  /// few times more.
   void allowPlans(std::uint32_t most);
   static constexpr std::uint32_t kMostPlans = 8;
 
