@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include "support/homes/small_home_actor.h"
@@ -450,6 +451,41 @@ TEST(Hand, RestoresTheWholePose) {
   EXPECT_EQ(player.sum().restored, 1U);
   EXPECT_EQ(player.state().objects[player.start().target], before);
   EXPECT_EQ(player.state().held, -1);
+}
+
+TEST(Hand, LaysObjectsDownTheSameWayInAnyEnvThatPlaysAnEpisodeByItsName) {
+  constexpr std::uint32_t kEnvs = 3;
+  const SmallHome home;
+  SimulationOptions options;
+  options.envs = kEnvs;
+  options.task.kind = TaskKind::kNone;
+  // What touches something where it is let go is jittered.
+  options.placement.most_lift = 0;
+  BatchSimulator simulator = simulatorOf(home.world(), options);
+  const auto everywhere = [&](const SmallHomeRow& row) {
+    std::vector<float> rows;
+    for (std::uint32_t n = 0; n < kEnvs; ++n) rows.insert(rows.end(), row.begin(), row.end());
+    simulator.step(rows);
+  };
+  std::mt19937 random(12);
+  for (int episode = 0; episode < 12; ++episode) {
+    simulator.reset(std::vector<std::int32_t>(kEnvs, 0));
+    const EnvState start = simulator.envState(0);
+    for (int n = 0; n < kPatience && simulator.envState(0).held < 0; ++n) {
+      everywhere(fetch(simulator.envState(0), start.target));
+    }
+    ASSERT_GE(simulator.envState(0).held, 0);
+    // As near to another object as the hand gets.
+    Vec3 beside = start.objects[(start.target + 1) % start.objects.size()].translation;
+    beside.x += uniformIn(random, -0.12F, 0.12F);
+    beside.z += uniformIn(random, -0.12F, 0.12F);
+    for (int n = 0; n < kPatience / 2; ++n) everywhere(carry(simulator.envState(0), beside));
+    everywhere({});
+    for (std::uint32_t env = 1; env < kEnvs; ++env) {
+      EXPECT_EQ(simulator.envState(env).objects, simulator.envState(0).objects);
+    }
+  }
+  EXPECT_GT(simulator.statistics().drops, 10U);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "simulation/collision/grasp_query.h"
 #include "simulation/phases/contacts.h"
 #include "simulation/phases/object_placement.h"
+#include "simulation/state/env_moment.h"
 #include "simulation/state/grip_frame.h"
 #include "support/random_stream.h"
 
@@ -54,7 +55,8 @@ void release(const ChunkStep& step, std::size_t e) {
   RestingObjects& resting = step.state.resting(n);
   const ObjectModel& object = heldModel(step.model, env);
   const Pose released = step.state.heldPose(n);
-  RandomStream random(step.model.options.seed, step.model.globalEnv(n), counters.begun, env.step);
+  const EnvMoment moment = momentOf(step.model, step.state, n);
+  RandomStream random(moment.seed, moment.env, moment.episode, moment.step);
   const Landing landing = placeObject({step.model.scenes[env.scene], resting}, object, released,
                                       random, step.model.options.placement, step.chunk.placement());
   const auto held = static_cast<std::size_t>(env.held);
