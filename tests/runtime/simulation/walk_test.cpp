@@ -232,6 +232,38 @@ TEST(Walk, ClimbsNoFurtherThanAStepMay) {
   EXPECT_GT(height, 0.2F);
 }
 
+TEST(Walk, TurnsAJointWithoutLimitsTheShortWay) {
+  std::mt19937 random(77);
+  constexpr std::uint32_t kCarts = 48;
+  const PlateRoom room(random, kCarts);
+  const BoxWorld world(room.blocks, room.starts);
+  BatchSimulator simulator = simulatorOf(world, kCarts, true);
+  constexpr float kWristStep = 0.25F;
+  const auto wrist = [&](std::size_t cart) { return simulator.envState(cart).joint_positions[1]; };
+  std::array<float, kCarts> before{};
+  int hindered = 0;
+  int crossings = 0;
+  for (int step = 0; step < 80; ++step) {
+    std::vector<float> actions;
+    for (std::uint32_t cart = 0; cart < kCarts; ++cart) {
+      actions.insert(actions.end(), {uniformIn(random, -1, 1), 1, uniformIn(random, 0, 1),
+                                     uniformIn(random, -1, 1), 0, 0});
+    }
+    simulator.step(actions);
+    for (std::size_t cart = 0; cart < kCarts; ++cart) {
+      const float turned = std::remainder(wrist(cart) - before[cart], 2 * kPi);
+      EXPECT_GE(turned, -1e-5F) << "cart " << cart << ", step " << step;
+      EXPECT_LE(turned, kWristStep + 1e-5F) << "cart " << cart << ", step " << step;
+      const bool crosses = wrist(cart) < before[cart] - kPi;
+      crossings += crosses ? 1 : 0;
+      hindered += crosses && turned < kWristStep - 1e-3F ? 1 : 0;
+      before[cart] = wrist(cart);
+    }
+  }
+  EXPECT_GT(crossings, 20);
+  EXPECT_GT(hindered, 0) << "nothing was in the way of a joint that came to the end of its turn";
+}
+
 TEST(Walk, DoesNotDependOnThreadsNorOnOtherEnvs) {
   std::mt19937 random(1803);
   const PlateRoom room(random, 40);

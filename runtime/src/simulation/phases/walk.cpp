@@ -97,8 +97,13 @@ class Walker {
       places.z[lane] = between(*from_.z, *to_.z) + slid_.z;
       places.yaw[lane] = std::remainder(*from_.yaw + share * turn_, kTurn);
       for (std::size_t v = 0; v < step_.model.variableCount(); ++v) {
+        const float from = from_.variables[v * from_.stride];
+        const float to = to_.variables[v * to_.stride];
+        // An angle that came to the other end of its turn went the short way there.
         places.variables[v * places.stride + lane] =
-            between(from_.variables[v * from_.stride], to_.variables[v * to_.stride]);
+            step_.model.motion.variables[v].wraps
+                ? std::remainder(between(from, from + std::remainder(to - from, kTurn)), kTurn)
+                : between(from, to);
       }
       followFloor(places, lane);
     }
