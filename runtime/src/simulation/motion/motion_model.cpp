@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -141,9 +142,11 @@ void addVariables(const Robot& robot, std::span<const std::uint32_t> also_variab
                                .upper = limits.upper,
                                .wraps = isPeriodic(robot, position)});
   }
-  // A continuous joint without limits of its own: what keeps the angle in range is the wrapping.
+  // A recipe may limit a continuous joint; elsewhere it is the wrapping that keeps the angle in
+  // range.
   for (MotionVariable& variable : model.variables) {
-    if (variable.wraps && variable.upper - variable.lower < 6.2F) variable.wraps = false;
+    constexpr float kPi = std::numbers::pi_v<float>;
+    if (variable.lower > -kPi || variable.upper < kPi) variable.wraps = false;
   }
 }
 

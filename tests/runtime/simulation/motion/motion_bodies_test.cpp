@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <random>
 #include <span>
@@ -14,6 +15,7 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "motion_batch.h"
+#include "support/homes/box_world.h"
 #include "support/homes/random_robot.h"
 #include "support/sanitized.h"
 #include "support/source_folder.h"
@@ -342,6 +344,22 @@ TEST(MotionModel, DoesNotWrapAnglesThatGearsFollow) {
   EXPECT_FALSE(wraps(0.5F));
   fields.links[4].type = JointType::kPrismatic;
   EXPECT_FALSE(wraps(1));
+}
+
+TEST(MotionModel, DoesNotWrapAnglesThatARecipeLimits) {
+  const auto wraps = [&](float lower, float upper) {
+    RobotPackFields fields = cartRobot();
+    fields.controlled_joints[1].lower = lower;
+    fields.controlled_joints[1].upper = upper;
+    return MotionRobot(buildPack(fields), {}).model.variables[1].wraps;
+  };
+  constexpr float kMost = std::numeric_limits<float>::max();
+  EXPECT_TRUE(wraps(-kMost, kMost));
+  EXPECT_TRUE(wraps(-4, 3.5F));
+  EXPECT_FALSE(wraps(-1, kMost));
+  EXPECT_FALSE(wraps(-3, 4));
+  EXPECT_FALSE(wraps(0, 6.28F));
+  EXPECT_FALSE(wraps(-2, 2));
 }
 
 TEST(MotionModel, RefusesActionsOnPlanarAndFloatingJoints) {
