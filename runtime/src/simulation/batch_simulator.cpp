@@ -92,8 +92,6 @@ class BatchSimulator::Impl {
       const bool is_next = episodes[env] == kNextEpisode;
       const OptionalIndex start = model_.startOf(episodes[env]);
       if (!is_next && !start) continue;
-      // With auto_reset the step has kept it.
-      if (!model_.options.auto_reset) state_.keepFinalObservation(env);
       if (is_next) {
         simulation::beginNextEpisode(model_, state_, env);
       } else {

@@ -128,6 +128,8 @@ template <class Visitor>
 void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   constexpr Within<float> kThreshold{-2, 2};
   constexpr Within<float> kMeters{0, 1000};
+  // Where a floor lies, rounding tells: none is as high as the one before it.
+  constexpr Within<float> kStep{0.001F, 1000};
   constexpr Within<std::uint32_t> kAttempts{0, 1000};
   v.group("Actions");
   v.real("grasp-from", o.action.grasp, kThreshold,
@@ -146,8 +148,8 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   v.whole("slide-attempts", o.slide.attempts, kAttempts, "Moves per step; 0: no sliding");
   v.real("slide-step", o.slide.step, kMeters,
          "Longest move of glide, length of each of towards-base, meters");
-  v.real("floor-rise", o.ground.most_rise, kMeters, "Highest step up, meters");
-  v.real("floor-drop", o.ground.most_drop, kMeters, "Deepest step down, meters");
+  v.real("floor-rise", o.ground.most_rise, kStep, "Highest step up, meters");
+  v.real("floor-drop", o.ground.most_drop, kStep, "Deepest step down, meters");
   v.flag("continuous-collision", Switch{o.continuous_collision, true},
          "Look at moves on their way, too, and pass through nothing");
   v.group("Placing released objects");

@@ -49,10 +49,10 @@ TEST_F(RecipeTask, GivesItsOptionsInTheOrderOfTheTable) {
 }
 
 TEST_F(RecipeTask, TakesWholeNumbersAsRealOnesAndSwitchesThatAreOff) {
-  EXPECT_THAT(taskOf("pick-reward = -2\nfloor-rise = 0\nno-distractors = false\n"
+  EXPECT_THAT(taskOf("pick-reward = -2\nfloor-rise = 0.5\nno-distractors = false\n"
                      "slack-penalty = 1e-3\nsuccess-reward = 0.30000000000000004\n"),
               ElementsAre("no-distractors=false", "success-reward=0.3", "pick-reward=-2",
-                          "slack-penalty=0.001", "floor-rise=0"));
+                          "slack-penalty=0.001", "floor-rise=0.5"));
 }
 
 TEST_F(RecipeTask, GivesThePartsOfAPresetWhichRefineIt) {

@@ -88,6 +88,9 @@ TEST(Options, OutOfTheirRangesMakeNoSimulator) {
             "simulation options: slide-step is nan, expected 0 to 1000");
   EXPECT_EQ(refusal([](SimulationOptions& options) { options.task.success_distance = -1; }),
             "simulation options: success-distance is -1, expected 0 to 1000");
+  // Rounding tells how high a level floor is.
+  EXPECT_EQ(refusal([](SimulationOptions& options) { options.ground.most_drop = 0; }),
+            "simulation options: floor-drop is 0, expected 0.001 to 1000");
   EXPECT_EQ(refusal([](SimulationOptions& options) { options.order = EpisodeOrder{9}; }),
             "simulation options: order is 9, expected shuffled, linear or partition");
 }
@@ -227,8 +230,18 @@ TEST(Resets, ThatTheCallerMakesAfterEachEndGiveTheEpisodesOfThoseThatStepsMake) 
       ++ends;
       episodes[env] = BatchSimulator::kNextEpisode;
       EXPECT_GT(staying.envState(env).step, 0U);
+      const auto row_of = [&](std::span<const float> rows) {
+        const std::size_t size = staying.observationSize();
+        const std::span<const float> row = rows.subspan(env * size, size);
+        return std::vector<float>(row.begin(), row.end());
+      };
+      EXPECT_EQ(row_of(staying.finalObservations()), row_of(staying.observations()));
+      EXPECT_EQ(row_of(staying.finalObservations()), row_of(renewing.finalObservations()));
     }
+    const std::vector<float> last(staying.finalObservations().begin(),
+                                  staying.finalObservations().end());
     staying.reset(episodes);
+    EXPECT_TRUE(std::ranges::equal(staying.finalObservations(), last));
     ASSERT_EQ(BatchTrace(staying).hashes(), BatchTrace(renewing).hashes()) << "step " << step;
   }
   EXPECT_GT(ends, 100);
@@ -276,6 +289,10 @@ TEST(Resets, AreWaitedForWhereAnEpisodeEndedAndNothingCountsMeanwhile) {
   EXPECT_EQ(after.steps, before.steps);
   EXPECT_EQ(after.refused, before.refused);
   EXPECT_EQ(after.reward, before.reward);
+  // Nor does the step in which they begin episodes.
+  simulator.step(actionsFor(simulator, 0, 2000), std::vector<std::int32_t>(kEnvs, 0));
+  EXPECT_EQ(std::ranges::count(simulator.idle(), 0), kEnvs);
+  EXPECT_EQ(simulator.statistics().steps, before.steps);
 }
 
 TEST(Resets, EndTheWaitWithTheEpisodeWhoseTurnItIsOrAChosenOne) {

@@ -1,7 +1,6 @@
 #include "simulation/phases/episode_start.h"
 
 #include <algorithm>
-#include <functional>
 #include <optional>
 
 #include "simulation/phases/observe.h"
@@ -37,13 +36,6 @@ void placeObjects(const Model& model, BatchState& state, std::size_t n, std::uin
     state.placeObject(n, object, placements[object].pose);
   }
   state.resting(n).share(model.objectsAt(start));
-}
-
-/// Envs whose episode ended idle from now on, until the caller begins another one.
-void awaitResets(const ChunkStep& step) {
-  const std::uint8_t* dones = step.state.dones().data() + step.first;
-  std::uint8_t* idle = step.state.idle().data() + step.first;
-  std::transform(dones, dones + kChunk, idle, idle, std::bit_or<>());
 }
 
 }  // namespace
@@ -99,14 +91,18 @@ void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) no
 }
 
 void renewEpisodes(const ChunkStep& step) noexcept {
-  if (!step.model.options.auto_reset) return awaitResets(step);
   const std::uint8_t* dones = step.state.dones().data() + step.first;
   if (std::all_of(dones, dones + kChunk, [](std::uint8_t done) { return done == 0; })) return;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
     if (dones[e] == 0) continue;
     step.state.keepFinalObservation(n);
-    beginNextEpisode(step.model, step.state, n);
+    if (step.model.options.auto_reset) {
+      beginNextEpisode(step.model, step.state, n);
+    } else {
+      // Until the caller begins another one.
+      step.state.idle()[n] = 1;
+    }
   }
 }
 

@@ -190,12 +190,10 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
   Outcomes outcomes;
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
-    if (n < resets.size() && step.model.startOf(resets[n])) continue;
+    if (idle[e] != 0) ++step.state.counters(n).idle_steps;
+    const bool begins_anew = n < resets.size() && step.model.startOf(resets[n]);
+    if (idle[e] != 0 || begins_anew) continue;
     Env& env = step.state.env(n);
-    if (idle[e] != 0) {
-      ++step.state.counters(n).idle_steps;
-      continue;
-    }
     // The first step of an episode has none before it.
     const float change = env.step == 0 ? 0 : measured.change.values[e];
     ++env.step;

@@ -279,9 +279,9 @@ class BatchState {
   [[nodiscard]] std::span<float> finalObservation(std::size_t n) {
     return std::span(final_observations_).subspan(n * observation_size_, observation_size_);
   }
-  /// Where the last step ended an episode: its last observation becomes the final one.
+  /// The last observation of an episode that has ended becomes the final one.
   void keepFinalObservation(std::size_t n) {
-    if (dones_[n] != 0) std::ranges::copy(observation(n), finalObservation(n).begin());
+    std::ranges::copy(observation(n), finalObservation(n).begin());
   }
   [[nodiscard]] std::span<const float> finalObservation(std::size_t n) const {
     return std::span(final_observations_).subspan(n * observation_size_, observation_size_);
