@@ -232,10 +232,11 @@ bool FloorPlan::isOnStorey(const PlanCell& cell, float height) const {
 
 bool FloorPlan::has(const FloorSeed& seed) const { return isOnStorey(seed.cell, seed.height); }
 
-bool FloorPlan::covers(const Vec3& base) const {
+bool FloorPlan::covers(const Vec3& base, std::int32_t beside) const {
   const PlanCell at = cellAt(base.x, base.z);
-  for (std::int32_t k = -1; k <= 1; ++k) {
-    for (std::int32_t i = -1; i <= 1; ++i) {
+  if (isOnStorey(at, base.y)) return true;
+  for (std::int32_t k = -beside; k <= beside; ++k) {
+    for (std::int32_t i = -beside; i <= beside; ++i) {
       if (isOnStorey({at.i + i, at.k + k}, base.y)) return true;
     }
   }

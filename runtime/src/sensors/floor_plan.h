@@ -104,8 +104,8 @@ class FloorPlan {
   [[nodiscard]] bool isOnStorey(const PlanCell& cell, float height) const;
   /// Of the floor in each cell, meters, X first; NaN where the robot cannot go.
   [[nodiscard]] std::span<const float> heights() const { return heights_; }
-  /// Whether a base at `base` is on this plan's floor, or beside it by a cell at most.
-  [[nodiscard]] bool covers(const Vec3& base) const;
+  /// Whether a base at `base` is on this plan's floor, or beside it by so many cells at most.
+  [[nodiscard]] bool covers(const Vec3& base, std::int32_t beside = 1) const;
   /// Whether the seed is on this plan's floor.
   [[nodiscard]] bool has(const FloorSeed& seed) const;
 

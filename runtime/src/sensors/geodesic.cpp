@@ -152,7 +152,10 @@ std::size_t Geodesic::bytes() const noexcept {
 }
 
 Way Geodesic::along(std::uint32_t field, const Vec3& base) const noexcept {
-  return wayFrom(plans_[fields_[field].plan], fields_[field].lengths, base.x, base.z);
+  const FloorPlan& plan = plans_[fields_[field].plan];
+  // Each of the four cells around the base may be beside the floor.
+  if (!plan.covers(base, kBeside + 1)) return {};
+  return wayFrom(plan, fields_[field].lengths, base.x, base.z);
 }
 
 Way Geodesic::toGoal(std::uint32_t n, const Vec3& base) const noexcept {

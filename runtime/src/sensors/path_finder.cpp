@@ -19,12 +19,11 @@ namespace galactic {
 namespace {
 
 using sensors::FloorPlan;
+using sensors::kBeside;
 using sensors::kNoWay;
 using sensors::kPlanCell;
 using sensors::PlanCell;
 
-/// How far beside a floor a base has a way, cells.
-constexpr std::int32_t kBeside = 3;
 /// Of the lengths that fields hold, meters.
 constexpr float kFarthest = (kNoWay - 1) * sensors::kWayUnit;
 constexpr std::array<PlanCell, 8> kNeighbors{

@@ -147,7 +147,6 @@ void beginAround(const FloorPlan& plan, const Vec3& place, Spreading& spreading)
 /// The field of what has begun.
 std::vector<std::uint16_t> spreadOut(Spreading& spreading) {
   spreading.run();
-  constexpr int kBeside = 3;
   for (int n = 0; n < kBeside; ++n) spreading.widen();
   std::vector<std::uint16_t> field(spreading.lengths().size(), kNoWay);
   for (std::size_t n = 0; n < field.size(); ++n) {

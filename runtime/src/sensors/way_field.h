@@ -25,13 +25,16 @@ inline constexpr std::uint16_t kNoWay = 0xFFFF;
 /// kWayUnit, at most 127 m. A way leads over passable cells, then straight to the point: from cells
 /// within kLastLeg of it from which it is in sight just above its own height; where there is no
 /// such cell, no way leads to it. Lengths spread by fast marching (Sethian 1996), which is not
-/// bound to the lattice's directions. Three cells beside the floor have lengths too, for bases that
-/// are nearer to things than the start pose can be. Shape: plan.cellCount().
+/// bound to the lattice's directions. Cells beside the floor (kBeside) have lengths too, for bases
+/// that are nearer to things than the start pose can be. Shape: plan.cellCount().
 [[nodiscard]] std::vector<std::uint16_t> wayField(const FloorPlan& plan, const Scene& scene,
                                                   const Vec3& point);
 
 /// The same to a place on the floor, for the base: the way begins in the cells around it.
 [[nodiscard]] std::vector<std::uint16_t> wayFieldToPlace(const FloorPlan& plan, const Vec3& place);
+
+/// So many cells beside the floor have lengths, too.
+inline constexpr std::int32_t kBeside = 3;
 
 /// How far a hand that stands on the floor is taken to reach, meters.
 inline constexpr float kLastLeg = 1.25F;

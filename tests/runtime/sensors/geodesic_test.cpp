@@ -111,6 +111,26 @@ std::vector<float> afterCarrying(const BoxWorld& world, int turns, std::vector<f
   return {ways.begin(), ways.end()};
 }
 
+TEST(Geodesic, KnowsNoWayOnTheStoreyBelow) {
+  // A deck of 1 m, over the floor on which the episode begins, that a robot is put on.
+  const BoxWorld world({plainFloor(), {{2, 0.95F, 0}, {3, 1, 3}}}, cartRobot(),
+                       episode({0.75F, 0.05F, 2.25F}, {2.5F, 0.05F, 1.5F}));
+  BatchSimulator batch = BatchSimulator::create(world.world(), options()).value();
+  const std::vector<float> actions(batch.actionCount());
+  const auto stand = [&](float height) {
+    const EnvState now = batch.envState(0);
+    const FollowedState there{.world_from_root = {{2.5F, height, 0.75F}, {}},
+                              .joint_positions = now.joint_positions,
+                              .objects = now.objects};
+    batch.follow(actions, std::span(&there, 1));
+  };
+  stand(0);
+  EXPECT_GT(waysOf(batch)[3], 0.5F);
+  stand(1);
+  EXPECT_EQ(waysOf(batch)[0], -1);
+  EXPECT_EQ(waysOf(batch)[3], -1);
+}
+
 TEST(Geodesic, FollowsTheTargetIntoTheHandAndSaysWhenItIsElsewhere) {
   const BoxWorld world({plainFloor()}, cartRobot(),
                        episode({1.45F, 0.2F, 0.75F}, {2.25F, 0.05F, 2.25F}));
