@@ -12,6 +12,7 @@
 #include "arrays.h"
 #include "errors.h"
 #include "galactic/option_text.h"
+#include "support/workers.h"
 
 namespace galactic::python {
 namespace {
@@ -153,7 +154,7 @@ std::string wordOf(const char* name, const py::handle& value, const char* wanted
 }
 
 std::uint32_t threadsOf(const py::handle& value) {
-  constexpr std::uint64_t kMost = 4096;
+  constexpr std::uint64_t kMost = detail::kMostThreads;
   if (const auto threads = wholeUpTo(value, kMost)) return static_cast<std::uint32_t>(*threads);
   refuseValue("threads", value, fmt::format("0 to {}; 0 takes one per processor", kMost));
 }

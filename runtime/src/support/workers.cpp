@@ -43,7 +43,8 @@ class FirstException {
 }  // namespace
 
 std::uint32_t threadCount(std::uint32_t wanted) noexcept {
-  return wanted != 0 ? wanted : std::max(1U, std::thread::hardware_concurrency());
+  const std::uint32_t count = wanted != 0 ? wanted : std::thread::hardware_concurrency();
+  return std::clamp(count, 1U, kMostThreads);
 }
 
 void forEachPart(std::uint32_t threads, std::size_t count,

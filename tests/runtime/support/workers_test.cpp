@@ -51,6 +51,13 @@ TEST(Workers, RunEveryThreadOnceInEachOfManyRounds) {
   }
 }
 
+TEST(Workers, AreNoMoreThanAnybodyMayAskFor) {
+  EXPECT_GE(detail::threadCount(0), 1U);
+  EXPECT_EQ(detail::threadCount(3), 3U);
+  EXPECT_EQ(detail::threadCount(detail::kMostThreads), detail::kMostThreads);
+  EXPECT_EQ(detail::threadCount(1U << 20U), detail::kMostThreads);
+}
+
 TEST(Workers, DoManyMorePartsThanThreadsEachOnceAndNeverTwoOnOneDesk) {
   for (const std::size_t threads : kThreadCounts) {
     constexpr std::size_t kParts = 53;
