@@ -20,7 +20,7 @@ endif()
 # The library. Targets that link it find what it needs through the CMake package.
 set(GALACTIC_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/galactic)
 set_target_properties(galactic PROPERTIES EXPORT_NAME runtime)
-install(TARGETS galactic EXPORT galacticTargets COMPONENT dev)
+install(TARGETS galactic EXPORT galacticTargets COMPONENT dev INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY runtime/include/galactic DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 install(EXPORT galacticTargets NAMESPACE galactic:: DESTINATION ${GALACTIC_PACKAGE_FOLDER} COMPONENT dev)
 configure_package_config_file(cmake/galacticConfig.cmake.in ${PROJECT_BINARY_DIR}/galacticConfig.cmake
