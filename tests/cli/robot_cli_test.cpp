@@ -135,7 +135,9 @@ TEST_F(RobotCli, WritesTheSameBytesForAnyNumberOfJobsAndInAnyFolder) {
 }
 
 TEST_F(RobotCli, ReportsGroupsAndPairs) {
-  ASSERT_EQ(bake({"arm.urdf", "--report", "report.json"}).exit_code, 0);
+  const ProgramRun baked = bake({"arm.urdf", "--report", "report.json"});
+  ASSERT_EQ(baked.exit_code, 0);
+  EXPECT_THAT(baked.out, HasSubstr("no action moves it: --print-recipe"));
   const json robot = json::parse(content("report.json"))["baked"][0];
   EXPECT_EQ(robot["name"], "arm");
   EXPECT_EQ(robot["links"], 3);
