@@ -1,7 +1,6 @@
 #include "import/assimp_reader.h"
 
 #include <assimp/DefaultIOSystem.h>
-#include <assimp/GltfMaterial.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
@@ -18,6 +17,7 @@
 #include <utility>
 
 #include "import/affine.h"
+#include "import/assimp_reader_looks.h"
 #include "import/axis_convention.h"
 #include "import/checks/content_check.h"
 #include "import/polygon_triangulation.h"
@@ -40,8 +40,6 @@ constexpr AxisConvention statedBy(UpAxis up, std::string_view by) {
 
 constexpr std::string_view kColladaReader = "Collada Importer";
 constexpr std::string_view kFbxReader = "Autodesk FBX Importer";
-constexpr std::string_view kGltf2Reader = "glTF2 Importer";
-constexpr std::string_view kObjReader = "Wavefront Object Importer";
 
 constexpr std::array kFormats{
     Format{kGltf2Reader, "glTF 2.0", statedBy(UpAxis::kY, "glTF convention")},
@@ -172,12 +170,10 @@ class SceneReader {
   Result<Affine> worldFromRoot();
   [[nodiscard]] Result<void> checkAffine(const aiNode& node) const;
   Result<void> placeNodes(const Affine& world_from_root);
-  Result<void> convertMeshes();
-  void convertMaterials();
-  void convertAlpha(const aiMaterial& material, SourceMaterial& converted);
-  void convertTextures();
+  Result<void> convertMeshes(const SceneLooks& looks);
   void nameFiles();
-  [[nodiscard]] Result<SourceMesh> convertMesh(const aiMesh& mesh, unsigned index);
+  [[nodiscard]] Result<SourceMesh> convertMesh(const aiMesh& mesh, unsigned index,
+                                               const SceneLooks& looks);
   [[nodiscard]] tl::unexpected<Error> invalid(std::string message) const {
     return fail(ErrorCode::kInvalidInput, path_.string(), std::move(message));
   }
@@ -343,7 +339,8 @@ Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
   return {};
 }
 
-Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index) {
+Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index,
+                                            const SceneLooks& looks) {
   SourceMesh converted;
   converted.name = text(mesh.mName);
   converted.material = mesh.mMaterialIndex;
@@ -352,18 +349,8 @@ Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index) 
   const auto from = std::span(mesh.mVertices, vertices);
   converted.positions.reserve(vertices);
   for (const aiVector3D& v : from) converted.positions.push_back({v.x, v.y, v.z});
-  if (vertices != 0 && mesh.HasTextureCoords(0)) {
-    converted.uvs.reserve(vertices);
-    for (const aiVector3D& v : std::span(mesh.mTextureCoords[0], vertices)) {
-      converted.uvs.push_back({v.x, v.y});
-    }
-  }
-  if (vertices != 0 && mesh.HasVertexColors(0)) {
-    converted.colors.reserve(vertices);
-    for (const aiColor4D& c : std::span(mesh.mColors[0], vertices)) {
-      converted.colors.push_back({c.r, c.g, c.b, c.a});
-    }
-  }
+  converted.uvs = looks.uvsOf(mesh);
+  converted.colors = looks.colorsOf(mesh);
   const auto faces = std::span(mesh.mFaces, mesh.mFaces == nullptr ? 0 : mesh.mNumFaces);
   converted.triangles.reserve(faces.size());
   std::size_t others = 0;
@@ -384,98 +371,13 @@ Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index) 
   return converted;
 }
 
-Result<void> SceneReader::convertMeshes() {
+Result<void> SceneReader::convertMeshes(const SceneLooks& looks) {
   for (unsigned i = 0; i < scene_->mNumMeshes; ++i) {
-    ASSIGN_OR_RETURN(auto mesh, convertMesh(*scene_->mMeshes[i], i));
+    ASSIGN_OR_RETURN(auto mesh, convertMesh(*scene_->mMeshes[i], i, looks));
     callbacks_.on_mesh(mesh);
     delete std::exchange(scene_->mMeshes[i], nullptr);  // peak memory: one mesh twice, not all
   }
   return {};
-}
-
-float unitInterval(float value) { return std::isfinite(value) ? std::clamp(value, 0.F, 1.F) : 1.F; }
-
-/// glTF says what its alpha means. Elsewhere a factor strictly between the ends counts: files do
-/// not agree which end is opaque, and nobody ships invisible surfaces.
-void SceneReader::convertAlpha(const aiMaterial& material, SourceMaterial& converted) {
-  aiString string;
-  if (format_.reader == kGltf2Reader) {
-    if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, string) != AI_SUCCESS) return;
-    if (text(string) == "MASK") converted.alpha_mode = AlphaMode::kMask;
-    if (text(string) == "BLEND") converted.alpha_mode = AlphaMode::kBlend;
-    float cutoff = converted.alpha_cutoff;
-    material.Get(AI_MATKEY_GLTF_ALPHACUTOFF, cutoff);
-    converted.alpha_cutoff = unitInterval(cutoff);
-    return;
-  }
-  float opacity = 1;
-  material.Get(AI_MATKEY_OPACITY, opacity);
-  converted.base_color[3] = 1;
-  if (opacity > 0 && opacity < 1) {
-    converted.base_color[3] = opacity;
-    converted.alpha_mode = AlphaMode::kBlend;
-  }
-  if (material.GetTexture(aiTextureType_OPACITY, 0, &string) != AI_SUCCESS) return;
-  if (text(string) == converted.base_color_texture) {
-    converted.alpha_mode = AlphaMode::kBlend;
-  } else {
-    asset_.warnings.push_back(fmt::format(
-        "the opacity texture '{}' of material '{}' is not used; put opacity into the alpha of "
-        "its color texture",
-        text(string), converted.name));
-  }
-}
-
-/// Whether `color` cannot be meant to be multiplied with a texture: black, or what the OBJ reader
-/// puts where the file states no color.
-bool isNoFactor(const aiColor4D& color, std::string_view reader) {
-  if (reader == kGltf2Reader) return false;
-  constexpr float kUnstatedInObj = 0.6F;
-  const auto all = [&](float value) {
-    return color.r == value && color.g == value && color.b == value;
-  };
-  return all(0) || (reader == kObjReader && all(kUnstatedInObj));
-}
-
-void SceneReader::convertMaterials() {
-  for (const aiMaterial* material : std::span(scene_->mMaterials, scene_->mNumMaterials)) {
-    SourceMaterial& converted = asset_.materials.emplace_back();
-    aiString string;
-    if (material->Get(AI_MATKEY_NAME, string) == AI_SUCCESS) converted.name = text(string);
-    aiColor4D color(1, 1, 1, 1);
-    if (material->Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
-      material->Get(AI_MATKEY_COLOR_DIFFUSE, color);
-    }
-    converted.base_color = {unitInterval(color.r), unitInterval(color.g), unitInterval(color.b),
-                            unitInterval(color.a)};
-    if (material->GetTexture(AI_MATKEY_BASE_COLOR_TEXTURE, &string) == AI_SUCCESS ||
-        material->GetTexture(aiTextureType_DIFFUSE, 0, &string) == AI_SUCCESS) {
-      converted.base_color_texture = text(string);
-      if (isNoFactor(color, format_.reader)) converted.base_color = {1, 1, 1, 1};
-    }
-    convertAlpha(*material, converted);
-    // Other formats do not say which triangles show one side only: no surface may be lost.
-    bool two_sided = format_.reader != kGltf2Reader;
-    if (!two_sided) material->Get(AI_MATKEY_TWOSIDED, two_sided);
-    converted.two_sided = two_sided;
-  }
-}
-
-void SceneReader::convertTextures() {
-  for (const aiTexture* texture : std::span(scene_->mTextures, scene_->mNumTextures)) {
-    EmbeddedTexture& converted = asset_.textures.emplace_back();
-    if (texture->mHeight != 0) {
-      converted.format = "raw";
-      asset_.warnings.push_back(
-          fmt::format("embedded texture {} is not an encoded image: its pixels are ignored",
-                      asset_.textures.size() - 1));
-      continue;
-    }
-    const auto* hint = texture->achFormatHint;
-    converted.format.assign(hint, std::find(hint, hint + sizeof(texture->achFormatHint), '\0'));
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture->pcData);
-    converted.bytes.assign(bytes, bytes + texture->mWidth);
-  }
 }
 
 void SceneReader::nameFiles() {
@@ -513,11 +415,12 @@ Result<SourceAsset> SceneReader::read() {
   if (auto placed = placeNodes(world_from_root); !placed) {
     return tl::unexpected(std::move(placed.error()));
   }
-  if (auto converted = convertMeshes(); !converted) {
+  const SceneLooks looks(*scene_, format_.reader);
+  if (auto converted = convertMeshes(looks); !converted) {
     return tl::unexpected(std::move(converted.error()));
   }
-  convertMaterials();
-  convertTextures();
+  asset_.materials = looks.materials(asset_.warnings);
+  asset_.textures = looks.textures(asset_.warnings);
   nameFiles();
   asset_.name = path_.stem().string();
   return std::move(asset_);

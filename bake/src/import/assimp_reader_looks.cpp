@@ -1,0 +1,132 @@
+#include "import/assimp_reader_looks.h"
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace galactic::bake {
+namespace {
+
+std::string text(const aiString& string) { return {string.C_Str()}; }
+
+float unitInterval(float value) { return std::isfinite(value) ? std::clamp(value, 0.F, 1.F) : 1.F; }
+
+/// Whether `color` cannot be meant to be multiplied with a texture: black, or what the OBJ reader
+/// puts where the file states no color.
+bool isNoFactor(const aiColor4D& color, std::string_view reader) {
+  if (reader == kGltf2Reader) return false;
+  constexpr float kUnstatedInObj = 0.6F;
+  const auto all = [&](float value) {
+    return color.r == value && color.g == value && color.b == value;
+  };
+  return all(0) || (reader == kObjReader && all(kUnstatedInObj));
+}
+
+}  // namespace
+
+std::vector<std::array<float, 2>> SceneLooks::uvsOf(const aiMesh& mesh) const {
+  std::vector<std::array<float, 2>> uvs;
+  if (mesh.mVertices == nullptr || !mesh.HasTextureCoords(0)) return uvs;
+  uvs.reserve(mesh.mNumVertices);
+  for (const aiVector3D& v : std::span(mesh.mTextureCoords[0], mesh.mNumVertices)) {
+    uvs.push_back({v.x, v.y});
+  }
+  return uvs;
+}
+
+std::vector<std::array<float, 4>> SceneLooks::colorsOf(const aiMesh& mesh) const {
+  std::vector<std::array<float, 4>> colors;
+  if (mesh.mVertices == nullptr || !mesh.HasVertexColors(0)) return colors;
+  colors.reserve(mesh.mNumVertices);
+  for (const aiColor4D& c : std::span(mesh.mColors[0], mesh.mNumVertices)) {
+    colors.push_back({c.r, c.g, c.b, c.a});
+  }
+  return colors;
+}
+
+/// glTF says what its alpha means. Elsewhere a factor strictly between the ends counts: files do
+/// not agree which end is opaque, and nobody ships invisible surfaces.
+void SceneLooks::convertAlpha(const aiMaterial& material, SourceMaterial& converted,
+                              std::vector<std::string>& warnings) const {
+  aiString string;
+  if (reader_ == kGltf2Reader) {
+    if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, string) != AI_SUCCESS) return;
+    if (text(string) == "MASK") converted.alpha_mode = AlphaMode::kMask;
+    if (text(string) == "BLEND") converted.alpha_mode = AlphaMode::kBlend;
+    float cutoff = converted.alpha_cutoff;
+    material.Get(AI_MATKEY_GLTF_ALPHACUTOFF, cutoff);
+    converted.alpha_cutoff = unitInterval(cutoff);
+    return;
+  }
+  float opacity = 1;
+  material.Get(AI_MATKEY_OPACITY, opacity);
+  converted.base_color[3] = 1;
+  if (opacity > 0 && opacity < 1) {
+    converted.base_color[3] = opacity;
+    converted.alpha_mode = AlphaMode::kBlend;
+  }
+  if (material.GetTexture(aiTextureType_OPACITY, 0, &string) != AI_SUCCESS) return;
+  if (text(string) == converted.base_color_texture) {
+    converted.alpha_mode = AlphaMode::kBlend;
+  } else {
+    warnings.push_back(fmt::format(
+        "the opacity texture '{}' of material '{}' is not used; put opacity into the alpha of "
+        "its color texture",
+        text(string), converted.name));
+  }
+}
+
+std::vector<SourceMaterial> SceneLooks::materials(std::vector<std::string>& warnings) const {
+  std::vector<SourceMaterial> materials;
+  materials.reserve(scene_.mNumMaterials);
+  for (const aiMaterial* material : std::span(scene_.mMaterials, scene_.mNumMaterials)) {
+    SourceMaterial& converted = materials.emplace_back();
+    aiString string;
+    if (material->Get(AI_MATKEY_NAME, string) == AI_SUCCESS) converted.name = text(string);
+    aiColor4D color(1, 1, 1, 1);
+    if (material->Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
+      material->Get(AI_MATKEY_COLOR_DIFFUSE, color);
+    }
+    converted.base_color = {unitInterval(color.r), unitInterval(color.g), unitInterval(color.b),
+                            unitInterval(color.a)};
+    if (material->GetTexture(AI_MATKEY_BASE_COLOR_TEXTURE, &string) == AI_SUCCESS ||
+        material->GetTexture(aiTextureType_DIFFUSE, 0, &string) == AI_SUCCESS) {
+      converted.base_color_texture = text(string);
+      if (isNoFactor(color, reader_)) converted.base_color = {1, 1, 1, 1};
+    }
+    convertAlpha(*material, converted, warnings);
+    // Other formats do not say which triangles show one side only: no surface may be lost.
+    bool two_sided = reader_ != kGltf2Reader;
+    if (!two_sided) material->Get(AI_MATKEY_TWOSIDED, two_sided);
+    converted.two_sided = two_sided;
+  }
+  return materials;
+}
+
+std::vector<EmbeddedTexture> SceneLooks::textures(std::vector<std::string>& warnings) const {
+  std::vector<EmbeddedTexture> textures;
+  textures.reserve(scene_.mNumTextures);
+  for (const aiTexture* texture : std::span(scene_.mTextures, scene_.mNumTextures)) {
+    EmbeddedTexture& converted = textures.emplace_back();
+    if (texture->mHeight != 0) {
+      converted.format = "raw";
+      warnings.push_back(
+          fmt::format("embedded texture {} is not an encoded image: its pixels are ignored",
+                      textures.size() - 1));
+      continue;
+    }
+    const auto* hint = texture->achFormatHint;
+    converted.format.assign(hint, std::find(hint, hint + sizeof(texture->achFormatHint), '\0'));
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture->pcData);
+    converted.bytes.assign(bytes, bytes + texture->mWidth);
+  }
+  return textures;
+}
+
+}  // namespace galactic::bake
