@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/srgb.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "import/affine.h"
 
@@ -10,13 +11,6 @@ namespace {
 
 /// Where a surface has colors and a part of it has none.
 constexpr std::array<float, 4> kNeutral{0.6F, 0.6F, 0.6F, 1.0F};
-
-/// The sRGB transfer function (IEC 61966-2-1), 0 to 1.
-double encoded(double linear) {
-  constexpr double kLinearEnd = 0.0031308;
-  if (linear <= kLinearEnd) return 12.92 * linear;
-  return 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
 
 std::uint32_t byteOf(double value) {
   return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255));
@@ -46,7 +40,7 @@ std::array<float, 4> product(const std::array<float, 4>& a, const std::array<flo
 std::uint32_t surfaceColor(const std::array<float, 4>& linear) {
   std::uint32_t color = byteOf(static_cast<double>(linear[3])) << 24U;
   for (std::size_t n = 0; n < 3; ++n) {
-    color |= byteOf(encoded(static_cast<double>(linear[n]))) << (8 * n);
+    color |= byteOf(srgbEncoded(static_cast<double>(linear[n]))) << (8 * n);
   }
   return color;
 }

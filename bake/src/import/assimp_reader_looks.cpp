@@ -10,6 +10,8 @@
 #include <span>
 #include <utility>
 
+#include "common/srgb.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -17,18 +19,50 @@ std::string text(const aiString& string) { return {string.C_Str()}; }
 
 float unitInterval(float value) { return std::isfinite(value) ? std::clamp(value, 0.F, 1.F) : 1.F; }
 
-/// Whether `color` cannot be meant to be multiplied with a texture: black, or what the OBJ reader
-/// puts where the file states no color.
+/// Whether `color` cannot be meant to be multiplied with a texture or with colors of vertices:
+/// black, or what the readers of OBJ and OFF put where the file states no color.
 bool isNoFactor(const aiColor4D& color, std::string_view reader) {
   if (reader == kGltf2Reader) return false;
-  constexpr float kUnstatedInObj = 0.6F;
+  constexpr float kUnstated = 0.6F;
   const auto all = [&](float value) {
     return color.r == value && color.g == value && color.b == value;
   };
-  return all(0) || (reader == kObjReader && all(kUnstatedInObj));
+  return all(0) || ((reader == kObjReader || reader == kOffReader) && all(kUnstated));
+}
+
+/// Whether the colors of vertices are those on a screen: scanners and viewers write them so. glTF
+/// says that they are linear.
+bool storesScreenColors(std::string_view reader) {
+  return reader == kPlyReader || reader == kObjReader || reader == kOffReader;
+}
+
+/// Colors on a screen, 0 to 1 or, where some are larger, bytes, as linear ones.
+void makeLinear(std::vector<std::array<float, 4>>& colors) {
+  constexpr float kOneAndRounding = 1.01F;
+  const bool are_bytes = std::ranges::any_of(
+      colors, [](const auto& color) { return *std::ranges::max_element(color) > kOneAndRounding; });
+  const double one = are_bytes ? 255 : 1;
+  for (std::array<float, 4>& color : colors) {
+    for (float& channel : std::span(color).first(3)) {
+      channel =
+          static_cast<float>(srgbDecoded(std::clamp(static_cast<double>(channel) / one, 0.0, 1.0)));
+    }
+    // Files without alpha get a 1 from their readers, beside bytes, too.
+    if (color[3] > kOneAndRounding) color[3] /= 255;
+  }
 }
 
 }  // namespace
+
+SceneLooks::SceneLooks(const aiScene& scene, std::string_view reader)
+    : scene_(scene), reader_(reader), has_vertex_colors_(scene.mNumMaterials) {
+  for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes)) {
+    const bool has_colors = mesh->HasVertexColors(0);
+    if (has_colors && mesh->mMaterialIndex < has_vertex_colors_.size()) {
+      has_vertex_colors_[mesh->mMaterialIndex] = true;
+    }
+  }
+}
 
 std::vector<std::array<float, 2>> SceneLooks::uvsOf(const aiMesh& mesh) const {
   std::vector<std::array<float, 2>> uvs;
@@ -47,6 +81,7 @@ std::vector<std::array<float, 4>> SceneLooks::colorsOf(const aiMesh& mesh) const
   for (const aiColor4D& c : std::span(mesh.mColors[0], mesh.mNumVertices)) {
     colors.push_back({c.r, c.g, c.b, c.a});
   }
+  if (storesScreenColors(reader_)) makeLinear(colors);
   return colors;
 }
 
@@ -98,8 +133,10 @@ std::vector<SourceMaterial> SceneLooks::materials(std::vector<std::string>& warn
     if (material->GetTexture(AI_MATKEY_BASE_COLOR_TEXTURE, &string) == AI_SUCCESS ||
         material->GetTexture(aiTextureType_DIFFUSE, 0, &string) == AI_SUCCESS) {
       converted.base_color_texture = text(string);
-      if (isNoFactor(color, reader_)) converted.base_color = {1, 1, 1, 1};
     }
+    const bool is_factor =
+        !converted.base_color_texture.empty() || has_vertex_colors_[materials.size() - 1];
+    if (is_factor && isNoFactor(color, reader_)) converted.base_color = {1, 1, 1, 1};
     convertAlpha(*material, converted, warnings);
     // Other formats do not say which triangles show one side only: no surface may be lost.
     bool two_sided = reader_ != kGltf2Reader;

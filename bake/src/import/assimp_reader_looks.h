@@ -15,13 +15,15 @@ namespace galactic::bake {
 /// Readers of the library, by its names, that deliver looks in ways of their own.
 inline constexpr std::string_view kGltf2Reader = "glTF2 Importer";
 inline constexpr std::string_view kObjReader = "Wavefront Object Importer";
+inline constexpr std::string_view kOffReader = "OFF Importer";
+inline constexpr std::string_view kPlyReader = "Stanford Polygon Library (PLY) Importer";
 
 /// What the surfaces look like of a scene that the library has read: its materials and images, and
 /// the texture coordinates and colors of its meshes.
 class SceneLooks {
  public:
   /// `reader`: the library's name of the one that made `scene`, which has to live as long.
-  SceneLooks(const aiScene& scene, std::string_view reader) : scene_(scene), reader_(reader) {}
+  SceneLooks(const aiScene& scene, std::string_view reader);
 
   /// One for each vertex of a mesh of the scene, or none; as SourceMesh has them.
   [[nodiscard]] std::vector<std::array<float, 2>> uvsOf(const aiMesh& mesh) const;
@@ -37,6 +39,8 @@ class SceneLooks {
 
   const aiScene& scene_;
   std::string_view reader_;
+  /// Whether some mesh of the material has colors of its own, for each material.
+  std::vector<bool> has_vertex_colors_;
 };
 
 }  // namespace galactic::bake

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "galactic/bake/triangle_mesh.h"
 #include "import_helpers.h"
 #include "support/mesh_files.h"
 #include "support/scratch_folder.h"
@@ -247,6 +248,52 @@ TEST(NamedFiles, ThatArePipesOrDevicesAreNotWaitedFor) {
       folder.write("zero.obj", objWithCoordinates("mtllib /dev/zero\nusemtl m\n")), options);
   ASSERT_TRUE(zero.has_value()) << zero.error().message;
   EXPECT_EQ(zero->files.size(), 1U);
+}
+
+/// How the first vertex of a triangle is drawn that its file colors like this: 0xAABBGGRR.
+std::uint32_t drawnColor(std::string_view name, const std::string& file) {
+  const auto asset = importContent(name, file);
+  EXPECT_TRUE(asset.has_value()) << name << ": " << asset.error().message;
+  if (!asset) return 0;
+  return bake::surfaceOf(*asset, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}).colors.front();
+}
+
+std::string plyWithColors(std::string_view type, std::string_view color) {
+  return fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nproperty {0} red\nproperty {0} green\nproperty {0} blue\nelement face 1\nproperty list "
+      "uchar int vertex_indices\nend_header\n0 0 0 {1}\n9 0 0 {1}\n0 9 0 {1}\n3 0 1 2\n",
+      type, color);
+}
+
+std::string objWithColors(std::string_view color, std::string_view head = "") {
+  return fmt::format("{1}v 0 0 0 {0}\nv 9 0 0 {0}\nv 0 9 0 {0}\nf 1 2 3\n", color, head);
+}
+
+std::string offWithColors(std::string_view color) {
+  return fmt::format("COFF\n3 1 0\n0 0 0 {0}\n9 0 0 {0}\n0 9 0 {0}\n3 0 1 2\n", color);
+}
+
+TEST(VertexColors, OfScansAreDrawnAsTheirFilesHaveThem) {
+  constexpr std::uint32_t kFile = 0xFF084080;  // 128, 64, 8
+  EXPECT_EQ(drawnColor("a.ply", plyWithColors("uchar", "128 64 8")), kFile);
+  EXPECT_EQ(drawnColor("b.ply", plyWithColors("float", "0.502 0.251 0.0314")), kFile);
+  EXPECT_EQ(drawnColor("a.obj", objWithColors("0.502 0.251 0.0314")), kFile);
+  EXPECT_EQ(drawnColor("a.off", offWithColors("0.502 0.251 0.0314 1")), kFile);
+  EXPECT_EQ(drawnColor("b.off", offWithColors("128 64 8 255")), kFile);
+  // No number is too odd to be drawn somehow.
+  EXPECT_EQ(drawnColor("c.ply", plyWithColors("float", "1.005 -1 0")), 0xFF0000FF);
+  EXPECT_EQ(drawnColor("d.ply", plyWithColors("float", "1e30 0 0")), 0xFF0000FF);
+}
+
+TEST(VertexColors, OfGltfFilesAreLinear) {
+  std::string json = gltfFile(unevenBox());
+  // The positions again, as colors: the second corner has red 1.5, green 0.25 and blue 1.
+  const std::string_view position = R"("POSITION":1)";
+  json.insert(json.find(position) + position.size(), R"(,"COLOR_0":1)");
+  const auto asset = importContent("box.glb", glbContainer(json, gltfBuffer(unevenBox())));
+  ASSERT_TRUE(asset.has_value()) << asset.error().message;
+  EXPECT_THAT(asset->meshes[0].colors[1], ElementsAre(1.5F, 0.25F, 1.F, testing::_));
 }
 
 }  // namespace

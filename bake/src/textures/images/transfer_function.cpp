@@ -1,23 +1,14 @@
 #include "textures/images/transfer_function.h"
 
-#include <cmath>
+#include "common/srgb.h"
 
 namespace galactic::bake {
-namespace {
-
-double decoded(double encoded) {
-  constexpr double kLinearEnd = 0.04045;
-  if (encoded <= kLinearEnd) return encoded / 12.92;
-  return std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-}  // namespace
 
 TransferFunction::TransferFunction() {
   for (std::size_t byte = 0; byte < linear_.size(); ++byte) {
-    linear_[byte] = static_cast<float>(decoded(static_cast<double>(byte) / 255));
+    linear_[byte] = static_cast<float>(srgbDecoded(static_cast<double>(byte) / 255));
     least_[byte] =
-        byte == 0 ? 0.F : static_cast<float>(decoded((static_cast<double>(byte) - 0.5) / 255));
+        byte == 0 ? 0.F : static_cast<float>(srgbDecoded((static_cast<double>(byte) - 0.5) / 255));
   }
   std::uint8_t byte = 0;
   for (std::size_t bin = 0; bin < at_bin_.size(); ++bin) {
