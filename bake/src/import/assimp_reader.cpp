@@ -203,6 +203,8 @@ Result<void> SceneReader::load() {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_CAMERAS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+  // "*N" for an embedded image, as of other formats, and not the name of a file that nobody has.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_EMBEDDED_TEXTURES_LEGACY_NAMING, true);
   // No post-processing: the library's own triangulation covers the notches of concave polygons.
   const bool read = importer.ReadFile(path_.string(), 0) != nullptr;
   callbacks_.on_stage(ReadStage::kConversion);

@@ -85,6 +85,15 @@ std::vector<std::array<float, 4>> SceneLooks::colorsOf(const aiMesh& mesh) const
   return colors;
 }
 
+/// What a material's texture is, as SourceMaterial has it. Some FBX and COLLADA files embed an
+/// image under one name and use it under the same: the embedded one is meant. glTF says so itself.
+std::string SceneLooks::imageOf(const aiString& texture) const {
+  std::string name = text(texture);
+  if (name.empty() || name.starts_with('*') || reader_ == kGltf2Reader) return name;
+  const int embedded = scene_.GetEmbeddedTextureAndIndex(name.c_str()).second;
+  return embedded < 0 ? name : fmt::format("*{}", embedded);
+}
+
 /// glTF says what its alpha means. Elsewhere a factor strictly between the ends counts: files do
 /// not agree which end is opaque, and nobody ships invisible surfaces.
 void SceneLooks::convertAlpha(const aiMaterial& material, SourceMaterial& converted,
@@ -107,7 +116,7 @@ void SceneLooks::convertAlpha(const aiMaterial& material, SourceMaterial& conver
     converted.alpha_mode = AlphaMode::kBlend;
   }
   if (material.GetTexture(aiTextureType_OPACITY, 0, &string) != AI_SUCCESS) return;
-  if (text(string) == converted.base_color_texture) {
+  if (imageOf(string) == converted.base_color_texture) {
     converted.alpha_mode = AlphaMode::kBlend;
   } else {
     warnings.push_back(fmt::format(
@@ -132,7 +141,7 @@ std::vector<SourceMaterial> SceneLooks::materials(std::vector<std::string>& warn
                             unitInterval(color.a)};
     if (material->GetTexture(AI_MATKEY_BASE_COLOR_TEXTURE, &string) == AI_SUCCESS ||
         material->GetTexture(aiTextureType_DIFFUSE, 0, &string) == AI_SUCCESS) {
-      converted.base_color_texture = text(string);
+      converted.base_color_texture = imageOf(string);
     }
     const bool is_factor =
         !converted.base_color_texture.empty() || has_vertex_colors_[materials.size() - 1];

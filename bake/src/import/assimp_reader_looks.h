@@ -9,6 +9,7 @@
 struct aiMaterial;
 struct aiMesh;
 struct aiScene;
+struct aiString;
 
 namespace galactic::bake {
 
@@ -34,6 +35,7 @@ class SceneLooks {
   [[nodiscard]] std::vector<EmbeddedTexture> textures(std::vector<std::string>& warnings) const;
 
  private:
+  [[nodiscard]] std::string imageOf(const aiString& texture) const;
   void convertAlpha(const aiMaterial& material, SourceMaterial& converted,
                     std::vector<std::string>& warnings) const;
 

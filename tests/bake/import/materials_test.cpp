@@ -70,6 +70,61 @@ TEST(GltfMaterials, LoseImagesInOtherFormatsWithAWarning) {
   }
 }
 
+/// A triangle of ASCII FBX with a texture of this name, in whose video is `video`. Another video of
+/// that name holds `other`.
+std::string fbxWithTexture(std::string_view name, std::string_view video, std::string_view other) {
+  const auto content = [](std::string_view base64) {
+    return base64.empty() ? std::string() : fmt::format("Content: ,\n\"{}\"\n", base64);
+  };
+  return fmt::format(
+      "; FBX 7.4.0 project file\nFBXHeaderExtension:  {{\nFBXHeaderVersion: 1003\nFBXVersion: "
+      "7400\n}}\n"
+      "Objects:  {{\nGeometry: 1, \"Geometry::g\", \"Mesh\" {{\n"
+      "Vertices: *9 {{\na: 0,0,0,900,0,0,0,900,0\n}}\nPolygonVertexIndex: *3 {{\na: 0,1,-3\n}}\n"
+      "LayerElementUV: 0 {{\nVersion: 101\nName: \"UVMap\"\nMappingInformationType: "
+      "\"ByPolygonVertex\"\n"
+      "ReferenceInformationType: \"Direct\"\nUV: *6 {{\na: 0,0,1,0,0,1\n}}\n}}\n"
+      "LayerElementMaterial: 0 {{\nVersion: 101\nName: \"\"\nMappingInformationType: \"AllSame\"\n"
+      "ReferenceInformationType: \"IndexToDirect\"\nMaterials: *1 {{\na: 0\n}}\n}}\n"
+      "Layer: 0 {{\nVersion: 100\nLayerElement:  {{\nType: \"LayerElementMaterial\"\nTypedIndex: "
+      "0\n}}\n"
+      "LayerElement:  {{\nType: \"LayerElementUV\"\nTypedIndex: 0\n}}\n}}\n}}\n"
+      "Model: 2, \"Model::m\", \"Mesh\" {{\nVersion: 232\n}}\n"
+      "Material: 3, \"Material::paint\", \"\" {{\nVersion: 102\nShadingModel: \"phong\"\n}}\n"
+      "Texture: 4, \"Texture::t\", \"\" {{\nType: \"TextureVideoClip\"\nVersion: 202\n"
+      "FileName: \"C:\\x\\{0}\"\nRelativeFilename: \"{0}\"\n}}\n"
+      "Texture: 6, \"Texture::n\", \"\" {{\nType: \"TextureVideoClip\"\nVersion: 202\n"
+      "FileName: \"C:\\x\\{0}\"\nRelativeFilename: \"{0}\"\n}}\n"
+      "Video: 5, \"Video::v\", \"Clip\" {{\nType: \"Clip\"\nFileName: \"C:\\x\\{0}\"\n"
+      "RelativeFilename: \"{0}\"\n{1}}}\n"
+      "Video: 7, \"Video::w\", \"Clip\" {{\nType: \"Clip\"\nFileName: \"C:\\x\\{0}\"\n"
+      "RelativeFilename: \"{0}\"\n{2}}}\n}}\n"
+      "Connections:  {{\nC: \"OO\",2,0\nC: \"OO\",1,2\nC: \"OO\",3,2\n"
+      "C: \"OP\",4,3, \"DiffuseColor\"\nC: \"OP\",6,3, \"NormalMap\"\n"
+      "C: \"OO\",5,4\nC: \"OO\",7,6\n}}\n",
+      name, content(video), content(other));
+}
+
+TEST(FbxMaterials, UseTheImagesThatTheFileEmbeds) {
+  const auto drawn = [](std::string_view video, std::string_view other) -> std::string {
+    const auto asset = importContent("a.fbx", fbxWithTexture("wood.png", video, other));
+    EXPECT_TRUE(asset.has_value()) << asset.error().message;
+    if (!asset) return {};
+    const std::string name = asset->materials[asset->meshes[0].material].base_color_texture;
+    if (name.empty()) return asset->warnings.empty() ? "" : asset->warnings.front();
+    EXPECT_EQ(name.front(), '*');
+    EXPECT_EQ(asset->warnings.size(), 0U);
+    const auto& bytes = asset->textures.at(std::stoul(name.substr(1))).bytes;
+    return {bytes.begin(), bytes.end()};
+  };
+  EXPECT_EQ(drawn("aW1hZ2U=", ""), "image");
+  // Of two images of one name each texture has its own; one without takes the other's.
+  EXPECT_EQ(drawn("aW1hZ2U=", "b3RoZXI="), "image");
+  EXPECT_EQ(drawn("", "b3RoZXI="), "other");
+  EXPECT_THAT(drawn("", ""),
+              testing::HasSubstr("texture 'wood.png' of material 'paint' is missing"));
+}
+
 /// The only named material of an OBJ whose MTL has these lines; "a.png" and "b.png" exist.
 struct ObjImport {
   SourceMaterial material;
