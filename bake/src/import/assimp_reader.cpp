@@ -1,6 +1,5 @@
 #include "import/assimp_reader.h"
 
-#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "import/affine.h"
+#include "import/assimp_reader_files.h"
 #include "import/assimp_reader_looks.h"
 #include "import/axis_convention.h"
 #include "import/checks/content_check.h"
@@ -75,59 +75,6 @@ Format formatOf(const Assimp::Importer& importer) {
   if (known != kFormats.end()) return *known;
   return {.reader = reader, .name = reader, .convention = statedBy(UpAxis::kY, "assumed")};
 }
-
-/// What the reader asked for, in this order, each once.
-struct AskedFiles {
-  std::vector<std::string> opened;
-  std::vector<std::string> missing;
-  /// Not looked for: they lie outside the asset's folder.
-  std::vector<std::string> outside;
-  FileSearch search;
-};
-
-/// Opens files for the reader and remembers which, because the reader does not tell. Nothing but
-/// regular files: opening a pipe would wait for its writer.
-class RecordingFiles final : public Assimp::DefaultIOSystem {
- public:
-  /// `folder`: outside of it, nothing is opened; empty: anything is.
-  RecordingFiles(AskedFiles& asked, std::filesystem::path folder)
-      : asked_(asked), folder_(std::move(folder)) {}
-
-  /// The library's own opens the file to see whether it is there.
-  bool Exists(const char* file) const override { return isPlainFile(file); }
-
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    std::string name = file;
-    Assimp::IOStream* stream = openPlain(name, mode);
-    if (stream == nullptr) {
-      // Readers hand over URIs as they stand in the file: "my%20scene.bin".
-      if (const std::string plain = withoutUriEscapes(name); plain != name) {
-        stream = openPlain(plain, mode);
-        if (stream != nullptr) name = plain;
-      }
-    }
-    const bool is_outside = stream == nullptr && !isNear(name);
-    auto& list = is_outside ? asked_.outside : stream == nullptr ? asked_.missing : asked_.opened;
-    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
-    return stream;
-  }
-
- private:
-  [[nodiscard]] bool isNear(const std::string& name) const {
-    return folder_.empty() || isBelow(name, folder_);
-  }
-
-  Assimp::IOStream* openPlain(const std::string& name, const char* mode) {
-    return isPlainFile(name) ? DefaultIOSystem::Open(name.c_str(), mode) : nullptr;
-  }
-
-  [[nodiscard]] bool isPlainFile(const std::string& name) const {
-    return isNear(name) && asked_.search.findsFile(name);
-  }
-
-  AskedFiles& asked_;
-  std::filesystem::path folder_;
-};
 
 /// Listens for the one thing that a reader mentions only in its log: faces that it left out because
 /// their vertices do not exist. Sets up the library's global logger: for processes of their own.
@@ -194,10 +141,9 @@ std::string text(const aiString& string) { return {string.C_Str()}; }
 Result<void> SceneReader::load() {
   DroppedFacesLog dropped_faces;
   Assimp::Importer importer;
-  const std::filesystem::path folder = std::filesystem::absolute(path_).parent_path();
+  const Reach reach = options_.allow_outside ? Reach::kAnywhere : Reach::kNear;
   // The importer owns it.
-  importer.SetIOHandler(
-      new RecordingFiles(asked_, options_.allow_outside ? std::filesystem::path() : folder));
+  importer.SetIOHandler(new RecordingFiles(asked_, path_, reach));
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
@@ -402,8 +348,9 @@ void SceneReader::nameFiles() {
         "`allow-outside`",
         nameRelativeTo(path_, file)));
   }
+  // Other readers ask for files that may be there, or say themselves that they lack.
+  if (format_.reader != kObjReader) return;
   for (const std::string& file : missing) {
-    if (std::filesystem::path(file).extension() != ".mtl") continue;
     asset_.warnings.push_back(
         fmt::format("material file '{}' is missing: its materials get default colors",
                     nameRelativeTo(path_, file)));

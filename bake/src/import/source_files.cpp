@@ -44,10 +44,7 @@ std::optional<fs::path> findReference(const fs::path& folder, std::string refere
                                       FileSearch& search) {
   constexpr std::string_view kFileScheme = "file://";
   if (reference.starts_with(kFileScheme)) reference.erase(0, kFileScheme.size());
-  // Exporters leave blanks and carriage returns at the end of MTL lines.
-  while (!reference.empty() && std::isspace(static_cast<unsigned char>(reference.back())) != 0) {
-    reference.pop_back();
-  }
+  reference = withoutTrailingBlanks(reference);
   std::vector<std::string> spellings{reference, withoutUriEscapes(reference)};
   for (std::size_t i = 0; i < 2; ++i) spellings.push_back(withForwardSlashes(spellings[i]));
   for (const std::string& spelling : spellings) {
@@ -105,10 +102,8 @@ void paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearc
   const bool has_coordinates =
       std::any_of(asset.meshes.begin(), asset.meshes.end(),
                   [](const SourceMesh& mesh) { return !mesh.uvs.empty(); });
-  // An MTL that was read states what colors there are.
-  const bool has_mtl =
-      std::any_of(asset.files.begin(), asset.files.end(),
-                  [](const SourceFile& file) { return file.name.ends_with(".mtl"); });
+  // An MTL that was read, whatever its name, states what colors there are.
+  const bool has_mtl = asset.files.size() > 1;
   if (!is_obj || has_mtl || !has_coordinates) return;
   const auto namesake = namesakeOf(main_input, search);
   if (!namesake) return;
@@ -161,6 +156,11 @@ std::string withoutUriEscapes(std::string_view uri) {
     if (byte) i += 2;
   }
   return plain;
+}
+
+std::string withoutTrailingBlanks(std::string_view text) {
+  const std::size_t last = text.find_last_not_of(" \t\r\n\v\f");
+  return std::string(text.substr(0, last == text.npos ? 0 : last + 1));
 }
 
 std::string nameRelativeTo(const fs::path& main_input, const fs::path& file) {

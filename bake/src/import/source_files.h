@@ -34,6 +34,9 @@ class FileSearch {
 /// `uri` with its escapes (%20) undone.
 [[nodiscard]] std::string withoutUriEscapes(std::string_view uri);
 
+/// `text` without blanks and line ends behind it: exporters leave some behind the names of files.
+[[nodiscard]] std::string withoutTrailingBlanks(std::string_view text);
+
 /// `file` as seen from the folder of `main_input`, with '/' between parts; never absolute.
 [[nodiscard]] std::string nameRelativeTo(const std::filesystem::path& main_input,
                                          const std::filesystem::path& file);

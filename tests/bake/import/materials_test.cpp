@@ -239,6 +239,40 @@ TEST(ObjTextures, ThatAreMissingGiveWayToTheMeshesNamesakeWhereNoOtherIsMeant) {
   EXPECT_EQ(materialOf(folder, obj).base_color_texture, "wood.png");
 }
 
+TEST(ObjMaterials, AreFoundWhateverEndsTheLineThatNamesThem) {
+  const ScratchFolder folder;
+  (void)folder.write("colors.mtl", "newmtl m\nKd 1 0 0\n");
+  (void)folder.write("PAINTS", "newmtl m\nKd 0 1 0\n");
+  for (const char* end : {"", " ", " \t ", "\r", " \r"}) {
+    for (const char* name : {"colors.mtl", "PAINTS"}) {
+      const auto asset = importMesh(folder.write(
+          "mug.obj", objWithCoordinates(fmt::format("mtllib {}{}\nusemtl m\n", name, end))));
+      ASSERT_TRUE(asset.has_value()) << asset.error().message;
+      EXPECT_THAT(asset->warnings, ElementsAre()) << name << " and '" << end << "'";
+      const bool is_red = std::string_view(name) == "colors.mtl";
+      EXPECT_THAT(asset->materials[asset->meshes[0].material].base_color,
+                  ElementsAre(is_red ? 1.F : 0.F, is_red ? 0.F : 1.F, 0.F, 1.F));
+      EXPECT_EQ(asset->files.size(), 2U);
+    }
+  }
+  // An MTL of any name says what there is to be drawn.
+  (void)folder.write("texture.png", "image");
+  EXPECT_EQ(materialOf(folder, objWithCoordinates("mtllib PAINTS\nusemtl m\n")).base_color_texture,
+            "");
+}
+
+TEST(ObjMaterials, ThatAreMissingDrawAWarningWhateverTheirName) {
+  for (const char* name : {"lost.mtl", "lost.mtl ", "lost.MTL", "lost"}) {
+    const auto asset =
+        importContent("mug.obj", objWithCoordinates(fmt::format("mtllib {}\nusemtl m\n", name)));
+    ASSERT_TRUE(asset.has_value()) << asset.error().message;
+    const std::string trimmed = std::string_view(name).ends_with(' ') ? "lost.mtl" : name;
+    EXPECT_THAT(asset->warnings,
+                testing::Contains(fmt::format(
+                    "material file '{}' is missing: its materials get default colors", trimmed)));
+  }
+}
+
 TEST(NamedFiles, OutsideOfTheMeshesFolderAreReadOnlyWhenAllowed) {
   const ScratchFolder folder;
   (void)folder.write("far/lost.mtl", "newmtl m\nmap_Kd wood.png\n");

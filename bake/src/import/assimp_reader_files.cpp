@@ -1,0 +1,47 @@
+#include "import/assimp_reader_files.h"
+
+#include <assimp/MemoryIOWrapper.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace galactic::bake {
+namespace fs = std::filesystem;
+
+RecordingFiles::RecordingFiles(AskedFiles& asked, const fs::path& main_input, Reach reach)
+    : asked_(asked) {
+  if (reach == Reach::kNear) folder_ = fs::absolute(main_input).parent_path();
+}
+
+Assimp::IOStream* RecordingFiles::Open(const char* file, const char* mode) {
+  // Readers hand over names as they stand in the file: "my%20scene.bin", "colors.mtl ".
+  const std::string trimmed = withoutTrailingBlanks(file);
+  std::string name = file;
+  Assimp::IOStream* stream = nullptr;
+  for (const std::string& spelling :
+       {std::string(file), withoutUriEscapes(file), trimmed, withoutUriEscapes(trimmed)}) {
+    stream = openPlain(spelling, mode);
+    name = stream == nullptr ? trimmed : spelling;
+    if (stream != nullptr) break;
+  }
+  const bool is_outside = stream == nullptr && !isNear(name);
+  auto& list = is_outside ? asked_.outside : stream == nullptr ? asked_.missing : asked_.opened;
+  if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+  return stream;
+}
+
+bool RecordingFiles::isNear(const std::string& name) const {
+  return folder_.empty() || isBelow(name, folder_);
+}
+
+bool RecordingFiles::isPlainFile(const std::string& name) const {
+  return isNear(name) && asked_.search.findsFile(name);
+}
+
+Assimp::IOStream* RecordingFiles::openPlain(const std::string& name, const char* mode) {
+  if (!isPlainFile(name)) return nullptr;
+  return DefaultIOSystem::Open(name.c_str(), mode);
+}
+
+}  // namespace galactic::bake
