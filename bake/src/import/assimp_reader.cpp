@@ -9,19 +9,23 @@
 #include <array>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
+#include "common/lower_case.h"
 #include "import/affine.h"
 #include "import/assimp_reader_files.h"
 #include "import/assimp_reader_looks.h"
 #include "import/axis_convention.h"
 #include "import/checks/content_check.h"
+#include "import/gltf_texture_coordinates.h"
 #include "import/polygon_triangulation.h"
 #include "import/source_files.h"
+#include "support/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -60,9 +64,7 @@ const aiImporterDesc* readerOf(const Assimp::Importer& importer) {
 /// Whether the reader is one for files of this name: where none of these accepts the content, the
 /// library takes any other that does.
 bool isForName(const aiImporterDesc& reader, const std::filesystem::path& path) {
-  std::string extension = path.extension().string().substr(1);
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lowerCase(path.extension().string().substr(1));
   return fmt::format(" {} ", reader.mFileExtensions).find(" " + extension + " ") !=
          std::string::npos;
 }
@@ -138,12 +140,21 @@ class SceneReader {
 
 std::string text(const aiString& string) { return {string.C_Str()}; }
 
+/// What the reader gets in place of the file, where it would draw it otherwise.
+Result<std::optional<DrawnGltf>> drawnAs(const std::filesystem::path& path, Reach reach) {
+  const std::string extension = lowerCase(path.extension().string());
+  if (extension != ".glb" && extension != ".gltf") return std::nullopt;
+  ASSIGN_OR_RETURN(const auto file, MappedFile::open(path));
+  return drawnGltf(path, file.bytes(), reach);
+}
+
 Result<void> SceneReader::load() {
   DroppedFacesLog dropped_faces;
   Assimp::Importer importer;
   const Reach reach = options_.allow_outside ? Reach::kAnywhere : Reach::kNear;
+  ASSIGN_OR_RETURN(auto drawn, drawnAs(path_, reach));
   // The importer owns it.
-  importer.SetIOHandler(new RecordingFiles(asked_, path_, reach));
+  importer.SetIOHandler(new RecordingFiles(asked_, path_, reach, std::move(drawn)));
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
@@ -286,6 +297,21 @@ Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
   return {};
 }
 
+/// How many corners of triangles have texture coordinates that are no numbers.
+std::size_t cornersWithoutUv(const SourceMesh& mesh) {
+  if (mesh.uvs.empty()) return 0;
+  std::size_t corners = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      // What is out of range is refused later.
+      if (vertex >= mesh.uvs.size()) continue;
+      const auto& [u, v] = mesh.uvs[vertex];
+      if (!std::isfinite(u) || !std::isfinite(v)) ++corners;
+    }
+  }
+  return corners;
+}
+
 Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index,
                                             const SceneLooks& looks) {
   SourceMesh converted;
@@ -314,6 +340,12 @@ Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index,
   if (others != 0) {
     asset_.warnings.push_back(fmt::format("mesh '{}' ({}) has {} points or lines: ignored",
                                           converted.name, index, others));
+  }
+  if (const std::size_t corners = cornersWithoutUv(converted); corners != 0) {
+    asset_.warnings.push_back(
+        fmt::format("mesh '{}' ({}) has {} corners whose texture coordinates are not finite: its "
+                    "texture is drawn wrong there; export it again",
+                    converted.name, index, corners));
   }
   return converted;
 }

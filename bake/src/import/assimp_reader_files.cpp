@@ -7,14 +7,28 @@
 #include <utility>
 
 namespace galactic::bake {
+namespace {
+
 namespace fs = std::filesystem;
 
-RecordingFiles::RecordingFiles(AskedFiles& asked, const fs::path& main_input, Reach reach)
-    : asked_(asked) {
+/// `content` outlives the stream, which who opens it closes.
+Assimp::IOStream* streamOf(const std::string& content) {
+  return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content.data()),
+                                    content.size());
+}
+
+}  // namespace
+
+RecordingFiles::RecordingFiles(AskedFiles& asked, const fs::path& main_input, Reach reach,
+                               std::optional<DrawnGltf> drawn)
+    : asked_(asked), main_input_(main_input.string()), drawn_(std::move(drawn)) {
   if (reach == Reach::kNear) folder_ = fs::absolute(main_input).parent_path();
 }
 
 Assimp::IOStream* RecordingFiles::Open(const char* file, const char* mode) {
+  if (drawn_ && fs::path(file).filename() == kTextureCoordinatesFile) {
+    return streamOf(drawn_->texture_coordinates);
+  }
   // Readers hand over names as they stand in the file: "my%20scene.bin", "colors.mtl ".
   const std::string trimmed = withoutTrailingBlanks(file);
   std::string name = file;
@@ -41,6 +55,7 @@ bool RecordingFiles::isPlainFile(const std::string& name) const {
 
 Assimp::IOStream* RecordingFiles::openPlain(const std::string& name, const char* mode) {
   if (!isPlainFile(name)) return nullptr;
+  if (drawn_ && name == main_input_) return streamOf(drawn_->file);
   return DefaultIOSystem::Open(name.c_str(), mode);
 }
 

@@ -2,9 +2,11 @@
 #include <assimp/DefaultIOSystem.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "import/gltf_texture_coordinates.h"
 #include "import/source_files.h"
 
 namespace galactic::bake {
@@ -22,8 +24,10 @@ struct AskedFiles {
 /// regular files: opening a pipe would wait for its writer.
 class RecordingFiles final : public Assimp::DefaultIOSystem {
  public:
-  /// Nothing is opened outside the folder of `main_input` that `reach` does not allow.
-  RecordingFiles(AskedFiles& asked, const std::filesystem::path& main_input, Reach reach);
+  /// Nothing is opened outside the folder of `main_input` that `reach` does not allow; `drawn` is
+  /// what the reader gets in place of `main_input`.
+  RecordingFiles(AskedFiles& asked, const std::filesystem::path& main_input, Reach reach,
+                 std::optional<DrawnGltf> drawn);
 
   /// The library's own opens the file to see whether it is there.
   bool Exists(const char* file) const override { return isPlainFile(file); }
@@ -35,8 +39,10 @@ class RecordingFiles final : public Assimp::DefaultIOSystem {
   [[nodiscard]] Assimp::IOStream* openPlain(const std::string& name, const char* mode);
 
   AskedFiles& asked_;
+  std::string main_input_;
   /// Empty: anything is near.
   std::filesystem::path folder_;
+  std::optional<DrawnGltf> drawn_;
 };
 
 }  // namespace galactic::bake

@@ -54,12 +54,6 @@ struct GltfRequirements {
   std::vector<std::string> warnings;
 };
 
-/// Whether the file is a GLB: JSON and buffers in one.
-[[nodiscard]] bool isGlb(std::span<const std::byte> file);
-
-/// The JSON of a glTF file: the whole file, or the first chunk of a GLB.
-[[nodiscard]] std::span<const std::byte> gltfJson(std::span<const std::byte> file);
-
 /// Nothing also when `file` is no glTF: the reader then says why.
 [[nodiscard]] GltfRequirements gltfRequirements(std::span<const std::byte> file);
 

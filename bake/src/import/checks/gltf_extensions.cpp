@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
 #include "import/checks/content_check.h"
+#include "import/gltf_json.h"
 
 namespace galactic::bake {
 namespace {
@@ -105,26 +104,7 @@ class RequiredExtensions final : public Json::json_sax_t {
   GltfRequirements found_;
 };
 
-std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t offset) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, bytes.data() + offset, sizeof(word));
-  return word;
-}
-
-constexpr std::size_t kChunkStart = 20;
-
 }  // namespace
-
-bool isGlb(std::span<const std::byte> file) {
-  constexpr std::uint32_t kGlbMagic = 0x46546C67;
-  return file.size() >= kChunkStart && wordAt(file, 0) == kGlbMagic;
-}
-
-std::span<const std::byte> gltfJson(std::span<const std::byte> file) {
-  if (!isGlb(file)) return file;
-  const std::size_t length = wordAt(file, 12);
-  return file.subspan(kChunkStart, std::min(length, file.size() - kChunkStart));
-}
 
 GltfRequirements gltfRequirements(std::span<const std::byte> file) {
   const std::span<const std::byte> json = gltfJson(file);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include "common/lfs_pointer.h"
 #include "import/checks/content_check.h"
+#include "import/gltf_json.h"
 #include "import/source_files.h"
 #include "support/try.h"
 
@@ -22,32 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::size_t kGlbHeader = 12;
-constexpr std::size_t kChunkHeader = 8;
 constexpr std::int64_t kTriangles = 4;
-
-std::uint32_t wordAt(std::span<const std::byte> bytes, std::size_t offset) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, bytes.data() + offset, sizeof(word));
-  return word;
-}
-
-/// Bytes of one component of an accessor; 0 of an unknown type.
-std::uint64_t componentBytes(std::uint64_t type) {
-  switch (type) {
-    case 5120:
-    case 5121:
-      return 1;
-    case 5122:
-    case 5123:
-      return 2;
-    case 5125:
-    case 5126:
-      return 4;
-    default:
-      return 0;
-  }
-}
 
 /// Components of one element of an accessor; 0 of an unknown type.
 std::uint64_t componentsOf(std::string_view type) {
@@ -61,19 +36,6 @@ std::uint64_t componentsOf(std::string_view type) {
   const auto* found = std::find_if(kTypes.begin(), kTypes.end(),
                                    [&](const auto& one) { return one.first == type; });
   return found == kTypes.end() ? 0 : found->second;
-}
-
-/// The member as a whole number; none where it is absent or none.
-std::optional<std::uint64_t> wholeOf(const Json& object, const char* key) {
-  const auto member = object.find(key);
-  if (member == object.end() || !member->is_number_unsigned()) return std::nullopt;
-  return member->get<std::uint64_t>();
-}
-
-std::string textOf(const Json& object, const char* key) {
-  const auto member = object.find(key);
-  return member == object.end() || !member->is_string() ? std::string()
-                                                        : member->get<std::string>();
 }
 
 /// Bytes that the data URI holds: three of four characters.
@@ -122,17 +84,12 @@ class GltfRanges {
                 message + "; the file is cut off or damaged: export or download it again");
   }
 
-  /// An empty list where there is none: files of glTF 1.0 have objects instead.
-  [[nodiscard]] const Json& listOf(const char* key) const {
-    static const Json none = Json::array();
-    const auto list = document_.find(key);
-    return list == document_.end() || !list->is_array() ? none : *list;
-  }
+  [[nodiscard]] const Json& listOf(const char* key) const { return gltfList(document_, key); }
 
   [[nodiscard]] Result<void> checkBuffer(const Json& buffer, std::size_t n) const {
-    const auto stated = wholeOf(buffer, "byteLength");
+    const auto stated = gltfWhole(buffer, "byteLength");
     if (!stated) return broken(fmt::format("buffer {} has no byteLength", n));
-    const std::string uri = textOf(buffer, "uri");
+    const std::string uri = gltfText(buffer, "uri");
     std::optional<std::uint64_t> found = binary_bytes_;
     if (uri.starts_with("data:")) {
       found = decodedBytes(uri);
@@ -162,13 +119,13 @@ class GltfRanges {
 
   [[nodiscard]] Result<void> checkView(const Json& view, std::size_t n) const {
     const Json& buffers = listOf("buffers");
-    const auto buffer = wholeOf(view, "buffer");
-    const auto length = wholeOf(view, "byteLength");
+    const auto buffer = gltfWhole(view, "buffer");
+    const auto length = gltfWhole(view, "byteLength");
     if (!buffer || *buffer >= buffers.size() || !length) {
       return broken(fmt::format("buffer view {} has no buffer or no byteLength", n));
     }
-    const std::uint64_t all = wholeOf(buffers[*buffer], "byteLength").value_or(0);
-    const std::uint64_t begin = wholeOf(view, "byteOffset").value_or(0);
+    const std::uint64_t all = gltfWhole(buffers[*buffer], "byteLength").value_or(0);
+    const std::uint64_t begin = gltfWhole(view, "byteOffset").value_or(0);
     if (begin <= all && *length <= all - begin) return {};
     return broken(fmt::format("buffer view {} is {} bytes from {} on, and its buffer has {}", n,
                               *length, begin, all));
@@ -178,16 +135,16 @@ class GltfRanges {
   [[nodiscard]] Result<void> checkFits(const Json& owner, std::uint64_t count, std::uint64_t bytes,
                                        const std::string& what) const {
     const Json& views = listOf("bufferViews");
-    const auto index = wholeOf(owner, "bufferView");
+    const auto index = gltfWhole(owner, "bufferView");
     if (!index) return {};
     if (*index >= views.size() || !views[*index].is_object()) {
       return broken(
           fmt::format("{} uses buffer view {}, and there are {}", what, *index, views.size()));
     }
-    const std::uint64_t all = wholeOf(views[*index], "byteLength").value_or(0);
-    const std::uint64_t begin = wholeOf(owner, "byteOffset").value_or(0);
+    const std::uint64_t all = gltfWhole(views[*index], "byteLength").value_or(0);
+    const std::uint64_t begin = gltfWhole(owner, "byteOffset").value_or(0);
     const std::uint64_t stride =
-        std::max(bytes, wholeOf(views[*index], "byteStride").value_or(bytes));
+        std::max(bytes, gltfWhole(views[*index], "byteStride").value_or(bytes));
     const std::uint64_t room = all < begin ? 0 : all - begin;
     const std::uint64_t held = room < bytes ? 0 : (room - bytes) / stride + 1;
     if (held >= count) return {};
@@ -197,25 +154,27 @@ class GltfRanges {
 
   [[nodiscard]] Result<void> checkAccessor(const Json& accessor, std::size_t n) const {
     const std::string what = fmt::format("accessor {}", n);
-    const auto count = wholeOf(accessor, "count");
-    const std::uint64_t component = componentBytes(wholeOf(accessor, "componentType").value_or(0));
-    const std::uint64_t bytes = component * componentsOf(textOf(accessor, "type"));
+    const auto count = gltfWhole(accessor, "count");
+    const std::uint64_t component =
+        gltfComponentBytes(gltfWhole(accessor, "componentType").value_or(0));
+    const std::uint64_t bytes = component * componentsOf(gltfText(accessor, "type"));
     if (!count || bytes == 0) return broken(what + " has no count, componentType or type");
     if (auto checked = checkFits(accessor, *count, bytes, what); !checked) return checked;
     const auto sparse = accessor.find("sparse");
     if (sparse == accessor.end() || !sparse->is_object()) return {};
-    const std::uint64_t some = wholeOf(*sparse, "count").value_or(0);
+    const std::uint64_t some = gltfWhole(*sparse, "count").value_or(0);
     const auto part = [&](const char* key, auto&& bytes_of) -> Result<void> {
       const auto found = sparse->find(key);
       if (found == sparse->end() || !found->is_object())
         return broken(what + " is sparse without " + key);
       return checkFits(*found, some, bytes_of(*found), fmt::format("{} sparse {}", what, key));
     };
-    if (auto checked = part("indices",
-                            [](const Json& indices) {
-                              return std::max<std::uint64_t>(
-                                  1, componentBytes(wholeOf(indices, "componentType").value_or(0)));
-                            });
+    if (auto checked =
+            part("indices",
+                 [](const Json& indices) {
+                   return std::max<std::uint64_t>(
+                       1, gltfComponentBytes(gltfWhole(indices, "componentType").value_or(0)));
+                 });
         !checked) {
       return checked;
     }
@@ -240,7 +199,7 @@ class GltfRanges {
       return std::nullopt;
     }
     const Json& accessor = accessors[index.get<std::size_t>()];
-    return accessor.is_object() ? wholeOf(accessor, "count") : std::nullopt;
+    return accessor.is_object() ? gltfWhole(accessor, "count") : std::nullopt;
   }
 
   [[nodiscard]] Result<void> checkPrimitive(const Json& primitive, const std::string& what) const {
@@ -259,7 +218,7 @@ class GltfRanges {
     const auto indices = primitive.find("indices");
     const auto corners = indices == primitive.end() ? vertices : countOf(*indices);
     if (!corners) return broken(what + " uses an accessor that is not there");
-    const auto mode = wholeOf(primitive, "mode").value_or(kTriangles);
+    const auto mode = gltfWhole(primitive, "mode").value_or(kTriangles);
     if (mode != kTriangles || *corners % 3 == 0) return {};
     return broken(
         fmt::format("{} has {} corners of triangles, expected three of each", what, *corners));
@@ -279,15 +238,15 @@ Result<std::uint64_t> binaryBytes(const fs::path& path, std::span<const std::byt
                             "download it again",
                             what, stated, file.size()));
   };
-  const std::uint64_t all = wordAt(file, 8);
+  const std::uint64_t all = gltfWordAt(file, 8);
   if (all > file.size()) return cut_off(all, "its GLB header");
   const std::uint64_t json_end =
-      kGlbHeader + kChunkHeader + std::uint64_t{wordAt(file, kGlbHeader)};
+      kGlbHeader + kGlbChunkHeader + std::uint64_t{gltfWordAt(file, kGlbHeader)};
   if (json_end > all) return cut_off(json_end, "its JSON chunk");
-  if (json_end + kChunkHeader > all) return 0;
-  const std::uint64_t binary = wordAt(file, static_cast<std::size_t>(json_end));
-  if (json_end + kChunkHeader + binary > all) {
-    return cut_off(json_end + kChunkHeader + binary, "its binary chunk");
+  if (json_end + kGlbChunkHeader > all) return 0;
+  const std::uint64_t binary = gltfWordAt(file, static_cast<std::size_t>(json_end));
+  if (json_end + kGlbChunkHeader + binary > all) {
+    return cut_off(json_end + kGlbChunkHeader + binary, "its binary chunk");
   }
   return binary;
 }
@@ -296,9 +255,7 @@ Result<std::uint64_t> binaryBytes(const fs::path& path, std::span<const std::byt
 
 Result<void> checkGltfRanges(const fs::path& path, std::span<const std::byte> bytes) {
   ASSIGN_OR_RETURN(const auto binary, binaryBytes(path, bytes));
-  const std::span<const std::byte> json = gltfJson(bytes);
-  const auto* text = reinterpret_cast<const char*>(json.data());
-  const Json document = Json::parse(text, text + json.size(), nullptr, /*allow_exceptions=*/false);
+  const Json document = parseGltf(bytes);
   if (!document.is_object()) return {};
   return GltfRanges(path, document, binary).check();
 }
