@@ -19,6 +19,24 @@ std::string text(const aiString& string) { return {string.C_Str()}; }
 
 float unitInterval(float value) { return std::isfinite(value) ? std::clamp(value, 0.F, 1.F) : 1.F; }
 
+// The reader of glTF delivers base colors as diffuse ones, too, but for materials with
+// KHR_materials_pbrSpecularGlossiness: there the diffuse ones are that extension's, which counts.
+
+aiColor4D colorOf(const aiMaterial& material, std::string_view reader) {
+  aiColor4D color(1, 1, 1, 1);
+  const bool is_gltf = reader == kGltf2Reader;
+  if (is_gltf && material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS) return color;
+  if (material.Get(AI_MATKEY_BASE_COLOR, color) == AI_SUCCESS || is_gltf) return color;
+  material.Get(AI_MATKEY_COLOR_DIFFUSE, color);
+  return color;
+}
+
+/// The first of them that a material has is its color's.
+std::pair<aiTextureType, aiTextureType> colorTexturesOf(std::string_view reader) {
+  if (reader == kGltf2Reader) return {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR};
+  return {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE};
+}
+
 /// Whether `color` cannot be meant to be multiplied with a texture or with colors of vertices:
 /// black, or what the readers of OBJ and OFF put where the file states no color.
 bool isNoFactor(const aiColor4D& color, std::string_view reader) {
@@ -133,14 +151,12 @@ std::vector<SourceMaterial> SceneLooks::materials(std::vector<std::string>& warn
     SourceMaterial& converted = materials.emplace_back();
     aiString string;
     if (material->Get(AI_MATKEY_NAME, string) == AI_SUCCESS) converted.name = text(string);
-    aiColor4D color(1, 1, 1, 1);
-    if (material->Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
-      material->Get(AI_MATKEY_COLOR_DIFFUSE, color);
-    }
+    const aiColor4D color = colorOf(*material, reader_);
     converted.base_color = {unitInterval(color.r), unitInterval(color.g), unitInterval(color.b),
                             unitInterval(color.a)};
-    if (material->GetTexture(AI_MATKEY_BASE_COLOR_TEXTURE, &string) == AI_SUCCESS ||
-        material->GetTexture(aiTextureType_DIFFUSE, 0, &string) == AI_SUCCESS) {
+    const auto [first, second] = colorTexturesOf(reader_);
+    if (material->GetTexture(first, 0, &string) == AI_SUCCESS ||
+        material->GetTexture(second, 0, &string) == AI_SUCCESS) {
       converted.base_color_texture = imageOf(string);
     }
     const bool is_factor =

@@ -21,9 +21,12 @@ using testing::ElementsAre;
 
 /// The material of a GLB that has this one (JSON).
 SourceMaterial gltfMaterial(std::string_view material) {
-  const GltfPieces pieces{.nodes = GltfPieces{}.nodes,
-                          .buffer_uri = {},
-                          .more = fmt::format(R"(,"materials":[{}])", material)};
+  const GltfPieces pieces{
+      .nodes = GltfPieces{}.nodes,
+      .buffer_uri = {},
+      .more = fmt::format(
+          R"(,"extensionsUsed":["KHR_materials_pbrSpecularGlossiness"],"materials":[{}])",
+          material)};
   std::string json = gltfFile(unevenBox(), pieces);
   const std::string_view primitive_end = R"("indices":0)";
   json.insert(json.find(primitive_end) + primitive_end.size(), R"(,"material":0)");
@@ -68,6 +71,19 @@ TEST(GltfMaterials, LoseImagesInOtherFormatsWithAWarning) {
                                         "their plain color; export them as PNG or JPEG",
                                         format, extension)));
   }
+}
+
+TEST(GltfMaterials, OfSpecularGlossinessAreDiffuseColors) {
+  const std::string red =
+      R"("extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[1,0,0,0.5]}})";
+  EXPECT_THAT(gltfMaterial("{" + red + "}").base_color, ElementsAre(1.F, 0.F, 0.F, 0.5F));
+  // What the material says for readers without the extension does not count.
+  EXPECT_THAT(gltfMaterial("{" + red + R"(,"pbrMetallicRoughness":{"baseColorFactor":[0,1,0,1]}})")
+                  .base_color,
+              ElementsAre(1.F, 0.F, 0.F, 0.5F));
+  EXPECT_THAT(
+      gltfMaterial(R"({"pbrMetallicRoughness":{"baseColorFactor":[0,1,0,0.25]}})").base_color,
+      ElementsAre(0.F, 1.F, 0.F, 0.25F));
 }
 
 /// A triangle of ASCII FBX with a texture of this name, in whose video is `video`. Another video of
