@@ -297,6 +297,28 @@ Result<void> SceneReader::placeNodes(const Affine& world_from_root) {
   return {};
 }
 
+/// With the morph targets of glTF applied as far as the mesh says. Weights of other readers are not
+/// those of the file's shape: an FBX's may be 1 whatever it states.
+std::vector<Vec3> positionsOf(const aiMesh& mesh, std::string_view reader) {
+  std::vector<Vec3> positions;
+  const std::size_t vertices = mesh.mVertices == nullptr ? 0 : mesh.mNumVertices;
+  const auto own = std::span(mesh.mVertices, vertices);
+  positions.reserve(vertices);
+  for (const aiVector3D& v : own) positions.push_back({v.x, v.y, v.z});
+  if (reader != kGltf2Reader) return positions;
+  for (const aiAnimMesh* target : std::span(mesh.mAnimMeshes, mesh.mNumAnimMeshes)) {
+    const float weight = target->mWeight;
+    if (weight == 0 || target->mVertices == nullptr || target->mNumVertices != vertices) continue;
+    for (std::size_t n = 0; n < vertices; ++n) {
+      const aiVector3D offset = target->mVertices[n] - own[n];
+      positions[n].x += weight * offset.x;
+      positions[n].y += weight * offset.y;
+      positions[n].z += weight * offset.z;
+    }
+  }
+  return positions;
+}
+
 /// How many corners of triangles have texture coordinates that are no numbers.
 std::size_t cornersWithoutUv(const SourceMesh& mesh) {
   if (mesh.uvs.empty()) return 0;
@@ -318,10 +340,7 @@ Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index,
   converted.name = text(mesh.mName);
   converted.material = mesh.mMaterialIndex;
   if (converted.name.empty()) converted.name = fmt::format("mesh {}", index);
-  const std::size_t vertices = mesh.mVertices == nullptr ? 0 : mesh.mNumVertices;
-  const auto from = std::span(mesh.mVertices, vertices);
-  converted.positions.reserve(vertices);
-  for (const aiVector3D& v : from) converted.positions.push_back({v.x, v.y, v.z});
+  converted.positions = positionsOf(mesh, format_.reader);
   converted.uvs = looks.uvsOf(mesh);
   converted.colors = looks.colorsOf(mesh);
   const auto faces = std::span(mesh.mFaces, mesh.mFaces == nullptr ? 0 : mesh.mNumFaces);

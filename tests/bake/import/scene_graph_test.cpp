@@ -224,6 +224,49 @@ TEST(SceneGraph, ListsTheFilesItReadWithSizesAndHashes) {
   EXPECT_EQ(asset->files[1].hash_high, hash.high64);
 }
 
+/// A triangle of which a morph target moves the second corner by (1, 2, 3), with weights.
+std::string morphFile(std::string_view mesh_weights, std::string_view node_weights) {
+  const std::array<float, 18> points{0, 0, 0, 9, 0, 0, 0, 9, 0, 0, 0, 0, 1, 2, 3, 0, 0, 0};
+  std::string buffer;
+  for (const float value : points) buffer += bytesOf(value);
+  return glbContainer(
+      fmt::format(
+          R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0{}}}],)"
+          R"("meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"targets":[{{"POSITION":1}}]}}]{}}}],)"
+          R"("accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
+          R"("min":[0,0,0],"max":[9,9,0]}},{{"bufferView":0,"byteOffset":36,"componentType":5126,)"
+          R"("count":3,"type":"VEC3","min":[0,0,0],"max":[1,2,3]}}],)"
+          R"("bufferViews":[{{"buffer":0,"byteLength":72}}],"buffers":[{{"byteLength":72}}]}})",
+          node_weights, mesh_weights),
+      buffer);
+}
+
+TEST(SceneGraph, ShapesMeshesOfGltfFilesByTheWeightsOfTheirMorphTargets) {
+  const auto second = [](std::string_view weights) {
+    const auto asset = importContent("a.glb", morphFile(weights, ""));
+    EXPECT_TRUE(asset.has_value()) << asset.error().message;
+    if (!asset) return WorldPoint{};
+    EXPECT_THAT(asset->warnings, ElementsAre());
+    const Vec3& p = asset->meshes[0].positions[1];
+    return WorldPoint{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+  };
+  EXPECT_THAT(second(""), ElementsAre(9, 0, 0));
+  EXPECT_THAT(second(R"(,"weights":[0])"), ElementsAre(9, 0, 0));
+  EXPECT_THAT(second(R"(,"weights":[1])"), ElementsAre(10, 2, 3));
+  EXPECT_THAT(second(R"(,"weights":[-0.5])"), ElementsAre(8.5, -1, -1.5));
+}
+
+TEST(SceneGraph, WarnsOfWeightsOfMorphTargetsThatNodesStateOnce) {
+  const auto warnings = [](std::string_view weights) {
+    const auto asset = importContent("a.glb", morphFile("", weights));
+    EXPECT_TRUE(asset.has_value()) << asset.error().message;
+    return asset ? asset->warnings : std::vector<std::string>();
+  };
+  EXPECT_THAT(warnings(R"(,"weights":[0.0],"translation":[1,2,3])"), ElementsAre());
+  EXPECT_THAT(warnings(R"(,"weights":[0.5,1],"translation":[1,2,3])"),
+              ElementsAre(HasSubstr("weights of morph targets that nodes state are not read")));
+}
+
 TEST(SceneGraph, NamesTheBufferOfAGltfAmongItsFiles) {
   const ScratchFolder folder;
   static_cast<void>(folder.write("box 1.bin", gltfBuffer(unevenBox())));

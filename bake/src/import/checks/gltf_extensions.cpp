@@ -41,9 +41,9 @@ class RequiredExtensions final : public Json::json_sax_t {
  public:
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool number_integer(number_integer_t value) override { return weight(value != 0); }
+  bool number_unsigned(number_unsigned_t value) override { return weight(value != 0); }
+  bool number_float(number_float_t value, const string_t&) override { return weight(value != 0); }
   bool binary(binary_t&) override { return true; }
   bool start_object(std::size_t) override { return enter(); }
   bool end_object() override { return leave(); }
@@ -54,7 +54,9 @@ class RequiredExtensions final : public Json::json_sax_t {
   }
 
   bool key(string_t& name) override {
+    if (depth_ == kNodeDepth) in_weights_ = in_nodes_ && name == "weights";
     if (depth_ != 1) return true;
+    in_nodes_ = name == "nodes";
     in_required_ = name == "extensionsRequired";
     in_used_ = name == "extensionsUsed";
     if (name == "skins") {
@@ -97,10 +99,26 @@ class RequiredExtensions final : public Json::json_sax_t {
     --depth_;
     return true;
   }
+  /// Weights of a mesh are applied; those of a node would give the mesh another shape there.
+  bool weight(bool counts) {
+    if (!counts || !in_weights_ || depth_ != kNodeDepth + 1) return true;
+    in_weights_ = false;
+    if (std::exchange(has_node_weights_, true)) return true;
+    found_.warnings.emplace_back(
+        "weights of morph targets that nodes state are not read: their meshes have the shape of "
+        "their own weights; export them in the shape that is meant");
+    return true;
+  }
+
+  /// Inside the document, the list of nodes, and a node.
+  static constexpr std::size_t kNodeDepth = 3;
 
   std::size_t depth_ = 0;
   bool in_required_ = false;
   bool in_used_ = false;
+  bool in_nodes_ = false;
+  bool in_weights_ = false;
+  bool has_node_weights_ = false;
   GltfRequirements found_;
 };
 
