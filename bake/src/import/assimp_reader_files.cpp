@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace galactic::bake {
 namespace {
@@ -31,13 +32,17 @@ Assimp::IOStream* RecordingFiles::Open(const char* file, const char* mode) {
   }
   // Readers hand over names as they stand in the file: "my%20scene.bin", "colors.mtl ".
   const std::string trimmed = withoutTrailingBlanks(file);
-  std::string name = file;
+  std::vector<std::string> spellings{file};
+  for (const std::string& other : {withoutUriEscapes(file), trimmed, withoutUriEscapes(trimmed)}) {
+    if (std::ranges::find(spellings, other) == spellings.end()) spellings.push_back(other);
+  }
+  std::string name = trimmed;
   Assimp::IOStream* stream = nullptr;
-  for (const std::string& spelling :
-       {std::string(file), withoutUriEscapes(file), trimmed, withoutUriEscapes(trimmed)}) {
+  for (const std::string& spelling : spellings) {
     stream = openPlain(spelling, mode);
-    name = stream == nullptr ? trimmed : spelling;
-    if (stream != nullptr) break;
+    if (stream == nullptr) continue;
+    name = spelling;
+    break;
   }
   const bool is_outside = stream == nullptr && !isNear(name);
   auto& list = is_outside ? asked_.outside : stream == nullptr ? asked_.missing : asked_.opened;
