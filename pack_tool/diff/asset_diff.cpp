@@ -20,6 +20,7 @@ constexpr std::array<const char*, 4> kMadeBy{"box_volumes", "sphere_quality", "i
 /// One side, taken apart.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving JSON does not throw; its checks are asserts.
 struct AssetParts {
+  bool is_robot = false;
   Json provenance;
   Json content;
   /// The list whose elements have spheres, and its name.
@@ -55,12 +56,12 @@ Json pairKinds(const Json& pairs_by_kind) {
 
 AssetParts takeApart(Json description) {
   AssetParts parts;
-  const bool robot = description.contains("robot");
-  parts.list = robot ? "groups" : "objects";
+  parts.is_robot = description.contains("robot");
+  parts.list = parts.is_robot ? "groups" : "objects";
   parts.provenance = std::move(description.at("provenance"));
-  parts.content = std::move(description.at(robot ? "robot" : "object_set"));
+  parts.content = std::move(description.at(parts.is_robot ? "robot" : "object_set"));
   parts.provenance[parts.list] = takeMadeBy(parts.content.at(parts.list));
-  if (robot) {
+  if (parts.is_robot) {
     parts.provenance["surfaces"] = std::move(parts.content.at("surfaces"));
     parts.content.erase("surfaces");
     parts.content["group_pairs"] = pairKinds(parts.content.at("group_pairs"));
@@ -171,6 +172,12 @@ void compareAssets(DescribedPair packs, const DiffOptions& options, PackDifferen
   a.content[list] = std::move(elements.a);
   b.content[list] = std::move(elements.b);
   append(difference.content, compareFields(a.content, b.content, options.tolerance));
+  if (!a.is_robot) return;
+  // Actions, observations and recordings know joints and positions by their numbers.
+  for (const char* numbered : {"positions", "controlled_joints"}) {
+    append(difference.content,
+           compareOrder(numbered, a.content.at(numbered), b.content.at(numbered)));
+  }
 }
 
 }  // namespace galactic::pack_tool

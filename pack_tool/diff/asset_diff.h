@@ -12,7 +12,8 @@ struct DescribedPair {
 
 /// Compares two packs of objects, or two of robots, by their descriptions: what the runtime reads
 /// goes to `difference.content`; provenance, statistics and meshes go to `difference.provenance`.
-/// Objects and links are paired by name. Spheres are summarized: their numbers by radius, else how
+/// Objects and links are paired by name; the order of a robot's positions and controlled joints
+/// counts. Spheres are summarized: their numbers by radius, else how
 /// many moved and how far.
 void compareAssets(DescribedPair packs, const DiffOptions& options, PackDifference& difference);
 

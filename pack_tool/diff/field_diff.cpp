@@ -1,10 +1,12 @@
 #include "pack_tool/diff/field_diff.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace galactic::pack_tool {
@@ -120,6 +122,21 @@ std::string allowedText(const Leaf& leaf, const Json& other) {
   return share > kNotable ? fmt::format("{} within {:g} %", text, share * 100) : text;
 }
 
+std::vector<std::string> namesOf(const Json& list) {
+  std::vector<std::string> names;
+  for (const Json& element : list) names.push_back(leafText(element.at("name")));
+  return names;
+}
+
+/// The names in `list` that `other` has, too, in the order of `list`.
+std::vector<std::string> commonNames(const Json& list, const Json& other) {
+  std::vector<std::string> names = namesOf(list);
+  const std::vector<std::string> others = namesOf(other);
+  const std::unordered_set<std::string> wanted(others.begin(), others.end());
+  std::erase_if(names, [&wanted](const std::string& name) { return !wanted.contains(name); });
+  return names;
+}
+
 }  // namespace
 
 std::vector<FieldDifference> compareFields(const Json& a, const Json& b,
@@ -151,6 +168,14 @@ std::vector<FieldDifference> compareFields(const Json& a, const Json& b, double 
   return compareFields(a, b, [tolerance](std::string_view /*keys*/) {
     return FieldTolerance{.absolute = tolerance};
   });
+}
+
+std::vector<FieldDifference> compareOrder(const std::string& field, const Json& a, const Json& b) {
+  const std::vector<std::string> names_a = commonNames(a, b);
+  const std::vector<std::string> names_b = commonNames(b, a);
+  if (names_a == names_b) return {};
+  return {{field + ".order", fmt::format("{}", fmt::join(names_a, ", ")),
+           fmt::format("{}", fmt::join(names_b, ", "))}};
 }
 
 void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from) {

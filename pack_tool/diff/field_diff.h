@@ -41,6 +41,12 @@ using ToleranceOf = std::function<FieldTolerance(std::string_view keys)>;
 [[nodiscard]] std::vector<FieldDifference> compareFields(const Json& a, const Json& b,
                                                          double tolerance);
 
+/// The order of two lists whose elements have names, for lists where it counts: none where the
+/// names that both have stand in one order, else one difference, "FIELD.order". That one side lacks
+/// a name is for compareFields() to tell.
+[[nodiscard]] std::vector<FieldDifference> compareOrder(const std::string& field, const Json& a,
+                                                        const Json& b);
+
 /// Adds `from` behind what `to` has.
 void append(std::vector<FieldDifference>& to, const std::vector<FieldDifference>& from);
 

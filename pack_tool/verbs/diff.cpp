@@ -98,7 +98,14 @@ void compareDescriptions(const DescribedPair& packs, const char* asset, const Di
   if (options.scope == DiffScope::kEverything) {
     difference.provenance = compareFields(packs.a.at("provenance"), packs.b.at("provenance"), 0);
   }
-  difference.content = compareFields(packs.a.at(asset), packs.b.at(asset), 0);
+  const Json& a = packs.a.at(asset);
+  const Json& b = packs.b.at(asset);
+  difference.content = compareFields(a, b, 0);
+  // A network is fed the parts of an observation one behind the other.
+  if (a.contains("observation")) {
+    append(difference.content,
+           compareOrder("observation", a.at("observation"), b.at("observation")));
+  }
 }
 
 Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,

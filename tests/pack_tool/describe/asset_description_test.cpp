@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <sstream>
+#include <utility>
 
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/describe/info_text.h"
 #include "pack_tool/describe/pack_description.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/pack_tool_fixture.h"
+#include "support/packs/robot_pack_builder.h"
 
 namespace galactic::pack_tool::asset_description_test {
 namespace {
@@ -153,6 +155,34 @@ TEST(AssetDiff, ComparesTheLimitsAndToolsOfRobots) {
             kExitOk);
   const Outcome recipe = diffOf(ToyRobot{}, ToyRobot{.with_recipe = false});
   EXPECT_THAT(recipe.out, HasSubstr("end_effector.link: slide | none"));
+}
+
+TEST(AssetDiff, TellsThatActionsMoveTheJointsInAnotherOrder) {
+  const test::RobotPackFields robot = test::smallRobotPack();
+  ASSERT_GE(robot.controlled_joints.size(), 2U);
+  test::RobotPackFields swapped = robot;
+  std::swap(swapped.controlled_joints[0], swapped.controlled_joints[1]);
+  const Outcome outcome = diffOf(robot, swapped, {.scope = DiffScope::kContent});
+  EXPECT_EQ(outcome.exit_code, kExitDiffers);
+  EXPECT_THAT(outcome.out, HasSubstr("differ\ncontent (A | B)\n  controlled_joints.order: "
+                                     "elbow, lift | lift, elbow\n"));
+}
+
+TEST(AssetDiff, TellsThatPositionsStandInAnotherOrder) {
+  const test::RobotPackFields robot = test::smallRobotPack();
+  test::RobotPackFields swapped = robot;
+  std::swap(swapped.limits[0], swapped.limits[1]);
+  std::swap(swapped.start_positions[0], swapped.start_positions[1]);
+  for (LinkFrame& link : swapped.links) {
+    if (link.position == 0 || link.position == 1) link.position = 1 - link.position;
+  }
+  for (ControlledJoint& joint : swapped.controlled_joints) {
+    if (joint.position < 2) joint.position = 1 - joint.position;
+  }
+  const Outcome outcome = diffOf(robot, swapped, {.scope = DiffScope::kContent});
+  EXPECT_EQ(outcome.exit_code, kExitDiffers);
+  EXPECT_THAT(outcome.out, HasSubstr("\n  positions.order: lift, elbow, wrist, "));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("controlled_joints.order")));
 }
 
 TEST(AssetDiff, RefusesPacksOfTwoKinds) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <sstream>
 
@@ -112,6 +113,16 @@ TEST(DiffOfPolicies, FindsWeightsSizesAndOptions) {
   EXPECT_EQ(camera.second, kExitDiffers);
   EXPECT_THAT(camera.first, HasSubstr("image.position.2"));
   EXPECT_THAT(option.first, AllOf(HasSubstr("episode-steps"), HasSubstr("300"), HasSubstr("400")));
+}
+
+TEST(DiffOfPolicies, FindsPartsOfTheObservationInAnotherOrder) {
+  const auto order = diffAfter([](PolicyContent& content) {
+    auto& parts = content.interface.observation;
+    std::rotate(parts.begin(), parts.begin() + 1, parts.end());
+  });
+  EXPECT_EQ(order.second, kExitDiffers);
+  EXPECT_THAT(order.first, HasSubstr("observation.order: grip_target, is_holding | "
+                                     "is_holding, grip_target\n"));
 }
 
 TEST(CheckOfPolicies, SaysOkAndWhatIsWrong) {

@@ -156,6 +156,15 @@ TEST(CompareFields, NumbersRepeatedNames) {
   EXPECT_THAT(compareFields(a, b, 0), ElementsAre(FieldDifference{"seed#2", "2", "3"}));
 }
 
+TEST(CompareOrder, LooksAtTheNamesThatBothHave) {
+  const Json a = Json::parse(R"([{"name": "lift"}, {"name": "swing"}, {"name": "grip"}])");
+  const Json more = Json::parse(R"([{"name": "lift"}, {"name": "neck"}, {"name": "grip"}])");
+  const Json other = Json::parse(R"([{"name": "grip"}, {"name": "neck"}, {"name": "lift"}])");
+  EXPECT_THAT(compareOrder("joints", a, more), IsEmpty());
+  EXPECT_THAT(compareOrder("joints", a, other),
+              ElementsAre(FieldDifference{"joints.order", "lift, grip", "grip, lift"}));
+}
+
 TEST(CompareFields, AppliesTheToleranceToFractionsOnly) {
   const Json a = Json::parse(R"({"length": 1.0, "count": 1})");
   const Json b = Json::parse(R"({"length": 1.25, "count": 2})");
