@@ -20,6 +20,18 @@ std::uint8_t eventsOf(const SimulationStatistics& before, const SimulationStatis
   return static_cast<std::uint8_t>(events);
 }
 
+/// Without distractors the simulator has one object, the target, wherever the episode has it.
+bool isAlone(const EnvObjects& objects, const Episode& episode) {
+  return objects.placements.size() < episode.placement_count;
+}
+
+/// Among the placements of the episode; -1 for none.
+std::int32_t heldPlacement(const EnvObjects& objects, const EpisodeSet& episodes) {
+  const Episode& episode = episodes.episodes()[objects.episode];
+  const bool is_target = objects.held >= 0 && isAlone(objects, episode);
+  return is_target ? static_cast<std::int32_t>(episode.target) : objects.held;
+}
+
 }  // namespace
 
 RunTrack::RunTrack(const World& world, const BatchSimulator& simulator, std::size_t envs)
@@ -73,7 +85,7 @@ void RunTrack::addFrame(const BatchSimulator& simulator, std::size_t env) {
   addMoves(simulator, env);
   track.episodes.push_back(state.episode);
   track.world_from_root.push_back(state.world_from_root);
-  track.held.push_back(state.held);
+  track.held.push_back(heldPlacement(simulator.envObjects(env), world_->episodes()));
   track.idle.push_back(simulator.idle()[env]);
   track.joints.insert(track.joints.end(), state.joint_positions.begin(),
                       state.joint_positions.end());
@@ -83,7 +95,7 @@ void RunTrack::addMoves(const BatchSimulator& simulator, std::size_t env) {
   EnvTrack& track = envs_[env];
   const EnvObjects now = simulator.envObjects(env);
   const Episode& episode = world_->episodes().episodes()[now.episode];
-  const bool is_alone = now.placements.size() < episode.placement_count;
+  const bool is_alone = isAlone(now, episode);
   is_target_only_ = is_target_only_ || is_alone;
   std::vector<Pose>& objects = objects_[env];
   const auto ended = !track.endings.empty() && track.endings.back() != EpisodeEnd::kNone;

@@ -25,7 +25,7 @@ struct EnvTrack {
   // One per frame.
   std::vector<std::uint32_t> episodes;
   std::vector<Pose> world_from_root;
-  /// Index of the held object among the placements; -1 for none.
+  /// Index of the held object among the placements of the frame's episode; -1 for none.
   std::vector<std::int32_t> held;
   /// 1 where the env had played its share of the episodes: see BatchSimulator::idle().
   std::vector<std::uint8_t> idle;

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
@@ -93,6 +95,40 @@ TEST_F(RunTrackTest, KeepsTheStateOfEachStepAcrossEpisodes) {
   }
   EXPECT_EQ(track.steps(), 80U);
   EXPECT_GE(ended, 2 * kKept) << "no episode ended: nothing was tested across episodes";
+}
+
+/// The number of an episode whose target is not the first of its objects.
+std::int32_t episodeOfALaterTarget(const World& world) {
+  const auto episodes = world.episodes().episodes();
+  const auto found = std::find_if(episodes.begin(), episodes.end(),
+                                  [](const Episode& one) { return one.target > 0; });
+  if (found == episodes.end()) throw std::runtime_error("all targets are the first object");
+  return static_cast<std::int32_t>(found - episodes.begin());
+}
+
+TEST_F(RunTrackTest, KnowsTheHeldTargetAmongAllPlacementsWhereItIsAlone) {
+  SimulationOptions options;
+  options.envs = 1;
+  options.task.distractors = false;
+  BatchSimulator alone = *BatchSimulator::create(home_.world(), options);
+  const std::int32_t number = episodeOfALaterTarget(home_.world());
+  alone.reset({&number, 1});
+  RunTrack track(home_.world(), alone, 1);
+  EXPECT_EQ(track.envs()[0].held.back(), -1);
+  const EnvState state = alone.envState(0);
+  Pose lifted = state.objects[0];
+  lifted.translation.y += 0.5F;
+  const FollowedState grasped{.world_from_root = state.world_from_root,
+                              .joint_positions = state.joint_positions,
+                              .objects = {&lifted, 1},
+                              .held = 0};
+  const std::vector<float> actions(alone.actionCount());
+  alone.follow(actions, {&grasped, 1});
+  track.add(alone, actions);
+  EXPECT_TRUE(track.isTargetOnly());
+  const auto target = home_.world().episodes().episodes()[static_cast<std::size_t>(number)].target;
+  EXPECT_EQ(track.envs()[0].held.back(), static_cast<std::int32_t>(target));
+  EXPECT_EQ(track.envs()[0].moves.back().placement, target);
 }
 
 TEST_F(RunTrackTest, CountsWhatHappened) {
