@@ -32,6 +32,7 @@ class AnimationWriter {
         env_(track.envs()[env]),
         episode_(world_.episodes().episodes()[env_.episodes.front()]),
         assets_(assets),
+        is_target_only_(track.isTargetOnly()),
         frames_(frameCount(env_)) {}
 
   Result<std::string> run() {
@@ -127,6 +128,7 @@ class AnimationWriter {
   Result<void> writeObjects() {
     const auto placements = world_.episodes().placements(episode_);
     for (std::uint32_t n = 0; n < placements.size(); ++n) {
+      if (is_target_only_ && n != episode_.target) continue;
       std::vector<Pose> keys;
       Pose pose = placements[n].pose;
       auto move = env_.moves.begin();
@@ -159,6 +161,7 @@ class AnimationWriter {
   const EnvTrack& env_;
   const Episode& episode_;
   std::span<const PageAsset> assets_;
+  bool is_target_only_;
   std::size_t frames_;
   GlbFile file_;
   std::vector<GlbMotion> motions_;

@@ -126,10 +126,11 @@ class RunAnimation : public testing::Test {
   }
 
   /// Steps and keeps the links of the first env; returns the animation.
-  std::string run(std::uint32_t most_steps) {
+  std::string run(std::uint32_t most_steps, bool distractors = true) {
     SimulationOptions options;
     options.envs = 2;
     options.task.most_steps = most_steps;
+    options.task.distractors = distractors;
     auto simulator = *BatchSimulator::create(*world_, options);
     RunTrack track(*world_, simulator, 1);
     keep(simulator);
@@ -185,6 +186,21 @@ TEST_F(RunAnimation, HoldsSceneObjectsAndTheRobotsMeshes) {
   // The room with its table, two objects, base and hand.
   EXPECT_EQ(glb.content()["meshes"].size(), 5U);
   EXPECT_LT(glb.nodeOf("kitchen"), glb.nodeOf("mug"));
+}
+
+TEST_F(RunAnimation, HasOnlyTheTargetWhereNoOtherObjectIsThere) {
+  const auto objectsOf = [&](const Glb& glb) {
+    std::vector<std::string> found;
+    for (const json& node : glb.content()["nodes"]) {
+      const auto name = node["name"].get<std::string>();
+      for (const std::string_view object : world_->episodes().objectNames()) {
+        if (name == object) found.push_back(name);
+      }
+    }
+    return found;
+  };
+  EXPECT_GT(objectsOf(Glb(run(0))).size(), 1U);
+  EXPECT_EQ(objectsOf(Glb(run(0, false))).size(), 1U);
 }
 
 TEST_F(RunAnimation, IsTheSameEachTime) { EXPECT_EQ(run(0), run(0)); }
