@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -32,6 +33,22 @@ float outsideSpheres(const Robot& robot, std::span<const Pose> world_from_link, 
     }
   }
   return least;
+}
+
+/// Positions half way to others. The simulation keeps the angle of a continuous joint within a
+/// turn: such a joint goes the shorter way around.
+std::vector<float> halfWay(const Robot& robot, std::span<const float> from,
+                           std::span<const float> to) {
+  std::vector<float> ways(from.size());
+  for (std::size_t n = 0; n < ways.size(); ++n) ways[n] = to[n] - from[n];
+  for (const LinkFrame& link : robot.links()) {
+    if (link.type != JointType::kContinuous) continue;
+    float& way = ways[static_cast<std::size_t>(link.position)];
+    way = std::remainder(way, 2 * std::numbers::pi_v<float>);
+  }
+  std::vector<float> middle(from.begin(), from.end());
+  for (std::size_t n = 0; n < middle.size(); ++n) middle[n] += 0.5F * ways[n];
+  return middle;
 }
 
 }  // namespace
@@ -147,9 +164,7 @@ void Inspection::judgeBetween(std::size_t step, EpisodeComparison& result) {
     return;
   }
   pose.world_from_root = between(pose.world_from_root, now.world_from_root, 0.5F);
-  for (std::size_t n = 0; n < pose.positions.size(); ++n) {
-    pose.positions[n] += 0.5F * (now.positions[n] - pose.positions[n]);
-  }
+  pose.positions = halfWay(robot, pose.positions, now.positions);
   const float ground = groundUnder(pose.world_from_root);
   std::set<MissKey> missed;
   for (const RobotContact& contact :

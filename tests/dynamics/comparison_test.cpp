@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
+#include <stdexcept>
 
 #include "dynamics/episodes/robot_driver.h"
 #include "dynamics/episodes/trace.h"
@@ -225,6 +227,54 @@ TEST(AThinShelf, IsMissedBetweenTwoStepsThatJumpOverIt) {
   for (const auto& [key, steps] : replay.missed) {
     EXPECT_EQ(std::get<dynamics::MissCause>(key), dynamics::MissCause::kTunneled);
     EXPECT_EQ(steps, 1U);
+  }
+}
+
+/// A trace in which a long arm turns more than half around, and its first step whose angle is a
+/// turn less than that of the step before.
+struct TurningArm {
+  dynamics::EpisodeTrace trace;
+  std::size_t step = 0;
+
+  /// Where the grip is when the shoulder is at an angle, and the other joints as after the step.
+  [[nodiscard]] Vec3 gripAt(const Robot& robot, float shoulder) const {
+    std::vector<float> positions = trace.steps[step].positions;
+    positions[kShoulder] = shoulder;
+    return dynamics::gripOf(robot, trace.start_root, positions).translation;
+  }
+};
+
+TurningArm turningArm(const RecordedRun& run) {
+  TurningArm arm{run.traces().front()};
+  const auto shoulder = [&](std::size_t n) { return arm.trace.steps[n].positions[kShoulder]; };
+  for (arm.step = 1; arm.step < arm.trace.steps.size(); ++arm.step) {
+    if (shoulder(arm.step - 1) - shoulder(arm.step) > 3) return arm;
+  }
+  throw std::runtime_error("the shoulder never goes beyond half a turn");
+}
+
+TEST(AJointThatTurnsBeyondHalfATurn, TakesTheShortWayBetweenTwoSteps) {
+  const RecordedRun run(emptyRoom({}), [](std::uint32_t, std::span<float> actions) {
+    std::ranges::fill(actions, 0.0F);
+    actions[kShoulder] = actions[kArm] = 1;
+  });
+  const Robot& robot = run.world().robot();
+  const TurningArm arm = turningArm(run);
+  const auto plateAt = [&](float shoulder) {
+    constexpr Vec3 kHalf{0.06F, 0.06F, 0.002F};
+    const Vec3 middle = arm.gripAt(robot, shoulder);
+    return Block{middle - kHalf, middle + kHalf};
+  };
+  const float before = arm.trace.steps[arm.step - 1].positions[kShoulder];
+  const float after = arm.trace.steps[arm.step].positions[kShoulder];
+  // On the other side of the robot, where the mean of the two angles is.
+  const Block aside = plateAt(0.5F * (before + after));
+  EXPECT_TRUE(run.first(run.sources({aside}), ArmDrive::kKinematic).missed.empty());
+  const Block on_its_way = plateAt(0.5F * (before + after) + std::numbers::pi_v<float>);
+  const auto missed = run.first(run.sources({on_its_way}), ArmDrive::kKinematic).missed;
+  ASSERT_FALSE(missed.empty());
+  for (const auto& [key, steps] : missed) {
+    EXPECT_EQ(std::get<dynamics::MissCause>(key), dynamics::MissCause::kTunneled);
   }
 }
 
