@@ -12,7 +12,9 @@ namespace {
 std::string titleElement(std::string_view title) {
   std::string text;
   for (const char c : title) {
-    const bool is_plain = c >= ' ' && c != '<' && c != '>' && c != '&' && c != '\x7f';
+    // A byte of a letter beyond ASCII is no control character.
+    const bool is_plain =
+        static_cast<unsigned char>(c) >= ' ' && c != '<' && c != '>' && c != '&' && c != '\x7f';
     text += is_plain ? c : '?';
   }
   return fmt::format("<title>{}</title>", text);

@@ -152,6 +152,10 @@ TEST_F(Page, TitlesAreNoMarkup) {
   EXPECT_THAT(page, Not(HasSubstr("<b onclick")));
 }
 
+TEST_F(Page, TitlesAreOfAnyScript) {
+  EXPECT_THAT(pageOf("kitchen", "Küche, 台所"), HasSubstr("<title>Küche, 台所</title>"));
+}
+
 TEST_F(Page, NamesThatAreNoUtf8BecomeQuestionMarks) {
   EXPECT_THAT(chunkOf(pageOf("kitchen", "a\xff"), 0), HasSubstr("\"title\":\"a?\""));
 }
