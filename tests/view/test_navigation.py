@@ -47,6 +47,19 @@ class Navigation(PageCase):
             self.assertEqual(page.evaluate("galactic.view.number"), 1)
             page.wait("!location.hash.includes('episode=')")
 
+    def test_episodes_that_are_left_before_they_are_shown_leave_nothing(self):
+        page = self.open("world", "view=episode&n=0", "episode 0")
+        shown = page.evaluate(
+            "(async () => { const { view } = galactic; const { home } = view; const load = home.objectFigure.bind(home); let wait = 100;"
+            "home.objectFigure = async (name) => { wait = Math.max(0, wait - 20); await new Promise((done) => setTimeout(done, wait)); return load(name); };"
+            "await Promise.all([view.go(1), view.go(3), view.setReach(true), view.setReach(false), view.go(2)]);"
+            "return [home.episode.number, home.objects.length, home.episode.placements.length, home.group.children.length]; })()"
+        )
+        objects = shown[2]
+        # Robot, scene, task, and each object once.
+        self.assertEqual(shown, [2, objects, objects, 3 + objects])
+        self.assertEqual(self.marked(page), ["Episode 2"])
+
     def test_the_view_has_the_keys_after_a_click(self):
         page = self.open("run", "env=0&t=10", "run 0")
         self.click(page, "#list li button", 0)

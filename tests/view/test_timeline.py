@@ -4,6 +4,7 @@
     test_timeline.py --packs PROGRAM --pack GALACTIC_PACK --run GALACTIC_RUN
 """
 
+import json
 import sys
 
 from browser import Page
@@ -86,6 +87,38 @@ class Timeline(PageCase):
             self.assertIsNone(page.evaluate("left.timeline.playing"), other)
             page.evaluate("galactic.show(galactic.parts[0]).then(() => 1)")
             self.assertIn("Its step", page.evaluate("document.getElementById('panel').innerText"))
+
+    def test_who_goes_on_while_an_episode_is_unpacked_sees_where_he_is(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        frames = json.loads((self.folder / "poses.json").read_text())
+        # Each object takes less long than the one before: what began last is there first.
+        page.evaluate(
+            "(() => { const { home } = galactic.view; const load = home.objectFigure.bind(home); let wait = 120;"
+            "home.objectFigure = async (name) => { wait = Math.max(0, wait - 20);"
+            "await new Promise((done) => setTimeout(done, wait)); return load(name); }; })()"
+        )
+        # Of different episodes, in both envs; the last one is where somebody stays.
+        for ways, env, frame in (
+            ("[30, 10, 55, 12].map((frame) => view.timeline.go(frame))", 0, 12),
+            ("[view.timeline.go(30), view.chooseEnv(1, 5), view.chooseEnv(0, 31)]", 0, 31),
+            ("[view.timeline.go(2), view.chooseEnv(1, 40)]", 1, 40),
+        ):
+            shown = page.evaluate(
+                f"(async () => {{ const {{ view }} = galactic; await Promise.all({ways});"
+                "const { home } = view; const places = home.objects.map((one) => one.group.position.toArray());"
+                "return { places, episode: home.episode.number, wanted: view.track.episode(view.frame),"
+                "figures: home.group.children.length, at: [view.env, view.frame], clock: view.timeline.clock.textContent }; })()"
+            )
+            self.assertEqual(shown["at"], [env, frame])
+            self.assertIn(f"Step {frame} ", shown["clock"])
+            self.assertEqual(shown["episode"], shown["wanted"])
+            wanted = frames[frame][env]["objects"]
+            self.assertEqual(len(shown["places"]), len(wanted))
+            for place, pose in zip(shown["places"], wanted):
+                for a, b in zip(place, pose):
+                    self.assertAlmostEqual(a, b, delta=6e-4)
+            # Robot, scene, task, and each object once.
+            self.assertEqual(shown["figures"], 3 + len(wanted))
 
     def test_marks_stay_on_the_track(self):
         page = self.open("run", "env=0&t=0", "run 0")

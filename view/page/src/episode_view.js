@@ -2,12 +2,14 @@
 import { Vector3 } from "three";
 import { button, checkbox, el, heading, legendRow, note, table } from "./dom.js";
 import { Home } from "./home.js";
+import { Queue } from "./queue.js";
 
 export class EpisodeView {
   constructor(page, number) {
     this.page = page;
     this.number = number;
     this.hasReach = false;
+    this.changes = new Queue();
   }
 
   async open() {
@@ -18,17 +20,33 @@ export class EpisodeView {
     this.fillPanel();
   }
 
-  async go(number) {
+  /// Another part of the page is opened.
+  close() { return this.changes.idle(); }
+
+  go(number) {
+    this.number = Math.max(0, Math.min(this.page.episodes.count - 1, Math.round(number)));
+    return this.changes.add(() => this.showEpisode());
+  }
+
+  /// Shows the episode where somebody is by now.
+  async showEpisode() {
+    const { number } = this;
+    if (this.shown === number) return;
     const { episodes, stage } = this.page;
-    this.number = Math.max(0, Math.min(episodes.count - 1, Math.round(number)));
-    const episode = episodes.at(this.number);
+    const episode = episodes.at(number);
     await this.home.setEpisode(episode);
+    this.shown = number;
     if (this.hasReach) await this.home.setReach(true);
     // Cut through the room at the height of a person, so that one sees into it.
     stage.setCut(this.isCut === false ? null : episode.base.y + 1.6);
     stage.frame(this.home.bounds(), new Vector3(0.5, 1.1, 0.8));
     this.fillFacts(episode);
-    this.page.listPart?.("episode", this.number);
+    this.page.listPart?.("episode", number);
+  }
+
+  setReach(isShown) {
+    this.hasReach = isShown;
+    return this.changes.add(() => this.home.setReach(this.hasReach));
   }
 
   fillFacts(episode) {
@@ -57,7 +75,7 @@ export class EpisodeView {
       checkbox("Spheres", this.home.shown.spheres, toggle("spheres")),
       checkbox("Oriented boxes", this.home.shown.boxes, toggle("boxes")),
       checkbox("Camera, grasp point, footprint", false, toggle("marks")),
-      checkbox("Floor that it can drive to", false, (on) => { this.hasReach = on; this.home.setReach(on); }),
+      checkbox("Floor that it can drive to", false, (on) => this.setReach(on)),
       legendRow("#e69f00", "Target"),
       legendRow("#009e73", "Goal"),
     ]);

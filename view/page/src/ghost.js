@@ -1,5 +1,5 @@
 // The same episode in another world, in the same picture: a robot, and objects where they are elsewhere.
-import { Color, MeshLambertMaterial } from "three";
+import { Color, Group, MeshLambertMaterial } from "three";
 import { ObjectFigure, RobotFigure } from "./figures.js";
 import { disposeOf } from "./stage.js";
 
@@ -33,18 +33,21 @@ export class Ghost {
 
   setTrack(track) { this.track = track; }
 
+  /// As Home.setEpisode().
   async setEpisode({ placements }) {
+    const objects = await Promise.all(placements.map(({ object }) => this.objectFigure(object)));
     for (const one of this.objects) disposeOf(one.group);
-    this.objects = [];
+    this.objects = objects;
     this.poses = placements.map(({ pose }) => pose);
-    for (const { object } of placements) {
-      const found = this.page.objects.get(object);
-      if (!found) continue;
-      const figure = haunt(await ObjectFigure.load(this.page.library, found.pack, found.number), { show: kBody });
-      figure.group.visible = false;
-      this.home.group.add(figure.group);
-      this.objects.push(figure);
-    }
+    for (const one of objects) this.home.group.add(one.group);
+  }
+
+  async objectFigure(name) {
+    const found = this.page.objects.get(name);
+    const figure = found ? haunt(await ObjectFigure.load(this.page.library, found.pack, found.number), { show: kBody })
+      : { group: new Group(), setPose() {} };
+    figure.group.visible = false;
+    return figure;
   }
 
   /// The same frame, or the last one; `moved`: where the objects of the other track are.

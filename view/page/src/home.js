@@ -44,7 +44,6 @@ export class EpisodeList {
 export class Home {
   constructor(page) {
     this.page = page;
-    this.scenes = new Map();
     this.objects = [];
     this.group = new Group();
     this.shown = { scene: true, mesh: true, spheres: false, boxes: false, marks: false };
@@ -62,13 +61,12 @@ export class Home {
     }
   }
 
+  /// The scene that is shown, if it is of this name, or another one.
   async sceneOf(name) {
-    if (!this.scenes.has(name)) {
-      const pack = this.page.scenes.get(name);
-      const mesh = pack ? await this.page.library.model(pack.meshes, 0, { cut: true }) ?? await this.floorsOf(pack) : null;
-      this.scenes.set(name, { name, pack, mesh: mesh ?? new Group() });
-    }
-    return this.scenes.get(name);
+    if (this.scene?.name === name) return this.scene;
+    const pack = this.page.scenes.get(name);
+    const mesh = pack ? await this.page.library.model(pack.meshes, 0, { cut: true }) ?? await this.floorsOf(pack) : null;
+    return { name, pack, mesh: mesh ?? new Group() };
   }
 
   /// For a scene without a mesh.
@@ -79,38 +77,34 @@ export class Home {
     return layer.group;
   }
 
-  forgetScene() {
-    if (!this.scene) return;
-    disposeOf(this.scene.mesh);
-    this.scenes.delete(this.scene.name);
-  }
-
-  /// Shows the start of an episode. Figures of objects are made anew where others are needed.
+  /// Shows the start of an episode. Figures of objects are made anew where others are needed; the picture
+  /// stays as it is until all is there. One call after the other: views have a queue for it.
   async setEpisode(episode) {
-    this.episode = episode;
     const scene = await this.sceneOf(episode.scene);
-    if (this.scene !== scene) {
-      this.forgetScene();
-      this.reach?.group.removeFromParent();
-      this.reach = null;
-      this.scene = scene;
-      this.group.add(scene.mesh);
-    }
+    const objects = await Promise.all(episode.placements.map(({ object }) => this.objectFigure(object)));
+    this.episode = episode;
+    if (this.scene !== scene) this.setScene(scene);
     for (const one of this.objects) disposeOf(one.group);
-    this.objects = [];
-    for (const { object } of episode.placements) this.objects.push(await this.objectFigure(object));
+    this.objects = objects;
+    for (const one of objects) this.group.add(one.group);
     this.addTask(episode);
     this.placeStart(episode);
     this.show(this.shown);
   }
 
+  setScene(scene) {
+    if (this.scene) disposeOf(this.scene.mesh);
+    this.reach?.group.removeFromParent();
+    this.reach = null;
+    this.scene = scene;
+    this.group.add(scene.mesh);
+  }
+
   async objectFigure(name) {
     const found = this.page.objects.get(name);
+    if (found) return ObjectFigure.load(this.page.library, found.pack, found.number);
     // Episodes alone: a cross where the object is.
-    const figure = found ? await ObjectFigure.load(this.page.library, found.pack, found.number)
-      : { group: crossOf(0.05), stored: { box: [0, 0, 0, 0, 0, 0, 1], half_extents: [0.03, 0.03, 0.03] }, show() {}, setPose(pose) { this.group.position.copy(pose.position); } };
-    this.group.add(figure.group);
-    return figure;
+    return { group: crossOf(0.05), stored: { box: [0, 0, 0, 0, 0, 0, 1], half_extents: [0.03, 0.03, 0.03] }, show() {}, setPose(pose) { this.group.position.copy(pose.position); } };
   }
 
   addTask({ target, goal }) {

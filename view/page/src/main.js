@@ -6,6 +6,7 @@ import { EpisodeView } from "./episode_view.js";
 import { EpisodeList } from "./home.js";
 import { MeshLibrary } from "./meshes.js";
 import { ObjectView } from "./object_view.js";
+import { Queue } from "./queue.js";
 import { RobotView } from "./robot_view.js";
 import { RunView } from "./run_view.js";
 import { envName } from "./track.js";
@@ -32,7 +33,7 @@ class Page {
     this.objects = new Map();
     this.listeners = [];
     this.parts = [];
-    this.opening = Promise.resolve();
+    this.openings = new Queue();
     for (const pack of manifest.packs) this.addPack(pack);
     this.makeParts();
   }
@@ -101,10 +102,8 @@ class Page {
     this.show(part);
   }
 
-  /// Shows a part; one after the other, however fast somebody clicks.
   show(part) {
-    this.opening = this.opening.then(() => this.showNow(part)).catch((problem) => this.fail(problem));
-    return this.opening;
+    return this.openings.add(() => this.showNow(part)).catch((problem) => this.fail(problem));
   }
 
   async showNow(part) {
@@ -125,7 +124,7 @@ class Page {
   }
 
   async showView(part) {
-    this.view?.close?.();
+    await this.view?.close?.();
     for (const [target, name, handler] of this.listeners.splice(0)) target.removeEventListener(name, handler);
     this.stage.clear();
     this.readout("");
@@ -140,7 +139,7 @@ class Page {
   /// What is written about a pack, in place of options. The picture stays; where there is none yet,
   /// it is of what the pack holds.
   async showFacts({ pack }) {
-    this.view?.close?.();
+    await this.view?.close?.();
     if (!this.view) await this.showPicture(pack);
     const facts = pack.facts ? Object.entries(pack.facts).map(([key, value]) => tree(value, key)) : [note("The page was written without more about this pack.")];
     this.fillPanel([heading(pack.file), note(`${pack.kind}, ${megabytes(pack.bytes)}`), ...facts]);

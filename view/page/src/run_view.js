@@ -5,6 +5,7 @@ import { button, checkbox, el, heading, legendRow, meters, note, table, tree } f
 import { Ghost, kGhostColor } from "./ghost.js";
 import { Home } from "./home.js";
 import { Pose } from "./kinematics.js";
+import { Queue } from "./queue.js";
 import { bestDirection, inSight } from "./sight.js";
 import { Timeline } from "./timeline.js";
 import { kEndings, Track } from "./track.js";
@@ -15,8 +16,8 @@ export class RunView {
   constructor(page, run) {
     this.page = page;
     this.run = run;
-    this.frame = -1;
     this.facts = el("div");
+    this.changes = new Queue();
   }
 
   async open() {
@@ -24,7 +25,7 @@ export class RunView {
     await this.home.open();
     this.camera = kCameras.some(([, key]) => key === address.get("camera")) ? address.get("camera") : "follow";
     this.timeline = new Timeline(this.page, this.run, {
-      onFrame: (frame) => this.go(frame), onBetween: (frame, share) => this.showBetween(frame, share),
+      onFrame: () => this.go(), onBetween: (frame, share) => this.showBetween(frame, share),
     });
     await this.chooseEnv(addressNumber("env", 0), addressNumber("t", 0));
     this.page.stage.beforeDraw = () => this.moveCamera();
@@ -33,11 +34,21 @@ export class RunView {
   }
 
   /// Another part of the page is opened.
-  close() { this.timeline?.pause(); }
+  close() {
+    this.timeline?.pause();
+    return this.changes.idle();
+  }
 
-  async chooseEnv(wanted, frame = 0) {
+  /// The frame that is wanted: that of the picture, once it is unpacked.
+  get frame() { return this.timeline.frame; }
+
+  chooseEnv(wanted, frame = 0) {
     const number = Math.max(0, Math.min(this.run.envs.length - 1, Math.round(wanted)));
     this.timeline.pause();
+    return this.changes.add(() => this.openEnv(number, frame));
+  }
+
+  async openEnv(number, frame) {
     this.env = number;
     this.track = await Track.load(this.page.data, this.run, number);
     const twin = this.run.twins?.[number];
@@ -46,10 +57,10 @@ export class RunView {
       this.ghost.setTrack(await Track.load(this.page.data, this.run, twin));
     }
     this.shownEpisode = null;
-    this.timeline.setTrack(this.track);
+    this.timeline.setTrack(this.track, Math.round(frame));
     setAddress({ env: number });
     this.page.listPart?.("run", number);
-    await this.timeline.go(Math.max(0, Math.min(this.track.frameCount - 1, Math.round(frame))));
+    await this.showFrame();
   }
 
   frameHome() {
@@ -63,20 +74,24 @@ export class RunView {
     this.lastRoot = null;
   }
 
-  /// Shows a frame. Another episode may want another scene, which has to be unpacked first.
-  async go(frame) {
-    this.frame = frame;
-    const begin = this.track.beginOf(frame);
-    const key = `${this.env} ${begin}`;
+  go() { return this.changes.add(() => this.showFrame()); }
+
+  /// What tells the episode of a frame from all others that are played.
+  keyOf(frame) { return `${this.env} ${this.track.beginOf(frame)}`; }
+
+  /// Shows the frame where somebody is by now. Another episode may want another scene, which has to be unpacked
+  /// first; whoever goes on meanwhile has a task of his own waiting.
+  async showFrame() {
+    const { frame } = this;
+    const key = this.keyOf(frame);
     if (this.shownEpisode !== key) {
-      this.shownEpisode = key;
+      this.shownEpisode = null;
       await this.home.setEpisode(this.page.episodes.withNumber(this.track.episode(frame)));
       await this.ghost?.setEpisode(this.home.episode);
       this.sight = await this.home.sightGrid();
       if (this.hasReach) await this.home.setReach(true);
       this.cut();
-      // Somebody may have gone on meanwhile.
-      if (this.frame !== frame) return;
+      this.shownEpisode = key;
     }
     this.showPoses(frame);
   }
@@ -99,7 +114,7 @@ export class RunView {
   showBetween(frame, share) {
     const { track, home } = this;
     const next = frame + 1;
-    if (next >= track.frameCount || track.endings[frame] !== 0 || this.shownEpisode !== `${this.env} ${track.beginOf(frame)}`) return;
+    if (next >= track.frameCount || track.endings[frame] !== 0 || this.shownEpisode !== this.keyOf(frame)) return;
     const mixed = (a, b) => new Pose(a.position.clone().lerp(b.position, share), a.rotation.clone().slerp(b.rotation, share));
     const joints = track.joints(frame).map((value, n) => value + (track.joints(next)[n] - value) * share);
     home.robot.setPose(mixed(track.root(frame), track.root(next)), joints);
@@ -152,6 +167,11 @@ export class RunView {
     return isCut ? this.home.episode.base.y + 1.6 : null;
   }
 
+  setReach(isShown) {
+    this.hasReach = isShown;
+    return this.changes.add(() => this.home.setReach(this.hasReach));
+  }
+
   setCamera(key) {
     this.camera = key;
     this.cut();
@@ -197,7 +217,7 @@ export class RunView {
       checkbox("Spheres", this.home.shown.spheres, toggle("spheres")),
       checkbox("Oriented boxes", this.home.shown.boxes, toggle("boxes")),
       checkbox("Camera, grasp point, footprint", false, toggle("marks")),
-      checkbox("Floor that it can drive to", false, (on) => { this.hasReach = on; this.home.setReach(on); }),
+      checkbox("Floor that it can drive to", false, (on) => this.setReach(on)),
       ...(this.ghost ? [checkbox("The same step in the other world", true, (on) => this.ghost.setShown(on))] : []),
       ...(this.ghost ? [legendRow(kGhostColor, "In the other world")] : []),
       legendRow("#e69f00", "Target"),

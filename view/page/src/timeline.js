@@ -50,7 +50,8 @@ export class Timeline {
   /// Of the shown env.
   get steps() { return this.track ? this.track.frameCount - 1 : 0; }
 
-  setTrack(track) {
+  /// Another env, at a frame of it.
+  setTrack(track, frame) {
     this.pause();
     this.track = track;
     this.scrub.max = this.steps;
@@ -66,6 +67,7 @@ export class Timeline {
       { name: "Actions", series: this.run.actions.map((name, n) => ({ name, values: track.column(track.actions, this.run.actions.length, n), first: 1 })) },
     ];
     this.makeCurves();
+    this.setFrame(frame);
   }
 
   makeCurves() {
@@ -121,14 +123,18 @@ export class Timeline {
     return this.show(frame);
   }
 
-  async show(frame) {
+  show(frame) {
+    this.setFrame(frame);
+    return this.onFrame();
+  }
+
+  setFrame(frame) {
     this.frame = Math.max(0, Math.min(this.steps, frame));
     this.scrub.value = this.frame;
     const what = this.track.isIdle(this.frame) ? "idle" : `episode ${this.track.episode(this.frame)}`;
     this.clock.textContent = `Step ${this.frame} of ${this.steps}, ${what}`;
     this.scrub.setAttribute("aria-valuetext", this.clock.textContent);
     this.curves.setCursor(this.frame);
-    await this.onFrame(this.frame);
   }
 
   step(by) { this.go(this.frame + by); }
