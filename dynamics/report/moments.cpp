@@ -77,6 +77,13 @@ std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes,
   return worst;
 }
 
+MomentPlace placeOf(const Moment& moment, std::size_t steps_here, std::size_t steps_there) {
+  const bool is_simulation =
+      moment.kind == MomentKind::kMissed || moment.kind == MomentKind::kMoved;
+  const auto last = static_cast<std::uint32_t>(is_simulation ? steps_here : steps_there);
+  return {is_simulation, std::min(moment.step + 1, last)};
+}
+
 std::string describe(const Moment& moment, const EpisodeComparison& episode, const World& world) {
   std::string text = fmt::format("episode {}, step {}: {}, {:.3f} m", episode.episode,
                                  moment.step + 1, nameOf(moment.kind), moment.meters);

@@ -41,6 +41,21 @@ struct Moment {
 [[nodiscard]] std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes,
                                                std::size_t most, bool is_replay);
 
+/// In which world a moment is seen, and after how many steps.
+struct MomentPlace {
+  bool is_simulation = false;
+  std::uint32_t frame = 0;
+
+  friend bool operator==(const MomentPlace&, const MomentPlace&) = default;
+};
+
+/// Contacts and releases are looked for in the simulation: their steps are its steps. All else is
+/// seen in the dynamics, which in a closed loop takes steps of its own. `steps_here`,
+/// `steps_there`: of the episode in the simulation and in the dynamics; where it ends before, its
+/// end is seen.
+[[nodiscard]] MomentPlace placeOf(const Moment& moment, std::size_t steps_here,
+                                  std::size_t steps_there);
+
 /// "episode 17, step 203: grips apart, 0.123 m".
 [[nodiscard]] std::string describe(const Moment& moment, const EpisodeComparison& episode,
                                    const World& world);

@@ -165,7 +165,7 @@ class SideBySide {
                        }));
     keep(here.track(), there.track(), trace.episode);
     for (const std::size_t n : moments) {
-      keep(n, there.track());
+      keep(n, here.track(), there.track());
       if (best_) draw(n, trace, {&here.still(worst()[n].step), &there.still(worst()[n].step)});
     }
     return {};
@@ -184,13 +184,13 @@ class SideBySide {
     twins_.insert(twins_.end(), {first + 1, first});
   }
 
-  void keep(std::size_t n, const RunTrack& there) {
+  /// Points the page at a moment of the two envs that it has last.
+  void keep(std::size_t n, const RunTrack& here, const RunTrack& there) {
     const Moment& moment = worst()[n];
     const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
-    const std::size_t env = names_.size() - 1;
-    const auto last = static_cast<std::uint32_t>(there.steps());
-    page_moments_.push_back({.env = env,
-                             .frame = std::min(moment.step + 1, last),
+    const MomentPlace place = placeOf(moment, here.steps(), there.steps());
+    page_moments_.push_back({.env = names_.size() - (place.is_simulation ? 2 : 1),
+                             .frame = place.frame,
                              .text = describe(moment, episode, parts_.worlds.world)});
   }
 

@@ -139,6 +139,19 @@ TEST(TheWorstMoments, AreOfEachKindInTurn) {
   EXPECT_EQ(worst[4].comparison, 1U);
 }
 
+TEST(AMoment, IsSeenInTheWorldWhoseStepItIs) {
+  using dynamics::MomentPlace;
+  const auto place = [](MomentKind kind, std::uint32_t step) {
+    return placeOf(Moment{.kind = kind, .step = step}, 400, 60);
+  };
+  EXPECT_EQ(place(MomentKind::kMissed, 300), (MomentPlace{true, 301}));
+  EXPECT_EQ(place(MomentKind::kMoved, 399), (MomentPlace{true, 400}));
+  EXPECT_EQ(place(MomentKind::kLost, 20), (MomentPlace{false, 21}));
+  // It ended there before.
+  EXPECT_EQ(place(MomentKind::kLost, 300), (MomentPlace{false, 60}));
+  EXPECT_EQ(place(MomentKind::kApart, 59), (MomentPlace{false, 60}));
+}
+
 TEST(Sums, TellWhyContactsAreMissedAndWhereSuccessIsLost) {
   std::vector<EpisodeComparison> episodes{made(0), made(1)};
   episodes[1].picked_there = true;
