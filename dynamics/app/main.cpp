@@ -94,13 +94,20 @@ Result<void> showBoth(const Command& command, const EpisodePlan& plan,
   if (command.shown.view.empty() && command.shown.pictures.empty()) return {};
   ASSIGN_OR_RETURN(const auto here, plan.makeLane());
   ASSIGN_OR_RETURN(const auto there, plan.makeLane());
-  return writeSideBySide({.comparisons = comparisons,
-                          .worlds = worlds,
-                          .here = *here,
-                          .there = *there,
-                          .is_closed = plan.isClosedLoop(),
-                          .trace_of = [&](std::size_t n) { return plan.trace(n, *here); }},
-                         subject, command.shown);
+  ASSIGN_OR_RETURN(
+      const auto notes,
+      writeSideBySide({.comparisons = comparisons,
+                       .worlds = worlds,
+                       .here = *here,
+                       .there = *there,
+                       .is_closed = plan.isClosedLoop(),
+                       .trace_of = [&](std::size_t n) { return plan.trace(n, *here); }},
+                      subject, command.shown));
+  // Also for those who want errors only: they may take an older file for that of this run.
+  for (const std::string& one : notes) {
+    printToStderr(fmt::format("galactic-dynamics: {}\n", printable(one)));
+  }
+  return {};
 }
 
 /// Says how to go on.

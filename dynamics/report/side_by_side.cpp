@@ -26,6 +26,9 @@
 namespace galactic::dynamics {
 namespace {
 
+/// Episodes on a page that has no moments.
+constexpr std::size_t kWithoutMoments = 4;
+
 /// What one world looks like while an episode is played in it.
 class Onlooker {
  public:
@@ -109,7 +112,7 @@ std::string factsOf(const ReportSubject& subject) {
   return json.take();
 }
 
-/// All episodes of the worst moments, played again.
+/// All episodes of the worst moments, played again; where there are none, the first episodes.
 class SideBySide {
  public:
   SideBySide(const SideBySideParts& parts, const SideBySideFiles& files)
@@ -121,6 +124,10 @@ class SideBySide {
     }
     std::map<std::size_t, std::vector<std::size_t>> moments;
     for (std::size_t n = 0; n < worst().size(); ++n) moments[worst()[n].comparison].push_back(n);
+    if (moments.empty()) {
+      const std::size_t all = parts_.comparisons.episodes.size();
+      for (std::size_t n = 0; n < std::min(all, kWithoutMoments); ++n) moments[n] = {};
+    }
     cells_.resize(2 * worst().size());
     for (const auto& [comparison, of] : moments) RETURN_IF_ERROR(play(comparison, of));
     return {};
@@ -222,13 +229,24 @@ class SideBySide {
 
 }  // namespace
 
-Result<void> writeSideBySide(const SideBySideParts& parts, const ReportSubject& subject,
-                             const SideBySideFiles& files) {
-  if (parts.comparisons.worst.empty() || (files.view.empty() && files.pictures.empty())) return {};
-  SideBySide both(parts, files);
+Result<std::vector<std::string>> writeSideBySide(const SideBySideParts& parts,
+                                                 const ReportSubject& subject,
+                                                 const SideBySideFiles& files) {
+  SideBySideFiles possible = files;
+  std::vector<std::string> notes;
+  if (!files.pictures.empty() && parts.comparisons.worst.empty()) {
+    possible.pictures.clear();
+    notes.push_back(fmt::format(
+        "{} is not written: there is no moment to draw, as the two worlds do not part in any "
+        "episode",
+        files.pictures.string()));
+  }
+  if (possible.view.empty() && possible.pictures.empty()) return notes;
+  SideBySide both(parts, possible);
   RETURN_IF_ERROR(both.play());
-  if (!files.pictures.empty()) RETURN_IF_ERROR(both.writePictures());
-  return files.view.empty() ? Result<void>() : both.writePage(subject);
+  if (!possible.pictures.empty()) RETURN_IF_ERROR(both.writePictures());
+  if (!possible.view.empty()) RETURN_IF_ERROR(both.writePage(subject));
+  return notes;
 }
 
 }  // namespace galactic::dynamics

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "dynamics/episodes/comparison.h"
 #include "dynamics/report/report.h"
@@ -30,10 +31,11 @@ struct SideBySideParts {
   std::function<Result<EpisodeTrace>(std::size_t comparison)> trace_of;
 };
 
-/// Plays the episodes of the worst moments again and writes what is wanted. Nothing where there is
-/// no such moment. Fails with kIo and the errors of policies, pages and renderers.
-[[nodiscard]] Result<void> writeSideBySide(const SideBySideParts& parts,
-                                           const ReportSubject& subject,
-                                           const SideBySideFiles& files);
+/// Plays the episodes of the worst moments again and writes what is wanted. Where there is no such
+/// moment, the page has the first episodes, and there are no pictures. Returns a sentence for each
+/// file that is not written. Fails with kIo and the errors of policies, pages and renderers.
+[[nodiscard]] Result<std::vector<std::string>> writeSideBySide(const SideBySideParts& parts,
+                                                               const ReportSubject& subject,
+                                                               const SideBySideFiles& files);
 
 }  // namespace galactic::dynamics

@@ -308,6 +308,18 @@ TEST_F(DynamicsCli, ShowsTheWorstMoments) {
   EXPECT_EQ(fileContent(path("both.png")).substr(1, 3), "PNG");
 }
 
+TEST_F(DynamicsCli, ShowsTheFirstEpisodesWhereNothingPartsTheWorlds) {
+  // In two steps nobody gets to grasp, let go or touch anything.
+  const ProgramRun done = run({"--policy", "scripted", "--set", "episode-steps=2", "--quiet",
+                               "--view", "calm.html", "--pictures", "calm.png"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(fileContent(path("calm.html")), HasSubstr("<title>calm</title>"));
+  EXPECT_FALSE(std::filesystem::exists(path("calm.png")));
+  EXPECT_EQ(done.err,
+            "galactic-dynamics: calm.png is not written: there is no moment to draw, as the two "
+            "worlds do not part in any episode\n");
+}
+
 TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
   struct Refusal {
     std::vector<std::string> words;
