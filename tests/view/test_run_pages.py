@@ -61,6 +61,38 @@ class RunPages(PageCase):
         page.evaluate("galactic.view.ghost.setShown(false)")
         self.assertFalse(page.evaluate(visible))
 
+    def test_a_ghost_moves_as_evenly_as_the_robot(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        page.evaluate(
+            "(galactic.view.run.twins = [1, 0], galactic.view.chooseEnv(0, 3).then(() => 1))"
+        )
+        roots = page.evaluate(
+            "(() => { const { view } = galactic; const { ghost } = view; view.showBetween(3, 0.25);"
+            "const root = (figure) => figure.poses[0].position.toArray();"
+            "return [[view.track, root(view.home.robot)], [ghost.track, root(ghost.robot)]]"
+            ".map(([track, shown]) => [shown, track.root(3).position.lerp(track.root(4).position, 0.25).toArray()]); })()"
+        )
+        for shown, wanted in roots:
+            for a, b in zip(shown, wanted):
+                self.assertAlmostEqual(a, b, delta=1e-6)
+        self.assertNotEqual(roots[0][0], roots[1][0])
+
+    def test_a_continuous_joint_goes_the_shorter_way_between_frames(self):
+        page = self.open("run", "env=0&t=3", "run 0")
+        # Its angle is kept within a turn: from 3.1 to -3.1 rad are 0.08 rad.
+        angles = page.evaluate(
+            "(() => { const { view } = galactic; const { track } = view; const { robot } = view.home;"
+            "const { position } = robot.robot.links.find((one) => one.type === 2); const joints = track.joints.bind(track);"
+            "track.joints = (frame) => joints(frame).map((one, n) => (n === position ? (frame === 3 ? 3.1 : -3.1) : one));"
+            "let shown; const setPose = robot.setPose.bind(robot);"
+            "robot.setPose = (root, positions) => { shown = positions; setPose(root, positions); };"
+            "const others = joints(3).map((one, n) => (one + joints(4)[n]) / 2); view.showBetween(3, 0.5);"
+            "return [shown[position], shown.filter((_, n) => n !== position), others.filter((_, n) => n !== position)]; })()"
+        )
+        self.assertAlmostEqual(abs(angles[0]), 3.14159, delta=1e-4)
+        for a, b in zip(angles[1], angles[2]):
+            self.assertAlmostEqual(a, b, delta=1e-6)
+
     def test_nothing_stands_before_a_robot_that_is_followed(self):
         page = self.open("run", "env=0&t=0", "run 0")
         # From all around, low and high, inside the room and outside: what the mesh itself hides before and after.

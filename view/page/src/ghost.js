@@ -66,6 +66,11 @@ export class Ghost {
     this.frame = [frame, moved];
   }
 
+  /// As RunView.showBetween(); past its end it stays.
+  showBetween(frame, share) {
+    this.track.showBetween(frame, share, this.robot, (placement, pose) => this.objects[placement].setPose(pose));
+  }
+
   setShown(isShown) {
     this.isShown = isShown;
     if (this.frame) this.show(...this.frame);

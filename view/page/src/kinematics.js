@@ -17,6 +17,10 @@ export class Pose {
   apply(point) {
     return point.clone().applyQuaternion(this.rotation).add(this.position);
   }
+  /// A share of the way to another one.
+  mixed(other, share) {
+    return new Pose(this.position.clone().lerp(other.position, share), this.rotation.clone().slerp(other.rotation, share));
+  }
 }
 
 const kType = { fixed: 0, revolute: 1, continuous: 2, prismatic: 3, planar: 4, floating: 5 };
@@ -50,6 +54,16 @@ function jointPose(link, positions) {
     default:
       return new Pose();
   }
+}
+
+/// A share of the way between two vectors of positions. The simulation keeps the angle of a continuous joint
+/// within a turn: such a joint goes the shorter way around.
+export function mixedPositions(links, from, to, share) {
+  const ways = from.map((value, n) => to[n] - value);
+  for (const { type, position } of links) {
+    if (type === kType.continuous) ways[position] -= 2 * Math.PI * Math.round(ways[position] / (2 * Math.PI));
+  }
+  return from.map((value, n) => value + share * ways[n]);
 }
 
 /// The pose of each link in the world.

@@ -4,7 +4,6 @@ import { address, addressNumber, setAddress } from "./address.js";
 import { button, checkbox, el, heading, legendRow, meters, note, table, tree } from "./dom.js";
 import { Ghost, kGhostColor } from "./ghost.js";
 import { Home } from "./home.js";
-import { Pose } from "./kinematics.js";
 import { Queue } from "./queue.js";
 import { bestDirection, inSight } from "./sight.js";
 import { Timeline } from "./timeline.js";
@@ -110,19 +109,12 @@ export class RunView {
     this.page.stage.draw();
   }
 
-  /// Between a frame and the next, while the run is played: robot and what it holds move evenly.
+  /// Between a frame and the next, while the run is played: robots and what they hold move evenly.
   showBetween(frame, share) {
     const { track, home } = this;
-    const next = frame + 1;
-    if (next >= track.frameCount || track.endings[frame] !== 0 || this.shownEpisode !== this.keyOf(frame)) return;
-    const mixed = (a, b) => new Pose(a.position.clone().lerp(b.position, share), a.rotation.clone().slerp(b.rotation, share));
-    const joints = track.joints(frame).map((value, n) => value + (track.joints(next)[n] - value) * share);
-    home.robot.setPose(mixed(track.root(frame), track.root(next)), joints);
-    const held = track.held(frame);
-    if (held >= 0 && held === track.held(next)) {
-      const [from, to] = [track.movedObjects(frame).get(held), track.movedObjects(next).get(held)];
-      if (from && to) home.setObject(held, mixed(from, to));
-    }
+    if (this.shownEpisode !== this.keyOf(frame)) return;
+    track.showBetween(frame, share, home.robot, (placement, pose) => home.setObject(placement, pose));
+    this.ghost?.showBetween(frame, share);
     this.page.stage.draw();
   }
 

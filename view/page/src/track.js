@@ -1,5 +1,5 @@
 // A run, unpacked: view/page_run.h is the writer.
-import { Pose } from "./kinematics.js";
+import { mixedPositions, Pose } from "./kinematics.js";
 
 /// Columns of differences as columns of values.
 function undoDeltas(table, columns) {
@@ -71,6 +71,21 @@ export class Track {
       moved.set(this.moveTable.at(row, 1), row);
     }
     return new Map([...moved].map(([placement, row]) => [placement, this.pose(this.moveTable, row, 2)]));
+  }
+
+  /// Whether the next frame is of the same episode.
+  goesOn(frame) { return frame + 1 < this.frameCount && this.endings[frame] === 0; }
+
+  /// A share of the way to the next frame: poses a robot, and calls `setObject(placement, pose)` for what it holds.
+  showBetween(frame, share, robot, setObject) {
+    if (!this.goesOn(frame)) return;
+    const next = frame + 1;
+    robot?.setPose(this.root(frame).mixed(this.root(next), share),
+      mixedPositions(robot.robot.links, this.joints(frame), this.joints(next), share));
+    const held = this.held(frame);
+    if (held < 0 || held !== this.held(next)) return;
+    const [from, to] = [this.movedObjects(frame).get(held), this.movedObjects(next).get(held)];
+    if (from && to) setObject(held, from.mixed(to, share));
   }
 
   /// Numbers of a step by column: of `width` numbers for each.
