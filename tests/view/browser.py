@@ -172,8 +172,13 @@ class Browser:
         self.folder.cleanup()
 
     def open(
-        self, file: pathlib.Path, fragment: str = "", size: tuple[int, int] = (1280, 800)
+        self,
+        file: pathlib.Path,
+        fragment: str = "",
+        size: tuple[int, int] = (1280, 800),
+        before: str = "",
     ) -> Page:
+        """`before`: JavaScript that runs before that of the page."""
         target = self.call("Target.createTarget", {"url": "about:blank"})["targetId"]
         session = self.call("Target.attachToTarget", {"targetId": target, "flatten": True})[
             "sessionId"
@@ -183,6 +188,8 @@ class Browser:
             page.call(f"{domain}.enable")
         page.call("Emulation.setFocusEmulationEnabled", enabled=True)
         page.size(*size)
+        if before:
+            page.call("Page.addScriptToEvaluateOnNewDocument", source=before)
         page.url = file.resolve().as_uri()
         page.call("Page.navigate", url=page.url + fragment)
         return page

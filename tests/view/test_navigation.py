@@ -60,6 +60,43 @@ class Navigation(PageCase):
         self.assertEqual(shown, [2, objects, objects, 3 + objects])
         self.assertEqual(self.marked(page), ["Episode 2"])
 
+    def test_a_link_into_an_open_run_leads_where_it_leads_in_a_new_page(self):
+        look = (
+            "(() => { const { view, library } = galactic; const { timeline } = view;"
+            "return { at: [view.env, view.frame], camera: view.camera, speed: timeline.speed, shown: Number(timeline.speedChoice.value),"
+            "curves: timeline.charts.map((one) => one.name).filter((name) => timeline.curves.charts.some((one) => one.name === name)),"
+            "pressed: [...document.querySelectorAll('#timeline .transport [aria-pressed=true]')].map((one) => one.textContent),"
+            "theme: document.documentElement.dataset.theme, shaded: [library.isShaded, galactic.shade.input.checked],"
+            "own: galactic.stage.controls.enabled }; })()"
+        )
+        plain = self.open("run", "env=0&t=10", "run 0")
+        before = plain.evaluate(look)
+        self.assertEqual(before["curves"], ["Reward", "Distance"])
+        self.assertEqual((before["camera"], before["speed"]), ("follow", 1))
+        link = "env=1&t=20&camera=own&speed=3&curves=Contact,Actions&theme=dark&shade=0"
+        fresh = self.open("run", link, "run 1").evaluate(look)
+        self.assertEqual(fresh["at"], [1, 20])
+        self.assertEqual(fresh["camera"], "own")
+        self.assertFalse(fresh["own"])
+        # The nearest that there is.
+        self.assertEqual((fresh["speed"], fresh["shown"]), (4, 4))
+        self.assertEqual(fresh["curves"], ["Contact", "Actions"])
+        self.assertEqual(fresh["pressed"], fresh["curves"])
+        self.assertEqual((fresh["theme"], fresh["shaded"]), ("dark", [False, False]))
+        plain.evaluate(f"(location.hash = '#{link}', 1)")
+        plain.wait("galactic.view.camera === 'own'")
+        self.assertEqual(plain.evaluate(look), fresh)
+        plain.evaluate("(location.hash = '#env=0&t=10', 1)")
+        plain.wait("galactic.view.camera === 'follow'")
+        self.assertEqual(plain.evaluate(look), before)
+
+    def test_a_speed_that_is_none_is_the_usual_one(self):
+        for speed in ("-2", "0", "fast"):
+            page = self.open("run", f"env=0&t=10&speed={speed}", "run 0")
+            self.assertEqual(page.evaluate("galactic.view.timeline.speed"), 1)
+            page.evaluate("galactic.view.timeline.play()")
+            page.wait("galactic.view.frame > 11")
+
     def test_the_view_has_the_keys_after_a_click(self):
         page = self.open("run", "env=0&t=10", "run 0")
         self.click(page, "#list li button", 0)
@@ -97,6 +134,41 @@ class Navigation(PageCase):
         page.key("Enter", "Enter", "\r")
         page.wait("!document.getElementById('keys').open")
         self.assertEqual(page.evaluate("galactic.view.frame"), 10)
+
+    def test_a_browser_without_webgl_shows_what_is_known(self):
+        for name, fragment, shown, words in (
+            ("world", "view=robot", "robot 0", "helper.pack"),
+            ("run", "env=0", "run 0", "about the run"),
+        ):
+            page = self.browser.open(
+                self.folder / f"{name}.html",
+                "#" + fragment,
+                before="HTMLCanvasElement.prototype.getContext = () => null;",
+            )
+            page.shown(shown)
+            self.assertIn(
+                "no WebGL 2", page.evaluate("document.getElementById('readout').textContent")
+            )
+            self.assertIn(
+                words, page.evaluate("document.getElementById('panel').innerText").lower()
+            )
+            self.assertGreater(
+                page.evaluate("document.querySelectorAll('#list li button').length"), 3
+            )
+            self.show_all_parts(page)
+            page.key("d", "KeyD", "d")
+
+    def test_a_picture_that_was_lost_is_drawn_again(self):
+        page = self.open("world", "", "scene 0")
+        page.evaluate("(galactic.stage.renderer.forceContextLoss(), 1)")
+        page.wait("galactic.stage.renderer.getContext().isContextLost()")
+        drawn = page.evaluate("galactic.stage.frames")
+        page.evaluate("(galactic.stage.renderer.forceContextRestore(), 1)")
+        page.wait(
+            f"!galactic.stage.renderer.getContext().isContextLost() && galactic.stage.frames > {drawn}"
+        )
+        _, _, rgb = page.pixels()
+        self.assertGreater(len({rgb[n : n + 3] for n in range(0, len(rgb), 300)}), 20)
 
 
 if __name__ == "__main__":

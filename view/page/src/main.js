@@ -11,7 +11,7 @@ import { RobotView } from "./robot_view.js";
 import { RunView } from "./run_view.js";
 import { envName } from "./track.js";
 import { SceneView } from "./scene_view.js";
-import { Stage } from "./stage.js";
+import { BlankStage, Stage } from "./stage.js";
 
 const kKeys = [
   ["Drag, wheel, right button", "turn, come closer, move; on a touch screen one, two and two fingers"],
@@ -22,13 +22,21 @@ const kKeys = [
   ["F, C", "run: follow the robot, see with its camera"],
 ];
 
+/// Without WebGL 2 there is none that draws.
+function stageOn(canvas) {
+  try {
+    return new Stage(canvas);
+  } catch (problem) {
+    return new BlankStage(problem);
+  }
+}
+
 class Page {
   constructor(manifest, data) {
     this.manifest = manifest;
     this.data = data;
-    this.stage = new Stage(document.getElementById("canvas"));
+    this.stage = stageOn(document.getElementById("canvas"));
     this.library = new MeshLibrary(data, manifest.textures, this.stage);
-    this.library.isShaded = address.get("shade") !== "0";
     this.scenes = new Map();
     this.objects = new Map();
     this.listeners = [];
@@ -74,6 +82,34 @@ class Page {
     await this.show(this.wantedPart());
   }
 
+  /// Theme and shade are as the address says.
+  applyAddress() {
+    this.setTheme(themeOfAddress());
+    this.library.setShaded(address.get("shade") !== "0");
+    if (this.shade) this.shade.input.checked = this.library.isShaded;
+  }
+
+  /// A link into the page was followed: shows what it leads to.
+  followAddress() {
+    this.applyAddress();
+    return this.openings.add(() => {
+      const stays = this.view instanceof RunView && this.current.kind === "run" && !address.has("view");
+      return stays ? this.view.applyAddress() : this.showNow(this.wantedPart());
+    }).catch((problem) => this.fail(problem));
+  }
+
+  setTheme(theme) {
+    setTheme(theme);
+    this.stage.setTheme();
+    this.view?.timeline?.curves?.draw();
+  }
+
+  toggleTheme() {
+    const theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+    this.setTheme(theme);
+    setAddress({ theme });
+  }
+
   subtitle() {
     const { generator, run, packs } = this.manifest;
     if (run) return `${generator}: ${run.facts?.policy ?? "a"} policy, ${counted(run.steps, "step")}, ${counted(run.envs.length, "env")}`;
@@ -114,7 +150,8 @@ class Page {
     setAddress({ episode: null, ...(part.kind === "run" ? { view: null, n: null, env: part.number } : { view: part.kind, n: part.number }) });
     this.markList();
     closeDrawers();
-    if (part.kind === "pack") await this.showFacts(part);
+    if (this.stage instanceof BlankStage) this.showWords(part);
+    else if (part.kind === "pack") await this.showFacts(part);
     else if (stays && this.view instanceof RunView) await this.view.chooseEnv(part.number, this.view.frame);
     else if (stays && this.view instanceof EpisodeView) await this.view.go(part.number);
     else await this.showView(part);
@@ -141,8 +178,15 @@ class Page {
   async showFacts({ pack }) {
     await this.view?.close?.();
     if (!this.view) await this.showPicture(pack);
-    const facts = pack.facts ? Object.entries(pack.facts).map(([key, value]) => tree(value, key)) : [note("The page was written without more about this pack.")];
-    this.fillPanel([heading(pack.file), note(`${pack.kind}, ${megabytes(pack.bytes)}`), ...facts]);
+    this.fillPanel(wordsAbout(pack));
+  }
+
+  /// What can be told of a part where nothing can be drawn.
+  showWords({ pack }) {
+    this.readout(`This browser offers no WebGL 2, so that nothing can be drawn: ${this.stage.problem.message}. `
+      + "Switch on its hardware acceleration, or open the page in another one. What is known stands in the panel.");
+    const { run } = this.manifest;
+    this.fillPanel(pack ? wordsAbout(pack) : [heading("About the run"), run.facts ? tree(run.facts, "facts") : note(this.subtitle())]);
   }
 
   async showPicture(pack) {
@@ -171,10 +215,11 @@ class Page {
   readout(text) { document.getElementById("readout").textContent = text; }
 
   shadeBox() {
-    return checkbox("Light and shade", this.library.isShaded, (on) => {
+    this.shade = checkbox("Light and shade", this.library.isShaded, (on) => {
       setAddress({ shade: on ? null : 0 });
       this.library.setShaded(on);
     });
+    return this.shade;
   }
 
   makeList() {
@@ -227,12 +272,17 @@ class Page {
     addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (keepsKey(event.target, event.key) || document.getElementById("keys").open) return;
-      const own = { "/": () => document.querySelector("#list input").focus(), "?": showKeys, d: () => toggleTheme(this) }[event.key];
+      const own = { "/": () => document.querySelector("#list input").focus(), "?": showKeys, d: () => this.toggleTheme() }[event.key];
       if (own) own();
       else if (this.current.kind === "pack" || !this.view?.key?.(event)) return;
       event.preventDefault();
     });
   }
+}
+
+function wordsAbout(pack) {
+  const facts = pack.facts ? Object.entries(pack.facts).map(([key, value]) => tree(value, key)) : [note("The page was written without more about this pack.")];
+  return [heading(pack.file), note(`${pack.kind}, ${megabytes(pack.bytes)}`), ...facts];
 }
 
 const kSwitches = "button, summary, input[type=checkbox], input[type=radio]";
@@ -283,17 +333,13 @@ function setTheme(theme) {
   document.documentElement.dataset.theme = theme;
 }
 
-function toggleTheme(page) {
-  const theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
-  setTheme(theme);
-  setAddress({ theme });
-  page.stage.setTheme();
-  page.view?.timeline?.curves?.draw();
+function themeOfAddress() {
+  const isDark = matchMedia("(prefers-color-scheme: dark)").matches;
+  return ["light", "dark"].find((theme) => theme === address.get("theme")) ?? (isDark ? "dark" : "light");
 }
 
 async function main() {
-  const isDark = matchMedia("(prefers-color-scheme: dark)").matches;
-  setTheme(["light", "dark"].includes(address.get("theme")) ? address.get("theme") : isDark ? "dark" : "light");
+  setTheme(themeOfAddress());
   makeDrawers();
   releaseAfterPointer();
   const status = document.getElementById("progress");
@@ -303,17 +349,10 @@ async function main() {
     const page = new Page(await data.manifest(), data);
     // For scripts, as tests are.
     globalThis.galactic = page;
-    page.stage.setTheme();
+    page.applyAddress();
     document.getElementById("help").addEventListener("click", showKeys);
-    document.getElementById("theme").addEventListener("click", () => toggleTheme(page));
-    onAddress(() => {
-      const { view } = page;
-      if (view instanceof RunView && page.current.kind === "run" && !address.has("view")) {
-        view.chooseEnv(addressNumber("env", view.env), addressNumber("t", view.frame));
-      } else {
-        page.show(page.wantedPart());
-      }
-    });
+    document.getElementById("theme").addEventListener("click", () => page.toggleTheme());
+    onAddress(() => page.followAddress());
     await page.open();
   } catch (problem) {
     status.querySelector("progress").remove();

@@ -15,6 +15,7 @@ export class RunView {
   constructor(page, run) {
     this.page = page;
     this.run = run;
+    this.env = 0;
     this.facts = el("div");
     this.changes = new Queue();
   }
@@ -22,14 +23,27 @@ export class RunView {
   async open() {
     this.home = new Home(this.page);
     await this.home.open();
-    this.camera = kCameras.some(([, key]) => key === address.get("camera")) ? address.get("camera") : "follow";
     this.timeline = new Timeline(this.page, this.run, {
       onFrame: () => this.go(), onBetween: (frame, share) => this.showBetween(frame, share),
     });
-    await this.chooseEnv(addressNumber("env", 0), addressNumber("t", 0));
+    this.cameraButtons = this.cameras.map(([text, key]) => button(text, () => this.setCamera(key), { value: key }));
     this.page.stage.beforeDraw = () => this.moveCamera();
-    this.frameHome();
+    await this.applyAddress();
     this.fillPanel();
+  }
+
+  /// Those that there are.
+  get cameras() { return kCameras.filter(([, key]) => key !== "own" || this.hasOwnCamera); }
+
+  get hasOwnCamera() { return Boolean(this.home.robot.robot.camera); }
+
+  /// Shows what the address says, when the run is opened and when a link leads into it. An env or a frame that a
+  /// link does not name stays.
+  async applyAddress() {
+    this.timeline.applyAddress();
+    await this.chooseEnv(addressNumber("env", this.env), addressNumber("t", this.frame));
+    const [, camera] = this.cameras.find(([, key]) => key === address.get("camera")) ?? [null, "follow"];
+    if (camera !== this.camera) this.setCamera(camera);
   }
 
   /// Another part of the page is opened.
@@ -125,7 +139,7 @@ export class RunView {
     const { stage } = this.page;
     const { camera, controls } = stage;
     stage.seenFrom = null;
-    if (this.camera === "own" && robot.robot.camera) {
+    if (this.camera === "own") {
       const own = robot.ownCamera();
       camera.position.copy(own.position);
       camera.quaternion.copy(own.quaternion);
@@ -169,9 +183,8 @@ export class RunView {
     this.cut();
     this.lastRoot = null;
     setAddress({ camera: key === "follow" ? null : key });
-    const { robot } = this.home;
-    const isOwn = key === "own" && robot?.robot.camera;
-    this.page.stage.setOwnCamera(isOwn ? robot.ownCamera() : null);
+    const isOwn = key === "own";
+    this.page.stage.setOwnCamera(isOwn ? this.home.robot.ownCamera() : null);
     if (!isOwn) this.frameHome();
     this.cameraButtons.forEach((one) => one.setAttribute("aria-pressed", one.value === key));
   }
@@ -195,7 +208,6 @@ export class RunView {
 
   fillPanel() {
     const toggle = (key) => (on) => this.home.show({ ...this.home.shown, [key]: on });
-    this.cameraButtons = kCameras.filter(([, key]) => key !== "own" || this.home.robot.robot.camera).map(([text, key]) => button(text, () => this.setCamera(key), { value: key, "aria-pressed": key === this.camera }));
     this.page.fillPanel([
       heading("Camera"),
       el("div", { className: "buttons" }, ...this.cameraButtons),
@@ -217,7 +229,6 @@ export class RunView {
       ...this.momentList(),
       ...(this.run.facts ? [heading("About the run"), tree(this.run.facts, "facts")] : []),
     ]);
-    if (this.camera === "own") this.setCamera("own");
   }
 
   /// What the page points at: a click goes there.
@@ -230,7 +241,7 @@ export class RunView {
 
   key(event) {
     if (event.key === "f") this.setCamera("follow");
-    else if (event.key === "c") this.setCamera(this.camera === "own" ? "free" : "own");
+    else if (event.key === "c") this.setCamera(this.hasOwnCamera && this.camera !== "own" ? "own" : "free");
     else return this.timeline.key(event);
     return true;
   }

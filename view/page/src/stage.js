@@ -35,6 +35,8 @@ export class Stage {
     this.addLights();
     this.content = new Group();
     this.scene.add(this.content);
+    // A browser takes a picture's memory away from a page that waits, or whose driver begins anew.
+    canvas.addEventListener("webglcontextrestored", () => this.draw());
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
   }
@@ -169,4 +171,16 @@ export class Stage {
     this.raycaster.setFromCamera(point, this.camera);
     return this.raycaster;
   }
+}
+
+/// Where the browser cannot draw: the page has what it tells in words. `problem`: why.
+export class BlankStage {
+  constructor(problem) {
+    this.problem = problem;
+    this.content = new Group();
+  }
+
+  setTheme() {}
+  draw() {}
+  drawNow() {}
 }

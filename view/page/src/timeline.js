@@ -6,10 +6,18 @@ import { envName, kEndings, kEvents } from "./track.js";
 
 const kSpeeds = [0.25, 0.5, 1, 2, 4, 8];
 const kCurves = ["Reward", "Distance", "Contact", "Actions"];
+const kFirstCurves = "Reward,Distance";
 // Told apart by shape; colors only help.
 const kMarks = { grasp: ["▲", "--green", "grasped"], drop: ["▼", "--blue", "let go"], restore: ["↺", "--purple", "found no place to let go, the object went back"] };
 /// What a mark takes of the track, rem.
 const kMarkWidth = 0.95;
+
+/// The speed that is there and nearest to one that somebody wrote into the address.
+function nearestSpeed(wanted) {
+  if (wanted <= 0) return 1;
+  const times = (speed) => Math.max(speed / wanted, wanted / speed);
+  return kSpeeds.reduce((best, one) => (times(one) < times(best) ? one : best));
+}
 
 export class Timeline {
   constructor(page, run, { onFrame, onBetween }) {
@@ -18,7 +26,8 @@ export class Timeline {
     this.onFrame = onFrame;
     this.onBetween = onBetween;
     this.frame = 0;
-    this.speed = addressNumber("speed", 1);
+    this.speed = 1;
+    this.shownCurves = new Set();
     /// What is being played, from where and since when; null: nothing is.
     this.playing = null;
     this.element = document.getElementById("timeline");
@@ -28,7 +37,7 @@ export class Timeline {
 
   makeTransport() {
     this.playButton = button("Play", () => this.toggle(), { title: "Play or pause (space)" });
-    this.speedChoice = el("select", { "aria-label": "Speed" }, ...kSpeeds.map((one) => el("option", { value: one, selected: one === this.speed }, `${one} ×`)));
+    this.speedChoice = el("select", { "aria-label": "Speed" }, ...kSpeeds.map((one) => el("option", { value: one }, `${one} ×`)));
     this.speedChoice.addEventListener("change", () => this.setSpeed(Number(this.speedChoice.value)));
     this.envChoice = el("select", { "aria-label": "Environment" }, ...this.run.envs.map((_, n) => el("option", { value: n }, envName(this.run, n))));
     this.envChoice.addEventListener("change", () => this.page.view.chooseEnv(Number(this.envChoice.value)));
@@ -37,14 +46,20 @@ export class Timeline {
     this.scrub.addEventListener("input", () => this.go(Number(this.scrub.value)));
     this.marks = el("div", { className: "marks" });
     this.curvePart = el("div");
-    this.shownCurves = new Set((address.get("curves") ?? "Reward,Distance").split(","));
-    this.curveButtons = kCurves.map((name) => button(name, () => this.toggleCurve(name), { "aria-pressed": this.shownCurves.has(name) }));
+    this.curveButtons = kCurves.map((name) => button(name, () => this.toggleCurve(name)));
     this.element.replaceChildren(
       el("div", { className: "transport" }, this.playButton,
         button("◀", () => this.step(-1), { title: "One step back (left)", "aria-label": "One step back" }),
         button("▶", () => this.step(1), { title: "One step on (right)", "aria-label": "One step on" }),
         this.speedChoice, this.run.envs.length > 1 ? this.envChoice : "", this.clock, el("span", { className: "space" }), ...this.curveButtons),
       el("div", { className: "track" }, this.scrub, this.marks), this.curvePart);
+  }
+
+  /// Speed and curves are as the address says.
+  applyAddress() {
+    this.setSpeed(nearestSpeed(addressNumber("speed", 1)));
+    const wanted = (address.get("curves") ?? kFirstCurves).split(",");
+    this.showCurves(kCurves.filter((name) => wanted.includes(name)));
   }
 
   /// Of the shown env.
@@ -78,10 +93,15 @@ export class Timeline {
   }
 
   toggleCurve(name) {
-    if (!this.shownCurves.delete(name)) this.shownCurves.add(name);
-    this.curveButtons.forEach((one, n) => one.setAttribute("aria-pressed", this.shownCurves.has(kCurves[n])));
+    const isShown = (one) => this.shownCurves.has(one) !== (one === name);
+    this.showCurves(kCurves.filter(isShown));
     setAddress({ curves: [...this.shownCurves].join(",") });
-    this.makeCurves();
+  }
+
+  showCurves(names) {
+    this.shownCurves = new Set(names);
+    this.curveButtons.forEach((one, n) => one.setAttribute("aria-pressed", this.shownCurves.has(kCurves[n])));
+    if (this.track) this.makeCurves();
   }
 
   fillMarks() {
