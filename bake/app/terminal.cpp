@@ -8,6 +8,7 @@
 #include "support/printable.h"
 #include "support/sentence_kinds.h"
 #include "support/standard_streams.h"
+#include "support/terminal_line.h"
 
 namespace galactic::bake {
 namespace {
@@ -72,7 +73,8 @@ void ProgressLine::show(std::string_view item, std::string_view stage, double fr
   const int done = static_cast<int>(fraction * kWidth);
   const std::string bar = std::string(static_cast<std::size_t>(done), '=') +
                           std::string(static_cast<std::size_t>(kWidth - done), ' ');
-  printToStderr(fmt::format("\r\033[K[{}] {}: {}", bar, item, stage));
+  const std::string line = fmt::format("[{}] {}: {}", bar, item, stage);
+  printToStderr("\r\033[K" + fittingLine(line, STDERR_FILENO));
   shown_ = true;
 }
 

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <string>
+
 #include "support/standard_streams.h"
+#include "support/terminal_line.h"
 
 namespace galactic {
 
@@ -22,9 +25,10 @@ void LiveLine::show(std::uint64_t done, const SimulationStatistics& sum) {
   const auto stepped = static_cast<double>((done - last_done_) * envs_);
   const double refused =
       sum.steps == 0 ? 0 : static_cast<double>(sum.refused) / static_cast<double>(sum.steps);
-  printToStderr(fmt::format("\r\033[Kstep {} of {}  {:.0f} steps/s  {:.1f} % refused  {} successes",
-                            done, steps_, seconds > 0 ? stepped / seconds : 0, 100 * refused,
-                            sum.successes));
+  const std::string line =
+      fmt::format("step {} of {}  {:.0f} steps/s  {:.1f} % refused  {} successes", done, steps_,
+                  seconds > 0 ? stepped / seconds : 0, 100 * refused, sum.successes);
+  printToStderr("\r\033[K" + fittingLine(line, STDERR_FILENO));
   shown_ = true;
   last_done_ = done;
   last_time_ = now;
