@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/packs/scene_pack_builder.h"
+#include "support/packs/texture_pack_builder.h"
 #include "support/packs/world_pack_builder.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
@@ -115,6 +116,21 @@ TEST_F(RunCli, MeasuresQueries) {
   const ProgramRun result = run({"good.pack", "--bench"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("coherent, 128 robots"), HasSubstr("random")));
+}
+
+TEST_F(RunCli, MeasuresNothingWhereNothingIsPrinted) {
+  const ProgramRun result = run({"good.pack", "--bench", "-q"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, HasSubstr("--quiet leaves out the table"));
+}
+
+TEST_F(RunCli, SummarizesATexture) {
+  write("wood.pack", test::textOf(test::buildPack(test::TexturePackFields{})));
+  const ProgramRun result = run({"wood.pack"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("wood.pack: texture \"oak\", format 1"),
+                                HasSubstr("  2 x 2 texels (")));
 }
 
 TEST_F(RunCli, EndsWithACodeForEachKindOfMistake) {

@@ -232,6 +232,9 @@ std::string faultOf(const RunOptions& options) {
   if (options.bench && options.simulates) {
     return "--bench measures queries and simulates nothing; leave it out, or the other options";
   }
+  if (options.bench && options.is_quiet) {
+    return "--quiet leaves out the table, which is all that --bench makes; leave out one of them";
+  }
   if (options.bench && options.simulation.seed > std::numeric_limits<std::uint32_t>::max()) {
     return "--bench takes a --seed up to 4294967295";
   }

@@ -179,6 +179,12 @@ std::string policyText(const schema::Policy& policy) {
                                      clean(image->camera())));
 }
 
+std::string textureText(const schema::SharedTexture& texture) {
+  return fmt::format("  {} x {} texels ({}), {:.2f} MB with all levels\n", texture.size(),
+                     texture.size(), schema::EnumNameTexelFormat(texture.format()),
+                     static_cast<double>(texture.texels()->size()) / kMega);
+}
+
 /// What kind of asset it is, with its name where it has one, and its description.
 std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
   if (const schema::ObjectSet* set = pack.asset_as_ObjectSet()) {
@@ -200,6 +206,9 @@ std::pair<std::string, std::string> assetText(const schema::Pack& pack) {
   }
   if (const schema::Policy* policy = pack.asset_as_Policy()) {
     return {fmt::format("policy \"{}\"", clean(policy->name())), policyText(*policy)};
+  }
+  if (const schema::SharedTexture* texture = pack.asset_as_SharedTexture()) {
+    return {fmt::format("texture \"{}\"", clean(texture->name())), textureText(*texture)};
   }
   return {"an asset of another kind than the header says", ""};
 }
