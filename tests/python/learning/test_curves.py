@@ -16,7 +16,7 @@ from galactic.learning.checkpoint import load_policy
 from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.reports import curves as curves_module
 from galactic.learning.reports.curves import Curves, read_curves
-from galactic.learning.reports.progress import ProgressLine
+from galactic.learning.reports.progress import ProgressLine, amount
 from toys import Measured, ReachAndGrasp, Uneven
 from trainers import SETTINGS, UPDATE, curve, make_trainer, saved_run
 
@@ -139,6 +139,12 @@ def test_a_line_of_progress_fits_on_a_terminal(monkeypatch: pytest.MonkeyPatch) 
         monkeypatch.setattr(os, "get_terminal_size", lambda _: os.terminal_size((columns, 24)))
         ProgressLine(said).show("x" * 30)
         assert said.getvalue().endswith(f"\x1b[K{shown}")
+
+
+def test_amounts_are_rounded_before_their_unit_is_chosen() -> None:
+    said = {0: "0", 12.4: "12", 999.4: "999", 1000: "1 k", 1234567: "1.23 M", 999_400: "999 k"}
+    said |= {999_700: "1 M", 999_700_000: "1 G", -999_700: "-1 M", 12_340_000_000: "12.3 G", 999.7: "1 k"}
+    assert {number: amount(number) for number in said} == said
 
 
 def test_the_table_of_the_curves_keeps_every_digit_of_whole_numbers(tmp_path: pathlib.Path) -> None:

@@ -20,10 +20,14 @@ def duration(seconds: float) -> str:
 
 def amount(number: float) -> str:
     """1234567 as 1.23 M."""
+    if abs(number) < 999.5:
+        return f"{number:.0f}"
+    # Rounded first: 999 700 is 1 M, not 1000 k.
+    rounded = float(f"{number:.3g}")
     for unit, size in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
-        if abs(number) >= size:
-            return f"{number / size:.3g} {unit}"
-    return f"{number:.0f}"
+        if abs(rounded) >= size:
+            break
+    return f"{rounded / size:g} {unit}"
 
 
 class ProgressLine:
