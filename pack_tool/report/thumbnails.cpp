@@ -24,6 +24,9 @@ using pictures::Rgb;
 
 constexpr int kPlanWidth = 360;
 constexpr int kViewSize = 200;
+/// Of a set with more objects there are several sheets: a picture of thousands is more than one may
+/// be, and than anybody looks at.
+constexpr std::size_t kMostOnSheet = 240;
 
 /// Means of blocks of pixels, at most `width` wide; the cut is that of the plot alone.
 Image shrunk(const Image& image, const pictures::PixelRect& part, int width) {
@@ -63,7 +66,8 @@ Result<void> addPlans(const Scene& scene, std::vector<Thumbnail>& thumbnails) {
   return {};
 }
 
-Result<Image> drawn(const std::vector<Figure>& figures) {
+/// A part of the figures of a pack, as one picture.
+Result<Image> drawn(std::span<const Figure> figures) {
   if (figures.front().kind == FigureKind::kScene) {
     return pictures::drawScene(figures.front(), kViewSize);
   }
@@ -77,6 +81,11 @@ bool hasFigures(const PackFile& pack) {
   return pack.kind() == PackKind::kObjects || pack.kind() == PackKind::kRobot;
 }
 
+std::string sheetCaption(std::size_t first, std::size_t count, std::size_t all) {
+  if (count == all) return "as it is drawn";
+  return fmt::format("as it is drawn, {} to {} of {}", first + 1, first + count, all);
+}
+
 Result<void> addFigures(const PackFile& pack, AbsentTextures& absent,
                         std::vector<Thumbnail>& thumbnails) {
   FigureOptions options;
@@ -86,9 +95,13 @@ Result<void> addFigures(const PackFile& pack, AbsentTextures& absent,
   }
   ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, options));
   absent.note(pack, figures.front().render_meshes.get());
-  ASSIGN_OR_RETURN(const auto image, drawn(figures));
-  ASSIGN_OR_RETURN(auto thumbnail, encoded("as it is drawn", image));
-  thumbnails.push_back(std::move(thumbnail));
+  const std::span<const Figure> all(figures);
+  for (std::size_t first = 0; first < all.size(); first += kMostOnSheet) {
+    const auto some = all.subspan(first, std::min(kMostOnSheet, all.size() - first));
+    ASSIGN_OR_RETURN(const auto image, drawn(some));
+    ASSIGN_OR_RETURN(auto thumbnail, encoded(sheetCaption(first, some.size(), all.size()), image));
+    thumbnails.push_back(std::move(thumbnail));
+  }
   return {};
 }
 

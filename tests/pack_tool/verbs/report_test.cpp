@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "pack_tool/asset_packs.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/texture_pack_builder.h"
@@ -61,6 +62,22 @@ TEST(Report, ShowsEveryGridAndEverythingThatIsDrawn) {
   // PNG files, as base64 begins with them.
   EXPECT_EQ(countOf(html, "base64,iVBORw0KGgo"), countOf(html, "<img "));
   EXPECT_EQ(countOf(html, "http"), 0U) << "the page must not need the network";
+}
+
+TEST(Report, HasSeveralSheetsOfManyObjects) {
+  const ScratchFolder folder;
+  ToyObjects toys;
+  toys.objects.assign(241, {});
+  for (std::size_t n = 0; n < toys.objects.size(); ++n) {
+    toys.objects[n].name = "block " + std::to_string(n);
+  }
+  const fs::path pack = folder.write("many.pack", asText(buildPack(toys).bytes()));
+  const fs::path page = folder.path() / "page.html";
+  const Ran ran = run({.packs = {pack}, .output = page});
+  ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
+  const std::string html = contentOf(page);
+  EXPECT_EQ(countOf(html, "as it is drawn, 1 to 240 of 241</figcaption>"), 1U);
+  EXPECT_EQ(countOf(html, "as it is drawn, 241 to 241 of 241</figcaption>"), 1U);
 }
 
 TEST(Report, NamesPacksWithoutTheFoldersOfThisMachine) {
