@@ -118,6 +118,15 @@ class Navigation(PageCase):
         self.click(page, "#timeline .transport button", 0)
         page.wait("!galactic.view.timeline.playing")
 
+    def test_letters_are_keys_with_caps_lock_too(self):
+        page = self.open("run", "env=0&t=10&theme=light", "run 0")
+        page.key("C", "KeyC", "C")
+        page.wait("galactic.view.camera === 'own'")
+        page.key("F", "KeyF", "F")
+        page.wait("galactic.view.camera === 'follow'")
+        page.key("D", "KeyD", "D")
+        page.wait("document.documentElement.dataset.theme === 'dark'")
+
     def test_a_button_that_was_reached_by_keyboard_keeps_space_and_enter(self):
         page = self.open("run", "env=0&t=10", "run 0")
         page.evaluate("document.querySelectorAll('#timeline .transport button')[2].focus()")

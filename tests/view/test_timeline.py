@@ -120,24 +120,90 @@ class Timeline(PageCase):
             # Robot, scene, task, and each object once.
             self.assertEqual(shown["figures"], 3 + len(wanted))
 
+    def marks(self, page: Page) -> list[dict]:
+        """What stands on the track: where its middle is and ends are, in pixels of the track's width."""
+        return page.evaluate(
+            "(() => { const { marks } = galactic.view.timeline; const area = marks.marks.getBoundingClientRect();"
+            "return [...marks.marks.children].map((one) => { const { left, right } = one.getBoundingClientRect();"
+            "return { text: one.textContent, title: one.title, left: left - area.left, right: right - area.left, width: area.width }; }); })()"
+        )
+
     def test_marks_stay_on_the_track(self):
         page = self.open("run", "env=0&t=0", "run 0")
-        marks = page.evaluate(
-            "(() => { const { timeline, track } = galactic.view; const last = track.frameCount - 2;"
-            "for (const [step, events] of [[0, 1], [last, 7]]) track.events[step] = events;"
-            "track.endings[last] = 5; timeline.fillMarks();"
-            "const area = timeline.marks.getBoundingClientRect();"
-            "return [...timeline.marks.children].map((one) => { const { left, right } = one.getBoundingClientRect();"
-            "return [one.title, left - area.left, area.right - right]; }); })()"
+        page.evaluate(
+            "(() => { const { timeline, track } = galactic.view; const last = track.frameCount - 2; track.events.fill(0); track.endings.fill(0);"
+            "for (const [step, events] of [[0, 1], [29, 1], [last, 7]]) track.events[step] = events;"
+            "track.endings[last] = 5; timeline.marks.setTrack(track); })()"
         )
-        self.assertGreaterEqual(sum(title.startswith("Step 60:") for title, _, _ in marks), 4)
-        for title, left, right in marks:
-            # A glyph may be a little wider than its place.
-            self.assertGreater(left, -2, title)
-            self.assertGreater(right, -2, title)
-        places = [left for _, left, _ in marks]
-        self.assertEqual(places, sorted(places))
-        self.assertEqual(len(set(places)), len(places))
+        first, middle, end = self.marks(page)
+        self.assertEqual(
+            [one["text"] for one in (first, middle, end)], ["▲", "▲", "▲▼↺✕"], "one for each moment"
+        )
+        self.assertEqual(middle["title"], "Step 30: grasped")
+        self.assertEqual(len(end["title"].splitlines()), 4)
+        self.assertAlmostEqual(
+            (middle["left"] + middle["right"]) / 2, middle["width"] / 2, delta=1
+        )
+        # A glyph may be a little wider than its place.
+        self.assertGreater(first["left"], -2)
+        self.assertGreater(2, end["right"] - end["width"])
+
+    def test_marks_of_a_long_run_are_few_and_where_their_steps_are(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        page.evaluate(
+            "(() => { const { marks } = galactic.view.timeline; const frameCount = 20001; const steps = frameCount - 1;"
+            "const track = { frameCount, events: new Uint8Array(steps), endings: new Uint8Array(steps) };"
+            # Thousands of them in the first half, and three, far from each other, in the second.
+            "for (let n = 0; n < 10000; n += 3) track.events[n] = n % 2 ? 1 : 2;"
+            "for (const n of [11999, 14999, 17999]) track.endings[n] = 1; marks.setTrack(track); })()"
+        )
+        marks = self.marks(page)
+        self.assertLess(len(marks), 60)
+        self.assertEqual([one["text"] for one in marks[-3:]], ["★"] * 3)
+        for share, one in zip((0.6, 0.75, 0.9), marks[-3:]):
+            self.assertAlmostEqual(
+                (one["left"] + one["right"]) / 2, share * one["width"], delta=1
+            )
+        for before, after in zip(marks, marks[1:]):
+            self.assertLess(before["right"], after["left"] + 4)
+
+    def test_a_mark_of_many_moments_lists_them(self):
+        # Too narrow for one beside the other.
+        page = self.open("run", "env=0&t=0", "run 0", (360, 520))
+        page.evaluate(
+            "(() => { const { timeline, track } = galactic.view; track.events.fill(0); track.endings.fill(0);"
+            "for (const step of [29, 30]) track.events[step] = 1; timeline.marks.setTrack(track); })()"
+        )
+        self.assertEqual([one["text"] for one in self.marks(page)], ["▲2"])
+        listed = "[...document.querySelectorAll('.moments button')].map((one) => one.textContent)"
+        self.click(page, ".marks button", 0)
+        self.assertEqual(page.evaluate(listed), ["Step 30: grasped", "Step 31: grasped"])
+        self.assertFalse(page.evaluate("document.querySelector('.moments').hidden"))
+        self.click(page, ".moments button", 1)
+        page.wait("galactic.view.frame === 31")
+        self.assertTrue(page.evaluate("document.querySelector('.moments').hidden"))
+
+    def test_curves_are_drawn_once_and_the_cursor_each_time(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        drawn = page.evaluate(
+            "(async () => { const { timeline } = galactic.view; const { curves } = timeline; let pictures = 0;"
+            "const draw = curves.drawPicture.bind(curves); curves.drawPicture = (...all) => { ++pictures; draw(...all); };"
+            "const look = () => curves.charts[0].canvas.toDataURL(); const shots = [];"
+            "for (const frame of [5, 40, 5]) { await timeline.go(frame); shots.push(look()); }"
+            "curves.draw(); shots.push(look()); return [pictures, shots[0] === shots[1], shots[0] === shots[2], shots[0] === shots[3]]; })()"
+        )
+        self.assertEqual(drawn[0], len(("Reward", "Distance")), "only what was asked for anew")
+        self.assertEqual(drawn[1:], [False, True, True])
+
+    def test_who_comes_back_to_a_run_that_waited_goes_on_where_he_was(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        # No picture was made for a minute.
+        first = page.evaluate(
+            "new Promise((done) => { const { timeline } = galactic.view; const show = timeline.show.bind(timeline);"
+            "timeline.show = (frame) => { timeline.pause(); done(frame); return show(frame); };"
+            "timeline.play(); timeline.playing.time -= 60000; })"
+        )
+        self.assertEqual(first, 5)
 
 
 if __name__ == "__main__":

@@ -31,28 +31,35 @@ export class Curves {
     canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); pick(event); });
     canvas.addEventListener("pointermove", (event) => { if (event.buttons) pick(event); });
     const all = chart.series.flatMap((one) => [one.values.reduce((a, b) => Math.min(a, b), 0), one.values.reduce((a, b) => Math.max(a, b), 0)]);
-    return { ...chart, canvas, legend, outputs, least: Math.min(...all), most: Math.max(...all, 1e-6) };
+    const picture = el("canvas", { width: 0 });
+    return { ...chart, canvas, picture, legend, outputs, least: Math.min(...all), most: Math.max(...all, 1e-6) };
   }
 
   setCursor(frame) {
     this.cursor = frame;
-    this.draw();
+    const ink = getComputedStyle(document.documentElement).getPropertyValue("--ink");
+    for (const chart of this.charts) this.drawCursor(chart, ink);
   }
 
+  /// All of it: in another size, or in other colors.
   draw() {
     const style = getComputedStyle(document.documentElement);
-    for (const chart of this.charts) this.drawChart(chart, style);
+    for (const chart of this.charts) this.drawPicture(chart, style);
+    this.setCursor(this.cursor);
   }
 
-  drawChart(chart, style) {
+  x(frame, width) { return (frame / Math.max(1, this.frames - 1)) * width; }
+
+  /// The curves themselves, kept as a picture: long runs have a million steps.
+  drawPicture(chart, style) {
     const ratio = devicePixelRatio;
     const width = chart.canvas.clientWidth;
     if (width === 0) return;
-    chart.canvas.width = width * ratio;
-    chart.canvas.height = kHeight * ratio;
-    const context = chart.canvas.getContext("2d");
+    const { picture } = chart;
+    picture.width = chart.canvas.width = width * ratio;
+    picture.height = chart.canvas.height = kHeight * ratio;
+    const context = picture.getContext("2d");
     context.scale(ratio, ratio);
-    const x = (frame) => (frame / Math.max(1, this.frames - 1)) * width;
     const y = (value) => kHeight - 4 - ((value - chart.least) / (chart.most - chart.least)) * (kHeight - 8);
     context.strokeStyle = style.getPropertyValue("--line");
     context.strokeRect(0.5, 0.5, width - 1, kHeight - 1);
@@ -66,16 +73,27 @@ export class Curves {
       context.lineWidth = 1.4;
       context.beginPath();
       // Values of steps stand at the frame after the step.
-      one.values.forEach((value, step) => context.lineTo(x(step + one.first), y(value)));
+      one.values.forEach((value, step) => context.lineTo(this.x(step + one.first, width), y(value)));
       context.stroke();
-      const shown = one.values[this.cursor - one.first];
-      chart.outputs[n].textContent = shown === undefined ? "" : shown.toFixed(3).replace(/\.?0+$/, "");
     });
-    context.setLineDash([]);
-    context.strokeStyle = style.getPropertyValue("--ink");
+  }
+
+  drawCursor({ canvas, picture, series, outputs }, ink) {
+    series.forEach((one, n) => {
+      const shown = one.values[this.cursor - one.first];
+      outputs[n].textContent = shown === undefined ? "" : shown.toFixed(3).replace(/\.?0+$/, "");
+    });
+    if (picture.width === 0) return;
+    const context = canvas.getContext("2d");
+    const ratio = picture.height / kHeight;
+    const x = this.x(this.cursor, picture.width);
+    context.clearRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(picture, 0, 0);
+    context.strokeStyle = ink;
+    context.lineWidth = ratio;
     context.beginPath();
-    context.moveTo(x(this.cursor), 0);
-    context.lineTo(x(this.cursor), kHeight);
+    context.moveTo(x, 0);
+    context.lineTo(x, picture.height);
     context.stroke();
   }
 }

@@ -10,6 +10,9 @@ export function el(name, properties = {}, ...children) {
   return element;
 }
 
+/// The key of an event. With caps lock a letter is the same key.
+export const keyOf = ({ key }) => (key.length === 1 ? key.toLowerCase() : key);
+
 export const heading = (text) => el("h2", {}, text);
 export const note = (text) => el("p", { className: "note" }, text);
 

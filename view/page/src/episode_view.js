@@ -1,6 +1,6 @@
 // Episodes, one after the other: placements, target, goal, robot start.
 import { Vector3 } from "three";
-import { button, checkbox, el, heading, legendRow, note, table } from "./dom.js";
+import { button, checkbox, el, heading, keyOf, legendRow, note, table } from "./dom.js";
 import { Home } from "./home.js";
 import { Queue } from "./queue.js";
 
@@ -82,7 +82,7 @@ export class EpisodeView {
   }
 
   key(event) {
-    const step = { ArrowRight: 1, ArrowLeft: -1, n: 1, p: -1 }[event.key];
+    const step = { ArrowRight: 1, ArrowLeft: -1, n: 1, p: -1 }[keyOf(event)];
     if (!step) return false;
     this.go(this.number + step);
     return true;

@@ -1,7 +1,7 @@
 // The page: what it holds on the left, the picture, options and numbers on the right, a timeline below.
 import { address, addressNumber, onAddress, setAddress } from "./address.js";
 import { PageData } from "./data.js";
-import { button, checkbox, counted, el, heading, megabytes, note, tree } from "./dom.js";
+import { button, checkbox, counted, el, heading, keyOf, megabytes, note, tree } from "./dom.js";
 import { EpisodeView } from "./episode_view.js";
 import { EpisodeList } from "./home.js";
 import { MeshLibrary } from "./meshes.js";
@@ -272,7 +272,7 @@ class Page {
     addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       if (keepsKey(event.target, event.key) || document.getElementById("keys").open) return;
-      const own = { "/": () => document.querySelector("#list input").focus(), "?": showKeys, d: () => this.toggleTheme() }[event.key];
+      const own = { "/": () => document.querySelector("#list input").focus(), "?": showKeys, d: () => this.toggleTheme() }[keyOf(event)];
       if (own) own();
       else if (this.current.kind === "pack" || !this.view?.key?.(event)) return;
       event.preventDefault();

@@ -1,7 +1,7 @@
 // A run: the home of an env, and a timeline that plays it.
 import { Box3, Vector3 } from "three";
 import { address, addressNumber, setAddress } from "./address.js";
-import { button, checkbox, el, heading, legendRow, meters, note, table, tree } from "./dom.js";
+import { button, checkbox, el, heading, keyOf, legendRow, meters, note, table, tree } from "./dom.js";
 import { Ghost, kGhostColor } from "./ghost.js";
 import { Home } from "./home.js";
 import { Queue } from "./queue.js";
@@ -240,8 +240,9 @@ export class RunView {
   }
 
   key(event) {
-    if (event.key === "f") this.setCamera("follow");
-    else if (event.key === "c") this.setCamera(this.hasOwnCamera && this.camera !== "own" ? "own" : "free");
+    const key = keyOf(event);
+    if (key === "f") this.setCamera("follow");
+    else if (key === "c") this.setCamera(this.hasOwnCamera && this.camera !== "own" ? "own" : "free");
     else return this.timeline.key(event);
     return true;
   }

@@ -1,16 +1,15 @@
-// Play, pause, step, scrub; events as marks; curves.
+// Play, pause, step, scrub; marks and curves below.
 import { address, addressNumber, setAddress } from "./address.js";
 import { Curves } from "./curves.js";
 import { button, el } from "./dom.js";
-import { envName, kEndings, kEvents } from "./track.js";
+import { Marks } from "./marks.js";
+import { envName, kEvents } from "./track.js";
 
 const kSpeeds = [0.25, 0.5, 1, 2, 4, 8];
 const kCurves = ["Reward", "Distance", "Contact", "Actions"];
 const kFirstCurves = "Reward,Distance";
-// Told apart by shape; colors only help.
-const kMarks = { grasp: ["▲", "--green", "grasped"], drop: ["▼", "--blue", "let go"], restore: ["↺", "--purple", "found no place to let go, the object went back"] };
-/// What a mark takes of the track, rem.
-const kMarkWidth = 0.95;
+/// What is played at once at most, seconds: who comes back to a page that waited in the background goes on where he was.
+const kMostAtOnce = 0.5;
 
 /// The speed that is there and nearest to one that somebody wrote into the address.
 function nearestSpeed(wanted) {
@@ -44,7 +43,7 @@ export class Timeline {
     this.clock = el("span", { className: "clock" });
     this.scrub = el("input", { type: "range", min: 0, max: 0, step: 1, value: 0, "aria-label": "Step" });
     this.scrub.addEventListener("input", () => this.go(Number(this.scrub.value)));
-    this.marks = el("div", { className: "marks" });
+    this.marks = new Marks((frame) => this.go(frame));
     this.curvePart = el("div");
     this.curveButtons = kCurves.map((name) => button(name, () => this.toggleCurve(name)));
     this.element.replaceChildren(
@@ -52,7 +51,7 @@ export class Timeline {
         button("◀", () => this.step(-1), { title: "One step back (left)", "aria-label": "One step back" }),
         button("▶", () => this.step(1), { title: "One step on (right)", "aria-label": "One step on" }),
         this.speedChoice, this.run.envs.length > 1 ? this.envChoice : "", this.clock, el("span", { className: "space" }), ...this.curveButtons),
-      el("div", { className: "track" }, this.scrub, this.marks), this.curvePart);
+      el("div", { className: "track" }, this.scrub, this.marks.element), this.curvePart);
   }
 
   /// Speed and curves are as the address says.
@@ -71,7 +70,7 @@ export class Timeline {
     this.track = track;
     this.scrub.max = this.steps;
     this.envChoice.value = this.page.view.env;
-    this.fillMarks();
+    this.marks.setTrack(track);
     const width = this.run.distances.length;
     const held = Array.from({ length: track.frameCount }, (_, frame) => (track.held(frame) >= 0 ? 1 : 0));
     const bits = (bit) => Array.from(track.events, (events) => (events & bit ? 1 : 0));
@@ -102,39 +101,6 @@ export class Timeline {
     this.shownCurves = new Set(names);
     this.curveButtons.forEach((one, n) => one.setAttribute("aria-pressed", this.shownCurves.has(kCurves[n])));
     if (this.track) this.makeCurves();
-  }
-
-  fillMarks() {
-    const { track } = this;
-    const marks = [];
-    const add = (step, symbol, color, text) => {
-      const mark = button(symbol, () => this.go(step + 1), { title: `Step ${step + 1}: ${text}`, "aria-label": `Step ${step + 1}: ${text}` });
-      mark.style.color = `var(${color})`;
-      marks.push({ step, mark });
-    };
-    track.events.forEach((events, step) => {
-      for (const [name, [symbol, color, text]] of Object.entries(kMarks)) if (events & kEvents[name]) add(step, symbol, color, text);
-      const ending = track.endings[step];
-      if (ending === 1) add(step, "★", "--orange", "success");
-      else if (ending > 1) add(step, "✕", "--red", kEndings[ending]);
-    });
-    this.placeMarks(marks);
-    this.marks.replaceChildren(...marks.map(({ mark }) => mark));
-  }
-
-  /// Those of one moment stand one beside the other; neither the first nor the last ones leave the
-  /// track.
-  placeMarks(marks) {
-    const near = Math.ceil(0.006 * this.steps);
-    const neighbors = (n, by) => {
-      let count = 0;
-      while (Math.abs(marks[n + (count + 1) * by]?.step - marks[n].step) < near) ++count;
-      return count;
-    };
-    marks.forEach(({ step, mark }, n) => {
-      const place = `${(100 * (step + 1)) / this.steps}% + ${neighbors(n, -1) * kMarkWidth}rem`;
-      mark.style.left = `clamp(${kMarkWidth / 2}rem, ${place}, 100% - ${(neighbors(n, 1) + 0.5) * kMarkWidth}rem)`;
-    });
   }
 
   /// Where somebody wants to be: the run stops there.
@@ -172,7 +138,7 @@ export class Timeline {
     const tick = async (now) => {
       // Somebody may have paused, and even gone on from elsewhere, while a frame was made ready.
       if (this.playing !== playing) return;
-      playing.frame += ((now - playing.time) / 1000) * this.run.steps_per_second * this.speed;
+      playing.frame += Math.min(kMostAtOnce, (now - playing.time) / 1000) * this.run.steps_per_second * this.speed;
       playing.time = now;
       const frame = Math.min(this.steps, Math.floor(playing.frame));
       if (frame !== this.frame) await this.show(frame);

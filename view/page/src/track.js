@@ -24,6 +24,10 @@ export class Track {
     track.table = undoDeltas(arrays.frames.slice(), 9 + run.positions);
     track.frameCount = track.table.rows;
     track.moveTable = undoDeltas(arrays.moves.slice(), 9);
+    track.begins = new Uint32Array(track.frameCount);
+    for (let frame = 1; frame < track.frameCount; ++frame) {
+      track.begins[frame] = track.endings[frame - 1] === 0 ? track.begins[frame - 1] : frame;
+    }
     return track;
   }
 
@@ -46,11 +50,7 @@ export class Track {
   isIdle(frame) { return this.idle[frame] !== 0; }
 
   /// The frame in which the episode of a frame began: after an ending, or the first.
-  beginOf(frame) {
-    let begin = frame;
-    while (begin > 0 && this.endings[begin - 1] === 0) --begin;
-    return begin;
-  }
+  beginOf(frame) { return this.begins[frame]; }
 
   /// Rows of moves are in the order of their frames: the first one that is not before a frame.
   firstMoveAt(frame) {
