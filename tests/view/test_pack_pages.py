@@ -142,6 +142,46 @@ class PackPages(PageCase):
             colors = bytes(value for n, value in enumerate(texels) if n % 4 != 3)
             self.assertEqual(colors, decode_png(images[name])[2], name)
 
+    def memory(self, page: Page) -> dict:
+        """What the graphics processor holds, and what the page keeps for it."""
+        return page.evaluate(
+            "(galactic.stage.drawNow(), { ...galactic.stage.renderer.info.memory, kept: galactic.library.loaded.size })"
+        )
+
+    def show(self, page: Page, kind: str, number: int):
+        page.evaluate(
+            f"galactic.show(galactic.parts.find((one) => one.kind === '{kind}' && one.number === {number})).then(() => 1)"
+        )
+
+    def test_objects_that_are_left_free_their_textures(self):
+        page = self.open("painted", "view=object&n=0", "object 0")
+        before = self.memory(page)
+        self.assertGreater(before["kept"], 0)
+        self.assertGreaterEqual(before["textures"], before["kept"])
+        for _ in range(2):
+            self.show(page, "object", 1)
+            self.show(page, "object", 0)
+        self.assertEqual(self.memory(page), before)
+
+    def test_views_that_are_left_free_all_that_they_drew(self):
+        page = self.open("world", "view=scene&n=0", "scene 0")
+        before = self.memory(page)
+        page.evaluate(
+            "(async () => { const { view } = galactic; for (const grid of view.stored.grids) { await view.chooseGrid(grid);"
+            "view.layer.setFloors(true); galactic.stage.drawNow(); view.layer.setFloors(false); } return view.chooseGrid(view.stored.grids[0]); })().then(() => 1)"
+        )
+        self.assertGreater(self.memory(page)["textures"], before["textures"])
+        self.show_all_parts(page)
+        self.show(page, "scene", 0)
+        self.assertEqual(self.memory(page), before)
+        self.show(page, "episode", 0)
+        episode = self.memory(page)
+        for number in (1, 2, 3, 0):
+            page.evaluate(
+                f"galactic.view.go({number}).then(() => galactic.view.setReach({str(number % 2 == 1).lower()})).then(() => galactic.stage.drawNow())"
+            )
+        self.assertEqual(self.memory(page), episode)
+
     def test_a_click_marks_what_a_sphere_reaches(self):
         page = self.open("world", "view=scene&radius=0.05&slice=0.4", "scene 0")
         self.assertNotIn(

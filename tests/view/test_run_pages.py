@@ -77,6 +77,15 @@ class RunPages(PageCase):
                 self.assertAlmostEqual(a, b, delta=1e-6)
         self.assertNotEqual(roots[0][0], roots[1][0])
 
+    def test_a_ghost_stays_one_whatever_the_light(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        colors = page.evaluate(
+            "(async () => { const { view, library } = galactic; view.run.twins = [1, 0]; await view.chooseEnv(0, 3);"
+            "const looks = () => { const all = new Set(); view.ghost.robot.group.traverse((one) => { if (one.isMesh) all.add(one.material.opacity); }); return [...all]; };"
+            "const found = [looks()]; for (const on of [false, true]) { library.setShaded(on); found.push(looks()); } return found; })()"
+        )
+        self.assertEqual(colors, [[0.5]] * 3)
+
     def test_a_continuous_joint_goes_the_shorter_way_between_frames(self):
         page = self.open("run", "env=0&t=3", "run 0")
         # Its angle is kept within a turn: from 3.1 to -3.1 rad are 0.08 rad.

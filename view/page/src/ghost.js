@@ -13,7 +13,9 @@ function haunt(figure, { show }) {
   const material = new MeshLambertMaterial({ color: new Color(kGhostColor), transparent: true, opacity: 0.5, depthWrite: false });
   figure.show(show);
   figure.group.traverse((one) => {
+    // Lit or not, a ghost is a ghost.
     if (one.isMesh) one.material = material;
+    if (one.userData.materials) one.userData.materials = { lit: material, plain: material };
     one.castShadow = false;
   });
   return figure;

@@ -3,6 +3,7 @@ import {
   BoxGeometry, BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, Group, Mesh, MeshBasicMaterial,
   NearestFilter, PlaneGeometry, SRGBColorSpace,
 } from "three";
+import { disposeOf, freeWith } from "./stage.js";
 
 // Colors that people with color-blindness tell apart (Okabe and Ito), with their opacity.
 export const kSliceColors = { free: [0, 114, 178, 100], reached: [0, 158, 115, 150], blocked: [20, 20, 24, 120], outside: [20, 20, 24, 30] };
@@ -36,6 +37,7 @@ export class GridLayer {
     this.texture.magFilter = this.texture.minFilter = NearestFilter;
     const geometry = new PlaneGeometry(width * spacing, depth * spacing);
     geometry.rotateX(-Math.PI / 2);
+    freeWith(geometry, () => this.texture.dispose());
     // The texture's first row is the least z.
     const uv = geometry.attributes.uv;
     for (let n = 0; n < uv.count; ++n) uv.setY(n, 1 - uv.getY(n));
@@ -44,6 +46,14 @@ export class GridLayer {
     this.slice.position.set(this.grid.min_x + (width * spacing) / 2, 0, this.grid.min_z + (depth * spacing) / 2);
     this.slice.renderOrder = 2;
     this.group.add(this.slice);
+  }
+
+  /// Frees all of it, also what is not shown.
+  close() {
+    if (this.floors) this.group.add(this.floors);
+    disposeOf(this.group);
+    this.box.dispose();
+    this.barMaterial.dispose();
   }
 
   /// Moves the slice to a height of sphere centers and colors it.

@@ -94,7 +94,7 @@ export class Home {
 
   setScene(scene) {
     if (this.scene) disposeOf(this.scene.mesh);
-    this.reach?.group.removeFromParent();
+    this.reach?.close();
     this.reach = null;
     this.scene = scene;
     this.group.add(scene.mesh);
@@ -108,7 +108,7 @@ export class Home {
   }
 
   addTask({ target, goal }) {
-    this.task?.removeFromParent();
+    if (this.task) disposeOf(this.task);
     this.task = new Group();
     const { stored } = this.objects[target];
     const grown = stored.half_extents.map((half) => half + 0.01);
@@ -173,7 +173,7 @@ export class Home {
 
   /// Where a sphere of the largest radius rolls from the robot's start: the floor that it can drive to.
   async setReach(isShown) {
-    this.reach?.group.removeFromParent();
+    this.reach?.close();
     this.reach = null;
     const grids = this.scene.pack?.scene.grids;
     if (isShown && grids) {

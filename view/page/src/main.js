@@ -176,7 +176,7 @@ class Page {
   /// What is written about a pack, in place of options. The picture stays; where there is none yet,
   /// it is of what the pack holds.
   async showFacts({ pack }) {
-    await this.view?.close?.();
+    this.view?.pause?.();
     if (!this.view) await this.showPicture(pack);
     this.fillPanel(wordsAbout(pack));
   }

@@ -4,6 +4,7 @@ import {
   BufferAttribute, BufferGeometry, Color, DataTexture, DoubleSide, FrontSide, Group, LinearFilter,
   LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, MeshLambertMaterial, RepeatWrapping, SRGBColorSpace,
 } from "three";
+import { freeWith } from "./stage.js";
 
 const kClusterBytes = 48;
 const kVertexRows = 5;
@@ -141,9 +142,21 @@ export class MeshLibrary {
     this.pairs = new Set();
   }
 
+  /// A texture; whoever has no use for it any more calls release().
   texture(number) {
-    if (!this.loaded.has(number)) this.loaded.set(number, this.loadTexture(this.textures[number]));
-    return this.loaded.get(number);
+    if (!this.loaded.has(number)) this.loaded.set(number, { users: 0, texture: this.loadTexture(this.textures[number]) });
+    const found = this.loaded.get(number);
+    ++found.users;
+    return found.texture;
+  }
+
+  /// Frees a texture that nothing has on any more; it is unpacked again when something needs it.
+  release(number) {
+    const { users, texture } = this.loaded.get(number);
+    this.loaded.get(number).users = users - 1;
+    if (users > 1) return;
+    this.loaded.delete(number);
+    texture.then((one) => one.dispose());
   }
 
   async loadTexture(stored) {
@@ -204,6 +217,7 @@ export class MeshLibrary {
       if (material.texture !== undefined) options.map = await this.texture(material.texture);
       else options.color = new Color().setRGB((material.color & 255) / 255, ((material.color >>> 8) & 255) / 255, ((material.color >>> 16) & 255) / 255, SRGBColorSpace);
       const geometry = geometryOf(clusters, arrays, model.step);
+      if (material.texture !== undefined) freeWith(geometry, () => this.release(material.texture));
       group.add(this.mesh(geometry, options, geometry.hasAttribute("color")));
     }
     return group;

@@ -46,9 +46,12 @@ export class RunView {
     if (camera !== this.camera) this.setCamera(camera);
   }
 
+  /// Facts of a pack stand beside it.
+  pause() { this.timeline?.pause(); }
+
   /// Another part of the page is opened.
   close() {
-    this.timeline?.pause();
+    this.pause();
     return this.changes.idle();
   }
 

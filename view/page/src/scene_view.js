@@ -29,6 +29,11 @@ export class SceneView {
     this.listen();
   }
 
+  /// Another part of the page is opened.
+  close() {
+    for (const layer of this.layers.values()) layer.close();
+  }
+
   async chooseGrid(stored) {
     if (!this.layers.has(stored)) {
       this.layers.set(stored, new GridLayer(this.page.stage, await Grid.load(this.page.data, stored)));

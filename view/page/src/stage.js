@@ -7,14 +7,24 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const kFov = 50;
 
-/// Frees what a group drew.
+/// Frees what a group drew. Textures go with the geometry that they are on: see freeWith().
 export function disposeOf(group) {
   group.traverse((one) => {
     one.geometry?.dispose();
     if (one.isInstancedMesh) one.dispose();
-    for (const material of [one.material ?? []].flat()) material.dispose();
+    const { lit, plain } = one.userData.materials ?? {};
+    for (const material of [one.material, lit, plain]) material?.dispose();
   });
   group.removeFromParent();
+}
+
+/// Calls `free()` once a geometry is disposed of.
+export function freeWith(geometry, free) {
+  const done = () => {
+    geometry.removeEventListener("dispose", done);
+    free();
+  };
+  geometry.addEventListener("dispose", done);
 }
 
 export class Stage {
