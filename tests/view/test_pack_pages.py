@@ -162,6 +162,9 @@ class PackPages(PageCase):
             self.show(page, "object", 1)
             self.show(page, "object", 0)
         self.assertEqual(self.memory(page), before)
+        page.evaluate("galactic.stage.clear()")
+        after = self.memory(page)
+        self.assertEqual([after[key] for key in ("kept", "textures", "geometries")], [0, 0, 0])
 
     def test_views_that_are_left_free_all_that_they_drew(self):
         page = self.open("world", "view=scene&n=0", "scene 0")
