@@ -142,6 +142,21 @@ class PackPages(PageCase):
             colors = bytes(value for n, value in enumerate(texels) if n % 4 != 3)
             self.assertEqual(colors, decode_png(images[name])[2], name)
 
+    def test_the_grid_that_was_chosen_last_is_shown(self):
+        page = self.open("world", "view=scene&radius=0.05", "scene 0")
+        # What is unpacked first takes longest.
+        shown = page.evaluate(
+            "(async () => { const { view, data, stage } = galactic; const arrays = data.arrays.bind(data); let wait = 200;"
+            "data.arrays = async (one) => { wait -= 100; await new Promise((done) => setTimeout(done, Math.max(0, wait))); return arrays(one); };"
+            "const radii = view.stored.grids.map((one) => one.radius); const other = radii.filter((one) => one !== view.layer.grid.radius);"
+            "const inputs = [...document.querySelectorAll('#panel input[type=radio]')];"
+            "for (const one of other) inputs[radii.indexOf(one)].click();"
+            "await galactic.show(galactic.parts.find((one) => one.kind === 'object'));"
+            "return [other.length, other.at(-1) === view.layer.grid.radius, view.layer.group.parent === stage.content]; })()"
+        )
+        self.assertGreaterEqual(shown[0], 2)
+        self.assertEqual(shown[1:], [True, False])
+
     def memory(self, page: Page) -> dict:
         """What the graphics processor holds, and what the page keeps for it."""
         return page.evaluate(

@@ -141,9 +141,7 @@ class Timeline(PageCase):
         )
         self.assertEqual(middle["title"], "Step 30: grasped")
         self.assertEqual(len(end["title"].splitlines()), 4)
-        self.assertAlmostEqual(
-            (middle["left"] + middle["right"]) / 2, middle["width"] / 2, delta=1
-        )
+        self.assertAlmostEqual((middle["left"] + middle["right"]) / 2, middle["width"] / 2, delta=1)
         # A glyph may be a little wider than its place.
         self.assertGreater(first["left"], -2)
         self.assertGreater(2, end["right"] - end["width"])
@@ -161,9 +159,7 @@ class Timeline(PageCase):
         self.assertLess(len(marks), 60)
         self.assertEqual([one["text"] for one in marks[-3:]], ["★"] * 3)
         for share, one in zip((0.6, 0.75, 0.9), marks[-3:]):
-            self.assertAlmostEqual(
-                (one["left"] + one["right"]) / 2, share * one["width"], delta=1
-            )
+            self.assertAlmostEqual((one["left"] + one["right"]) / 2, share * one["width"], delta=1)
         for before, after in zip(marks, marks[1:]):
             self.assertLess(before["right"], after["left"] + 4)
 

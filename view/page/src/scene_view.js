@@ -4,6 +4,7 @@ import { address, addressNumber, setAddress } from "./address.js";
 import { button, checkbox, el, heading, legendRow, meters, note, radios, slider, table } from "./dom.js";
 import { Grid } from "./grid.js";
 import { cssColor, GridLayer, kSliceColors } from "./grid_layer.js";
+import { Queue } from "./queue.js";
 
 export class SceneView {
   constructor(page, pack) {
@@ -12,6 +13,7 @@ export class SceneView {
     this.stored = pack.scene;
     this.layers = new Map();
     this.pinned = null;
+    this.changes = new Queue();
   }
 
   async open() {
@@ -30,7 +32,8 @@ export class SceneView {
   }
 
   /// Another part of the page is opened.
-  close() {
+  async close() {
+    await this.changes.idle();
     for (const layer of this.layers.values()) layer.close();
   }
 
@@ -84,7 +87,7 @@ export class SceneView {
       checkbox("Floors of all spans, colored by height", this.hasFloors, (on) => { this.hasFloors = on; this.layer.setFloors(on); }),
       heading("Sphere radius"),
       ...radios("radius", this.stored.grids.map((one) => [meters(one.radius), one]), this.stored.grids.find((one) => one.radius === grid.radius),
-        (stored) => { setAddress({ radius: stored.radius }); this.chooseGrid(stored); }),
+        (stored) => { setAddress({ radius: stored.radius }); this.changes.add(() => this.chooseGrid(stored)); }),
       this.heightSlider,
       ...[["free", "Free for the sphere's center"], ["reached", "Reached from the marked place"], ["blocked", "Blocked"]]
         .map(([key, text]) => legendRow(cssColor(kSliceColors[key]), text)),
