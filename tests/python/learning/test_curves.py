@@ -143,7 +143,13 @@ def test_a_line_of_progress_fits_on_a_terminal(monkeypatch: pytest.MonkeyPatch) 
 
 def test_amounts_are_rounded_before_their_unit_is_chosen() -> None:
     said = {0: "0", 12.4: "12", 999.4: "999", 1000: "1 k", 1234567: "1.23 M", 999_400: "999 k"}
-    said |= {999_700: "1 M", 999_700_000: "1 G", -999_700: "-1 M", 12_340_000_000: "12.3 G", 999.7: "1 k"}
+    said |= {
+        999_700: "1 M",
+        999_700_000: "1 G",
+        -999_700: "-1 M",
+        12_340_000_000: "12.3 G",
+        999.7: "1 k",
+    }
     assert {number: amount(number) for number in said} == said
 
 
