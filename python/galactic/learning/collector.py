@@ -23,13 +23,17 @@ from galactic.learning.stopwatch import Stopwatch
 @dataclass(frozen=True)
 class CollectorOptions:
     """`first_env`: number over all ranks of this rank's first env. `cuda_graphs`: whether a GPU replays the
-    policy's launches."""
+    policy's launches. `bootstraps`: whether an episode that time cut off is worth something from there on.
+    `time_columns`: those of the row that this is asked for which are to say that there is no limit of time.
+    """
 
     horizon: int
     seed: int
     gamma: float
     first_env: int = 0
     cuda_graphs: bool = False
+    bootstraps: bool = True
+    time_columns: tuple[int, ...] = ()
 
 
 class Collector:
@@ -216,7 +220,7 @@ class Collector:
             self._lengths[envs] += 1
             if ended.any():
                 self._count(envs, ended, result)
-            if result.timeouts is not None:
+            if result.timeouts is not None and self.options.bootstraps:
                 self._timeouts.append(self._timeout(envs, step, result.timeouts))
 
     def _count(self, envs: slice, ended: np.ndarray, result: Step) -> None:
@@ -242,6 +246,8 @@ class Collector:
 
         state = part(timeouts.state)
         assert state is not None
+        # As a simulation without a limit says it.
+        state[:, list(self.options.time_columns)] = 1.0
         return _Timeout(
             step,
             index,
@@ -265,8 +271,9 @@ class Collector:
 
     def _bootstrap_timeouts(self) -> None:
         """Adds gamma times the value of the last observation to the reward of episodes that only time
-        cut off (Pardo et al. 2018). It is not what they would have earned if they had gone on: where time
-        is observed, none is left there, in no other row of a rollout (docs/learning.md)."""
+        cut off (partial-episode bootstrapping: Pardo et al. 2018). It is what they would have earned if they
+        had gone on where the row says that there is no limit. As it was observed, it says that no time is
+        left, as no other row of a rollout does (docs/learning.md)."""
         if not self._timeouts:
             return
         kept = self._timeouts

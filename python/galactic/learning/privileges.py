@@ -3,7 +3,7 @@ what the numbers of others mean."""
 
 from __future__ import annotations
 
-from typing import Any, Iterable, Mapping, Sequence
+from typing import Any, Collection, Iterable, Mapping, Sequence
 
 from galactic.learning.settings import SettingsError, did_you_mean
 from galactic.sensors import ALWAYS, SENSORS
@@ -20,7 +20,6 @@ def names_of(critic_only: str) -> list[str]:
 def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[int, ...]:
     """Columns of these parts in a row of observations, whose parts are `parts`, names and sizes in
     order. Raises SettingsError for a part that is always there, or that is not there."""
-    columns: list[int] = []
     names = names_of(critic_only)
     known = [*SENSORS, *of_own_tasks(parts)]
     for name in names:
@@ -32,6 +31,12 @@ def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[
                 f"critic_only: {name} is not observed; turn the sensor on with --simulation, or leave "
                 "it out of --critic-only"
             )
+    return columns_among(names, parts)
+
+
+def columns_among(names: Collection[str], parts: Sequence[tuple[str, int]]) -> tuple[int, ...]:
+    """Columns of the parts `names`, as far as they are there, in a row whose parts are `parts`."""
+    columns: list[int] = []
     first = 0
     for name, size in parts:
         if name in names:

@@ -292,6 +292,13 @@ class Settings:
     gae_lambda: float = _setting(
         0.95, "PPO", "lambda of generalized advantage estimates", low=0.0, high=1.0
     )
+    timeouts: str = _setting(
+        "observed",
+        "PPO",
+        "what an episode that time cuts off is worth from there on: what its last observation is valued at "
+        "(`observed`), the same as if it had no limit of time (`endless`), or nothing (`ends`)",
+        choices=("endless", "ends", "observed"),
+    )
     normalize_advantages: bool = _setting(
         True, "PPO", "normalize advantages to mean 0, variance 1 over all ranks"
     )
@@ -483,13 +490,17 @@ class Settings:
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "Settings":
         """The settings of a checkpoint. Names that this version does not know are rejected; a
-        setting that the checkpoint does not have takes its default."""
+        setting that the checkpoint does not have takes its default, or what _BEFORE says."""
         unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})
         if unknown:
             raise SettingsError(f"the settings {', '.join(unknown)} are unknown to this version")
         # JSON knows no tuples.
         known = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
-        return cls(**known)
+        return cls(**{**_BEFORE, **known})
+
+
+# What runs did before there were these settings: resumed, they go on so, whatever the defaults are.
+_BEFORE: Mapping[str, Any] = {"timeouts": "observed"}
 
 
 _KINDS = {

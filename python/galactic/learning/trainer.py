@@ -32,7 +32,7 @@ from galactic.learning.imitation import ImitationLearner, Streams, require_same
 from galactic.learning.learner import Learner
 from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.ppo import PpoLearner
-from galactic.learning.privileges import critic_columns
+from galactic.learning.privileges import columns_among, critic_columns
 from galactic.learning.reports.curves import COLUMNS, VALIDATION, Curves, columns_of, write_json
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
@@ -123,6 +123,8 @@ class Trainer:
             settings.gamma,
             self.group.rank * settings.envs,
             settings.cuda_graphs,
+            settings.timeouts != "ends",
+            columns_among(["time"], self.parts) if settings.timeouts == "endless" else (),
         )
         precision = self.learner.precision
         return Collector(self.envs, self.policy, options, precision, self.group.device)
