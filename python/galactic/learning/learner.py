@@ -71,6 +71,8 @@ class Learner:
 
     def _outputs(self, rollout: Rollout, chosen: Tensor) -> Outputs:
         """What the policy makes of some envs of a rollout."""
+        # Whoever acted with it left it in the other mode, in which cuDNN keeps no gradients of a GRU.
+        self.policy.train()
         with self.precision.autocast():
             hidden = None if rollout.first_hidden is None else rollout.first_hidden[chosen]
             inputs = rollout.inputs(0, rollout.steps, chosen, self.policy.needs_previous)

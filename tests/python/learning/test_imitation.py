@@ -146,6 +146,17 @@ def test_what_was_seen_before_the_stretch_is_remembered(tmp_path: pathlib.Path) 
     assert error > 0.35 and right < 0.8
 
 
+def test_a_policy_learns_in_the_mode_for_it_whoever_acted_with_it(tmp_path: pathlib.Path) -> None:
+    policy = policy_for(SETTINGS)
+    streams = Streams(make(tmp_path / "shown"), SETTINGS, policy, Group.alone())
+    streams.reset()
+    modes: list[bool] = []
+    policy.register_forward_hook(lambda *_: modes.append(policy.training))
+    policy.eval()
+    ImitationLearner(policy, SETTINGS, Group.alone()).update(streams.collect(0), 0, 0.0)
+    assert len(modes) == SETTINGS.epochs * SETTINGS.mini_batches and all(modes)
+
+
 def test_values_are_what_episodes_pay_from_there_on(tmp_path: pathlib.Path) -> None:
     made = make(tmp_path / "shown")
     settings = dataclasses.replace(SETTINGS, gamma=0.9)

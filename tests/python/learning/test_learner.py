@@ -1,0 +1,60 @@
+"""What learners of both kinds do with a policy. What they learn: test_ppo.py and test_imitation.py."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+import torch
+
+from galactic.learning.collector import Collector, CollectorOptions
+from galactic.learning.distributed import Group
+from galactic.learning.episode_sums import EpisodeSums
+from galactic.learning.networks import Policy, PolicyShape, make_policy
+from galactic.learning.ppo import PpoLearner
+from toys import Look
+from trainers import SETTINGS, UPDATE, make_trainer
+
+
+def validate(policy: Policy) -> EpisodeSums:
+    """As validations leave a policy."""
+    policy.eval()
+    return EpisodeSums(episodes=1.0)
+
+
+@pytest.mark.parametrize("recurrent", [False, True])
+def test_a_policy_learns_in_the_mode_for_it_and_acts_in_the_other(recurrent: bool) -> None:
+    settings = dataclasses.replace(
+        SETTINGS, steps=3 * UPDATE, validate_every=UPDATE, recurrent=recurrent
+    )
+    trainer = make_trainer(None, settings, validation=validate)
+    modes: list[tuple[bool, bool]] = []
+    trainer.policy.register_forward_hook(
+        lambda policy, *_: modes.append((torch.is_grad_enabled(), policy.training))
+    )
+    trainer.begin()
+    trainer.train()
+    updates = [is_training for has_gradients, is_training in modes if has_gradients]
+    assert len(updates) == 3 * settings.epochs * settings.mini_batches and all(updates)
+    assert not any(is_training for has_gradients, is_training in modes if not has_gradients)
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU")
+@pytest.mark.parametrize("precision", ["fp32", "tf32", "bf16"])
+def test_a_gpu_teaches_a_memory(precision: str) -> None:
+    gpu = torch.device("cuda")
+    settings = dataclasses.replace(
+        SETTINGS, network="depth", image_size=Look.EDGE, recurrent=True, precision=precision
+    )
+    envs = Look(settings.envs, halves=2)
+    shape = PolicyShape(envs.state_size, envs.motions, False, settings.normalize)
+    policy = make_policy("depth", shape, image_size=Look.EDGE, recurrent=True, width=16).to(gpu)
+    learner = PpoLearner(policy, settings, Group(0, 1, gpu))
+    options = CollectorOptions(settings.horizon, settings.seed, settings.gamma)
+    collector = Collector(envs, policy, options, learner.precision, gpu)
+    collector.reset()
+    before = learner.optimizer.parameters.detach().clone()
+    for update in range(3):
+        losses = learner.update(collector.collect(update), update, 0.0)
+        assert all(abs(loss) < float("inf") for loss in losses.values()), losses
+    assert not torch.equal(learner.optimizer.parameters, before)
