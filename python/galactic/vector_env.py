@@ -363,13 +363,15 @@ class VectorEnv(_Base):
         self._begin(half, rows, out)
 
     def recv(self, half: int = 0) -> StepResult:
-        """Waits for the step that send() began, and returns its results for the half's envs."""
+        """Waits for the step that send() began, and returns its results for the half's envs. Where Ctrl-C
+        ends the wait, the step stays under way, and the next call returns its results."""
         self._require_half(half)
-        pending = self._pending[half]
-        if pending is None:
-            raise RuntimeError(f"half {half} has nothing under way; call send() first")
-        self._pending[half] = None
-        return pending.result()
+        wait([self._under_way(half)])
+        # A second thread may have waited for the same.
+        with self._beginning:
+            step = self._under_way(half)
+            self._pending[half] = None
+        return step.result()
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """A picture of each env, uint8 (240, 320, 3), from behind the robot; None without a
@@ -438,6 +440,12 @@ class VectorEnv(_Base):
             self._require_idle(half)
             step = self._threads[half].submit(self._halves[half].step, rows, out)
             self._pending[half] = step
+        return step
+
+    def _under_way(self, half: int) -> Future[StepResult]:
+        step = self._pending[half]
+        if step is None:
+            raise RuntimeError(f"half {half} has nothing under way; call send() first")
         return step
 
     def _joined_infos(self, infos: Sequence[dict[str, Any]]) -> dict[str, Any]:

@@ -1,11 +1,13 @@
-"""Who may use a simulator, and when: steps that are begun and ended, and several threads."""
+"""Who may use a simulator, and when: steps that are begun and ended, several threads, and Ctrl-C."""
 
+import os
+import signal
 import threading
 
 import numpy as np
 import pytest
 
-from galactic import Simulator
+from galactic import Outcome, Simulator, Task, VectorEnv
 
 ENVS = 20
 
@@ -84,3 +86,48 @@ def test_other_threads_run_while_it_steps(world, draw_actions):
         turns += 1
     thread.join()
     assert turns > 100
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_a_step_whose_wait_is_interrupted_stays_under_way(world, draw_actions, fails):
+    goes_on = threading.Event()
+
+    class Slow(Task):
+        def step(self, envs):
+            goes_on.wait(timeout=60)
+            if fails:
+                raise ValueError("of the task")
+            return Outcome(envs.observations["time"][:, 0].astype(np.float64))
+
+    env, whole = (VectorEnv(world, 8, halves=2, task=Slow, threads=1) for _ in range(2))
+    env.reset()
+    actions = draw_actions(4, 8)
+    env.send(actions, 0)
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        env.recv(0)
+    for call in (env.save_state, lambda: env.send(actions, 0)):
+        with pytest.raises(RuntimeError, match=r"half 0 is under way; call recv\(0\) first"):
+            call()
+    goes_on.set()
+    if fails:
+        with pytest.raises(ValueError, match="of the task"):
+            env.recv(0)
+    else:
+        whole.reset()
+        whole.send(actions, 0)
+        for found, wanted in zip(env.recv(0)[:4], whole.recv(0)[:4]):
+            np.testing.assert_array_equal(found, wanted)
+        assert env.simulators[0].statistics()["steps"] == 4
+    with pytest.raises(RuntimeError, match="half 0 has nothing under way; call send"):
+        env.recv(0)
+
+
+def test_two_threads_do_not_receive_one_step(world, draw_actions, refused_at_once):
+    env = VectorEnv(world, 512, threads=1, task="pick")
+    env.reset()
+    actions = draw_actions(512, 8)
+    for _ in range(20):
+        env.send(actions)
+        refusals = refused_at_once(env.recv, env.recv, env.recv, times=1)
+        assert refusals == 2 * ["half 0 has nothing under way; call send() first"]
