@@ -167,8 +167,9 @@ class Trainer:
                     self.save()
                 if stop:
                     break
-        self.progress.close()
-        self._write_report()
+            self.progress.close()
+            # Here, too, a signal that comes again is not to end it.
+            self._write_report()
         return self.steps >= end
 
     def _iterate(self) -> tuple[dict[str, float], bool]:
@@ -445,11 +446,14 @@ class Trainer:
             },
         )
 
-    def _interrupt(self) -> None:
-        if self._interrupted:
+    def _interrupt(self, number: int) -> None:
+        """Ctrl-C comes as often as it is typed: launchers keep ranks out of the terminal's group. What ends a
+        job sends one SIGTERM to all of its processes, and those that have ranks pass theirs on."""
+        if self._interrupted and number == signal.SIGINT:
             raise KeyboardInterrupt
-        self._interrupted = True
-        self.progress.say("stopping after this update; once more to stop without saving")
+        if not self._interrupted:
+            self._interrupted = True
+            self.progress.say("stopping after this update; Ctrl-C now stops without saving")
 
 
 _COLUMNS_OF_BEFORE = COLUMNS.index("teacher_kl")
@@ -485,15 +489,15 @@ def _fitting(file: pathlib.Path, remedy: str) -> ContextManager[None]:
 
 
 class _Signals:
-    """While in force, SIGINT and SIGTERM call `handler` instead of ending the process."""
+    """While in force, SIGINT and SIGTERM call `handler` with their number instead of ending the process."""
 
-    def __init__(self, handler: Callable[[], None]):
+    def __init__(self, handler: Callable[[int], None]):
         self._handler = handler
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM):
-            self._before[number] = signal.signal(number, lambda *_: self._handler())
+            self._before[number] = signal.signal(number, lambda found, _: self._handler(found))
 
     def __exit__(self, *_: object) -> None:
         for number, before in self._before.items():

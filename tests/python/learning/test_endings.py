@@ -214,6 +214,17 @@ def test_a_terminal_that_closes_ends_a_run_that_saves(tmp_path: pathlib.Path) ->
     assert list((tmp_path / "run").glob("checkpoints/[0-9]*/rank-1.pt"))
 
 
+@needs_world
+def test_a_signal_to_all_processes_of_a_job_ends_a_run_that_saves(tmp_path: pathlib.Path) -> None:
+    """As systemd and Slurm send it: ranks get it twice, from there and from who has launched them."""
+    with run_of_two_ranks(tmp_path / "run") as process:
+        for one in (*ranks_of(process), process.pid):
+            os.kill(one, signal.SIGTERM)
+        _, said = process.communicate(timeout=120)
+    assert process.returncode == 130 and "stopped and saved after" in said
+    assert list((tmp_path / "run").glob("checkpoints/[0-9]*/rank-1.pt"))
+
+
 @pytest.mark.parametrize("is_ignored, ends", [(False, True), (True, False)])
 def test_a_hangup_is_passed_on_unless_it_is_to_be_ignored(is_ignored: bool, ends: bool) -> None:
     work = "import os, signal, sys, time\nos.kill(os.getppid(), signal.SIGHUP)\ntime.sleep(1)\n"

@@ -1,4 +1,4 @@
-"""The training loop on a toy: resume, checkpoints, signals. Several ranks: test_ranks.py."""
+"""The training loop on a toy: resume, checkpoints. Signals: test_interrupts.py; several ranks: test_ranks.py."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import json
 import os
 import pathlib
 import shutil
-import signal
 import time
 from typing import Any
 
@@ -380,28 +379,6 @@ def test_a_resumed_run_counts_the_processor_time_of_all_its_parts(
     resumed.train(resumed.steps + UPDATE)
     report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
     assert report["processor_seconds"] == 100.0 + 2.0
-
-
-def test_an_interrupted_run_saves_and_goes_on(tmp_path: pathlib.Path) -> None:
-    trainer = make_trainer(tmp_path)
-    trainer.begin()
-    iterate = trainer._iterate
-
-    def interrupted_in_the_second() -> Any:
-        if trainer.updates == 1:
-            os.kill(os.getpid(), signal.SIGINT)
-        return iterate()
-
-    trainer._iterate = interrupted_in_the_second  # type: ignore[method-assign]
-    assert not trainer.train()
-    assert trainer.updates == 2 and trainer.checkpoints.latest().name == f"{2 * UPDATE:012d}"
-    again = make_trainer(tmp_path)
-    again.resume()
-    assert again.train()
-    undisturbed = make_trainer(None)
-    undisturbed.begin()
-    undisturbed.train()
-    assert torch.equal(parameters(again), parameters(undisturbed))
 
 
 def test_a_loss_that_is_no_number_ends_the_run(tmp_path: pathlib.Path) -> None:
