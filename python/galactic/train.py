@@ -205,7 +205,7 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         )
         undisturbed = _carry_out(trainer, run, options)
     envs.close()
-    if trainer.steps < settings.steps:
+    if trainer.steps < settings.steps or not undisturbed:
         trainer.progress.say(
             f"{'paused' if undisturbed else 'stopped'} and saved after {trainer.steps:,} steps; go on "
             f"with python3 -m galactic.train -o {folder} --resume"
@@ -228,7 +228,7 @@ def _begin_log(trainer: Trainer, options: argparse.Namespace) -> Optional[Except
 
 
 def _carry_out(trainer: Trainer, run: Run, options: argparse.Namespace) -> bool:
-    """Trains as far as it is asked for. Returns whether no signal has ended it before."""
+    """Trains as far as it is asked for. Returns whether no signal has left something to do."""
     if options.resume:
         trainer.progress.say(f"going on after {trainer.steps:,} steps")
     else:
@@ -333,14 +333,16 @@ def _resumed_run(options: argparse.Namespace) -> Run:
 
 
 def _is_complete(run: Run, folder: pathlib.Path) -> bool:
-    """Whether nothing is left to do: all steps are done, and the report was written after them. Of a report
-    that is none, the run writes another."""
+    """Whether nothing is left to do: all steps are done, and the report was written after them and after
+    what a signal may have put off. Of a report that is none, the run writes another."""
     done = CheckpointFolder(folder, run.settings.keep).steps
     try:
-        reported = json.loads((folder / "report.json").read_text(encoding="utf-8"))["steps"]
-    except (OSError, ValueError, KeyError, TypeError):
+        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+        # Reports of before do not know of what was put off.
+        reported, is_whole = report["steps"], not report.get("must_validate", False)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return False
-    return done >= run.settings.steps and reported == done
+    return done >= run.settings.steps and reported == done and is_whole
 
 
 def _behind(option: str, found: int, done: int) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import time
-from typing import Iterator
+from typing import Any, Collection, Iterator
 
 
 class Stopwatch:
@@ -20,3 +20,26 @@ class Stopwatch:
             yield
         finally:
             self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+
+    def shares(self, total: float) -> list[tuple[str, float]]:
+        """Names and shares of `total` seconds."""
+        total = max(total, 1e-9)
+        shares = [(name, seconds / total) for name, seconds in self.seconds.items()]
+        return [*shares, ("the rest", max(0.0, 1.0 - sum(share for _, share in shares)))]
+
+    def tables(self, updates: int, horizon: int, of_rollout: Collection[str]) -> dict[str, Any]:
+        """Tables 5 and 6 of the paper, milliseconds, after so many updates of rollouts of `horizon` steps,
+        which the names `of_rollout` are parts of."""
+        per_update = {
+            name: 1e3 * seconds / max(updates, 1) for name, seconds in self.seconds.items()
+        }
+        rollout = {
+            name: value / horizon for name, value in per_update.items() if name in of_rollout
+        }
+        return {
+            "rollout_step_ms": {**rollout, "total": sum(rollout.values())},
+            "update_ms": {
+                "compute rollouts": sum(rollout.values()) * horizon,
+                "update agent": per_update.get("update", 0.0),
+            },
+        }

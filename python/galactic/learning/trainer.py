@@ -109,6 +109,7 @@ class Trainer:
         self._started = time.perf_counter()
         self._logged = (0.0, 0)
         self._interrupted = False
+        self._must_validate = False
 
     def _taught_by(self, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]) -> Optional[Teacher]:
         if teacher is None:
@@ -146,31 +147,37 @@ class Trainer:
 
     def train(self, pause_at: Optional[int] = None) -> bool:
         """Trains until `settings.steps` are done, or `pause_at` of them, or a signal asks to stop;
-        validates in the first two cases, saves in all. Returns whether no signal did. Raises
-        TrainingError when the loss is not a number."""
+        validates in the first two cases, saves in all. A validation that a signal has put off comes first.
+        Returns whether all is done. Raises TrainingError when the loss is not a number."""
         settings = self.settings
         end = settings.steps if pause_at is None else min(pause_at, settings.steps)
-        if self.steps >= end:
-            # It may have been cut off behind its last checkpoint.
-            self._write_report()
-            return True
         with _Signals(self._interrupt):
+            if self._must_validate:
+                self._validate()
+                self._write_curves(is_last=True)
             while self.steps < end:
                 before = self.steps
                 losses, stop = self._iterate()
-                done = self.steps >= end or stop
-                if not stop and self._is_due(settings.validate_every, before, done):
+                if self._validates and self._is_due(settings.validate_every, before, end):
+                    self._must_validate = True
+                if self._must_validate and not stop:
                     self._validate()
-                if done or self.seconds - self._logged[0] >= settings.log_every:
-                    self._log(losses, is_last=done)
-                if self._is_due(settings.checkpoint_every, before, done):
+                is_last = stop or self.steps >= end
+                if is_last or self.seconds - self._logged[0] >= settings.log_every:
+                    self._log(losses, is_last=is_last)
+                if stop or self._is_due(settings.checkpoint_every, before, end):
                     self.save()
                 if stop:
                     break
             self.progress.close()
-            # Here, too, a signal that comes again is not to end it.
+            # Here, too, a signal that comes again is not to end it. It may have been cut off behind its last
+            # checkpoint the time before.
             self._write_report()
-        return self.steps >= end
+        return self.steps >= end and not self._must_validate
+
+    @property
+    def _validates(self) -> bool:
+        return self.validation is not None and self.settings.validate_every > 0
 
     def _iterate(self) -> tuple[dict[str, float], bool]:
         """One rollout and one update. Returns the losses and whether some rank was told to stop."""
@@ -205,8 +212,9 @@ class Trainer:
             )
         return losses, stop > 0.0
 
-    def _is_due(self, every: int, before: int, done: bool) -> bool:
-        return done or (every > 0 and self.steps // every > before // every)
+    def _is_due(self, every: int, before: int, end: int) -> bool:
+        """What comes every so many steps, and at the end, after those that followed `before`."""
+        return self.steps >= end or (every > 0 and self.steps // every > before // every)
 
     def _remember(self, sums: EpisodeSums) -> None:
         """Keeps the episodes of as few rollouts as cover the window."""
@@ -259,12 +267,15 @@ class Trainer:
             f"{amount(speed)} steps/s  {goes}  {duration(left)} left"
             + "".join(f"  {one}" for one in _measured(figures))
         )
+        self._write_curves(is_last=is_last)
+
+    def _write_curves(self, *, is_last: bool) -> None:
         with self.stopwatch.time("reports"):
-            self.curves.write(self.settings.to_dict(), self.breakdown(), is_last=is_last)
+            shares = self.stopwatch.shares(self.seconds)
+            self.curves.write(self.settings.to_dict(), shares, is_last=is_last)
 
     def _validate(self) -> None:
-        if self.validation is None or not self.settings.validate_every:
-            return
+        assert self.validation is not None
         with self.stopwatch.time("validation"):
             sums = torch.tensor(
                 self.validation(self.policy).numbers(self.measures),
@@ -281,6 +292,7 @@ class Trainer:
             f"{means['return']:.2f}" + "".join(f", {one}" for one in _measured(means))
         )
         self._keep_if_best(means["success"])
+        self._must_validate = False
 
     def _keep_if_best(self, success: Optional[float]) -> None:
         """Writes best.pt when none was better; equal ones replace it, being trained longer."""
@@ -327,9 +339,9 @@ class Trainer:
         counters, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
             # Checkpoints of before do not know who waits, as in Collector.load_state_dict(), nor of a
-            # paced rate, of processor time or of measures.
+            # paced rate, of processor time, of measures or of what a signal has put off.
             before = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0, "measures": []}
-            counters = {**before, **counters}
+            counters = {**before, "must_validate": False, **counters}
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
                 raise CheckpointError(
@@ -358,6 +370,7 @@ class Trainer:
     def _take_counters(self, counters: dict[str, Any]) -> None:
         self.updates, self.best = counters["updates"], counters["best"]
         self.learner.rate.share = counters["rate_share"]
+        self._must_validate = counters["must_validate"] and self._validates
         # Checkpoints of before lack the columns that were added since.
         for row in counters["rows"]:
             if isinstance(row, list) and len(row) == _COLUMNS_OF_BEFORE:
@@ -389,6 +402,7 @@ class Trainer:
             "updates": self.updates,
             "best": self.best,
             "rate_share": self.learner.rate.share,
+            "must_validate": self._must_validate,
             "rows": self.curves.rows,
             "waiting": self._waiting,
             "measures": self.measures,
@@ -396,32 +410,6 @@ class Trainer:
             "seconds": self.seconds,
             "processor_seconds": self.processor_seconds,
             "stopwatch": self.stopwatch.seconds,
-        }
-
-    def breakdown(self) -> list[tuple[str, float]]:
-        """Names and shares of the wall clock of this rank."""
-        measured = self.stopwatch.seconds
-        total = max(self.seconds, 1e-9)
-        shares = [(name, seconds / total) for name, seconds in measured.items()]
-        return [*shares, ("the rest", max(0.0, 1.0 - sum(share for _, share in shares)))]
-
-    def timing(self) -> dict[str, Any]:
-        """Tables 5 and 6 of the paper for this run: milliseconds of this rank's wall clock."""
-        per_update = {
-            name: 1e3 * seconds / max(self.updates, 1)
-            for name, seconds in self.stopwatch.seconds.items()
-        }
-        rollout = {
-            name: value / self.settings.horizon
-            for name, value in per_update.items()
-            if name in self.source.PHASES
-        }
-        return {
-            "rollout_step_ms": {**rollout, "total": sum(rollout.values())},
-            "update_ms": {
-                "compute rollouts": sum(rollout.values()) * self.settings.horizon,
-                "update agent": per_update.get("update", 0.0),
-            },
         }
 
     def _write_report(self) -> None:
@@ -435,6 +423,7 @@ class Trainer:
                 "device": str(self.group.device),
                 "parameters": self.learner.optimizer.parameters.numel(),
                 "steps": self.steps,
+                "must_validate": self._must_validate,
                 "updates": self.updates,
                 "seconds": self.seconds,
                 "processor_seconds": self.processor_seconds,
@@ -442,7 +431,9 @@ class Trainer:
                 "best_success": self.best,
                 "training": self.figures(),
                 "validation": self.curves.latest_validation(),
-                "timing": self.timing(),
+                "timing": self.stopwatch.tables(
+                    self.updates, self.settings.horizon, self.source.PHASES
+                ),
             },
         )
 
@@ -464,6 +455,7 @@ _COUNTERS = {
     "updates": int,
     "best": (float, int, type(None)),
     "rate_share": (float, int),
+    "must_validate": bool,
     "rows": list,
     "waiting": int,
     "measures": list,

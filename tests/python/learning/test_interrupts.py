@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
 import os
 import pathlib
 import signal
-from typing import Any
+from typing import Any, Callable
 
 import pytest
 import torch
 
+from galactic.learning.checkpoint import load_policy
+from galactic.learning.episode_sums import EpisodeSums
+from galactic.learning.networks import Policy
 from galactic.learning.trainer import Trainer
-from trainers import UPDATE, make_trainer, parameters
+from programs import HELD_OUT, SMALL, WORLD, call, needs_worlds
+from programs import UPDATE as UPDATE_IN_HOMES
+from trainers import SETTINGS, UPDATE, curve, make_trainer, parameters
 
 
 def signaled_in_the_second_update(trainer: Trainer, *signals: signal.Signals) -> None:
@@ -62,3 +69,86 @@ def test_ctrl_c_in_a_run_that_stops_ends_it_without_saving(
     assert trainer.checkpoints.complete() == []
     said = capsys.readouterr().err
     assert "stopping after this update; Ctrl-C now stops without saving" in said
+
+
+def validating(done: list[torch.Tensor]) -> Callable[[Policy], EpisodeSums]:
+    """A validation that keeps which policies it has judged."""
+
+    def validate(policy: Policy) -> EpisodeSums:
+        done.append(policy.action.linear.bias.detach().clone())
+        return EpisodeSums(episodes=4.0, successes=float(len(done)))
+
+    return validate
+
+
+@pytest.mark.parametrize("steps", [2 * UPDATE, 3 * UPDATE])
+def test_a_validation_that_an_interrupt_puts_off_comes_first(
+    tmp_path: pathlib.Path, steps: int
+) -> None:
+    """Be it the last one of the run."""
+    settings = dataclasses.replace(SETTINGS, steps=steps, validate_every=2 * UPDATE)
+    whole: list[torch.Tensor] = []
+    (tmp_path / "whole").mkdir()
+    undisturbed = make_trainer(tmp_path / "whole", settings, validation=validating(whole))
+    undisturbed.begin()
+    assert undisturbed.train() and len(whole) == steps // UPDATE - 1
+    (tmp_path / "cut").mkdir()
+    parts: list[torch.Tensor] = []
+    cut = make_trainer(tmp_path / "cut", settings, validation=validating(parts))
+    signaled_in_the_second_update(cut, signal.SIGTERM)
+    cut.begin()
+    assert not cut.train() and parts == [] and cut.steps == 2 * UPDATE
+    report = json.loads((tmp_path / "cut" / "report.json").read_text(encoding="utf-8"))
+    assert report["must_validate"] and report["validation"] == {}
+    again = make_trainer(tmp_path / "cut", settings, validation=validating(parts))
+    again.resume()
+    assert again.train() and len(parts) == len(whole)
+    assert all(torch.equal(found, wanted) for found, wanted in zip(parts, whole))
+    found, wanted = curve(tmp_path / "cut"), curve(tmp_path / "whole")
+    assert sorted(map(repr, found)) == sorted(map(repr, wanted))
+    report = json.loads((tmp_path / "cut" / "report.json").read_text(encoding="utf-8"))
+    assert not report["must_validate"] and report["validation"]["success"] == 0.25 * len(whole)
+    assert load_policy(tmp_path / "cut" / "best.pt").steps == steps
+
+
+def test_a_checkpoint_of_before_owes_no_validation(tmp_path: pathlib.Path) -> None:
+    from galactic.learning import checkpoint
+
+    settings = dataclasses.replace(SETTINGS, steps=4 * UPDATE, validate_every=2 * UPDATE)
+    done: list[torch.Tensor] = []
+    cut = make_trainer(tmp_path, settings, validation=validating(done))
+    signaled_in_the_second_update(cut, signal.SIGINT)
+    cut.begin()
+    assert not cut.train()
+    file = cut.checkpoints.latest() / "trainer.pt"
+    values, tensors = checkpoint.load(file)
+    del values["must_validate"]
+    checkpoint.save(file, values, tensors)
+    again = make_trainer(tmp_path, settings, validation=validating(done))
+    again.resume()
+    assert again.train() and len(done) == 1
+
+
+@needs_worlds
+def test_a_run_is_not_complete_before_its_last_validation(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "run"
+    iterate = Trainer._iterate
+
+    def iterate_under_a_signal(trainer: Trainer) -> Any:
+        if trainer.updates == 1:
+            os.kill(os.getpid(), signal.SIGTERM)
+        return iterate(trainer)
+
+    monkeypatch.setattr(Trainer, "_iterate", iterate_under_a_signal)
+    options = [*SMALL, "--steps", 2 * UPDATE_IN_HOMES, "--validation-episodes", "4"]
+    cut = call("train", WORLD, "-o", folder, *options, "--validation", HELD_OUT)
+    assert cut.returncode == 130, cut.stderr
+    assert f"stopped and saved after {2 * UPDATE_IN_HOMES} steps; go on with python3" in cut.stderr
+    again = call("train", "-o", folder, "--resume")
+    assert again.returncode == 0 and "validation after" in again.stderr, again.stderr
+    assert "report.json" in again.stderr and (folder / "best.pt").is_file()
+    assert curve(folder)[-1]["validation_success"] is not None
+    third = call("train", "-o", folder, "--resume")
+    assert third.returncode == 0 and "is complete; give it more --steps" in third.stderr

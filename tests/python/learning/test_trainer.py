@@ -258,6 +258,7 @@ GONE = "gone"
         ("trainer.pt", {"window": [4]}, r"window\[0\]: found 4, expected 4 numbers"),
         ("trainer.pt", {"measures": "kl"}, "measures: found 'kl', expected list"),
         ("trainer.pt", {"measures": [[]]}, r"is of a task that measured \[\], and"),
+        ("trainer.pt", {"must_validate": 1}, "must_validate: found 1, expected bool"),
         ("trainer.pt", {"seconds": GONE}, "seconds: found nothing, expected float or int"),
         ("trainer.pt", {"stopwatch": {"update": "long"}}, "update: found 'long', expected float"),
         ("trainer.pt", {"optimizer": GONE}, "step: found nothing, expected float32 "),
