@@ -190,9 +190,7 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
         title=folder.resolve().name,
     )
     if run.start_from and not options.resume:
-        checkpoint.begin_with(
-            trainer.policy, settings, trainer.shape, trainer.parts, run.start_from
-        )
+        trainer.start_from(run.start_from)
     # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
     group.wait_for_all()
     with contextlib.ExitStack() as held:

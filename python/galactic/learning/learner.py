@@ -51,7 +51,12 @@ class Learner:
         self.precision = Precision(settings.precision, group.device)
         self.optimizer = FlatAdam(policy, settings.learning_rate, settings.adam_epsilon)
         self.rate = PacedRate(settings.target_kl)
-        group.copy_from_first(self.optimizer.parameters)
+        self.share_policy()
+
+    def share_policy(self) -> None:
+        """Gives each rank the first one's policy: they begin alike."""
+        for tensor in (self.optimizer.parameters, *self.policy.buffers()):
+            self.group.copy_from_first(tensor)
 
     def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
         """One update; returns its losses. `update` counts from 0; `progress` is the share of the run

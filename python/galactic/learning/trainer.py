@@ -140,6 +140,12 @@ class Trainer:
         """The same of this rank's processor time."""
         return self._processor_seconds_before + time.process_time()
 
+    def start_from(self, file: pathlib.Path) -> None:
+        """Gives the policy the weights of another run's: see checkpoint.begin_with(). Before begin()."""
+        checkpoint.begin_with(self.policy, self.settings, self.shape, self.parts, file)
+        # Its run may have replaced the file while ranks read it, one after the other.
+        self.learner.share_policy()
+
     def begin(self) -> None:
         """Starts at the first step."""
         self.source.reset()

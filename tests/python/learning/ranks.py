@@ -83,6 +83,14 @@ def wait(group: Group, folder: pathlib.Path) -> None:
     torch.save(has_figures, folder / f"figures-{group.rank}.pt")
 
 
+def start(group: Group, folder: pathlib.Path) -> None:
+    """As where somebody replaces the file between the looks of two ranks at it."""
+    toy = ReachAndGrasp(SETTINGS.envs, halves=SETTINGS.halves)
+    trainer = Trainer(SETTINGS, toy, group, None)
+    trainer.start_from(folder / f"before-{group.rank}.pt")
+    torch.save(trainer.policy.state_dict(), folder / f"after-{group.rank}.pt")
+
+
 def main() -> None:
     group = Group.join("cpu")
     folder = pathlib.Path(sys.argv[2])
@@ -90,6 +98,8 @@ def main() -> None:
         train(group, folder, int(sys.argv[3]))
     elif sys.argv[1] == "wait":
         wait(group, folder)
+    elif sys.argv[1] == "start":
+        start(group, folder)
     else:
         straggle(group, folder)
     group.leave()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import pathlib
 import signal
 import subprocess
@@ -14,9 +15,11 @@ from torch.distributed import HashStore
 
 import galactic
 import galactic.learning.launch as launching
+from galactic.learning import checkpoint
 from galactic.learning.distributed import Group, RankLost, Stragglers
 from galactic.learning.launch import launch
 from galactic.learning.reports.curves import read_curves
+from trainers import SETTINGS, UPDATE, make_trainer
 
 HERE = pathlib.Path(__file__).parent
 
@@ -121,6 +124,23 @@ def test_two_ranks_are_one_of_twice_the_envs(tmp_path: pathlib.Path) -> None:
         for name in row.keys() - {"seconds", "sps"}:
             assert row[name] == pytest.approx(other[name], rel=1e-3, abs=1e-4), name
     assert one[-1]["measure_steps"] == one[-1]["length"] > 1.0
+
+
+def test_ranks_start_from_one_policy_whatever_becomes_of_its_file(tmp_path: pathlib.Path) -> None:
+    for rank in range(2):
+        trainer = make_trainer(None, dataclasses.replace(SETTINGS, seed=1 + rank))
+        trainer.begin()
+        trainer.train(UPDATE)
+        checkpoint.save_policy(trainer._saved_policy(None), tmp_path / f"before-{rank}.pt")
+    run_ranks(2, "start", str(tmp_path))
+    before, *after = (
+        torch.load(tmp_path / f"{name}.pt") for name in ("before-0", "after-0", "after-1")
+    )
+    wanted = before["policy"]
+    assert "normalize.center" in wanted
+    for found in after:
+        assert found.keys() == wanted.keys()
+        assert all(torch.equal(found[name], value) for name, value in wanted.items())
 
 
 def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) -> None:
