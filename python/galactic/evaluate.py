@@ -14,6 +14,7 @@ import torch
 import galactic
 from galactic.learning import checkpoint, dynamics, evaluation, own_code, own_tasks
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
+from galactic.learning.fitting import other_meaning_of
 from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
@@ -192,6 +193,13 @@ def _evaluate(options: argparse.Namespace) -> int:
             f"{options.policy} was trained on observations of {sizes_of(saved.parts)}, and "
             f"{options.world} gives {sizes_of(homes.parts)}; evaluate it on worlds with the same robot"
             + (", by a task that observes the same" if options.task else "")
+        )
+    other = other_meaning_of(saved, homes.meanings)
+    if other:
+        raise checkpoint.CheckpointError(
+            f"{options.policy} learned with {other.option}={other.learned}, found {other.found} in "
+            f"{options.world}, where the same numbers mean something else; evaluate it on worlds whose task "
+            "has the same"
         )
     if not homes.are_limited:
         raise checkpoint.CheckpointError(

@@ -25,6 +25,7 @@ from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.launch import follow_launcher, launch
 from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, TAUGHT, preset
+from galactic.learning.privileges import other_meaning, parts_of_actor
 from galactic.learning.reports import log
 from galactic.learning.reports.curves import write_json
 from galactic.learning.setting_options import add_options, given_options, positive_integer
@@ -456,6 +457,14 @@ def _validation(
             f"gives observations of {sizes_of(homes.parts)}, and {run.world} of "
             f"{sizes_of(trained.parts)}; validate in a world with the same robot",
         )
+    seen = dict(parts_of_actor(settings.critic_only, trained.parts))
+    other = other_meaning(seen, trained.meanings, homes.meanings)
+    if other:
+        message = (
+            f"found {other.option}={other.found}, expected {other.learned} as in {run.world}: the same "
+            "numbers mean something else; validate in a world whose task has the same"
+        )
+        raise galactic.Error(galactic.ErrorCode.INVALID_INPUT, str(run.validation), message)
     if not homes.are_limited:
         raise SettingsError(
             "--simulation: episode-steps is 0, and a validation of episodes without a limit may never "

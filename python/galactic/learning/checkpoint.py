@@ -213,9 +213,9 @@ _NETWORK = ("network", "image_size", "recurrent", "width", "layers", "activation
 
 
 def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
-               parts: list[tuple[str, int]], file: pathlib.Path) -> None:  # fmt: skip
+               parts: list[tuple[str, int]], file: pathlib.Path) -> SavedPolicy:  # fmt: skip
     """Gives `policy`, a new_policy(settings, shape) that sees `parts`, the weights of the policy in
-    `file`: networks, standard deviations, means and variances of observations.
+    `file`, and returns that: networks, standard deviations, means and variances of observations.
 
     Both must be the same network and see the same observations; CheckpointError says where they differ.
     The task may be another one. Where only the new one is about to terminate, it starts with
@@ -252,6 +252,7 @@ def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
     policy.load_state_dict(saved.policy.state_dict())
     if shape.decides_terminate and not saved.shape.decides_terminate:
         policy.action.start_terminate(NEW_TERMINATE_LOGIT)
+    return saved
 
 
 def _difference(policy: dict[str, int], run: dict[str, int]) -> str:

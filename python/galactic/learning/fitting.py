@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import pathlib
-from typing import Any, Mapping, NamedTuple, Sequence
+from typing import Any, Mapping, NamedTuple, Optional, Sequence
 
 from galactic.learning.checkpoint import CheckpointError, SavedPolicy
-from galactic.learning.privileges import meaning_of, of_own_tasks, parts_of_actor
+from galactic.learning.privileges import (
+    OtherMeaning,
+    of_own_tasks,
+    other_meaning,
+    parts_of_actor,
+)
 
 
 class Observed(NamedTuple):
@@ -45,15 +50,20 @@ def columns_of(saved: SavedPolicy, file: pathlib.Path, observed: Observed, remed
                 f"{file} sees {size} numbers of {name}, found {sizes[name]} in this run; give "
                 f"both the same robot and options of the simulation, or {remedy}"
             )
-    seen = [name for name, _ in parts_of_actor(saved.settings.critic_only, saved.parts)]
-    for option, theirs in meaning_of(seen, saved.meanings).items():
-        if theirs != observed.meanings.get(option, theirs):
-            raise CheckpointError(
-                f"{file} learned with {option}={theirs}, found {observed.meanings[option]} in this run, "
-                f"where the same numbers mean something else; give both the same, or {remedy}"
-            )
+    other = other_meaning_of(saved, observed.meanings)
+    if other:
+        raise CheckpointError(
+            f"{file} learned with {other.option}={other.learned}, found {other.found} in this run, where "
+            f"the same numbers mean something else; give both the same, or {remedy}"
+        )
     columns, first = {}, 0
     for name, size in observed.parts:
         columns[name] = range(first, first + size)
         first += size
     return [column for name, _ in saved.parts for column in columns[name]]
+
+
+def other_meaning_of(saved: SavedPolicy, found: Mapping[str, Any]) -> Optional[OtherMeaning]:
+    """Where what the policy acts by means something else than in its training; None where it does not."""
+    seen = [name for name, _ in parts_of_actor(saved.settings.critic_only, saved.parts)]
+    return other_meaning(seen, saved.meanings, found)

@@ -3,7 +3,7 @@ what the numbers of others mean."""
 
 from __future__ import annotations
 
-from typing import Any, Collection, Iterable, Mapping, Sequence
+from typing import Any, Collection, Iterable, Mapping, NamedTuple, Optional, Sequence
 
 from galactic.learning.settings import SettingsError, did_you_mean
 from galactic.sensors import ALWAYS, SENSORS
@@ -66,3 +66,21 @@ def meaning_of(names: Iterable[str], options: Mapping[str, Any]) -> dict[str, An
     """Those options of the simulation by which numbers of its parts `names` mean one thing or another."""
     asked = ["observe_current", *(option for name in names for option in SENSORS.get(name, ()))]
     return {name: options[name] for name in asked if name in options and name not in _NO_MEANING}
+
+
+class OtherMeaning(NamedTuple):
+    """An option by which the same numbers mean something else: its value there, and here."""
+
+    option: str
+    learned: Any
+    found: Any
+
+
+def other_meaning(names: Iterable[str], learned: Mapping[str, Any],
+                  found: Mapping[str, Any]) -> Optional[OtherMeaning]:  # fmt: skip
+    """Where numbers of the parts `names` mean something else than where a policy has learned from them, by
+    what is known of both from meaning_of(); None where they do not."""
+    for option, theirs in meaning_of(names, learned).items():
+        if found.get(option, theirs) != theirs:
+            return OtherMeaning(option, theirs, found[option])
+    return None

@@ -32,7 +32,7 @@ from galactic.learning.imitation import ImitationLearner, Streams, require_same
 from galactic.learning.learner import Learner
 from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.ppo import PpoLearner
-from galactic.learning.privileges import columns_among, critic_columns
+from galactic.learning.privileges import columns_among, critic_columns, other_meaning
 from galactic.learning.reports.curves import COLUMNS, VALIDATION, Curves, columns_of, write_json
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
@@ -142,7 +142,13 @@ class Trainer:
 
     def start_from(self, file: pathlib.Path) -> None:
         """Gives the policy the weights of another run's: see checkpoint.begin_with(). Before begin()."""
-        checkpoint.begin_with(self.policy, self.settings, self.shape, self.parts, file)
+        saved = checkpoint.begin_with(self.policy, self.settings, self.shape, self.parts, file)
+        other = other_meaning(dict(saved.parts), saved.meanings, self.meanings)
+        if other:
+            self.progress.say(
+                f"{file} learned with {other.option}={other.learned}, and this run has {other.found}: the same "
+                "numbers mean something else, which it has to learn anew"
+            )
         # Its run may have replaced the file while ranks read it, one after the other.
         self.learner.share_policy()
 
