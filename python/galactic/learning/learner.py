@@ -87,7 +87,9 @@ class Learner:
         """One step of the optimizer, after optimizer.clear(); the norm of the gradient of all ranks."""
         loss.backward()
         self.group.sum(self.optimizer.gradients)
-        return self.optimizer.step(self.settings.max_grad_norm)
+        norm = self.optimizer.step(self.settings.max_grad_norm)
+        self.policy.action.limit_log_std()
+        return norm
 
     def _absorb_observations(self, rollout: Rollout) -> None:
         if self.policy.normalize is not None:

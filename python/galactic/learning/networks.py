@@ -154,6 +154,12 @@ class ActorHead(nn.Module):
             odds = torch.tanh(odds * (1.0 / self.odds_limit)) * self.odds_limit
         return ActionDistribution(mean, log_std, odds, self.decides_terminate)
 
+    def limit_log_std(self, highest: float = HIGHEST_LOG_STD) -> None:
+        """Clamps log-stds that are parameters: beyond where forward() does, no gradient would lead back."""
+        if self.log_std is not None:
+            with torch.no_grad():
+                self.log_std.clamp_(LOWEST_LOG_STD, highest)
+
     def start_terminate(self, logit: float) -> None:
         """Makes `logit` the log-odds of terminating, whatever the features are."""
         with torch.no_grad():

@@ -150,10 +150,7 @@ class PpoLearner(Learner):
     def _limit_exploration(self, progress: float) -> None:
         """Noise that a policy may lean on to the end is missing when it acts by its means: less and
         less of it lets the means learn what the noise did."""
-        log_std = self.policy.action.log_std
-        if log_std is not None:
-            with torch.no_grad():
-                log_std.clamp_(max=self.settings.log_std_limit_at(progress))
+        self.policy.action.limit_log_std(self.settings.log_std_limit_at(progress))
 
     def _report(self, totals: Tensor, raw: Tensor, returns: Tensor) -> dict[str, float]:
         """Means over all ranks, mini-batches and epochs."""

@@ -10,7 +10,8 @@ import torch
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.episode_sums import EpisodeSums
-from galactic.learning.networks import Policy, PolicyShape, make_policy
+from galactic.learning.learner import Learner
+from galactic.learning.networks import Inputs, Policy, PolicyShape, make_policy
 from galactic.learning.ppo import PpoLearner
 from toys import Look
 from trainers import SETTINGS, UPDATE, make_trainer
@@ -37,6 +38,31 @@ def test_a_policy_learns_in_the_mode_for_it_and_acts_in_the_other(recurrent: boo
     updates = [is_training for has_gradients, is_training in modes if has_gradients]
     assert len(updates) == 3 * settings.epochs * settings.mini_batches and all(updates)
     assert not any(is_training for has_gradients, is_training in modes if not has_gradients)
+
+
+@pytest.mark.parametrize("limit, way_out", [(-5.0, 1.0), (2.0, -1.0)])
+def test_a_deviation_comes_back_from_its_limit(limit: float, way_out: float) -> None:
+    shape = PolicyShape(state=4, motions=2)
+    policy = make_policy("state", shape, width=8, initial_log_std=limit)
+    learner = Learner(policy, SETTINGS, Group.alone())
+    log_std = policy.action.log_std
+    assert log_std is not None
+    seen = Inputs(torch.zeros(1, 1, 4))
+    starts = torch.zeros(1, 1, dtype=torch.bool)
+
+    def push(direction: float) -> None:
+        learner.optimizer.clear()
+        learner._descend(-direction * policy(seen, None, starts).actions.log_std.sum())
+
+    for _ in range(20):
+        push(-way_out)
+        assert log_std.tolist() == [limit, limit]
+    for _ in range(20):
+        push(way_out)
+    # Adam remembers the way there for some steps.
+    assert (way_out * (log_std - limit) > SETTINGS.learning_rate).all()
+    # The optimizer's flat parameters are the same memory.
+    assert log_std[0].item() in learner.optimizer.parameters.tolist()
 
 
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU")
