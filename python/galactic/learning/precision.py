@@ -9,9 +9,9 @@ import torch
 
 
 class Precision:
-    """How networks are computed: `fp32`; `tf32`: multiplications with 10 bits of mantissa; `bf16`: the
-    network in bfloat16, heads (multiplied as with `tf32`), losses and parameters in float32. On processors
-    all are fp32."""
+    """How networks are computed: `fp32`; `tf32`: multiplications with 10 bits of mantissa; `bf16`: what is
+    before the memory in bfloat16, memory and heads (multiplied as with `tf32`), losses and parameters in
+    float32. On processors all are fp32."""
 
     def __init__(self, name: str, device: torch.device):
         self._bf16 = name == "bf16" and device.type == "cuda"

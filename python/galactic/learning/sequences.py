@@ -15,7 +15,15 @@ def run_gru(rnn: nn.GRU, inputs: Tensor, hidden: Tensor, starts: Tensor) -> tupl
 
     Each stretch between two starts is a sequence of its own. Sorted by length they are one packed
     sequence, so that cuDNN, or one loop in C++, does all of it (Wijmans et al., DD-PPO, do the same).
+
+    Computed in float32, whatever is before and after it: where torch is to compute in bfloat16, it has cuDNN
+    run a GRU in float16 all the same, whose gradients would be too small for it.
     """
+    with torch.autocast(inputs.device.type, enabled=False):
+        return _run_gru(rnn, inputs.float(), hidden.float(), starts)
+
+
+def _run_gru(rnn: nn.GRU, inputs: Tensor, hidden: Tensor, starts: Tensor) -> tuple[Tensor, Tensor]:
     if len(inputs) == 1:
         kept = hidden * (~starts[0]).unsqueeze(-1)
         outputs, last = rnn(inputs, kept.unsqueeze(0))

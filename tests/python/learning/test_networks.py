@@ -165,6 +165,23 @@ def test_memory_does_not_cross_the_start_of_an_episode() -> None:
     assert 4 < int(starts.sum()) < 36
 
 
+@pytest.mark.parametrize("steps", [1, 6])
+def test_memory_is_float32_in_a_network_of_bfloat16(steps: int) -> None:
+    """On a GPU, torch would compute it in float16."""
+    torch.manual_seed(6)
+    rnn = torch.nn.GRU(5, 8)
+    inputs, hidden = torch.randn(steps, 4, 5).bfloat16(), torch.randn(4, 8).bfloat16()
+    starts = torch.rand(steps, 4) < 0.3
+    seen: list[object] = []
+    rnn.register_forward_pre_hook(lambda _, given: seen.extend((given[0][0].dtype, given[1].dtype)))
+    rnn.register_forward_pre_hook(lambda *_: seen.append(torch.is_autocast_cpu_enabled()))
+    with torch.autocast("cpu", dtype=torch.bfloat16):
+        found = run_gru(rnn, inputs, hidden, starts)
+    assert seen == [torch.float32, torch.float32, False]
+    for one, wanted in zip(found, run_gru(rnn, inputs.float(), hidden.float(), starts)):
+        assert one.dtype == torch.float32 and torch.equal(one, wanted)
+
+
 def test_gradients_stop_at_the_start_of_an_episode() -> None:
     torch.manual_seed(5)
     rnn = torch.nn.GRU(5, 8)
