@@ -96,14 +96,22 @@ class Actions:
         if not {"continuous", "discrete"} <= given.keys():
             raise ValueError(f"actions has {list(given)}, expected {_OF_THE_PAPER}")
         moves = _rows_of("continuous", given["continuous"], (envs, self._count - 2))
-        return np.hstack([moves, _rows_of("discrete", given["discrete"], (envs, 2))])
+        choices = _rows_of("discrete", given["discrete"], (envs, 2))
+        fractions = choices[~(np.isfinite(choices) & (choices == np.trunc(choices)))]
+        if len(fractions):
+            raise TypeError(f"discrete has {fractions[0]:g}, expected whole numbers: 0 or 1")
+        return np.hstack([moves, choices])
 
 
 def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float32]:
     rows = np.asarray(given)
-    # What numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
+    # What numpy would turn into numbers: text by reading it, complex ones by leaving out a part, None as NaN.
     if rows.dtype.kind not in "biufO":
         raise TypeError(f"{name} has the type {rows.dtype}, expected numbers, such as float32")
+    if rows.dtype.kind == "O":
+        for one in rows.flat:
+            if not isinstance(one, (numbers.Real, np.bool_)):
+                raise TypeError(f"{name} has {one!r}, expected numbers, such as float32")
     if rows.shape != shape:
         raise ValueError(f"{name} has the shape {rows.shape}, expected {shape}")
     return rows.astype(np.float32, copy=False)

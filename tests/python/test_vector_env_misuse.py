@@ -82,8 +82,25 @@ def test_actions_that_are_no_real_numbers_are_refused(world):
             box.step(np.full((2, 8), wrong))
         with pytest.raises(TypeError, match=f"^discrete has the type {name}, expected numbers"):
             paper.step({**right, "discrete": np.full((2, 2), wrong)})
+    for wrong, shown in (("1", "'1'"), (None, "None"), (1j, "1j"), ([0], r"\[0\]")):
+        mixed = np.zeros((2, 8), object)
+        mixed[1, 7] = wrong
+        with pytest.raises(TypeError, match=f"^actions has {shown}, expected numbers, such as"):
+            box.step(mixed)
+        for name, rows in (("continuous", mixed[:, 2:]), ("discrete", mixed[:, 6:])):
+            with pytest.raises(TypeError, match=f"^{name} has {shown}, expected numbers, such as"):
+                paper.step({**right, name: rows})
+    for wrong in (0.7, -0.5, np.nan, np.inf):
+        discrete = np.array([[0, 1], [1, wrong]])
+        with pytest.raises(TypeError, match=f"^discrete has {wrong}, expected whole numbers: 0 or"):
+            paper.step({**right, "discrete": discrete})
     for env in (box, paper):
         assert env.simulators[0].statistics()["steps"] == 0
+    for kind in (np.float32, np.int64, np.bool_, object):
+        paper.step({**right, "discrete": np.ones((2, 2), kind)})
+    mixed = np.zeros((2, 8), object)
+    mixed[0, :4] = (1, 0.5, np.float32(0.25), np.bool_(True))
+    box.step(mixed)
     for kind in (np.float64, np.int32, np.bool_, object):
         box.step(np.zeros((2, 8), kind))
     box.step([[0] * 8] * 2)
