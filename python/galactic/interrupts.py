@@ -1,7 +1,8 @@
-"""Ctrl-C while a program of the package loads its libraries, which takes seconds: it ends, quietly.
+"""What interrupts come to: while a program of the package loads its libraries, which takes seconds, and
+while it works.
 
-Nothing has been done by then that there would be to save or to tell. Python alone would interrupt
-whatever is being loaded, and print where.
+While it loads, Ctrl-C ends it, quietly. Nothing has been done by then that there would be to save or to
+tell. Python alone would interrupt whatever is being loaded, and print where.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import os
 import signal
 import threading
 from types import FrameType
-from typing import Iterator, Optional
+from typing import Callable, Iterator, Optional
 
 from galactic import programs
 
@@ -44,6 +45,20 @@ def raised() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, _end)
+
+
+@contextlib.contextmanager
+def handled(handler: Callable[[int], None]) -> Iterator[None]:
+    """Around work that ends as it sees fit: SIGINT and SIGTERM call `handler` with their number."""
+    before = {
+        number: signal.signal(number, lambda found, _: handler(found))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield
+    finally:
+        for number, one in before.items():
+            signal.signal(number, one)
 
 
 @contextlib.contextmanager

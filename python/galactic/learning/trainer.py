@@ -12,6 +12,7 @@ from typing import Any, Callable, ContextManager, Optional, Union
 
 import torch
 
+from galactic import interrupts
 from galactic.demonstrations import Demonstrations
 from galactic.errors import Error
 from galactic.learning import checkpoint
@@ -163,7 +164,7 @@ class Trainer:
         Returns whether all is done. Raises TrainingError when the loss is not a number."""
         settings = self.settings
         end = settings.steps if pause_at is None else min(pause_at, settings.steps)
-        with _Signals(self._interrupt):
+        with interrupts.handled(self._interrupt):
             if self._must_validate:
                 self._validate()
                 self._write_curves(is_last=True)
@@ -490,22 +491,6 @@ def _rows(values: dict[str, Any], name: str, width: int, kinds: Any) -> list[lis
 def _fitting(file: pathlib.Path, remedy: str) -> ContextManager[None]:
     """Around taking over what `file` holds."""
     return refusing(f"{file} does not fit this run", remedy)
-
-
-class _Signals:
-    """While in force, SIGINT and SIGTERM call `handler` with their number instead of ending the process."""
-
-    def __init__(self, handler: Callable[[int], None]):
-        self._handler = handler
-        self._before: dict[int, Any] = {}
-
-    def __enter__(self) -> None:
-        for number in (signal.SIGINT, signal.SIGTERM):
-            self._before[number] = signal.signal(number, lambda found, _: self._handler(found))
-
-    def __exit__(self, *_: object) -> None:
-        for number, before in self._before.items():
-            signal.signal(number, before)
 
 
 def _measured(means: dict[str, float]) -> list[str]:
