@@ -451,7 +451,7 @@ class Trainer:
         )
 
     def _interrupt(self, number: int) -> None:
-        """Ctrl-C comes as often as it is typed: launchers keep ranks out of the terminal's group. What ends a
+        """Ctrl-C comes as often as it is typed: launch() keeps ranks out of the group of the terminal. What ends a
         job sends one SIGTERM to all of its processes, and those that have ranks pass theirs on."""
         if self._interrupted and number == signal.SIGINT:
             raise KeyboardInterrupt
