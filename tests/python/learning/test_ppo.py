@@ -107,7 +107,8 @@ def test_a_rollout_is_what_the_policy_did_and_saw(recurrent: bool) -> None:
                 action_noise(1, range(6), range(update * 7, update * 7 + 7), 2)
             )
             for step in range(7):
-                torch.testing.assert_close(rollout.state[step], state, rtol=0.0, atol=0.0)
+                # Sums of a half's rows may end with other bits than those of all.
+                torch.testing.assert_close(rollout.state[step], state)
                 outputs = policy(Inputs(state[None]), hidden, starts)
                 actions = outputs.actions.sample(noise[step][None])
                 torch.testing.assert_close(rollout.actions[step], actions[0])
