@@ -245,7 +245,7 @@ Result<UrdfModel> parseUrdf(const std::string& text, const std::string& where) {
   const auto robot = robotElement(document, text, where);
   if (!robot) return tl::unexpected(robot.error());
   UrdfModel model;
-  const ParserText prepared = textForParser(document, text, model.warnings);
+  const ParserText prepared = textForParser(document, UrdfPart::kShapesAndJoints, model.warnings);
   LogCapture log;
   ASSIGN_OR_RETURN(const auto parsed, parsedModel(prepared.text, where, log));
   model.name = parsed->name_;
@@ -267,7 +267,7 @@ Result<std::vector<LinkInertial>> parseInertials(const std::string& text,
   TiXmlDocument document;
   ASSIGN_OR_RETURN(const auto robot, robotElement(document, text, where));
   std::vector<std::string> warnings;
-  const ParserText prepared = textForParser(document, text, warnings);
+  const ParserText prepared = textForParser(document, UrdfPart::kInertials, warnings);
   const LogCapture log;
   ASSIGN_OR_RETURN(const auto parsed, parsedModel(prepared.text, where, log));
   std::vector<LinkInertial> inertials;

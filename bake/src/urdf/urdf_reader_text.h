@@ -6,11 +6,18 @@
 #include <vector>
 
 class TiXmlDocument;
+class TiXmlElement;
 
 namespace galactic::bake {
 
 /// `count` numbers, or none when there are not so many.
 [[nodiscard]] std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count);
+
+/// The element that follows in the text, that inside before that behind; null after the last.
+[[nodiscard]] TiXmlElement* nextElement(TiXmlElement& element);
+
+/// What somebody wants to know of a URDF.
+enum class UrdfPart { kShapesAndJoints, kInertials };
 
 /// The text of a URDF as urdfdom takes it.
 struct ParserText {
@@ -20,11 +27,13 @@ struct ParserText {
 };
 
 /// Makes up for what other readers of URDFs accept and urdfdom does not: commas, tabs and line ends
-/// between numbers, joints without <limit>, limits without effort and velocity (which nobody here
-/// uses), a link "world" to which joints are attached although nothing declares it, and capsules.
-/// `document` is `text`, parsed, with a <robot> element; both stay as they are where nothing lacks.
-/// What is worth knowing is added to `warnings`.
-[[nodiscard]] ParserText textForParser(TiXmlDocument& document, const std::string& text,
+/// between numbers, blanks around them, joints without <limit>, colors beyond 0 to 1, materials
+/// without a name, a link "world" to which joints are attached although nothing declares it, and
+/// capsules. Leaves out what nobody here reads, which urdfdom would refuse over an attribute:
+/// efforts and velocities, <dynamics>, <safety_controller>, <calibration> and, unless they are
+/// wanted, <inertial>. `document`, parsed, with a <robot> element, becomes what the text says. What
+/// is worth knowing is added to `warnings`.
+[[nodiscard]] ParserText textForParser(TiXmlDocument& document, UrdfPart part,
                                        std::vector<std::string>& warnings);
 
 }  // namespace galactic::bake

@@ -53,10 +53,6 @@ std::vector<Fault> syntaxFaults() {
        robotText(kTwoLinks +
                  "<joint type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/></joint>"),
        "r.urdf", "the URDF parser refuses it: unnamed joint found"},
-      {"BrokenInertia",
-       robotText("<link name=\"a\"><inertial><mass value=\"heavy\"/></inertial></link>"), "r.urdf",
-       "the URDF parser refuses it: Inertial: mass [heavy] is not a float; Could not parse "
-       "inertial element for Link [a]"},
   };
 }
 
@@ -128,11 +124,6 @@ std::vector<Fault> jointFaults() {
       {"LimitOutOfRange", withJoint("revolute", limitText("0", "1e999")), "r.urdf",
        "the URDF parser refuses it: upper value (1e999) is not a valid float; Could not parse "
        "limit element for joint [j]"},
-      {"EffortNotANumber",
-       withJoint("revolute", "<limit lower=\"0\" upper=\"1\" effort=\"much\"/>"), "r.urdf",
-       "the URDF parser refuses it: effort value (much) is not a valid float; Could not parse "
-       "limit "
-       "element for joint [j]"},
       {"AxisZero", withJoint("continuous", "<axis xyz=\"0 0 0\"/>"), "r.urdf: joint 'j'",
        "its axis (0 0 0) has no direction; give a unit vector"},
       {"AxisOfTwoNumbers", withJoint("continuous", "<axis xyz=\"0 1\"/>"), "r.urdf",
@@ -246,6 +237,54 @@ INSTANTIATE_TEST_SUITE_P(OfSyntax, UrdfFaults, testing::ValuesIn(syntaxFaults())
 INSTANTIATE_TEST_SUITE_P(OfTheTree, UrdfFaults, testing::ValuesIn(treeFaults()), nameOf);
 INSTANTIATE_TEST_SUITE_P(OfJoints, UrdfFaults, testing::ValuesIn(jointFaults()), nameOf);
 INSTANTIATE_TEST_SUITE_P(OfGeometry, UrdfFaults, testing::ValuesIn(geometryFaults()), nameOf);
+
+TEST(UrdfElements, ThatNobodyReadsMayBeIncomplete) {
+  const ScratchFolder folder;
+  for (const char* unread :
+       {"<dynamics/>", "<dynamics stiffness=\"1\"/>", "<dynamics damping=\"much\"/>",
+        "<safety_controller soft_lower_limit=\"0\" soft_upper_limit=\"1\"/>",
+        "<calibration rising=\"up\"/>", "<limit effort=\"much\" velocity=\"\"/>",
+        "<dynamics damping=\"1\"/><dynamics/>"}) {
+    SCOPED_TRACE(unread);
+    const auto robot = importText(folder, withJoint("revolute", unread));
+    ASSERT_TRUE(robot.has_value()) << robot.error().message;
+    EXPECT_THAT(robot->warnings, testing::IsEmpty());
+  }
+}
+
+TEST(UrdfInertials, MatterToThoseWhoReadThem) {
+  const ScratchFolder folder;
+  struct Case {
+    const char* inertial;
+    const char* message;
+  };
+  for (const auto& [inertial, message] :
+       {Case{"<mass value=\"1\"/>",
+             "the URDF parser refuses it: Inertial element must have inertia element; Could not "
+             "parse inertial element for Link [a]"},
+        Case{"<mass value=\"heavy\"/>",
+             "the URDF parser refuses it: Inertial: mass [heavy] is not a float; Could not parse "
+             "inertial element for Link [a]"},
+        Case{"<mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>",
+             "the URDF parser refuses it: Inertial: inertia element missing ixy attribute; Could "
+             "not parse inertial element for Link [a]"}}) {
+    SCOPED_TRACE(inertial);
+    const std::string text =
+        robotText(fmt::format("<link name=\"a\"><inertial>{}</inertial></link>", inertial));
+    const auto robot = importText(folder, text);
+    ASSERT_TRUE(robot.has_value()) << robot.error().message;
+    const auto inertials = bake::readInertials(folder.path() / "robots/r.urdf");
+    ASSERT_FALSE(inertials.has_value());
+    EXPECT_EQ(inertials.error().message, message);
+  }
+  (void)importText(folder, robotText("<link name=\"a\"><inertial><mass value=\" 2\t\"/><inertia "
+                                     "ixx=\" 1 \" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
+                                     "izz=\"1\"/></inertial></link>"));
+  const auto inertials = bake::readInertials(folder.path() / "robots/r.urdf");
+  ASSERT_TRUE(inertials.has_value()) << inertials.error().message;
+  ASSERT_EQ(inertials->size(), 1U);
+  EXPECT_EQ(inertials->front().mass, 2);
+}
 
 TEST(UrdfFiles, ThatAreMissingAreAnIoError) {
   const ScratchFolder folder;

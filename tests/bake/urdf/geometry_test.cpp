@@ -10,6 +10,7 @@
 namespace galactic::test::geometry_test {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -278,11 +279,12 @@ TEST(UrdfGeometry, WarnsOfCommasOnceForEachKindOfList) {
                           "line 2: xyz=\"1,2,3\" has commas, which count as blanks"));
 }
 
+std::string visual(std::string_view material) {
+  return fmt::format("<visual><geometry><sphere radius=\"1\"/></geometry>{}</visual>", material);
+}
+
 TEST(UrdfColors, AreSrgbFromLocalAndGlobalMaterials) {
   const ScratchFolder folder;
-  const auto visual = [](std::string_view material) {
-    return fmt::format("<visual><geometry><sphere radius=\"1\"/></geometry>{}</visual>", material);
-  };
   const auto robot = importText(
       folder,
       robotText("<material name=\"blue\"><color rgba=\"0 0 1 0.25\"/></material><link name=\"a\">" +
@@ -298,6 +300,71 @@ TEST(UrdfColors, AreSrgbFromLocalAndGlobalMaterials) {
   EXPECT_NEAR(visuals[1].color->at(1), 0.0030960F, 1e-6F);
   EXPECT_FALSE(visuals[2].color.has_value());
   EXPECT_FALSE(visuals[3].color.has_value());
+}
+
+TEST(UrdfColors, BeyondTheRangeAreBytesOrClamped) {
+  const ScratchFolder folder;
+  const auto colored = [](const char* rgba) {
+    return visual(fmt::format("<material><color rgba=\"{}\"/></material>", rgba));
+  };
+  const auto robot =
+      importText(folder, robotText("<link name=\"a\">" + std::string(kBoxCollision) +
+                                   colored("255 0 0 255") + colored("0 255 0 1") +
+                                   colored("0 0 1 255") + colored("1.5 -1 1 0.5") + "</link>"));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  const auto& visuals = robot->links[0].visuals;
+  ASSERT_EQ(visuals.size(), 4U);
+  EXPECT_EQ(visuals[0].color, (std::array<float, 4>{1, 0, 0, 1}));
+  EXPECT_EQ(visuals[1].color, (std::array<float, 4>{0, 1, 0, 1}));
+  EXPECT_EQ(visuals[2].color, (std::array<float, 4>{0, 0, 1, 1}));
+  EXPECT_EQ(visuals[3].color, (std::array<float, 4>{1, 0, 1, 0.5F}));
+  EXPECT_THAT(robot->warnings,
+              ElementsAre("line 1: rgba=\"255 0 0 255\" is not within 0 to 1; it counts as 1 0 0 1 "
+                          "(4 times in the file)"));
+}
+
+TEST(UrdfColors, ThatAreNoneLeaveTheirMaterialWithout) {
+  const ScratchFolder folder;
+  for (const char* rgba : {"red", "1 0 0", "1 0 0 1 1", "nan 0 0 1", "inf 0 0 1", ""}) {
+    SCOPED_TRACE(rgba);
+    const std::string color = fmt::format("<color rgba=\"{}\"/>", rgba);
+    const auto robot = importText(
+        folder, robotText("<material name=\"m\">" + color + "</material><link name=\"a\">" +
+                          std::string(kBoxCollision) + visual("<material name=\"m\"/>") +
+                          visual("<material name=\"n\">" + color + "</material>") + "</link>"));
+    ASSERT_TRUE(robot.has_value()) << robot.error().message;
+    for (const bake::LinkShape& shape : robot->links[0].visuals) EXPECT_FALSE(shape.color);
+    EXPECT_THAT(robot->warnings,
+                Contains(fmt::format("line 1: rgba=\"{}\" is not four numbers from 0 to 1; the "
+                                     "material has no color (2 times in the file)",
+                                     rgba)));
+    EXPECT_THAT(robot->warnings, Contains("link 'a' material 'm' undefined."));
+  }
+}
+
+TEST(UrdfColors, AreReadOfMaterialsWithoutNames) {
+  const ScratchFolder folder;
+  const auto robot = importText(
+      folder, robotText("<material><color rgba=\"0 0 0 1\"/></material>"
+                        "<material><color rgba=\"0 0 0 1\"/></material><link name=\"a\">" +
+                        std::string(kBoxCollision) +
+                        visual("<material><color rgba=\"1 0 0 1\"/></material>") +
+                        visual("<material><color rgba=\"0 1 0 1\"/></material>") +
+                        visual("<material><color/></material>") + "</link>"));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  EXPECT_THAT(robot->warnings, IsEmpty());
+  const auto& visuals = robot->links[0].visuals;
+  ASSERT_EQ(visuals.size(), 3U);
+  EXPECT_EQ(visuals[0].color, (std::array<float, 4>{1, 0, 0, 1}));
+  EXPECT_EQ(visuals[1].color, (std::array<float, 4>{0, 1, 0, 1}));
+  EXPECT_FALSE(visuals[2].color.has_value());
+}
+
+TEST(UrdfGeometry, MayHaveBlanksAroundNumbers) {
+  const ScratchFolder folder;
+  const auto robot = importText(folder, robotText(linkText("a", "<sphere radius=\" 2\n\"/>")));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  EXPECT_EQ(std::get<bake::SphereShape>(robot->links[0].collisions.at(0).geometry).radius, 2);
 }
 
 TEST(UrdfImport, GivesTheSameRobotEveryTime) {

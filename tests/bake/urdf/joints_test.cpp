@@ -85,7 +85,7 @@ TEST(UrdfJoints, MayHaveLimitsWithoutEffortAndVelocity) {
   const ScratchFolder folder;
   const auto robot =
       importText(folder, robotText(links("ab") + jointText("j", "revolute", "a,b",
-                                                           "<limit lower=\"-1\" upper=\"2\"/>")));
+                                                           "<limit lower=\" -1\" upper=\"2 \"/>")));
   ASSERT_TRUE(robot.has_value()) << robot.error().message;
   EXPECT_EQ(robot->links[1].limits->upper, 2);
   EXPECT_FALSE(robot->links[1].limits_are_assumed);
