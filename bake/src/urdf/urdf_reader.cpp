@@ -62,8 +62,8 @@ class LogCapture final : public console_bridge::OutputHandler {
 };
 
 /// The <robot> element, or what is wrong with the text.
-Result<const TiXmlElement*> robotElement(TiXmlDocument& document, const std::string& text,
-                                         const std::string& where) {
+Result<TiXmlElement*> robotElement(TiXmlDocument& document, const std::string& text,
+                                   const std::string& where) {
   document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document.Error()) {
     const std::string place =
@@ -73,14 +73,15 @@ Result<const TiXmlElement*> robotElement(TiXmlDocument& document, const std::str
     return fail(ErrorCode::kInvalidInput, place,
                 fmt::format("it is not well-formed XML: {}; repair or generate it again", reason));
   }
-  const TiXmlElement* robot = document.FirstChildElement("robot");
+  TiXmlElement* robot = document.FirstChildElement("robot");
   if (robot == nullptr) {
     const TiXmlElement* root = document.RootElement();
     return fail(ErrorCode::kInvalidInput, where,
                 fmt::format("its outermost element is {}, expected <robot>",
                             root == nullptr ? "missing" : fmt::format("<{}>", root->Value())));
   }
-  for (const auto* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+  // The parser's library would pass over them, and their links would have no shape.
+  for (TiXmlElement* e = robot; e != nullptr; e = nextElement(*e)) {
     if (std::string_view(e->Value()).starts_with("xacro:")) {
       return fail(ErrorCode::kUnsupported, fmt::format("{}:{}", where, e->Row()),
                   fmt::format("it is a xacro file, with <{}>; expand it with the xacro tool and "

@@ -47,6 +47,12 @@ std::vector<Fault> syntaxFaults() {
        "r.urdf:2",
        "it is a xacro file, with <xacro:macro>; expand it with the xacro tool and give the result",
        ErrorCode::kUnsupported},
+      {"XacroInALink",
+       robotText("\n<link name=\"a\"/>\n<link name=\"b\">\n<visual>\n<xacro:box size=\"1\"/>"
+                 "</visual></link>\n<xacro:arm/>"),
+       "r.urdf:5",
+       "it is a xacro file, with <xacro:box>; expand it with the xacro tool and give the result",
+       ErrorCode::kUnsupported},
       {"LinkWithoutName", robotText("<link/>"), "r.urdf",
        "the URDF parser refuses it: No name given for the link"},
       {"JointWithoutName",
