@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -20,6 +22,12 @@ constexpr std::array<std::string_view, 8> kMeshExtensions{".glb", ".gltf", ".obj
                                                           ".fbx", ".ply",  ".stl", ".off"};
 /// Files that stand for their whole folder.
 constexpr std::array<std::string_view, 2> kFolderStems{"textured", "model"};
+
+/// How the stems of what lies beside such files begin in published sets: YCB's models without
+/// texture or with fewer triangles, and parts for collision, in a file or in several.
+constexpr std::array<std::string_view, 7> kOtherForms{
+    "nontextured",     "textured_simple", "textured_collision", "textured.", "collision",
+    "model_collision", "model."};
 
 /// Folders that say how a model was made, not what it is: YCB's, the best first, and Google Scanned
 /// Objects'.
@@ -59,6 +67,13 @@ bool isMesh(const fs::path& path) { return formatRank(path) < kMeshExtensions.si
 bool standsForFolder(const fs::path& path) {
   return std::find(kFolderStems.begin(), kFolderStems.end(), path.stem().string()) !=
          kFolderStems.end();
+}
+
+/// Whether a mesh beside the one that stands for the folder is that one in another form.
+bool isOtherForm(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  const auto begins = [&](std::string_view form) { return stem.starts_with(form); };
+  return standsForFolder(path) || std::ranges::any_of(kOtherForms, begins);
 }
 
 /// The mesh files of the folders at and below one of them.
@@ -152,7 +167,24 @@ void addStems(const std::vector<fs::path>& files, std::vector<ObjectInput>& obje
   }
 }
 
-Result<void> addFolder(const fs::path& root, std::vector<ObjectInput>& objects) {
+/// What a warning says of the meshes that the model of their folder, below `root`, hides.
+std::string leftOut(const fs::path& root, const fs::path& model,
+                    const std::vector<fs::path>& hidden) {
+  constexpr std::size_t kMostNamed = 6;
+  // Relative paths, because warnings go into packs, which must not depend on the machine.
+  std::vector<std::string> names;
+  for (const fs::path& file : hidden) names.push_back(file.filename().string());
+  const std::size_t more = names.size() - std::min(names.size(), kMostNamed);
+  names.resize(names.size() - more);
+  return fmt::format(
+      "{} stands for all of its folder: {}{} beside it left out; what is an object of its own "
+      "needs "
+      "a folder without such a file",
+      model.lexically_relative(root).generic_string(), fmt::join(names, ", "),
+      more == 0 ? "" : fmt::format(" and {} more", more));
+}
+
+Result<void> addFolder(const fs::path& root, FoundObjects& found) {
   ASSIGN_OR_RETURN(const auto folders, meshesByFolder(root));
   if (folders.empty()) {
     return fail(ErrorCode::kInvalidInput, root.string(),
@@ -163,24 +195,33 @@ Result<void> addFolder(const fs::path& root, std::vector<ObjectInput>& objects) 
   std::map<fs::path, FolderModel> models;
   for (const auto& [folder, files] : folders) {
     const auto whole = std::find_if(files.begin(), files.end(), standsForFolder);
-    if (whole != files.end()) {
-      FolderModel model = modelOf(*whole);
-      const bool is_made = makeRank(folder.filename().string()) < kMakeFolders.size();
-      const auto [known, is_new] =
-          models.try_emplace(is_made ? folder.parent_path() : folder, model);
-      if (!is_new && model.rank < known->second.rank) known->second = std::move(model);
+    if (whole == files.end()) {
+      addStems(files, found.objects);
       continue;
     }
-    addStems(files, objects);
+    std::vector<fs::path> others;
+    std::ranges::remove_copy_if(files, std::back_inserter(others), isOtherForm);
+    // Who names a folder of objects means all of them.
+    if (folder == root && !others.empty()) {
+      others.push_back(*whole);
+      addStems(others, found.objects);
+      continue;
+    }
+    if (!others.empty()) found.warnings.push_back(leftOut(root, *whole, others));
+    FolderModel model = modelOf(*whole);
+    const bool is_made = makeRank(folder.filename().string()) < kMakeFolders.size();
+    const auto [known, is_new] = models.try_emplace(is_made ? folder.parent_path() : folder, model);
+    if (!is_new && model.rank < known->second.rank) known->second = std::move(model);
   }
-  for (auto& [folder, model] : models) objects.push_back(std::move(model.input));
+  for (auto& [folder, model] : models) found.objects.push_back(std::move(model.input));
   return {};
 }
 
 }  // namespace
 
-Result<std::vector<ObjectInput>> findObjects(const std::vector<fs::path>& inputs) {
-  std::vector<ObjectInput> objects;
+Result<FoundObjects> findObjects(const std::vector<fs::path>& inputs) {
+  FoundObjects found;
+  std::vector<ObjectInput>& objects = found.objects;
   for (const fs::path& input : inputs) {
     std::error_code unknown;
     if (!fs::is_directory(input, unknown)) {
@@ -190,7 +231,7 @@ Result<std::vector<ObjectInput>> findObjects(const std::vector<fs::path>& inputs
                                     : input.stem().string()});
       continue;
     }
-    RETURN_IF_ERROR(addFolder(input, objects));
+    RETURN_IF_ERROR(addFolder(input, found));
   }
   std::sort(objects.begin(), objects.end(), [](const ObjectInput& a, const ObjectInput& b) {
     return std::tie(a.name, a.path) < std::tie(b.name, b.path);
@@ -203,7 +244,7 @@ Result<std::vector<ObjectInput>> findObjects(const std::vector<fs::path>& inputs
                 fmt::format("would be the object '{}', as {} is; rename one of them", same->name,
                             same->path.string()));
   }
-  return objects;
+  return found;
 }
 
 }  // namespace galactic::bake

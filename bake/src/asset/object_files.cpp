@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -169,11 +170,13 @@ Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
   ObjectSetOutcome outcome;
   const auto start = std::chrono::steady_clock::now();
   outcome.radii = job.shape.spheres.radii;
-  ASSIGN_OR_RETURN(auto inputs, findObjects(job.inputs));
+  ASSIGN_OR_RETURN(auto found, findObjects(job.inputs));
+  std::vector<ObjectInput>& inputs = found.objects;
+  outcome.warnings = std::move(found.warnings);
   if (!job.name.empty() && inputs.size() == 1) inputs.front().name = job.name;
   std::vector<SourceFile> sources;
   ASSIGN_OR_RETURN(const auto collection, readShapes(job.collection, sources));
-  if (collection) outcome.warnings = collection->warnings;
+  if (collection) std::ranges::copy(collection->warnings, std::back_inserter(outcome.warnings));
   // One object is done or not.
   std::unique_ptr<Journal> kept;
   if (inputs.size() > 1) {

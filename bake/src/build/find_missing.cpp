@@ -46,9 +46,9 @@ class Search {
     lookForTextures(composed->scene, instance.dataset->folder());
   }
   void lookInto(const ObjectJob& job) {
-    const auto objects = findObjects(job.inputs);
-    if (!objects) return add(sentenceOf(objects.error()));
-    for (const ObjectInput& object : *objects) lookIntoMesh(object.path, job.import);
+    const auto found = findObjects(job.inputs);
+    if (!found) return add(sentenceOf(found.error()));
+    for (const ObjectInput& object : found->objects) lookIntoMesh(object.path, job.import);
   }
   void lookInto(const RobotJob& job) {
     const auto robot = readRobotFile(job);

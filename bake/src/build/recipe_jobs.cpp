@@ -72,8 +72,9 @@ class RecipeJobs {
     ASSIGN_OR_RETURN(const auto inputs, inputsOf(assets));
     ObjectJob job;
     if (auto read = readOptions(assets, "`as` object", job); !read) return read;
-    ASSIGN_OR_RETURN(const auto objects, findObjects(inputs));
-    for (const ObjectInput& object : objects) {
+    ASSIGN_OR_RETURN(const auto found, findObjects(inputs));
+    for (const std::string& warning : found.warnings) packs_.warn(warning);
+    for (const ObjectInput& object : found.objects) {
       job.inputs = {object.path};
       job.name = object.name;
       packs_.add("objects/" + object.name, job, object.path);

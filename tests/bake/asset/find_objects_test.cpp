@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -24,22 +26,24 @@ class FindObjects : public testing::Test {
     for (const std::string& file : files) static_cast<void>(folder_.write(file, "any content"));
   }
   [[nodiscard]] fs::path path(const std::string& name) const { return folder_.path() / name; }
-  /// The objects in `set`, as NAME=FILE.
-  [[nodiscard]] std::vector<std::string> found() const {
-    const auto objects = bake::findObjects({path("set")});
-    EXPECT_TRUE(objects) << objects.error().where << ": " << objects.error().message;
+  /// The objects of inputs, as NAME=FILE below `set`; warnings come behind them.
+  [[nodiscard]] std::vector<std::string> foundIn(const std::vector<fs::path>& inputs) const {
+    auto found = bake::findObjects(inputs);
+    EXPECT_TRUE(found) << found.error().where << ": " << found.error().message;
     std::vector<std::string> texts;
-    if (!objects) return texts;
-    for (const bake::ObjectInput& object : *objects) {
+    if (!found) return texts;
+    for (const bake::ObjectInput& object : found->objects) {
       texts.push_back(fmt::format("{}={}", object.name,
                                   object.path.lexically_relative(path("set")).generic_string()));
     }
+    std::ranges::move(found->warnings, std::back_inserter(texts));
     return texts;
   }
+  [[nodiscard]] std::vector<std::string> found() const { return foundIn({path("set")}); }
   [[nodiscard]] Error refused() const {
-    const auto objects = bake::findObjects({path("set")});
-    EXPECT_FALSE(objects);
-    return objects ? Error{} : objects.error();
+    const auto found = bake::findObjects({path("set")});
+    EXPECT_FALSE(found);
+    return found ? Error{} : found.error();
   }
 
  private:
@@ -109,6 +113,43 @@ TEST_F(FindObjects, TakesTheVisualMeshOfGazebosPairs) {
                                    "lamp_collision=lamp/lamp_collision.dae", "sofa=sofa/sofa.glb",
                                    "sofa_collision=sofa/sofa_collision.dae",
                                    "sofa_visual=sofa/sofa_visual.dae"));
+}
+
+TEST_F(FindObjects, NamesAFolderWithOneModelByThatFolder) {
+  write({"set/model.obj", "set/model.stl", "set/model_collision_0.obj", "set/textured.ply",
+         "set/nontextured.ply", "set/parts/handle.glb"});
+  EXPECT_THAT(found(), ElementsAre("handle=parts/handle.glb", "set=model.obj"));
+}
+
+TEST_F(FindObjects, TakesAllObjectsOfAnInputOneOfWhichIsCalledModel) {
+  write({"set/model.glb", "set/model.stl", "set/mug.glb", "set/bowl.glb"});
+  EXPECT_THAT(found(), ElementsAre("bowl=bowl.glb", "model=model.glb", "mug=mug.glb"));
+}
+
+TEST_F(FindObjects, WarnsOfMeshesThatTheModelOfTheirFolderHides) {
+  write({"set/can/model.glb", "set/can/lid.glb", "set/can/handle.stl", "set/can/model.stl"});
+  constexpr const char* kWarning =
+      "can/model.glb stands for all of its folder: {} beside it left out; what is an object of its "
+      "own needs a folder without such a file";
+  EXPECT_THAT(found(),
+              ElementsAre("can=can/model.glb", fmt::format(kWarning, "lid.glb, handle.stl")));
+  for (int n = 0; n < 6; ++n) write({fmt::format("set/can/{}.glb", n)});
+  EXPECT_THAT(found(), ElementsAre("can=can/model.glb",
+                                   fmt::format(kWarning,
+                                               "0.glb, 1.glb, 2.glb, 3.glb, 4.glb, 5.glb and 2 "
+                                               "more")));
+}
+
+TEST_F(FindObjects, SaysNothingOfTheFormsInWhichCollectionsArePublished) {
+  write({"set/002_can/google_16k/textured.obj", "set/002_can/google_16k/nontextured.ply",
+         "set/002_can/google_16k/nontextured.stl", "set/002_can/tsdf/textured.obj",
+         "set/002_can/tsdf/nontextured.ply", "set/003_box/textured.obj",
+         "set/003_box/textured_simple.obj", "set/003_box/collision.ply",
+         "set/003_box/textured.obj.coacd.ply", "set/Mug/meshes/model.obj", "set/Pot/model.obj",
+         "set/Pot/model_collision_0.obj", "set/Pot/model_collision_1.obj"});
+  EXPECT_THAT(found(),
+              ElementsAre("002_can=002_can/google_16k/textured.obj", "003_box=003_box/textured.obj",
+                          "Mug=Mug/meshes/model.obj", "Pot=Pot/model.obj"));
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ struct ObjectSetOutcome {
   std::vector<BakedObject> objects;
   /// One for each object.
   std::vector<Origin> origins;
-  /// Of the collection.
+  /// Of the collection, and of meshes that are no objects.
   std::vector<std::string> warnings;
   /// Objects that could not be baked. Without BakeContext::keep_going there is then no pack.
   std::vector<BakeFailure> failures;
@@ -186,14 +186,22 @@ struct ObjectInput {
   std::string name;
 };
 
-/// The objects that `inputs` (mesh files, and folders that are searched) name, by ascending name.
-/// A file is an object named by its stem. In a folder below an input, a file whose stem is
-/// "textured" or "model" stands for the whole folder and takes its name: so are YCB and Google
-/// Scanned Objects laid out. Of NAME_visual and NAME_collision side by side, Gazebo's layout, the
-/// first is the object NAME. Hidden files and folders are passed over, links to folders followed.
-/// Fails with kIo where a folder cannot be read or a link with a mesh's name leads to nothing, and
-/// with kInvalidInput where an input holds no mesh or two objects have one name.
-[[nodiscard]] Result<std::vector<ObjectInput>> findObjects(
-    const std::vector<std::filesystem::path>& inputs);
+/// Which objects there are.
+struct FoundObjects {
+  /// By ascending name.
+  std::vector<ObjectInput> objects;
+  /// Of meshes that are no objects. Names are relative to the inputs.
+  std::vector<std::string> warnings;
+};
+
+/// The objects that `inputs` (mesh files, and folders that are searched) name. A file is an object
+/// named by its stem. In a folder below an input, a file whose stem is "textured" or "model" stands
+/// for the whole folder and takes its name: so are YCB and Google Scanned Objects laid out. In an
+/// input itself it does where no other object lies beside it. Of NAME_visual and NAME_collision
+/// side by side, Gazebo's layout, the first is the object NAME. Hidden files and folders are passed
+/// over, links to folders followed. Fails with kIo where a folder cannot be read or a link with a
+/// mesh's name leads to nothing, and with kInvalidInput where an input holds no mesh or two objects
+/// have one name.
+[[nodiscard]] Result<FoundObjects> findObjects(const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace galactic::bake

@@ -99,7 +99,7 @@ struct ObjectFigures {
 struct ObjectSetFigures {
   std::vector<float> radii{};
   std::vector<ObjectFigures> objects{};
-  /// Of the collection.
+  /// Of the collection, and of meshes that are no objects.
   std::vector<std::string> warnings{};
   double seconds = 0;
 };
