@@ -47,10 +47,11 @@ struct FolderModel {
 
 FolderModel modelOf(const fs::path& file) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
-  const std::string name = folder.filename().string();
-  const std::size_t rank = makeRank(name);
-  if (rank == kMakeFolders.size()) return {{file, name}, 0};
-  return {{file, folder.parent_path().filename().string()}, rank};
+  const std::size_t rank = makeRank(folder.filename().string());
+  const bool is_made = rank < kMakeFolders.size();
+  const std::string name = (is_made ? folder.parent_path() : folder).filename().string();
+  // The uppermost folder has none.
+  return {{file, name.empty() ? file.stem().string() : name}, is_made ? rank : 0};
 }
 
 std::size_t formatRank(const fs::path& path) {
@@ -177,11 +178,10 @@ std::string leftOut(const fs::path& root, const fs::path& model,
   const std::size_t more = names.size() - std::min(names.size(), kMostNamed);
   names.resize(names.size() - more);
   return fmt::format(
-      "{} stands for all of its folder: {}{} beside it left out; what is an object of its own "
-      "needs "
-      "a folder without such a file",
+      "{} stands for all of its folder, and {}{} beside it {} left out: what is an "
+      "object of its own needs a folder without such a file",
       model.lexically_relative(root).generic_string(), fmt::join(names, ", "),
-      more == 0 ? "" : fmt::format(" and {} more", more));
+      more == 0 ? "" : fmt::format(" and {} more", more), hidden.size() == 1 ? "is" : "are");
 }
 
 Result<void> addFolder(const fs::path& root, FoundObjects& found) {
@@ -225,10 +225,9 @@ Result<FoundObjects> findObjects(const std::vector<fs::path>& inputs) {
   for (const fs::path& input : inputs) {
     std::error_code unknown;
     if (!fs::is_directory(input, unknown)) {
-      const fs::path parent = fs::absolute(input).lexically_normal().parent_path();
-      objects.push_back({input, standsForFolder(input) && inputs.size() > 1
-                                    ? parent.filename().string()
-                                    : input.stem().string()});
+      // However many inputs there are: the name that it has in a folder that is searched.
+      objects.push_back(standsForFolder(input) ? modelOf(input).input
+                                               : ObjectInput{input, input.stem().string()});
       continue;
     }
     RETURN_IF_ERROR(addFolder(input, found));

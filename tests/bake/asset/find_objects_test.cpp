@@ -129,8 +129,8 @@ TEST_F(FindObjects, TakesAllObjectsOfAnInputOneOfWhichIsCalledModel) {
 TEST_F(FindObjects, WarnsOfMeshesThatTheModelOfTheirFolderHides) {
   write({"set/can/model.glb", "set/can/lid.glb", "set/can/handle.stl", "set/can/model.stl"});
   constexpr const char* kWarning =
-      "can/model.glb stands for all of its folder: {} beside it left out; what is an object of its "
-      "own needs a folder without such a file";
+      "can/model.glb stands for all of its folder, and {} beside it are left out: what is an "
+      "object of its own needs a folder without such a file";
   EXPECT_THAT(found(),
               ElementsAre("can=can/model.glb", fmt::format(kWarning, "lid.glb, handle.stl")));
   for (int n = 0; n < 6; ++n) write({fmt::format("set/can/{}.glb", n)});
@@ -150,6 +150,32 @@ TEST_F(FindObjects, SaysNothingOfTheFormsInWhichCollectionsArePublished) {
   EXPECT_THAT(found(),
               ElementsAre("002_can=002_can/google_16k/textured.obj", "003_box=003_box/textured.obj",
                           "Mug=Mug/meshes/model.obj", "Pot=Pot/model.obj"));
+}
+
+TEST_F(FindObjects, NamesFilesAsTheirFolderWouldBeNamed) {
+  const std::vector<std::string> files{"002_can/google_16k/textured.obj",
+                                       "003_box/google_16k/textured.obj", "red/model.obj",
+                                       "mug.glb"};
+  for (const std::string& file : files) write({"set/" + file});
+  const std::vector<std::string> names{"002_can", "003_box", "red", "mug"};
+  std::vector<fs::path> inputs;
+  std::vector<std::string> all;
+  for (std::size_t n = 0; n < files.size(); ++n) {
+    inputs.push_back(path("set/" + files[n]));
+    all.push_back(names[n] + "=" + files[n]);
+    // Alone, too: another file may join it later.
+    EXPECT_THAT(foundIn({inputs.back()}), ElementsAre(all.back()));
+  }
+  EXPECT_THAT(foundIn(inputs), testing::UnorderedElementsAreArray(all));
+  EXPECT_THAT(found(), testing::UnorderedElementsAreArray(all));
+}
+
+TEST_F(FindObjects, CallsAModelInTheUppermostFolderByItsStem) {
+  const auto found = bake::findObjects({"/model.obj", "/google_16k/textured.obj"});
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->objects.size(), 2U);
+  EXPECT_EQ(found->objects[0].name, "model");
+  EXPECT_EQ(found->objects[1].name, "textured");
 }
 
 }  // namespace

@@ -195,13 +195,14 @@ struct FoundObjects {
 };
 
 /// The objects that `inputs` (mesh files, and folders that are searched) name. A file is an object
-/// named by its stem. In a folder below an input, a file whose stem is "textured" or "model" stands
-/// for the whole folder and takes its name: so are YCB and Google Scanned Objects laid out. In an
-/// input itself it does where no other object lies beside it. Of NAME_visual and NAME_collision
-/// side by side, Gazebo's layout, the first is the object NAME. Hidden files and folders are passed
-/// over, links to folders followed. Fails with kIo where a folder cannot be read or a link with a
-/// mesh's name leads to nothing, and with kInvalidInput where an input holds no mesh or two objects
-/// have one name.
+/// named by its stem. A file whose stem is "textured" or "model" takes the name of its folder, or
+/// of the one above where that says how it was made ("google_16k"): so are YCB and Google Scanned
+/// Objects laid out. In a folder below an input it stands for all of that folder; in an input
+/// itself where no other object lies beside it. Of NAME_visual and NAME_collision side by side,
+/// Gazebo's layout, the first is the object NAME. Hidden files and folders are passed over, links
+/// to folders followed. Fails with kIo where a folder cannot be read or a link with a mesh's name
+/// leads to nothing, and with kInvalidInput where an input holds no mesh or two objects have one
+/// name.
 [[nodiscard]] Result<FoundObjects> findObjects(const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace galactic::bake
