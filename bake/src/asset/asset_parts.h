@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "galactic/bake/assets.h"
+#include "galactic/bake/urdf_import.h"
 #include "render/render_source.h"
 #include "support/journal.h"
 
@@ -27,6 +28,9 @@ namespace galactic::bake {
 [[nodiscard]] Result<std::unique_ptr<Journal>> openJournal(const Job& job,
                                                            std::span<const SourceFile> files,
                                                            const BakeContext& context);
+
+/// How the URDF of a robot's job is read.
+[[nodiscard]] UrdfImportOptions urdfOptionsOf(const RobotJob& job);
 
 /// Render meshes of one asset, or none where none are wanted.
 using OptionalMeshes = std::optional<BakedRenderMeshes>;

@@ -6,7 +6,6 @@
 #include "common/stage_timer.h"
 #include "galactic/bake/packs.h"
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/bake/urdf_import.h"
 #include "recipe/collection_import.h"
 #include "support/try.h"
 
@@ -65,13 +64,17 @@ Result<BakedRobot> bakeParts(const RobotJob& job, SourceRobot& robot, const Bake
 
 }  // namespace
 
-Result<SourceRobot> readRobotFile(const RobotJob& job) {
+UrdfImportOptions urdfOptionsOf(const RobotJob& job) {
   UrdfImportOptions import;
   import.allow_outside = job.allow_outside;
   import.packages = job.packages;
   import.search_roots = rosPackagePath();
   import.allow_missing = job.allow_missing;
-  return importUrdf(job.input, import);
+  return import;
+}
+
+Result<SourceRobot> readRobotFile(const RobotJob& job) {
+  return importUrdf(job.input, urdfOptionsOf(job));
 }
 
 Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {

@@ -25,8 +25,7 @@ std::uint64_t memoryOf(const PackJob& pack) {
   return kAtLeast + kPerByte * pack.source_bytes;
 }
 
-/// How long a bake takes, for comparison only. A robot takes longest, and its URDF says nothing of
-/// its meshes.
+/// How long a bake takes, for comparison only. A robot takes longest, however small its meshes.
 std::uint64_t effortOf(const PackJob& pack) {
   const bool is_robot = std::holds_alternative<RobotJob>(pack.job);
   return is_robot ? std::numeric_limits<std::uint64_t>::max() : pack.source_bytes;

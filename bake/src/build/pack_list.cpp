@@ -8,19 +8,15 @@
 #include <system_error>
 #include <utility>
 
+#include "asset/asset_parts.h"
 #include "common/folder_entries.h"
 #include "support/try.h"
+#include "urdf/named_files.h"
 
 namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::uint64_t sizeOf(const fs::path& file) {
-  std::error_code problem;
-  const std::uintmax_t bytes = fs::file_size(file, problem);
-  return problem ? 0 : bytes;
-}
 
 fs::path folderOf(const fs::path& file) {
   std::error_code problem;
@@ -36,6 +32,12 @@ const std::vector<float>* radiiOf(const Job& job) {
   return nullptr;
 }
 
+/// How the URDF of the job, if it has one, is read.
+UrdfImportOptions importOptionsOf(const Job& job) {
+  const auto* robot = std::get_if<RobotJob>(&job);
+  return robot == nullptr ? UrdfImportOptions() : urdfOptionsOf(*robot);
+}
+
 std::string inputOf(const PackJob& pack) { return filesOf(pack.job).front().string(); }
 
 }  // namespace
@@ -48,11 +50,12 @@ PackList::PackList(const fs::path& world) {
 
 PackJob& PackList::add(const std::string& name, Job job, const fs::path& input) {
   const std::string file = name + ".pack";
+  const std::uint64_t bytes = bytesWithNamedFiles(input, importOptionsOf(job));
   list_.assets.push_back({.name = file,
                           .job = std::move(job),
                           .output = list_.folder / file,
                           .folder = folderOf(input),
-                          .source_bytes = sizeOf(input)});
+                          .source_bytes = bytes});
   return list_.assets.back();
 }
 

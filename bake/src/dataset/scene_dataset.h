@@ -44,7 +44,8 @@ struct SceneSurvey {
   std::vector<DatasetObject> movable;
   /// Of its stage and objects, each once, as far as they are there; not those in URDFs.
   std::vector<std::filesystem::path> meshes;
-  /// Size of all meshes that it places, each once.
+  /// Size of all meshes that it places, with those in URDFs and with buffers and images of glTF,
+  /// each once.
   std::uint64_t bytes = 0;
 };
 

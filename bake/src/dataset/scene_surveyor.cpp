@@ -9,6 +9,7 @@
 #include "dataset/config/placement.h"
 #include "import/source_files.h"
 #include "support/try.h"
+#include "urdf/named_files.h"
 
 namespace galactic::bake {
 
@@ -18,7 +19,9 @@ bool SceneSurveyor::hasFile(const fs::path& file) {
   std::error_code problem;
   const std::uintmax_t bytes = fs::file_size(file, problem);
   if (problem) return false;
-  if (seen_.insert(file).second) survey_.bytes += bytes;
+  if (!seen_.insert(file).second) return true;
+  survey_.bytes += bytes;
+  for (const fs::path& named : namedFiles(file, {})) (void)hasFile(named);
   return true;
 }
 

@@ -26,7 +26,8 @@ class SceneSurveyor {
   [[nodiscard]] Result<Known> lookUp(TemplateKind kind, const SceneItem& item);
   [[nodiscard]] Result<bool> surveyMesh(TemplateKind kind, const SceneItem& item);
   [[nodiscard]] Result<void> surveyFurniture(const SceneItem& item);
-  /// Whether the file is there; if so, its size is added the first time.
+  /// Whether the file is there; if so, its size and that of the files that it names are added, each
+  /// the first time.
   [[nodiscard]] bool hasFile(const std::filesystem::path& file);
   void noteMissing(const std::string& sentence);
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "bake/dataset/small_dataset.h"
+#include "galactic/bake/job_lists.h"
+#include "urdf/named_files.h"
 
 namespace galactic::test::scene_survey_test {
 namespace {
@@ -69,6 +71,62 @@ TEST(SceneSurvey, CountsTheBytesOfEachMeshOnce) {
   EXPECT_EQ(survey->bytes, fs::file_size(small.folder() / "meshes/room.obj") +
                                fs::file_size(small.folder() / "meshes/box.obj") +
                                fs::file_size(small.folder() / "bare/crate.glb"));
+}
+
+TEST(SceneSurvey, CountsTheBytesOfWhatMeshesAndUrdfsName) {
+  const SmallDataset small;
+  small.write("meshes/hall.gltf", R"({"buffers": [{"uri": "hall%201.bin"}, {"uri": "data:,x"},
+      {"uri": "lost.bin"}, {"byteLength": 9}, 7], "images": [{"uri": "wall.png"}]})");
+  small.write("meshes/hall 1.bin", std::string(5000, 'b'));
+  small.write("meshes/wall.png", std::string(300, 'p'));
+  small.write("configs/stages/hall.stage_config.json",
+              R"({"render_asset": "../../meshes/hall.gltf"})");
+  small.writeScene("named", R"({"stage_instance": {"template_name": "hall"},
+      "articulated_object_instances": [{"template_name": "cupboard"},
+                                       {"template_name": "cupboard"}]})");
+  const auto survey = readDataset(small).survey("named");
+  ASSERT_TRUE(survey);
+  EXPECT_EQ(survey->bytes, fs::file_size(small.folder() / "meshes/hall.gltf") + 5300 +
+                               fs::file_size(small.folder() / "urdf/cupboard/cupboard.urdf") +
+                               fs::file_size(small.folder() / "urdf/cupboard/door.obj"));
+}
+
+TEST(SceneSurvey, CountsWhatItCannotUnderstandByItsOwnSize) {
+  const SmallDataset small;
+  for (const char* broken : {"", "no json", "[1]", R"({"buffers": 3, "images": {"uri": "a"}})",
+                             R"({"buffers": [{"uri": 3}, null, {"uri": "."}]})"}) {
+    SCOPED_TRACE(broken);
+    const fs::path gltf = small.write("broken.gltf", broken);
+    EXPECT_EQ(bake::bytesWithNamedFiles(gltf, {}), std::string(broken).size());
+  }
+  for (const char* broken : {"filename", "filename=", "filename=\"m.stl", "filename='m.stl\"",
+                             "filename x=\"m.stl\"", "filename=\"\" filename=\"/\""}) {
+    SCOPED_TRACE(broken);
+    small.write("m.stl", "mesh");
+    const fs::path urdf = small.write("broken.urdf", broken);
+    EXPECT_EQ(bake::bytesWithNamedFiles(urdf, {}), std::string(broken).size());
+  }
+  EXPECT_EQ(bake::bytesWithNamedFiles(small.folder() / "absent.gltf", {}), 0U);
+}
+
+TEST(ExpectedBytes, OfARobotAreThoseOfItsMeshesToo) {
+  const SmallDataset small;
+  const std::string mesh(7000, 'm');
+  small.write("arm_description/m.stl", mesh);
+  small.write("arm_description/n.stl", mesh);
+  const std::string text = "<mesh filename=\"package://arm/m.stl\"/><mesh filename = 'n.stl'/>";
+  const fs::path urdf = small.write("robots/r.urdf", text);
+  small.write("robots/n.stl", mesh);
+  small.write("world.toml",
+              "[[scenes]]\nfiles = 'meshes/room.obj'\n[robot]\nfiles = 'robots/r.urdf'\n"
+              "package = { arm = 'arm_description' }\n");
+  const auto list =
+      bake::jobsOfRecipe({.recipe = small.folder() / "world.toml"}, small.folder() / "world.pack");
+  ASSERT_TRUE(list) << list.error().where << ": " << list.error().message;
+  ASSERT_EQ(list->assets.size(), 2U);
+  EXPECT_EQ(list->assets[0].name, "robot.pack");
+  EXPECT_EQ(list->assets[0].source_bytes, text.size() + 2 * mesh.size());
+  EXPECT_EQ(list->assets[1].source_bytes, fs::file_size(small.folder() / "meshes/room.obj"));
 }
 
 TEST(SceneSurvey, AgreesOnStagesThatLackAndScenesThatWantNone) {

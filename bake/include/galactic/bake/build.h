@@ -26,7 +26,8 @@ struct PackJob {
   std::filesystem::path output;
   /// Names of files that the pack depends on begin here.
   std::filesystem::path folder{};
-  /// Size of its main input: the large ones are baked first.
+  /// Size of its main input and of the files that this one names, as far as that is told quickly:
+  /// the large ones are baked first.
   std::uint64_t source_bytes = 0;
 };
 
