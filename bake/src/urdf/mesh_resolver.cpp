@@ -38,9 +38,11 @@ std::string fileInOtherCase(const fs::path& path) {
   return found;
 }
 
+fs::path packageFileOf(const fs::path& folder) { return folder / "package.xml"; }
+
 /// The <name> of a package.xml, without a parser: the first one counts.
 std::string nameInPackageFile(const fs::path& folder) {
-  std::ifstream stream(folder / "package.xml", std::ios::binary);
+  std::ifstream stream(packageFileOf(folder), std::ios::binary);
   if (!stream) return {};
   std::string text(kPackageFileBytes, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -117,9 +119,16 @@ std::optional<fs::path> MeshResolver::fileIn(const fs::path& folder, const std::
   return std::nullopt;
 }
 
+bool MeshResolver::findsPackageFile(const fs::path& folder) {
+  const fs::path file = packageFileOf(folder);
+  if (!search_.findsFile(file) || !std::ifstream(file)) return false;
+  package_files_.insert(file);
+  return true;
+}
+
 bool MeshResolver::isPackageAbove(const fs::path& folder, const std::string& package) {
   return folder.filename() == package ||
-         (search_.findsFile(folder / "package.xml") && nameInPackageFile(folder) == package);
+         (findsPackageFile(folder) && nameInPackageFile(folder) == package);
 }
 
 const std::vector<fs::path>& MeshResolver::foldersOf(const std::string& package) {
@@ -170,7 +179,7 @@ bool MeshResolver::isInReach(const fs::path& path) {
   return std::any_of(options_.packages.begin(), options_.packages.end(), is_in_package) ||
          std::any_of(options_.search_roots.begin(), options_.search_roots.end(), is_in) ||
          std::any_of(ancestors_.begin(), ancestors_.end(), [&](const fs::path& ancestor) {
-           return is_in(ancestor) && search_.findsFile(ancestor / "package.xml");
+           return is_in(ancestor) && findsPackageFile(ancestor);
          });
 }
 

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,12 @@ class MeshResolver {
   /// Where the references so far were looked for; below the search roots, only in the folder that
   /// has the package's name.
   [[nodiscard]] const FileSearch& search() const { return search_; }
-  /// Whether more was looked at than search() says: all folders below the search roots.
+  /// The package.xml files above the URDF that were looked into: another content of them, or none,
+  /// may lead elsewhere.
+  [[nodiscard]] const std::set<std::filesystem::path>& packageFiles() const {
+    return package_files_;
+  }
+  /// Whether more was looked at than that: all folders below the search roots.
   [[nodiscard]] bool hasSearched() const { return has_searched_; }
 
  private:
@@ -47,12 +53,15 @@ class MeshResolver {
   /// `folder / name`, also with %20 and backslashes undone, if it is a file.
   [[nodiscard]] std::optional<std::filesystem::path> fileIn(const std::filesystem::path& folder,
                                                             const std::string& name);
+  /// Whether there is a package.xml in `folder`, one above the URDF, that can be read.
+  [[nodiscard]] bool findsPackageFile(const std::filesystem::path& folder);
   /// Whether `folder`, one above the URDF, is the package by its name or its package.xml.
   [[nodiscard]] bool isPackageAbove(const std::filesystem::path& folder,
                                     const std::string& package);
 
   const UrdfImportOptions& options_;
   FileSearch search_;
+  std::set<std::filesystem::path> package_files_;
   bool has_searched_ = false;
   /// The URDF's folder and its parents, nearest first.
   std::vector<std::filesystem::path> ancestors_;

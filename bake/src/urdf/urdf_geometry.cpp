@@ -282,8 +282,11 @@ Result<std::vector<GeometryBuilder::LostShape>> GeometryBuilder::addList(const U
   return lost;
 }
 
-void GeometryBuilder::noteAbsentFiles() {
+void GeometryBuilder::noteSearch() {
   if (resolver_.hasSearched()) robot_.is_settled = false;
+  for (const fs::path& file : resolver_.packageFiles()) {
+    robot_.files.push_back({.name = nameRelativeTo(urdf_, file)});
+  }
   for (const fs::path& absent : resolver_.search().absent()) {
     robot_.absent_files.push_back(nameRelativeTo(urdf_, absent));
   }

@@ -24,8 +24,8 @@ class GeometryBuilder {
   /// lost all the geometry that it had, unless the options allow it.
   Result<void> addShapes(const UrdfLink& from, SourceLink& to);
 
-  /// Fills in where the meshes of the links so far are not.
-  void noteAbsentFiles();
+  /// Fills in where the meshes of the links so far are not, and what else decided where they are.
+  void noteSearch();
 
  private:
   /// A mesh that was loaded, or why there is none.

@@ -106,7 +106,7 @@ Result<SourceRobot> importUrdf(const fs::path& path, const UrdfImportOptions& op
   for (std::size_t i = 0; i < tree.size(); ++i) {
     RETURN_IF_ERROR(geometry.addShapes(model.links[tree[i].link], robot.links[i]));
   }
-  geometry.noteAbsentFiles();
+  geometry.noteSearch();
   RETURN_IF_ERROR(finishFiles(robot, path));
   return robot;
 }

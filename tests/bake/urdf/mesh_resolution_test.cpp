@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "bake/urdf/urdf_helpers.h"
+#include "support/mesh_files.h"
 #include "urdf/mesh_resolver.h"
 
 namespace galactic::test::mesh_resolution_test {
@@ -165,6 +166,39 @@ TEST_F(MeshReferences, ThatLeadNowhereSayWhereTheyWereLookedFor) {
     EXPECT_TRUE(resolve(odd).file.empty());
     EXPECT_FALSE(resolve(odd).how.empty());
   }
+}
+
+TEST_F(MeshReferences, DependOnThePackageFilesThatWereLookedInto) {
+  const fs::path beside = put("ws/src/pkg_description/robots/arm/m.stl");
+  const fs::path inside = put("ws/src/pkg_description/robots/m.stl");
+  const fs::path package = urdf_.parent_path() / "package.xml";
+  const auto name = [&](const char* called) {
+    (void)folder_.write("ws/src/pkg_description/robots/package.xml",
+                        fmt::format("<package><name>{}</name></package>", called));
+  };
+  name("other");
+  MeshResolver before(urdf_, options_);
+  EXPECT_EQ(before.resolve("package://arm/m.stl").file, beside);
+  EXPECT_THAT(before.packageFiles(), testing::ElementsAre(package));
+  name("arm");
+  MeshResolver after(urdf_, options_);
+  EXPECT_EQ(after.resolve("package://arm/m.stl").file, inside);
+  EXPECT_THAT(after.packageFiles(), testing::ElementsAre(package));
+  // Who asks for none depends on none.
+  MeshResolver relative(urdf_, options_);
+  EXPECT_EQ(relative.resolve("m.stl").file, inside);
+  EXPECT_THAT(relative.packageFiles(), testing::IsEmpty());
+}
+
+TEST_F(MeshReferences, MakePackageFilesSourcesOfTheRobot) {
+  (void)folder_.write("ws/arm/m.stl", stlBinaryFile(unevenBox()));
+  (void)folder_.write("ws/package.xml", "<package><name>other</name></package>");
+  const auto robot = bake::importUrdf(folder_.write(
+      "ws/r.urdf", robotText(linkText("a", "<mesh filename=\"package://arm/m.stl\"/>"))));
+  ASSERT_TRUE(robot.has_value()) << robot.error().message;
+  std::vector<std::string> names;
+  for (const bake::SourceFile& file : robot->files) names.push_back(file.name);
+  EXPECT_THAT(names, testing::ElementsAre("r.urdf", "arm/m.stl", "package.xml"));
 }
 
 }  // namespace

@@ -79,7 +79,8 @@ struct SourceRobot {
   std::vector<SourceLink> links;
   /// Each mesh file once.
   std::vector<SourceAsset> meshes;
-  /// The URDF and every mesh file, also those that do not load.
+  /// The URDF, every mesh file, also those that do not load, and every package.xml that decided
+  /// where meshes are.
   std::vector<SourceFile> files;
   /// Files and folders that were looked for and are not there, relative to the URDF's folder.
   std::vector<std::string> absent_files;
