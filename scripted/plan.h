@@ -1,9 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "galactic/planning_scene.h"
-#include "scripted/arm.h"
+#include "scripted/arm_planner.h"
+#include "scripted/floor_search.h"
 #include "scripted/scripted_policy.h"
 
 namespace galactic::scripted {
@@ -20,10 +22,37 @@ struct PlanStep {
   Joints joints;
 };
 
+/// From where, and how, the hand comes to what a plan is about; world frame.
+struct Stance {
+  BasePlace base;
+  /// Meters.
+  Vec3 grip;
+  /// The X axis of the grip.
+  Vec3 approach;
+};
+
 /// What to do until the next plan; empty when there is trouble.
 struct Plan {
   std::vector<PlanStep> steps;
   ScriptedTrouble trouble = ScriptedTrouble::kNone;
+  /// Where it ends.
+  Stance stance;
+};
+
+/// Drives from `start` along `route`, moves the arm along `path`, and does the last.
+[[nodiscard]] Plan planOf(const BasePlace& start, const BaseRoute& route, const ArmPath& path,
+                          PlanStep::Kind last);
+/// Moves the arm before all else, where the base stands at first.
+void prepend(const BasePlace& base, const ArmPath& path, Plan& plan);
+/// Nothing to do.
+[[nodiscard]] Plan troubled(ScriptedTrouble trouble);
+
+/// A try at an episode: the plans of another one are others.
+struct Attempt {
+  /// Counts the plans of the episode: each draws other random positions.
+  std::uint32_t number = 0;
+  /// Where plans of the episode have ended in vain.
+  std::span<const Stance> failed;
 };
 
 }  // namespace galactic::scripted

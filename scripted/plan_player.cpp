@@ -204,7 +204,7 @@ PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_bas
       return Progress::kActs;
     }
     const Way way = advance(arm, robot_base, at, asked, row);
-    if (way.strays) return is_arm_next ? Progress::kOff : Progress::kStuck;
+    if (way.strays) return is_arm_next ? Progress::kOff : Progress::kAstray;
     if (!isOver(way)) return getsOn(way) ? Progress::kActs : Progress::kStuck;
     clear(row);
   }

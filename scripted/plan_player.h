@@ -30,7 +30,9 @@ class PlanPlayer {
     kDone,
     /// The arm is to move, but the base is not quite where the plan has it then.
     kOff,
-    /// The robot is not where the plan wants it, or does not move.
+    /// The base is far from the line of its drive.
+    kAstray,
+    /// The robot does not move as it should.
     kStuck,
   };
 

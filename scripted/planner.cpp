@@ -69,43 +69,6 @@ int mostFreedoms(Arm& arm, const ReachTable& table, const Joints& others, Movers
   return freedoms;
 }
 
-std::vector<PlanStep> stepsOf(const BasePlace& base, const ArmPath& path) {
-  std::vector<PlanStep> steps;
-  steps.reserve(path.size());
-  for (const Joints& joints : path) steps.push_back({PlanStep::Kind::kMoveArm, base, {}, joints});
-  return steps;
-}
-
-void prepend(const BasePlace& base, const ArmPath& path, Plan& plan) {
-  const std::vector<PlanStep> steps = stepsOf(base, path);
-  plan.steps.insert(plan.steps.begin(), steps.begin(), steps.end());
-}
-
-/// The way from one place of a route to the next. A turn may end on a place of the lattice that is
-/// almost the same.
-PlanStep baseStep(const BasePlace& from, const BasePlace& to) {
-  constexpr float kSamePlace = 1e-3F;
-  const Vec3 way = to.position - from.position;
-  const bool drives = way.x * way.x + way.z * way.z > kSamePlace * kSamePlace;
-  return {drives ? PlanStep::Kind::kDrive : PlanStep::Kind::kTurn, to, from.position, {}};
-}
-
-/// Drives, moves the arm, and does the last.
-Plan planOf(const BasePlace& start, const BaseRoute& route, const ArmPath& path,
-            PlanStep::Kind last) {
-  Plan plan;
-  plan.steps.reserve(route.size() + path.size() + 1);
-  BasePlace at = start;
-  for (const BasePlace& place : route) {
-    plan.steps.push_back(baseStep(at, place));
-    at = place;
-  }
-  const std::vector<PlanStep> steps = stepsOf(at, path);
-  plan.steps.insert(plan.steps.end(), steps.begin(), steps.end());
-  plan.steps.push_back({last, at, {}, {}});
-  return plan;
-}
-
 ScriptedTrouble troubleOf(FloorSearch::Outcome outcome, ScriptedTrouble no_way,
                           ScriptedTrouble not_accepted) {
   return outcome == FloorSearch::Outcome::kNoWay ? no_way : not_accepted;
@@ -134,6 +97,41 @@ Planner::Planner(const World& world, const SimulationOptions& options)
 }
 
 std::uint64_t Planner::nextSeed() { return seed_++; }
+
+Stance Planner::stanceAt(const BasePlace& base, const Joints& joints) {
+  const Pose world_from_grip = scene_.worldFromRoot(base) * gripAt(joints);
+  return {base, world_from_grip.translation, rotate(world_from_grip.rotation, {1, 0, 0})};
+}
+
+bool Planner::hasFailed(const Stance& stance) const {
+  // Meters, and the cosine of half a radian: the ways from which hands come are farther apart.
+  constexpr float kNearBase = 0.15F;
+  constexpr float kNearGrip = 0.1F;
+  constexpr float kAlike = 0.88F;
+  const auto is_near = [](const Vec3& a, const Vec3& b, float distance) {
+    return dot(a - b, a - b) < distance * distance;
+  };
+  return std::ranges::any_of(failed_, [&](const Stance& failed) {
+    return is_near(stance.base.position, failed.base.position, kNearBase) &&
+           is_near(stance.grip, failed.grip, kNearGrip) &&
+           dot(stance.approach, failed.approach) > kAlike;
+  });
+}
+
+template <class MakePlan>
+Plan Planner::anew(const MakePlan& plan) {
+  Plan result = plan();
+  if (result.trouble == ScriptedTrouble::kNone || failed_.empty()) return result;
+  failed_ = {};
+  return plan();
+}
+
+Plan Planner::planTo(const BasePlace& start, const BaseRoute& route, const ArmPath& path,
+                     PlanStep::Kind last) {
+  Plan plan = planOf(start, route, path, last);
+  plan.stance = stanceAt(plan.steps.back().base, path.back());
+  return plan;
+}
 
 std::vector<Joints> Planner::carriesOf(const EnvState& state) const {
   std::vector<Joints> result;
@@ -232,6 +230,7 @@ std::optional<ArmPath> Planner::reach(BasePlace& base, const Joints& carried, co
     if (!hand) continue;
     const Joints& there = hand->joints;
     const BasePlace turned{base.position, base.yaw + hand->turn};
+    if (hasFailed(stanceAt(turned, there))) continue;
     scene_.setJoints(there);
     if (!scene_.isFree(turned) || !is_right(turned)) continue;
     ArmPath path = retreatFrom(turned, there, reach);
@@ -346,9 +345,10 @@ std::optional<ArmPath> Planner::liftAndFold(const BasePlace& base, const Joints&
   return std::nullopt;
 }
 
-void Planner::takeOver(const EnvState& state, std::uint32_t attempt, std::uint32_t draw) {
+void Planner::takeOver(const EnvState& state, const Attempt& attempt, std::uint32_t draw) {
   state_ = &state;
-  seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt} * 1000 + draw;
+  failed_ = attempt.failed;
+  seed_ = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt.number} * 1000 + draw;
   scene_.update(state);
 }
 
@@ -359,20 +359,24 @@ void Planner::intendToPick() {
   failed_motions_ = 0;
 }
 
-Plan Planner::planPick(const EnvState& state, std::uint32_t attempt) {
+Plan Planner::planPick(const EnvState& state, const Attempt& attempt) {
   takeOver(state, attempt, kPickDraw);
+  return anew([&] { return pick(); });
+}
+
+Plan Planner::pick() {
   intendToPick();
-  const BasePlace start = scene_.baseOf(state);
-  std::vector<Joints> carries = carriesOf(state);
+  const BasePlace start = scene_.baseOf(*state_);
+  std::vector<Joints> carries = carriesOf(*state_);
   // Where there is no room to fold the arm it may still be driven as it is.
-  carries.push_back(state.joint_positions);
+  carries.push_back(state_->joint_positions);
   Plan plan = pickFolded(start, carries);
   if (plan.trouble != ScriptedTrouble::kNoGrasp || is_thorough_) return plan;
   is_thorough_ = true;
   return pickFolded(start, carries);
 }
 
-Plan Planner::planPickFromHere(const EnvState& state, std::uint32_t attempt, std::uint32_t reach) {
+Plan Planner::planPickFromHere(const EnvState& state, const Attempt& attempt, std::uint32_t reach) {
   takeOver(state, attempt, kPickFromHereDraw + reach);
   intendToPick();
   Plan plan = pickFromHere();
@@ -390,16 +394,16 @@ Plan Planner::pickFromHere() {
 
 Plan Planner::planFromHere(const std::optional<ArmPath>& reaching, const BasePlace& turned,
                            PlanStep::Kind last, ScriptedTrouble not_reached) {
-  if (!reaching) return {{}, not_reached};
+  if (!reaching) return troubled(not_reached);
   const BasePlace start = scene_.baseOf(*state_);
-  if (turned.yaw == start.yaw) return planOf(start, {}, *reaching, last);
+  if (turned.yaw == start.yaw) return planTo(start, {}, *reaching, last);
   scene_.setJoints(state_->joint_positions);
-  if (!floor_search_.canTurn(start, turned.yaw)) return {{}, not_reached};
-  return planOf(start, {turned}, *reaching, last);
+  if (!floor_search_.canTurn(start, turned.yaw)) return troubled(not_reached);
+  return planTo(start, {turned}, *reaching, last);
 }
 
 Plan Planner::pickFolded(const BasePlace& start, std::span<const Joints> carries) {
-  Plan plan{{}, ScriptedTrouble::kNoFold};
+  Plan plan = troubled(ScriptedTrouble::kNoFold);
   for (const Joints& carried : carries) {
     failed_motions_ = 0;
     const std::optional<ArmPath> folding = fold(start, state_->joint_positions, carried);
@@ -432,10 +436,10 @@ Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
         return reaching.has_value();
       });
   if (!reaching) {
-    return {{},
-            troubleOf(answer.outcome, ScriptedTrouble::kNoWayToTarget, ScriptedTrouble::kNoGrasp)};
+    return troubled(
+        troubleOf(answer.outcome, ScriptedTrouble::kNoWayToTarget, ScriptedTrouble::kNoGrasp));
   }
-  return planOf(start, answer.route, *reaching, PlanStep::Kind::kGrasp);
+  return planTo(start, answer.route, *reaching, PlanStep::Kind::kGrasp);
 }
 
 ReachView Planner::placeView() const {
@@ -444,7 +448,8 @@ ReachView Planner::placeView() const {
           rotate(scene_.gripFromObject().rotation, up_of_object)};
 }
 
-Plan Planner::planPlaceFromHere(const EnvState& state, std::uint32_t attempt, std::uint32_t reach) {
+Plan Planner::planPlaceFromHere(const EnvState& state, const Attempt& attempt,
+                                std::uint32_t reach) {
   takeOver(state, attempt, kPlaceFromHereDraw + reach);
   const ReachView view = placeView();
   view_ = &view;
@@ -455,15 +460,19 @@ Plan Planner::planPlaceFromHere(const EnvState& state, std::uint32_t attempt, st
   });
 }
 
-Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
+Plan Planner::planPlace(const EnvState& state, const Attempt& attempt) {
   takeOver(state, attempt, kPlaceDraw);
   const ReachView view = placeView();
   view_ = &view;
-  const BasePlace start = scene_.baseOf(state);
-  Plan plan{{}, ScriptedTrouble::kNoFold};
-  for (const Joints& carried : carriesOf(state)) {
+  return anew([&] { return place(); });
+}
+
+Plan Planner::place() {
+  const BasePlace start = scene_.baseOf(*state_);
+  Plan plan = troubled(ScriptedTrouble::kNoFold);
+  for (const Joints& carried : carriesOf(*state_)) {
     failed_motions_ = 0;
-    const std::optional<ArmPath> folding = liftAndFold(start, state.joint_positions, carried);
+    const std::optional<ArmPath> folding = liftAndFold(start, state_->joint_positions, carried);
     if (!folding) continue;
     plan = leaning([&] { return placeWith(start, carried); });
     if (plan.trouble == ScriptedTrouble::kNone) prepend(start, *folding, plan);
@@ -473,17 +482,17 @@ Plan Planner::planPlace(const EnvState& state, std::uint32_t attempt) {
   return plan;
 }
 
-template <class Attempt>
-Plan Planner::leaning(const Attempt& attempt) {
-  Plan plan;
+template <class MakePlan>
+Plan Planner::leaning(const MakePlan& plan) {
+  Plan result;
   // Upright, else leaning, else as it comes, radians.
   for (const float tolerance : {0.15F, 0.6F, -1.0F}) {
     hand_options_.direction_tolerance = tolerance;
     failed_motions_ = 0;
-    plan = attempt();
-    if (plan.trouble != ScriptedTrouble::kNoPlacement) break;
+    result = plan();
+    if (result.trouble != ScriptedTrouble::kNoPlacement) break;
   }
-  return plan;
+  return result;
 }
 
 Plan Planner::placeWith(const BasePlace& start, const Joints& carried) {
@@ -495,11 +504,10 @@ Plan Planner::placeWith(const BasePlace& start, const Joints& carried) {
         return reaching.has_value();
       });
   if (!reaching) {
-    return {
-        {},
-        troubleOf(answer.outcome, ScriptedTrouble::kNoWayToGoal, ScriptedTrouble::kNoPlacement)};
+    return troubled(
+        troubleOf(answer.outcome, ScriptedTrouble::kNoWayToGoal, ScriptedTrouble::kNoPlacement));
   }
-  return planOf(start, answer.route, *reaching, PlanStep::Kind::kRelease);
+  return planTo(start, answer.route, *reaching, PlanStep::Kind::kRelease);
 }
 
 }  // namespace galactic::scripted

@@ -18,16 +18,16 @@ class Planner {
   /// `world`, whose robot has base and end effector, must outlive the planner.
   Planner(const World& world, const SimulationOptions& options);
 
-  /// From anywhere with an empty hand, to the grasp of the target. `attempt` counts plans of the
-  /// episode: each draws other random positions.
-  [[nodiscard]] Plan planPick(const EnvState& state, std::uint32_t attempt);
+  /// From anywhere with an empty hand, to the grasp of the target; to a stance that is like one
+  /// that failed only where there is no other.
+  [[nodiscard]] Plan planPick(const EnvState& state, const Attempt& attempt);
   /// From anywhere with the target in the hand, to its release at the goal.
-  [[nodiscard]] Plan planPlace(const EnvState& state, std::uint32_t attempt);
-  /// The same from where the base stands: it turns at most. `reach` counts these plans of the
-  /// attempt.
-  [[nodiscard]] Plan planPickFromHere(const EnvState& state, std::uint32_t attempt,
+  [[nodiscard]] Plan planPlace(const EnvState& state, const Attempt& attempt);
+  /// The same from where the base stands: it turns at most, and does not come to a stance that is
+  /// like one that failed. `reach` counts these plans of the attempt.
+  [[nodiscard]] Plan planPickFromHere(const EnvState& state, const Attempt& attempt,
                                       std::uint32_t reach);
-  [[nodiscard]] Plan planPlaceFromHere(const EnvState& state, std::uint32_t attempt,
+  [[nodiscard]] Plan planPlaceFromHere(const EnvState& state, const Attempt& attempt,
                                        std::uint32_t reach);
 
  private:
@@ -43,7 +43,16 @@ class Planner {
   };
 
   /// `draw` tells plans of one attempt apart.
-  void takeOver(const EnvState& state, std::uint32_t attempt, std::uint32_t draw);
+  void takeOver(const EnvState& state, const Attempt& attempt, std::uint32_t draw);
+  [[nodiscard]] Stance stanceAt(const BasePlace& base, const Joints& joints);
+  /// Whether a plan that ended here, or nearly so, failed.
+  [[nodiscard]] bool hasFailed(const Stance& stance) const;
+  /// What `plan` finds; without regard to what failed where that is nothing.
+  template <class MakePlan>
+  [[nodiscard]] Plan anew(const MakePlan& plan);
+  /// As planOf, with its stance.
+  [[nodiscard]] Plan planTo(const BasePlace& start, const BaseRoute& route, const ArmPath& path,
+                            PlanStep::Kind last);
   void intendToPick();
   /// What reaches the goal with what is held.
   [[nodiscard]] ReachView placeView() const;
@@ -68,9 +77,11 @@ class Planner {
   [[nodiscard]] Plan pickWith(const BasePlace& start, const Joints& carried);
   /// Where the base may stand for a reach to this point of the world.
   [[nodiscard]] FloorSearch::Target standsFor(const Vec3& point) const;
-  /// The plan of `attempt` with what is held upright, or else as upright as one is found.
-  template <class Attempt>
-  [[nodiscard]] Plan leaning(const Attempt& attempt);
+  /// What `plan` finds with what is held upright, or else as upright as it finds something.
+  template <class MakePlan>
+  [[nodiscard]] Plan leaning(const MakePlan& plan);
+  [[nodiscard]] Plan pick();
+  [[nodiscard]] Plan place();
   [[nodiscard]] Plan pickFromHere();
   /// `turned`: the base as the arm reaches from it by the path `reaching`; nothing reaches where
   /// there is none.
@@ -101,6 +112,7 @@ class Planner {
   // Of the current plan:
   const EnvState* state_ = nullptr;
   const ReachView* view_ = nullptr;
+  std::span<const Stance> failed_;
   std::uint64_t seed_ = 0;
   int failed_motions_ = 0;
   /// The target is also reached for from other directions than those in which hands usually come.

@@ -31,6 +31,9 @@ struct EnvPlan {
   /// be.
   scripted::Joints asked;
   scripted::PlanPlayer player;
+  /// Where the plan that is played ends, and where those ended that led to nothing.
+  scripted::Stance stance;
+  std::vector<scripted::Stance> failed;
   ScriptedPhase phase = ScriptedPhase::kPick;
   ScriptedTrouble trouble = ScriptedTrouble::kNone;
   std::uint32_t plans = 0;
@@ -84,6 +87,8 @@ class ScriptedPolicy::Impl {
   [[nodiscard]] const EnvPlan& env(std::size_t n) const { return envs_[n]; }
 
  private:
+  using Progress = scripted::PlanPlayer::Progress;
+
   /// Acts in one env after the other, with the planner of thread `n`, as long as there are any.
   void work(std::size_t n) noexcept {
     try {
@@ -125,16 +130,12 @@ class ScriptedPolicy::Impl {
       // Letting go is an action of its own.
       row.grasp = state.held >= 0 ? 1.0F : 0.0F;
       if (env.phase == ScriptedPhase::kGaveUp) return;
-      using Progress = scripted::PlanPlayer::Progress;
       const std::span<const float> asked = env.asked.empty() ? state.joint_positions : env.asked;
       const Progress progress = env.player.play(arm_, *world_.robot().base(), state, asked, row);
       if (progress == Progress::kActs) return;
       if (progress == Progress::kOff && reachFromHere(state, env, thread)) continue;
-      if (progress != Progress::kDone) {
-        std::ranges::fill(actions, 0.0F);
-        env.trouble = ScriptedTrouble::kStuck;
-      }
-      planNext(state, env, progress == Progress::kDone, thread);
+      if (progress != Progress::kDone) std::ranges::fill(actions, 0.0F);
+      planNext(state, env, progress, thread);
     }
   }
 
@@ -170,6 +171,7 @@ class ScriptedPolicy::Impl {
       giveUp(env);
       return;
     }
+    env.stance = plan.stance;
     env.player = scripted::PlanPlayer(std::move(plan));
   }
 
@@ -181,10 +183,16 @@ class ScriptedPolicy::Impl {
     return result;
   }
 
-  /// The plan is played to its end, or the robot is stuck in it.
-  void planNext(const EnvState& state, EnvPlan& env, bool is_done, std::size_t thread) {
+  /// The plan is played to its end, or the robot has not come to it.
+  void planNext(const EnvState& state, EnvPlan& env, Progress progress, std::size_t thread) {
+    const bool is_done = progress == Progress::kDone;
     const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
+    if (!is_done) env.trouble = ScriptedTrouble::kStuck;
     if (is_done && !holds_target && !isAtGoal(state)) env.trouble = ScriptedTrouble::kMissed;
+    const bool has_picked = is_done && holds_target && env.phase == ScriptedPhase::kPick;
+    // A base that has come off its way has not tried the place.
+    const bool lost_its_way = progress == Progress::kOff || progress == Progress::kAstray;
+    if (!has_picked && !lost_its_way) env.failed.push_back(env.stance);
     ++env.plans;
     env.reaches = 0;
     plan(planned(state, env, is_done), env, thread);
@@ -199,11 +207,12 @@ class ScriptedPolicy::Impl {
     if (state.held != needed || env.reaches >= kMostReaches) return false;
     const EnvState from = planned(state, env, true);
     scripted::Planner& planner = this->planner(thread);
-    scripted::Plan plan = places ? planner.planPlaceFromHere(from, env.plans, env.reaches)
-                                 : planner.planPickFromHere(from, env.plans, env.reaches);
+    const scripted::Attempt attempt{env.plans, env.failed};
+    scripted::Plan plan = places ? planner.planPlaceFromHere(from, attempt, env.reaches)
+                                 : planner.planPickFromHere(from, attempt, env.reaches);
     ++env.reaches;
     if (plan.trouble != ScriptedTrouble::kNone) return false;
-    env.player = scripted::PlanPlayer(std::move(plan));
+    use(env, std::move(plan));
     return true;
   }
 
@@ -220,10 +229,10 @@ class ScriptedPolicy::Impl {
       giveUp(env);
     } else if (holds_target) {
       env.phase = ScriptedPhase::kPlace;
-      use(env, planner(thread).planPlace(state, env.plans));
+      use(env, planner(thread).planPlace(state, {env.plans, env.failed}));
     } else {
       env.phase = ScriptedPhase::kPick;
-      use(env, planner(thread).planPick(state, env.plans));
+      use(env, planner(thread).planPick(state, {env.plans, env.failed}));
     }
   }
 

@@ -58,7 +58,9 @@ class APlanPlayer : public testing::Test {
 
   /// Plays until nothing is left or nothing goes on, 300 actions at most; the base is at at_ then.
   Progress play(std::vector<PlanStep> steps, const Wheels& wheels) {
-    PlanPlayer player(Plan{std::move(steps)});
+    Plan plan;
+    plan.steps = std::move(steps);
+    PlanPlayer player(std::move(plan));
     std::vector<float> actions(arm_.joints().size() + 4);
     const auto count = static_cast<std::ptrdiff_t>(arm_.joints().size());
     for (actions_ = 0; actions_ < 300; ++actions_) {
@@ -134,9 +136,9 @@ TEST_F(APlanPlayer, TurnsABaseThatLooksElsewhereBeforeItDrives) {
   EXPECT_LT(farthest_, 0.05F);
 }
 
-TEST_F(APlanPlayer, IsStuckWhereTheBaseIsFarFromItsLineOrDoesNotMove) {
+TEST_F(APlanPlayer, IsAstrayWhereTheBaseIsFarFromItsLineAndStuckWhereItDoesNotMove) {
   at_ = {{0, 0, 0.2F}, 0};
-  EXPECT_EQ(play({driveFrom({}, {{1, 0, 0}, 0})}, {}), Progress::kStuck);
+  EXPECT_EQ(play({driveFrom({}, {{1, 0, 0}, 0})}, {}), Progress::kAstray);
   EXPECT_EQ(actions_, 0);
   at_ = {};
   EXPECT_EQ(play({driveFrom({}, {{1, 0, 0}, 0})}, {0, 0, 0}), Progress::kStuck);
