@@ -52,29 +52,28 @@ void clear(const ActionRow& row) {
   row.forward = row.turn = 0;
 }
 
-/// Sets what a step that moves nothing decides. Whether it is one.
-bool decides(PlanStep::Kind kind, const ActionRow& row) {
-  switch (kind) {
-    case PlanStep::Kind::kGrasp:
-      row.grasp = 1;
-      return true;
-    case PlanStep::Kind::kRelease:
-      row.grasp = -1;
-      return true;
-    case PlanStep::Kind::kTerminate:
-      row.terminate = 1;
-      return true;
-    default:
-      return false;
-  }
-}
-
 }  // namespace
 
 ActionRow rowOf(std::span<float> actions) {
   const std::size_t joints = actions.size() - 4;
   return {actions.first(joints), actions[joints], actions[joints + 1], actions[joints + 2],
           actions[joints + 3]};
+}
+
+bool PlanPlayer::decides(PlanStep::Kind kind, const ActionRow& row) const {
+  switch (kind) {
+    case PlanStep::Kind::kGrasp:
+      row.grasp = decisions_.grasp;
+      return true;
+    case PlanStep::Kind::kRelease:
+      row.grasp = decisions_.release;
+      return true;
+    case PlanStep::Kind::kTerminate:
+      row.terminate = decisions_.terminate;
+      return true;
+    default:
+      return false;
+  }
 }
 
 bool PlanPlayer::isBeforeArm() const {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "galactic/batch_simulator.h"
+#include "scripted/decisions.h"
 #include "scripted/plan.h"
 
 namespace galactic::scripted {
@@ -37,12 +38,13 @@ class PlanPlayer {
   };
 
   PlanPlayer() = default;
-  explicit PlanPlayer(Plan plan) : plan_(std::move(plan)) {}
+  explicit PlanPlayer(Plan plan, const Decisions& decisions = {})
+      : plan_(std::move(plan)), decisions_(decisions) {}
 
   /// The next action from where the robot is and where its joints were `asked` to be, which is
   /// where they are, or where motors bring them: then it waits, with zeros, where they lag far
-  /// behind and before anything but the arm is to move. Sets `row` but for its grasp action, unless
-  /// a step grasps or releases.
+  /// behind and before anything but the arm is to move. Sets `row` but for its grasp and terminate
+  /// actions, unless a step decides these.
   Progress play(const Arm& arm, const RobotBase& robot_base, const EnvState& state,
                 std::span<const float> asked, const ActionRow& row);
 
@@ -56,6 +58,8 @@ class PlanPlayer {
     /// Actions that bring the base back to its line; none of those that remain.
     float steering = 0;
   };
+  /// Sets what a step that moves nothing decides. Whether it is one.
+  [[nodiscard]] bool decides(PlanStep::Kind kind, const ActionRow& row) const;
   /// Whether the arm moves in the next step of the plan.
   [[nodiscard]] bool isBeforeArm() const;
   [[nodiscard]] Way turn(const RobotBase& robot_base, const BasePlace& at,
@@ -78,6 +82,7 @@ class PlanPlayer {
   void goOn();
 
   Plan plan_;
+  Decisions decisions_;
   std::size_t next_ = 0;
   /// Actions left of the current step when it was last played; negative: not played yet.
   float remaining_ = -1;

@@ -12,6 +12,7 @@
 
 #include "scripted/plan_player.h"
 #include "scripted/planner.h"
+#include "support/try.h"
 #include "support/workers.h"
 
 namespace galactic {
@@ -52,9 +53,10 @@ std::string_view nameOf(ScriptedTrouble trouble) {
 
 class ScriptedPolicy::Impl {
  public:
-  Impl(const World& world, const SimulationOptions& options)
+  Impl(const World& world, const SimulationOptions& options, const scripted::Decisions& decisions)
       : world_(world),
         options_(options),
+        decisions_(decisions),
         arm_(world.robot()),
         envs_(options.envs),
         planners_(std::min(detail::threadCount(options.threads), options.envs)),
@@ -127,14 +129,14 @@ class ScriptedPolicy::Impl {
     while (true) {
       std::ranges::fill(actions, 0.0F);
       const scripted::ActionRow row = scripted::rowOf(actions);
-      // Letting go is an action of its own.
-      row.grasp = state.held >= 0 ? 1.0F : 0.0F;
+      // Grasping, letting go and terminating are steps of a plan.
+      row.grasp = state.held >= 0 ? decisions_.keep : decisions_.stay_open;
+      row.terminate = decisions_.go_on;
       if (env.phase == ScriptedPhase::kGaveUp) return;
       const std::span<const float> asked = env.asked.empty() ? state.joint_positions : env.asked;
       const Progress progress = env.player.play(arm_, *world_.robot().base(), state, asked, row);
       if (progress == Progress::kActs) return;
       if (progress == Progress::kOff && reachFromHere(state, env, thread)) continue;
-      if (progress != Progress::kDone) std::ranges::fill(actions, 0.0F);
       planNext(state, env, progress, thread);
     }
   }
@@ -156,23 +158,23 @@ class ScriptedPolicy::Impl {
     return std::sqrt(dot(away, away)) < options_.task.success_distance;
   }
 
-  static void finish(EnvPlan& env) {
+  void finish(EnvPlan& env) const {
     env.phase = ScriptedPhase::kFinish;
     scripted::Plan plan;
     plan.steps.push_back({scripted::PlanStep::Kind::kTerminate, {}, {}, {}});
-    env.player = scripted::PlanPlayer(std::move(plan));
+    env.player = scripted::PlanPlayer(std::move(plan), decisions_);
   }
 
   static void giveUp(EnvPlan& env) { env.phase = ScriptedPhase::kGaveUp; }
 
-  static void use(EnvPlan& env, scripted::Plan plan) {
+  void use(EnvPlan& env, scripted::Plan plan) const {
     if (plan.trouble != ScriptedTrouble::kNone) {
       env.trouble = plan.trouble;
       giveUp(env);
       return;
     }
     env.stance = plan.stance;
-    env.player = scripted::PlanPlayer(std::move(plan));
+    env.player = scripted::PlanPlayer(std::move(plan), decisions_);
   }
 
   /// What the next plan begins with: where joints were asked to be, or where they are where that is
@@ -238,6 +240,7 @@ class ScriptedPolicy::Impl {
 
   const World& world_;
   SimulationOptions options_;
+  scripted::Decisions decisions_;
   scripted::Arm arm_;
   bool lags_ = false;
   std::uint32_t most_plans_ = kMostPlans;
@@ -260,7 +263,9 @@ Result<ScriptedPolicy> ScriptedPolicy::create(const World& world,
     return fail(ErrorCode::kUnsupported, "scripted policy",
                 "the task is none, which has nothing to plan for; use rearrange or mobile pick");
   }
-  return ScriptedPolicy(std::make_unique<Impl>(world, options));
+  ASSIGN_OR_RETURN(const scripted::Decisions decisions,
+                   scripted::decisionsBy(options.action, options.task));
+  return ScriptedPolicy(std::make_unique<Impl>(world, options, decisions));
 }
 
 ScriptedPolicy::ScriptedPolicy(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

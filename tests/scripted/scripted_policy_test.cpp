@@ -153,6 +153,17 @@ TEST_F(ScriptedPolicyInTheSampleWorld, SucceedsWithoutATerminateAction) {
   EXPECT_GE(play(world(), without).successCount(), 3U);
 }
 
+TEST_F(ScriptedPolicyInTheSampleWorld, ActsByTheThresholdsOfActions) {
+  SimulationOptions other = options();
+  other.envs = 4;
+  other.action = {.grasp = 0, .release = -0.9F, .terminate = -0.5F};
+  EXPECT_GE(play(world(), other).successCount(), 3U);
+  other.action.release = -1;
+  const auto policy = ScriptedPolicy::create(world(), other);
+  ASSERT_FALSE(policy.has_value());
+  EXPECT_EQ(policy.error().code, ErrorCode::kUnsupported);
+}
+
 TEST_F(ScriptedPolicyInTheSampleWorld, RefusesToHaveNothingToDo) {
   SimulationOptions none = options();
   none.task.kind = TaskKind::kNone;
