@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace galactic::scripted {
 namespace {
@@ -9,11 +10,19 @@ namespace {
 constexpr float kPi = 3.14159265F;
 constexpr float kTurn = 6.28318531F;
 
-bool isContinuous(const Robot& robot, std::uint32_t position) {
-  return std::ranges::any_of(robot.links(), [position](const LinkFrame& link) {
-    return link.type == JointType::kContinuous &&
-           link.position == static_cast<std::int32_t>(position);
-  });
+/// Whether a whole turn more or less changes nothing, as the simulation has it: a continuous joint
+/// that nobody limits, followed by none that slides or turns by another part of a turn.
+bool isPeriodic(const Robot& robot, const ControlledJoint& joint) {
+  constexpr float kUnlimited = std::numeric_limits<float>::max();
+  if (joint.lower > -kUnlimited || joint.upper < kUnlimited) return false;
+  bool is_continuous = false;
+  for (const LinkFrame& link : robot.links()) {
+    if (link.position != static_cast<std::int32_t>(joint.position)) continue;
+    const bool turns = link.type == JointType::kContinuous || link.type == JointType::kRevolute;
+    if (!turns || link.multiplier != std::round(link.multiplier)) return false;
+    is_continuous = is_continuous || link.type == JointType::kContinuous;
+  }
+  return is_continuous;
 }
 
 /// Whether any sphere of `a` overlaps one of `b`.
@@ -36,8 +45,8 @@ bool overlap(const SphereGroup& a, const Pose& root_from_a, const SphereGroup& b
 Arm::Arm(const Robot& robot) : robot_(&robot), links_(robot.links().size()) {
   joints_.reserve(robot.controlledJoints().size());
   for (const ControlledJoint& joint : robot.controlledJoints()) {
-    joints_.push_back({joint.position, joint.step, joint.lower, joint.upper,
-                       isContinuous(robot, joint.position)});
+    joints_.push_back(
+        {joint.position, joint.step, joint.lower, joint.upper, isPeriodic(robot, joint)});
   }
   const std::span<const LinkFrame> links = robot.links();
   for (auto link = static_cast<std::int32_t>(robot.endEffector()->link); link >= 0;

@@ -20,7 +20,7 @@ struct ArmJoint {
   float step = 0;
   float lower = 0;
   float upper = 0;
-  /// A continuous joint: positions that differ by a turn are the same.
+  /// A continuous joint without limits: positions that differ by a turn are the same.
   bool wraps = false;
   /// The first joint of the telescope that it is a segment of; itself when it is of none. Segments
   /// slide along one line with no turn between them, so that the hand feels their sum only.
