@@ -27,6 +27,7 @@ constexpr std::uint32_t kMostReaches = 6;
 struct EnvPlan {
   /// What it was asked about last.
   std::uint32_t episode = kNoEpisode;
+  std::uint64_t begun = 0;
   std::uint32_t step = 0;
   /// Where motors were asked to bring the joints; empty where joints are where they were asked to
   /// be.
@@ -114,6 +115,7 @@ class ScriptedPolicy::Impl {
   void act(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
     if (isAnotherEpisode(state, env)) begin(state, env, thread);
     env.episode = state.episode;
+    env.begun = state.begun;
     env.step = state.step;
     playOn(state, env, actions, thread);
     if (env.asked.empty()) return;
@@ -142,7 +144,8 @@ class ScriptedPolicy::Impl {
   }
 
   [[nodiscard]] static bool isAnotherEpisode(const EnvState& state, const EnvPlan& env) {
-    return state.step == 0 || state.episode != env.episode || state.step < env.step;
+    return state.step == 0 || state.begun != env.begun || state.episode != env.episode ||
+           state.step < env.step;
   }
 
   /// An episode begins, or is met on its way.

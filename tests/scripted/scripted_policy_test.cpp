@@ -196,6 +196,34 @@ TEST(ScriptedPolicy, GivesUpWhereThereIsNoWayAndStandsStill) {
   EXPECT_EQ(nameOf(policy.trouble(0)), "no way to target");
 }
 
+TEST(ScriptedPolicy, PlansAnewWhereItMeetsTheSameEpisodeBegunAgain) {
+  MeshBuilder room = madeRoom(4, 3);
+  room.box({2.2F, 0, 1}, {2.8F, 0.5F, 2});
+  const ScriptedWorld made =
+      stickWorld(room.build(), {0.8F, 0, 1.5F}, {2.4F, 0.501F, 1.3F}, {2.4F, 0.501F, 1.7F});
+  SimulationOptions options;
+  options.envs = 1;
+  options.threads = 1;
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(made.world(), options));
+  std::vector<float> actions(simulator.actionCount(), 0);
+  policy.allowPlans(0);
+  policy.act(simulator, actions);
+  simulator.step(actions);
+  policy.act(simulator, actions);
+  ASSERT_EQ(policy.phase(0), ScriptedPhase::kGaveUp);
+
+  policy.allowPlans(ScriptedPolicy::kMostPlans);
+  policy.act(simulator, actions);
+  EXPECT_EQ(policy.phase(0), ScriptedPhase::kGaveUp);
+  const std::int32_t episode = 0;
+  simulator.reset(std::span(&episode, 1));
+  std::ranges::fill(actions, 0.0F);
+  for (int step = 0; step < 3; ++step) simulator.step(actions);
+  policy.act(simulator, actions);
+  EXPECT_EQ(policy.phase(0), ScriptedPhase::kPick);
+}
+
 TEST(ScriptedPolicy, GivesUpWhereTheArmWouldHaveToUnwindForever) {
   // The way back is looked at neither in millions of places nor with a tree that grows along it.
   RobotPackFields robot = stickRobot();

@@ -86,6 +86,9 @@ struct EnvState {
   std::int32_t held = -1;
   std::uint32_t target = 0;
   Pose goal;
+  /// How many episodes the env has begun, this one included: what tells it from the same one begun
+  /// again.
+  std::uint64_t begun = 0;
 };
 
 /// Where the objects of an env are: a view of the simulator, valid until its next step.

@@ -42,6 +42,7 @@ EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) 
   }
   result.target = env.target;
   result.goal = model.episodeOf(env.start).goal;
+  result.begun = state.counters(n).begun;
   return result;
 }
 
