@@ -305,13 +305,13 @@ void FloorSearch::expand(std::uint32_t node) {
   }
 }
 
-std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& accept) {
+FloorSearch::Verdict FloorSearch::offer(std::uint32_t node, const Judge& judge, BasePlace& stance) {
   const std::uint32_t cell = node / kHeadings;
   const std::uint32_t heading = node % kHeadings;
   const BasePlace place = placeOf(cell, heading * eighth_);
   const Vec3 way = target_.point - place.position;
   const float distance = targetDistance(cell);
-  if (distance < target_.nearest || distance > target_.farthest) return std::nullopt;
+  if (distance < target_.nearest || distance > target_.farthest) return Verdict::kRejected;
   const float facing = std::atan2(-way.z, way.x) - target_.bearing;
   for (const float beside : {0.0F, 0.44F, -0.44F, 0.87F, -0.87F}) {
     const std::uint32_t fine = fineOf(facing + beside);
@@ -319,14 +319,16 @@ std::optional<BasePlace> FloorSearch::offer(std::uint32_t node, const Accept& ac
     if (offered != 0 || !canTurnOnLattice(cell, heading * eighth_, fine)) continue;
     offered = 1;
     ++offers_;
-    BasePlace stance = placeOf(cell, fine);
+    stance = placeOf(cell, fine);
     const float yaw = stance.yaw;
-    const bool accepted = accept(stance);
-    // The answer may have moved the arm.
+    const Verdict verdict = judge(stance);
+    // The judge may have moved the arm.
     scene_.setJoints(*carried_);
-    if (accepted && (stance.yaw == yaw || canTurn(place, stance.yaw))) return stance;
+    if (verdict == Verdict::kEnough) return verdict;
+    const bool is_accepted = verdict == Verdict::kAccepted;
+    if (is_accepted && (stance.yaw == yaw || canTurn(place, stance.yaw))) return verdict;
   }
-  return std::nullopt;
+  return Verdict::kRejected;
 }
 
 BaseRoute FloorSearch::routeTo(std::uint32_t node) const {
@@ -365,19 +367,20 @@ BaseRoute FloorSearch::merged(const BaseRoute& route) const {
 }
 
 FloorSearch::Answer FloorSearch::search(const BasePlace& start, const Joints& carried,
-                                        const Target& target, const Accept& accept) {
+                                        const Target& target, const Judge& judge) {
   // A coarse lattice is fast; narrow doors need a finer one.
   constexpr int kFinest = 3;
   Answer answer;
-  for (int pitch = 1; pitch <= kFinest && answer.outcome != Outcome::kFound; ++pitch) {
+  for (int pitch = 1; pitch <= kFinest; ++pitch) {
     edge_ = std::clamp(forward_step_, kShortestEdge, kLongestEdge) / static_cast<float>(pitch);
-    answer = searchLattice(start, carried, target, accept);
+    answer = searchLattice(start, carried, target, judge);
+    if (answer.outcome == Outcome::kFound || answer.outcome == Outcome::kGivenUp) break;
   }
   return answer;
 }
 
 FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Joints& carried,
-                                               const Target& target, const Accept& accept) {
+                                               const Target& target, const Judge& judge) {
   carried_ = &carried;
   target_ = target;
   floor_ = start.position.y;
@@ -392,10 +395,12 @@ FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Joi
     waiting_.pop_back();
     if (nodes_[node].settled) continue;
     nodes_[node].settled = true;
-    const std::optional<BasePlace> stance = offer(node, accept);
-    if (stance) {
+    BasePlace stance;
+    const Verdict verdict = offer(node, judge, stance);
+    if (verdict == Verdict::kEnough) return {Outcome::kGivenUp, {}};
+    if (verdict == Verdict::kAccepted) {
       Answer answer{Outcome::kFound, routeTo(node)};
-      answer.route.push_back(*stance);
+      answer.route.push_back(stance);
       return answer;
     }
     expand(node);

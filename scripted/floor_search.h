@@ -36,11 +36,24 @@ class FloorSearch {
     /// Places that are offered before the search gives up.
     int most_offers = 300;
   };
+  enum class Verdict : std::uint8_t {
+    kRejected,
+    kAccepted,
+    /// Rejected, and no other place is worth a look.
+    kEnough,
+  };
   /// Whether the robot may stay at a place of the lattice, with the target on the wanted side more
   /// or less. It may turn the place a little on the spot.
-  using Accept = std::function<bool(BasePlace&)>;
+  using Judge = std::function<Verdict(BasePlace&)>;
 
-  enum class Outcome : std::uint8_t { kFound, kNoWay, kNotAccepted };
+  enum class Outcome : std::uint8_t {
+    kFound,
+    kNoWay,
+    /// No place that was offered, of all or of as many as it offers.
+    kNotAccepted,
+    /// The judge had enough.
+    kGivenUp,
+  };
   struct Answer {
     Outcome outcome = Outcome::kNoWay;
     /// Start left out.
@@ -49,7 +62,7 @@ class FloorSearch {
   /// The way to the first place, by cost, that is accepted. `carried`: positions of the joints all
   /// the way.
   [[nodiscard]] Answer search(const BasePlace& start, const Joints& carried, const Target& target,
-                              const Accept& accept);
+                              const Judge& judge);
   /// Whether the base can turn on the spot to this yaw, the shorter way round, with the joints that
   /// the scene has.
   [[nodiscard]] bool canTurn(const BasePlace& at, float to);
@@ -79,7 +92,7 @@ class FloorSearch {
   };
 
   [[nodiscard]] Answer searchLattice(const BasePlace& start, const Joints& carried,
-                                     const Target& target, const Accept& accept);
+                                     const Target& target, const Judge& judge);
   void layOut();
   /// What was found out about the static scene, with this pose of the arm, in searches before.
   void recall();
@@ -101,7 +114,8 @@ class FloorSearch {
   void reach(std::uint32_t node, float cost, std::uint32_t parent);
   void expand(std::uint32_t node);
   void drive(std::uint32_t node, int sign);
-  [[nodiscard]] std::optional<BasePlace> offer(std::uint32_t node, const Accept& accept);
+  /// Turns `node` to the target; where one of these places is accepted, `stance` is it.
+  [[nodiscard]] Verdict offer(std::uint32_t node, const Judge& judge, BasePlace& stance);
   [[nodiscard]] BaseRoute routeTo(std::uint32_t node) const;
   /// With drives along one axis put together.
   [[nodiscard]] BaseRoute merged(const BaseRoute& route) const;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "scripted/carries.h"
+
 namespace galactic::scripted {
 namespace {
 
@@ -86,14 +88,14 @@ Planner::Planner(const World& world, const SimulationOptions& options)
       reach_table_(arm_,
                    {world.robot().startPositions().begin(), world.robot().startPositions().end()},
                    kReachSamples),
-      pick_view_(reach_table_, {}, {1, 0, 0}) {
+      pick_view_(reach_table_, {}, {1, 0, 0}),
+      carries_(chooseCarries(scene_, arm_, reach_table_)) {
   const Joints start{world.robot().startPositions().begin(), world.robot().startPositions().end()};
   const auto is_stiff_with = [&](Movers movers) {
     return mostFreedoms(arm_, reach_table_, start, movers) < kAllFreedoms;
   };
   if (is_stiff_with(Movers::kArm)) most_turn_ = kMostTurn;
   is_stiff_ = is_stiff_with(Movers::kArmAndTurnOfBase);
-  chooseCarries();
 }
 
 std::uint64_t Planner::nextSeed() { return seed_++; }
@@ -144,59 +146,6 @@ std::vector<Joints> Planner::carriesOf(const EnvState& state) const {
     result.push_back(std::move(joints));
   }
   return result;
-}
-
-void Planner::chooseCarries() {
-  // Room for what is held, meters, and how much farther out the start pose may reach to be kept: it
-  // is what the robot's maker chose.
-  constexpr float kHeldRoom = 0.15F;
-  constexpr float kStartBonus = 1.15F;
-  constexpr float kLowest = 0.4F;
-  constexpr float kHighest = 1.4F;
-  constexpr std::size_t kMostCarries = 3;
-  constexpr float kApart = 0.3F;
-  Joints start{world_.robot().startPositions().begin(), world_.robot().startPositions().end()};
-  for (const ArmJoint& joint : arm_.joints()) {
-    start[joint.position] = std::clamp(start[joint.position], joint.lower, joint.upper);
-  }
-  const auto reach_of = [&](const Joints& joints, const Pose& grip) {
-    scene_.setJoints(joints);
-    const Vec3& p = grip.translation;
-    return std::max(scene_.reach(), std::sqrt(p.x * p.x + p.z * p.z) + kHeldRoom);
-  };
-  struct Candidate {
-    float reach = 0;
-    std::size_t sample = 0;
-  };
-  const Vec3 side = headingOf(reach_table_.bearing());
-  std::vector<Candidate> candidates;
-  candidates.reserve(reach_table_.size());
-  for (std::size_t n = 0; n < reach_table_.size(); ++n) {
-    const Pose& grip = reach_table_.grips()[n];
-    const Vec3& p = grip.translation;
-    // In front, where the robot sees what it holds, or on the side on which the arm reaches.
-    const float out = dot(p, side);
-    const bool is_beside = out >= std::fabs(p.x * side.z - p.z * side.x);
-    if (p.y < kLowest || p.y > kHighest || (p.x < std::fabs(p.z) && !is_beside)) continue;
-    candidates.push_back({reach_of(reach_table_.joints(arm_, n, start), grip), n});
-  }
-  std::ranges::stable_sort(candidates, {}, &Candidate::reach);
-  const Pose start_grip = gripAt(start);
-  const bool start_is_good =
-      candidates.empty() || reach_of(start, start_grip) <= kStartBonus * candidates.front().reach;
-  if (start_is_good) carries_.push_back(start);
-  std::vector<Vec3> grips;
-  for (const Candidate& candidate : candidates) {
-    if (carries_.size() >= kMostCarries) break;
-    const Vec3& grip = reach_table_.grips()[candidate.sample].translation;
-    const bool is_new = std::ranges::all_of(grips, [&](const Vec3& other) {
-      return dot(grip - other, grip - other) > kApart * kApart;
-    });
-    if (!is_new) continue;
-    grips.push_back(grip);
-    carries_.push_back(reach_table_.joints(arm_, candidate.sample, start));
-  }
-  if (!start_is_good) carries_.push_back(start);
 }
 
 ArmPath Planner::retreatFrom(const BasePlace& base, const Joints& there, const Reach& reach) {
@@ -250,7 +199,6 @@ std::optional<ArmPath> Planner::reach(BasePlace& base, const Joints& carried, co
 }
 
 std::optional<ArmPath> Planner::reachTarget(BasePlace& base, const Joints& carried) {
-  if (failed_motions_ >= kMostFailedMotions) return std::nullopt;
   const std::uint32_t target = state_->target;
   const Vec3 center = scene_.objectBox(target).pose.translation;
   const float radius = world_.robot().endEffector()->grasp_radius;
@@ -296,7 +244,6 @@ bool Planner::comesAway(const BasePlace& base, const Joints& positions, const Jo
 }
 
 std::optional<ArmPath> Planner::reachGoal(BasePlace& base, const Joints& carried) {
-  if (failed_motions_ >= kMostFailedMotions) return std::nullopt;
   const Pose& goal_pose = state_->goal;
   const Vec3 up_of_object = rotate(conjugate(goal_pose.rotation), kUp);
   for (const float lift : {0.04F, 0.015F}) {
@@ -352,6 +299,27 @@ void Planner::takeOver(const EnvState& state, const Attempt& attempt, std::uint3
   scene_.update(state);
 }
 
+template <class Fold, class MakePlan>
+Plan Planner::folded(std::span<const Joints> carries, const Fold& fold, const MakePlan& plan) {
+  const BasePlace start = scene_.baseOf(*state_);
+  Plan result = troubled(ScriptedTrouble::kNoFold);
+  for (const Joints& carried : carries) {
+    failed_motions_ = 0;
+    const std::optional<ArmPath> folding = fold(start, carried);
+    if (!folding) continue;
+    result = plan(start, carried);
+    if (result.trouble == ScriptedTrouble::kNone) {
+      prepend(start, *folding, result);
+      break;
+    }
+    // What the arm does not reach it does not reach from another fold.
+    const bool is_reached = result.trouble != ScriptedTrouble::kNoGrasp &&
+                            result.trouble != ScriptedTrouble::kNoPlacement;
+    if (!is_reached && failed_motions_ == 0) break;
+  }
+  return result;
+}
+
 void Planner::intendToPick() {
   view_ = &pick_view_;
   hand_options_ = {};
@@ -366,14 +334,21 @@ Plan Planner::planPick(const EnvState& state, const Attempt& attempt) {
 
 Plan Planner::pick() {
   intendToPick();
-  const BasePlace start = scene_.baseOf(*state_);
   std::vector<Joints> carries = carriesOf(*state_);
   // Where there is no room to fold the arm it may still be driven as it is.
   carries.push_back(state_->joint_positions);
-  Plan plan = pickFolded(start, carries);
+  const auto pick_folded = [&] {
+    return folded(
+        carries,
+        [&](const BasePlace& start, const Joints& carried) {
+          return fold(start, state_->joint_positions, carried);
+        },
+        [&](const BasePlace& start, const Joints& carried) { return pickWith(start, carried); });
+  };
+  Plan plan = pick_folded();
   if (plan.trouble != ScriptedTrouble::kNoGrasp || is_thorough_) return plan;
   is_thorough_ = true;
-  return pickFolded(start, carries);
+  return pick_folded();
 }
 
 Plan Planner::planPickFromHere(const EnvState& state, const Attempt& attempt, std::uint32_t reach) {
@@ -402,19 +377,10 @@ Plan Planner::planFromHere(const std::optional<ArmPath>& reaching, const BasePla
   return planTo(start, {turned}, *reaching, last);
 }
 
-Plan Planner::pickFolded(const BasePlace& start, std::span<const Joints> carries) {
-  Plan plan = troubled(ScriptedTrouble::kNoFold);
-  for (const Joints& carried : carries) {
-    failed_motions_ = 0;
-    const std::optional<ArmPath> folding = fold(start, state_->joint_positions, carried);
-    if (!folding) continue;
-    plan = pickWith(start, carried);
-    if (plan.trouble == ScriptedTrouble::kNone) prepend(start, *folding, plan);
-    // What the arm does not reach it does not reach from another fold.
-    const bool is_reached = plan.trouble != ScriptedTrouble::kNoGrasp || failed_motions_ > 0;
-    if (plan.trouble == ScriptedTrouble::kNone || !is_reached) break;
-  }
-  return plan;
+FloorSearch::Verdict Planner::verdictOn(const std::optional<ArmPath>& reaching) const {
+  using Verdict = FloorSearch::Verdict;
+  if (reaching) return Verdict::kAccepted;
+  return failed_motions_ < kMostFailedMotions ? Verdict::kRejected : Verdict::kEnough;
 }
 
 FloorSearch::Target Planner::standsFor(const Vec3& point) const {
@@ -433,7 +399,7 @@ Plan Planner::pickWith(const BasePlace& start, const Joints& carried) {
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](BasePlace& stance) {
         reaching = reachTarget(stance, carried);
-        return reaching.has_value();
+        return verdictOn(reaching);
       });
   if (!reaching) {
     return troubled(
@@ -468,18 +434,14 @@ Plan Planner::planPlace(const EnvState& state, const Attempt& attempt) {
 }
 
 Plan Planner::place() {
-  const BasePlace start = scene_.baseOf(*state_);
-  Plan plan = troubled(ScriptedTrouble::kNoFold);
-  for (const Joints& carried : carriesOf(*state_)) {
-    failed_motions_ = 0;
-    const std::optional<ArmPath> folding = liftAndFold(start, state_->joint_positions, carried);
-    if (!folding) continue;
-    plan = leaning([&] { return placeWith(start, carried); });
-    if (plan.trouble == ScriptedTrouble::kNone) prepend(start, *folding, plan);
-    // What the arm does not reach it does not reach from another fold.
-    if (plan.trouble != ScriptedTrouble::kNoWayToGoal) break;
-  }
-  return plan;
+  return folded(
+      carriesOf(*state_),
+      [&](const BasePlace& start, const Joints& carried) {
+        return liftAndFold(start, state_->joint_positions, carried);
+      },
+      [&](const BasePlace& start, const Joints& carried) {
+        return leaning([&] { return placeWith(start, carried); });
+      });
 }
 
 template <class MakePlan>
@@ -501,7 +463,7 @@ Plan Planner::placeWith(const BasePlace& start, const Joints& carried) {
   const FloorSearch::Answer answer =
       floor_search_.search(start, carried, target, [&](BasePlace& stance) {
         reaching = reachGoal(stance, carried);
-        return reaching.has_value();
+        return verdictOn(reaching);
       });
   if (!reaching) {
     return troubled(

@@ -59,7 +59,6 @@ class Planner {
   /// Poses of the arm for driving, the best first: controlled joints from `carries_`, the others
   /// from the env.
   [[nodiscard]] std::vector<Joints> carriesOf(const EnvState& state) const;
-  void chooseCarries();
   /// How the hand leaves from `there`, the best first; empty where it cannot.
   [[nodiscard]] ArmPath retreatFrom(const BasePlace& base, const Joints& there, const Reach& reach);
   /// The arm's move for this reach, to a free pose at which `isRight`, by way of the retreat. Turns
@@ -72,9 +71,13 @@ class Planner {
   /// Whether the arm, once it has grasped the target at `positions`, can be folded.
   [[nodiscard]] bool comesAway(const BasePlace& base, const Joints& positions,
                                const Joints& carried);
-  /// With the first of these folds that leads to the target.
-  [[nodiscard]] Plan pickFolded(const BasePlace& start, std::span<const Joints> carries);
+  /// With the first of these folds from which `plan` finds something, after a `fold` to it.
+  template <class Fold, class MakePlan>
+  [[nodiscard]] Plan folded(std::span<const Joints> carries, const Fold& fold,
+                            const MakePlan& plan);
   [[nodiscard]] Plan pickWith(const BasePlace& start, const Joints& carried);
+  /// Whether a search of the floor ends, or goes on, after a reach.
+  [[nodiscard]] FloorSearch::Verdict verdictOn(const std::optional<ArmPath>& reaching) const;
   /// Where the base may stand for a reach to this point of the world.
   [[nodiscard]] FloorSearch::Target standsFor(const Vec3& point) const;
   /// What `plan` finds with what is held upright, or else as upright as it finds something.

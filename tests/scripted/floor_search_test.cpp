@@ -14,6 +14,7 @@ namespace {
 using scripted::BaseRoute;
 using scripted::FloorSearch;
 using scripted::Joints;
+using Verdict = FloorSearch::Verdict;
 
 /// A room of 4 m by 3 m, cut at x = 2 m by a wall with a door of `door` meters at z = 1.5 m.
 MeshBuilder twoRooms(float door) {
@@ -50,11 +51,11 @@ class Floor {
   }
 
   FloorSearch::Answer search() {
-    return search([](const BasePlace&) { return true; });
+    return search([](const BasePlace&) { return Verdict::kAccepted; });
   }
-  FloorSearch::Answer search(const FloorSearch::Accept& accept) {
+  FloorSearch::Answer search(const FloorSearch::Judge& judge) {
     FloorSearch search(scene_, made_.world().robot());
-    return search.search(start_, joints_, {.point = target_}, accept);
+    return search.search(start_, joints_, {.point = target_}, judge);
   }
 
   /// Checks that each leg is a turn or a drive, and that no pose on the way penetrates anything.
@@ -166,7 +167,7 @@ TEST(FloorSearch, TellsPlacesThatAreNotWantedFromNoWay) {
                                       const float distance = std::sqrt(dot(way, way));
                                       EXPECT_GE(distance, 0.35F - 1e-4F);
                                       EXPECT_LE(distance, 1.0F + 1e-4F);
-                                      return false;
+                                      return Verdict::kRejected;
                                     });
   EXPECT_EQ(answer.outcome, FloorSearch::Outcome::kNotAccepted);
   EXPECT_GT(offers, 10);
@@ -192,11 +193,23 @@ TEST(FloorSearch, OffersPlacesWithTheTargetOnTheWantedSide) {
           const Vec3 way = to - place.position;
           const float seen = std::atan2(-way.z, way.x) - place.yaw;
           EXPECT_LE(std::fabs(std::remainder(seen - bearing, 6.2831853F)), kMostBeside);
-          return false;
+          return Verdict::kRejected;
         });
     EXPECT_EQ(answer.outcome, FloorSearch::Outcome::kNotAccepted);
     EXPECT_GT(offers, 100);
   }
+}
+
+TEST(FloorSearch, OffersNothingMoreOnAnyLatticeToAJudgeWhoHasEnough) {
+  Floor floor(twoRooms(0.7F), kWest, kEast);
+  int offers = 0;
+  const FloorSearch::Answer answer = floor.search([&](const BasePlace&) {
+    ++offers;
+    return offers < 5 ? Verdict::kRejected : Verdict::kEnough;
+  });
+  EXPECT_EQ(answer.outcome, FloorSearch::Outcome::kGivenUp);
+  EXPECT_TRUE(answer.route.empty());
+  EXPECT_EQ(offers, 5);
 }
 
 TEST(FloorSearch, EndsWhereTheAnswerTurnedThePlace) {
@@ -206,7 +219,7 @@ TEST(FloorSearch, EndsWhereTheAnswerTurnedThePlace) {
   const FloorSearch::Answer answer = floor.search([&](BasePlace& place) {
     offered = place.yaw;
     place.yaw += kTurn;
-    return true;
+    return Verdict::kAccepted;
   });
   ASSERT_EQ(answer.outcome, FloorSearch::Outcome::kFound);
   EXPECT_EQ(answer.route.back().yaw, offered + kTurn);
