@@ -46,8 +46,9 @@ float wrapped(float angle) { return std::remainder(angle, kTurn); }
 
 }  // namespace
 
-FloorSearch::FloorSearch(PlanningScene& scene, const Robot& robot)
+FloorSearch::FloorSearch(PlanningScene& scene, const Robot& robot, std::size_t most_bytes)
     : scene_(scene),
+      most_bytes_(most_bytes),
       forward_step_(robot.base()->forward_step),
       turn_step_(robot.base()->turn_step),
       eighth_(static_cast<std::uint32_t>(
@@ -55,40 +56,35 @@ FloorSearch::FloorSearch(PlanningScene& scene, const Robot& robot)
       eighth_cost_(std::max(actionsFor(kTurn / 8, turn_step_), 1.0F)),
       fines_(kHeadings * eighth_) {}
 
-void FloorSearch::layOut() {
+std::optional<Lattice> FloorSearch::latticeAbout(const Vec3& start, float edge) const {
   const ColumnGrid& grid = scene_.scene().grids().front();
-  const auto last_i = static_cast<std::int32_t>(std::ceil(
-      (grid.layout().min_x + static_cast<float>(grid.columnsX()) * grid.spacing()) / edge_));
-  const auto last_k = static_cast<std::int32_t>(std::ceil(
-      (grid.layout().min_z + static_cast<float>(grid.columnsZ()) * grid.spacing()) / edge_));
-  first_i_ = static_cast<std::int32_t>(std::floor(grid.layout().min_x / edge_));
-  first_k_ = static_cast<std::int32_t>(std::floor(grid.layout().min_z / edge_));
-  count_i_ = static_cast<std::uint32_t>(last_i - first_i_ + 1);
-  count_k_ = static_cast<std::uint32_t>(last_k - first_k_ + 1);
-  const std::size_t cells = static_cast<std::size_t>(count_i_) * count_k_;
-  nodes_.assign(cells * kHeadings, {kInfinity, kNone, false});
-  known_.assign(cells * fines_, 0);
-  offered_.assign(cells * fines_, 0);
+  const ColumnGridLayout& layout = grid.layout();
+  const GroundArea whole{
+      layout.min_x, layout.min_x + static_cast<float>(grid.columnsX()) * grid.spacing(),
+      layout.min_z, layout.min_z + static_cast<float>(grid.columnsZ()) * grid.spacing()};
+  const float around = target_.farthest;
+  const Vec3& end = target_.point;
+  const GroundArea needed{std::min(start.x, end.x) - around, std::max(start.x, end.x) + around,
+                          std::min(start.z, end.z) - around, std::max(start.z, end.z) + around};
+  // known_, offered_, ways_
+  const std::size_t cell = kHeadings * sizeof(Node) + fines_ + fines_ / 8 + sizeof(float);
+  return layOut(whole, needed, edge, most_bytes_ / cell);
+}
+
+void FloorSearch::clear() {
+  nodes_.assign(lattice_.cells() * kHeadings, {kInfinity, kNone, false});
+  known_.assign(lattice_.cells() * fines_, 0);
+  offered_.assign(lattice_.cells() * fines_, false);
   entries_.clear();
   waiting_.clear();
   offers_ = 0;
 }
 
-std::optional<std::uint32_t> FloorSearch::cellAt(float x, float z) const {
-  const auto i = static_cast<std::int32_t>(std::lround(x / edge_)) - first_i_;
-  const auto k = static_cast<std::int32_t>(std::lround(z / edge_)) - first_k_;
-  const bool inside = i >= 0 && k >= 0 && i < static_cast<std::int32_t>(count_i_) &&
-                      k < static_cast<std::int32_t>(count_k_);
-  if (!inside) return std::nullopt;
-  return static_cast<std::uint32_t>(k) * count_i_ + static_cast<std::uint32_t>(i);
-}
-
 BasePlace FloorSearch::placeOf(std::uint32_t cell, std::uint32_t fine) const {
-  const auto i = static_cast<std::int32_t>(cell % count_i_) + first_i_;
-  const auto k = static_cast<std::int32_t>(cell / count_i_) + first_k_;
-  return {{static_cast<float>(i) * edge_, memories_[memory_].floors[cell],
-           static_cast<float>(k) * edge_},
-          wrapped(kTurn * static_cast<float>(fine) / static_cast<float>(fines_))};
+  BasePlace place{lattice_.placeOf(cell),
+                  wrapped(kTurn * static_cast<float>(fine) / static_cast<float>(fines_))};
+  place.position.y = memories_[memory_].floors[cell];
+  return place;
 }
 
 std::uint32_t FloorSearch::fineOf(float yaw) const {
@@ -98,28 +94,42 @@ std::uint32_t FloorSearch::fineOf(float yaw) const {
   return static_cast<std::uint32_t>((nearest + count) % count);
 }
 
+std::size_t FloorSearch::Memory::bytes() const {
+  return known.size() + passable.size() + floors.size() * sizeof(float);
+}
+
 void FloorSearch::recall() {
   for (memory_ = 0; memory_ < memories_.size(); ++memory_) {
     const Memory& memory = memories_[memory_];
-    const bool fits = memory.scene == &scene_.scene() && memory.edge == edge_ &&
+    const bool fits = memory.scene == &scene_.scene() && memory.lattice == lattice_ &&
                       memory.floor == floor_ && memory.carried == *carried_;
     if (fits) return;
   }
   constexpr std::size_t kMostMemories = 8;
-  if (memories_.size() < kMostMemories) {
-    memories_.emplace_back();
-  } else {
-    memory_ = oldest_;
-    oldest_ = (oldest_ + 1) % kMostMemories;
+  const std::size_t cells = lattice_.cells();
+  Memory memory{&scene_.scene(),
+                lattice_,
+                floor_,
+                *carried_,
+                std::vector<std::uint8_t>(cells * fines_, 0),
+                std::vector<std::uint8_t>(cells, 0),
+                std::vector<float>(cells, kInfinity)};
+  std::size_t bytes = memory.bytes();
+  for (const Memory& other : memories_) bytes += other.bytes();
+  // The oldest first.
+  while (!memories_.empty() && (bytes > most_bytes_ || memories_.size() >= kMostMemories)) {
+    bytes -= memories_.front().bytes();
+    memories_.erase(memories_.begin());
   }
-  const std::size_t cells = static_cast<std::size_t>(count_i_) * count_k_;
-  memories_[memory_] = {&scene_.scene(),
-                        edge_,
-                        floor_,
-                        *carried_,
-                        std::vector<std::uint8_t>(cells * fines_, 0),
-                        std::vector<std::uint8_t>(cells, 0),
-                        std::vector<float>(cells, kInfinity)};
+  memory_ = memories_.size();
+  memories_.push_back(std::move(memory));
+}
+
+std::size_t FloorSearch::memoryBytes() const {
+  std::size_t bytes = nodes_.capacity() * sizeof(Node) + known_.capacity() +
+                      offered_.capacity() / 8 + ways_.capacity() * sizeof(float);
+  for (const Memory& memory : memories_) bytes += memory.bytes();
+  return bytes;
 }
 
 bool FloorSearch::isFreeOfScene(std::uint32_t cell, std::uint32_t fine) {
@@ -151,7 +161,7 @@ float FloorSearch::targetDistance(std::uint32_t cell) const {
 }
 
 void FloorSearch::measureWays() {
-  const std::uint32_t cells = count_i_ * count_k_;
+  const auto cells = static_cast<std::uint32_t>(lattice_.cells());
   ways_.assign(cells, kInfinity);
   const auto push = [this](std::uint32_t cell, float way) {
     if (way >= ways_[cell] || !isPassable(cell)) return;
@@ -170,9 +180,10 @@ void FloorSearch::measureWays() {
     if (at.estimate > ways_[at.node]) continue;
     const Vec3 from = placeOf(at.node, 0).position;
     for (const CellStep& step : kSteps) {
-      const auto next = cellAt(from.x + static_cast<float>(step.i) * edge_,
-                               from.z + static_cast<float>(step.k) * edge_);
-      const float length = step.i != 0 && step.k != 0 ? edge_ * std::sqrt(2.0F) : edge_;
+      const auto next = lattice_.cellAt(from.x + static_cast<float>(step.i) * lattice_.edge,
+                                        from.z + static_cast<float>(step.k) * lattice_.edge);
+      const float length =
+          step.i != 0 && step.k != 0 ? lattice_.edge * std::sqrt(2.0F) : lattice_.edge;
       if (next) push(*next, at.estimate + length / forward_step_);
     }
   }
@@ -253,11 +264,11 @@ void FloorSearch::tryEntry(const BasePlace& start, std::uint32_t cell) {
 }
 
 void FloorSearch::findEntries(const BasePlace& start) {
-  const auto reach_cells = static_cast<int>(std::ceil(kEntryReach / edge_));
+  const auto reach_cells = static_cast<int>(std::ceil(kEntryReach / lattice_.edge));
   for (int k = -reach_cells; k <= reach_cells; ++k) {
     for (int i = -reach_cells; i <= reach_cells; ++i) {
-      const auto cell = cellAt(start.position.x + static_cast<float>(i) * edge_,
-                               start.position.z + static_cast<float>(k) * edge_);
+      const auto cell = lattice_.cellAt(start.position.x + static_cast<float>(i) * lattice_.edge,
+                                        start.position.z + static_cast<float>(k) * lattice_.edge);
       if (cell) tryEntry(start, *cell);
     }
   }
@@ -278,12 +289,12 @@ void FloorSearch::drive(std::uint32_t node, int sign) {
   const std::uint32_t cell = node / kHeadings;
   const std::uint32_t heading = node % kHeadings;
   const BasePlace from = placeOf(cell, heading * eighth_);
-  const float x = from.position.x + static_cast<float>(sign * kSteps[heading].i) * edge_;
-  const float z = from.position.z + static_cast<float>(sign * kSteps[heading].k) * edge_;
-  const std::optional<std::uint32_t> next = cellAt(x, z);
+  const float x = from.position.x + static_cast<float>(sign * kSteps[heading].i) * lattice_.edge;
+  const float z = from.position.z + static_cast<float>(sign * kSteps[heading].k) * lattice_.edge;
+  const std::optional<std::uint32_t> next = lattice_.cellAt(x, z);
   if (!next || !isFree(*next, heading * eighth_)) return;
   const BasePlace to = placeOf(*next, heading * eighth_);
-  const float length = heading % 2 == 0 ? edge_ : edge_ * std::sqrt(2.0F);
+  const float length = heading % 2 == 0 ? lattice_.edge : lattice_.edge * std::sqrt(2.0F);
   // Drives along the axes are merged, so that an action takes the robot over several cells.
   const bool is_merged = heading % 2 == 0;
   const float actions = is_merged ? length / forward_step_ : actionsFor(length, forward_step_);
@@ -315,9 +326,9 @@ FloorSearch::Verdict FloorSearch::offer(std::uint32_t node, const Judge& judge, 
   const float facing = std::atan2(-way.z, way.x) - target_.bearing;
   for (const float beside : {0.0F, 0.44F, -0.44F, 0.87F, -0.87F}) {
     const std::uint32_t fine = fineOf(facing + beside);
-    std::uint8_t& offered = offered_[static_cast<std::size_t>(cell) * fines_ + fine];
-    if (offered != 0 || !canTurnOnLattice(cell, heading * eighth_, fine)) continue;
-    offered = 1;
+    const std::size_t pose = static_cast<std::size_t>(cell) * fines_ + fine;
+    if (offered_[pose] || !canTurnOnLattice(cell, heading * eighth_, fine)) continue;
+    offered_[pose] = true;
     ++offers_;
     stance = placeOf(cell, fine);
     const float yaw = stance.yaw;
@@ -368,25 +379,28 @@ BaseRoute FloorSearch::merged(const BaseRoute& route) const {
 
 FloorSearch::Answer FloorSearch::search(const BasePlace& start, const Joints& carried,
                                         const Target& target, const Judge& judge) {
+  carried_ = &carried;
+  target_ = target;
+  floor_ = start.position.y;
   // A coarse lattice is fast; narrow doors need a finer one.
   constexpr int kFinest = 3;
   Answer answer;
   for (int pitch = 1; pitch <= kFinest; ++pitch) {
-    edge_ = std::clamp(forward_step_, kShortestEdge, kLongestEdge) / static_cast<float>(pitch);
-    answer = searchLattice(start, carried, target, judge);
+    const float edge = std::clamp(forward_step_, kShortestEdge, kLongestEdge);
+    const auto lattice = latticeAbout(start.position, edge / static_cast<float>(pitch));
+    // Finer ones have more cells.
+    if (!lattice) break;
+    lattice_ = *lattice;
+    answer = searchLattice(start, judge);
     if (answer.outcome == Outcome::kFound || answer.outcome == Outcome::kGivenUp) break;
   }
   return answer;
 }
 
-FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Joints& carried,
-                                               const Target& target, const Judge& judge) {
-  carried_ = &carried;
-  target_ = target;
-  floor_ = start.position.y;
-  layOut();
+FloorSearch::Answer FloorSearch::searchLattice(const BasePlace& start, const Judge& judge) {
+  clear();
   recall();
-  scene_.setJoints(carried);
+  scene_.setJoints(*carried_);
   measureWays();
   findEntries(start);
   while (!waiting_.empty() && offers_ < target_.most_offers) {

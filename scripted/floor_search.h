@@ -8,6 +8,7 @@
 
 #include "galactic/planning_scene.h"
 #include "scripted/arm.h"
+#include "scripted/lattice.h"
 
 namespace galactic::scripted {
 
@@ -21,8 +22,11 @@ using BaseRoute = std::vector<BasePlace>;
 /// where actions are smaller than 2 cm or 0.04 radians, only poses that far apart.
 class FloorSearch {
  public:
-  /// `scene` must outlive the search.
-  FloorSearch(PlanningScene& scene, const Robot& robot);
+  static constexpr std::size_t kMostBytes = std::size_t{96} << 20U;
+  /// `scene` must outlive the search. `most_bytes`: of a search, and again of what is remembered of
+  /// searches before. A scene that needs more is searched as far around start and target as they
+  /// suffice; where they do not suffice for what lies between the two, there is no way.
+  FloorSearch(PlanningScene& scene, const Robot& robot, std::size_t most_bytes = kMostBytes);
 
   struct Target {
     /// What the robot has to get near to; y is not looked at.
@@ -66,6 +70,7 @@ class FloorSearch {
   /// Whether the base can turn on the spot to this yaw, the shorter way round, with the joints that
   /// the scene has.
   [[nodiscard]] bool canTurn(const BasePlace& at, float to);
+  [[nodiscard]] std::size_t memoryBytes() const;
 
  private:
   static constexpr std::uint32_t kHeadings = 8;
@@ -91,9 +96,10 @@ class FloorSearch {
     }
   };
 
-  [[nodiscard]] Answer searchLattice(const BasePlace& start, const Joints& carried,
-                                     const Target& target, const Judge& judge);
-  void layOut();
+  [[nodiscard]] Answer searchLattice(const BasePlace& start, const Judge& judge);
+  [[nodiscard]] std::optional<Lattice> latticeAbout(const Vec3& start, float edge) const;
+  /// Of the search before.
+  void clear();
   /// What was found out about the static scene, with this pose of the arm, in searches before.
   void recall();
   /// How many actions every cell is from where the robot may stand, with doors and walls but with
@@ -101,7 +107,6 @@ class FloorSearch {
   void measureWays();
   [[nodiscard]] bool isPassable(std::uint32_t cell);
   [[nodiscard]] float targetDistance(std::uint32_t cell) const;
-  [[nodiscard]] std::optional<std::uint32_t> cellAt(float x, float z) const;
   [[nodiscard]] BasePlace placeOf(std::uint32_t cell, std::uint32_t fine) const;
   [[nodiscard]] std::uint32_t fineOf(float yaw) const;
   [[nodiscard]] bool isFreeOfScene(std::uint32_t cell, std::uint32_t fine);
@@ -121,6 +126,7 @@ class FloorSearch {
   [[nodiscard]] BaseRoute merged(const BaseRoute& route) const;
 
   PlanningScene& scene_;
+  std::size_t most_bytes_;
   float forward_step_;
   float turn_step_;
   /// Headings that are looked at in an eighth of a turn, the actions that it takes, and the
@@ -129,15 +135,10 @@ class FloorSearch {
   float eighth_cost_;
   std::uint32_t fines_;
   // Of the current search:
-  /// Edge of a cell, meters.
-  float edge_ = 0;
+  Lattice lattice_;
   const Joints* carried_ = nullptr;
   Target target_;
   float floor_ = 0;
-  std::int32_t first_i_ = 0;
-  std::int32_t first_k_ = 0;
-  std::uint32_t count_i_ = 0;
-  std::uint32_t count_k_ = 0;
   std::vector<Node> nodes_;
   /// By cell and fine heading: 0 not known, 1 free, 2 blocked.
   std::vector<std::uint8_t> known_;
@@ -145,18 +146,21 @@ class FloorSearch {
   /// floor and of the robot without what it holds.
   struct Memory {
     const Scene* scene = nullptr;
-    float edge = 0;
+    Lattice lattice;
     float floor = 0;
     Joints carried;
     std::vector<std::uint8_t> known;
     /// By cell: the same for whether any of the eight headings is free.
     std::vector<std::uint8_t> passable;
     std::vector<float> floors;
+
+    [[nodiscard]] std::size_t bytes() const;
   };
+  /// The oldest first.
   std::vector<Memory> memories_;
   std::size_t memory_ = 0;
-  std::size_t oldest_ = 0;
-  std::vector<std::uint8_t> offered_;
+  /// By cell and fine heading.
+  std::vector<bool> offered_;
   /// By cell: see measureWays; infinity where there is no way.
   std::vector<float> ways_;
   std::vector<Entry> entries_;

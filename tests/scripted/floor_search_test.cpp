@@ -57,6 +57,19 @@ class Floor {
     FloorSearch search(scene_, made_.world().robot());
     return search.search(start_, joints_, {.point = target_}, judge);
   }
+  /// With this much memory, once and from a little further on each time.
+  FloorSearch::Answer searchWithin(std::size_t most_bytes, int times = 1) {
+    FloorSearch search(scene_, made_.world().robot(), most_bytes);
+    FloorSearch::Answer answer;
+    for (int n = 0; n < times; ++n) {
+      BasePlace from = start_;
+      from.position.x += 0.02F * static_cast<float>(n);
+      answer = search.search(from, joints_, {.point = target_},
+                             [](const BasePlace&) { return Verdict::kAccepted; });
+      EXPECT_LE(search.memoryBytes(), 2 * most_bytes);
+    }
+    return answer;
+  }
 
   /// Checks that each leg is a turn or a drive, and that no pose on the way penetrates anything.
   /// Returns meters driven.
@@ -210,6 +223,18 @@ TEST(FloorSearch, OffersNothingMoreOnAnyLatticeToAJudgeWhoHasEnough) {
   EXPECT_EQ(answer.outcome, FloorSearch::Outcome::kGivenUp);
   EXPECT_TRUE(answer.route.empty());
   EXPECT_EQ(offers, 5);
+}
+
+TEST(FloorSearch, KeepsToItsMemoryAndSearchesAsFarAsThatSuffices) {
+  // A cell of 10 cm takes some 150 bytes, with headings 0.1 rad apart; the whole hall has 40,000.
+  MeshBuilder hall = madeRoom(20, 20);
+  Floor near(hall, {10.03F, 0, 10.02F}, {11.5F, 0.5F, 11.5F});
+  constexpr std::size_t kSome = 400'000;
+  const FloorSearch::Answer answer = near.searchWithin(kSome, 12);
+  ASSERT_EQ(answer.outcome, FloorSearch::Outcome::kFound);
+  Floor far(hall, {1.03F, 0, 1.02F}, {18.5F, 0.5F, 18.5F});
+  EXPECT_EQ(far.searchWithin(kSome).outcome, FloorSearch::Outcome::kNoWay);
+  EXPECT_EQ(far.searchWithin(FloorSearch::kMostBytes).outcome, FloorSearch::Outcome::kFound);
 }
 
 TEST(FloorSearch, EndsWhereTheAnswerTurnedThePlace) {
