@@ -544,9 +544,15 @@ Result<void> CudaEngine::readImages() {
   return driver_->check(read(targets_.semantics, semantics_), "read semantic ids");
 }
 
-/// Whoever ends the batch all the same finds nothing to wait for.
-void CudaEngine::giveUp(const Error& error) {
+void CudaEngine::abandon() {
+  // What this returns is what has failed before.
+  static_cast<void>(driver_->functions().synchronize(stream_));
+  // Whoever ends the batch all the same finds nothing to wait for.
   slices_.clear();
+}
+
+void CudaEngine::giveUp(const Error& error) {
+  abandon();
   throw ErrorException(error);
 }
 
@@ -567,8 +573,11 @@ Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> view
                                                 std::uintptr_t stream) {
   const CurrentDevice current(*driver_, device_);
   const UsedStream used(stream_, std::bit_cast<void*>(stream));
-  RETURN_IF_ERROR(draw(views));
-  RETURN_IF_ERROR(readCounts());
+  const Result<void> drawn = draw(views).and_then([this] { return readCounts(); });
+  if (!drawn) {
+    abandon();
+    return tl::unexpected<Error>(drawn.error());
+  }
   DeviceImages images;
   if (options_.color != ColorFormat::kNone) images.color = color_.address();
   if (options_.depth) images.depth = depth_.address();

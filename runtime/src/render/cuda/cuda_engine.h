@@ -65,8 +65,8 @@ class CudaEngine final : public RenderEngine {
   CudaEngine(const CudaEngine&) = delete;
   CudaEngine& operator=(const CudaEngine&) = delete;
 
-  /// Where the driver fails, a message goes to stderr and the program ends: what follows would be
-  /// wrong images.
+  /// Throw ErrorException where the driver fails: the images would be wrong. The next batch begins
+  /// anew.
   void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
   void end() override;
   [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
@@ -115,6 +115,8 @@ class CudaEngine final : public RenderEngine {
                                   const Upload& at) const;
   Result<void> readCounts();
   Result<void> readImages();
+  /// Waits for what was launched of a batch that failed, whose memory the next one takes.
+  void abandon();
   [[noreturn]] void giveUp(const Error& error);
 
   RenderOptions options_;

@@ -147,6 +147,7 @@ TEST_F(CudaHost, PassesOnWhatTheDriverRefuses) {
     standin_->failing = function;
     const auto images = (*engine)->renderToDevice({&view_, 1}, 0);
     ASSERT_FALSE(images) << function;
+    EXPECT_EQ(standin_->under_way, 0U) << function;
     EXPECT_EQ(images.error().code, ErrorCode::kUnsupported);
     standin_->failing = nullptr;
     ASSERT_TRUE((*engine)->renderToDevice({&view_, 1}, 0));
@@ -170,6 +171,7 @@ TEST_F(CudaHost, ThrowsWhereImagesWouldBeWrongAndDrawsAgainAfterwards) {
       EXPECT_EQ(failure.error().code, ErrorCode::kUnsupported);
       thrown = failure.what();
     }
+    EXPECT_EQ(standin_->under_way, 0U) << failing;
     // There is nothing to wait for.
     (*engine)->end();
     return thrown;

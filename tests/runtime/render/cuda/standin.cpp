@@ -94,6 +94,7 @@ Function openGl(const char* name) {
 
 void note(void* stream) {
   const std::scoped_lock lock(device_mutex);
+  ++standin.under_way;
   ++(reinterpret_cast<std::uintptr_t>(stream) == standin.stream ? standin.on_stream
                                                                 : standin.on_others);
 }
@@ -293,6 +294,7 @@ STANDIN int cuLaunchKernel(void* function, unsigned grid, unsigned, unsigned, un
 }
 STANDIN int cuStreamSynchronize(void* stream) {
   note(stream);
+  standin.under_way = 0;
   return outcome("cuStreamSynchronize");
 }
 STANDIN int cuGraphicsGLRegisterBuffer(SharedBuffer** resource, unsigned name, unsigned) {

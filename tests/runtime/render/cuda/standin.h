@@ -28,6 +28,8 @@ struct Standin {
   std::uintptr_t stream = 0;
   std::uint64_t on_stream = 0;
   std::uint64_t on_others = 0;
+  /// Copies and launches that nothing has waited for.
+  std::uint64_t under_way = 0;
   std::uint64_t allocations = 0;
   std::uint64_t allocated_bytes = 0;
   int contexts = 0;
