@@ -6,8 +6,6 @@
 #include "render/gl/egl_context.h"
 #include "render/gl/gl_engine.h"
 #include "runtime/render/gl_scene.h"
-#include "support/limited_memory.h"
-#include "support/sanitized.h"
 
 namespace galactic::render::gl::gl_device_test {
 namespace {
@@ -185,65 +183,6 @@ TEST(GlStart, NamesTheSoftwareDriverWhereNothingElseIsFound) {
   EXPECT_THAT(renderer.error().message, HasSubstr("ask for the device \"software\" or use the soft "
                                                   "backend"));
   EXPECT_THAT(renderer.error().message, HasSubstr("llvmpipe"));
-}
-
-TEST(GlStart, ThrowsWhereMemoryIsLackingAndDrawsAgainAfterwards) {
-  GALACTIC_SKIP_WITHOUT_GL();
-  if (test::kIsSanitized) GTEST_SKIP() << "a sanitizer maps more than a limit could allow";
-  RenderOptions options = test::glOptions();
-  options.width = options.height = kLargestImage;
-  options.semantics = true;
-  const RenderLibrary library;
-  auto renderer = test::makeRenderer(library, options);
-  const std::size_t pixels = std::size_t{kLargestImage} * kLargestImage;
-  std::vector<std::uint8_t> color(pixels * static_cast<std::size_t>(options.color));
-  std::vector<float> depth(pixels, 1);
-  std::vector<std::uint32_t> semantics(pixels, 1);
-  const RenderView view;
-  const auto draw = [&] { renderer.render({&view, 1}, {color, depth, semantics}); };
-  {
-    // The images need some 400 MB.
-    const test::LimitedMemory limit(std::uint64_t{150} << 20U);
-    EXPECT_THROW(draw(), ErrorException);
-    // Who ends the batch all the same finds nothing to wait for.
-    renderer.endRender();
-  }
-  draw();
-  EXPECT_EQ(depth, std::vector<float>(pixels));
-  EXPECT_EQ(semantics, std::vector<std::uint32_t>(pixels));
-}
-
-TEST(GlStart, ThrowsWhereTheDriverRefusesACallAndDrawsAgainAfterwards) {
-  GALACTIC_SKIP_WITHOUT_GL();
-  const Result<EglContext> context = openContext({.kind = Kind::kSoftware}, false);
-  ASSERT_TRUE(context.has_value());
-  const CurrentContext current(*context);
-  const RenderLibrary library;
-  const RenderOptions options = test::glOptions();
-  auto renderer = GlRenderer::make(library, options, {});
-  ASSERT_TRUE(renderer.has_value());
-  test::RenderImages images = test::emptyImages(options, 1);
-  ViewSlice slice;
-  const std::vector<RenderView> views(1);
-  const auto draw = [&] {
-    (*renderer)->submit(views, slice);
-    (*renderer)->collect(slice, test::targetsOf(images));
-  };
-  draw();
-  glEnable(GL_TRIANGLES);
-  try {
-    draw();
-    ADD_FAILURE() << "nothing was thrown";
-  } catch (const ErrorException& thrown) {
-    EXPECT_EQ(thrown.error().code, ErrorCode::kUnsupported);
-    EXPECT_EQ(thrown.error().message,
-              "the driver does not draw 1 images of 128 x 128 pixels (OpenGL error 0x0500); draw "
-              "fewer at once or smaller ones, or use the soft backend");
-  }
-  EXPECT_EQ(slice.fence, nullptr);
-  images = test::emptyImages(options, 1);
-  draw();
-  EXPECT_EQ(images.depth, std::vector<float>(images.depth.size()));
 }
 
 TEST(GlStart, LeavesTheCallersContextCurrent) {

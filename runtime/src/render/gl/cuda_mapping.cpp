@@ -7,6 +7,8 @@
 
 #include <bit>
 
+#include "render/gl/handles.h"
+
 namespace galactic::render::gl {
 
 /// The functions of CUDA's driver that are used, by their names in libcuda.so.1.
@@ -96,9 +98,12 @@ void CudaMapping::unmap() {
 }
 
 void CudaMapping::forget() {
-  unmap();
   if (driver_ == nullptr || driver_->buffer == 0) return;
-  driver_->unregister(driver_->resource);
+  if (hasContext()) {
+    unmap();
+    driver_->unregister(driver_->resource);
+  }
+  driver_->mapped = false;
   driver_->buffer = 0;
 }
 

@@ -7,7 +7,7 @@
 namespace galactic::render::gl {
 
 /// Gives CUDA the memory of a buffer of OpenGL, without a copy. The OpenGL context must be current
-/// for all calls, also for the destructor.
+/// for all calls, also for the destructor, unless it is lost.
 class CudaMapping {
  public:
   CudaMapping();

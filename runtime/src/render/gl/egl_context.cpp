@@ -14,6 +14,12 @@ namespace {
 
 constexpr std::size_t kMostDevices = 64;
 
+/// Of displays: who else closes one does not close it for us, where EGL can count who uses it.
+std::array<EGLint, 3> displayAttributes() {
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_KHR_display_reference")) return {EGL_NONE};
+  return {EGL_TRACK_REFERENCES_KHR, EGL_TRUE, EGL_NONE};
+}
+
 tl::unexpected<Error> missing(const char* message) {
   return fail(ErrorCode::kUnsupported, "render backend gl", message);
 }
@@ -87,12 +93,13 @@ EGLContext newContext(EGLDisplay display) {
   return EGL_NO_CONTEXT;
 }
 
-tl::unexpected<Error> refused(const std::string& name, const char* what) {
+tl::unexpected<Error> refused(const std::string& name, const char* what,
+                              EGLint error = eglGetError()) {
   return fail(
       ErrorCode::kUnsupported, "render device",
       fmt::format("{}: {} (EGL error 0x{:04x}); expected OpenGL 4.5 without a display: check "
                   "the driver, or use the soft backend",
-                  name, what, eglGetError()));
+                  name, what, error));
 }
 
 Result<EglContext> openOn(EGLDisplay display, const std::string& name) {
@@ -105,7 +112,9 @@ Result<EglContext> openOn(EGLDisplay display, const std::string& name) {
   if (handle == EGL_NO_CONTEXT) return refused(name, "EGL gives no OpenGL context on it");
   EglContext opened(display, handle);
   const CurrentContext current(opened);
-  if (!current.holds()) return refused(name, "EGL cannot use a context without a surface");
+  if (!current.holds()) {
+    return refused(name, "EGL cannot use a context without a surface", current.error());
+  }
   opened.setFacts(factsOfCurrent());
   return opened;
 }
@@ -118,8 +127,9 @@ Result<EglContext> openSurfaceless() {
                 "processor's driver, libgl1-mesa-dri for the software driver, or use the soft "
                 "backend");
   }
-  return openOn(
-      eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), name);
+  return openOn(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY,
+                                         displayAttributes().data()),
+                name);
 }
 
 /// The first that opens and is what was wished for; else why the last was not.
@@ -128,8 +138,8 @@ Result<EglContext> openFirst(const DeviceWish& wish, std::span<const EGLDeviceEX
                              std::span<const std::size_t> numbers) {
   std::string reasons;
   for (const std::size_t number : numbers) {
-    const EGLDisplay display =
-        eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, handles[number], nullptr);
+    const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, handles[number],
+                                                        displayAttributes().data());
     Result<EglContext> opened = openOn(display, devices[number].name);
     const Result<void> judged =
         opened ? judgeContext(wish, opened->facts()) : tl::unexpected<Error>(opened.error());
@@ -203,6 +213,11 @@ CurrentContext::CurrentContext(const EglContext& context)
   read_ = eglGetCurrentSurface(EGL_READ);
   holds_ =
       eglMakeCurrent(own_display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.handle()) == EGL_TRUE;
+  if (holds_) return;
+  error_ = eglGetError();
+  if (previous_ != EGL_NO_CONTEXT) {
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  }
 }
 
 CurrentContext::~CurrentContext() {

@@ -43,13 +43,16 @@ class EglContext {
 };
 
 /// Makes a context current on this thread for a scope, and then what was current before: the caller
-/// may draw with OpenGL himself, and may call from another thread the next time.
+/// may draw with OpenGL himself, and may call from another thread the next time. Where EGL refuses,
+/// none is current in this scope: nothing must reach the caller's.
 class CurrentContext {
  public:
   explicit CurrentContext(const EglContext& context);
   ~CurrentContext();
-  /// Whether it worked.
+  /// Whether it worked. It does not once another part of the program has closed the display.
   [[nodiscard]] bool holds() const { return holds_; }
+  /// What EGL said to it.
+  [[nodiscard]] EGLint error() const { return error_; }
   CurrentContext(const CurrentContext&) = delete;
   CurrentContext& operator=(const CurrentContext&) = delete;
 
@@ -61,6 +64,7 @@ class CurrentContext {
   EGLSurface draw_ = EGL_NO_SURFACE;
   EGLSurface read_ = EGL_NO_SURFACE;
   bool holds_ = false;
+  EGLint error_ = EGL_SUCCESS;
 };
 
 /// Opens an OpenGL 4.5 core context on the wished device: EGL's device platform first, Mesa's

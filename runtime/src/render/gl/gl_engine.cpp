@@ -1,5 +1,6 @@
 #include "render/gl/gl_engine.h"
 
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -18,9 +19,12 @@ void keepFreedMemory() {
 #endif
 }
 
-tl::unexpected<Error> lost() {
-  return fail(ErrorCode::kUnsupported, "render device",
-              "EGL cannot make its own context current; use the soft backend");
+Error lostContext(const CurrentContext& current) {
+  return {ErrorCode::kUnsupported, "render device",
+          fmt::format("EGL no longer has the renderer's context (EGL error 0x{:04x}): another part "
+                      "of the program may have closed the display (eglTerminate); make another "
+                      "renderer, or use the soft backend",
+                      current.error())};
 }
 
 }  // namespace
@@ -38,7 +42,7 @@ Result<std::unique_ptr<GlEngine>> GlEngine::make(const RenderLibrary& library,
   if (!context) return tl::unexpected<Error>(context.error());
   if (isSoftwareRenderer(context->facts().renderer)) keepFreedMemory();
   const CurrentContext current(*context);
-  if (!current.holds()) return lost();
+  if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
   auto renderer = GlRenderer::make(library, options, tuning);
   if (!renderer) return tl::unexpected<Error>(renderer.error());
   return std::make_unique<GlEngine>(std::move(*context), std::move(*renderer));
@@ -47,7 +51,7 @@ Result<std::unique_ptr<GlEngine>> GlEngine::make(const RenderLibrary& library,
 GlEngine::~GlEngine() {
   const CurrentContext current(context_);
   for (ViewSlice& slice : slices_) {
-    if (slice.fence != nullptr) glDeleteSync(slice.fence);
+    if (slice.fence != nullptr && current.holds()) glDeleteSync(slice.fence);
     slice = ViewSlice();
   }
   cuda_.reset();
@@ -61,12 +65,18 @@ void GlEngine::begin(std::span<const RenderView> views, const RenderTargets& tar
   submitted_slices_ = 0;
   collected_rounds_ = 0;
   const CurrentContext current(context_);
+  if (!current.holds()) throw ErrorException(lostContext(current));
+  // A batch that failed leaves slices behind, whose buffers are in use until they are drawn.
+  finishSlices();
   renderer_->resetStatistics();
   submitNext();
 }
 
 void GlEngine::end() {
+  // Who ends a batch that did not begin finds nothing to wait for.
+  if (collected_rounds_ == submitted_slices_) return;
   const CurrentContext current(context_);
+  if (!current.holds()) throw ErrorException(lostContext(current));
   while (collected_rounds_ < submitted_slices_) {
     renderer_->collect(slices_[collected_rounds_ % slices_.size()], targets_);
     ++collected_rounds_;
@@ -92,8 +102,18 @@ void GlEngine::submitNext() {
   }
 }
 
+void GlEngine::finishSlices() {
+  for (ViewSlice& slice : slices_) {
+    if (slice.fence != nullptr) renderer_->finish(slice);
+  }
+}
+
 Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
+  // What a batch that failed left behind is not to be collected any more.
+  collected_rounds_ = submitted_slices_;
   const CurrentContext current(context_);
+  if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
+  finishSlices();
   cuda_->unmap();
   renderer_->resetStatistics();
   // CUDA must let go of a buffer before it is replaced by a larger one.
@@ -111,9 +131,7 @@ Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
     renderer_->submitToDevice(views.subspan(first, std::min(most, views.size() - first)), *layout,
                               slice);
   }
-  for (ViewSlice& slice : slices_) {
-    if (slice.fence != nullptr) renderer_->finish(slice);
-  }
+  finishSlices();
   return layout;
 }
 
@@ -122,6 +140,7 @@ Result<DeviceImages> GlEngine::renderToDevice(std::span<const RenderView> views,
   const Result<ImageLayout> layout = drawToDevice(views);
   if (!layout) return tl::unexpected<Error>(layout.error());
   const CurrentContext current(context_);
+  if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
   const Result<std::uint64_t> address = cuda_->map(renderer_->deviceImages().get(), stream);
   if (!address) return tl::unexpected<Error>(address.error());
   DeviceImages images;

@@ -41,6 +41,8 @@ class GlEngine final : public RenderEngine {
  private:
   /// Starts slices while views wait and a slice is idle.
   void submitNext();
+  /// Waits for all that is under way.
+  void finishSlices();
 
   EglContext context_;
   std::unique_ptr<GlRenderer> renderer_;

@@ -275,19 +275,18 @@ void GlRenderer::start(std::span<const RenderView> views, ViewSlice& slice) {
   resolve(slice);
   readBack(slice);
   if (measures_) stamp(slice.times[2]);
-  requireDrawn(slice.views);
+  if (const GLenum error = glGetError(); error != GL_NO_ERROR) throw notDrawn(slice, error);
   slice.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  if (slice.fence == nullptr) throw notDrawn(slice, glGetError());
   glFlush();
 }
 
-void GlRenderer::requireDrawn(std::size_t views) const {
-  const GLenum error = glGetError();
-  if (error == GL_NO_ERROR) return;
-  throw ErrorException({ErrorCode::kUnsupported, "render device",
-                        fmt::format("the driver does not draw {} images of {} x {} pixels (OpenGL "
-                                    "error 0x{:04x}); draw fewer at once or smaller ones, or use "
-                                    "the soft backend",
-                                    views, options_.width, options_.height, error)});
+ErrorException GlRenderer::notDrawn(const ViewSlice& slice, GLenum error) const {
+  return ErrorException({ErrorCode::kUnsupported, "render device",
+                         fmt::format("the driver does not draw {} images of {} x {} pixels (OpenGL "
+                                     "error 0x{:04x}); draw fewer at once or smaller ones, or use "
+                                     "the soft backend",
+                                     slice.views, options_.width, options_.height, error)});
 }
 
 void GlRenderer::upload(std::span<const RenderView> views, ViewSlice& slice) {
@@ -414,11 +413,13 @@ void GlRenderer::readBack(const ViewSlice& slice) const {
 
 void GlRenderer::finish(ViewSlice& slice) {
   constexpr GLuint64 kNanoseconds = 1'000'000'000;
-  while (glClientWaitSync(slice.fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanoseconds) ==
-         GL_TIMEOUT_EXPIRED) {
+  GLenum waited = GL_TIMEOUT_EXPIRED;
+  while (waited == GL_TIMEOUT_EXPIRED) {
+    waited = glClientWaitSync(slice.fence, GL_SYNC_FLUSH_COMMANDS_BIT, kNanoseconds);
   }
   glDeleteSync(slice.fence);
   slice.fence = nullptr;
+  if (waited == GL_WAIT_FAILED) throw notDrawn(slice, glGetError());
   std::array<DrawTotals, kDrawClasses> totals{};
   std::memcpy(totals.data(), slice.readback.data() + readBytes(slice), kTotalsBytes);
   statistics_.instances += slice.counts.instances;

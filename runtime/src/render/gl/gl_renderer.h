@@ -69,7 +69,8 @@ class GlRenderer {
   [[nodiscard]] std::size_t mostViews() const { return most_views_; }
   /// Starts to draw `views` and to read the images back. `slice` is idle.
   void submit(std::span<const RenderView> views, ViewSlice& slice);
-  /// Waits for a slice and copies its images to their place in `targets`.
+  /// Waits for a slice and copies its images to their place in `targets`. Throws an ErrorException
+  /// when they were not drawn.
   void collect(ViewSlice& slice, const RenderTargets& targets);
 
   /// The same with images that stay on the device, in deviceImages(): makes room for so many views.
@@ -82,7 +83,7 @@ class GlRenderer {
   /// `slice.first_view` is a multiple of 4.
   void submitToDevice(std::span<const RenderView> views, const ImageLayout& layout,
                       ViewSlice& slice);
-  /// Waits for a slice.
+  /// Waits for a slice. Throws an ErrorException when it was not drawn.
   void finish(ViewSlice& slice);
   [[nodiscard]] const Buffer& deviceImages() const { return device_images_; }
 
@@ -104,8 +105,8 @@ class GlRenderer {
   void start(std::span<const RenderView> views, ViewSlice& slice);
   void resolve(const ViewSlice& slice);
   void readBack(const ViewSlice& slice) const;
-  /// Throws an ErrorException when the driver has refused a part of drawing so many views.
-  void requireDrawn(std::size_t views) const;
+  /// What is thrown when the driver has refused a part of drawing a slice.
+  [[nodiscard]] ErrorException notDrawn(const ViewSlice& slice, GLenum error) const;
 
   RenderOptions options_;
   bool indirect_count_ = false;

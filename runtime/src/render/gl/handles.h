@@ -1,4 +1,5 @@
 #pragma once
+#include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
 #include <cstddef>
@@ -6,7 +7,11 @@
 
 namespace galactic::render::gl {
 
-/// A name that OpenGL gave, given back at the end. Its context must be current then.
+/// Whether OpenGL can be called on this thread. Where the context is lost, so is what it had.
+inline bool hasContext() { return eglGetCurrentContext() != EGL_NO_CONTEXT; }
+
+/// A name that OpenGL gave, given back at the end. Its context must be current then; or none, where
+/// it is lost.
 template <void (*Delete)(GLuint)>
 class Handle {
  public:
@@ -19,7 +24,8 @@ class Handle {
     return *this;
   }
   void reset() {
-    if (name_ != 0) Delete(std::exchange(name_, 0U));
+    const GLuint name = std::exchange(name_, 0U);
+    if (name != 0 && hasContext()) Delete(name);
   }
   [[nodiscard]] GLuint get() const { return name_; }
 
