@@ -78,6 +78,7 @@ SightLine inSight(const Scene& scene, const Vec3& base, const RigidTransform& wa
   const ColumnGrid& grid = gridFor(scene);
   const Vec3 highest = targetOf(wanted, base);
   SightLine found{wanted, highest};
+  if (dot(highest - wanted.origin, wanted.x_axis) < 0) return found;
   float best = -1;
   const auto consider = [&](const RigidTransform& start, const Vec3& target, float price) {
     for (int n = 0; n < 2 * kTurns; ++n) {

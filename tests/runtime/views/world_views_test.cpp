@@ -229,6 +229,23 @@ TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightMayLookStraightUpOrDown) {
   }
 }
 
+TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightStaysWhereItIsWhenItLooksAway) {
+  for (const float yaw : {-180.0F, -120.0F, 100.0F, 180.0F}) {
+    CameraMount mount =
+        chooseCamera(world_->robot(), {.name = "follow", .rpy_degrees = {0, 0, yaw}})->mount;
+    ASSERT_TRUE(mount.keeps_sight);
+    const WorldViews views(*world_, *models_, *simulator_, mount);
+    mount.keeps_sight = false;
+    const WorldViews wanted(*world_, *models_, *simulator_, mount);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      EXPECT_EQ(difference(views.views()[env].camera.world_from_camera,
+                           wanted.views()[env].camera.world_from_camera),
+                0)
+          << yaw;
+    }
+  }
+}
+
 TEST_F(WorldViewsOfAHome, ACameraOfTheWorldStaysWhereItIs) {
   const CameraMount mount{
       .frame = CameraFrame::kWorld, .link = 0, .frame_from_camera = {{1, 2, 3}, test::yaw(1)}};
