@@ -31,6 +31,12 @@ std::array<float, 2> imageUv(const std::array<float, 2>& uv) {
   return {uv[0] + 0.0F, 1.0F - uv[1]};
 }
 
+/// The texture alone says what is cut out, as the material was chosen for it.
+std::uint32_t opaqueColor(const std::array<float, 4>& linear) {
+  constexpr std::uint32_t kOpaque = 0xFF000000;
+  return surfaceColor(linear) | kOpaque;
+}
+
 /// Marks the vertices that triangles use: only they have to be anywhere.
 std::vector<bool> usedVertices(const SourceMesh& mesh) {
   std::vector<bool> used(mesh.positions.size());
@@ -59,7 +65,7 @@ Result<void> appendPlaced(const PlacedMesh& placed, const RenderSource& source, 
     }
     vertex.position = rounded(position);
     if (textured) vertex.uv = imageUv(mesh.uvs[n]);
-    if (!mesh.colors.empty()) vertex.color = surfaceColor(mesh.colors[n]);
+    if (!mesh.colors.empty()) vertex.color = opaqueColor(mesh.colors[n]);
   }
   const bool mirrors = determinant(placed.part_from_mesh) < 0;
   for (const Triangle& triangle : mesh.triangles) {

