@@ -110,8 +110,9 @@ struct NoiseSource {
 };
 
 /// One image: a camera and what it sees. A camera whose numbers are not finite, or whose field of
-/// view is not within its range, sees nothing. Where two surfaces are in one place, the first one
-/// shows: instances come before posed models, and those before attached ones.
+/// view is not within its range, sees nothing. Where a model is in one place twice, the first one
+/// shows: instances come before posed models, and those before attached ones. Which of two other
+/// surfaces in one place shows is for the backend to say, the same one each time.
 struct RenderView {
   RenderCamera camera;
   std::span<const RenderInstance> instances = {};

@@ -1,7 +1,9 @@
 // Both backends draw the same images.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <random>
 
 #include "runtime/render/gl_scene.h"
 
@@ -85,6 +87,52 @@ TEST(BackendAgreement, TheSameNoiseIsAddedToTheImagesOfBoth) {
     if (gl_plain.color[i] == soft_plain.color[i]) {
       ASSERT_EQ(gl.color[i], soft.color[i]);
     }
+  }
+}
+
+TEST(BackendAgreement, WhereAModelIsInOnePlaceTwiceTheFirstShows) {
+  GALACTIC_SKIP_WITHOUT_GL();
+  constexpr std::uint32_t kSeed = 5;
+  RecordProperty("seed", static_cast<int>(kSeed));
+  constexpr std::size_t kEach = 10;
+  constexpr std::uint32_t kFirst = 1000;
+  constexpr std::uint32_t kSecond = 2000;
+  GlHome home;
+  std::mt19937 random(kSeed);
+  // Models of each view: instances, posed models, and then all of them again, under other ids.
+  std::vector<RenderView> once = home.views(6);
+  std::vector<std::vector<RenderInstance>> instances(once.size());
+  std::vector<std::vector<PosedModel>> posed(once.size());
+  std::vector<std::uint32_t> ids(kEach, kFirst);
+  ids.insert(ids.end(), 2 * kEach, kSecond);
+  std::vector<RenderView> twice = once;
+  for (std::size_t v = 0; v < once.size(); ++v) {
+    for (std::size_t n = 0; n < 2 * kEach; ++n) {
+      const Vec3 place{uniform(random, -3, 3.5F), uniform(random, -1, 1), uniform(random, -3, 3)};
+      posed[v].push_back({static_cast<std::uint32_t>(n % 9), {place, randomRotation(random)}});
+    }
+    for (std::size_t n = kEach; n < 2 * kEach; ++n) {
+      instances[v].push_back({posed[v][n].model, rigidTransform(posed[v][n].world_from_model)});
+    }
+    const std::vector<PosedModel> again = posed[v];
+    posed[v].resize(kEach);
+    posed[v].insert(posed[v].end(), again.begin(), again.end());
+    once[v].instances = twice[v].instances = instances[v];
+    once[v].posed = {posed[v].data(), kEach};
+    once[v].posed_semantics = {ids.data(), kEach};
+    twice[v].posed = posed[v];
+    twice[v].posed_semantics = ids;
+  }
+  RenderOptions options = glOptions();
+  options.semantics = true;
+  for (const RenderBackend backend : {RenderBackend::kGl, RenderBackend::kSoft}) {
+    options.backend = backend;
+    const RenderImages wanted = renderViews(home.library(), options, once);
+    EXPECT_EQ(renderViews(home.library(), options, twice), wanted) << backendName(backend);
+    const auto share = static_cast<double>(std::ranges::count(wanted.semantics, kFirst)) /
+                       static_cast<double>(wanted.semantics.size());
+    EXPECT_GT(share, 0.1);
+    EXPECT_LT(share, 0.9);
   }
 }
 
