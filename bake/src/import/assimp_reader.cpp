@@ -20,6 +20,7 @@
 #include "import/affine.h"
 #include "import/assimp_reader_files.h"
 #include "import/assimp_reader_looks.h"
+#include "import/assimp_reader_wraps.h"
 #include "import/axis_convention.h"
 #include "import/checks/content_check.h"
 #include "import/gltf_texture_coordinates.h"
@@ -410,6 +411,7 @@ void SceneReader::nameFiles() {
 
 Result<SourceAsset> SceneReader::read() {
   RETURN_IF_ERROR(load());
+  warnOfWraps(*scene_, asset_.warnings);
   ASSIGN_OR_RETURN(auto world_from_root, worldFromRoot());
   if (auto placed = placeNodes(world_from_root); !placed) {
     return tl::unexpected(std::move(placed.error()));
