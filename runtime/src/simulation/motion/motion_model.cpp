@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -145,8 +145,8 @@ void addVariables(const Robot& robot, std::span<const std::uint32_t> also_variab
   // A recipe may limit a continuous joint; elsewhere it is the wrapping that keeps the angle in
   // range.
   for (MotionVariable& variable : model.variables) {
-    constexpr float kPi = std::numbers::pi_v<float>;
-    if (variable.lower > -kPi || variable.upper < kPi) variable.wraps = false;
+    constexpr float kUnlimited = std::numeric_limits<float>::max();
+    if (variable.lower > -kUnlimited || variable.upper < kUnlimited) variable.wraps = false;
   }
 }
 

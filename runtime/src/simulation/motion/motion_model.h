@@ -23,8 +23,8 @@ struct MotionVariable {
   float step = 0;
   /// Index of its action, -1 for none.
   std::int32_t action = -1;
-  /// Whether the angle is kept in [-pi, pi): a continuous joint without limits in there that no
-  /// gear follows.
+  /// Whether the angle is kept in [-pi, pi): a continuous joint that nobody limits and no gear
+  /// follows.
   bool wraps = false;
 };
 

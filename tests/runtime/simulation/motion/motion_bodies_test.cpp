@@ -355,7 +355,7 @@ TEST(MotionModel, DoesNotWrapAnglesThatARecipeLimits) {
   };
   constexpr float kMost = std::numeric_limits<float>::max();
   EXPECT_TRUE(wraps(-kMost, kMost));
-  EXPECT_TRUE(wraps(-4, 3.5F));
+  EXPECT_FALSE(wraps(-8, 8));
   EXPECT_FALSE(wraps(-1, kMost));
   EXPECT_FALSE(wraps(-3, 4));
   EXPECT_FALSE(wraps(0, 6.28F));
