@@ -12,7 +12,6 @@
 #include "arrays.h"
 #include "errors.h"
 #include "galactic/option_text.h"
-#include "support/workers.h"
 
 namespace galactic::python {
 namespace {
@@ -154,9 +153,9 @@ std::string wordOf(const char* name, const py::handle& value, const char* wanted
 }
 
 std::uint32_t threadsOf(const py::handle& value) {
-  constexpr std::uint64_t kMost = detail::kMostThreads;
-  if (const auto threads = wholeUpTo(value, kMost)) return static_cast<std::uint32_t>(*threads);
-  refuseValue("threads", value, fmt::format("0 to {}; 0 takes one per processor", kMost));
+  const auto threads = wholeUpTo(value, kMostThreads);
+  if (threads) return static_cast<std::uint32_t>(*threads);
+  refuseValue("threads", value, fmt::format("0 to {}; 0 takes one per processor", kMostThreads));
 }
 
 SimulationOptions optionsOf(const World& world, const py::dict& keywords) {

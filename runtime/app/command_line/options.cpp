@@ -26,7 +26,6 @@
 #include "support/option_table.h"
 #include "support/printable.h"
 #include "support/standard_streams.h"
-#include "support/workers.h"
 
 namespace galactic {
 namespace {
@@ -207,7 +206,7 @@ void addRunOptions(CLI::App& app, RunOptions& options) {
   addSampling(app, options.is_deterministic);
   app.add_option("-j,--threads", options.simulation.threads,
                  "Threads; the results do not depend on it; 0: one per processor")
-      ->check(wholeCheck(0, detail::kMostThreads))
+      ->check(wholeCheck(0, kMostThreads))
       ->option_text(fmt::format("N [{}]", options.simulation.threads));
   app.add_flag("--body-transforms", options.simulation.body_transforms,
                "Keep the pose of every body of the robot; rendering implies it")

@@ -190,6 +190,9 @@ enum class EpisodeOrder : std::uint8_t {
   kPartition = 2,
 };
 
+/// No batch of simulations, images or policies takes more threads, however many it is told.
+inline constexpr std::uint32_t kMostThreads = 4096;
+
 struct SimulationOptions {
   std::uint32_t envs = 128;
   /// 0: one per processor.

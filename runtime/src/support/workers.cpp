@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "galactic/simulation_options.h"
+
 namespace galactic::detail {
 namespace {
 

@@ -11,9 +11,6 @@
 
 namespace galactic::detail {
 
-/// As many as anybody may ask for: more are a mistake.
-inline constexpr std::uint32_t kMostThreads = 4096;
-
 /// As many as wanted, kMostThreads at most; 0: as many threads as there are processors.
 [[nodiscard]] std::uint32_t threadCount(std::uint32_t wanted) noexcept;
 

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "galactic/simulation_options.h"
 #include "support/limited_memory.h"
 #include "support/sanitized.h"
 
@@ -54,8 +55,8 @@ TEST(Workers, RunEveryThreadOnceInEachOfManyRounds) {
 TEST(Workers, AreNoMoreThanAnybodyMayAskFor) {
   EXPECT_GE(detail::threadCount(0), 1U);
   EXPECT_EQ(detail::threadCount(3), 3U);
-  EXPECT_EQ(detail::threadCount(detail::kMostThreads), detail::kMostThreads);
-  EXPECT_EQ(detail::threadCount(1U << 20U), detail::kMostThreads);
+  EXPECT_EQ(detail::threadCount(kMostThreads), kMostThreads);
+  EXPECT_EQ(detail::threadCount(1U << 20U), kMostThreads);
 }
 
 TEST(Workers, DoManyMorePartsThanThreadsEachOnceAndNeverTwoOnOneDesk) {
