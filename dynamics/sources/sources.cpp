@@ -73,8 +73,8 @@ class SourceReader {
     return {};
   }
   Result<void> operator()(const bake::ObjectJob& job) {
-    ASSIGN_OR_RETURN(const auto inputs, bake::findObjects(job.inputs));
-    for (const bake::ObjectInput& input : inputs) {
+    ASSIGN_OR_RETURN(const auto found, bake::findObjects(job.inputs));
+    for (const bake::ObjectInput& input : found.objects) {
       sources_.log.noteRead(input.path);
       const std::string& name = job.name.empty() ? input.name : job.name;
       if (!objects_.contains(name)) continue;
