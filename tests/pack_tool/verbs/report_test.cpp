@@ -69,7 +69,8 @@ TEST(Report, HasSeveralSheetsOfManyObjects) {
   ToyObjects toys;
   toys.objects.assign(241, {});
   for (std::size_t n = 0; n < toys.objects.size(); ++n) {
-    toys.objects[n].name = "block " + std::to_string(n);
+    // Packs have them in order.
+    toys.objects[n].name = "block " + std::to_string(1000 + n);
   }
   const fs::path pack = folder.write("many.pack", asText(buildPack(toys).bytes()));
   const fs::path page = folder.path() / "page.html";
