@@ -270,7 +270,7 @@ class CoordinateWriter {
   }
 
   void put(double value) {
-    constexpr double kLargest = double{std::numeric_limits<float>::max()};
+    constexpr double kLargest = static_cast<double>(std::numeric_limits<float>::max());
     const auto number = static_cast<float>(std::clamp(value, -kLargest, kLargest));
     floats_.append(reinterpret_cast<const char*>(&number), sizeof(number));
   }
