@@ -5,10 +5,18 @@ import pathlib
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
-import numpy as np
-import pytest
+# As galactic.learning.launch has it in ranks, with whose runs those of this process are compared bit for bit. To be
+# said before OpenBLAS is read, which comes with numpy.
+_PROCESSOR = pathlib.Path("/proc/cpuinfo")
+if _PROCESSOR.is_file() and " avx512vl " in _PROCESSOR.read_text(
+    encoding="utf-8", errors="replace"
+):
+    os.environ.setdefault("OPENBLAS_CORETYPE", "SKYLAKEX")
 
-import galactic
+import numpy as np  # noqa: E402
+import pytest  # noqa: E402
+
+import galactic  # noqa: E402
 
 
 @pytest.fixture(scope="session")
