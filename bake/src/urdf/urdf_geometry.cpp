@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/srgb.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "import/source_files.h"
 #include "support/try.h"
@@ -24,17 +25,12 @@ namespace fs = std::filesystem;
 constexpr double kSmallestPart = 0.002;
 constexpr double kLargestPart = 10;
 
-/// A color channel on a screen (IEC 61966-2-1) as linear light.
-float linearFromSrgb(double value) {
-  constexpr double kLinearPart = 0.04045;
-  const double v = std::clamp(value, 0.0, 1.0);
-  const double linear = v <= kLinearPart ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-  return static_cast<float>(linear);
-}
-
+/// Colors of URDFs are those on a screen.
 std::array<float, 4> linearColor(const std::array<double, 4>& c) {
-  return {linearFromSrgb(c[0]), linearFromSrgb(c[1]), linearFromSrgb(c[2]),
-          static_cast<float>(std::clamp(c[3], 0.0, 1.0))};
+  const auto channel = [&](std::size_t n) {
+    return static_cast<float>(srgbDecoded(std::clamp(c[n], 0.0, 1.0)));
+  };
+  return {channel(0), channel(1), channel(2), static_cast<float>(std::clamp(c[3], 0.0, 1.0))};
 }
 
 std::size_t sizeCount(UrdfGeometry geometry) {
