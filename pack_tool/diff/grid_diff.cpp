@@ -60,7 +60,7 @@ class GridComparison {
     if (a != b) result_.frame.push_back({field, std::to_string(a), std::to_string(b)});
   }
 
-  void compareColumns(Cell cell) {
+  void compareColumns(ColumnIndex cell) {
     readSpans(a_, cell, spans_a_);
     readSpans(b_, cell, spans_b_);
     ++result_.columns;

@@ -10,7 +10,7 @@ namespace galactic::pack_tool {
 
 /// A column that is not the same on both sides.
 struct ColumnDifference {
-  Cell cell;
+  ColumnIndex cell;
   GroundPoint center;
   std::size_t spans_a = 0;
   std::size_t spans_b = 0;

@@ -77,7 +77,8 @@ void drawPlot(Image& image, const PixelRect& plot, const ColumnGrid& grid,
                           static_cast<double>(grid.heights().lo), plot.y, plot.bottom()};
   std::vector<Span> spans;
   for (int x = 0; x < plot.width; ++x) {
-    const auto cell = pack_tool::nearestColumn(grid, pointAt(options, (x + 0.5) / plot.width));
+    const pack_tool::GroundPoint point = pointAt(options, (x + 0.5) / plot.width);
+    const auto cell = grid.columnAt(static_cast<float>(point.x), static_cast<float>(point.z));
     if (!cell) {
       fillRect(image, {plot.x + x, plot.y, 1, plot.height}, kUncovered);
       continue;

@@ -12,12 +12,12 @@ namespace {
 /// The column of one grid nearest to the point; without a cell where the grid does not reach.
 struct ColumnAnswer {
   ColumnGrid grid;
-  std::optional<Cell> cell;
+  std::optional<ColumnIndex> cell;
   std::vector<Span> spans;
 };
 
 ColumnAnswer askGrid(const ColumnGrid& grid, GroundPoint at) {
-  ColumnAnswer answer{grid, nearestColumn(grid, at), {}};
+  ColumnAnswer answer{grid, grid.columnAt(static_cast<float>(at.x), static_cast<float>(at.z)), {}};
   if (answer.cell) readSpans(grid, *answer.cell, answer.spans);
   return answer;
 }

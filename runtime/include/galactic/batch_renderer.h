@@ -151,12 +151,13 @@ struct RenderStatistics {
 /// and the options only, with noise and without. Rendering neither allocates, nor throws, nor
 /// locks, once it has seen its largest load: until then it throws std::bad_alloc, or ErrorException
 /// with kUnsupported, where memory is lacking, and may be called with a smaller load afterwards. A
-/// graphics processor that fails is an ErrorException, too. Not safe to call from several threads
-/// at once.
+/// graphics processor that fails is an ErrorException, too, and with kInvalidInput a call that does
+/// not keep to the shapes or to the order of beginRender() and endRender(). Not safe to call from
+/// several threads at once.
 class BatchRenderer {
  public:
-  /// `library` must outlive the renderer. Fails with kInvalidInput on options out of range and on
-  /// noise of images that are not drawn, with kUnsupported when the backend or the device is not
+  /// The renderer keeps a copy of `library`. Fails with kInvalidInput on options out of range and
+  /// on noise of images that are not drawn, with kUnsupported when the backend or the device is not
   /// available; the message names what is missing.
   [[nodiscard]] static Result<BatchRenderer> create(const RenderLibrary& library,
                                                     const RenderOptions& options);

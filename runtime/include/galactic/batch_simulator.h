@@ -144,7 +144,9 @@ enum class EpisodeChoice : std::uint8_t {
 /// N environments of one world, stepped together (paper, section 3.2 and appendices A, G and I).
 /// What an env does depends on (world, options, seed, env number, actions) only: bit for bit the
 /// same for any number of threads and of other envs. A step neither allocates, nor throws, nor
-/// locks. Not safe to call from several threads at once.
+/// locks. Calls with arrays of other lengths than said, or with numbers of envs that there are not,
+/// throw ErrorException with kInvalidInput and change nothing, as do those that have to wait for
+/// endStep() where a step has begun. Not safe to call from several threads at once.
 ///
 /// Actions, for each env: one per controlled joint of the robot, in the order of its recipe (+-1:
 /// the largest step); forward (+1: forward_step meters ahead); turn (+1: turn_step radians
@@ -191,13 +193,15 @@ class BatchSimulator {
   void step(std::span<const float> actions, std::span<const std::int32_t> resets = {});
 
   /// The same in two halves, so that the caller can work meanwhile. `actions` and `resets` must
-  /// stay as they are until endStep() returns; what the simulator returns is valid after it.
+  /// stay as they are until endStep() returns; what the simulator returns is valid after it. In
+  /// between it takes no other step, and no state is reset, saved, restored or copied.
   void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
   void endStep();
 
   /// A step that was made elsewhere. The envs are in `states` (one per env) now, whatever the
   /// simulation would have made of `actions`; observations, rewards and ends of episodes follow as
   /// in step(), from where robot and objects are and from what is held now and was held before.
+  /// Nothing asks whether a robot can be where it is said to be.
   void follow(std::span<const float> actions, std::span<const FollowedState> states);
 
   /// What reset() takes for an env instead of an episode: leave it as it is, or begin the episode
@@ -213,8 +217,8 @@ class BatchSimulator {
   /// with this seed; the statistics begin anew, too.
   void restart(std::uint64_t seed);
 
-  /// The state of all envs as bytes, or of `envs`, in that order (numbers below envCount()): with
-  /// what the last step returned, the statistics and the seed.
+  /// The state of all envs as bytes, or of `envs`, in that order (numbers below envCount(), an
+  /// ErrorException otherwise): with what the last step returned, the statistics and the seed.
   [[nodiscard]] std::vector<std::byte> saveState() const;
   [[nodiscard]] std::vector<std::byte> saveState(std::span<const std::uint32_t> envs) const;
   /// Goes on from a state that a simulator of the same world and the same options saved (the number
@@ -222,7 +226,8 @@ class BatchSimulator {
   /// that one would have. The saved envs become all envs, or `envs`, in that order; the random
   /// numbers and episodes to come are those of the env that a state is restored to. The bytes need
   /// not be trusted: fails with kInvalidInput or kUnsupported and changes nothing if they are not
-  /// such a state, are of another number of envs or, with `envs`, of another seed.
+  /// such a state, are of another number of envs or, with `envs`, of another seed, or where there
+  /// is no such env.
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state);
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state,
                                           std::span<const std::uint32_t> envs);
@@ -253,9 +258,9 @@ class BatchSimulator {
   /// Episodes of the world that are skipped because the robot cannot start in them.
   [[nodiscard]] std::span<const std::uint32_t> skippedEpisodes() const;
   [[nodiscard]] EnvState envState(std::size_t env) const;
-  /// The objects of one env, without copies: for rendering.
+  /// The objects of one env, which is not checked, without copies: for rendering.
   [[nodiscard]] EnvObjects envObjects(std::size_t env) const noexcept;
-  /// What the random numbers of its sensors follow from.
+  /// What the random numbers of the sensors of an env, which is not checked, follow from.
   [[nodiscard]] EnvMoment envMoment(std::size_t env) const noexcept;
   /// A body is a group of links that no joint moves against each other in this run (joints that
   /// neither actions nor episodes move count as fixed). The root's is body 0.

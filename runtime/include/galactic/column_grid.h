@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "galactic/pose.h"
@@ -37,6 +38,14 @@ struct ContactArrays {
   std::span<Clearance> clearance;
   std::span<float> down{};
   std::span<float> up{};
+};
+
+/// A cell of a grid, and the column over its middle: i along x, k along z.
+struct ColumnIndex {
+  std::uint32_t i = 0;
+  std::uint32_t k = 0;
+
+  friend bool operator==(const ColumnIndex&, const ColumnIndex&) = default;
 };
 
 /// Where a grid's cells lie and how their codes translate; plain data, pointing into a pack.
@@ -93,11 +102,16 @@ class ColumnGrid {
   /// same answers as those of `contact`, found faster. Neither allocates nor throws.
   [[nodiscard]] std::size_t firstNotFree(const SphereCenters& centers) const noexcept;
 
-  /// Number of free spans in column (i, k); i < columnsX(), k < columnsZ().
+  /// The column that a query at (x, z) is judged by; none where the grid does not reach, and where
+  /// a coordinate is NaN.
+  [[nodiscard]] std::optional<ColumnIndex> columnAt(float x, float z) const noexcept;
+
+  /// Number of free spans in column (i, k); 0 outside the grid.
   [[nodiscard]] std::size_t spanCount(std::uint32_t i, std::uint32_t k) const noexcept;
 
   /// Copies the free spans of column (i, k), ascending, as many as `out` takes; returns how many
-  /// there are. Every height of a span, its ends included, is free when asked about.
+  /// there are, 0 outside the grid. Every height of a span, its ends included, is free when asked
+  /// about.
   std::size_t spans(std::uint32_t i, std::uint32_t k, std::span<Span> out) const noexcept;
 
  private:

@@ -28,15 +28,15 @@ enum class DebugSpheres : std::uint8_t {
 
 /// What the simulation knows of a world, as models to draw (paper, figures 3 and 13): the free
 /// space of the column grid as gray floors, walls and ceilings, seen from inside; spheres of each
-/// radius; the oriented box of each object in orange; its edges alone, for a goal. Movable;
-/// immutable, so safe to share between threads.
+/// radius; the oriented box of each object in orange; its edges alone, for a goal. Immutable,
+/// so safe to share between threads. Copies are cheap and share one content.
 class DebugModels {
  public:
   /// Reads all grids of that radius. Fails with kInvalidInput when `options.radius` is none of the
   /// world's.
   [[nodiscard]] static Result<DebugModels> from(const World& world, const DebugOptions& options);
 
-  [[nodiscard]] const RenderLibrary& library() const { return library_; }
+  [[nodiscard]] const RenderLibrary& library() const { return *library_; }
   /// The free space of a scene (index into World::scenes()), in the world's frame; none when
   /// nothing is free.
   [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const;
@@ -54,25 +54,29 @@ class DebugModels {
  private:
   DebugModels() = default;
 
-  /// What the library looks at; it stays where it is when this moves.
-  std::shared_ptr<const void> memory_;
-  RenderLibrary library_;
+  std::shared_ptr<const RenderLibrary> library_;
   std::uint32_t first_box_ = 0;
   std::uint32_t first_goal_ = 0;
   std::uint32_t first_robot_sphere_ = 0;
   std::uint32_t first_held_sphere_ = 0;
 };
 
-/// The debug view of the first envs of a batch: WorldViews of what the simulation knows.
+/// The debug view of the first envs of a batch: WorldViews of what the simulation knows. Movable.
 class DebugViews {
  public:
-  /// `models` must outlive the views and stay where it is. `simulator` must have been made with
-  /// SimulationOptions::body_transforms. Of the first `envs` envs, at most all.
+  /// Of the first `envs` envs. Throws ErrorException with kInvalidInput where there are fewer, and
+  /// where `simulator` was made without SimulationOptions::body_transforms.
   DebugViews(const World& world, const DebugModels& models, const BatchSimulator& simulator,
              const CameraMount& camera, std::size_t envs);
 
-  /// Copies the state after the last step. Does not allocate.
-  void update(const BatchSimulator& simulator) noexcept;
+  DebugViews(const DebugViews&) = delete;
+  DebugViews& operator=(const DebugViews&) = delete;
+  DebugViews(DebugViews&&) noexcept = default;
+  DebugViews& operator=(DebugViews&&) noexcept = default;
+
+  /// Copies the state after the last step of the simulator that the views were made for. Does not
+  /// allocate. Throws ErrorException with kInvalidInput on a simulator of other shapes.
+  void update(const BatchSimulator& simulator);
 
   /// As of the last update. Shape: envs.
   [[nodiscard]] std::span<const RenderView> views() const { return views_; }
@@ -88,9 +92,11 @@ class DebugViews {
   void updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept;
 
   World world_;
-  const DebugModels* models_;
+  DebugModels models_;
   MountedCamera camera_;
   std::vector<PlacedSphere> spheres_;
+  /// BatchSimulator::bodyCount().
+  std::size_t body_count_ = 0;
   /// Room for the instances of one env.
   std::size_t stride_ = 0;
   std::vector<RenderInstance> instances_;

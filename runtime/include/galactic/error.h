@@ -46,6 +46,9 @@ struct Error {
   /// A name for programs that never changes, for example "pack/hash" (docs/ci.md lists them); empty
   /// for most errors. Points to a literal.
   std::string_view name = {};
+
+  /// "where: message", for people.
+  [[nodiscard]] std::string text() const { return where + ": " + message; }
 };
 
 /// A value, or the error that prevented it.
@@ -58,16 +61,27 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(Error{code, std::move(where), std::move(message), name});
 }
 
-/// Thrown where a call that returns no Result cannot go on, as when a graphics processor runs out
-/// of memory in the middle of its work.
+/// Thrown where a call that returns no Result cannot go on: when a graphics processor runs out of
+/// memory in the middle of its work, and when the caller has not kept what the function asks for,
+/// as with arrays of another length.
 class ErrorException : public std::runtime_error {
  public:
   explicit ErrorException(Error error)
-      : std::runtime_error(error.where + ": " + error.message), error_(std::move(error)) {}
+      : std::runtime_error(error.text()), error_(std::move(error)) {}
   [[nodiscard]] const Error& error() const noexcept { return error_; }
 
  private:
   Error error_;
 };
+
+/// The value, or the error as an ErrorException: for programs that use exceptions.
+template <class T>
+[[nodiscard]] T orThrow(Result<T> result) {
+  if (!result) throw ErrorException(std::move(result).error());
+  return std::move(*result);
+}
+inline void orThrow(Result<void> result) {
+  if (!result) throw ErrorException(std::move(result).error());
+}
 
 }  // namespace galactic

@@ -55,7 +55,8 @@ struct PolicyInputs {
 /// A policy pack's network, ready to act in a batch. What it does in an env depends on (pack,
 /// options, number of the env, what it has seen there) only: bit for bit the same for any number of
 /// threads and of other envs, and on any processor. Acting neither allocates, nor throws, nor
-/// locks. Not safe to call from several threads at once.
+/// locks, but for arrays of other lengths than said: these throw ErrorException with kInvalidInput.
+/// Not safe to call from several threads at once.
 class LearnedPolicy {
  public:
   /// Lays the weights out for this processor; `pack` is not needed afterwards. Fails with
@@ -69,7 +70,7 @@ class LearnedPolicy {
 
   /// The actions of the next step of all envs. Shape of `actions`: envs x actions, as
   /// BatchSimulator::step takes them. Call it once before each step.
-  void act(const PolicyInputs& inputs, std::span<float> actions) noexcept;
+  void act(const PolicyInputs& inputs, std::span<float> actions);
 
   /// All envs begin anew, with the random numbers of a batch whose first env has this number.
   void reset(std::uint32_t first_env) noexcept;

@@ -10,7 +10,6 @@
 
 #include "galactic/error.h"
 #include "galactic/pose.h"
-#include "galactic/scene.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
 
@@ -66,7 +65,7 @@ enum class GoalOf : std::uint8_t {
 /// floor consists of cells of 10 cm in which the robot's start pose is free of the static scene in
 /// some heading, and which lie within a step (GroundOptions) of a neighbor; objects are not in the
 /// way. Lengths come from fast marching (Sethian 1996), which is not bound to the directions of
-/// cells. Immutable; copies share what they know. The world must outlive it.
+/// cells. Immutable; copies share what they know, and keep the world.
 class PathFinder {
  public:
   /// The floor at or up to half a meter under `start`, or that begins within 30 cm of there: where
@@ -98,10 +97,12 @@ class PathFinder {
                                                 std::uint32_t threads = 1) const;
 
  private:
-  PathFinder(const Scene& scene, std::shared_ptr<const sensors::FloorPlan> plan)
-      : scene_(&scene), plan_(std::move(plan)) {}
+  PathFinder(World world, std::uint32_t scene, std::shared_ptr<const sensors::FloorPlan> plan)
+      : world_(std::move(world)), scene_(scene), plan_(std::move(plan)) {}
 
-  const Scene* scene_;
+  World world_;
+  /// Index into World::scenes().
+  std::uint32_t scene_;
   std::shared_ptr<const sensors::FloorPlan> plan_;
 };
 

@@ -37,7 +37,8 @@ struct BasePlace {
 class PlanningScene {
  public:
   /// Of `options` it takes TaskOptions::distractors, the ground and
-  /// the placement of released objects. Call update() and setJoints() before anything else.
+  /// the placement of released objects. Call update() and setJoints() before anything else:
+  /// without update(), questions throw ErrorException with kInvalidInput.
   PlanningScene(const World& world, const SimulationOptions& options);
   ~PlanningScene();
   PlanningScene(PlanningScene&&) noexcept;

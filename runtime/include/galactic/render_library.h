@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,8 +35,8 @@ class SharedTextures {
 [[nodiscard]] std::filesystem::path texturePackBeside(const PackFile& pack,
                                                       const MissingTexture& texture);
 
-/// The models of several packs under one numbering: what a renderer loads once for all envs.
-/// Movable; immutable once filled, so then safe to share between threads.
+/// The models of several packs under one numbering: what a renderer loads once for all envs. Copies
+/// look at the same memory. Immutable once filled, so then safe to share between threads.
 class RenderLibrary {
  public:
   /// One model of one pack.
@@ -46,9 +47,12 @@ class RenderLibrary {
     std::uint32_t model = 0;
   };
 
-  /// Adds all models of a pack, whose memory must outlive the library. Returns the number of the
-  /// first; the others follow in their order. `prefix` stands before the names of its semantics.
+  /// Adds all models of a pack, whose memory must outlive the library and its copies, or is kept by
+  /// them. Returns the number of the first; the others follow in their order. `prefix` stands
+  /// before the names of its semantics.
   std::uint32_t add(RenderMeshes meshes, const std::string& prefix = {});
+  /// Keeps what meshes look at for as long as this library or a copy of it lives.
+  void keep(std::shared_ptr<const void> memory) { kept_.push_back(std::move(memory)); }
 
   [[nodiscard]] const std::vector<RenderMeshes>& packs() const { return packs_; }
   [[nodiscard]] std::size_t modelCount() const { return entries_.size(); }
@@ -65,6 +69,7 @@ class RenderLibrary {
   [[nodiscard]] const std::vector<std::string>& semanticNames() const { return semantic_names_; }
 
  private:
+  std::vector<std::shared_ptr<const void>> kept_;
   std::vector<RenderMeshes> packs_;
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> first_semantics_;

@@ -44,6 +44,12 @@ class World {
   [[nodiscard]] static Result<World> open(std::span<const std::filesystem::path> paths,
                                           Trust trust = Trust::kVerify);
 
+  /// One world pack.
+  [[nodiscard]] static Result<World> open(const std::filesystem::path& path,
+                                          Trust trust = Trust::kVerify) {
+    return open(std::span(&path, 1), trust);
+  }
+
   /// The same from packs that are already open, none of them a world.
   [[nodiscard]] static Result<World> from(std::vector<PackFile> packs);
 

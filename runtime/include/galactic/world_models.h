@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "galactic/error.h"
@@ -17,34 +19,36 @@ struct LinkModel {
   std::uint32_t model = 0;
 };
 
-/// What a world has to draw: the models of all its packs, and which of them shows what. Movable;
-/// immutable, so safe to share between threads.
+/// What a world has to draw: the models of all its packs, and which of them shows what. Immutable,
+/// so safe to share between threads. Copies are cheap and share one content, which keeps the world.
 class WorldModels {
  public:
   /// Fails with kInvalidInput when a pack was baked without render meshes.
   [[nodiscard]] static Result<WorldModels> from(const World& world);
 
-  [[nodiscard]] const RenderLibrary& library() const { return library_; }
+  [[nodiscard]] const RenderLibrary& library() const { return content_->library; }
   /// The model of a scene (index into World::scenes()); none when it has nothing to show.
   [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const {
-    return scenes_[scene];
+    return content_->scenes[scene];
   }
   /// The model of an object (index into EpisodeSet::objectNames()).
   [[nodiscard]] std::optional<std::uint32_t> objectModel(std::uint32_t object) const {
-    return objects_[object];
+    return content_->objects[object];
   }
   /// Ascending links.
-  [[nodiscard]] const std::vector<LinkModel>& links() const { return links_; }
+  [[nodiscard]] const std::vector<LinkModel>& links() const { return content_->links; }
 
  private:
-  explicit WorldModels(const World& world) : world_(world) {}
+  struct Content {
+    RenderLibrary library;
+    std::vector<std::optional<std::uint32_t>> scenes;
+    std::vector<std::optional<std::uint32_t>> objects;
+    std::vector<LinkModel> links;
+  };
 
-  /// What the library looks at.
-  World world_;
-  RenderLibrary library_;
-  std::vector<std::optional<std::uint32_t>> scenes_;
-  std::vector<std::optional<std::uint32_t>> objects_;
-  std::vector<LinkModel> links_;
+  explicit WorldModels(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
+
+  std::shared_ptr<const Content> content_;
 };
 
 }  // namespace galactic

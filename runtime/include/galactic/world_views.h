@@ -81,16 +81,22 @@ enum class ObjectIds : std::uint8_t {
 };
 
 /// What the cameras of a batch see: one view per env, filled from the simulator's state and valid
-/// while that changes, so that a renderer can draw one step while the next is simulated.
+/// while that changes, so that a renderer can draw one step while the next is simulated. Movable.
 class WorldViews {
  public:
-  /// `models` must outlive the views and stay where it is. `simulator` must have been made with
+  /// Throws ErrorException with kInvalidInput where `simulator` was made without
   /// SimulationOptions::body_transforms.
   WorldViews(const World& world, const WorldModels& models, const BatchSimulator& simulator,
              const CameraMount& camera, ObjectIds ids = ObjectIds::kNames);
 
-  /// Copies the state after the last step. Does not allocate.
-  void update(const BatchSimulator& simulator) noexcept;
+  WorldViews(const WorldViews&) = delete;
+  WorldViews& operator=(const WorldViews&) = delete;
+  WorldViews(WorldViews&&) noexcept = default;
+  WorldViews& operator=(WorldViews&&) noexcept = default;
+
+  /// Copies the state after the last step of the simulator that the views were made for. Does not
+  /// allocate. Throws ErrorException with kInvalidInput on a simulator of other shapes.
+  void update(const BatchSimulator& simulator);
 
   /// As of the last update. Shape: envs.
   [[nodiscard]] std::span<const RenderView> views() const { return views_; }
@@ -98,7 +104,7 @@ class WorldViews {
  private:
   void updateEnv(const BatchSimulator& simulator, std::size_t env) noexcept;
 
-  const WorldModels* models_;
+  WorldModels models_;
   MountedCamera camera_;
   /// By scene: its model, if it has one.
   std::vector<std::vector<RenderInstance>> scenes_;

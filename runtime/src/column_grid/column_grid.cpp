@@ -85,18 +85,33 @@ float clearOf(float distance, float margin) {
 
 float lesser(float a, float b) { return a < b ? a : b; }
 
+/// A point of the ground, counted in cells.
+struct GroundPoint {
+  float x, z;
+
+  [[nodiscard]] bool isInside(const ColumnGridLayout& grid) const {
+    // Every comparison is false for NaN.
+    return x >= 0 && x < static_cast<float>(grid.columns_x) && z >= 0 &&
+           z < static_cast<float>(grid.columns_z);
+  }
+  [[nodiscard]] ColumnIndex column() const {
+    return {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z)};
+  }
+};
+
+inline GroundPoint groundPoint(const ColumnGridLayout& grid, float x, float z) {
+  return {(x - grid.min_x) * grid.inverse_spacing, (z - grid.min_z) * grid.inverse_spacing};
+}
+
 /// The one definition of a query. contactAvx2 repeats it operation by operation.
 inline Contact contactAt(const ColumnGridLayout& grid, Vec3 center) {
-  const float cell_x = (center.x - grid.min_x) * grid.inverse_spacing;
-  const float cell_z = (center.z - grid.min_z) * grid.inverse_spacing;
-  // Every comparison is false for NaN.
-  const bool inside = cell_x >= 0 && cell_x < static_cast<float>(grid.columns_x) && cell_z >= 0 &&
-                      cell_z < static_cast<float>(grid.columns_z) && center.y >= grid.heights.lo &&
-                      center.y <= grid.heights.hi;
+  const GroundPoint point = groundPoint(grid, center.x, center.z);
+  const bool inside =
+      point.isInside(grid) && center.y >= grid.heights.lo && center.y <= grid.heights.hi;
   if (!inside) return {.clearance = clearanceElsewhere(center)};
 
-  const std::uint32_t index = cellIndex(static_cast<std::uint32_t>(cell_x),
-                                        static_cast<std::uint32_t>(cell_z), grid.tiles_x);
+  const auto [i, k] = point.column();
+  const std::uint32_t index = cellIndex(i, k, grid.tiles_x);
   const std::uint64_t cell = grid.cells[index];
   if (isOverflow(cell)) return detail::contactInOverflow(grid, overflowStart(cell), center.y);
 
@@ -228,13 +243,19 @@ std::size_t ColumnGrid::firstNotFree(const SphereCenters& centers) const noexcep
                            : detail::firstNotFreePortable(layout_, batch);
 }
 
+std::optional<ColumnIndex> ColumnGrid::columnAt(float x, float z) const noexcept {
+  const GroundPoint point = groundPoint(layout_, x, z);
+  if (!point.isInside(layout_)) return std::nullopt;
+  return point.column();
+}
+
 std::size_t ColumnGrid::spanCount(std::uint32_t i, std::uint32_t k) const noexcept {
   return spans(i, k, {});
 }
 
 std::size_t ColumnGrid::spans(std::uint32_t i, std::uint32_t k,
                               std::span<Span> out) const noexcept {
-  assert(i < layout_.columns_x && k < layout_.columns_z);
+  if (i >= layout_.columns_x || k >= layout_.columns_z) return 0;
   const std::uint32_t index = cellIndex(i, k, layout_.tiles_x);
   const std::uint64_t cell = layout_.cells[index];
   std::size_t count = 0;

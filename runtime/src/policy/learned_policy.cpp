@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "policy/aligned_floats.h"
 #include "policy/layer_shapes.h"
 #include "policy/operation.h"
+#include "support/call_check.h"
 #include "support/workers.h"
 
 namespace galactic {
@@ -133,22 +133,15 @@ class LearnedPolicy::Impl {
     if (threads > 1) workers_.emplace(threads, [this](std::size_t part) { actInPart(part); });
   }
 
-  void act(const PolicyInputs& inputs, std::span<float> actions) noexcept {
-    assert(actions.size() == envs_ * action_count_);
-    assert(inputs.observations.size() == envs_ * observation_size_);
-    assert(inputs.dones.empty() || inputs.dones.size() == envs_);
-    const std::size_t pixels =
-        needs_.image ? std::size_t{needs_.image->width} * needs_.image->height * envs_ : 1;
+  void act(const PolicyInputs& inputs, std::span<float> actions) {
+    check(inputs, actions);
     network_inputs_ = {.observations = inputs.observations.data(),
                        .observation_size = observation_size_,
                        .color = inputs.color.data(),
-                       .color_bytes = inputs.color.size() / std::max<std::size_t>(1, pixels),
+                       .color_bytes = inputs.color.size() / std::max<std::size_t>(1, pixelCount()),
                        .depth = inputs.depth.data(),
                        .previous_actions = previous_.data(),
                        .action_count = action_count_};
-    assert(!needs_.image || !needs_.image->depth || inputs.depth.size() == pixels);
-    assert(!needs_.image || !needs_.image->color ||
-           (network_inputs_.color_bytes >= 3 && network_inputs_.color_bytes <= 4));
     dones_ = inputs.dones;
     actions_ = actions;
     if (workers_) {
@@ -185,6 +178,26 @@ class LearnedPolicy::Impl {
     policy::ActionSampler sampler;
     std::vector<const float*> logits;
   };
+
+  /// Of all envs' images.
+  [[nodiscard]] std::size_t pixelCount() const {
+    return needs_.image ? std::size_t{needs_.image->width} * needs_.image->height * envs_ : 0;
+  }
+
+  void check(const PolicyInputs& inputs, std::span<const float> actions) const {
+    const auto check = [](const char* array, std::size_t found, std::size_t expected) {
+      detail::checkLength("LearnedPolicy::act", array, found, expected);
+    };
+    check("actions", actions.size(), envs_ * action_count_);
+    check("observations", inputs.observations.size(), envs_ * observation_size_);
+    if (!inputs.dones.empty()) check("dones", inputs.dones.size(), envs_);
+    if (!needs_.image) return;
+    if (needs_.image->depth) check("depth", inputs.depth.size(), pixelCount());
+    const std::size_t rgb = pixelCount() * 3;
+    if (needs_.image->color && inputs.color.size() != pixelCount() * 4) {
+      check("color", inputs.color.size(), rgb);
+    }
+  }
 
   void resetEnv(std::size_t env) noexcept {
     std::fill_n(states_.data() + env * network_.state_size, network_.state_size, 0.0F);
@@ -287,7 +300,7 @@ LearnedPolicy::~LearnedPolicy() = default;
 LearnedPolicy::LearnedPolicy(LearnedPolicy&&) noexcept = default;
 LearnedPolicy& LearnedPolicy::operator=(LearnedPolicy&&) noexcept = default;
 
-void LearnedPolicy::act(const PolicyInputs& inputs, std::span<float> actions) noexcept {
+void LearnedPolicy::act(const PolicyInputs& inputs, std::span<float> actions) {
   impl_->act(inputs, actions);
 }
 void LearnedPolicy::reset() noexcept { impl_->reset(); }

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cassert>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "render/noise/noise_pass.h"
 #include "render/render_engine.h"
+#include "support/call_check.h"
 #include "support/try.h"
 
 namespace galactic {
@@ -124,25 +125,39 @@ const char* backendName(RenderBackend backend) noexcept {
 
 class BatchRenderer::Impl {
  public:
-  Impl(const RenderOptions& options, std::unique_ptr<render::RenderEngine> engine)
-      : options_(options), engine_(std::move(engine)), description_(engine_->description()) {
+  Impl(std::unique_ptr<const RenderLibrary> library, const RenderOptions& options,
+       std::unique_ptr<render::RenderEngine> engine)
+      : library_(std::move(library)),
+        options_(options),
+        engine_(std::move(engine)),
+        description_(engine_->description()) {
     if (options.noise.changesDepth() || options.noise.changesColor()) noise_.emplace(options);
   }
 
   void begin(std::span<const RenderView> views, const RenderTargets& targets) {
-    [[maybe_unused]] const std::size_t pixels = views.size() * options_.width * options_.height;
-    assert(targets.color.size() == pixels * static_cast<std::size_t>(options_.color));
-    assert(targets.depth.size() == (options_.depth ? pixels : 0));
-    assert(targets.semantics.size() == (options_.semantics ? pixels : 0));
+    requireIdle("BatchRenderer::beginRender");
+    const std::size_t pixels = views.size() * options_.width * options_.height;
+    const auto check = [](const char* array, std::size_t found, std::size_t expected) {
+      detail::checkLength("BatchRenderer::render", array, found, expected);
+    };
+    check("color", targets.color.size(), pixels * static_cast<std::size_t>(options_.color));
+    check("depth", targets.depth.size(), options_.depth ? pixels : 0);
+    check("semantics", targets.semantics.size(), options_.semantics ? pixels : 0);
     views_ = views;
     targets_ = targets;
     engine_->begin(views, targets);
+    is_drawing_ = true;
   }
   void end() {
+    if (!is_drawing_) {
+      detail::refuseCall("BatchRenderer::endRender", "found no rendering that has begun");
+    }
+    is_drawing_ = false;
     engine_->end();
     if (noise_) noise_->run(views_, targets_);
   }
   Result<DeviceImages> renderToDevice(std::span<const RenderView> views, std::uintptr_t stream) {
+    requireIdle("BatchRenderer::renderToDevice");
     if (noise_) {
       return fail(ErrorCode::kUnsupported, "device images",
                   "found noise of images, which is added in memory of the processor, and images "
@@ -156,6 +171,13 @@ class BatchRenderer::Impl {
   const render::RenderEngine& engine() const { return *engine_; }
 
  private:
+  void requireIdle(const char* call) const {
+    if (!is_drawing_) return;
+    detail::refuseCall(call, "found a rendering that has begun; end it first, with endRender()");
+  }
+
+  /// What the engine looks at.
+  std::unique_ptr<const RenderLibrary> library_;
   RenderOptions options_;
   std::unique_ptr<render::RenderEngine> engine_;
   std::string description_;
@@ -163,6 +185,7 @@ class BatchRenderer::Impl {
   /// Of the batch in work.
   std::span<const RenderView> views_;
   RenderTargets targets_;
+  bool is_drawing_ = false;
 };
 
 Result<BatchRenderer> BatchRenderer::create(const RenderLibrary& library,
@@ -170,11 +193,12 @@ Result<BatchRenderer> BatchRenderer::create(const RenderLibrary& library,
   if (const Result<void> checked = checkOptions(options); !checked) {
     return tl::unexpected<Error>(checked.error());
   }
-  Made engine = makeEngine(library, options);
+  auto kept = std::make_unique<const RenderLibrary>(library);
+  Made engine = makeEngine(*kept, options);
   if (!engine) return tl::unexpected<Error>(engine.error());
   RenderOptions chosen = options;
   chosen.backend = (*engine)->backend();
-  return BatchRenderer(std::make_unique<Impl>(chosen, std::move(*engine)));
+  return BatchRenderer(std::make_unique<Impl>(std::move(kept), chosen, std::move(*engine)));
 }
 
 BatchRenderer::BatchRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -164,7 +164,7 @@ Result<PathFinder> PathFinder::make(const World& world, std::uint32_t scene, con
                     "start where it can",
                     start.x, start.y, start.z, home.name()));
   }
-  return PathFinder(home, std::make_shared<const FloorPlan>(home, robot, *seed, ground));
+  return PathFinder(world, scene, std::make_shared<const FloorPlan>(home, robot, *seed, ground));
 }
 
 float PathFinder::cellSize() { return kPlanCell; }
@@ -221,8 +221,9 @@ Result<GeodesicFields> PathFinder::fieldsTo(std::span<const Vec3> goals, GoalOf 
                                                : "no point of a scene; take one within 1000 km"));
   }
   detail::forEachPart(detail::threadCount(threads), goals.size(), [&](std::size_t n) {
-    fields.lengths_[n] = fields.are_places_ ? sensors::wayFieldToPlace(*plan_, goals[n])
-                                            : sensors::wayField(*plan_, *scene_, goals[n]);
+    fields.lengths_[n] = fields.are_places_
+                             ? sensors::wayFieldToPlace(*plan_, goals[n])
+                             : sensors::wayField(*plan_, world_.scenes()[scene_], goals[n]);
   });
   return fields;
 }

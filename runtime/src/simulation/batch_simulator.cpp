@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -19,6 +18,7 @@
 #include "simulation/state/grip_frame.h"
 #include "simulation/state/model.h"
 #include "simulation/state/saved_state.h"
+#include "support/call_check.h"
 #include "support/out_of_memory.h"
 #include "support/try.h"
 #include "support/workers.h"
@@ -60,17 +60,26 @@ class BatchSimulator::Impl {
   }
 
   void begin(std::span<const float> actions, std::span<const std::int32_t> resets) {
-    prepare(actions, resets);
+    prepare("BatchSimulator::beginStep", actions, resets);
+    is_stepping_ = true;
     workers_->begin();
   }
 
   void end() {
+    if (!is_stepping_) {
+      detail::refuseCall("BatchSimulator::endStep", "found no step that has begun");
+    }
     workers_->end();
+    is_stepping_ = false;
     ++steps_;
   }
 
   void step(std::span<const float> actions, std::span<const std::int32_t> resets) {
-    prepare(actions, resets);
+    prepare("BatchSimulator::step", actions, resets);
+    run();
+  }
+
+  void run() {
     if (threads_ > 1) {
       workers_->run();
     } else {
@@ -80,14 +89,19 @@ class BatchSimulator::Impl {
   }
 
   void follow(std::span<const float> actions, std::span<const FollowedState> states) {
-    assert(states.size() == model_.options.envs);
+    constexpr const char* kCall = "BatchSimulator::follow";
+    detail::checkLength(kCall, "states", states.size(), envCount());
+    for (std::size_t env = 0; env < states.size(); ++env) checkFollowed(kCall, env, states[env]);
+    prepare(kCall, actions, {});
     states_ = states;
-    step(actions, {});
+    run();
     states_ = {};
   }
 
   void reset(std::span<const std::int32_t> episodes, EpisodeChoice choice) {
-    assert(episodes.size() == model_.options.envs);
+    constexpr const char* kCall = "BatchSimulator::reset";
+    requireIdle(kCall);
+    detail::checkLength(kCall, "episodes", episodes.size(), envCount());
     for (std::size_t env = 0; env < episodes.size(); ++env) {
       const bool is_next = episodes[env] == kNextEpisode;
       const OptionalIndex start = model_.startOf(episodes[env]);
@@ -101,6 +115,7 @@ class BatchSimulator::Impl {
   }
 
   void restart(std::uint64_t seed) {
+    requireIdle("BatchSimulator::restart");
     model_.options.seed = seed;
     for (std::size_t env = 0; env < state_.paddedCount(); ++env) {
       state_.env(env) = {};
@@ -113,13 +128,17 @@ class BatchSimulator::Impl {
   }
 
   std::vector<std::byte> save(std::span<const std::uint32_t> envs) const {
+    constexpr const char* kCall = "BatchSimulator::saveState";
+    requireIdle(kCall);
+    for (const std::uint32_t env : envs) detail::checkIndex(kCall, "env", env, envCount());
     return simulation::saveEnvs(model_, state_, envs, steps_);
   }
 
   Result<void> restore(std::span<const std::byte> bytes) {
+    requireIdle("BatchSimulator::restoreState");
     const Result<SavedState> saved = simulation::readState(model_, bytes);
     if (!saved) return tl::unexpected<Error>(saved.error());
-    const std::vector<std::uint32_t> all = allEnvs(model_.options.envs);
+    const std::vector<std::uint32_t> all = allEnvs(envCount());
     if (Result<void> fits = checkCount(*saved, all); !fits) return fits;
     model_.options.seed = saved->seed;
     steps_ = saved->steps;
@@ -128,6 +147,12 @@ class BatchSimulator::Impl {
   }
 
   Result<void> restore(std::span<const std::byte> bytes, std::span<const std::uint32_t> envs) {
+    requireIdle("BatchSimulator::restoreState");
+    for (const std::uint32_t env : envs) {
+      if (env < envCount()) continue;
+      return fail(ErrorCode::kInvalidInput, "saved state",
+                  fmt::format("cannot become env {}: there are {}", env, envCount()));
+    }
     const Result<SavedState> saved = simulation::readState(model_, bytes);
     if (!saved) return tl::unexpected<Error>(saved.error());
     if (Result<void> fits = checkCount(*saved, envs); !fits) return fits;
@@ -139,6 +164,14 @@ class BatchSimulator::Impl {
     }
     put(*saved, envs);
     return {};
+  }
+
+  /// A copy of what one env knows.
+  EnvState envState(std::size_t env) const {
+    constexpr const char* kCall = "BatchSimulator::envState";
+    requireIdle(kCall);
+    detail::checkIndex(kCall, "env", env, envCount());
+    return simulation::envStateOf(model_, state_, env);
   }
 
   const Model& model() const { return model_; }
@@ -168,11 +201,30 @@ class BatchSimulator::Impl {
     simulation::PhaseSeconds seconds{};
   };
 
-  void prepare(std::span<const float> actions, std::span<const std::int32_t> resets) {
-    assert(actions.size() == model_.options.envs * model_.actionCount());
-    assert(resets.empty() || resets.size() == model_.options.envs);
+  std::size_t envCount() const { return model_.options.envs; }
+
+  void requireIdle(const char* call) const {
+    if (!is_stepping_) return;
+    detail::refuseCall(call, "found a step that has begun; end it first, with endStep()");
+  }
+
+  void prepare(const char* call, std::span<const float> actions,
+               std::span<const std::int32_t> resets) {
+    requireIdle(call);
+    detail::checkLength(call, "actions", actions.size(), envCount() * model_.actionCount());
+    if (!resets.empty()) detail::checkLength(call, "resets", resets.size(), envCount());
     input_ = {actions, resets};
     measures_ = sample_every_ != 0 && steps_ % sample_every_ == 0;
+  }
+
+  void checkFollowed(const char* call, std::size_t env, const FollowedState& state) const {
+    const std::size_t objects = state_.env(env).objects;
+    detail::checkLength(call, "states[].joint_positions", state.joint_positions.size(),
+                        model_.world->robot().positionCount());
+    detail::checkLength(call, "states[].objects", state.objects.size(), objects);
+    if (state.held >= 0) {
+      detail::checkIndex(call, "object", static_cast<std::size_t>(state.held), objects);
+    }
   }
 
   static Result<void> checkCount(const SavedState& saved, std::span<const std::uint32_t> envs) {
@@ -183,7 +235,6 @@ class BatchSimulator::Impl {
 
   void put(const SavedState& saved, std::span<const std::uint32_t> envs) {
     for (std::size_t n = 0; n < envs.size(); ++n) {
-      assert(envs[n] < model_.options.envs);
       simulation::restoreEnv(model_, state_, envs[n], saved.envs[n]);
     }
   }
@@ -218,6 +269,7 @@ class BatchSimulator::Impl {
   std::uint64_t steps_ = 0;
   std::uint32_t sample_every_ = 0;
   bool measures_ = false;
+  bool is_stepping_ = false;
   std::unique_ptr<detail::Workers> workers_;
 };
 
@@ -323,6 +375,7 @@ SimulationStatistics BatchSimulator::statistics() const {
   return sum;
 }
 SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
+  detail::checkIndex("BatchSimulator::statistics", "env", env, envCount());
   const simulation::EnvCounters& counters = impl_->state().counters(env);
   const simulation::MoveCounters& moves = impl_->state().moves(env);
   // An env that came from a longer run may have idled for longer than this one has run.
@@ -343,9 +396,7 @@ std::span<const std::uint32_t> BatchSimulator::skippedEpisodes() const {
   return impl_->model().skipped;
 }
 
-EnvState BatchSimulator::envState(std::size_t env) const {
-  return simulation::envStateOf(impl_->model(), impl_->state(), env);
-}
+EnvState BatchSimulator::envState(std::size_t env) const { return impl_->envState(env); }
 
 EnvObjects BatchSimulator::envObjects(std::size_t env) const noexcept {
   return simulation::envObjectsOf(impl_->model(), impl_->state(), env);
@@ -358,7 +409,9 @@ EnvMoment BatchSimulator::envMoment(std::size_t env) const noexcept {
 std::size_t BatchSimulator::bodyCount() const { return impl_->model().motion.nodes.size() + 1; }
 
 LinkOnBody BatchSimulator::linkOnBody(std::size_t link) const {
-  const simulation::FixedFrame& frame = impl_->model().motion.links[link];
+  const std::vector<simulation::FixedFrame>& links = impl_->model().motion.links;
+  detail::checkIndex("BatchSimulator::linkOnBody", "link", link, links.size());
+  const simulation::FixedFrame& frame = links[link];
   return {static_cast<std::size_t>(frame.node + 1),
           {frame.x_axis, frame.y_axis, frame.z_axis, frame.origin}};
 }

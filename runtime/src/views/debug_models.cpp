@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -96,13 +97,15 @@ Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& op
   Result<RenderMeshStorage> built = buildRenderMeshes(parts.source());
   if (!built) return tl::unexpected<Error>(built.error());
   auto memory = std::make_shared<const RenderMeshStorage>(std::move(*built));
-  models.library_.add(memory->view());
-  models.memory_ = std::move(memory);
+  auto library = std::make_shared<RenderLibrary>();
+  library->add(memory->view());
+  library->keep(std::move(memory));
+  models.library_ = std::move(library);
   return models;
 }
 
 std::optional<std::uint32_t> DebugModels::sceneModel(std::uint32_t scene) const {
-  if (library_.model(scene).cluster_count == 0) return std::nullopt;
+  if (library_->model(scene).cluster_count == 0) return std::nullopt;
   return scene;
 }
 

@@ -1,7 +1,8 @@
 #include "galactic/debug_views.h"
 
 #include <algorithm>
-#include <cassert>
+
+#include "views/followed_batch.h"
 
 namespace galactic {
 namespace {
@@ -28,8 +29,11 @@ std::size_t mostHeldSpheres(const World& world) {
 
 DebugViews::DebugViews(const World& world, const DebugModels& models,
                        const BatchSimulator& simulator, const CameraMount& camera, std::size_t envs)
-    : world_(world), models_(&models), camera_(world, simulator, camera) {
-  assert(!simulator.bodyTransforms().empty() && envs <= simulator.envCount());
+    : world_(world),
+      models_(models),
+      camera_(world, simulator, camera),
+      body_count_(simulator.bodyCount()) {
+  views::requireSameBatch("DebugViews", simulator, envs, body_count_);
   const Robot& robot = world.robot();
   spheres_.reserve(robot.spheres().size());
   for (const SphereGroup& group : robot.groups()) {
@@ -46,7 +50,8 @@ DebugViews::DebugViews(const World& world, const DebugModels& models,
   update(simulator);
 }
 
-void DebugViews::update(const BatchSimulator& simulator) noexcept {
+void DebugViews::update(const BatchSimulator& simulator) {
+  views::requireSameBatch("DebugViews::update", simulator, views_.size(), body_count_);
   for (std::size_t env = 0; env < views_.size(); ++env) updateEnv(simulator, env);
 }
 
@@ -54,25 +59,25 @@ void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
   const std::span<RenderInstance> room = std::span(instances_).subspan(env * stride_, stride_);
   const EnvObjects state = simulator.envObjects(env);
   const std::span<const RigidTransform> bodies =
-      simulator.bodyTransforms().subspan(env * simulator.bodyCount(), simulator.bodyCount());
+      simulator.bodyTransforms().subspan(env * body_count_, body_count_);
   const EpisodeSet& episodes = world_.episodes();
   const Episode& episode = episodes.episodes()[state.episode];
   const Placement& target = episodes.placements(episode)[episode.target];
   std::size_t count = 0;
-  if (const auto scene = models_->sceneModel(state.scene)) room[count++] = {*scene, {}};
+  if (const auto scene = models_.sceneModel(state.scene)) room[count++] = {*scene, {}};
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
     if (static_cast<std::int32_t>(n) == state.held) continue;
-    room[count++] = {models_->boxModel(state.placements[n].object),
+    room[count++] = {models_.boxModel(state.placements[n].object),
                      rigidTransform(state.objects[n])};
   }
-  room[count++] = {models_->goalModel(target.object), rigidTransform(episode.goal)};
+  room[count++] = {models_.goalModel(target.object), rigidTransform(episode.goal)};
   for (const PlacedSphere& sphere : spheres_) {
     room[count++] = {sphere.model, sphereAt(bodies[sphere.body] * sphere.center)};
   }
   if (state.held >= 0) {
     const Placement& held = state.placements[static_cast<std::size_t>(state.held)];
     for (const SetSphere& sphere : world_.objectOf(held).spheres) {
-      room[count++] = {models_->sphereModel(DebugSpheres::kHeld, sphere.radius_index),
+      room[count++] = {models_.sphereModel(DebugSpheres::kHeld, sphere.radius_index),
                        sphereAt(state.world_from_held * sphere.center)};
     }
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -64,7 +65,8 @@ std::optional<std::uint32_t> find(const ModelOfName& models, std::string_view na
 }  // namespace
 
 Result<WorldModels> WorldModels::from(const World& world) {
-  WorldModels models(world);
+  auto content = std::make_shared<Content>();
+  content->library.keep(std::make_shared<const World>(world));
   ModelOfName scenes;
   ModelOfName objects;
   const Result<SharedTextures> textures = texturesOf(world);
@@ -76,27 +78,27 @@ Result<WorldModels> WorldModels::from(const World& world) {
     if (pack.kind() == PackKind::kScene) {
       const std::string_view name = Scene::from(pack)->name();
       addNamed(
-          models.library_, std::move(*meshes), [&](std::uint32_t) { return name; }, scenes);
+          content->library, std::move(*meshes), [&](std::uint32_t) { return name; }, scenes);
     } else if (pack.kind() == PackKind::kObjects) {
       const Result<ObjectSet> set = ObjectSet::from(pack);
       const auto name_of = [&](std::uint32_t part) { return set->objects()[part].name; };
-      addNamed(models.library_, std::move(*meshes), name_of, objects);
+      addNamed(content->library, std::move(*meshes), name_of, objects);
     } else {
       const std::vector<RenderModel> robot_models = meshes->models;
-      const std::uint32_t first = models.library_.add(std::move(*meshes));
+      const std::uint32_t first = content->library.add(std::move(*meshes));
       for (std::uint32_t n = 0; n < robot_models.size(); ++n) {
         if (robot_models[n].cluster_count == 0) continue;
-        models.links_.push_back({robot_models[n].part, first + n});
+        content->links.push_back({robot_models[n].part, first + n});
       }
     }
   }
-  models.scenes_.reserve(world.scenes().size());
-  for (const Scene& scene : world.scenes()) models.scenes_.push_back(find(scenes, scene.name()));
-  models.objects_.reserve(world.episodes().objectNames().size());
+  content->scenes.reserve(world.scenes().size());
+  for (const Scene& scene : world.scenes()) content->scenes.push_back(find(scenes, scene.name()));
+  content->objects.reserve(world.episodes().objectNames().size());
   for (const std::string_view name : world.episodes().objectNames()) {
-    models.objects_.push_back(find(objects, name));
+    content->objects.push_back(find(objects, name));
   }
-  return models;
+  return WorldModels(std::move(content));
 }
 
 }  // namespace galactic

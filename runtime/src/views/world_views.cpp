@@ -1,11 +1,11 @@
 #include "galactic/world_views.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "views/camera_offset.h"
 #include "views/camera_sight.h"
+#include "views/followed_batch.h"
 
 namespace galactic {
 namespace {
@@ -62,14 +62,14 @@ RigidTransform MountedCamera::withoutJitter(std::span<const RigidTransform> bodi
 
 WorldViews::WorldViews(const World& world, const WorldModels& models,
                        const BatchSimulator& simulator, const CameraMount& camera, ObjectIds ids)
-    : models_(&models),
+    : models_(models),
       camera_(world, simulator, camera),
       stride_(world.mostObjects()),
       posed_(simulator.envCount() * stride_),
       posed_semantics_(ids == ObjectIds::kObjects ? posed_.size() : 0),
       bodies_(simulator.bodyTransforms().size()),
       views_(simulator.envCount()) {
-  assert(!simulator.bodyTransforms().empty());
+  views::requireBodies("WorldViews", simulator);
   scenes_.resize(world.scenes().size());
   for (std::uint32_t scene = 0; scene < scenes_.size(); ++scene) {
     if (const auto model = models.sceneModel(scene)) scenes_[scene].push_back({*model, {}});
@@ -87,8 +87,10 @@ WorldViews::WorldViews(const World& world, const WorldModels& models,
   update(simulator);
 }
 
-void WorldViews::update(const BatchSimulator& simulator) noexcept {
-  std::ranges::copy(simulator.bodyTransforms(), bodies_.begin());
+void WorldViews::update(const BatchSimulator& simulator) {
+  views::requireSameBatch("WorldViews::update", simulator, views_.size(),
+                          bodies_.size() / views_.size());
+  std::ranges::copy(simulator.bodyTransforms().first(bodies_.size()), bodies_.begin());
   for (std::size_t env = 0; env < views_.size(); ++env) updateEnv(simulator, env);
 }
 
@@ -98,10 +100,10 @@ void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
       posed_semantics_.empty() ? std::span<std::uint32_t>()
                                : std::span(posed_semantics_).subspan(env * stride_, stride_);
   const EnvObjects state = simulator.envObjects(env);
-  const std::size_t names = models_->library().semanticNames().size();
+  const std::size_t names = models_.library().semanticNames().size();
   std::size_t count = 0;
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
-    const auto model = models_->objectModel(state.placements[n].object);
+    const auto model = models_.objectModel(state.placements[n].object);
     if (!model) continue;
     const bool is_held = static_cast<std::int32_t>(n) == state.held;
     if (!ids.empty()) ids[count] = static_cast<std::uint32_t>(names + n);

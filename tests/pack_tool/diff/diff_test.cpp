@@ -51,7 +51,7 @@ TEST(CompareGrids, MeasuresAMovedEnd) {
   EXPECT_NEAR(difference.free_only_in_a, 0.25, kSumTolerance);
   EXPECT_NEAR(difference.free_only_in_b, 0.5, kSumTolerance);
   ASSERT_EQ(difference.worst.size(), 2U);
-  EXPECT_EQ(difference.worst.front().cell, (Cell{1, 1}));
+  EXPECT_EQ(difference.worst.front().cell, (ColumnIndex{1, 1}));
   EXPECT_EQ(difference.worst.front().height, 0.5);
   EXPECT_EQ(difference.worst.front().center.x, 1.5);
 }
@@ -99,9 +99,10 @@ TEST(CompareGrids, KeepsTheFiveWorstColumnsLargestFirst) {
   const auto b = moved.build();
   const GridDifference difference = compareGrids(a.view(), b.view(), 0);
   EXPECT_EQ(difference.ends_differ, 10U);
-  std::vector<Cell> cells;
+  std::vector<ColumnIndex> cells;
   for (const ColumnDifference& column : difference.worst) cells.push_back(column.cell);
-  EXPECT_THAT(cells, ElementsAre(Cell{4, 0}, Cell{4, 1}, Cell{3, 0}, Cell{3, 1}, Cell{2, 0}));
+  EXPECT_THAT(cells, ElementsAre(ColumnIndex{4, 0}, ColumnIndex{4, 1}, ColumnIndex{3, 0},
+                                 ColumnIndex{3, 1}, ColumnIndex{2, 0}));
 }
 
 /// Height common to two columns, by counting fine steps.

@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Color in the middle of a cell of a plan.
-Rgb cellColor(const Picture& picture, const ColumnGrid& grid, pack_tool::Cell cell) {
+Rgb cellColor(const Picture& picture, const ColumnGrid& grid, ColumnIndex cell) {
   const PixelRect& plot = picture.plots.front();
   const auto middle = [](int first, int length, std::uint32_t index, std::uint32_t count) {
     return first + static_cast<int>((index + 0.5) * length / count);

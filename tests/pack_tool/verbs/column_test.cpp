@@ -17,56 +17,6 @@ using test::GridBuilder;
 using test::GridSpec;
 using testing::HasSubstr;
 
-constexpr unsigned kSeed = 20230607;
-
-TEST(NearestColumn, IsTheCellAroundThePoint) {
-  const auto grid = GridBuilder(GridSpec{.spacing = 0.5F, .min_x = -1, .min_z = 2}).build();
-  EXPECT_EQ(nearestColumn(grid.view(), {-1, 2}), (Cell{0, 0}));
-  EXPECT_EQ(nearestColumn(grid.view(), {-0.51, 2.49}), (Cell{0, 0}));
-  EXPECT_EQ(nearestColumn(grid.view(), {-0.5, 2.5}), (Cell{1, 1}));
-  EXPECT_EQ(nearestColumn(grid.view(), {1.49, 3.49}), (Cell{4, 2}));
-}
-
-TEST(NearestColumn, IsNoneOutsideTheRectangleAndForNan) {
-  const auto grid = GridBuilder(GridSpec{}).build();
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (const GroundPoint& point :
-       {GroundPoint{-0.001, 1}, GroundPoint{5, 1}, GroundPoint{1, -0.001}, GroundPoint{1, 3},
-        GroundPoint{nan, 1}, GroundPoint{1, nan}, GroundPoint{infinity, 1},
-        GroundPoint{1, -1e300}}) {
-    EXPECT_EQ(nearestColumn(grid.view(), point), std::nullopt) << point.x << ", " << point.z;
-  }
-}
-
-TEST(NearestColumn, HasTheNearestCenterOfAllColumns) {
-  const auto grid = GridBuilder(GridSpec{.spacing = 0.25F, .min_x = -0.5F, .min_z = 1}).build();
-  std::mt19937 random(kSeed);
-  std::uniform_real_distribution<double> x(-1.2, 1.4);
-  std::uniform_real_distribution<double> z(0.7, 2.1);
-  constexpr int kCases = 2000;
-  int inside = 0;
-  for (int n = 0; n < kCases; ++n) {
-    const GroundPoint point{x(random), z(random)};
-    const auto cell = nearestColumn(grid.view(), point);
-    const bool covered = point.x >= -0.5 && point.x < 0.75 && point.z >= 1 && point.z < 1.75;
-    ASSERT_EQ(cell.has_value(), covered) << "seed " << kSeed << " case " << n;
-    if (!cell) continue;
-    ++inside;
-    const auto distance_to = [&](Cell other) {
-      const GroundPoint center = columnCenter(grid.view(), other);
-      return std::hypot(center.x - point.x, center.z - point.z);
-    };
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      for (std::uint32_t i = 0; i < 5; ++i) {
-        ASSERT_LE(distance_to(*cell), distance_to({i, k})) << "seed " << kSeed << " case " << n;
-      }
-    }
-  }
-  EXPECT_GT(inside, kCases / 10);
-  EXPECT_LT(inside, kCases * 9 / 10);
-}
-
 /// What a verb printed and returned.
 struct Outcome {
   int exit_code = 0;

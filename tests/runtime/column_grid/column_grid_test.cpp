@@ -4,8 +4,11 @@
 
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <optional>
 #include <random>
+#include <utility>
 
 #include "support/kept_word.h"
 #include "support/packs/grid_builder.h"
@@ -31,6 +34,61 @@ GridSpec publishedSpec() {
 }
 
 Clearance clearanceAt(const TestGrid& grid, Vec3 center) { return grid.view().clearance(center); }
+
+TEST(ColumnAt, IsTheCellAroundThePoint) {
+  const TestGrid grid = GridBuilder(GridSpec{.spacing = 0.5F, .min_x = -1, .min_z = 2}).build();
+  EXPECT_EQ(grid.view().columnAt(-1, 2), (ColumnIndex{0, 0}));
+  EXPECT_EQ(grid.view().columnAt(-0.51F, 2.49F), (ColumnIndex{0, 0}));
+  EXPECT_EQ(grid.view().columnAt(-0.5F, 2.5F), (ColumnIndex{1, 1}));
+  EXPECT_EQ(grid.view().columnAt(1.49F, 3.49F), (ColumnIndex{4, 2}));
+}
+
+TEST(ColumnAt, IsNoneOutsideTheRectangleAndForNan) {
+  const TestGrid grid = GridBuilder(GridSpec{}).build();
+  for (const auto& [x, z] : std::initializer_list<std::pair<float, float>>{{-0.001F, 1},
+                                                                           {5, 1},
+                                                                           {1, -0.001F},
+                                                                           {1, 3},
+                                                                           {kNan, 1},
+                                                                           {1, kNan},
+                                                                           {kInfinity, 1},
+                                                                           {1, -3e38F}}) {
+    EXPECT_EQ(grid.view().columnAt(x, z), std::nullopt) << x << ", " << z;
+  }
+}
+
+/// A point in the middle of the only column that is free is free, and one elsewhere is not.
+TEST(ColumnAt, IsTheColumnByWhichQueriesAreJudged) {
+  const GridSpec spec{.spacing = 0.25F, .min_x = -0.5F, .min_z = 1};
+  const TestGrid grid = GridBuilder(spec).column(3, 1, {{1, 2}}).build();
+  constexpr unsigned kSeed = 20230607;
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> x(-1.2F, 1.4F);
+  std::uniform_real_distribution<float> z(0.7F, 2.1F);
+  int free = 0;
+  int outside = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const Vec3 center{x(random), 1.5F, z(random)};
+    const auto column = grid.view().columnAt(center.x, center.z);
+    const Clearance expected = !column                        ? Clearance::kOutside
+                               : *column == ColumnIndex{3, 1} ? Clearance::kFree
+                                                              : Clearance::kBlocked;
+    ASSERT_EQ(clearanceAt(grid, center), expected) << "seed " << kSeed << " case " << n;
+    free += expected == Clearance::kFree ? 1 : 0;
+    outside += expected == Clearance::kOutside ? 1 : 0;
+  }
+  EXPECT_GT(free, 20);
+  EXPECT_GT(outside, 400);
+}
+
+TEST(Spans, OfColumnsOutsideTheGridAreNone) {
+  const TestGrid grid = GridBuilder(publishedSpec()).column(99, 99, {{1, 2}}).build();
+  std::array<Span, 2> spans{};
+  EXPECT_EQ(grid.view().spans(99, 99, spans), 1U);
+  EXPECT_EQ(grid.view().spans(100, 99, spans), 0U);
+  EXPECT_EQ(grid.view().spans(99, 100, spans), 0U);
+  EXPECT_EQ(grid.view().spanCount(1000000, 1000000), 0U);
+}
 
 TEST(ColumnGrid, AnswersBlockedInEveryColumnOfAnEmptyGrid) {
   const TestGrid grid = GridBuilder(publishedSpec()).build();

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
@@ -466,6 +468,94 @@ TEST_F(WorldViewsOfAHome, TheDebugViewShowsSpheresBoxesAndTheGoal) {
   ASSERT_EQ(goal.size(), 1U);
   EXPECT_EQ(difference(goal[0], rigidTransform(episode.goal)), 0);
 }
+
+/// What a function that makes all of it hands out.
+struct Drawing {
+  BatchRenderer renderer;
+  WorldViews views;
+  DebugViews debug_views;
+  BatchRenderer debug_renderer;
+};
+
+TEST_F(WorldViewsOfAHome, GoOnWithoutTheModelsTheyWereMadeFromAndWhereTheyAreMovedTo) {
+  const CameraMount mount = robotCamera(world_->robot()).value();
+  const RenderOptions options{.width = 32, .height = 32, .backend = RenderBackend::kSoft};
+  const auto make = [&] {
+    const WorldModels models = WorldModels::from(*world_).value();
+    const DebugModels debug_models = DebugModels::from(*world_, {}).value();
+    return Drawing{BatchRenderer::create(models.library(), options).value(),
+                   WorldViews(*world_, models, *simulator_, mount),
+                   DebugViews(*world_, debug_models, *simulator_, mount, kEnvs),
+                   BatchRenderer::create(debug_models.library(), options).value()};
+  };
+  const auto drawn = [&](BatchRenderer& renderer, std::span<const RenderView> views) {
+    std::vector<std::uint8_t> color(std::size_t{kEnvs} * 32 * 32 * 4);
+    std::vector<float> depth(std::size_t{kEnvs} * 32 * 32);
+    renderer.render(views, {.color = color, .depth = depth});
+    return std::pair(color, depth);
+  };
+  Drawing made = make();
+  Drawing moved = std::move(made);
+  step();
+  moved.views.update(*simulator_);
+  moved.debug_views.update(*simulator_);
+  WorldViews views(*world_, *models_, *simulator_, mount);
+  BatchRenderer renderer = BatchRenderer::create(models_->library(), options).value();
+  EXPECT_EQ(drawn(moved.renderer, moved.views.views()), drawn(renderer, views.views()));
+  const DebugModels debug_models = DebugModels::from(*world_, {}).value();
+  DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
+  BatchRenderer debug_renderer = BatchRenderer::create(debug_models.library(), options).value();
+  EXPECT_EQ(drawn(moved.debug_renderer, moved.debug_views.views()),
+            drawn(debug_renderer, debug_views.views()));
+}
+
+TEST_F(WorldViewsOfAHome, AreNotMadeOfASimulatorThatKeepsNoBodiesNorFollowAnother) {
+  const CameraMount mount = robotCamera(world_->robot()).value();
+  SimulationOptions options = simulator_->options();
+  options.body_transforms = false;
+  const BatchSimulator bare = BatchSimulator::create(*world_, options).value();
+  options.body_transforms = true;
+  options.envs = kEnvs - 1;
+  const BatchSimulator smaller = BatchSimulator::create(*world_, options).value();
+  const DebugModels debug_models = DebugModels::from(*world_, {}).value();
+  EXPECT_THAT([&] { WorldViews(*world_, *models_, bare, mount); },
+              testing::ThrowsMessage<ErrorException>(
+                  testing::HasSubstr("make it with SimulationOptions::body_transforms")));
+  EXPECT_THROW(DebugViews(*world_, debug_models, bare, mount, 1), ErrorException);
+  EXPECT_THROW(DebugViews(*world_, debug_models, *simulator_, mount, kEnvs + 1), ErrorException);
+  WorldViews views(*world_, *models_, *simulator_, mount);
+  DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
+  EXPECT_THROW(views.update(smaller), ErrorException);
+  EXPECT_THROW(views.update(bare), ErrorException);
+  EXPECT_THROW(debug_views.update(smaller), ErrorException);
+  views.update(*simulator_);
+}
+
+TEST_F(WorldViewsOfAHome, AreDrawnIntoImagesOfTheirSizeAlone) {
+  const CameraMount mount = robotCamera(world_->robot()).value();
+  const WorldViews views(*world_, *models_, *simulator_, mount);
+  const RenderOptions options{.width = 8, .height = 4, .backend = RenderBackend::kSoft};
+  BatchRenderer renderer = BatchRenderer::create(models_->library(), options).value();
+  std::vector<std::uint8_t> color(std::size_t{kEnvs} * 8 * 4 * 4);
+  std::vector<float> depth(std::size_t{kEnvs} * 8 * 4);
+  std::vector<float> short_depth(depth.size() - 1);
+  EXPECT_THAT([&] { renderer.render(views.views(), {.color = color, .depth = short_depth}); },
+              testing::ThrowsMessage<ErrorException>(
+                  testing::HasSubstr("\"depth\" has the length 95, expected 96")));
+  EXPECT_THROW(renderer.render(views.views(), {.depth = depth}), ErrorException);
+  EXPECT_THROW(renderer.render(views.views().first(1), {.color = color, .depth = depth}),
+               ErrorException);
+  EXPECT_THROW(renderer.endRender(), ErrorException);
+  renderer.beginRender(views.views(), {.color = color, .depth = depth});
+  EXPECT_THROW(renderer.beginRender(views.views(), {.color = color, .depth = depth}),
+               ErrorException);
+  EXPECT_THROW(static_cast<void>(renderer.renderToDevice(views.views())), ErrorException);
+  renderer.endRender();
+  EXPECT_GT(*std::ranges::max_element(depth), 0);
+}
+
+static_assert(!std::is_copy_constructible_v<WorldViews> && !std::is_copy_assignable_v<WorldViews>);
+static_assert(!std::is_copy_constructible_v<DebugViews> && !std::is_copy_assignable_v<DebugViews>);
 
 }  // namespace
 }  // namespace galactic::world_views_test

@@ -5,6 +5,7 @@
 
 #include "galactic/bake/columns.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/column_grid.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
@@ -31,12 +32,6 @@ struct ExactColumns {
 /// whole cell and padded by what float rounding can take. Memory is proportional to the columns.
 [[nodiscard]] ExactColumns exactColumns(const TriangleMesh& mesh, const GridFrame& frame,
                                         const ExactOptions& options = {});
-
-/// A column's place in its grid.
-struct ColumnIndex {
-  std::uint32_t i = 0;
-  std::uint32_t k = 0;
-};
 
 /// The published method (paper, appendix G), as an independent check: overlap tests of a sphere
 /// every step, padded, and sphere casts up and down.

@@ -229,7 +229,7 @@ std::optional<float> FloorMap::floorUnder(const Vec3& free_center) const {
 }
 
 std::optional<float> FloorMap::heightAt(float x, float z, float height) const {
-  const std::optional<Column> column = columnAt(fine_grid_, x, z);
+  const std::optional<ColumnIndex> column = fine_grid_.columnAt(x, z);
   if (!column) return std::nullopt;
   std::optional<float> nearest;
   for (const Span& span : ColumnSpans(fine_grid_, column->i, column->k)) {
@@ -281,7 +281,7 @@ Vec3 FloorMap::position(const FloorPlace& place) const {
 }
 
 std::span<const FloorPlace> FloorMap::placesAt(float x, float z) const {
-  const std::optional<Column> column = columnAt(grid_, x, z);
+  const std::optional<ColumnIndex> column = grid_.columnAt(x, z);
   if (!column) return {};
   const std::size_t index = std::size_t{column->k} * grid_.columnsX() + column->i;
   return std::span(places_).subspan(first_[index], first_[index + 1] - first_[index]);

@@ -16,7 +16,7 @@ constexpr float kFloorStride = 0.09F;
 
 /// The free height over a surface of about this height in a column of the smallest radius: from the
 /// surface to what is over it. None where there is no such surface.
-std::optional<Span> freeOver(const ColumnGrid& grid, const Column& column, float surface,
+std::optional<Span> freeOver(const ColumnGrid& grid, const ColumnIndex& column, float surface,
                              float flatness) {
   for (const Span& span : ColumnSpans(grid, column.i, column.k)) {
     const float height = span.lo - grid.radius();
@@ -325,8 +325,8 @@ std::optional<float> SupportPlaces::surfaceUnder(const Footprint& footprint, flo
   const float length = footprint.half_length + rimOf(grid, flatness_);
   const float width = footprint.half_width + rimOf(grid, flatness_);
   const float reach = std::hypot(length, width);
-  const auto first = columnAt(grid, footprint.x - reach, footprint.z - reach);
-  const auto last = columnAt(grid, footprint.x + reach, footprint.z + reach);
+  const auto first = grid.columnAt(footprint.x - reach, footprint.z - reach);
+  const auto last = grid.columnAt(footprint.x + reach, footprint.z + reach);
   if (!first || !last) return std::nullopt;
   float highest = surface;
   for (std::uint32_t k = first->k; k <= last->k; ++k) {

@@ -19,7 +19,7 @@ constexpr int kMostLifts = 16;
 /// How far up a center has to go to be free; none when there is no free height above it.
 std::optional<float> liftOutOf(const ColumnGrid& grid, const Vec3& center) {
   if (grid.clearance(center) == Clearance::kFree) return 0.0F;
-  const std::optional<Column> column = columnAt(grid, center.x, center.z);
+  const std::optional<ColumnIndex> column = grid.columnAt(center.x, center.z);
   if (!column) return std::nullopt;
   for (const Span& span : ColumnSpans(grid, column->i, column->k)) {
     // A column may call a height free that the query, which counts in quanta, does not.

@@ -12,6 +12,7 @@
 #include "simulation/phases/move.h"
 #include "simulation/phases/object_placement.h"
 #include "simulation/queries/sphere_cloud.h"
+#include "support/call_check.h"
 #include "support/random_stream.h"
 
 namespace galactic {
@@ -89,7 +90,12 @@ class PlanningScene::Impl {
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const SimulationOptions& options() const { return options_; }
   [[nodiscard]] float rootHeight() const { return root_height_; }
-  [[nodiscard]] const Scene& scene() const { return *scene_; }
+  [[nodiscard]] const Scene& scene() const {
+    if (scene_ == nullptr) {
+      detail::refuseCall("PlanningScene", "was asked before it took over an env, with update()");
+    }
+    return *scene_;
+  }
   [[nodiscard]] std::span<const Pose> links() const { return links_; }
   [[nodiscard]] float reach() const { return reach_; }
   [[nodiscard]] const simulation::RestingObjects& resting() const { return resting_; }
@@ -99,7 +105,7 @@ class PlanningScene::Impl {
   [[nodiscard]] const Pose& gripFromObject() const { return grip_from_object_; }
 
  private:
-  [[nodiscard]] simulation::Obstacles obstacles() const { return {*scene_, resting_}; }
+  [[nodiscard]] simulation::Obstacles obstacles() const { return {scene(), resting_}; }
   /// Whether an object's bounds lie within the robot's, over a base at `position`.
   [[nodiscard]] bool isAnyNear(const Vec3& position) const;
   void take(std::uint32_t object, const Pose& grip_from_object);
@@ -200,7 +206,7 @@ bool PlanningScene::Impl::isRobotFreeOfScene(const BasePlace& base) {
     const SphereCenters centers{{spheres.x + range.first, count},
                                 {spheres.y + range.first, count},
                                 {spheres.z + range.first, count}};
-    return scene_->grids()[range.radius_index].firstNotFree(centers) == count;
+    return scene().grids()[range.radius_index].firstNotFree(centers) == count;
   });
 }
 
