@@ -161,7 +161,7 @@ std::vector<LeftOut> whatIsMissing(const JobList& list, unsigned threads) {
   missing.insert(missing.begin(), list.left_out.begin(), list.left_out.end());
   for (const BrokenScene& scene : list.broken) {
     const Error& error = scene.failure.error;
-    missing.push_back({scene.name, {error.where + ": " + error.message}});
+    missing.push_back({scene.name, {error.text()}});
   }
   return missing;
 }

@@ -129,9 +129,9 @@ SceneSource SceneSource::fromPacks(const std::filesystem::path& folder) {
   SceneSource source;
   for (const auto& path : paths) {
     Result<PackFile> pack = PackFile::open(path);
-    if (!pack) throw std::runtime_error(pack.error().where + ": " + pack.error().message);
+    if (!pack) throw std::runtime_error(pack.error().text());
     const Result<Scene> scene = Scene::from(*pack);
-    if (!scene) throw std::runtime_error(scene.error().where + ": " + scene.error().message);
+    if (!scene) throw std::runtime_error(scene.error().text());
     source.scenes_.push_back(scene->grids());
     source.packs_.push_back(std::move(*pack));
   }

@@ -29,7 +29,7 @@ class BakeRenderCli : public test::BakeFolder {
 
   [[nodiscard]] std::optional<std::size_t> modelsIn(const std::string& pack_name) const {
     const auto pack = PackFile::open(path(pack_name));
-    EXPECT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+    EXPECT_TRUE(pack) << pack.error().text();
     const auto meshes = renderMeshesOf(*pack);
     EXPECT_TRUE(meshes);
     if (!*meshes) return std::nullopt;

@@ -44,7 +44,7 @@ class EpisodeCli : public test::BakeFolder {
   [[nodiscard]] Names namesIn(const std::string& name) const {
     Names names;
     const auto pack = PackFile::open(path(name));
-    EXPECT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+    EXPECT_TRUE(pack) << pack.error().text();
     if (!pack) return names;
     const auto set = EpisodeSet::from(*pack);
     EXPECT_TRUE(set);

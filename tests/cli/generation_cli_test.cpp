@@ -119,7 +119,7 @@ TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
                                  "--as", "world", "-o", "world.pack"});
   ASSERT_EQ(linked.exit_code, 0) << linked.err;
   const auto world = World::open(std::vector{path("world.pack")});
-  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  ASSERT_TRUE(world.has_value()) << world.error().text();
   EXPECT_EQ(world->episodes().episodes().size(), 3U);
   EXPECT_EQ(world->mostObjects(), 2U);
   const ProgramRun settled =

@@ -66,7 +66,7 @@ TEST(GoldenPacks, OfTheCrateAndTheArmAreMadeAgainByteForByte) {
 
 TEST(GoldenPacks, ShowTheCrateAsItIsBuilt) {
   const auto pack = PackFile::open(goldenFolder() / "crate.pack");
-  ASSERT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack) << pack.error().text();
   const auto set = ObjectSet::from(*pack);
   ASSERT_TRUE(set);
   ASSERT_EQ(set->find("crate"), 0U);
@@ -87,7 +87,7 @@ TEST(GoldenPacks, ShowTheCrateAsItIsBuilt) {
 
 TEST(GoldenPacks, OfACrateWithoutHullPlanesStillLoad) {
   const auto older = PackFile::open(goldenFolder() / "crate-older.pack");
-  ASSERT_TRUE(older) << older.error().where << ": " << older.error().message;
+  ASSERT_TRUE(older) << older.error().text();
   const auto now = PackFile::open(goldenFolder() / "crate.pack");
   ASSERT_TRUE(now);
   const ObjectModel before = ObjectSet::from(*older).value().objects()[0];
@@ -101,7 +101,7 @@ TEST(GoldenPacks, OfACrateWithoutHullPlanesStillLoad) {
 
 TEST(GoldenPacks, MoveTheArmAsItIsBuilt) {
   const auto pack = PackFile::open(goldenFolder() / "arm.pack");
-  ASSERT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack) << pack.error().text();
   const auto robot = Robot::from(*pack);
   ASSERT_TRUE(robot);
   ASSERT_EQ(robot->positionCount(), 3U);

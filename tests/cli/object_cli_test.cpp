@@ -37,7 +37,7 @@ class ObjectCli : public test::BakeFolder {
   [[nodiscard]] std::vector<std::string> namesIn(const std::string& pack_name) const {
     std::vector<std::string> names;
     const auto pack = PackFile::open(path(pack_name));
-    EXPECT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+    EXPECT_TRUE(pack) << pack.error().text();
     if (!pack) return names;
     const auto set = ObjectSet::from(*pack);
     EXPECT_TRUE(set);

@@ -35,7 +35,7 @@ TEST_F(PlanCli, BakesADatasetIntoPacksAndAWorld) {
     EXPECT_EQ(packsIn("out").count(name), 1U) << name;
   }
   const auto world = PackFile::open(path("out/home.pack"));
-  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  ASSERT_TRUE(world.has_value()) << world.error().text();
   EXPECT_EQ(world->kind(), PackKind::kWorld);
   const auto listed = packReferences(*world);
   ASSERT_TRUE(listed.has_value());
@@ -393,7 +393,7 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
               ElementsAre("objects/box.pack", "objects/mug.pack", "robot.pack", "scenes/a.pack",
                           "scenes/c.pack", "episodes.pack"));
   const auto world = World::open(std::vector{path("flat.pack")});
-  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  ASSERT_TRUE(world.has_value()) << world.error().text();
   EXPECT_EQ(world->episodes().episodes().size(), 3U);
   EXPECT_EQ(world->scenes().size(), 2U);
   unsigned settled = 0;

@@ -70,7 +70,7 @@ f 2 6 8 4
   [[nodiscard]] std::vector<float> placesAlongX() const {
     std::vector<float> places;
     const auto world = World::open(std::vector{path("flat.pack")});
-    EXPECT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+    EXPECT_TRUE(world.has_value()) << world.error().text();
     if (!world) return places;
     for (const Episode& episode : world->episodes().episodes()) {
       places.push_back(episode.goal.translation.x);

@@ -62,7 +62,7 @@ class PolicyCli : public testing::Test {
   void write(const std::string& name, const PolicyContent& content) const {
     const auto written =
         writePolicyPack(folder_.path() / name, content, test::smallPolicyProvenance());
-    ASSERT_TRUE(written.has_value()) << written.error().where << ": " << written.error().message;
+    ASSERT_TRUE(written.has_value()) << written.error().text();
   }
   [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
     return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));

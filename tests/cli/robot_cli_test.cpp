@@ -80,7 +80,7 @@ class RobotCli : public test::BakeFolder {
   [[nodiscard]] Opened open(const std::string& name) const {
     Opened opened;
     auto pack = PackFile::open(path(name));
-    EXPECT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+    EXPECT_TRUE(pack) << pack.error().text();
     if (!pack) return opened;
     opened.pack = std::move(*pack);
     auto robot = Robot::from(*opened.pack);

@@ -46,7 +46,7 @@ TEST_F(WorldCli, LinksPacksIntoAWorldThatOpens) {
                              HasSubstr("RBOT robots/helper.pack")));
   EXPECT_THAT(run.err, IsEmpty());
   const auto world = World::open(std::vector{path("world.pack")});
-  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  ASSERT_TRUE(world.has_value()) << world.error().text();
   EXPECT_EQ(world->robot().name(), "helper");
   const json report = json::parse(content("report.json"))["baked"][0];
   EXPECT_EQ(report["output"], "world.pack");

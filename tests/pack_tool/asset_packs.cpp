@@ -183,7 +183,7 @@ ToyPack::ToyPack(AlignedBytes bytes) : bytes_(std::move(bytes)) {
   if (opened) {
     pack_.emplace(std::move(*opened));
   } else {
-    ADD_FAILURE() << opened.error().where << ": " << opened.error().message;
+    ADD_FAILURE() << opened.error().text();
   }
 }
 

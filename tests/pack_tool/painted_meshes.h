@@ -77,7 +77,7 @@ inline RenderMeshStorage paintedStorage(const Painting& painting = {}) {
          .largest_error = painting.largest_error});
   }
   Result<RenderMeshStorage> built = buildRenderMeshes(source);
-  if (!built) throw std::runtime_error(built.error().where + ": " + built.error().message);
+  if (!built) throw std::runtime_error(built.error().text());
   return std::move(*built);
 }
 

@@ -58,7 +58,7 @@ void writeHostile(const std::filesystem::path& folder) {
 
 template <class T>
 T valueOf(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().where + ": " + result.error().message);
+  if (!result) throw std::runtime_error(result.error().text());
   return std::move(*result);
 }
 

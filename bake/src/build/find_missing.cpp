@@ -20,7 +20,7 @@ bool isThere(const fs::path& path) {
   return fs::exists(path, unknown);
 }
 
-std::string sentenceOf(const Error& error) { return error.where + ": " + error.message; }
+std::string sentenceOf(const Error& error) { return error.text(); }
 
 /// What a job lacks, kind by kind.
 class Search {

@@ -227,7 +227,7 @@ std::set<std::string> keysOf(const Parsed& parsed) {
   std::set<std::string> keys;
   if (parsed.isRefused()) return keys;
   const auto list = jobsOf(std::get<BakeCommand>(parsed.command));
-  EXPECT_TRUE(list.has_value()) << list.error().where << ": " << list.error().message;
+  EXPECT_TRUE(list.has_value()) << list.error().text();
   if (!list) return keys;
   for (const PackJob& pack : list->assets) keys.insert(keyOf(pack.job, pack.folder));
   return keys;

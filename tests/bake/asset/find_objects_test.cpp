@@ -29,7 +29,7 @@ class FindObjects : public testing::Test {
   /// The objects of inputs, as NAME=FILE below `set`; warnings come behind them.
   [[nodiscard]] std::vector<std::string> foundIn(const std::vector<fs::path>& inputs) const {
     auto found = bake::findObjects(inputs);
-    EXPECT_TRUE(found) << found.error().where << ": " << found.error().message;
+    EXPECT_TRUE(found) << found.error().text();
     std::vector<std::string> texts;
     if (!found) return texts;
     for (const bake::ObjectInput& object : found->objects) {

@@ -49,7 +49,7 @@ bake::SourceAsset scaledBrick(float scale) {
 BakedObject bakeWell(const bake::SourceAsset& asset, const ObjectBakeOptions& options) {
   auto object = bakeObject(asset, options);
   if (object) return std::move(*object);
-  ADD_FAILURE() << object.error().where << ": " << object.error().message;
+  ADD_FAILURE() << object.error().text();
   return {};
 }
 

@@ -60,7 +60,7 @@ class AnObjectJournal : public testing::Test {
     bake::ReadLog log;
     bake::BakeContext context{.output = folder_.path() / pack, .log = log};
     auto made = bakeObjectFiles(job_, context);
-    EXPECT_TRUE(made) << made.error().where << ": " << made.error().message;
+    EXPECT_TRUE(made) << made.error().text();
     return made ? std::get<ObjectSetOutcome>(std::move(made->outcome)) : ObjectSetOutcome{};
   }
   [[nodiscard]] fs::path file(const std::string& name) const { return folder_.path() / name; }

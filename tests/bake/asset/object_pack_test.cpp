@@ -56,7 +56,7 @@ TEST(ObjectPack, OpensAndShowsTheObjectsByAscendingName) {
   ASSERT_TRUE(payload.has_value());
   const AlignedBytes bytes = packFile(PackKind::kObjects, *payload);
   const auto pack = PackFile::view(bytes.bytes(), "boxes.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
   const auto opened = ObjectSet::from(*pack);
   ASSERT_TRUE(opened.has_value());
   ASSERT_EQ(opened->objects().size(), 3U);

@@ -63,7 +63,7 @@ class Cache : public testing::Test {
   void store(const std::string& name = "home") const { store(inputs(), name); }
   void store(const BakeInputs& inputs, const std::string& name) const {
     const auto kept = cache_.store(inputs, at("out/room.pack"), figuresNamed(name));
-    ASSERT_TRUE(kept.has_value()) << kept.error().where << ": " << kept.error().message;
+    ASSERT_TRUE(kept.has_value()) << kept.error().text();
   }
   [[nodiscard]] std::optional<CachedBake> find(const std::string& key = kKey,
                                                const std::string& folder = "data") const {

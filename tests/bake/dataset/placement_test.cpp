@@ -171,7 +171,7 @@ TEST(Placement, OfRandomInstancesIsThatOfTheirPoints) {
   ASSERT_TRUE(dataset) << dataset.error().message;
   bake::MeshLibrary meshes(bake::datasetMeshOptions());
   const auto scene = dataset->compose("random", meshes);
-  ASSERT_TRUE(scene) << scene.error().where << ": " << scene.error().message;
+  ASSERT_TRUE(scene) << scene.error().text();
   std::size_t fixed = 0;
   std::size_t movable = 0;
   std::size_t origins = 0;

@@ -33,10 +33,10 @@ constexpr double kTolerance = 1e-5;
 
 ComposedScene composed(const SmallDataset& small, const std::string& name = "a_home") {
   const auto dataset = SceneDataset::read(small.config());
-  EXPECT_TRUE(dataset) << dataset.error().where << ": " << dataset.error().message;
+  EXPECT_TRUE(dataset) << dataset.error().text();
   MeshLibrary meshes(bake::datasetMeshOptions());
   auto scene = dataset->compose(name, meshes);
-  EXPECT_TRUE(scene) << scene.error().where << ": " << scene.error().message;
+  EXPECT_TRUE(scene) << scene.error().text();
   return scene ? std::move(*scene) : ComposedScene{};
 }
 

@@ -36,7 +36,7 @@ class ReplicaCad : public testing::Test {
       GTEST_SKIP() << "set GALACTIC_ASSETS to a folder with replica_cad/ in it";
     }
     auto read = SceneDataset::read(config);
-    ASSERT_TRUE(read) << read.error().where << ": " << read.error().message;
+    ASSERT_TRUE(read) << read.error().text();
     dataset_.emplace(std::move(*read));
   }
 
@@ -56,7 +56,7 @@ TEST_F(ReplicaCad, ComposesAllScenesAndKnowsWhichHaveTheirStage) {
   for (const std::string& name : dataset_->scenes()) {
     SCOPED_TRACE(name);
     const auto scene = dataset_->compose(name, meshes_);
-    ASSERT_TRUE(scene) << scene.error().where << ": " << scene.error().message;
+    ASSERT_TRUE(scene) << scene.error().text();
     EXPECT_EQ(scene->has_stage, name.starts_with(kScenesWithStage));
     with_stage += scene->has_stage ? 1U : 0U;
     movable += scene->movable.size();

@@ -51,7 +51,7 @@ std::vector<std::string> namesOfScenes(const std::vector<std::string>& handles) 
   return dataset ? dataset->scenes() : std::vector<std::string>{};
 }
 
-std::string textOf(const Error& error) { return error.where + ": " + error.message; }
+std::string textOf(const Error& error) { return error.text(); }
 
 TEST(SceneNames, AreHandlesWhereSeveralHaveTheSame) {
   EXPECT_THAT(namesOfScenes({"a/x", "b/y"}), ElementsAre("x", "y"));

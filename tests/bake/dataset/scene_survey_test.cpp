@@ -19,7 +19,7 @@ using testing::ElementsAre;
 
 SceneDataset readDataset(const SmallDataset& small) {
   auto dataset = SceneDataset::read(small.config());
-  EXPECT_TRUE(dataset) << dataset.error().where << ": " << dataset.error().message;
+  EXPECT_TRUE(dataset) << dataset.error().text();
   return std::move(*dataset);
 }
 
@@ -122,7 +122,7 @@ TEST(ExpectedBytes, OfARobotAreThoseOfItsMeshesToo) {
               "package = { arm = 'arm_description' }\n");
   const auto list =
       bake::jobsOfRecipe({.recipe = small.folder() / "world.toml"}, small.folder() / "world.pack");
-  ASSERT_TRUE(list) << list.error().where << ": " << list.error().message;
+  ASSERT_TRUE(list) << list.error().text();
   ASSERT_EQ(list->assets.size(), 2U);
   EXPECT_EQ(list->assets[0].name, "robot.pack");
   EXPECT_EQ(list->assets[0].source_bytes, text.size() + 2 * mesh.size());

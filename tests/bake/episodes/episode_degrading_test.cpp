@@ -69,7 +69,7 @@ Result<GeneratedEpisodes> generated(const MadeWorld& world,
 }
 
 std::string refusal(const Result<GeneratedEpisodes>& result) {
-  return result ? "no error" : result.error().where + ": " + result.error().message;
+  return result ? "no error" : result.error().text();
 }
 
 TEST(EpisodesThatAreCrowded, HaveFewerObjects) {

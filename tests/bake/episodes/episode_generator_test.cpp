@@ -40,7 +40,7 @@ std::string refusal(const MadeWorld& world, const EpisodeGeneratorOptions& optio
   const auto result = generated(world, options);
   if (result) return "no error";
   EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
-  return result.error().where + ": " + result.error().message;
+  return result.error().text();
 }
 
 TEST(EpisodeGenerator, EpisodesOfASmallRoomKeepEveryPromise) {

@@ -54,7 +54,7 @@ std::vector<WorldTriangle> scaled(std::vector<WorldTriangle> triangles, double f
 void expectBox(const Case& c) {
   SCOPED_TRACE(c.name + " as " + c.convention);
   const auto asset = importContent(c.name, c.content, c.options);
-  ASSERT_TRUE(asset.has_value()) << asset.error().where << ": " << asset.error().message;
+  ASSERT_TRUE(asset.has_value()) << asset.error().text();
   EXPECT_EQ(asset->convention, c.convention);
   const auto clean = placeAndClean(*asset);
   ASSERT_TRUE(clean.has_value()) << clean.error().message;

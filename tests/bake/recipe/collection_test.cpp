@@ -226,7 +226,7 @@ TEST(PublishedCollections, BecomeTheFetchRecipe) {
   const auto robot = bake::importUrdf(assetsFolder() / kFetch, options);
   ASSERT_TRUE(robot.has_value()) << robot.error().message;
   const auto made = bake::recipeFromCollection(*collection, *robot);
-  ASSERT_TRUE(made.has_value()) << made.error().where << ": " << made.error().message;
+  ASSERT_TRUE(made.has_value()) << made.error().text();
   const bake::RobotRecipe& recipe = made->recipe;
   std::vector<std::string> joints;
   for (const bake::RecipeJoint& joint : recipe.joints) joints.push_back(joint.joint.name);

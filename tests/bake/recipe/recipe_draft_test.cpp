@@ -30,12 +30,10 @@ RobotRecipe draftOf(const SourceRobot& robot) {
   const ScratchFolder folder;
   const std::string text = bake::draftRobotRecipe(robot);
   const auto recipe = readText(folder, text);
-  EXPECT_TRUE(recipe.has_value()) << recipe.error().where << ": " << recipe.error().message << "\n"
-                                  << text;
+  EXPECT_TRUE(recipe.has_value()) << recipe.error().text() << "\n" << text;
   if (!recipe) return {};
   const auto fits = bake::checkRecipe(*recipe, robot);
-  EXPECT_TRUE(fits.has_value()) << fits.error().where << ": " << fits.error().message << "\n"
-                                << text;
+  EXPECT_TRUE(fits.has_value()) << fits.error().text() << "\n" << text;
   return *recipe;
 }
 

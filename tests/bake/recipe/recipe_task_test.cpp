@@ -28,7 +28,7 @@ class RecipeTask : public testing::Test {
   /// NAME=VALUE of each option.
   [[nodiscard]] std::vector<std::string> taskOf(const std::string& lines) const {
     const auto recipe = read(lines);
-    EXPECT_TRUE(recipe.has_value()) << recipe.error().where << ": " << recipe.error().message;
+    EXPECT_TRUE(recipe.has_value()) << recipe.error().text();
     std::vector<std::string> texts;
     if (!recipe) return texts;
     for (const OptionText& option : recipe->task) {
@@ -73,7 +73,7 @@ TEST_F(RecipeTask, KnowsEveryOptionOfTheTask) {
     ++count;
   }
   const auto recipe = read(lines);
-  ASSERT_TRUE(recipe.has_value()) << recipe.error().where << ": " << recipe.error().message;
+  ASSERT_TRUE(recipe.has_value()) << recipe.error().text();
   EXPECT_EQ(recipe->task.size(), count);
   EXPECT_EQ(recipe->task, listOptions({}, OptionScope::kTask));
 }

@@ -20,7 +20,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 TEST(RecipeTemplate, ReadsAsARecipeWithEveryKey) {
   const ScratchFolder folder;
   const auto recipe = bake::readRobotRecipe(folder.write("r.toml", bake::describeRobotRecipe()));
-  ASSERT_TRUE(recipe.has_value()) << recipe.error().where << ": " << recipe.error().message;
+  ASSERT_TRUE(recipe.has_value()) << recipe.error().text();
   EXPECT_EQ(recipe->name, "fetch");
   EXPECT_EQ(recipe->end_effector.link.name, "gripper_link");
   ASSERT_TRUE(recipe->camera.has_value());

@@ -31,7 +31,7 @@ class ShippedRecipes : public testing::TestWithParam<Shipped> {
 
 TEST_P(ShippedRecipes, Read) {
   const auto recipe = read();
-  ASSERT_TRUE(recipe.has_value()) << recipe.error().where << ": " << recipe.error().message;
+  ASSERT_TRUE(recipe.has_value()) << recipe.error().text();
   EXPECT_EQ(recipe->name, GetParam().name);
   EXPECT_EQ(recipe->joints.size(), GetParam().joints);
   EXPECT_TRUE(recipe->camera.has_value());
@@ -42,9 +42,9 @@ TEST_P(ShippedRecipes, FitTheirRobot) {
   const auto recipe = read();
   const auto robot = bake::importUrdf(assetsFolder() / GetParam().urdf);
   ASSERT_TRUE(recipe.has_value());
-  ASSERT_TRUE(robot.has_value()) << robot.error().where << ": " << robot.error().message;
+  ASSERT_TRUE(robot.has_value()) << robot.error().text();
   const auto checked = bake::checkRecipe(*recipe, *robot);
-  EXPECT_TRUE(checked.has_value()) << checked.error().where << ": " << checked.error().message;
+  EXPECT_TRUE(checked.has_value()) << checked.error().text();
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -79,7 +79,7 @@ std::vector<std::string> textsOf(const std::vector<GivenOption>& options) {
 
 TEST_F(WorldRecipeFile, IsReadTableByTable) {
   const auto recipe = read(kWholeRecipe);
-  ASSERT_TRUE(recipe.has_value()) << recipe.error().where << ": " << recipe.error().message;
+  ASSERT_TRUE(recipe.has_value()) << recipe.error().text();
   EXPECT_THAT(textsOf(recipe->common),
               ElementsAre("allow-missing|false", "no-render-meshes|true", "radii|0.05,0.1"));
   ASSERT_EQ(recipe->scenes.size(), 2U);
@@ -205,7 +205,7 @@ TEST_F(WorldRecipeFile, ThatComeWithTheProjectAreRead) {
   for (const auto& entry : fs::directory_iterator(test::sourceFolder() / "packs/worlds")) {
     if (entry.path().extension() != ".toml") continue;
     const auto recipe = bake::readWorldRecipe(entry.path());
-    EXPECT_TRUE(recipe.has_value()) << recipe.error().where << ": " << recipe.error().message;
+    EXPECT_TRUE(recipe.has_value()) << recipe.error().text();
     ++count;
   }
   EXPECT_GE(count, 1U);

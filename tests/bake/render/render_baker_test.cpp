@@ -20,7 +20,7 @@ bake::BakedRenderMeshes bakedMeshes(const SourceBuilder& builder, double error =
                                     unsigned jobs = 1) {
   auto meshes = bake::bakeRenderMeshes(
       builder.source(), {.error = error, .lighting = bake::Lighting::kNone, .jobs = jobs});
-  EXPECT_TRUE(meshes) << meshes.error().where << ": " << meshes.error().message;
+  EXPECT_TRUE(meshes) << meshes.error().text();
   return meshes ? std::move(*meshes) : bake::BakedRenderMeshes{};
 }
 

@@ -63,7 +63,7 @@ TEST(RenderPack, OfObjectsHasAModelForEachInTheOrderOfNames) {
   ASSERT_TRUE(payload);
   const AlignedBytes file = packFile(PackKind::kObjects, *payload);
   const auto pack = PackFile::view(file.bytes(), "made.pack");
-  ASSERT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack) << pack.error().text();
   const auto meshes = renderMeshesOf(*pack);
   ASSERT_TRUE(meshes && *meshes);
   EXPECT_THAT((*meshes)->semantics, testing::ElementsAre("apple", "marble"));
@@ -89,7 +89,7 @@ TEST(RenderPack, OfASceneHasOneModel) {
   ASSERT_TRUE(payload);
   const AlignedBytes file = packFile(PackKind::kScene, *payload);
   const auto pack = PackFile::view(file.bytes(), "made.pack");
-  ASSERT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack) << pack.error().text();
   const auto meshes = renderMeshesOf(*pack);
   ASSERT_TRUE(meshes && *meshes);
   expectSame(drawnTriangles(**meshes, 0), drawnTriangles(scene->render_meshes->view(), 0));

@@ -25,7 +25,7 @@ bake::SourceMesh openBox() {
 std::vector<DrawnTriangle> baked(const SourceBuilder& builder, double error = 0) {
   const auto meshes = bake::bakeRenderMeshes(
       builder.source(), {.error = error, .lighting = bake::Lighting::kNone, .jobs = 1});
-  EXPECT_TRUE(meshes) << meshes.error().where << ": " << meshes.error().message;
+  EXPECT_TRUE(meshes) << meshes.error().text();
   if (!meshes) return {};
   return drawnTriangles(meshes->view(), 0);
 }

@@ -150,7 +150,7 @@ TEST_P(RealKinematics, AgreeWithADoubleChainAndWithBullet) {
   bake::UrdfImportOptions options;
   options.allow_missing = true;
   const auto robot = bake::importUrdf(assetsFolder() / GetParam(), options);
-  ASSERT_TRUE(robot.has_value()) << robot.error().where << ": " << robot.error().message;
+  ASSERT_TRUE(robot.has_value()) << robot.error().text();
   const bake::FlatKinematics flat = bake::flattenKinematics(*robot, nullptr);
   const std::vector<OracleLink> oracle = oracleOf(*robot);
   const bool for_bullet = std::none_of(oracle.begin(), oracle.end(), [](const OracleLink& link) {

@@ -61,7 +61,7 @@ BakedRobot bakeWell(const SourceRobot& robot, const RobotRecipe* recipe,
                     const RobotBakeOptions& options) {
   auto baked = bakeRobot(robot, recipe, options);
   if (baked) return std::move(*baked);
-  ADD_FAILURE() << baked.error().where << ": " << baked.error().message;
+  ADD_FAILURE() << baked.error().text();
   return {};
 }
 
@@ -173,7 +173,7 @@ OpenedPack openPackOf(const BakedRobot& robot) {
   EXPECT_TRUE(payload.has_value());
   opened.bytes = packFile(PackKind::kRobot, *payload);
   auto pack = PackFile::view(opened.bytes.bytes(), "tiny.pack");
-  EXPECT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  EXPECT_TRUE(pack.has_value()) << pack.error().text();
   if (!pack) return opened;
   opened.pack = std::move(*pack);
   auto view = Robot::from(*opened.pack);

@@ -64,7 +64,7 @@ class RealRobots : public testing::TestWithParam<RealRobot> {
 
 TEST_P(RealRobots, LoadWithTheExpectedCounts) {
   const auto robot = load(GetParam());
-  ASSERT_TRUE(robot.has_value()) << robot.error().where << ": " << robot.error().message;
+  ASSERT_TRUE(robot.has_value()) << robot.error().text();
   std::size_t visuals = 0;
   std::size_t collisions = 0;
   for (const bake::SourceLink& link : robot->links) {

@@ -64,10 +64,10 @@ TEST(EpisodePack, IsReadAsItWasWritten) {
   const ScratchFolder folder;
   const auto path = folder.path() / "tidy.pack";
   const auto bytes = writeEpisodePack(path, source, provenance());
-  ASSERT_TRUE(bytes.has_value()) << bytes.error().where << ": " << bytes.error().message;
+  ASSERT_TRUE(bytes.has_value()) << bytes.error().text();
   EXPECT_EQ(*bytes, std::filesystem::file_size(path));
   const auto pack = PackFile::open(path);
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
   EXPECT_EQ(pack->kind(), PackKind::kEpisodes);
   const auto set = EpisodeSet::from(*pack);
   ASSERT_TRUE(set.has_value()) << set.error().message;

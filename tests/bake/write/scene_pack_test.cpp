@@ -91,7 +91,7 @@ void expectRoundTrip(const BakedScene& scene) {
   ASSERT_TRUE(bytes) << bytes.error().message;
   EXPECT_EQ(*bytes, std::filesystem::file_size(path));
   const auto pack = PackFile::open(path);
-  ASSERT_TRUE(pack) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack) << pack.error().text();
   EXPECT_EQ(pack->kind(), PackKind::kScene);
   const auto opened = Scene::from(*pack);
   ASSERT_TRUE(opened) << opened.error().message;

@@ -46,7 +46,7 @@ class WorldPack : public testing::Test {
 void expectRefused(const Result<std::vector<LinkedPack>>& linked, const std::string& part) {
   ASSERT_FALSE(linked.has_value());
   EXPECT_EQ(linked.error().code, ErrorCode::kInvalidInput);
-  EXPECT_THAT(linked.error().where + ": " + linked.error().message, HasSubstr(part));
+  EXPECT_THAT(linked.error().text(), HasSubstr(part));
 }
 
 TEST_F(WorldPack, IsOpenedAsAWorldWhateverTheOrderOfItsPacks) {
@@ -54,7 +54,7 @@ TEST_F(WorldPack, IsOpenedAsAWorldWhateverTheOrderOfItsPacks) {
   std::sort(paths_.begin(), paths_.end());
   do {
     const auto linked = linkPacks(paths_, folder_.path());
-    ASSERT_TRUE(linked.has_value()) << linked.error().where << ": " << linked.error().message;
+    ASSERT_TRUE(linked.has_value()) << linked.error().text();
     const auto payload = encodeWorldPack(*linked, provenance());
     ASSERT_TRUE(payload.has_value());
     if (first.empty()) first = *payload;
@@ -65,7 +65,7 @@ TEST_F(WorldPack, IsOpenedAsAWorldWhateverTheOrderOfItsPacks) {
   ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
   EXPECT_EQ(*bytes, fs::file_size(at("world.pack")));
   const auto world = World::open(std::vector{at("world.pack")});
-  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  ASSERT_TRUE(world.has_value()) << world.error().text();
   EXPECT_EQ(world->scenes().size(), 1U);
   EXPECT_EQ(world->robot().name(), "helper");
 }
@@ -76,7 +76,7 @@ TEST_F(WorldPack, HoldsTheTask) {
   const std::vector<OptionText> task{{"task", "pick", true}, {"episode-steps", "300"}};
   ASSERT_TRUE(writeWorldPack(at("world.pack"), *linked, provenance(), task).has_value());
   const auto world = World::open(std::vector{at("world.pack")});
-  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  ASSERT_TRUE(world.has_value()) << world.error().text();
   EXPECT_EQ(world->taskOptions(), task);
   // Without one the pack is what it was before there were tasks: the field is not there.
   const auto without = encodeWorldPack(*linked, provenance(), {});
@@ -145,7 +145,7 @@ TEST_F(WorldPack, MayLackRobotEpisodesAndObjects) {
     std::vector<fs::path> some;
     for (const std::size_t n : kept) some.push_back(paths_[n]);
     const auto linked = linkPacks(some, folder_.path());
-    ASSERT_TRUE(linked.has_value()) << linked.error().where << ": " << linked.error().message;
+    ASSERT_TRUE(linked.has_value()) << linked.error().text();
     EXPECT_EQ(linked->size(), kept.size());
     ASSERT_TRUE(writeWorldPack(at("part.pack"), *linked, provenance()).has_value());
     // It is a pack like others, only that there is nothing to run.
@@ -205,16 +205,16 @@ class WorldPackWithTexture : public testing::Test {
 TEST_F(WorldPackWithTexture, ListsTheTexturePackBesideTheFolderOfTheScene) {
   writeTexture(name_);
   const auto linked = linkPacks(paths_, folder_.path());
-  ASSERT_TRUE(linked.has_value()) << linked.error().where << ": " << linked.error().message;
+  ASSERT_TRUE(linked.has_value()) << linked.error().text();
   ASSERT_EQ(linked->size(), paths_.size() + 1);
   EXPECT_EQ(linked->back().path, name_);
   EXPECT_EQ(linked->back().kind, PackKind::kTexture);
   const fs::path file = folder_.path() / "world.pack";
   ASSERT_TRUE(writeWorldPack(file, *linked, provenance()).has_value());
   const auto world = World::open(std::vector{file});
-  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  ASSERT_TRUE(world.has_value()) << world.error().text();
   const auto models = WorldModels::from(*world);
-  EXPECT_TRUE(models.has_value()) << models.error().where << ": " << models.error().message;
+  EXPECT_TRUE(models.has_value()) << models.error().text();
 }
 
 TEST_F(WorldPackWithTexture, ListsATexturePackThatIsGivenOnce) {

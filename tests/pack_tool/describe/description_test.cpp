@@ -86,7 +86,7 @@ Json describe(const test::ScenePackFields& fields) {
   const auto bytes = test::buildPack(fields);
   const auto pack = PackFile::view(bytes.bytes(), "kitchen.pack");
   if (!pack) {
-    ADD_FAILURE() << pack.error().where << ": " << pack.error().message;
+    ADD_FAILURE() << pack.error().text();
     return {};
   }
   return describePack(*pack);

@@ -27,7 +27,7 @@ Json describe(const Fields& fields, Detail detail = Detail::kEverything) {
   const auto bytes = test::buildPack(fields);
   const auto pack = PackFile::view(bytes.bytes(), "made.pack");
   if (!pack) {
-    ADD_FAILURE() << pack.error().where << ": " << pack.error().message;
+    ADD_FAILURE() << pack.error().text();
     return {};
   }
   return describePack(*pack, detail);

@@ -25,7 +25,7 @@ Json describe(const PolicyPackFields& fields) {
   const auto bytes = test::buildPack(fields);
   const auto pack = PackFile::view(bytes.bytes(), "made.pack");
   if (!pack) {
-    ADD_FAILURE() << pack.error().where << ": " << pack.error().message;
+    ADD_FAILURE() << pack.error().text();
     return {};
   }
   return describePack(*pack);

@@ -168,7 +168,7 @@ TEST(DescribeRenderMeshes, NamesTheTexturesThatAreInPacksOfTheirOwn) {
   const ScratchFolder folder;
   const auto path = writeScene(folder, "a.pack", withSharedWood({2, 1}));
   const auto pack = PackFile::open(path, Trust::kVerify);
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
   const Json description = describePack(*pack);
   const Json& render = description.at("render_meshes");
   EXPECT_EQ(render.at("materials").at(0).at("texture"), "wood.png");

@@ -32,7 +32,7 @@ std::vector<std::byte> payloadOf(const SourceEpisodes& episodes) {
   bake::Provenance provenance;
   provenance.tool_version = "0.1.0";
   auto payload = encodeEpisodePack(episodes, provenance);
-  EXPECT_TRUE(payload.has_value()) << payload.error().where << ": " << payload.error().message;
+  EXPECT_TRUE(payload.has_value()) << payload.error().text();
   return payload.value_or(std::vector<std::byte>{});
 }
 
@@ -47,7 +47,7 @@ std::string exported(const SourceEpisodes& episodes, FileUp up) {
 SourceEpisodes imported(const std::string& text, const EpisodeImportOptions& options) {
   const ScratchFolder folder;
   auto set = bake::readEpisodeSet(folder.write("set.episode_set.json", text), options);
-  EXPECT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
+  EXPECT_TRUE(set.has_value()) << set.error().text();
   return set.value_or(SourceEpisodes{});
 }
 

@@ -32,7 +32,7 @@ void refuse(const std::vector<Offence>& offences) { expectRefused(smallEpisodes(
 void expectAccepted(const Fields& fields) {
   const AlignedBytes bytes = buildPack(fields);
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  EXPECT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  EXPECT_TRUE(pack.has_value()) << pack.error().text();
 }
 
 TEST(EpisodeCheck, AcceptsTheEpisodesThatTheOffencesBelowStartFrom) {

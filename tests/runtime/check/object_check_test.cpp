@@ -33,7 +33,7 @@ void refuse(const std::vector<Offence>& offences) { expectRefused(smallObjects()
 TEST(ObjectCheck, AcceptsTheObjectsThatTheOffencesBelowStartFrom) {
   const AlignedBytes bytes = buildPack(smallObjects());
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
 }
 
 TEST(ObjectCheck, RefusesWrongValuesOfTheSet) {

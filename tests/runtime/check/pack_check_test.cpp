@@ -46,7 +46,7 @@ void expectRefused(const std::vector<Offence>& offences) {
 TEST(PackCheck, AcceptsTheScenesThatTheOffencesBelowStartFrom) {
   const AlignedBytes bytes = buildPack(smallScene());
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "kitchen.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
 }
 
 TEST(PackCheck, AcceptsASceneWithoutTheOptionalStatistics) {

@@ -55,7 +55,7 @@ void refuse(const std::vector<Offence>& offences) { expectRefused(visibleObjects
 TEST(RenderCheck, AcceptsThePackThatTheOffencesBelowStartFrom) {
   const AlignedBytes bytes = buildPack(visibleObjects());
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
 }
 
 TEST(RenderCheck, AcceptsAPartWithoutClustersAndAPackWithoutModels) {
@@ -72,7 +72,7 @@ TEST(RenderCheck, AcceptsAPartWithoutClustersAndAPackWithoutModels) {
     }
     const AlignedBytes bytes = buildPack(fields);
     const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-    ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+    ASSERT_TRUE(pack.has_value()) << pack.error().text();
   }
 }
 

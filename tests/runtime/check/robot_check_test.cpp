@@ -30,7 +30,7 @@ void refuse(std::vector<Offence> offences) {
 TEST(RobotCheck, AcceptsTheRobotThatTheOffencesBelowStartFrom) {
   const AlignedBytes bytes = buildPack(smallRobotPack());
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
 }
 
 TEST(RobotCheck, AcceptsARobotWithoutARecipe) {
@@ -59,7 +59,7 @@ TEST(RobotCheck, AcceptsASingleLinkThatCannotMove) {
   fields.surfaces.clear();
   const AlignedBytes bytes = buildPack(fields);
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  EXPECT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  EXPECT_TRUE(pack.has_value()) << pack.error().text();
 }
 
 TEST(RobotCheck, RefusesWrongNamesAndSizes) {

@@ -28,7 +28,7 @@ Offence path(const std::string& path, const std::string& message) {
 TEST(WorldCheck, AcceptsTheWorldThatTheOffencesBelowStartFrom) {
   const AlignedBytes bytes = buildPack(smallWorldPack());
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
 }
 
 TEST(WorldCheck, AcceptsDotsInsideNames) {
@@ -82,7 +82,7 @@ TEST(WorldCheck, AcceptsWorldsThatLackAllButAScene) {
     fields.packs.erase(fields.packs.begin());
     const AlignedBytes bytes = buildPack(fields);
     const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-    EXPECT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+    EXPECT_TRUE(pack.has_value()) << pack.error().text();
   }
 }
 
@@ -132,7 +132,7 @@ TEST(WorldCheck, AcceptsTaskOptionsInTheOrderOfTheTable) {
                                           {"place-jitter", "1000"}}}) {
     const AlignedBytes bytes = buildPack(worldWithTask(task));
     const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-    ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+    ASSERT_TRUE(pack.has_value()) << pack.error().text();
     const auto options = taskOptions(*pack);
     ASSERT_TRUE(options.has_value());
     ASSERT_EQ(options->size(), task.size());

@@ -366,7 +366,7 @@ TEST(RenderMeshBuilder, VectorsBeginAtMultiplesOf32Bytes) {
 TEST(RenderMeshBuilder, WhatCannotBeStoredIsRefusedByName) {
   const auto refused = [](const RenderSurface& surface) {
     const auto built = buildRenderMeshes(sourceOf({{.surfaces = {surface}}}));
-    return built ? std::string() : built.error().where + ": " + built.error().message;
+    return built ? std::string() : built.error().text();
   };
   const RenderSurface good = triangleSurface({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   EXPECT_EQ(refused(good), "");

@@ -85,7 +85,7 @@ TEST(PackFile, OpensAFileAndAnswersQueriesFromIt) {
   const PackOnDisk file(bytes.bytes());
   for (const Trust trust : {Trust::kVerify, Trust::kTrusted}) {
     Result<PackFile> opened = PackFile::open(file.path(), trust);
-    ASSERT_TRUE(opened.has_value()) << opened.error().where << ": " << opened.error().message;
+    ASSERT_TRUE(opened.has_value()) << opened.error().text();
     EXPECT_EQ(opened->kind(), PackKind::kScene);
     EXPECT_EQ(opened->bytes().size(), bytes.size());
     EXPECT_EQ(opened->where(), file.path().string());
@@ -102,7 +102,7 @@ TEST(PackFile, ViewsMemoryWhereverTheTilesBeginInTheirCacheLine) {
     fields.format = std::string(length, 'f');
     const AlignedBytes bytes = buildPack(fields);
     const Result<PackFile> pack = PackFile::view(bytes.bytes(), "memory");
-    ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+    ASSERT_TRUE(pack.has_value()) << pack.error().text();
     expectSmallScene(*pack);
     const auto* stored = pack->root().asset_as_Scene()->column_grids()->Get(0)->cells()->Data();
     const auto offset =

@@ -15,7 +15,7 @@ TEST(RenderMeshes, AreWhatThePackHoldsInPlace) {
   fields.render_meshes = smallRenderMeshes({1});
   const AlignedBytes bytes = buildPack(fields);
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
   const auto meshes = renderMeshesOf(*pack);
   ASSERT_TRUE(meshes.has_value() && meshes->has_value());
   const RenderMeshes& read = **meshes;

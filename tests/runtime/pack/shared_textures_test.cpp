@@ -17,7 +17,7 @@ using Fields = TexturePackFields;
 TEST(TexturePack, IsAcceptedAsItIsMade) {
   const AlignedBytes bytes = buildPack(Fields{});
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
   EXPECT_EQ(pack->kind(), PackKind::kTexture);
 }
 
@@ -89,7 +89,7 @@ class HomeWithSharedTexture : public testing::Test {
   void open(bool with_texture) {
     const std::vector<std::filesystem::path> paths = pathsOf(with_texture);
     Result<World> world = World::open(paths);
-    ASSERT_TRUE(world) << world.error().where << ": " << world.error().message;
+    ASSERT_TRUE(world) << world.error().text();
     world_.emplace(std::move(*world));
   }
   [[nodiscard]] std::vector<std::filesystem::path> pathsOf(bool with_texture) const {
@@ -110,7 +110,7 @@ class HomeWithSharedTexture : public testing::Test {
 TEST_F(HomeWithSharedTexture, IsDrawnWithTheTexelsOfTheTexturePack) {
   open(true);
   const auto models = WorldModels::from(*world_);
-  ASSERT_TRUE(models.has_value()) << models.error().where << ": " << models.error().message;
+  ASSERT_TRUE(models.has_value()) << models.error().text();
   const auto scene = PackFile::open(folder_.path() / "scenes/kitchen.pack");
   const auto oak = PackFile::open(folder_.path() / "oak.pack");
   SharedTextures textures;

@@ -33,7 +33,7 @@ struct WorldBytes {
 
 PackFile viewed(const AlignedBytes& bytes, const char* where) {
   Result<PackFile> pack = PackFile::view(bytes.bytes(), where);
-  EXPECT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  EXPECT_TRUE(pack.has_value()) << pack.error().text();
   return std::move(*pack);
 }
 
@@ -90,7 +90,7 @@ TEST(World, OpensWhatAWorldPackLists) {
   const fs::path path = writeWorld(folder, WorldFields{});
   for (const Trust trust : {Trust::kVerify, Trust::kTrusted}) {
     const Result<World> world = openWorld(path, trust);
-    ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+    ASSERT_TRUE(world.has_value()) << world.error().text();
     expectSmallWorld(*world);
     EXPECT_EQ(world->packs()[2].where(), folder.path() / "robots/helper.pack");
   }
@@ -106,7 +106,7 @@ TEST(World, OpensThePacksThemselvesInAnyOrder) {
   }
   do {
     const Result<World> world = World::open(paths);
-    ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+    ASSERT_TRUE(world.has_value()) << world.error().text();
     expectSmallWorld(*world);
   } while (std::next_permutation(paths.begin(), paths.end()));
 }
@@ -144,7 +144,7 @@ TEST(World, SortsItsScenesByNameWhateverTheOrderOfThePacks) {
     std::vector<PackFile> packs = packsOf(bytes);
     packs.insert(first ? packs.begin() : packs.end(), viewed(other, "attic.pack"));
     const Result<World> world = World::from(std::move(packs));
-    ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+    ASSERT_TRUE(world.has_value()) << world.error().text();
     EXPECT_EQ(world->scenes()[0].name(), "attic");
     EXPECT_EQ(world->scenes()[1].name(), "kitchen");
     EXPECT_EQ(world->sceneOf(world->episodes().episodes()[0]).name(), "attic");
@@ -282,7 +282,7 @@ TEST(World, FitsTogetherWithoutRobotOrEpisodes) {
     std::vector<PackFile> packs = packsOf(bytes);
     packs.erase(packs.begin() + static_cast<std::ptrdiff_t>(lacking));
     const auto fit = checkTogether(std::move(packs));
-    EXPECT_TRUE(fit.has_value()) << fit.error().where << ": " << fit.error().message;
+    EXPECT_TRUE(fit.has_value()) << fit.error().text();
   }
   std::vector<PackFile> scene_alone = packsOf(bytes);
   scene_alone.erase(scene_alone.begin() + 1, scene_alone.end());
@@ -405,7 +405,7 @@ Result<World> openWithTask(TaskTexts task, Trust trust = Trust::kVerify) {
 TEST(WorldTask, IsWhatTheWorldPackSays) {
   const Result<World> world = openWithTask(
       {{"episode-steps", "300"}, {"safe-drop", "true"}, {"slide-direction", "towards-base"}});
-  ASSERT_TRUE(world.has_value()) << world.error().where << ": " << world.error().message;
+  ASSERT_TRUE(world.has_value()) << world.error().text();
   EXPECT_EQ(world->taskOptions(),
             (std::vector<OptionText>{{"episode-steps", "300"},
                                      {"safe-drop", "true"},

@@ -45,7 +45,7 @@ PolicyInterface& needs(Fields& f) { return f.content.interface; }
 TEST(PolicyPack, IsAcceptedAsItIsMade) {
   const AlignedBytes bytes = buildPack(Fields{});
   const Result<PackFile> pack = PackFile::view(bytes.bytes(), "made.pack");
-  ASSERT_TRUE(pack.has_value()) << pack.error().where << ": " << pack.error().message;
+  ASSERT_TRUE(pack.has_value()) << pack.error().text();
   EXPECT_EQ(pack->kind(), PackKind::kPolicy);
 }
 

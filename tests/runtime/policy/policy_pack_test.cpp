@@ -36,7 +36,7 @@ TEST(PolicyPackWriter, WritesWhatIsReadBack) {
   const std::filesystem::path path = folder.path() / "picker.pack";
   const PolicyContent content = smallPolicy();
   const auto written = writePolicyPack(path, content, smallPolicyProvenance());
-  ASSERT_TRUE(written.has_value()) << written.error().where << ": " << written.error().message;
+  ASSERT_TRUE(written.has_value()) << written.error().text();
   const auto pack = PackFile::open(path);
   ASSERT_TRUE(pack.has_value()) << pack.error().message;
   const auto needs = policyInterface(*pack);

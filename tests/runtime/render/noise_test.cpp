@@ -404,7 +404,7 @@ TEST_F(NoisyImages, AreRefusedWhereTheyCannotBe) {
     const auto made = BatchRenderer::create(library_, options);
     if (made) return std::string();
     EXPECT_EQ(made.error().code, ErrorCode::kInvalidInput);
-    return made.error().where + ": " + made.error().message;
+    return made.error().text();
   };
   EXPECT_EQ(refusal([](RenderOptions& o) { o.noise = {1, 1, 255, 1}; }), "");
   EXPECT_EQ(refusal([](RenderOptions& o) { o.noise.depth_noise = 1.5F; }),

@@ -67,7 +67,7 @@ void expectNear(float share, float range, float wall) {
 
 std::string faultOf(const BoxWorld& world, const LaserOptions& laser) {
   const auto batch = BatchSimulator::create(world.world(), withLaser(laser));
-  return batch ? "none" : batch.error().where + ": " + batch.error().message;
+  return batch ? "none" : batch.error().text();
 }
 
 TEST(Laser, IsOffUnlessAskedFor) {

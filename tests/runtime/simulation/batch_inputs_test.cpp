@@ -81,7 +81,7 @@ TEST(Options, OutOfTheirRangesMakeNoSimulator) {
     SimulationOptions options = optionsFor(2);
     change(options);
     const Result<BatchSimulator> simulator = BatchSimulator::create(world.world(), options);
-    return simulator ? "made" : simulator.error().where + ": " + simulator.error().message;
+    return simulator ? "made" : simulator.error().text();
   };
   EXPECT_EQ(refusal([](SimulationOptions&) {}), "made");
   EXPECT_EQ(refusal([](SimulationOptions& options) { options.slide.step = kNan; }),

@@ -79,7 +79,7 @@ TEST(CameraChoice, RefusesPlacesThatAreNone) {
   const test::SmallHome home;
   const auto refusal = [&](const CameraWish& wish) {
     const auto none = chooseCamera(home.world().robot(), wish);
-    return none ? "" : none.error().where + ": " + none.error().message;
+    return none ? "" : none.error().text();
   };
   EXPECT_EQ(refusal({.name = "hand", .position = {-100, 0, 100}, .rpy_degrees = {-360, 0, 360}}),
             "");
@@ -132,7 +132,7 @@ TEST(CameraChoice, RefusesJitterOutOfRange) {
   const test::SmallHome home;
   const auto refusal = [&](const CameraJitter& jitter) {
     const auto none = chooseCamera(home.world().robot(), {.name = "hand", .jitter = jitter});
-    return none ? "" : none.error().where + ": " + none.error().message;
+    return none ? "" : none.error().text();
   };
   EXPECT_EQ(refusal({.camera_jitter = 1, .camera_jitter_degrees = 180}), "");
   EXPECT_EQ(refusal({.camera_jitter = -0.5F}), "--camera-jitter: found -0.5 m, expected 0 to 1");

@@ -62,7 +62,7 @@ class WorldViewsOfAHome : public testing::Test {
   void open(const HomeOptions& home) {
     const std::filesystem::path path = test::writeWorld(folder_, test::smallHomeWorldWithModels());
     Result<World> world = World::open(std::span(&path, 1));
-    ASSERT_TRUE(world) << world.error().where << ": " << world.error().message;
+    ASSERT_TRUE(world) << world.error().text();
     world_ = std::make_unique<World>(std::move(*world));
     Result<WorldModels> models = WorldModels::from(*world_);
     ASSERT_TRUE(models) << models.error().message;

@@ -127,7 +127,7 @@ class BoxWorld {
 
   template <class T>
   static T opened(Result<T> result) {
-    if (!result) throw std::runtime_error(result.error().where + ": " + result.error().message);
+    if (!result) throw std::runtime_error(result.error().text());
     return std::move(*result);
   }
 

@@ -20,7 +20,7 @@ inline simulation::Model modelOfOne(const World& world) {
   options.envs = 1;
   options.task.kind = TaskKind::kNone;
   Result<simulation::Model> model = simulation::makeModel(world, options);
-  if (!model) throw std::runtime_error(model.error().where + ": " + model.error().message);
+  if (!model) throw std::runtime_error(model.error().text());
   return std::move(*model);
 }
 

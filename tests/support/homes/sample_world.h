@@ -37,7 +37,7 @@ class MemoryPack {
   /// What the result holds; throws its error otherwise, which fails the test.
   template <class T>
   static T opened(Result<T> result) {
-    if (!result) throw std::runtime_error(result.error().where + ": " + result.error().message);
+    if (!result) throw std::runtime_error(result.error().text());
     return std::move(*result);
   }
 

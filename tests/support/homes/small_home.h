@@ -127,7 +127,7 @@ class SmallHome {
   explicit SmallHome(const WorldFields& fields = smallHomeWorld())
       : path_(writeWorld(folder_, fields)) {
     Result<World> world = World::open(std::span(&path_, 1));
-    if (!world) throw std::runtime_error(world.error().where + ": " + world.error().message);
+    if (!world) throw std::runtime_error(world.error().text());
     world_ = std::make_unique<World>(std::move(*world));
   }
 

@@ -47,7 +47,7 @@ inline RenderMeshesFields modelsOf(std::vector<std::pair<std::uint32_t, RenderSu
     source.parts.back().surfaces.push_back(std::move(surface));
   }
   Result<RenderMeshStorage> built = buildRenderMeshes(source);
-  if (!built) throw std::runtime_error(built.error().where + ": " + built.error().message);
+  if (!built) throw std::runtime_error(built.error().text());
   return fieldsOf(*built);
 }
 

@@ -13,7 +13,7 @@ namespace galactic::test {
 inline BatchSimulator simulatorOf(const World& world, const SimulationOptions& options) {
   Result<BatchSimulator> simulator = BatchSimulator::create(world, options);
   if (!simulator) {
-    throw std::runtime_error(simulator.error().where + ": " + simulator.error().message);
+    throw std::runtime_error(simulator.error().text());
   }
   return std::move(*simulator);
 }

@@ -22,7 +22,7 @@ void expectQuat(const Quat& found, const Quat& wanted) {
 
 TEST(EpisodeSets, GiveNamesPlacementsAndEpisodes) {
   const auto set = importText(kSmallEpisodeSet);
-  ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
+  ASSERT_TRUE(set.has_value()) << set.error().text();
   EXPECT_EQ(set->name, "small");
   EXPECT_EQ(set->robot, "");
   EXPECT_THAT(set->scenes, ElementsAre("a_room", "b_room"));

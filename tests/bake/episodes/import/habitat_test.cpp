@@ -42,7 +42,7 @@ void expectQuat(const Quat& found, const Quat& wanted) {
 
 TEST(HabitatEpisodes, GiveScenesObjectsPlacementsAndGoals) {
   const auto set = import(kSmallHabitatSet);
-  ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
+  ASSERT_TRUE(set.has_value()) << set.error().text();
   EXPECT_EQ(set->name, "tidy");
   EXPECT_THAT(set->scenes, ElementsAre("v3_sc0_staging_00", "v3_sc1_staging_05"));
   EXPECT_THAT(set->objects, ElementsAre("003_cracker_box", "mug"));
@@ -207,7 +207,7 @@ TEST(HabitatEpisodes, PutEveryPointWhereTheMatrixPutsIt) {
             "start_rotation": [0, 0, 0, 1], "rigid_objs": [["mug", )" +
             matrix + R"(]], "targets": {"mug_:0000": )" + matrix + "}}]}",
         options);
-    ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
+    ASSERT_TRUE(set.has_value()) << set.error().text();
     EXPECT_EQ(set->episodes[0].goal, set->placements[0].pose);
     // A point of the pack's frame is (center + p); the matrix counts from the center.
     const Vec3 p{0.3F, 0.7F, -0.9F};
@@ -230,7 +230,7 @@ TEST(HabitatEpisodes, TakeFilesWithoutWhatIsNotNeeded) {
           "start_rotation": [0, 0, 0, 1], "color": 1,
           "rigid_objs": [["a.b.object_config.json", [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]]],
           "targets": {"a.b_:0000": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}}]})");
-  ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
+  ASSERT_TRUE(set.has_value()) << set.error().text();
   EXPECT_THAT(set->scenes, ElementsAre("mesh"));
   EXPECT_THAT(set->objects, ElementsAre("a.b"));
   EXPECT_THAT(set->warnings, Contains("episodes[0].color is not used"));

@@ -62,7 +62,7 @@ Result<bake::TriangleMesh> meshOf(const std::string& name, bake::UpAxis up) {
 TEST(PublishedEpisodes, AreReadWhole) {
   if (!hasAsset(kWorkload)) GTEST_SKIP() << "no asset " << kWorkload;
   const auto set = readEpisodeSet(assetsFolder() / kWorkload);
-  ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
+  ASSERT_TRUE(set.has_value()) << set.error().text();
   EXPECT_THAT(set->scenes, ElementsAre("Baked_sc1_staging_01"));
   EXPECT_THAT(set->objects,
               ElementsAre("002_master_chef_can", "003_cracker_box", "004_sugar_box",
@@ -83,7 +83,7 @@ TEST(PublishedEpisodes, KeepTheUsableOnesOfTheWorkload) {
   options.only = *good;
   options.scene_names = {{"Baked_sc1_staging_01", "scene"}};
   const auto set = readEpisodeSet(assetsFolder() / kWorkload, options);
-  ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
+  ASSERT_TRUE(set.has_value()) << set.error().text();
   EXPECT_EQ(set->episodes.size(), 99U);
   EXPECT_EQ(set->placements.size(), 2970U);
   EXPECT_THAT(set->scenes, ElementsAre("scene"));
@@ -92,7 +92,7 @@ TEST(PublishedEpisodes, KeepTheUsableOnesOfTheWorkload) {
 TEST(PublishedEpisodes, LeaveOutTheScenesThatNoneUses) {
   if (!hasAsset(kTenEpisodes)) GTEST_SKIP() << "no asset " << kTenEpisodes;
   const auto set = readEpisodeSet(assetsFolder() / kTenEpisodes);
-  ASSERT_TRUE(set.has_value()) << set.error().where << ": " << set.error().message;
+  ASSERT_TRUE(set.has_value()) << set.error().text();
   EXPECT_THAT(set->scenes, ElementsAre("Baked_sc1_staging_01"));
   EXPECT_EQ(set->episodes.size(), 10U);
   EXPECT_EQ(set->placements.size(), 300U);
