@@ -122,8 +122,8 @@ inline constexpr float kOfRobot = -1;
 /// The most scans of one laser.
 inline constexpr std::size_t kMostLaserHeights = 16;
 
-/// Planar laser scans as a part of the observation: distances around the robot. Values below 0 are
-/// those of the robot's recipe (kOfRobot).
+/// Planar laser scans as a part of the observation: distances around the robot. kOfRobot in place
+/// of a number: that of the robot's recipe.
 struct LaserOptions {
   /// Of one scan; 0: no laser.
   std::uint32_t beams = 0;
