@@ -12,6 +12,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "errors.h"
 #include "filled.h"
 
 namespace galactic::python {
@@ -144,6 +145,136 @@ py::object envStates(Simulator& simulator, const py::object& envs) {
       "world_from_grip"_a = grips.poses(types), "objects"_a = objects.poses(types),
       "object_kinds"_a = object_kinds.array(), "held"_a = held.array(), "target"_a = target.array(),
       "goal"_a = goals.poses(types));
+}
+
+namespace {
+
+/// Arrays of a galactic.EnvStates of so many envs.
+class GivenStates {
+ public:
+  GivenStates(const py::object& states, const Simulator& simulator, py::ssize_t count)
+      : states_(typed(states)),
+        most_(static_cast<py::ssize_t>(simulator.mostObjects())),
+        positions_(static_cast<py::ssize_t>(simulator.world().robot().positionCount())),
+        episode_(whole("episode", count)),
+        step_(whole("step", count)),
+        held_(whole("held", count)),
+        target_(whole("target", count)),
+        joint_positions_(numbers("joint_positions", {count, positions_})),
+        roots_(*this, "world_from_root", {count}),
+        grips_(*this, "world_from_grip", {count}),
+        objects_(*this, "objects", {count, most_}),
+        goals_(*this, "goal", {count}) {}
+
+  /// State `n`, of an episode that can be started.
+  [[nodiscard]] EnvState at(const Simulator& simulator, py::ssize_t n) const {
+    simulator.requireEpisode(episode_.data()[n]);
+    EnvState state;
+    state.episode = static_cast<std::uint32_t>(episode_.data()[n]);
+    state.step = narrow<std::uint32_t>("step", step_.data()[n]);
+    state.held = narrow<std::int32_t>("held", held_.data()[n]);
+    state.target = narrow<std::uint32_t>("target", target_.data()[n]);
+    state.world_from_root = roots_.at(n);
+    state.world_from_grip = grips_.at(n);
+    state.goal = goals_.at(n);
+    const float* positions = joint_positions_.data() + n * positions_;
+    state.joint_positions.assign(positions, positions + positions_);
+    const EpisodeSet& episodes = simulator.world().episodes();
+    const std::size_t objects =
+        std::min<std::size_t>(episodes.placements(episodes.episodes()[state.episode]).size(),
+                              static_cast<std::size_t>(most_));
+    for (std::size_t object = 0; object < objects; ++object) {
+      state.objects.push_back(objects_.at(n * most_ + static_cast<py::ssize_t>(object)));
+    }
+    return state;
+  }
+
+ private:
+  template <class T>
+  using Input = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
+  class Poses {
+   public:
+    Poses(const GivenStates& given, const char* name, Shape shape)
+        : translations_(part(given, name, "translation", shape, 3)),
+          rotations_(part(given, name, "rotation", shape, 4)) {}
+
+    [[nodiscard]] Pose at(py::ssize_t n) const {
+      const float* t = translations_.data() + 3 * n;
+      const float* q = rotations_.data() + 4 * n;
+      return {{t[0], t[1], t[2]}, {.x = q[1], .y = q[2], .z = q[3], .w = q[0]}};
+    }
+
+   private:
+    static Input<float> part(const GivenStates& given, const char* name, const char* half,
+                             Shape shape, py::ssize_t numbers) {
+      shape.push_back(numbers);
+      const std::string full = fmt::format("states.{}.{}", name, half);
+      return inputOf<float>(py::getattr(given.states_.attr(name), half), full.c_str(), shape);
+    }
+
+    Input<float> translations_;
+    Input<float> rotations_;
+  };
+
+  static const py::object& typed(const py::object& states) {
+    const py::object type = py::module_::import("galactic.env_states").attr("EnvStates");
+    if (py::isinstance(states, type)) return states;
+    throw py::type_error(
+        fmt::format("states is a {}, expected galactic.EnvStates, such as env_states() returns",
+                    typeName(states)));
+  }
+  [[nodiscard]] Input<std::int64_t> whole(const char* name, py::ssize_t count) const {
+    const std::string full = fmt::format("states.{}", name);
+    return wholeNumbersOf(states_.attr(name), full.c_str(), {count});
+  }
+  [[nodiscard]] Input<float> numbers(const char* name, const Shape& shape) const {
+    const std::string full = fmt::format("states.{}", name);
+    return inputOf<float>(states_.attr(name), full.c_str(), shape);
+  }
+  template <class T>
+  static T narrow(const char* name, std::int64_t value) {
+    constexpr std::int64_t kLeast = std::numeric_limits<T>::min();
+    constexpr std::int64_t kMost = std::numeric_limits<T>::max();
+    if (value >= kLeast && value <= kMost) return static_cast<T>(value);
+    throw py::value_error(
+        fmt::format("states.{} is {}, expected {} to {}", name, value, kLeast, kMost));
+  }
+
+  py::object states_;
+  py::ssize_t most_;
+  py::ssize_t positions_;
+  Input<std::int64_t> episode_;
+  Input<std::int64_t> step_;
+  Input<std::int64_t> held_;
+  Input<std::int64_t> target_;
+  Input<float> joint_positions_;
+  Poses roots_;
+  Poses grips_;
+  Poses objects_;
+  Poses goals_;
+};
+
+}  // namespace
+
+py::array_t<bool> setStates(Simulator& simulator, const py::object& states, const py::object& envs,
+                            bool are_drawn) {
+  const Confinement::Use use = simulator.readState();
+  const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
+  const auto count = static_cast<py::ssize_t>(chosen.size());
+  const GivenStates given(states, simulator, count);
+  std::vector<EnvState> list;
+  for (py::ssize_t n = 0; n < count; ++n) list.push_back(given.at(simulator, n));
+  std::vector<std::uint8_t> were_set;
+  {
+    const py::gil_scoped_release unlocked;
+    were_set = valueOf(simulator.batch().setStates(
+        chosen, list, are_drawn ? EpisodeChoice::kDrawn : EpisodeChoice::kNamed));
+  }
+  py::array_t<bool> answer(count);
+  std::ranges::transform(were_set, answer.mutable_data(),
+                         [](std::uint8_t one) { return one != 0; });
+  return answer;
 }
 
 void bindEnvState(py::module_& module) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <string>
@@ -19,5 +20,9 @@ struct NamedEnvState : EnvState {
 
 /// The galactic.EnvStates of all envs, for None, or of a list of them.
 [[nodiscard]] py::object envStates(Simulator& simulator, const py::object& envs);
+
+/// Envs go on from galactic.EnvStates, all of them for None, or those of a list: bool (n,), where.
+[[nodiscard]] py::array_t<bool> setStates(Simulator& simulator, const py::object& states,
+                                          const py::object& envs, bool are_drawn);
 
 }  // namespace galactic::python

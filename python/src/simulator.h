@@ -56,6 +56,9 @@ class Simulator {
   /// The same, or the numbers of all envs for None.
   [[nodiscard]] std::vector<std::uint32_t> allOrThose(const py::object& envs) const;
 
+  /// Throws for what is no number of an episode that can be started: see reset().
+  void requireEpisode(std::int64_t number, std::int32_t least = 0) const;
+
   /// The most objects that an env can have.
   [[nodiscard]] std::size_t mostObjects() const {
     return batch_.options().task.distractors ? world_->mostObjects() : 1;
@@ -81,8 +84,6 @@ class Simulator {
   /// something else, which are `least` to -1.
   [[nodiscard]] EpisodeNumbers episodeNumbers(const py::object& given, const char* name,
                                               std::int32_t least) const;
-  /// Throws for what is no such number.
-  void requireEpisode(std::int64_t number, std::int32_t least) const;
   [[nodiscard]] StepInput inputOfStep(const py::object& actions, const py::object& resets) const;
 
   std::shared_ptr<const World> world_;

@@ -111,6 +111,22 @@ void bindStepping(py::class_<Simulator>& type) {
            "Raises what reset() would raise for these episodes, and does nothing else.");
   type.def("restart", &Simulator::restart, py::arg("seed"),
            "All envs stand at the start of their first episode, as if just made with this seed.");
+  type.def(
+      "set_states", &setStates, py::arg("states"), py::arg("envs") = py::none(), py::kw_only(),
+      py::arg("drawn") = true,
+      "Envs go on from states: EnvStates of all of them, or of those with the numbers `envs`, in\n"
+      "that order, as env_states() returns them, changed or not, also of another Simulator.\n\n"
+      "Each env is in states.episode, whose objects and target are there, after states.step\n"
+      "steps of it, with robot, objects and goal where the state says. The base goes to the\n"
+      "floor under it and joints into their limits. What is held is in the hand as\n"
+      "world_from_grip and its pose in objects say, and follows joints that you change. scene\n"
+      "and object_kinds play no part. drawn: the luck of an env (noise) is its own; False: that\n"
+      "of the episode, as in reset(). What the last step returned stays, but for observations.\n\n"
+      "bool (n,): where an env has its state; elsewhere it is as it was, as no floor carries the\n"
+      "base, or as the robot would penetrate the scene or an object out of the hand's reach.\n"
+      "Nothing changes if one is wrong: IndexError and ValueError for episodes as in reset(),\n"
+      "Error for numbers that are not finite, another target than the episode's or, where ways\n"
+      "along the floor are observed or rewarded (geodesic), another goal.");
   type.def("save_state", &Simulator::saveState, py::arg("envs") = py::none(),
            "The state of all envs as bytes, or of those with the numbers `envs`, in that order:\n"
            "with what the last step returned, the statistics and the seed. A mask is no list of\n"

@@ -69,7 +69,8 @@ struct SimulationStatistics {
   double reward = 0;
 };
 
-/// The state of one env, for tools: exports, pictures, scripted policies. A copy.
+/// The state of one env: for exports, pictures, planners; and to go on from, with
+/// BatchSimulator::setStates(). A copy.
 struct EnvState {
   /// Index into World::scenes(), and into the episode set's episodes.
   std::uint32_t scene = 0;
@@ -103,6 +104,8 @@ struct EnvObjects {
   /// Index into `objects`; -1 when nothing is held.
   std::int32_t held = -1;
   Pose world_from_held;
+  /// Where the target is to be.
+  Pose goal;
 };
 
 /// Where an env is after a step that was made elsewhere: by a physics engine, or by a real robot.
@@ -216,6 +219,25 @@ class BatchSimulator {
   /// All envs stand at the start of their first episode, as if the simulator had just been made
   /// with this seed; the statistics begin anew, too.
   void restart(std::uint64_t seed);
+
+  /// Each of `envs` goes on from its state, which may be that of another env or simulator, a
+  /// changed one, or one of your own: in EnvState::episode, whose scene, objects and target are
+  /// there, after EnvState::step steps of it, with robot, objects and goal where the state says.
+  /// The base goes to the floor under it and joints into their limits. What is held is in the hand
+  /// as world_from_grip and its pose in `objects` say, and follows joints that you change. `scene`,
+  /// `begun` and the goal's rotation play no part, and positions that neither actions nor episodes
+  /// move stay as they are. The luck of the env is its own or, with EpisodeChoice::kNamed, the
+  /// episode's. What the last step returned stays, but for the observations of these envs.
+  ///
+  /// 1 where an env has its state now; 0 where it stays as it was, as no floor carries the base, or
+  /// as the robot would penetrate the scene, or a resting object out of the hand's reach: one
+  /// within counts as just let go of. Fails with kInvalidInput and changes nothing where a state is
+  /// of no episode that can be started, or has other counts of objects or positions, another target
+  /// than its episode, numbers that are not finite or, where ways along the floor are observed or
+  /// rewarded, another goal than its episode. Allocates.
+  [[nodiscard]] Result<std::vector<std::uint8_t>> setStates(
+      std::span<const std::uint32_t> envs, std::span<const EnvState> states,
+      EpisodeChoice choice = EpisodeChoice::kDrawn);
 
   /// The state of all envs as bytes, or of `envs`, in that order (numbers below envCount(), an
   /// ErrorException otherwise): with what the last step returned, the statistics and the seed.

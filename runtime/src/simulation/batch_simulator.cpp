@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "galactic/option_text.h"
+#include "simulation/phases/chosen_state.h"
 #include "simulation/phases/chunk.h"
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/follow.h"
@@ -29,6 +30,7 @@ using simulation::BatchState;
 using simulation::Chunk;
 using simulation::kChunk;
 using simulation::Model;
+using simulation::SavedEnv;
 using simulation::SavedState;
 
 namespace {
@@ -174,6 +176,31 @@ class BatchSimulator::Impl {
     return simulation::envStateOf(model_, state_, env);
   }
 
+  Result<std::vector<std::uint8_t>> setStates(std::span<const std::uint32_t> envs,
+                                              std::span<const EnvState> states,
+                                              EpisodeChoice choice) {
+    constexpr const char* kCall = "BatchSimulator::setStates";
+    requireIdle(kCall);
+    detail::checkLength(kCall, "states", states.size(), envs.size());
+    for (const std::uint32_t env : envs) detail::checkIndex(kCall, "env", env, envCount());
+    for (std::size_t n = 0; n < envs.size(); ++n) {
+      const std::string fault = simulation::faultOf(model_, states[n]);
+      if (fault.empty()) continue;
+      return fail(ErrorCode::kInvalidInput, "states",
+                  fmt::format("state {}, for env {}, {}", n, envs[n], fault));
+    }
+    if (!chooser_) chooser_ = std::make_unique<simulation::StateChooser>(model_);
+    std::vector<std::uint8_t> were_set(envs.size());
+    for (std::size_t n = 0; n < envs.size(); ++n) {
+      std::optional<SavedEnv> chosen = chooser_->choose(states[n]);
+      if (!chosen) continue;
+      keepRecord(envs[n], choice, *chosen);
+      simulation::restoreEnv(model_, state_, envs[n], *chosen);
+      were_set[n] = 1;
+    }
+    return were_set;
+  }
+
   const Model& model() const { return model_; }
   BatchState& state() { return state_; }
   const BatchState& state() const { return state_; }
@@ -233,6 +260,20 @@ class BatchSimulator::Impl {
                 fmt::format("has {} envs, expected {}", saved.envs.size(), envs.size()));
   }
 
+  /// What an env has counted, and what its last step returned.
+  void keepRecord(std::size_t env, EpisodeChoice choice, SavedEnv& chosen) const {
+    chosen.counters = state_.counters(env);
+    ++chosen.counters.begun;
+    chosen.counters.is_named = choice == EpisodeChoice::kNamed;
+    chosen.moves = state_.moves(env);
+    chosen.env.reward_sum = state_.env(env).reward_sum;
+    chosen.reward = state_.rewards()[env];
+    chosen.ending = state_.endings()[env];
+    if (chosen.ending == EpisodeEnd::kNone) return;
+    const std::span<const float> last = state_.finalObservation(env);
+    chosen.final_observation.assign(last.begin(), last.end());
+  }
+
   void put(const SavedState& saved, std::span<const std::uint32_t> envs) {
     for (std::size_t n = 0; n < envs.size(); ++n) {
       simulation::restoreEnv(model_, state_, envs[n], saved.envs[n]);
@@ -270,6 +311,8 @@ class BatchSimulator::Impl {
   std::uint32_t sample_every_ = 0;
   bool measures_ = false;
   bool is_stepping_ = false;
+  /// Once somebody sets a state.
+  std::unique_ptr<simulation::StateChooser> chooser_;
   std::unique_ptr<detail::Workers> workers_;
 };
 
@@ -320,6 +363,12 @@ void BatchSimulator::reset(std::span<const std::int32_t> episodes, EpisodeChoice
   impl_->reset(episodes, choice);
 }
 void BatchSimulator::restart(std::uint64_t seed) { impl_->restart(seed); }
+
+Result<std::vector<std::uint8_t>> BatchSimulator::setStates(std::span<const std::uint32_t> envs,
+                                                            std::span<const EnvState> states,
+                                                            EpisodeChoice choice) {
+  return impl_->setStates(envs, states, choice);
+}
 
 std::vector<std::byte> BatchSimulator::saveState() const { return saveState(allEnvs(envCount())); }
 std::vector<std::byte> BatchSimulator::saveState(std::span<const std::uint32_t> envs) const {

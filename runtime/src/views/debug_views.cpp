@@ -70,7 +70,7 @@ void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
     room[count++] = {models_.boxModel(state.placements[n].object),
                      rigidTransform(state.objects[n])};
   }
-  room[count++] = {models_.goalModel(target.object), rigidTransform(episode.goal)};
+  room[count++] = {models_.goalModel(target.object), rigidTransform(state.goal)};
   for (const PlacedSphere& sphere : spheres_) {
     room[count++] = {sphere.model, sphereAt(bodies[sphere.body] * sphere.center)};
   }

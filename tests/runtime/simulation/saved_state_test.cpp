@@ -250,7 +250,7 @@ TEST_F(DamagedState, IsRefusedWithWhatIsWrong) {
   expectRefused(other, "is none");
   other = state_;
   other[8] = std::byte{9};
-  expectRefused(other, "has format version 9, expected 7");
+  expectRefused(other, "has format version 9, expected 8");
   other = state_;
   other[40] ^= std::byte{1};
   sign(other);

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,6 +29,13 @@ struct MotionVariable {
   /// follows.
   bool wraps = false;
 };
+
+/// The nearest value that a variable takes.
+[[nodiscard]] inline float within(const MotionVariable& variable, float value) {
+  constexpr float kTurn = 6.28318531F;
+  return variable.wraps ? std::remainder(value, kTurn)
+                        : std::clamp(value, variable.lower, variable.upper);
+}
 
 enum class NodeMotion : std::uint8_t { kTurns, kSlides };
 

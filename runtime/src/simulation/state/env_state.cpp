@@ -13,7 +13,8 @@ EnvObjects envObjectsOf(const Model& model, const BatchState& state, std::size_t
                     .placements = model.placements(model.episodeOf(env.start)),
                     .objects = state.objects(n).first(env.objects),
                     .held = env.held,
-                    .world_from_held = {}};
+                    .world_from_held = {},
+                    .goal = {state.goal(n), model.episodeOf(env.start).goal.rotation}};
   if (env.held >= 0) result.world_from_held = state.heldPose(n);
   return result;
 }
@@ -41,7 +42,7 @@ EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) 
     result.objects[static_cast<std::size_t>(objects.held)] = objects.world_from_held;
   }
   result.target = env.target;
-  result.goal = model.episodeOf(env.start).goal;
+  result.goal = objects.goal;
   result.begun = state.counters(n).begun;
   return result;
 }

@@ -77,10 +77,7 @@ class StartFinder {
       for (std::size_t n = 0; n < positions.size(); ++n) {
         if (positions[n] == variable.position) value = given[n];
       }
-      constexpr float kTurn = 6.28318531F;
-      pose.variables[v * pose.stride] = variable.wraps
-                                            ? std::remainder(value, kTurn)
-                                            : std::clamp(value, variable.lower, variable.upper);
+      pose.variables[v * pose.stride] = within(variable, value);
     }
   }
 

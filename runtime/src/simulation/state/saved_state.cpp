@@ -16,6 +16,7 @@
 #include "galactic/option_text.h"
 #include "simulation/collision/resting_box.h"
 #include "simulation/phases/episode_start.h"
+#include "simulation/state/plain_numbers.h"
 
 namespace galactic::simulation {
 namespace {
@@ -23,9 +24,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 7;
-/// Far beyond any world, meters, and any joint; keeps arithmetic on what comes from outside finite.
-constexpr float kLargest = 1e6F;
+constexpr std::uint32_t kVersion = 8;
 constexpr const char* kWhere = "saved state";
 
 struct Header {
@@ -59,6 +58,7 @@ struct EnvRecord {
   std::uint32_t left = 0;
   std::array<std::uint32_t, 8> counts{};
   Pose grip_from_held;
+  Vec3 goal;
   Vec3 base;
   float yaw = 0;
   GripFrame grip{};
@@ -68,9 +68,10 @@ struct EnvRecord {
   std::uint16_t was_refused = 0;
   std::uint32_t is_idle = 0;
   std::uint32_t is_named = 0;
+  std::uint32_t reserved = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
-              sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 16 + sizeof(GripFrame) + 20);
+              sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 12 + 16 + sizeof(GripFrame) + 24);
 
 /// What tells a world from all others: kinds, sizes and hashes of its packs, in any order.
 std::uint64_t worldHash(const World& world) {
@@ -187,6 +188,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .counts = {moves.refused, moves.slid, counters.grasps, counters.drops, counters.restored,
                  counters.episodes, counters.successes, counters.failures},
       .grip_from_held = state.held(n).grip_from_object,
+      .goal = state.goal(n),
       .base = state.base(n),
       .yaw = state.yaw(n),
       .grip = state.grip(n),
@@ -206,19 +208,6 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
   if (state.endings()[n] != EpisodeEnd::kNone) out.add(state.finalObservation(n));
 }
 
-bool isPlain(float value) { return std::abs(value) <= kLargest; }
-bool arePlain(std::span<const float> values) { return std::ranges::all_of(values, isPlain); }
-bool isPlain(const Vec3& v) { return isPlain(v.x) && isPlain(v.y) && isPlain(v.z); }
-bool isPlain(const Pose& pose) {
-  const Quat& q = pose.rotation;
-  const float length = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-  return isPlain(pose.translation) && std::abs(length - 1) < 0.01F;
-}
-bool isPlain(const RigidTransform& transform) {
-  return arePlain(
-      std::bit_cast<std::array<float, sizeof(RigidTransform) / sizeof(float)>>(transform));
-}
-
 /// What is wrong with an env's record in a world that it may not be of; empty when nothing is.
 std::string faultOf(const Model& model, const EnvRecord& record) {
   if (!model.startOf(record.episode)) {
@@ -234,8 +223,9 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
       record.is_named > 1 || record.ordinal == 0 || record.turns > record.ordinal)
     return "has a wrong flag or count";
   const bool is_held_plain = record.held < 0 || isPlain(record.grip_from_held);
-  if (!isPlain(record.base) || !isPlain(record.yaw) || !arePlain(record.grip) ||
-      !isPlain(record.reward) || !std::isfinite(record.reward_sum) || !is_held_plain) {
+  if (!isPlain(record.goal) || !isPlain(record.base) || !isPlain(record.yaw) ||
+      !arePlain(record.grip) || !isPlain(record.reward) || !std::isfinite(record.reward_sum) ||
+      !is_held_plain) {
     return "has a number that no simulation leaves";
   }
   return {};
@@ -269,6 +259,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
                     .idle_steps = record.idle_steps,
                     .is_named = record.is_named != 0};
   saved.moves = {.refused = refused, .slid = slid};
+  saved.goal = record.goal;
   saved.base = record.base;
   saved.yaw = record.yaw;
   saved.grip = record.grip;
@@ -412,6 +403,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   env.refused = saved.env.refused;
   env.left = saved.env.left;
   env.reward_sum = saved.env.reward_sum;
+  state.setErrand(n, env.target, saved.goal);
   state.counters(n) = saved.counters;
   state.moves(n) = saved.moves;
   const PoseArrays to = state.poses(n);

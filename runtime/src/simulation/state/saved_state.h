@@ -27,6 +27,7 @@ struct SavedEnv {
   EnvCounters counters;
   MoveCounters moves;
   Held held;
+  Vec3 goal;
   Vec3 base;
   float yaw = 0;
   /// Where the robot takes itself to be; where there is odometry.

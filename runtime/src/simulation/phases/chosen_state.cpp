@@ -1,0 +1,183 @@
+#include "simulation/phases/chosen_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "simulation/collision/grasp_query.h"
+#include "simulation/phases/contacts.h"
+#include "simulation/phases/episode_start.h"
+#include "simulation/phases/move.h"
+#include "simulation/phases/object_placement.h"
+#include "simulation/state/grip_frame.h"
+#include "simulation/state/plain_numbers.h"
+
+namespace galactic::simulation {
+namespace {
+
+constexpr float kTurn = 6.28318531F;
+
+/// Whether ways along the floor were found before the first step, to the goals of episodes.
+bool knowsWaysToGoals(const Model& model) {
+  return model.options.sensors.geodesic || model.options.task.geodesic_weight != 0;
+}
+
+}  // namespace
+
+std::string faultOf(const Model& model, const EnvState& state) {
+  if (!model.startOf(state.episode)) {
+    return fmt::format("is in episode {}, which there is not or which cannot be started",
+                       state.episode);
+  }
+  const Episode& episode = model.world->episodes().episodes()[state.episode];
+  const std::size_t objects = model.placements(episode).size();
+  const std::size_t positions = model.world->robot().positionCount();
+  if (state.objects.size() != objects) {
+    return fmt::format("has {} objects, and its episode {}", state.objects.size(), objects);
+  }
+  if (state.joint_positions.size() != positions) {
+    return fmt::format("has {} joint positions, and the robot {}", state.joint_positions.size(),
+                       positions);
+  }
+  if (state.held < -1 || state.held >= static_cast<std::int64_t>(objects)) {
+    return fmt::format("holds object {} of {}", state.held, objects);
+  }
+  if (state.target != model.targetOf(episode)) {
+    return fmt::format("has the target {}, and its episode {}", state.target,
+                       model.targetOf(episode));
+  }
+  const bool holds = state.held >= 0;
+  if (!isPlain(state.world_from_root) || !arePlain(state.joint_positions) ||
+      !isPlain(state.goal.translation) || (holds && !isPlain(state.world_from_grip)) ||
+      !std::ranges::all_of(state.objects, [](const Pose& pose) { return isPlain(pose); })) {
+    return "has a number that is not finite or of no home, or a rotation that is none";
+  }
+  if (knowsWaysToGoals(model) && !(state.goal.translation == episode.goal.translation)) {
+    return "has another goal than its episode, and ways along the floor (geodesic) are known to "
+           "the goals of episodes alone";
+  }
+  return {};
+}
+
+StateChooser::StateChooser(const Model& model) : model_(model), state_(model, 1), chunk_(model) {
+  for (std::size_t n = 0; n < state_.paddedCount(); ++n) {
+    beginEpisode(model_, state_, n, 0, EpisodeChoice::kDrawn);
+  }
+}
+
+std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
+  // faultOf() has looked whether there is one.
+  beginEpisode(model_, state_, 0, *model_.startOf(chosen.episode), EpisodeChoice::kDrawn);
+  moveObjects(chosen);
+  if (!standOnFloor(chosen)) return std::nullopt;
+  setVariables(chosen);
+  placeBodies(step());
+  if (chosen.held >= 0) takeInHand(chosen);
+  leaveWhatIsInReach();
+  if (!isFree(step(), 0)) return std::nullopt;
+  return taken(chosen);
+}
+
+void StateChooser::moveObjects(const EnvState& chosen) {
+  const Env& env = state_.env(0);
+  RestingObjects& resting = state_.resting(0);
+  for (std::uint32_t object = 0; object < env.objects; ++object) {
+    const Pose& pose = chosen.objects[object];
+    const bool is_held = static_cast<std::int32_t>(object) == chosen.held;
+    if (is_held || pose == state_.objects(0)[object]) continue;
+    state_.placeObject(0, object, pose);
+    resting.remove(object);
+    resting.insert(object, restingBox(model_.object(env.start, object).box, pose));
+  }
+}
+
+bool StateChooser::standOnFloor(const EnvState& chosen) {
+  const Pose& root = chosen.world_from_root;
+  const Vec3 base{root.translation.x, root.translation.y - model_.motion.base.root_height,
+                  root.translation.z};
+  const FloorUnder under =
+      floorUnder(model_.scenes[state_.env(0).scene], base, model_.options.ground);
+  const float yaw = std::remainder(2 * std::atan2(root.rotation.y, root.rotation.w), kTurn);
+  for (const PoseArrays& pose : {chunk_.candidates(0), state_.poses(0)}) {
+    *pose.x = base.x;
+    *pose.y = under.height;
+    *pose.z = base.z;
+    *pose.yaw = yaw;
+  }
+  chunk_.floor(0) = under.floor;
+  return under.floor == Floor::kCarries;
+}
+
+void StateChooser::setVariables(const EnvState& chosen) {
+  const PoseArrays pose = chunk_.candidates(0);
+  for (std::size_t v = 0; v < model_.variableCount(); ++v) {
+    pose.variables[v * pose.stride] = within(
+        model_.motion.variables[v], chosen.joint_positions[model_.motion.variables[v].position]);
+  }
+}
+
+void StateChooser::takeInHand(const EnvState& chosen) {
+  const auto object = static_cast<std::uint32_t>(chosen.held);
+  Env& env = state_.env(0);
+  RestingObjects& resting = state_.resting(0);
+  env.held = chosen.held;
+  resting.remove(object);
+  Held& held = state_.held(0);
+  held = {};
+  held.grip_from_object = inverse(chosen.world_from_grip) * chosen.objects[object];
+  measureHeld(heldModel(model_, env), held);
+  const std::span<std::uint64_t> ignored = state_.ignored(0);
+  penetrating({model_.scenes[env.scene], resting}, heldSpheres(step(), 0), chunk_.collision(),
+              ignored);
+  env.ignores = !isEmpty(ignored);
+}
+
+/// As after a release: see Env::left.
+void StateChooser::leaveWhatIsInReach() {
+  Env& env = state_.env(0);
+  const RestingObjects& resting = state_.resting(0);
+  const Vec3 hand = gripOrigin(chunk_.grip(0));
+  const float radius = model_.motion.grasp_radius;
+  for (std::uint32_t object = 0; object < env.objects; ++object) {
+    if (!resting.isResting(object)) continue;
+    const RestingBox& box = resting.box(object);
+    const float squared =
+        squaredGraspDistance(model_.object(env.start, object), box, state_.objects(0)[object], hand,
+                             model_.options.action.grasp_shape);
+    if (!(squared < radius * radius)) continue;
+    if (overlapping(box, chunk_.spheres(0), state_.leaving(0, object))) ++env.left;
+  }
+}
+
+SavedEnv StateChooser::taken(const EnvState& chosen) {
+  const Env& env = state_.env(0);
+  keepBodies(step(), {~std::uint32_t{0}});
+  SavedEnv saved;
+  saved.env.start = env.start;
+  saved.env.step = chosen.step;
+  saved.env.objects = env.objects;
+  saved.env.held = env.held;
+  saved.env.left = env.left;
+  saved.env.has_picked = env.held == static_cast<std::int32_t>(env.target);
+  saved.held = state_.held(0);
+  saved.goal = chosen.goal.translation;
+  saved.base = chunk_.base(0);
+  const PoseArrays pose = chunk_.candidates(0);
+  saved.yaw = *pose.yaw;
+  saved.believed = {saved.base.x, saved.base.z, saved.yaw};
+  saved.grip = chunk_.grip(0);
+  for (std::size_t v = 0; v < model_.variableCount(); ++v) {
+    saved.variables.push_back(pose.variables[v * pose.stride]);
+  }
+  saved.last_actions.assign(model_.motion.controlled.size(), 0);
+  const auto copy = [](const auto& from, auto& to) { to.assign(from.begin(), from.end()); };
+  copy(state_.ignored(0), saved.ignored);
+  copy(state_.leaving(0).first(env.objects * model_.bodyWords()), saved.leaving);
+  copy(state_.objects(0).first(env.objects), saved.objects);
+  copy(state_.bodyTransforms(0), saved.bodies);
+  return saved;
+}
+
+}  // namespace galactic::simulation

@@ -1,0 +1,154 @@
+"""States that the caller has chosen: envs go on from them."""
+
+import numpy as np
+import pytest
+
+from galactic import EnvStates, Error, PlanningScene, Simulator
+
+ENVS = 20
+
+
+@pytest.fixture
+def played(world, draw_actions):
+    """After steps in which hands closed."""
+    simulator = Simulator(world, envs=ENVS, threads=1, seed=7, task="none")
+    for _ in range(60):
+        actions = draw_actions(ENVS, 8)
+        actions[:, -2] = 1
+        simulator.step(actions)
+    return simulator
+
+
+@pytest.fixture
+def fresh(world):
+    return Simulator(world, envs=ENVS, threads=2, seed=3, task="none")
+
+
+def assert_close(states: EnvStates, wanted: EnvStates):
+    for name in ("scene", "episode", "step", "held", "target", "object_kinds"):
+        np.testing.assert_array_equal(getattr(states, name), getattr(wanted, name), err_msg=name)
+    np.testing.assert_allclose(states.joint_positions, wanted.joint_positions, atol=2e-5)
+    for name in ("world_from_root", "world_from_grip", "objects", "goal"):
+        found, expected = getattr(states, name), getattr(wanted, name)
+        np.testing.assert_allclose(found.matrix, expected.matrix, atol=5e-5, err_msg=name)
+
+
+def some(states, rows):
+    """Some rows of states, of whatever depth."""
+    if isinstance(states, np.ndarray):
+        return states[rows]
+    return type(states)(*(some(part, rows) for part in states))
+
+
+def test_envs_go_on_where_others_are(played, fresh):
+    wanted = played.env_states()
+    assert (wanted.held >= 0).any() and (wanted.step > 0).any()
+    were_set = fresh.set_states(wanted)
+    assert were_set.dtype == bool and were_set.shape == (ENVS,) and were_set.mean() > 0.9
+    rows = np.flatnonzero(were_set)
+    assert_close(some(fresh.env_states(), rows), some(wanted, rows))
+    np.testing.assert_allclose(fresh.observations[rows], played.observations[rows], atol=1e-3)
+
+
+def test_one_state_becomes_that_of_many(played, fresh):
+    rows = np.zeros(5, int)
+    one = some(played.env_states(), rows)
+    one.joint_positions[:, 0] += np.linspace(0, 0.1, 5, dtype=np.float32)
+    before = fresh.env_states()
+    were_set = fresh.set_states(one, [3, 1, 4, 15, 9])
+    assert were_set.all()
+    now = fresh.env_states([3, 1, 4, 15, 9])
+    np.testing.assert_allclose(now.joint_positions, one.joint_positions, atol=1e-6)
+    assert (now.episode == one.episode).all()
+    others = np.setdiff1d(np.arange(ENVS), [3, 1, 4, 15, 9])
+    assert_close(some(fresh.env_states(), others), some(before, others))
+
+
+def test_goals_and_steps_are_as_chosen(fresh):
+    states = fresh.env_states()
+    states.goal.translation[:] += np.float32(0.125)
+    states.step[:] = np.arange(ENVS)
+    assert fresh.set_states(states).all()
+    now = fresh.env_states()
+    np.testing.assert_array_equal(now.goal.translation, states.goal.translation)
+    np.testing.assert_array_equal(now.step, np.arange(ENVS))
+
+
+def test_robots_in_walls_stay_where_they_were(fresh):
+    states = fresh.env_states()
+    states.world_from_root.translation[::2, 0] = 50
+    before = fresh.env_states()
+    were_set = fresh.set_states(states)
+    np.testing.assert_array_equal(were_set, np.arange(ENVS) % 2 == 1)
+    assert_close(fresh.env_states(), before)
+
+
+def test_planners_and_simulators_agree_on_what_is_free(fresh):
+    generator = np.random.default_rng(5)
+    states = fresh.env_states()
+    states.world_from_root.translation[:, [0, 2]] += generator.normal(0, 0.6, (ENVS, 2))
+    expected = []
+    for env in range(ENVS):
+        scene = PlanningScene(fresh, env)
+        base = scene.base.copy()
+        base[[0, 2]] = states.world_from_root.translation[env, [0, 2]]
+        height = scene.floor_at(float(base[0]), float(base[2]), float(base[1]))
+        if height is not None:
+            base[1] = height
+        expected.append(height is not None and scene.is_free(base))
+    were_set = fresh.set_states(states)
+    np.testing.assert_array_equal(were_set, expected)
+    assert 0 < were_set.sum() < ENVS
+
+
+@pytest.mark.parametrize(
+    "change, error, message",
+    [
+        (lambda s: s._replace(step=s.step[:3]), ValueError, r"states.step"),
+        (lambda s: s._replace(step=s.step - 1), ValueError, "states.step is -1"),
+        (lambda s: s._replace(held=s.held + 0.5), TypeError, "states.held"),
+        (lambda s: s._replace(episode=s.episode + 99), IndexError, "there is no episode"),
+        (lambda s: s._replace(held=s.held + 50), Error, "holds object 49"),
+        (lambda s: s._replace(target=s.target + 50), Error, "has the target"),
+        (lambda s: s._replace(joint_positions=s.joint_positions * np.nan), Error, "not finite"),
+        (lambda s: s._replace(goal=s.goal._replace(translation=None)), TypeError, "states.goal"),
+        (
+            lambda s: s._replace(objects=s.objects._replace(rotation=s.goal.rotation)),
+            ValueError,
+            "states.objects",
+        ),
+        (lambda s: tuple(s), TypeError, "expected galactic.EnvStates"),
+        (lambda s: None, TypeError, "expected galactic.EnvStates"),
+    ],
+)
+def test_what_is_no_state_is_refused_and_nothing_changes(fresh, change, error, message):
+    before = fresh.save_state()
+    with pytest.raises(error, match=message):
+        fresh.set_states(change(fresh.env_states()))
+    assert fresh.save_state() == before
+
+
+def test_numbers_of_envs_have_to_be_there(fresh):
+    states = some(fresh.env_states(), [0, 1])
+    with pytest.raises(IndexError, match="there is no env 20"):
+        fresh.set_states(states, [0, ENVS])
+    with pytest.raises(ValueError, match="states.episode"):
+        fresh.set_states(states, [0])
+    fresh.begin_step(np.zeros((ENVS, fresh.action_count), np.float32))
+    with pytest.raises(RuntimeError):
+        fresh.set_states(states, [0, 1])
+    fresh.end_step()
+
+
+def test_luck_is_the_envs_or_the_episodes(world):
+    noisy = Simulator(world, envs=2, threads=1, task="none", motion_noise=0.3)
+    states = some(noisy.env_states(), [0, 0])
+    actions = np.ones((2, noisy.action_count), np.float32)
+    actions[:, -1] = -1
+    lifts = {}
+    for drawn in (True, False):
+        assert noisy.set_states(states, drawn=drawn).all()
+        noisy.step(actions)
+        lifts[drawn] = noisy.env_states().joint_positions[:, 0]
+    assert lifts[True][0] != lifts[True][1]
+    assert lifts[False][0] == lifts[False][1]
