@@ -18,16 +18,20 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(galactic_warnings INTERFACE --param=ggc-min-heapsize=524288)
 endif()
 
-# Tests are compiled for longer than they run: in Release, -O1 takes half as long to compile as -O3, and no result
-# depends on it.
+# What is compiled for longer than it runs: in Release, -O1 takes half as long to compile as -O3, and no result depends
+# on it.
 add_library(galactic_not_hot INTERFACE)
 target_compile_options(galactic_not_hot INTERFACE $<$<CONFIG:Release>:-O1>)
 
-# So is what reads command lines and writes texts. Where sanitizers watch, -O0 compiles it, and most tests, in a third to
-# half of the time of -O1.
+# So is what reads command lines and writes texts. Where sanitizers watch, -O0 compiles it in a third to half of the time
+# of -O1.
 # A program has one copy of an inline function: those that hot code shares with this make strings, paths and errors.
 add_library(galactic_cold INTERFACE)
 target_link_libraries(galactic_cold INTERFACE galactic_not_hot)
+
+# Most tests are run once for each time that they are compiled.
+add_library(galactic_run_once INTERFACE)
+target_compile_options(galactic_run_once INTERFACE -O0)
 
 if(GALACTIC_SANITIZE)
   target_compile_options(galactic_cold INTERFACE -O0)
