@@ -111,7 +111,7 @@ def test_planners_and_simulators_agree_on_what_is_free(fresh):
         (lambda s: s._replace(held=s.held + 50), Error, "holds object 49"),
         (lambda s: s._replace(target=s.target + 50), Error, "has the target"),
         (lambda s: s._replace(joint_positions=s.joint_positions * np.nan), Error, "not finite"),
-        (lambda s: s._replace(goal=s.goal._replace(translation=None)), TypeError, "states.goal"),
+        (lambda s: s._replace(goal=s.goal._replace(translation=None)), ValueError, "states.goal"),
         (
             lambda s: s._replace(objects=s.objects._replace(rotation=s.goal.rotation)),
             ValueError,

@@ -273,7 +273,8 @@ TEST(World, RefusesAWorldThatLacksAKind) {
     expectError(World::from(std::move(packs)), "world",
                 "has no " + lacking[n] + "; give a pack of one, too");
   }
-  expectError(World::open(std::span<const std::filesystem::path>()), "world", "has no robot (RBOT); give a pack of one, too");
+  expectError(World::open(std::span<const std::filesystem::path>()), "world",
+              "has no robot (RBOT); give a pack of one, too");
 }
 
 TEST(World, FitsTogetherWithoutRobotOrEpisodes) {
