@@ -1,6 +1,7 @@
-// Any bytes as actions and resets of a small batch. Nothing may become a number that is none, no
-// robot may leave the room, and the books have to balance.
+// Any bytes as actions, resets and states of a small batch. Nothing may become a number that is
+// none, no robot may leave the room, and the books have to balance.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -56,7 +57,44 @@ void checkEnv(const EnvState& state) {
   }
 }
 
-void checkBatch(const BatchSimulator& simulator) {
+/// A number of a state as it is, moved a little, or any bits.
+void change(float& number, Input& input) {
+  const auto by = input.take<std::int8_t>();
+  number = by == -128 ? input.take<float>() : number + 0.01F * static_cast<float>(by);
+}
+
+void change(galactic::Pose& pose, Input& input) {
+  for (float* number : {&pose.translation.x, &pose.translation.y, &pose.translation.z}) {
+    change(*number, input);
+  }
+  const auto& [x, y, z, w] = pose.rotation;
+  switch (input.take<std::int8_t>()) {
+    case 1:
+      pose.rotation = {-z, w, x, -y};
+      break;
+    case 2:
+      change(pose.rotation.w, input);
+      break;
+    default:
+      break;
+  }
+}
+
+/// Has env 0 go on from a changed state of any env, if that is one. Whether it does.
+bool setState(BatchSimulator& simulator, Input& input) {
+  EnvState state = simulator.envState(input.take<std::uint8_t>() % simulator.envCount());
+  change(state.world_from_root, input);
+  change(state.world_from_grip, input);
+  change(state.goal, input);
+  for (float& position : state.joint_positions) change(position, input);
+  for (galactic::Pose& object : state.objects) change(object, input);
+  state.held = static_cast<std::int32_t>(input.take<std::int8_t>() % 4);
+  const auto set = simulator.setStates(std::array{0U}, std::array{state});
+  return set && set->front() != 0;
+}
+
+/// `given`: objects that states put into hands, at most.
+void checkBatch(const BatchSimulator& simulator, std::uint64_t given) {
   checkFinite(simulator.observations(), "an observation that is no number");
   checkFinite(simulator.rewards(), "a reward that is no number");
   for (std::size_t env = 0; env < simulator.envCount(); ++env) {
@@ -69,7 +107,7 @@ void checkBatch(const BatchSimulator& simulator) {
   }
   const galactic::SimulationStatistics seen = simulator.statistics();
   if (seen.refused + seen.slid > seen.steps) reportFinding("more steps refused and slid than done");
-  if (seen.drops + seen.restored > seen.grasps) reportFinding("more released than grasped");
+  if (seen.drops + seen.restored > seen.grasps + given) reportFinding("more released than grasped");
   if (seen.successes + seen.failures > seen.episodes) reportFinding("more ends than episodes");
 }
 
@@ -82,13 +120,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!simulator) reportFinding(simulator.error().message);
   std::vector<float> actions(simulator->envCount() * simulator->actionCount());
   std::vector<std::int32_t> resets(simulator->envCount());
+  std::uint64_t given = 0;
   constexpr int kMostSteps = 400;
   for (int step = 0; step < kMostSteps && !input.isEmpty(); ++step) {
     for (float& action : actions) action = input.action();
     const auto chosen = input.take<std::int8_t>();
     for (std::int32_t& reset : resets) reset = chosen > 100 ? input.take<std::int32_t>() : -1;
     simulator->step(actions, resets);
-    checkBatch(*simulator);
+    if (chosen < -120) given += setState(*simulator, input) ? 1U : 0U;
+    checkBatch(*simulator, given);
   }
   return 0;
 }

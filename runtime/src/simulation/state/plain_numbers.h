@@ -20,7 +20,7 @@ inline bool isPlain(const Vec3& v) { return isPlain(v.x) && isPlain(v.y) && isPl
 inline bool isPlain(const Pose& pose) {
   const Quat& q = pose.rotation;
   const float length = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
-  return isPlain(pose.translation) && std::abs(length - 1) < 0.01F;
+  return isPlain(pose.translation) && std::abs(length - 1) < 1e-3F;
 }
 inline bool isPlain(const RigidTransform& transform) {
   return arePlain(
