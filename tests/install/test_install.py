@@ -1,51 +1,18 @@
-"""What cmake --install and cpack leave: a library that another project finds, tools with their man pages and
-completions, Debian packages."""
+"""What cmake --install and cpack leave of the programs: man pages, completions, licenses, Debian packages."""
 
 from __future__ import annotations
 
-import argparse
-import json
 import pathlib
 import re
 import shutil
-import subprocess
-import sys
-import tempfile
-import unittest
 
-HERE = pathlib.Path(__file__).parent
+from installed import OPTIONS, Installed, main, run
+
 COMPLETIONS = pathlib.Path("/usr/share/bash-completion/bash_completion")
-OPTIONS = argparse.Namespace()
 
 
-def run(*command: object, **more: object) -> str:
-    done = subprocess.run([str(one) for one in command], capture_output=True, text=True, **more)
-    if done.returncode != 0:
-        raise AssertionError(f"{command} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
-    return done.stdout
-
-
-class Install(unittest.TestCase):
-    """The build folder, installed below a prefix of its own."""
-
-    @classmethod
-    def setUpClass(cls) -> None:
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.prefix = pathlib.Path(cls.folder.name, "prefix")
-        for component in ("run", "bake", "dev"):
-            run(
-                OPTIONS.cmake,
-                "--install",
-                OPTIONS.build,
-                "--prefix",
-                cls.prefix,
-                "--component",
-                component,
-            )
-
-    @classmethod
-    def tearDownClass(cls) -> None:
-        cls.folder.cleanup()
+class Install(Installed):
+    COMPONENTS = ("run", "bake", "dev")
 
     def tool(self, name: str) -> pathlib.Path:
         return self.prefix / "bin" / name
@@ -67,50 +34,6 @@ class Install(unittest.TestCase):
             COMP_LINE="{' '.join(words)}"; COMP_POINT=${{#COMP_LINE}}
             _galactic; printf '%s\\n' "${{COMPREPLY[@]}}" """
         return run("bash", "--norc", "-c", script, cwd=self.folder.name).split()
-
-    def test_another_project_finds_the_library(self) -> None:
-        build = pathlib.Path(self.folder.name, "project")
-        run(OPTIONS.cmake, "-S", HERE / "project", "-B", build, "-G", "Ninja",
-            f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_CXX_COMPILER={OPTIONS.compiler}")  # fmt: skip
-        run(OPTIONS.cmake, "--build", build)
-        version = run(self.tool("galactic-run"), "--version").split()[1]
-        said = run(build / "spans", OPTIONS.packs / "room-column.pack")
-        self.assertEqual(said, f"2 grids, galactic {version}\n")
-
-    def test_another_project_learns_that_there_is_no_such_component(self) -> None:
-        source = pathlib.Path(self.folder.name, "component")
-        source.mkdir()
-        (source / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.25)\nproject(component LANGUAGES CXX)\n"
-            "find_package(galactic REQUIRED COMPONENTS runtime ${WANTED})\n", encoding="utf-8")  # fmt: skip
-        configure = (OPTIONS.cmake, "-S", source, "-B", source / "build", "-G", "Ninja",
-                     f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_CXX_COMPILER={OPTIONS.compiler}")  # fmt: skip
-        run(*configure)
-        with self.assertRaisesRegex(AssertionError, "none\\s+called\\s+bake;"):
-            run(*configure, "-DWANTED=bake")
-
-    def test_another_project_has_the_sources_as_a_part(self) -> None:
-        build = pathlib.Path(self.folder.name, "embedding")
-        run(OPTIONS.cmake, "-S", HERE / "embedding", "-B", build, "-G", "Ninja",
-            f"-DGALACTIC_SOURCE={OPTIONS.source}", f"-DCMAKE_CXX_COMPILER={OPTIONS.compiler}")  # fmt: skip
-        # Of galactic, it builds the library, a static one, and neither installs nor packs anything.
-        built = run("ninja", "-C", build, "-t", "inputs", "all")
-        self.assertIn("galactic/runtime/libgalactic.a", built)
-        self.assertNotIn("galactic-run", built)
-        self.assertFalse((build / "CPackConfig.cmake").exists())
-        installs = (build / "galactic/cmake_install.cmake").read_text(encoding="utf-8")
-        self.assertNotIn("file(INSTALL", installs)
-        # It sees the headers alone, and its compiler may warn of what ours does not.
-        commands = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-        command = {pathlib.Path(one["file"]).name: one["command"] for one in commands}
-        self.assertIn(f"-I{OPTIONS.source}/runtime/include", command["spans.cpp"])
-        self.assertNotIn(f"{OPTIONS.source}/runtime/src", command["spans.cpp"].split(" -o ")[0])
-        self.assertNotIn("-Werror", command["column_grid.cpp"])
-
-    def test_the_library_names_nothing_of_the_build(self) -> None:
-        for file in (self.prefix / "lib").rglob("*.cmake"):
-            self.assertNotIn(str(OPTIONS.build), file.read_text(encoding="utf-8"), file)
-            self.assertNotIn(str(OPTIONS.source), file.read_text(encoding="utf-8"), file)
 
     def test_each_component_brings_its_license(self) -> None:
         documents = self.prefix / "share/doc"
@@ -188,10 +111,4 @@ class Install(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser()
-    for name in ("--cmake", "--cpack", "--compiler"):
-        parser.add_argument(name, required=True)
-    for name in ("--build", "--source", "--packs"):
-        parser.add_argument(name, type=pathlib.Path, required=True)
-    OPTIONS, rest = parser.parse_known_args(namespace=OPTIONS)
-    unittest.main(argv=[sys.argv[0], *rest], verbosity=2)
+    main()
