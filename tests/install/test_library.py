@@ -8,6 +8,13 @@ import re
 
 from installed import HERE, OPTIONS, Installed, main, run
 
+# Of what a library may have functions in it: its own, those of the compiler's library, and those whose version is a part
+# of their names.
+OWN_OR_VERSIONED = re.compile(
+    r"galactic|\bstd::|__gnu_cxx::|\bfmt::v\d+::|^DW\.ref\.|^typeinfo (name )?for bool \("
+)
+OTHER_FLATBUFFERS = re.compile(r"(?<!\w)flatbuffers::")
+
 
 class Library(Installed):
     COMPONENTS = ("dev",)
@@ -26,11 +33,21 @@ class Library(Installed):
         header = (self.prefix / "include/galactic/version.h").read_text(encoding="utf-8")
         return ".".join(re.findall(r"#define GALACTIC_VERSION_\w+ (\d+)", header))
 
-    def test_another_project_finds_it(self) -> None:
+    def test_another_project_finds_it_and_keeps_its_flatbuffers(self) -> None:
         build = self.configure(HERE / "project", "project", f"-DCMAKE_PREFIX_PATH={self.prefix}")
         run(OPTIONS.cmake, "--build", build)
+        # The host's FlatBuffers is not taken for galactic's.
         said = run(build / "spans", OPTIONS.packs / "room-column.pack")
         self.assertEqual(said, f"2 grids, galactic {self.version()}\n")
+
+    def test_it_defines_nothing_that_a_host_could_have_in_another_version(self) -> None:
+        lines = run("nm", "-C", "--defined-only", self.prefix / "lib/libgalactic.a").splitlines()
+        symbols = {
+            match[1] for line in lines if (match := re.match(r"[0-9a-f]+ [A-TV-Zuvw] (.*)", line))
+        }
+        self.assertGreater(len(symbols), 1000)
+        self.assertEqual([name for name in symbols if not OWN_OR_VERSIONED.search(name)], [])
+        self.assertEqual([name for name in symbols if OTHER_FLATBUFFERS.search(name)], [])
 
     def test_another_project_learns_that_there_is_no_such_component(self) -> None:
         source = pathlib.Path(self.folder.name, "component")
@@ -57,7 +74,8 @@ class Library(Installed):
         # It sees the headers alone, and its compiler may warn of what ours does not.
         commands = self.commands(build)
         self.assertIn(f"-I{OPTIONS.source}/runtime/include", commands["spans.cpp"])
-        self.assertNotRegex(commands["spans.cpp"], r"runtime/src")
+        self.assertNotRegex(commands["spans.cpp"], r"runtime/src|schema|flatbuffers")
+        self.assertIn("-Dflatbuffers=", commands["pack_check.cpp"])
         self.assertNotIn("-Werror", commands["column_grid.cpp"])
 
     def test_it_names_nothing_of_the_build(self) -> None:
