@@ -23,6 +23,7 @@ set_target_properties(galactic PROPERTIES EXPORT_NAME runtime)
 install(TARGETS galactic EXPORT galacticTargets COMPONENT dev INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY runtime/include/galactic DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 install(EXPORT galacticTargets NAMESPACE galactic:: DESTINATION ${GALACTIC_PACKAGE_FOLDER} COMPONENT dev)
+math(EXPR GALACTIC_NEXT_FMT "${fmt_VERSION_MAJOR} + 1")
 configure_package_config_file(cmake/galacticConfig.cmake.in ${PROJECT_BINARY_DIR}/galacticConfig.cmake
   INSTALL_DESTINATION ${GALACTIC_PACKAGE_FOLDER} NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/galacticConfigVersion.cmake

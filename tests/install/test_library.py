@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pathlib
 import re
+import shutil
 
 from installed import HERE, OPTIONS, Installed, main, run
 
@@ -29,16 +30,43 @@ class Library(Installed):
         commands = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
         return {pathlib.Path(one["file"]).name: one["command"].split(" -o ")[0] for one in commands}
 
+    def check_libepoxy(self, program: pathlib.Path) -> None:
+        """Only a program into which the renderer came needs it: with large pieces of the library, it comes earlier."""
+        calls = "epoxy_" in run("nm", "--undefined-only", program)
+        self.assertEqual("[libepoxy.so" in run("readelf", "-d", program), calls)
+
     def version(self) -> str:
         header = (self.prefix / "include/galactic/version.h").read_text(encoding="utf-8")
         return ".".join(re.findall(r"#define GALACTIC_VERSION_\w+ (\d+)", header))
 
-    def test_another_project_finds_it_and_keeps_its_flatbuffers(self) -> None:
+    def test_another_project_finds_it_and_keeps_what_is_its_own(self) -> None:
         build = self.configure(HERE / "project", "project", f"-DCMAKE_PREFIX_PATH={self.prefix}")
         run(OPTIONS.cmake, "--build", build)
-        # The host's FlatBuffers is not taken for galactic's.
+        # The host's FlatBuffers is not taken for galactic's, and its plugin stays.
         said = run(build / "spans", OPTIONS.packs / "room-column.pack")
-        self.assertEqual(said, f"2 grids, galactic {self.version()}\n")
+        self.assertEqual(said, f"plugin\n2 grids, galactic {self.version()}\n")
+        self.check_libepoxy(build / "spans")
+        self.assertNotIn("-DFMT_", self.commands(build)["spans.cpp"])
+
+    def test_a_fmt_of_another_major_version_is_refused_at_configuring(self) -> None:
+        other = pathlib.Path(self.folder.name, "fmt")
+        other.mkdir()
+        (other / "fmt-config.cmake").write_text(
+            "add_library(fmt::fmt INTERFACE IMPORTED)\n", encoding="utf-8"
+        )
+        version = pathlib.Path(self.folder.name, "version.cmake")
+        version.write_text(
+            "include(CMakePackageConfigHelpers)\nwrite_basic_package_version_file("
+            f"{other}/fmt-config-version.cmake VERSION 99.1.0 COMPATIBILITY AnyNewerVersion ARCH_INDEPENDENT)\n",
+            encoding="utf-8")  # fmt: skip
+        run(OPTIONS.cmake, "-P", version)
+        with self.assertRaisesRegex(
+            AssertionError, r'"\d+\.\d+\.\d+\.\.\.<\d+"(.|\n)*version: 99\.1\.0'
+        ):
+            # It is the only one: nothing is looked for where the system has packages.
+            self.configure(HERE / "project", "other_fmt", f"-DCMAKE_PREFIX_PATH={self.prefix};{other}",
+                           f"-DCMAKE_MAKE_PROGRAM={shutil.which('ninja')}", "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=OFF",
+                           "-DCMAKE_FIND_USE_SYSTEM_ENVIRONMENT_PATH=OFF")  # fmt: skip
 
     def test_it_defines_nothing_that_a_host_could_have_in_another_version(self) -> None:
         lines = run("nm", "-C", "--defined-only", self.prefix / "lib/libgalactic.a").splitlines()
