@@ -9,6 +9,11 @@ import shutil
 
 from installed import HERE, OPTIONS, Installed, main, run
 
+# What the programs, the bake, the Python package and the tests need, and the library does not.
+PACKAGES_OF_OTHERS = (
+    "CLI11", "nlohmann_json", "PNG", "ZLIB", "JPEG", "assimp", "Bullet", "embree", "urdfdom", "tomlplusplus",
+    "meshoptimizer", "pybind11", "GTest", "benchmark",
+)  # fmt: skip
 # Of what a library may have functions in it: its own, those of the compiler's library, and those whose version is a part
 # of their names.
 OWN_OR_VERSIONED = re.compile(
@@ -89,8 +94,9 @@ class Library(Installed):
             self.configure(source, "component/build", prefix, "-DWANTED=bake")
 
     def test_another_project_has_the_sources_as_a_part(self) -> None:
+        disabled = [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in PACKAGES_OF_OTHERS]
         build = self.configure(
-            HERE / "embedding", "embedding", f"-DGALACTIC_SOURCE={OPTIONS.source}"
+            HERE / "embedding", "embedding", f"-DGALACTIC_SOURCE={OPTIONS.source}", *disabled
         )
         # Of galactic, it builds the library, a static one, and neither installs nor packs anything.
         built = run("ninja", "-C", build, "-t", "inputs", "all")
@@ -105,6 +111,17 @@ class Library(Installed):
         self.assertNotRegex(commands["spans.cpp"], r"runtime/src|schema|flatbuffers")
         self.assertIn("-Dflatbuffers=", commands["pack_check.cpp"])
         self.assertNotIn("-Werror", commands["column_grid.cpp"])
+
+    def test_it_is_built_and_installed_without_the_tools(self) -> None:
+        disabled = [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in PACKAGES_OF_OTHERS]
+        off = [f"-DGALACTIC_BUILD_{name}=OFF" for name in ("TOOLS", "BAKE", "PYTHON")]
+        build = self.configure(OPTIONS.source, "library", *off, *disabled)
+        built = run("ninja", "-C", build, "-t", "inputs", "all")
+        self.assertIn("runtime/libgalactic.a", built)
+        self.assertNotIn("galactic-run", built)
+        self.assertNotIn(
+            "galactic-run", (build / "cmake_install.cmake").read_text(encoding="utf-8")
+        )
 
     def test_it_names_nothing_of_the_build(self) -> None:
         for file in (self.prefix / "lib").rglob("*.cmake"):
