@@ -2,7 +2,7 @@
 #
 #   run     galactic           galactic-run, galactic-pack, their man pages and completions
 #   bake    galactic-bake      galactic-bake, galactic-dynamics, and the recipes of robots and worlds
-#   dev     libgalactic-dev    libgalactic, its headers, a CMake package
+#   dev     libgalactic-dev    libgalactic, its headers, a CMake package, a file for pkg-config
 #   python  python3-galactic   the Python package (python/CMakeLists.txt)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -33,6 +33,16 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/galacticConfigVersion.cma
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/galacticConfig.cmake ${PROJECT_BINARY_DIR}/galacticConfigVersion.cmake
   DESTINATION ${GALACTIC_PACKAGE_FOLDER} COMPONENT dev)
+
+# For builds without CMake. The prefix is found from where the file lies: cmake --install may be given another one.
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+  OUTPUT_VARIABLE GALACTIC_PREFIX_FROM_PC)
+set(GALACTIC_PC_EPOXY "")
+if(GALACTIC_HAS_GL)
+  set(GALACTIC_PC_EPOXY " -Wl,--push-state,--as-needed,-lepoxy,--pop-state")
+endif()
+configure_file(cmake/galactic.pc.in ${PROJECT_BINARY_DIR}/galactic.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/galactic.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
 # Man pages come from --help, so that they say what the tools do.
 find_program(GALACTIC_HELP2MAN help2man)

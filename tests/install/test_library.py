@@ -1,8 +1,9 @@
-"""The library as a guest of other projects: installed and found by CMake, or as a part of their sources."""
+"""The library as a guest of other projects: installed and found by CMake or pkg-config, or as a part of their sources."""
 
 from __future__ import annotations
 
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -52,6 +53,23 @@ class Library(Installed):
         self.assertEqual(said, f"plugin\n2 grids, galactic {self.version()}\n")
         self.check_libepoxy(build / "spans")
         self.assertNotIn("-DFMT_", self.commands(build)["spans.cpp"])
+
+    def test_a_compiler_with_pkg_config_finds_it(self) -> None:
+        if not shutil.which("pkg-config"):
+            self.skipTest("no pkg-config")
+        program = pathlib.Path(self.folder.name, "spans")
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(self.prefix / "lib/pkgconfig")}
+        self.assertEqual(
+            run("pkg-config", "--modversion", "galactic", env=environment), f"{self.version()}\n"
+        )
+        for more in ([], ["--static"]):
+            flags = run(
+                "pkg-config", "--cflags", "--libs", *more, "galactic", env=environment
+            ).split()
+            run(OPTIONS.compiler, "-std=c++20", HERE / "project/spans.cpp", "-o", program, *flags)
+            said = run(program, OPTIONS.packs / "room-column.pack")
+            self.assertEqual(said, f"2 grids, galactic {self.version()}\n")
+            self.check_libepoxy(program)
 
     def test_a_fmt_of_another_major_version_is_refused_at_configuring(self) -> None:
         other = pathlib.Path(self.folder.name, "fmt")
@@ -124,7 +142,7 @@ class Library(Installed):
         )
 
     def test_it_names_nothing_of_the_build(self) -> None:
-        for file in (self.prefix / "lib").rglob("*.cmake"):
+        for file in (*(self.prefix / "lib").rglob("*.cmake"), *(self.prefix / "lib").rglob("*.pc")):
             self.assertNotIn(str(OPTIONS.build), file.read_text(encoding="utf-8"), file)
             self.assertNotIn(str(OPTIONS.source), file.read_text(encoding="utf-8"), file)
 
