@@ -2,7 +2,7 @@
 #
 #   run     galactic           galactic-run, galactic-pack, their man pages and completions
 #   bake    galactic-bake      galactic-bake, galactic-dynamics, and the recipes of robots and worlds
-#   dev     libgalactic-dev    libgalactic, its headers, a CMake package, a file for pkg-config
+#   dev     libgalactic-dev    libgalactic, its headers, a CMake package, a file for pkg-config, examples
 #   python  python3-galactic   the Python package (python/CMakeLists.txt)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -43,6 +43,7 @@ if(GALACTIC_HAS_GL)
 endif()
 configure_file(cmake/galactic.pc.in ${PROJECT_BINARY_DIR}/galactic.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/galactic.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+install(DIRECTORY examples/cpp/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/libgalactic-dev/examples COMPONENT dev)
 
 # Man pages come from --help, so that they say what the tools do.
 find_program(GALACTIC_HELP2MAN help2man)

@@ -38,7 +38,7 @@ set(CPACK_DEBIAN_BAKE_PACKAGE_RECOMMENDS galactic)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libgalactic-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "Library for batch simulation and rendering of robots in homes
- The static library, its headers, a CMake package
+ The static library, its headers, examples, a CMake package
  (find_package(galactic), galactic::runtime) and a file for pkg-config.")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfmt-dev, libexpected-dev")
 if(GALACTIC_HAS_GL)

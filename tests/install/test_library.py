@@ -130,6 +130,25 @@ class Library(Installed):
         self.assertIn("-Dflatbuffers=", commands["pack_check.cpp"])
         self.assertNotIn("-Werror", commands["column_grid.cpp"])
 
+    def test_the_installed_examples_are_a_project(self) -> None:
+        examples = self.prefix / "share/doc/libgalactic-dev/examples"
+        build = self.configure(examples, "examples", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        run(OPTIONS.cmake, "--build", build)
+        programs = {path.stem for path in examples.glob("*.cpp")}
+        self.assertIn("query_scene", programs)
+        self.assertLessEqual(programs, {path.name for path in build.iterdir()})
+        said = run(build / "query_scene", OPTIONS.packs / "room-column.pack")
+        self.assertIn("outside the grid\n", said)
+
+    def test_the_example_that_bakes_needs_no_package_of_the_tools(self) -> None:
+        if not (OPTIONS.build / "bin/galactic-bake").exists():
+            self.skipTest("built without the bake")
+        disabled = "-DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON"
+        build = self.configure(OPTIONS.source / "examples/bake", "bake", disabled)
+        built = run("ninja", "-C", build, "-t", "inputs", "all")
+        self.assertIn("galactic/bake/libgalactic_bake.a", built)
+        self.assertNotIn("galactic-bake", built)
+
     def test_it_is_built_and_installed_without_the_tools(self) -> None:
         disabled = [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in PACKAGES_OF_OTHERS]
         off = [f"-DGALACTIC_BUILD_{name}=OFF" for name in ("TOOLS", "BAKE", "PYTHON")]

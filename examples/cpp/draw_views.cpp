@@ -1,4 +1,4 @@
-// Draws what the robots of a world see, into memory. Usage: rendering_example WORLD
+// Draws what the robots of a world see, into memory. Usage: draw_views WORLD
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -12,7 +12,7 @@
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "usage: rendering_example WORLD\n");
+    std::fprintf(stderr, "usage: draw_views WORLD\n");
     return galactic::kExitUsage;
   }
   const auto refuse = [](const galactic::Error& error) {

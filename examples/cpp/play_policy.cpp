@@ -1,4 +1,4 @@
-// Plays a policy pack in a world. Usage: policy_example WORLD POLICY
+// Plays a policy pack in a world. Usage: play_policy WORLD POLICY
 #include <cstdio>
 #include <filesystem>
 #include <vector>
@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: policy_example WORLD POLICY\n");
+    std::fprintf(stderr, "usage: play_policy WORLD POLICY\n");
     return galactic::kExitUsage;
   }
   const auto refuse = [](const galactic::Error& error) {

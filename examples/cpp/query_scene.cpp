@@ -1,4 +1,4 @@
-// Opens a scene pack and asks where a sphere may be. Usage: query_example PACK
+// Opens a scene pack and asks where a sphere may be. Usage: query_scene PACK
 #include <array>
 #include <cstdio>
 
@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "usage: query_example PACK\n");
+    std::fprintf(stderr, "usage: query_scene PACK\n");
     return galactic::kExitUsage;
   }
   // Maps the file, then checks its hash, its structure and every value in it.

@@ -1,4 +1,4 @@
-// Steps homes with actions and a reward of its own. Usage: simulation_example WORLD
+// Steps homes with actions and a reward of its own. Usage: step_homes WORLD
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "usage: simulation_example WORLD\n");
+    std::fprintf(stderr, "usage: step_homes WORLD\n");
     return galactic::kExitUsage;
   }
   const auto refuse = [](const galactic::Error& error) {

@@ -1,4 +1,4 @@
-// Bakes a scene and an object from meshes in memory. Usage: bake_example SCENE OBJECT
+// Bakes a scene and an object from meshes in memory. Usage: bake_boxes SCENE OBJECT
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -41,11 +41,11 @@ int refuse(const Error& error) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    std::fprintf(stderr, "usage: bake_example SCENE OBJECT\n");
+    std::fprintf(stderr, "usage: bake_boxes SCENE OBJECT\n");
     return kExitUsage;
   }
   const bake::Provenance provenance{
-      .tool = "bake_example", .tool_version = "1", .options = {}, .sources = {}, .warnings = {}};
+      .tool = "bake_boxes", .tool_version = "1", .options = {}, .sources = {}, .warnings = {}};
   // The inside of a box is a room.
   bake::SceneBakeOptions options;
   options.radii = {0.05F, 0.12F};
