@@ -40,7 +40,8 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_DESCRIPTION "Library for batch simulation and rendering of robots in homes
  The static library, its headers, examples, a CMake package
  (find_package(galactic), galactic::runtime) and a file for pkg-config.")
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfmt-dev, libexpected-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS 
+  "libfmt-dev (>= ${fmt_VERSION}), libfmt-dev (<< ${GALACTIC_NEXT_FMT}), libexpected-dev")
 if(GALACTIC_HAS_GL)
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", libepoxy-dev")
 endif()
