@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <fmt/format.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -26,27 +27,57 @@ std::string underscored(std::string name) {
   return name;
 }
 
+/// Of the array that a value is; -1 for one that is none.
+py::ssize_t axesOf(const py::handle& value) {
+  return py::isinstance<py::array>(value) ? py::reinterpret_borrow<py::array>(value).ndim() : -1;
+}
+
 bool isList(const py::handle& value) {
-  return py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value);
+  return py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value) || axesOf(value) > 0;
+}
+
+/// "an array of shape (8,)", "a list".
+std::string kindOf(const py::handle& value) {
+  if (axesOf(value) <= 0) return "a " + typeName(value);
+  const auto array = py::reinterpret_borrow<py::array>(value);
+  return fmt::format("an array of shape {}",
+                     shapeText({array.shape(), static_cast<std::size_t>(array.ndim())}));
+}
+
+/// A number as text; null, without an error, for what is none. What has an index may still have
+/// none to give: tensors.
+py::object numberText(const py::handle& value) {
+  auto number = py::reinterpret_steal<py::object>(
+      PyIndex_Check(value.ptr()) != 0 ? PyNumber_Index(value.ptr()) : nullptr);
+  PyErr_Clear();
+  const bool is_real = PyNumber_Check(value.ptr()) != 0;
+  if (!number && is_real) {
+    number = py::reinterpret_steal<py::object>(PyNumber_Float(value.ptr()));
+    PyErr_Clear();
+  }
+  return number ? py::object(py::str(number)) : number;
 }
 
 /// A value as galactic-run reads it.
 std::string textOf(const std::string& keyword, const py::handle& value) {
+  if (axesOf(value) == 0) {
+    const py::object only = value.attr("item")();
+    if (axesOf(only) != 0) return textOf(keyword, only);
+  }
   if (isTruth(value)) return truthOf(keyword.c_str(), value) ? "true" : "false";
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  if (PyIndex_Check(value.ptr()) != 0) {
-    return py::str(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())));
-  }
-  if (PyNumber_Check(value.ptr()) != 0) return py::repr(py::float_(value.cast<double>()));
-  throw py::type_error(
-      fmt::format("the option {} is a {}, expected a number, a truth value or a word", keyword,
-                  typeName(value)));
+  const py::object number = isList(value) ? py::object() : numberText(value);
+  if (number) return number.cast<std::string>();
+  throw py::type_error(fmt::format(
+      "the option {} is {}, expected a number, a truth value or a word", keyword, kindOf(value)));
 }
 
 /// Of heights: numbers, and pairs of them, which are ranges.
 std::string listText(const std::string& keyword, const py::sequence& values, char between) {
   std::string text;
-  for (const py::handle value : values) {
+  for (const auto& element : values) {
+    // Of its own: rows of an array are made when they are asked for.
+    const py::object value = element;
     if (!text.empty()) text += between;
     text +=
         isList(value) ? listText(keyword, value.cast<py::sequence>(), '-') : textOf(keyword, value);

@@ -60,6 +60,39 @@ def test_options_are_those_of_the_option_table(world):
         ),
         ({"laser_heights": []}, Error, "laser_heights: is , expected robot"),
         ({"laser_heights": [None]}, TypeError, "the option laser_heights is a NoneType, expected"),
+        (
+            {"motion_noise": np.zeros(8)},
+            TypeError,
+            "the option motion_noise is an array of shape (8,)",
+        ),
+        (
+            {"motion_noise": np.zeros(1)},
+            TypeError,
+            "the option motion_noise is an array of shape (1,)",
+        ),
+        (
+            {"episode_steps": np.full(2, 9)},
+            TypeError,
+            "the option episode_steps is an array of shape (2,)",
+        ),
+        (
+            {"bump": np.zeros((2, 1), bool)},
+            TypeError,
+            "the option bump is an array of shape (2, 1)",
+        ),
+        (
+            {"motion_noise": 1j},
+            TypeError,
+            "the option motion_noise is a complex, expected a number",
+        ),
+        ({"motion_noise": np.array(1j)}, TypeError, "the option motion_noise is a complex"),
+        ({"motion_noise": np.array(None)}, TypeError, "the option motion_noise is a NoneType"),
+        (
+            {"laser_heights": np.array([0.8, np.nan])},
+            Error,
+            "laser_heights: is 0.8,nan, expected robot",
+        ),
+        ({"laser_heights": np.array(["a", "b"])}, Error, "laser_heights: is a,b, expected robot"),
         ({"threads": -1}, Error, "threads: is -1, expected 0 to 4096"),
         ({"rank": 2, "ranks": 2}, Error, "rank 2 of 2"),
         ({"slide": "of"}, Error, "slide: is of, expected glide, published or off"),
@@ -69,3 +102,24 @@ def test_wrong_options_are_refused(world, options, error, message):
     with pytest.raises(error) as caught:
         Simulator(world, **options)
     assert message in str(caught.value)
+
+
+def test_arrays_of_numpy_are_numbers_and_lists(world):
+    simulator = Simulator(
+        world,
+        envs=2,
+        threads=np.array(1),
+        task=np.array("pick"),
+        bump=np.array(True),
+        motion_noise=np.array(0.25, np.float32),
+        episode_steps=np.array(9),
+        laser_beams=4,
+        laser_heights=np.array([0.25, 0.5]),
+    )
+    options = simulator.options
+    assert (options["task"], options["bump"], options["episode_steps"]) == ("pick", True, 9)
+    assert (options["motion_noise"], options["laser_heights"]) == (0.25, "0.25,0.5")
+    ranges = Simulator(
+        world, threads=1, laser_beams=4, laser_heights=np.array([[0.25, 0.5], [0.5, 0.75]])
+    )
+    assert ranges.options["laser_heights"] == "0.25-0.5,0.5-0.75"
