@@ -12,6 +12,15 @@
 #include "options.h"
 
 namespace galactic::python {
+namespace {
+
+void requireNumbers(const py::object& envs) {
+  if (py::isinstance<py::iterable>(envs)) return;
+  throw py::type_error(
+      fmt::format("envs is a {}, expected numbers of envs, such as [0, 3]", typeName(envs)));
+}
+
+}  // namespace
 
 Simulator& simulatorOf(const py::object& given) {
   if (py::isinstance<Simulator>(given)) return given.cast<Simulator&>();
@@ -156,13 +165,19 @@ std::uint32_t Simulator::envNumber(const py::handle& env) const {
 }
 
 std::vector<std::uint32_t> Simulator::envNumbers(const py::object& envs) const {
-  if (!py::isinstance<py::iterable>(envs)) {
-    throw py::type_error(
-        fmt::format("envs is a {}, expected numbers of envs, such as [0, 3]", typeName(envs)));
-  }
+  requireNumbers(envs);
   std::vector<std::uint32_t> numbers;
   for (const py::handle one : envs) numbers.push_back(envNumber(one));
   return numbers;
+}
+
+std::vector<std::uint32_t> Simulator::placesOf(const py::object& envs) const {
+  requireNumbers(envs);
+  std::vector<std::uint32_t> places;
+  for (const py::handle one : envs) {
+    places.push_back(one.is_none() ? BatchSimulator::kNoEnv : envNumber(one));
+  }
+  return places;
 }
 
 std::vector<std::uint32_t> Simulator::allOrThose(const py::object& envs) const {
@@ -183,7 +198,7 @@ void Simulator::restoreState(const py::object& state, const py::object& envs) {
   const InputBytes input(state);
   const Confinement::Use use = readState();
   require(envs.is_none() ? batch_.restoreState(input.bytes())
-                         : batch_.restoreState(input.bytes(), envNumbers(envs)));
+                         : batch_.restoreState(input.bytes(), placesOf(envs)));
 }
 
 }  // namespace galactic::python

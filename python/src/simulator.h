@@ -53,6 +53,8 @@ class Simulator {
   /// for truth values: a mask is no list of 0 and 1. IndexError for those that are not there.
   [[nodiscard]] std::uint32_t envNumber(const py::handle& env) const;
   [[nodiscard]] std::vector<std::uint32_t> envNumbers(const py::object& envs) const;
+  /// The same of where saved envs go, BatchSimulator::kNoEnv where that is None.
+  [[nodiscard]] std::vector<std::uint32_t> placesOf(const py::object& envs) const;
   /// The same, or the numbers of all envs for None.
   [[nodiscard]] std::vector<std::uint32_t> allOrThose(const py::object& envs) const;
 

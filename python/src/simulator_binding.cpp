@@ -136,6 +136,9 @@ void bindStepping(py::class_<Simulator>& type) {
       "Goes on from a state that a simulator of the same world and options saved, bit for bit\n"
       "as that one would have; into all envs, or into those with the numbers `envs`, whose\n"
       "random numbers and episodes to come stay their own; for that, the seed has to be the same.\n"
+      "A state of one env goes into each of them, to try many plans; of several, each goes into "
+      "the\n"
+      "env that stands in its place, and nowhere where that is None.\n"
       "Error for bytes that are no such state; nothing changes then.");
 }
 

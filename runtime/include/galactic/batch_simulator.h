@@ -243,13 +243,15 @@ class BatchSimulator {
   /// ErrorException otherwise): with what the last step returned, the statistics and the seed.
   [[nodiscard]] std::vector<std::byte> saveState() const;
   [[nodiscard]] std::vector<std::byte> saveState(std::span<const std::uint32_t> envs) const;
+  /// What restoreState() takes for an env where a saved one is to become none.
+  static constexpr std::uint32_t kNoEnv = ~std::uint32_t{0};
   /// Goes on from a state that a simulator of the same world and the same options saved (the number
   /// of threads may differ and, with `envs`, the number of envs, rank and ranks): bit for bit as
-  /// that one would have. The saved envs become all envs, or `envs`, in that order; the random
-  /// numbers and episodes to come are those of the env that a state is restored to. The bytes need
-  /// not be trusted: fails with kInvalidInput or kUnsupported and changes nothing if they are not
-  /// such a state, are of another number of envs or, with `envs`, of another seed, or where there
-  /// is no such env.
+  /// that one would have. The saved envs become all envs, or `envs`, in that order, and a single
+  /// one becomes each of them; the random numbers and episodes to come are those of the env that a
+  /// state is restored to. The bytes need not be trusted: fails with kInvalidInput or kUnsupported
+  /// and changes nothing if they are not such a state, are of another number of envs or, with
+  /// `envs`, of another seed, or where there is no such env.
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state);
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state,
                                           std::span<const std::uint32_t> envs);

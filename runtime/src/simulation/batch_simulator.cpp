@@ -151,7 +151,7 @@ class BatchSimulator::Impl {
   Result<void> restore(std::span<const std::byte> bytes, std::span<const std::uint32_t> envs) {
     requireIdle("BatchSimulator::restoreState");
     for (const std::uint32_t env : envs) {
-      if (env < envCount()) continue;
+      if (env < envCount() || env == kNoEnv) continue;
       return fail(ErrorCode::kInvalidInput, "saved state",
                   fmt::format("cannot become env {}: there are {}", env, envCount()));
     }
@@ -255,9 +255,10 @@ class BatchSimulator::Impl {
   }
 
   static Result<void> checkCount(const SavedState& saved, std::span<const std::uint32_t> envs) {
-    if (saved.envs.size() == envs.size()) return {};
+    if (saved.envs.size() == envs.size() || saved.envs.size() == 1) return {};
     return fail(ErrorCode::kInvalidInput, "saved state",
-                fmt::format("has {} envs, expected {}", saved.envs.size(), envs.size()));
+                fmt::format("has {} envs, expected {}, or one that becomes all of them",
+                            saved.envs.size(), envs.size()));
   }
 
   /// What an env has counted, and what its last step returned.
@@ -274,9 +275,12 @@ class BatchSimulator::Impl {
     chosen.final_observation.assign(last.begin(), last.end());
   }
 
+  /// The saved envs become `envs`, in that order; a single one becomes each of them.
   void put(const SavedState& saved, std::span<const std::uint32_t> envs) {
+    const bool is_single = saved.envs.size() == 1;
     for (std::size_t n = 0; n < envs.size(); ++n) {
-      simulation::restoreEnv(model_, state_, envs[n], saved.envs[n]);
+      if (envs[n] == kNoEnv) continue;
+      simulation::restoreEnv(model_, state_, envs[n], saved.envs[is_single ? 0 : n]);
     }
   }
 

@@ -127,6 +127,37 @@ TEST(SavedState, GoesOnBitForBitInTheSameAndInOtherSimulators) {
   }
 }
 
+TEST(SavedState, OfOneEnvIsPutIntoAllThatAreChosen) {
+  const SmallHome home;
+  constexpr std::uint32_t kEnvs = 20;
+  BatchSimulator batch = simulatorOf(home.world(), homeOptions(kEnvs));
+  WildRun run(kEnvs);
+  for (int step = 0; step < 45; ++step) batch.step(run.act(batch));
+  const Bytes of_17 = batch.saveState(std::vector<std::uint32_t>{17});
+  const EnvState untouched = batch.envState(5);
+  ASSERT_TRUE(batch.restoreState(of_17, std::vector<std::uint32_t>{0, 19, 4}));
+  for (const std::size_t env : {0U, 19U, 4U}) {
+    expectSameState(batch.envState(env), batch.envState(17));
+  }
+  expectSameState(batch.envState(5), untouched);
+  // Without a choice, into all, with its seed.
+  SimulationOptions others = homeOptions(7);
+  others.seed = 77;
+  BatchSimulator planner = simulatorOf(home.world(), others);
+  ASSERT_TRUE(planner.restoreState(of_17));
+  for (std::size_t env = 0; env < 7; ++env) {
+    expectSameState(planner.envState(env), batch.envState(17));
+  }
+  const Bytes of_two = batch.saveState(std::vector<std::uint32_t>{17, 2});
+  // One of them alone.
+  ASSERT_TRUE(batch.restoreState(of_two, std::vector<std::uint32_t>{BatchSimulator::kNoEnv, 6}));
+  expectSameState(batch.envState(6), batch.envState(2));
+  const Result<void> refused = planner.restoreState(of_two);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message,
+              HasSubstr("has 2 envs, expected 7, or one that becomes all of them"));
+}
+
 TEST(SavedState, OfChosenEnvsIsPutIntoChosenEnvs) {
   const SmallHome home;
   constexpr std::uint32_t kEnvs = 20;
