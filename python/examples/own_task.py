@@ -10,16 +10,16 @@ class Reach(galactic.Task):
     """Come near the target with the hand. Pays each meter nearer, ends within `radius` meters of it.
 
     Each env begins with the `share` of episodes in which the target is nearest, and has all of them
-    after `easy_steps` steps.
+    after the first `easy` part of the training.
     """
 
     options = {"episode_steps": 100}
     parts = {"distance": 1}
 
-    def __init__(self, radius=0.3, share=0.25, easy_steps=200):
+    def __init__(self, radius=0.3, share=0.25, easy=0.05):
         self.radius = radius
         self.share = share
-        self.easy_steps = easy_steps
+        self.easy = easy
 
     def prepare(self, envs):
         self.memory = {"distance": np.zeros(envs.num_envs, np.float32)}
@@ -30,7 +30,7 @@ class Reach(galactic.Task):
         self.near_first = by_distance[can_start]
 
     def choose(self, envs, which):
-        share = self.share if envs.steps < self.easy_steps else 1.0
+        share = self.share if envs.progress < self.easy else 1.0
         count = int(np.ceil(share * len(self.near_first)))
         drawn = envs.uniform("episode")[which, 0]
         return self.near_first[(drawn * count).astype(int)]
@@ -59,6 +59,7 @@ if __name__ == "__main__":
     observations, _ = homes.reset()
     print(f"observed: {', '.join(homes.observation_parts)}")
     for step in range(400):
+        homes.progress = step / 400
         actions = random.uniform(-1, 1, homes.action_space.shape)
         observations, rewards, terminations, truncations, infos = homes.step(actions)
         if terminations.any():

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,13 @@ Observations = Any
 StepResult = tuple[Observations, Array, Array, Array, dict[str, Any]]
 
 
+class Piece(NamedTuple):
+    """The state of a simulator's envs, and where each of them goes: nowhere where that is None."""
+
+    state: bytes
+    places: Sequence[int | None]
+
+
 class HalfBatch:
     """Envs that step together, and what Gymnasium wants to know about each step of theirs. A second
     thread that calls it meanwhile gets a RuntimeError, and nothing has happened then.
@@ -36,6 +43,7 @@ class HalfBatch:
             one called "" has images by their own names.
         copy: whether results are arrays of their own, and no views.
         task: one of the caller's own, over the simulator's.
+        is_evaluation: what the task is told of it.
     """
 
     def __init__(
@@ -47,6 +55,7 @@ class HalfBatch:
         cameras: Mapping[str, Mapping[str, Any]],
         copy: bool,
         task: Task | None = None,
+        is_evaluation: bool = False,
     ) -> None:
         if task is not None:
             options = options_of(task, options)
@@ -60,16 +69,24 @@ class HalfBatch:
             for image, shape in renderer.shapes.items()
         }
         taken = [*self._image_shapes, *(_image_name(one, "world_from_camera") for one in cameras)]
-        self._task = None if task is None else TaskRunner(task, world, self.simulator, taken)
+        self._task = (
+            None
+            if task is None
+            else TaskRunner(task, world, self.simulator, is_evaluation=is_evaluation, taken=taken)
+        )
+        self._is_evaluation = is_evaluation
+        self._progress = 1.0 if is_evaluation else 0.0
         self.observation_parts = self.simulator.observation_parts | (
             {} if self._task is None else self._task.parts
         )
         self.measures: tuple[str, ...] = () if self._task is None else self._task.measures
+        self.logs: tuple[str, ...] = () if self._task is None else self._task.log_names
         self._copy = copy
         self._parts = self.observation_parts if by_parts else None
         envs = self.simulator.num_envs
-        # Of simulator and task together, where there is one.
+        # Of simulator and task together, where there is one; and what the caller sees where nothing is copied.
         self._rows = np.zeros((envs, self.observation_size), np.float32)
+        self._seen = {"state": self._rows, "rewards": np.zeros(envs, np.float32)}
         self._tally = EpisodeTally(self.simulator)
         self._is_new = True
         self.is_cut_off = False
@@ -83,6 +100,17 @@ class HalfBatch:
             for name, (shape, dtype) in self._image_shapes.items()
             if not copy
         }
+
+    @property
+    def progress(self) -> float:
+        """What a task is told of how much of the training is over, 0 to 1; 1 in an evaluation."""
+        return self._progress
+
+    @progress.setter
+    def progress(self, value: float) -> None:
+        self._progress = value
+        if self._task is not None:
+            self._task.progress = value
 
     @property
     def observation_size(self) -> int:
@@ -152,8 +180,10 @@ class HalfBatch:
 
     def restore_state(self, saved: Mapping[str, Array]) -> None:
         """Goes on from there. Raises Error for a state that does not fit, and changes nothing."""
-        # States of earlier versions do not tell whether a reset() came before them; mostly one did.
-        saved = {"simulator": np.empty(0, np.uint8), "is_new": np.array(False), **saved}
+        # States of earlier versions do not tell whether a reset() came before them; mostly one did. Nor do
+        # they tell of progress.
+        before = {"is_new": np.array(False), "progress": np.array(self.progress)}
+        saved = {"simulator": np.empty(0, np.uint8), **before, **saved}
         with self._alone():
             for name, mine in self._own_state(blank=True).items():
                 _check_saved(name, saved.get(name), mine)
@@ -161,15 +191,57 @@ class HalfBatch:
             self.simulator.restore_state(saved["simulator"].tobytes())
             self._tally.restore(saved["returns"], saved["lengths"])
             self._is_new = bool(saved["is_new"])
+            if not self._is_evaluation:
+                self.progress = float(saved["progress"])
             if self._task is not None:
                 self._task.restore(saved)
             self.is_cut_off = False
 
     def _own_state(self, *, blank: bool = False) -> dict[str, Array]:
         """What the simulator does not know; `blank`: of a task, arrays of the same types and shapes."""
-        tally, is_new = self._tally, np.array(self._is_new)
+        own = {"is_new": np.array(self._is_new), "progress": np.array(self.progress)}
         task = {} if self._task is None else self._task.state(blank=blank)
-        return {"returns": tally.returns, "lengths": tally.lengths, "is_new": is_new, **task}
+        return {"returns": self._tally.returns, "lengths": self._tally.lengths, **own, **task}
+
+    def save_rows(self, rows: NDArray[np.int64]) -> tuple[bytes, dict[str, Array]]:
+        """The state of the envs `rows` in the simulator, and all else that later steps of theirs depend on:
+        arrays (len(rows), ...)."""
+        with self._alone():
+            self.require_whole()
+            return self.simulator.save_state(rows), self._state_of(rows)
+
+    def check_rows(self, saved: Mapping[str, Array], rows: NDArray[np.int64]) -> None:
+        """Raises Error where `saved` is not what save_rows() returns of as many envs."""
+        for name, mine in self._state_of(rows, blank=True).items():
+            _check_saved(name, saved.get(name), mine)
+
+    def restore_rows(
+        self, pieces: Sequence[Piece], saved: Mapping[str, Array], rows: NDArray[np.int64]
+    ) -> None:
+        """Goes on in the envs `rows` from `saved` (check_rows()), with those of `pieces` that go there. Raises
+        Error for a first piece that does not fit, and changes nothing."""
+        with self._alone():
+            self.require_whole()
+            first, *more = pieces
+            self.is_cut_off = True
+            try:
+                self.simulator.restore_state(first.state, first.places)
+            except (Error, RuntimeError):  # it has refused, and nothing has happened
+                self.is_cut_off = False
+                raise
+            for piece in more:
+                self.simulator.restore_state(piece.state, piece.places)
+            returns, lengths = self._tally.returns.copy(), self._tally.lengths.copy()
+            returns[rows], lengths[rows] = saved["returns"], saved["lengths"]
+            self._tally.restore(returns, lengths)
+            self._is_new = False
+            if self._task is not None:
+                self._task.restore_rows(saved, rows)
+            self.is_cut_off = False
+
+    def _state_of(self, rows: NDArray[np.int64], *, blank: bool = False) -> dict[str, Array]:
+        task = {} if self._task is None else self._task.state_of(rows, blank=blank)
+        return {"returns": self._tally.returns[rows], "lengths": self._tally.lengths[rows], **task}
 
     def step(self, actions: NDArray[np.float32], out: Mapping[str, Array] | None) -> StepResult:
         """See VectorEnv.step, which has checked `actions` and `out`."""
@@ -226,10 +298,10 @@ class HalfBatch:
         if out is not None and "endings" in out:
             self._landed("endings", endings, out)
         images = self._draw(out)
-        infos = {}
+        infos = self._logged(~was_idle)
         if len(ended):
             more = {**self._measures(ended), **self._cameras(ended)}
-            infos = self._infos(ended, self._renew(ended, images), more)
+            infos |= self._infos(ended, self._renew(ended, images), more)
         observations = self._observed(self._landed("state", self._state_rows(), out), images)
         return observations, rewards, terminations, truncations, infos
 
@@ -249,7 +321,10 @@ class HalfBatch:
         if out is not None and name in out:
             np.copyto(out[name], values, casting="no")
             return out[name]
-        return values.copy() if self._copy and not is_own else values
+        if is_own or self._copy:
+            return values if is_own else values.copy()
+        np.copyto(self._seen[name], values)
+        return self._seen[name]
 
     def _draw(self, out: Mapping[str, Array] | None) -> dict[str, Array]:
         """The images of all envs: in the caller's arrays, kept ones, or new ones."""
@@ -307,6 +382,13 @@ class HalfBatch:
 
     def _measures(self, which: NDArray[np.int64]) -> dict[str, Array]:
         return {} if self._task is None else self._task.measure(which)
+
+    def _logged(self, playing: NDArray[np.bool_]) -> dict[str, Any]:
+        """What a task of one's own says of each step, of the envs that are `playing`."""
+        if self._task is None or not self._task.logs:
+            return {}
+        masks = {f"_{name}": playing for name in self._task.logs}
+        return {"log": {**self._task.logs, **masks}, "_log": playing}
 
     def blank_infos(self) -> dict[str, Any]:
         """The infos of a step in which episodes ended, but none of these envs'."""

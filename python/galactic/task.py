@@ -23,6 +23,8 @@ class Outcome(NamedTuple):
     """(n,), where the episode is solved and ends; None for nowhere."""
     failures: NDArray[np.bool_] | None = None
     """(n,), where it ends for worse; not where it is solved."""
+    logs: Mapping[str, NDArray[np.floating]] | None = None
+    """What there is to say of the step, the Task's `logs`, each (n,), finite."""
 
 
 class Draws:
@@ -49,6 +51,22 @@ class Draws:
         self.keys[which] = (self._numbers[which] << 32) + self.begun[which]
         self.ages[which] = 0
 
+    def restore(
+        self,
+        begun: NDArray[np.int64],
+        keys: NDArray[np.int64],
+        ages: NDArray[np.int64],
+        rows: NDArray[np.int64],
+    ) -> None:
+        """The envs `rows` are where others were that had these: as Simulator.restore_state() has it, with
+        random numbers of their own where nobody has named the episode."""
+        own = (self._numbers[rows] << 32) + begun
+        self.begun[rows], self.keys[rows], self.ages[rows] = (
+            begun,
+            np.where(keys < 0, keys, own),
+            ages,
+        )
+
     def begin_named(self, which: NDArray[np.int64], episodes: NDArray[np.int64]) -> None:
         """The envs `which` are about to begin these episodes of the world, which somebody has named."""
         # No env has a number below 0.
@@ -63,7 +81,7 @@ class TaskEnvs:
     `endings` are views, which have other contents after the next step: copy what you keep.
     """
 
-    def __init__(self, world: World, simulator: Simulator) -> None:
+    def __init__(self, world: World, simulator: Simulator, is_evaluation: bool = False) -> None:
         self.world = world
         self.simulator = simulator
         """For what is not here; it must not be stepped or reset."""
@@ -74,7 +92,14 @@ class TaskEnvs:
         """int64 (n,): numbers of the envs over all halves and ranks."""
         self.seed: int = options["seed"]
         self.steps = 0
-        """Steps since the envs were made, or reset with a seed: for curricula."""
+        """Steps since these envs were made, or reset with a seed; in an evaluation few, whatever came before."""
+        self.is_evaluation = is_evaluation
+        """Whether policies are judged by what happens here: in validations, in galactic.evaluate and its
+        pictures, and in a VectorEnv that was made so."""
+        self.progress = 1.0 if is_evaluation else 0.0
+        """How much of the training is over, from 0 to 1: for curricula. In galactic.train the share of --steps
+        that all ranks together have done, of a resumed run, too; in a VectorEnv its `progress`. 1 in
+        evaluations, which are about the task at its end, and in galactic.demonstrate."""
         self._actions = np.zeros((self.num_envs, simulator.action_count), np.float32)
         self.actions: NDArray[np.float32] = self._actions.view()
         """float32 (n, action_count): those of the latest step, as they were given."""
@@ -116,9 +141,11 @@ class TaskEnvs:
         bits = hashed(salt & (2**64 - 1), self.draws.keys, self.draws.ages, count)
         return (bits >> np.uint64(11)).astype(np.float64) * 2.0**-53
 
-    def take_actions(self, actions: NDArray[np.float32] | float) -> None:
-        """What `actions` is from now on: for who drives the task, not for tasks."""
-        self._actions[:] = actions
+    def take_actions(
+        self, actions: NDArray[np.float32] | float, rows: NDArray[np.int64] | slice = slice(None)
+    ) -> None:
+        """What `actions` of the envs `rows` is from now on: for who drives the task, not for tasks."""
+        self._actions[rows] = actions
 
     def forget(self) -> None:
         """What was known of the states is of before: the same."""
@@ -152,6 +179,10 @@ class Task:
 
     measures: Sequence[str] = ()
     """Names of what measure() says of each episode."""
+
+    logs: Sequence[str] = ()
+    """Names of what step() says of each step, in Outcome.logs. It is in infos["log"], and as a mean over steps
+    in the curves of galactic.train."""
 
     memory: dict[str, NDArray[Any]]
     """What the task remembers of each env, arrays (n, ...) by name: made in prepare(), written in

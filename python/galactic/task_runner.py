@@ -20,6 +20,8 @@ OF_EPISODES = ("episode", "ending", "success", "episode_index", "world_from_came
 """What final_info says of every episode."""
 
 
+_OF_CURVES = {"std"}
+"""What cannot be in logs: curves have a log_std, which is the policy's."""
 _NO_OPTIONS = ("task", "envs", "seed", "order", "rank", "ranks", "threads", "auto_reset")
 
 
@@ -61,15 +63,24 @@ class TaskRunner:
     """A task at work in the envs of a simulator that leaves envs where their episodes end."""
 
     def __init__(
-        self, task: Task, world: World, simulator: Simulator, taken: Iterable[str] = ()
+        self,
+        task: Task,
+        world: World,
+        simulator: Simulator,
+        *,
+        is_evaluation: bool = False,
+        taken: Iterable[str] = (),
     ) -> None:
         self._task = task
-        self._envs = TaskEnvs(world, simulator)
+        self._envs = TaskEnvs(world, simulator, is_evaluation)
         self._name = type(task).__name__
         self._rewards = np.zeros(self._envs.num_envs, np.float32)
         self._endings = np.zeros(self._envs.num_envs, np.uint8)
         self.parts = _parts_of(task, self._name, simulator.observation_size, {*taken})
-        self.measures = _measures_of(task, self._name, {*taken})
+        self.measures = _names_of(task.measures, f"{self._name}.measures", {*OF_EPISODES, *taken})
+        self.log_names = _names_of(task.logs, f"{self._name}.logs", _OF_CURVES)
+        self.logs: dict[str, NDArray[np.float32]] = {}
+        """What the task said of the latest step, (n,), by these names; 0 of idle envs."""
         sizes = [part.stop - part.start for part in self.parts.values()]
         self._columns = np.zeros((self._envs.num_envs, sum(sizes)), np.float32)
         self.restart()
@@ -79,6 +90,15 @@ class TaskRunner:
         """Rewards and endings, as EpisodeEnd, (n,), of the latest step: the task's, and where it ended
         nothing, the simulator's. The next step overwrites them."""
         return self._rewards, self._endings
+
+    @property
+    def progress(self) -> float:
+        """TaskEnvs.progress."""
+        return self._envs.progress
+
+    @progress.setter
+    def progress(self, value: float) -> None:
+        self._envs.progress = value
 
     @property
     def size(self) -> int:
@@ -155,7 +175,7 @@ class TaskRunner:
         envs.forget()
         envs.take_actions(actions)
         outcome = self._task.step(envs)
-        if not isinstance(outcome, tuple) or not 1 <= len(outcome) <= 3:
+        if not isinstance(outcome, tuple) or not 1 <= len(outcome) <= 4:
             raise TypeError(
                 f"{self._name}.step() returned {_described(outcome)}, expected an Outcome"
             )
@@ -165,10 +185,21 @@ class TaskRunner:
         rewards = self._checked("step", "rewards", outcome.rewards, shape, ignored=idle)
         successes = self._flags("successes", outcome.successes)
         failures = self._flags("failures", outcome.failures)
+        self.logs = self._logged(outcome.logs, idle)
         np.copyto(self._rewards, np.where(idle, 0.0, rewards))
         np.copyto(self._endings, envs.endings)
         self._endings[failures & ~idle] = EpisodeEnd.FAILURE
         self._endings[successes & ~idle] = EpisodeEnd.SUCCESS
+
+    def _logged(self, given: Any, idle: NDArray[np.bool_]) -> dict[str, NDArray[np.float32]]:
+        found = {} if given is None else given
+        self._require_names("step", found, self.log_names, "logs ")
+        shape = (self._envs.num_envs,)
+        rows = {
+            name: self._checked("step", f"logs[{name!r}]", found[name], shape, ignored=idle)
+            for name in self.log_names
+        }
+        return {name: np.where(idle, np.float32(0), values) for name, values in rows.items()}
 
     def measure(self, which: NDArray[np.int64]) -> dict[str, NDArray[np.float32]]:
         """What the task says of the episodes that have ended in the envs `which`, float32 (n,); zeros for
@@ -196,12 +227,15 @@ class TaskRunner:
     def state(self, *, blank: bool = False) -> dict[str, Array]:
         """All that later steps depend on, of which restore() takes the same names, shapes and types. `blank`:
         with the memory that prepare() made, whatever is in it, and whatever has become of it."""
+        return {"task_steps": np.array(self._envs.steps, np.int64), **self._of_envs(blank=blank)}
+
+    def _of_envs(self, *, blank: bool) -> dict[str, Array]:
+        """The part of it that each env has of its own."""
         envs, remembered = self._envs, self._task.memory
         if blank:
             remembered = {name: np.empty(shape, of) for name, (of, shape) in self._layout.items()}
         memory = {f"task_memory_{name}": array for name, array in remembered.items()}
         return {
-            "task_steps": np.array(envs.steps, np.int64),
             "task_actions": envs.actions,
             "task_begun": envs.draws.begun,
             "task_keys": envs.draws.keys,
@@ -223,6 +257,22 @@ class TaskRunner:
         np.copyto(envs.draws.ages, saved["task_ages"])
         for name, array in self._task.memory.items():
             np.copyto(array, saved[f"task_memory_{name}"])
+
+    def state_of(self, rows: NDArray[np.int64], *, blank: bool = False) -> dict[str, Array]:
+        """What later steps of the envs `rows` depend on, arrays (len(rows), ...), of which restore_rows() takes
+        the same names, shapes and types; `blank` as in state()."""
+        return {name: array[rows] for name, array in self._of_envs(blank=blank).items()}
+
+    def restore_rows(self, saved: Mapping[str, Array], rows: NDArray[np.int64]) -> None:
+        """Goes on in the envs `rows` from what state_of() returned for as many, with the simulator of that
+        moment. Of episodes that nobody has named, random numbers are their own; `steps` and `progress` are
+        those of all envs, and stay."""
+        envs, draws = self._envs, self._envs.draws
+        envs.forget()
+        envs.take_actions(saved["task_actions"], rows)
+        draws.restore(saved["task_begun"], saved["task_keys"], saved["task_ages"], rows)
+        for name, array in self._task.memory.items():
+            array[rows] = saved[f"task_memory_{name}"]
 
     def _memory_layout(self) -> dict[str, tuple[Any, tuple[int, ...]]]:
         """Types and shapes of the memory. TypeError for what is no array with an axis of envs."""
@@ -254,14 +304,14 @@ class TaskRunner:
                     "array, or keep its type and shape"
                 )
 
-    def _require_names(self, method: str, found: Any, wanted: Iterable[str]) -> None:
-        names = sorted(wanted)
+    def _require_names(
+        self, method: str, found: Any, wanted: Iterable[str], what: str = ""
+    ) -> None:
+        names, says = sorted(wanted), f"{self._name}.{method}() returned {what}"
         if not isinstance(found, Mapping):
-            raise TypeError(
-                f"{self._name}.{method}() returned {_described(found)}, expected {names}"
-            )
+            raise TypeError(f"{says}{_described(found)}, expected {names}")
         if sorted(found) != names:
-            raise ValueError(f"{self._name}.{method}() returned {sorted(found)}, expected {names}")
+            raise ValueError(f"{says}{sorted(found)}, expected {names}")
 
     def _flags(self, name: str, given: Any) -> NDArray[np.bool_]:
         shape = (self._envs.num_envs,)
@@ -310,18 +360,15 @@ def _described(value: Any) -> str:
     return type(value).__name__
 
 
-def _measures_of(task: Task, name: str, taken: Set[str]) -> tuple[str, ...]:
-    """ValueError for names that cannot be."""
-    for measure in task.measures:
-        is_name = isinstance(measure, str) and measure.isidentifier() and measure[0] != "_"
-        is_taken = measure in OF_EPISODES or measure in taken
-        if isinstance(task.measures, str) or not is_name or is_taken:
-            raise ValueError(
-                f"{name}.measures has {measure!r}, expected a name of its own, such as ways_lost"
-            )
-    if len(set(task.measures)) < len(task.measures):
-        raise ValueError(f"{name}.measures has a name twice: {list(task.measures)}")
-    return tuple(task.measures)
+def _names_of(names: Any, where: str, taken: Set[str]) -> tuple[str, ...]:
+    """What a task calls what it measures or logs. ValueError for names that cannot be."""
+    for name in names:
+        is_name = isinstance(name, str) and name.isidentifier() and name[0] != "_"
+        if isinstance(names, str) or not is_name or name in taken:
+            raise ValueError(f"{where} has {name!r}, expected a name of its own, such as ways_lost")
+    if len(set(names)) < len(names):
+        raise ValueError(f"{where} has a name twice: {list(names)}")
+    return tuple(names)
 
 
 def _parts_of(task: Task, name: str, first: int, taken: Set[str]) -> dict[str, slice]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import io
 import os
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from enum import Enum
 from typing import Any, Literal, NoReturn, Union
@@ -13,10 +12,9 @@ from typing import Any, Literal, NoReturn, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from galactic import spaces
-from galactic._core import ErrorCode, Renderer, Simulator, World
+from galactic import saved_states, spaces
+from galactic._core import Renderer, Simulator, World
 from galactic.env_states import EnvStates, joined
-from galactic.errors import Error
 from galactic.half_batch import HalfBatch, Observations, StepResult
 from galactic.task import Task
 from galactic.task_runner import made_by
@@ -24,8 +22,10 @@ from galactic.vector_env_arguments import (
     Actions,
     cameras_of,
     check_places,
+    env_numbers,
     episodes_to_begin,
     own_task_of,
+    progress_of,
     require,
     require_envs,
     require_simulator_options,
@@ -71,7 +71,8 @@ class VectorEnv(_Base):
       RecordEpisodeStatistics has it,
 
     each beside a mask of its name with "_" in front, bool (num_envs,). In steps in which no episode
-    ends, `infos` is empty.
+    ends, it has none of them. What a task of one's own says of each step (Task.logs) is in its "log", a
+    dictionary of float32 (num_envs,), with masks of the envs that are not idle.
 
     Observations are one flat float32 array (num_envs, observation_size), or with
     `observation="dict"` a dictionary of its named parts (docs/simulation.md lists them). With
@@ -98,11 +99,13 @@ class VectorEnv(_Base):
             dictionary of "continuous", float32 (num_envs, action_count - 2) for joints, forward and
             turn, and "discrete", 0 or 1, (num_envs, 2) for hand and terminate.
         halves: 1, or 2 for send() and recv() in turns.
-        copy: whether results are arrays of their own. Else they are views, overwritten by the next
-            step, unless they were written to `out`.
+        copy: whether each step's results are arrays of their own. Else they are those of the step before,
+            overwritten, unless they were written to `out`.
         render_mode: None, or "rgb_array" for render().
         task: the name of one of the simulation's tasks, such as "pick"; or one of your own, a class
             that inherits from galactic.Task, or anything that makes one without arguments.
+        is_evaluation: what such a task is told: whether policies are judged by what happens here, so that
+            it is to be as at the end of their training (`progress` is 1).
         threads, seed, order, rank, ranks, options: of galactic.Simulator. body_transforms=True
             lets you draw its `simulators` with a Renderer of your own, also without images.
     """
@@ -127,6 +130,7 @@ class VectorEnv(_Base):
         copy: bool = True,
         render_mode: str | None = None,
         task: str | Callable[[], Task] | None = None,
+        is_evaluation: bool = False,
         threads: int = 0,
         seed: int = 1,
         order: str = "shuffled",
@@ -139,6 +143,7 @@ class VectorEnv(_Base):
         require(halves in (1, 2), "halves", halves, "1 or 2")
         require_envs(num_envs, halves)
         require(isinstance(copy, bool), "copy", copy, "True or False")
+        require(isinstance(is_evaluation, bool), "is_evaluation", is_evaluation, "True or False")
         cameras = cameras_of(images)
         require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
         require_simulator_options(options)
@@ -146,6 +151,7 @@ class VectorEnv(_Base):
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._render_threads = threads
+        self._is_evaluation = is_evaluation
         options |= {"threads": threads, "seed": seed, "order": order}
         own_task = own_task_of(task)
         if task is not None and own_task is None:
@@ -167,6 +173,7 @@ class VectorEnv(_Base):
                 cameras=cameras,
                 copy=copy,
                 task=None if own_task is None else made_by(own_task),
+                is_evaluation=is_evaluation,
             )
             for half in range(halves)
         ]
@@ -204,6 +211,32 @@ class VectorEnv(_Base):
         """What final_info has of a task of one's own, by name."""
         self._require_open()
         return self._halves[0].measures
+
+    @property
+    def logs(self) -> tuple[str, ...]:
+        """What infos["log"] has of a task of one's own, by name."""
+        self._require_open()
+        return self._halves[0].logs
+
+    @property
+    def is_evaluation(self) -> bool:
+        """What a task of one's own is told of it: see the class."""
+        return self._is_evaluation
+
+    @property
+    def progress(self) -> float:
+        """What a task of one's own is told of how much of the training is over, from 0 to 1, for curricula: 0
+        until it is set, 1 in an evaluation, where it stays so. It is saved with the state of all envs.
+        """
+        self._require_open()
+        return self._halves[0].progress
+
+    @progress.setter
+    def progress(self, value: float) -> None:
+        self._require_idle()
+        progress = progress_of(value, self._is_evaluation)
+        for half in self._halves:
+            half.progress = progress
 
     @property
     def simulators(self) -> tuple[Simulator, ...]:
@@ -386,34 +419,26 @@ class VectorEnv(_Base):
             ]
         return tuple(frame for one in self._onlookers for frame in one.render()["rgb"])
 
-    def save_state(self) -> bytes:
-        """All that later steps depend on, and the sums of the episodes under way."""
+    def save_state(self, envs: Iterable[int] | None = None) -> bytes:
+        """All that later steps depend on, and the sums of the episodes under way; of all envs, or of those with
+        the numbers `envs`, in that order."""
         self._require_idle()
-        arrays = {
-            f"{name}_{number}": array
-            for number, half in enumerate(self._halves)
-            for name, array in half.save_state().items()
-        }
-        file = io.BytesIO()
-        np.savez(file, **arrays)
-        return file.getvalue()
+        if envs is None:
+            return saved_states.state_of_all(self._halves)
+        return saved_states.state_of(self._halves, env_numbers(envs, self.num_envs))
 
-    def restore_state(self, state: bytes) -> None:
-        """Goes on, bit for bit, from a state that an env of the same world, options and halves
-        saved; observe() shows it. Raises Error for bytes that are none, and changes nothing."""
+    def restore_state(self, state: bytes, envs: Iterable[int] | None = None) -> None:
+        """Goes on, bit for bit, from a state that an env of the same world and options saved; observe() shows
+        it. Raises Error for bytes that are none, and changes nothing.
+
+        A state of all envs is for one with as many envs and halves. A state of some envs is for as many, of
+        any VectorEnv with the same seed; that of one env, for any number of them: to try many plans. It goes
+        into those with the numbers `envs`, or into all. Their random numbers and episodes to come, and of a
+        task of one's own `steps` and `progress`, stay their own.
+        """
         self._require_idle()
-        arrays = _arrays_of(state, self.halves)
-        # Of one that was cut off, there is nothing to go back to.
-        before = [None if half.is_cut_off else half.save_state() for half in self._halves]
-        try:
-            for half, saved in zip(self._halves, arrays):
-                half.restore_state(saved)
-        except BaseException:
-            for half, kept in zip(self._halves, before):
-                half.is_cut_off = True
-                if kept is not None:
-                    half.restore_state(kept)
-            raise
+        chosen = None if envs is None else env_numbers(envs, self.num_envs)
+        saved_states.restore(self._halves, state, chosen)
 
     def close(self, **kwargs: Any) -> None:
         """Waits for what is under way, which recv() still returns, and frees simulators, renderers and
@@ -450,9 +475,13 @@ class VectorEnv(_Base):
 
     def _joined_infos(self, infos: Sequence[dict[str, Any]]) -> dict[str, Any]:
         """Of the batch: a half in which nothing ended says so with masks that are false everywhere."""
-        if not any(infos):
-            return {}
-        return _joined([info or half.blank_infos() for info, half in zip(infos, self._halves)])
+        have_ended = ["final_info" in info for info in infos]
+        if any(have_ended):
+            infos = [
+                info if has_ended else {**info, **half.blank_infos()}
+                for info, has_ended, half in zip(infos, have_ended, self._halves)
+            ]
+        return _joined(list(infos))
 
     def _require_idle(self, *halves: int) -> None:
         """Raises RuntimeError where these halves, or all, cannot begin anything."""
@@ -473,27 +502,6 @@ class VectorEnv(_Base):
     def _check_out(self, out: Row | None, envs: int) -> None:
         if out is not None:
             check_places(out, self._halves[0].landing_shapes(), envs)
-
-
-def _arrays_of(state: bytes, halves: int) -> list[dict[str, NDArray[Any]]]:
-    """What HalfBatch.save_state() gave, of each half. Raises Error for bytes that are no such state."""
-    file = io.BytesIO(state)
-    try:
-        archive = np.load(file, allow_pickle=False)
-        if not isinstance(archive, np.lib.npyio.NpzFile):
-            raise ValueError(f"it is an array, {archive.dtype} {archive.shape}")
-        found = {name: np.asarray(archive[name]) for name in archive.files}
-    except Exception as problem:  # numpy and zipfile raise whatever their readers do
-        message = f"cannot be read ({problem}); give what save_state() returned"
-        raise Error(ErrorCode.INVALID_INPUT, "saved state", message) from problem
-    there = sum(name.startswith("simulator_") for name in found)
-    if there != halves:
-        message = f"halves: found {there}, expected {halves}; restore it in an env of as many"
-        raise Error(ErrorCode.INVALID_INPUT, "saved state", message)
-    return [
-        {name[: -len(end)]: array for name, array in found.items() if name.endswith(end)}
-        for end in (f"_{half}" for half in range(halves))
-    ]
 
 
 def _part(out: Row | None, rows: slice) -> Row | None:

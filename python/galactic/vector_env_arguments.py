@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numbers
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ Array = NDArray[Any]
 _NO_OPTIONS = {
     "envs": "give num_envs",
     "auto_reset": "its envs begin the next episode by themselves, those of a Simulator need not",
+    "autoreset_mode": "episodes begin in the step in which others end (metadata), as SAME_STEP has it",
 }
 _OF_THE_PAPER = 'a dictionary of "continuous" and "discrete": actions="paper"'
 
@@ -68,6 +69,30 @@ def cameras_of(images: Any) -> dict[str, Mapping[str, Any]]:
         is_name = isinstance(name, str) and name.isidentifier()
         require(is_name, "a camera of images", name, "a name, such as hand")
     return {name: {"camera": name, **value} for name, value in images.items()}
+
+
+def progress_of(value: Any, is_evaluation: bool) -> float:
+    """VectorEnv.progress as it was set. ValueError for what it cannot be."""
+    is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
+    require(is_number and 0.0 <= value <= 1.0, "progress", value, "a number from 0 to 1")
+    is_its_own = not is_evaluation or value == 1.0
+    require(is_its_own, "progress", value, "1, as this env is an evaluation")
+    return float(value)
+
+
+def env_numbers(envs: Iterable[int], count: int) -> NDArray[np.int64]:
+    """Numbers of some of `count` envs. Raises TypeError or IndexError for what is none."""
+    found = np.asarray(envs if isinstance(envs, np.ndarray) else list(envs))
+    is_list = found.ndim == 1 and (found.dtype.kind in "iu" or not found.size)
+    if not is_list:
+        raise TypeError(
+            f"envs are {found.dtype} {found.shape}, expected numbers of envs, such as [0, 3]; "
+            "numpy.flatnonzero(mask) has those of a mask"
+        )
+    wrong = found[(found < 0) | (found >= count)]
+    if len(wrong):
+        raise IndexError(f"there is no env {wrong[0]}, the last is {count - 1}")
+    return found.astype(np.int64)
 
 
 class Actions:

@@ -38,6 +38,10 @@ def test_chosen_envs_are_put_into_chosen_envs(world, draw_actions):
     simulator.restore_state(simulator.save_state(envs=[6, 1]), envs=np.array([0, 3]))
     np.testing.assert_array_equal(simulator.observations[0], simulator.observations[6])
     np.testing.assert_array_equal(simulator.observations[3], simulator.observations[1])
+    simulator.restore_state(simulator.save_state(envs=[6, 1]), envs=[None, 4])
+    np.testing.assert_array_equal(simulator.observations[4], simulator.observations[1])
+    with pytest.raises(TypeError, match="an env is a NoneType"):
+        simulator.save_state(envs=[None])
     for call in (lambda: simulator.save_state(envs=[8]), lambda: simulator.save_state(envs=[-1])):
         with pytest.raises(IndexError, match="there is no env"):
             call()
@@ -49,8 +53,13 @@ def test_many_plans_begin_where_one_env_is(world, draw_actions):
     for _ in range(12):
         simulator.step(draw_actions(3, 8))
     state = simulator.save_state([1])
+    planner.restore_state(state, range(10))
+    one_by_one = Simulator(world, envs=10, threads=1, task="pick")
     for env in range(10):
-        planner.restore_state(state, [env])
+        one_by_one.restore_state(state, [env])
+    assert planner.save_state(range(10)) == one_by_one.save_state(range(10))
+    with pytest.raises(Error, match="has 2 envs, expected 10, or one that becomes all of them"):
+        planner.restore_state(simulator.save_state([0, 1]), range(10))
     plans = draw_actions(10, 8)
     planner.step(plans)
     assert len(np.unique(planner.observations, axis=0)) > 5
@@ -193,7 +202,8 @@ def test_a_state_from_before_the_first_reset_is_one_to_reset(world, halves):
     later.restore_state(other.save_state())
     assert episodes(later) == second
     arrays = unpacked(state)
-    older = {name: array for name, array in arrays.items() if not name.startswith("is_new")}
+    added = ("is_new", "progress")
+    older = {name: array for name, array in arrays.items() if not name.startswith(added)}
     assert len(older) == 3 * halves < len(arrays)
     later.restore_state(packed(older))
     assert episodes(later) == second

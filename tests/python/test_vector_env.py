@@ -99,8 +99,14 @@ def test_results_stay_as_they_were(world, draw_actions):
     for array, wanted in zip(first[:4], kept):
         np.testing.assert_array_equal(array, wanted)
     view = VectorEnv(world, ENVS, copy=False, **OPTIONS)
-    observations = view.step(draw_actions(ENVS, 8))[0]
-    assert np.shares_memory(observations, view.simulators[0].observations)
+    observations, rewards, *_ = view.step(draw_actions(ENVS, 8))
+    again = view.step(draw_actions(ENVS, 8))
+    assert np.shares_memory(observations, again[0]) and np.shares_memory(rewards, again[1])
+    np.testing.assert_array_equal(observations, view.simulators[0].observations)
+    np.testing.assert_array_equal(rewards, view.simulators[0].rewards)
+    # Torch warns of arrays that cannot be written.
+    assert observations.flags.writeable and rewards.flags.writeable
+    assert view.observe().flags.writeable
 
 
 def test_resets_by_seed_mask_and_episode(world, draw_actions):

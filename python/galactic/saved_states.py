@@ -1,0 +1,184 @@
+"""States of a VectorEnv as bytes: of all of its envs, or of some, which go on in any others.
+
+A state is an archive of numpy's. Of all envs, it has what HalfBatch.save_state() returns, each name with the
+number of the half behind it. Of some envs, it has
+
+    envs                       how many: n
+    simulator_0, simulator_1   the states of those that were in each half's simulator, where any were
+    places_0, places_1         int64: as which of the n these are
+    returns, lengths, task_... arrays (n, ...): HalfBatch.state_of()
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galactic._core import ErrorCode
+from galactic.errors import Error
+from galactic.half_batch import HalfBatch, Piece
+
+Array = NDArray[Any]
+
+
+def state_of_all(halves: Sequence[HalfBatch]) -> bytes:
+    return _packed(
+        {
+            f"{name}_{number}": array
+            for number, half in enumerate(halves)
+            for name, array in half.save_state().items()
+        }
+    )
+
+
+def state_of(halves: Sequence[HalfBatch], envs: NDArray[np.int64]) -> bytes:
+    """Of the envs with these numbers, in this order."""
+    arrays: dict[str, Array] = {"envs": np.array(len(envs))}
+    order, parts = [], []
+    for number, (half, places, rows) in enumerate(_by_half(halves, envs)):
+        simulator, own = half.save_rows(rows)
+        order.append(places)
+        parts.append(own)
+        if len(rows):
+            arrays[f"simulator_{number}"] = np.frombuffer(simulator, np.uint8)
+            arrays[f"places_{number}"] = places
+    back = np.argsort(np.concatenate(order))
+    joined = {name: np.concatenate([part[name] for part in parts])[back] for name in parts[0]}
+    return _packed({**arrays, **joined})
+
+
+def restore(halves: Sequence[HalfBatch], state: bytes, envs: NDArray[np.int64] | None) -> None:
+    """Goes on there, in all envs or in those with these numbers. Raises Error for a state that does not fit,
+    and changes nothing."""
+    found = _unpacked(state)
+    count = sum(half.simulator.num_envs for half in halves)
+    if "envs" in found:
+        _restore_some(halves, found, np.arange(count) if envs is None else envs)
+    elif envs is None:
+        _restore_all(halves, found)
+    else:
+        raise _refused("is of all envs; leave out envs, or give what save_state(envs=...) returned")
+
+
+def _restore_all(halves: Sequence[HalfBatch], found: Mapping[str, Array]) -> None:
+    there = sum(name.startswith("simulator_") for name in found)
+    if there != len(halves):
+        raise _refused(
+            f"halves: found {there}, expected {len(halves)}; restore it in an env of as many"
+        )
+    arrays = [
+        {name[: -len(end)]: array for name, array in found.items() if name.endswith(end)}
+        for end in (f"_{half}" for half in range(len(halves)))
+    ]
+    # Of one that was cut off, there is nothing to go back to.
+    before = [None if half.is_cut_off else half.save_state() for half in halves]
+    try:
+        for half, saved in zip(halves, arrays):
+            half.restore_state(saved)
+    except BaseException:
+        _put_back(halves, before)
+        raise
+
+
+def _restore_some(
+    halves: Sequence[HalfBatch], found: Mapping[str, Array], envs: NDArray[np.int64]
+) -> None:
+    pieces, own = _pieces_of(found)
+    count = sum(len(piece.places) for piece in pieces)
+    if count not in (1, len(envs)):
+        raise _refused(f"has {count} envs, expected {len(envs)}, or one that becomes all of them")
+    of_saved = np.zeros(len(envs), np.int64) if count == 1 else np.arange(count)
+    works: list[_Work] = []
+    for half, places, rows in _by_half(halves, envs):
+        saved = {name: array[of_saved[places]] for name, array in own.items()}
+        half.check_rows(saved, rows)
+        if len(rows):
+            row_of = dict(zip(places.tolist(), rows.tolist()))
+            taken = [
+                Piece(piece.state, rows.tolist())
+                if count == 1
+                else Piece(piece.state, [row_of.get(place) for place in piece.places])
+                for piece in pieces
+            ]
+            taken = [piece for piece in taken if any(row is not None for row in piece.places)]
+            works.append(_Work(half, taken, saved, rows))
+    # What one half takes, all take: of one piece, nothing is refused when something has been done.
+    before = [work.half.save_state() for work in works] if len(pieces) > 1 else []
+    try:
+        for half, taken, saved, rows in works:
+            half.restore_rows(taken, saved, rows)
+    except BaseException:
+        _put_back([work.half for work in works], before)
+        raise
+
+
+class _Work(NamedTuple):
+    """What one half goes on from in its envs `rows`."""
+
+    half: HalfBatch
+    pieces: list[Piece]
+    saved: dict[str, Array]
+    rows: NDArray[np.int64]
+
+
+def _by_half(
+    halves: Sequence[HalfBatch], envs: NDArray[np.int64]
+) -> list[tuple[HalfBatch, NDArray[np.int64], NDArray[np.int64]]]:
+    """Each half, which of `envs` are in it, and as which of its envs."""
+    size = halves[0].simulator.num_envs
+    found = []
+    for number, half in enumerate(halves):
+        places = np.flatnonzero(envs // size == number)
+        found.append((half, places, envs[places] - number * size))
+    return found
+
+
+def _pieces_of(found: Mapping[str, Array]) -> tuple[list[Piece], dict[str, Array]]:
+    """States of simulators with the places of their envs, and all else, which has an axis of as many."""
+    pieces = [
+        Piece(found[f"simulator_{number}"].tobytes(), found[f"places_{number}"].tolist())
+        for number in range(2)
+        if f"simulator_{number}" in found and f"places_{number}" in found
+    ]
+    of_pieces = ("envs", "simulator_", "places_")
+    own = {name: array for name, array in found.items() if not name.startswith(of_pieces)}
+    count = int(found["envs"]) if found["envs"].ndim == 0 else -1
+    places = [place for piece in pieces for place in piece.places]
+    is_whole = sorted(map(str, places)) == sorted(map(str, range(count)))
+    if count < 0 or not is_whole or any(array.shape[:1] != (count,) for array in own.values()):
+        raise _refused("does not have as many envs as it says; give what save_state() returned")
+    return pieces, own
+
+
+def _put_back(halves: Sequence[HalfBatch], before: Sequence[dict[str, Array] | None]) -> None:
+    for half, kept in zip(halves, before):
+        half.is_cut_off = True
+        if kept is not None:
+            half.restore_state(kept)
+
+
+def _packed(arrays: Mapping[str, Array]) -> bytes:
+    file = io.BytesIO()
+    np.savez(file, **arrays)
+    return file.getvalue()
+
+
+def _unpacked(state: bytes) -> dict[str, Array]:
+    """Raises Error for bytes that are no such archive."""
+    file = io.BytesIO(state)
+    try:
+        archive = np.load(file, allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise ValueError(f"it is an array, {archive.dtype} {archive.shape}")
+        return {name: np.asarray(archive[name]) for name in archive.files}
+    except Exception as problem:  # numpy and zipfile raise whatever their readers do
+        message = f"cannot be read ({problem}); give what save_state() returned"
+        raise Error(ErrorCode.INVALID_INPUT, "saved state", message) from problem
+
+
+def _refused(message: str) -> Error:
+    return Error(ErrorCode.INVALID_INPUT, "saved state", message)
