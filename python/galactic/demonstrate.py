@@ -137,6 +137,8 @@ def _demonstrate(options: argparse.Namespace) -> int:
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
     homes = Homes(galactic.World(options.world), settings, threads, task=task)
+    # Others learn from them for the task at its end.
+    homes.progress = 1.0
     _require_limit(homes)
     expert = _expert(options, homes, settings)
     episodes = homes.playable_episodes()[: options.episodes]

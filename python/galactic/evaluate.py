@@ -304,7 +304,7 @@ def _homes(
 ) -> Homes:
     """The homes of the policy's training. Nobody has typed their options here."""
     try:
-        return Homes(world, settings, threads, task=task)
+        return Homes(world, settings, threads, task=task, is_evaluation=True)
     except SettingsError as error:
         if task is not None:
             raise

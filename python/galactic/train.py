@@ -449,7 +449,7 @@ def _validation(
         return None
     envs = min(settings.envs, evaluation.MOST_ENVS)
     held_out = dataclasses.replace(settings.without_noise(), envs=envs, halves=1, mini_batches=1)
-    homes = Homes(galactic.World(run.validation), held_out, threads, task=task)
+    homes = Homes(galactic.World(run.validation), held_out, threads, task=task, is_evaluation=True)
     if homes.parts != trained.parts:
         raise galactic.Error(
             galactic.ErrorCode.INVALID_INPUT,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Optional
+from typing import Callable, Mapping, Optional
 
 import numpy as np
 import torch
@@ -218,6 +218,7 @@ class Collector:
             rollout.starts[step + 1, envs] = ends
             self._returns[envs] += result.rewards
             self._lengths[envs] += 1
+            self._log(result.logs, len(ended))
             if ended.any():
                 self._count(envs, ended, result)
             if result.timeouts is not None and self.options.bootstraps:
@@ -235,6 +236,12 @@ class Collector:
         returns[ended] = 0.0
         lengths[ended] = 0
         self._waits[envs][ended] = False
+
+    def _log(self, logs: Mapping[str, np.ndarray], steps: int) -> None:
+        self.episodes.steps += float(steps) if logs else 0.0
+        for name, values in logs.items():
+            logged = float(values.sum(dtype=np.float64))
+            self.episodes.logs[name] = self.episodes.logs.get(name, 0.0) + logged
 
     def _timeout(self, envs: slice, step: int, timeouts: Timeouts) -> "_Timeout":
         """Keeps what the values of cut-off episodes are computed from; that waits for the rollout's

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Mapping, NamedTuple, Optional, Protocol, Sequence
+from typing import Any, Mapping, NamedTuple, Optional, Protocol, Sequence
 
 import numpy as np
 from torch import Tensor
@@ -35,6 +35,10 @@ class Step(NamedTuple):
     timeouts: Optional[Timeouts] = None  # None: truncated is false everywhere
     # Where an episode ended, what there is to measure of it: [n] each, by the names of Environments.measures.
     measures: Mapping[str, np.ndarray] = {}
+    logs: Mapping[
+        str, np.ndarray
+    ] = {}  # what the task says of the step: [n] each, by Environments.logs
+    infos: Mapping[str, Any] = {}  # as galactic.VectorEnv has them
 
 
 class Environments(Protocol):
@@ -52,6 +56,8 @@ class Environments(Protocol):
     decides_terminate: bool  # whether the task asks for the terminate action
     halves: Sequence[slice]
     measures: Sequence[str]  # names of what a task of one's own says of each episode
+    logs: Sequence[str]  # and of each step
+    progress: float  # what it is told of how much of the training is over, 0 to 1
 
     def reset(self, into: Observation) -> None:
         """Starts all envs on their first episodes, and writes what they see: rows of all envs."""

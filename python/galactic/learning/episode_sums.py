@@ -4,41 +4,63 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Iterable, Sequence
+from typing import Iterable, NamedTuple, Sequence
 
 MEASURE = "measure_"
 """What the names of means begin with that are of a task's own measures: no other one does."""
+LOG = "log_"
+"""The same of what it says of each step, beside the policy's log_std."""
+
+
+class OwnNames(NamedTuple):
+    """What a task of one's own says of each episode, and of each step, by name."""
+
+    measures: tuple[str, ...] = ()
+    logs: tuple[str, ...] = ()
+
+    @property
+    def of_means(self) -> list[str]:
+        """What their means are called."""
+        return [MEASURE + name for name in self.measures] + [LOG + name for name in self.logs]
 
 
 @dataclass
 class EpisodeSums:
     """Sums over some episodes. `measures`: of what a task of one's own says of them, by name; those that
-    are not there are 0, and NaN is not known."""
+    are not there are 0, and NaN is not known. `logs`: the same of what it says of each of `steps`, of these
+    episodes or of others that are under way."""
 
     episodes: float = 0.0
     successes: float = 0.0
     returns: float = 0.0
     lengths: float = 0.0
     measures: dict[str, float] = field(default_factory=dict)
+    steps: float = 0.0
+    logs: dict[str, float] = field(default_factory=dict)
 
-    def numbers(self, measures: Sequence[str]) -> list[float]:
-        """All of them in a row, of which of() makes the same, with these measures."""
-        measured = [self.measures.get(name, 0.0) for name in measures]
-        return [self.episodes, self.successes, self.returns, self.lengths, *measured]
+    def numbers(self, names: OwnNames) -> list[float]:
+        """All of them in a row, of which of() makes the same, with what is named."""
+        measured = [self.measures.get(name, 0.0) for name in names.measures]
+        logged = [self.logs.get(name, 0.0) for name in names.logs]
+        row = [self.episodes, self.successes, self.returns, self.lengths, *measured]
+        return [*row, self.steps, *logged] if logged else row
 
     @classmethod
-    def of(cls, numbers: Sequence[float], measures: Sequence[str]) -> EpisodeSums:
-        episodes, successes, returns, lengths, *measured = numbers
-        return cls(episodes, successes, returns, lengths, dict(zip(measures, measured)))
+    def of(cls, numbers: Sequence[float], names: OwnNames) -> EpisodeSums:
+        episodes, successes, returns, lengths, *own = numbers
+        measures = dict(zip(names.measures, own))
+        steps, *logged = own[len(measures) :] or [0.0]
+        logs = dict(zip(names.logs, logged))
+        return cls(episodes, successes, returns, lengths, measures, steps, logs)
 
     @classmethod
-    def total(cls, parts: Iterable[EpisodeSums], measures: Sequence[str]) -> EpisodeSums:
+    def total(cls, parts: Iterable[EpisodeSums], names: OwnNames) -> EpisodeSums:
         """Of all parts together."""
-        rows = [one.numbers(measures) for one in (cls(), *parts)]
-        return cls.of([sum(column) for column in zip(*rows)], measures)
+        rows = [one.numbers(names) for one in (cls(), *parts)]
+        return cls.of([sum(column) for column in zip(*rows)], names)
 
     def means(self) -> dict[str, float]:
-        """Of an episode, by the names that columns of the curves have; nothing where there was none."""
+        """Of an episode or a step, by the names that columns of the curves have; nothing where no episode was."""
         if not self.episodes:
             return {}
         sums = {
@@ -47,6 +69,6 @@ class EpisodeSums:
             "length": self.lengths,
             **{MEASURE + name: total for name, total in self.measures.items()},
         }
-        return {
-            name: total / self.episodes for name, total in sums.items() if not math.isnan(total)
-        }
+        means = {name: total / self.episodes for name, total in sums.items()}
+        means |= {LOG + name: total / max(self.steps, 1.0) for name, total in self.logs.items()}
+        return {name: mean for name, mean in means.items() if not math.isnan(mean)}

@@ -25,7 +25,7 @@ class EpisodeResult:
     the length of the straight lines from where it started to where it first held something, and on to
     where it was last seen: no path by these places is shorter. `refused`, `slid`: steps in which the
     robot stayed where it was, or was pushed clear, because it would have hit something. `measures`: what
-    a task of one's own says of it."""
+    a task of one's own says of it; `logs`: the means of what it says of each step."""
 
     episode: int
     success: bool
@@ -37,6 +37,7 @@ class EpisodeResult:
     refused: int
     slid: int
     measures: dict[str, float] = field(default_factory=dict)
+    logs: dict[str, float] = field(default_factory=dict)
 
     @property
     def path_ratio(self) -> float:
@@ -190,6 +191,9 @@ class Evaluator:
             result = one.result
             result.reward += float(step.rewards[env])
             result.length += 1
+            for name, row in step.logs.items():
+                mean = result.logs.get(name, 0.0)
+                result.logs[name] = mean + (float(row[env]) - mean) / result.length
             if ended[env]:
                 result.success = bool(step.successes[env])
                 result.ending = galactic.EpisodeEnd(self._homes.endings(0)[env]).name.lower()
@@ -240,13 +244,17 @@ def rows_of(homes: Homes) -> Observation:
 
 def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
     """What the curves want to know."""
-    names = results[0].measures if results else {}
+    first = results[0] if results else None
+    measures, logs = (first.measures, first.logs) if first else ({}, {})
+    steps = float(sum(result.length for result in results))
     return EpisodeSums(
         float(len(results)),
         float(sum(result.success for result in results)),
         sum(result.reward for result in results),
-        float(sum(result.length for result in results)),
-        {name: sum(result.measures[name] for result in results) for name in names},
+        steps,
+        {name: sum(result.measures[name] for result in results) for name in measures},
+        steps,
+        {name: sum(result.logs[name] * result.length for result in results) for name in logs},
     )
 
 
@@ -257,7 +265,9 @@ def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
     for result in results:
         endings[result.ending] = endings.get(result.ending, 0) + 1
     steps = max(sum(result.length for result in results), 1)
-    measures = {name: total / count for name, total in sums_of(results).measures.items()}
+    sums = sums_of(results)
+    measures = {name: total / count for name, total in sums.measures.items()}
+    logs = {name: total / steps for name, total in sums.logs.items()}
     return {
         "episodes": len(results),
         "success": sum(result.success for result in results) / count,
@@ -268,6 +278,7 @@ def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
         "refused": sum(result.refused for result in results) / steps,
         "slid": sum(result.slid for result in results) / steps,
         **({"measures": measures} if measures else {}),
+        **({"logs": logs} if logs else {}),
         "endings": dict(sorted(endings.items())),
         "each": [asdict(result) for result in results],
     }

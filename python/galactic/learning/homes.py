@@ -84,13 +84,14 @@ class Homes:
     """A galactic.VectorEnv as the trainer wants it. Observations land in the rollout: on a processor
     they are written there by the simulator's threads, on a GPU they come by pinned memory.
 
-    `task` makes tasks of one's own, in the place of the simulation's. `onlooker`: options of a camera
+    `task` makes tasks of one's own, in the place of the simulation's, which are told whether it
+    `is_evaluation`. `onlooker`: options of a camera
     more, whose color images are in `shown`.
     """
 
     def __init__(self, world: "galactic.World", settings: Settings, threads: int, *,
                  rank: int = 0, ranks: int = 1, order: str = "shuffled",
-                 task: Optional[MakeTask] = None,
+                 task: Optional[MakeTask] = None, is_evaluation: bool = False,
                  onlooker: Optional[Mapping[str, Any]] = None):  # fmt: skip
         keywords = simulation_keywords(settings.simulation)
         images = camera_options(settings) if SIGHT[settings.network] else None
@@ -114,6 +115,7 @@ class Homes:
                 order=order,
                 rank=rank,
                 ranks=ranks,
+                is_evaluation=is_evaluation,
                 **(keywords if task is None else {**keywords, "task": task}),
             )
         except (TypeError, ValueError) as problem:
@@ -129,6 +131,7 @@ class Homes:
         self.parts = [(name, part.stop - part.start) for name, part in parts.items()]
         self.state_size = sum(size for _, size in self.parts)
         self.measures: Sequence[str] = self.env.measures
+        self.logs: Sequence[str] = self.env.logs
         self.motions = first.action_count - 2
         self.meanings = meaning_of((name for name, _ in self.parts), first.options)
         self.decides_terminate = _decides_terminate(settings.terminate, first.options)
@@ -165,11 +168,13 @@ class Homes:
                 if host is not None and device is not None:
                     device.copy_(host, non_blocking=True)
         timeouts = None
-        if infos and truncated.any():
+        if truncated.any():
             timeouts = self._timeouts(np.flatnonzero(truncated), infos["final_obs"])
         successes = self._landings[half]["endings"] == SUCCESS
-        measures = {name: infos["final_info"][name] for name in self.measures} if infos else {}
-        return Step(rewards, terminated, truncated, successes, timeouts, measures)
+        final = infos.get("final_info")
+        measures = {name: final[name] for name in self.measures} if final else {}
+        logs = {name: infos["log"][name] for name in self.logs}
+        return Step(rewards, terminated, truncated, successes, timeouts, measures, logs, infos)
 
     def begin_episodes(self, episodes: Mapping[int, int], into: Observation) -> None:
         """Begins an episode of the world, by its index, in some envs; the others stay. Writes what all
@@ -184,6 +189,15 @@ class Homes:
         """The world's episodes in which the robot can start."""
         skipped = set(self.env.simulators[0].skipped_episodes)
         return [e for e in range(self.env.world.episodes) if e not in skipped]
+
+    @property
+    def progress(self) -> float:
+        """What a task of one's own is told of how much of the training is over."""
+        return self.env.progress
+
+    @progress.setter
+    def progress(self, value: float) -> None:
+        self.env.progress = value
 
     @property
     def are_limited(self) -> bool:
@@ -232,7 +246,7 @@ class Homes:
         if not isinstance(seen, dict) or name not in seen:
             return
         shown = seen[name].copy()
-        if infos:
+        if "final_obs" in infos:
             for env in np.flatnonzero(infos["_final_obs"]):
                 shown[env] = infos["final_obs"][env][name]
         self.shown = shown

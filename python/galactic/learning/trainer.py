@@ -27,7 +27,7 @@ from galactic.learning.checkpoint import (
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
-from galactic.learning.episode_sums import MEASURE, EpisodeSums
+from galactic.learning.episode_sums import MEASURE, EpisodeSums, OwnNames
 from galactic.learning.fitting import Observed
 from galactic.learning.imitation import ImitationLearner, Streams, require_same
 from galactic.learning.learner import Learner
@@ -66,7 +66,7 @@ class Trainer:
         self.group = group
         self.folder = folder
         self.validation = validation
-        self.measures = tuple(envs.measures)
+        self.names = OwnNames(tuple(envs.measures), tuple(envs.logs))
         torch.manual_seed(settings.seed)
         self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
         self.meanings: dict[str, Any] = dict(getattr(envs, "meanings", {}))
@@ -95,7 +95,7 @@ class Trainer:
         self.stragglers = group.stragglers(settings.sync_fraction, settings.shortest_rollout)
         self.stopwatch = self.source.stopwatch
         self.checkpoints = CheckpointFolder(folder, settings.keep) if folder else None
-        self.curves = Curves(folder if group.rank == 0 else None, title, self.measures)
+        self.curves = Curves(folder if group.rank == 0 else None, title, self.names)
         self.progress = ProgressLine(quiet=group.rank > 0)
         self.log: Optional[Log] = None
         """Who else takes rows of the curves."""
@@ -195,6 +195,7 @@ class Trainer:
     def _iterate(self) -> tuple[dict[str, float], bool]:
         """One rollout and one update. Returns the losses and whether some rank was told to stop."""
         horizon, update = self.settings.horizon, self.updates
+        self.envs.progress = self.steps / self.settings.steps
         rollout = self.source.collect(
             update, lambda step: self.stragglers.should_stop(update, step, horizon)
         )
@@ -207,7 +208,7 @@ class Trainer:
                 float(rollout.steps * self.settings.envs),
                 float(self._interrupted),
                 float(self.source.waiting),
-                *self.source.episodes.numbers(self.measures),
+                *self.source.episodes.numbers(self.names),
             ],
             dtype=torch.float64,
             device=self.group.device,
@@ -217,7 +218,7 @@ class Trainer:
         self.steps += int(steps)
         self.updates += 1
         self._waiting = int(waiting)
-        self._remember(EpisodeSums.of(episodes, self.measures))
+        self._remember(EpisodeSums.of(episodes, self.names))
         if not all(abs(value) < float("inf") for value in losses.values()):
             raise TrainingError(
                 f"update {self.updates} gave a loss that is not a number ({losses}); a lower "
@@ -238,7 +239,7 @@ class Trainer:
 
     def recent(self) -> EpisodeSums:
         """The latest episodes of training, `window` or a few more."""
-        return EpisodeSums.total(self._window, self.measures)
+        return EpisodeSums.total(self._window, self.names)
 
     def figures(self) -> dict[str, float]:
         """Success, return, length and what the task measures, means over recent(); none before every env
@@ -291,11 +292,11 @@ class Trainer:
         assert self.validation is not None
         with self.stopwatch.time("validation"):
             sums = torch.tensor(
-                self.validation(self.policy).numbers(self.measures),
+                self.validation(self.policy).numbers(self.names),
                 dtype=torch.float64,
                 device=self.group.device,
             )
-            found = EpisodeSums.of(self.group.sum(sums).tolist(), self.measures)
+            found = EpisodeSums.of(self.group.sum(sums).tolist(), self.names)
         means = found.means()
         named = {VALIDATION + name: value for name, value in means.items()}
         self._add_row({"steps": self.steps, "seconds": self.seconds, **named})
@@ -352,18 +353,23 @@ class Trainer:
         counters, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
             # Checkpoints of before do not know who waits, as in Collector.load_state_dict(), nor of a
-            # paced rate, of processor time, of measures or of what a signal has put off.
-            before = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0, "measures": []}
-            counters = {**before, "must_validate": False, **counters}
+            # paced rate, of processor time, of what a task says or of what a signal has put off.
+            before: dict[str, Any] = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0}
+            before |= {"measures": [], "logs": [], "must_validate": False}
+            counters = {**before, **counters}
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
                 raise CheckpointError(
                     f"{folder} is of {counters['ranks']} ranks, not {self.group.size}; start as many"
                 )
-            for name in counters["measures"]:
-                if name not in self.measures:
+            for said, known, found in (
+                ("measured", self.names.measures, counters["measures"]),
+                ("logged", self.names.logs, counters["logs"]),
+            ):
+                lost = [name for name in found if name not in known]
+                if lost:
                     raise CheckpointError(
-                        f"{folder} is of a task that measured {name}, and the task does so no longer; put "
+                        f"{folder} is of a task that {said} {lost[0]}, and the task does so no longer; put "
                         "its class back as it was, or begin another run"
                     )
             self._take_counters(counters)
@@ -388,15 +394,16 @@ class Trainer:
         for row in counters["rows"]:
             if isinstance(row, list) and len(row) == _COLUMNS_OF_BEFORE:
                 row += [None] * (len(COLUMNS) - len(row))
-        measures = counters["measures"]
-        columns = columns_of(measures)
+        names = OwnNames(tuple(counters["measures"]), tuple(counters["logs"]))
+        columns = columns_of(names)
         rows = _rows(counters, "rows", len(columns), (float, int, type(None)))
         self.curves.take_up(rows, columns)
-        width = len(EpisodeSums().numbers(measures))
+        width = len(EpisodeSums().numbers(names))
         self._window.clear()
         for numbers in _rows(counters, "window", width, (float, int)):
-            sums = EpisodeSums.of(numbers, measures)
-            sums.measures = {**dict.fromkeys(self.measures, math.nan), **sums.measures}
+            sums = EpisodeSums.of(numbers, names)
+            sums.measures = {**dict.fromkeys(self.names.measures, math.nan), **sums.measures}
+            sums.logs = {**dict.fromkeys(self.names.logs, math.nan), **sums.logs}
             self._window.append(sums)
         require_types(counters["stopwatch"], dict.fromkeys(counters["stopwatch"], (float, int)))
         self.stopwatch.seconds = dict(counters["stopwatch"])
@@ -418,8 +425,8 @@ class Trainer:
             "must_validate": self._must_validate,
             "rows": self.curves.rows,
             "waiting": self._waiting,
-            "measures": self.measures,
-            "window": [sums.numbers(self.measures) for sums in self._window],
+            **self.names._asdict(),
+            "window": [sums.numbers(self.names) for sums in self._window],
             "seconds": self.seconds,
             "processor_seconds": self.processor_seconds,
             "stopwatch": self.stopwatch.seconds,
@@ -472,6 +479,7 @@ _COUNTERS = {
     "rows": list,
     "waiting": int,
     "measures": list,
+    "logs": list,
     "window": list,
     "seconds": (float, int),
     "processor_seconds": (float, int),

@@ -22,6 +22,8 @@ class ReachAndGrasp:
     motions = 2
     decides_terminate = False
     measures: Sequence[str] = ()
+    logs: Sequence[str] = ()
+    progress = 0.0
 
     def __init__(self, count: int, halves: int = 1, seed: int = 1, first_env: int = 0,
                  limit: int = 20, images: Mapping[str, tuple[int, ...]] = {}):  # fmt: skip

@@ -12,7 +12,7 @@ from typing import Any, Mapping, Optional, Sequence
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.checkpoint import write_atomically
-from galactic.learning.episode_sums import MEASURE
+from galactic.learning.episode_sums import OwnNames
 from galactic.learning.reports.page import curves_page
 
 COLUMNS = (
@@ -46,9 +46,9 @@ would do, nats per step, while it counts. New columns come last: see Trainer."""
 VALIDATION = "validation_"
 
 
-def columns_of(measures: Sequence[str]) -> tuple[str, ...]:
-    """COLUMNS, and behind them means of what a task of one's own measures, of training and validations."""
-    means = [MEASURE + name for name in measures]
+def columns_of(names: OwnNames) -> tuple[str, ...]:
+    """COLUMNS, and behind them means of what a task of one's own says, of training and validations."""
+    means = names.of_means
     return (*COLUMNS, *means, *(VALIDATION + name for name in means))
 
 
@@ -57,12 +57,12 @@ PAGE_SHARE = 0.01
 
 
 class Curves:
-    """Rows of columns_of(measures), and the files that show them. Not given values are None."""
+    """Rows of columns_of(names), and the files that show them. Not given values are None."""
 
-    def __init__(self, folder: Optional[pathlib.Path], title: str, measures: Sequence[str] = ()):
+    def __init__(self, folder: Optional[pathlib.Path], title: str, names: OwnNames = OwnNames()):
         self._folder = folder
         self._title = title
-        self.columns = columns_of(measures)
+        self.columns = columns_of(names)
         self.rows: list[list[Optional[float]]] = []
         # How many of them the table has; None: it is none of this run's yet, or of its time before.
         self._in_table: Optional[int] = None

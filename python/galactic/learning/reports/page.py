@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional, Sequence
 
-from galactic.learning.episode_sums import MEASURE
+from galactic.learning.episode_sums import LOG, MEASURE
 from galactic.learning.settings import typed
 
 
@@ -48,13 +48,18 @@ LEARNING = (
 
 
 def _charts(columns: Sequence[str]) -> list[Chart]:
-    """What a task measures stands beside what every task has."""
+    """What a task of one's own says stands beside what every task has."""
     measured = [
         _of_episodes(name.removeprefix(MEASURE), "mean of episodes", name)
         for name in columns
         if name.startswith(MEASURE)
     ]
-    return [*EPISODES, *measured, *LEARNING]
+    logged = [
+        _of_episodes(name.removeprefix(LOG), "mean of steps", name)
+        for name in columns
+        if name.startswith(LOG) and name != "log_std"
+    ]
+    return [*EPISODES, *measured, *logged, *LEARNING]
 
 
 MOST_POINTS = 1500

@@ -91,7 +91,7 @@ def film(world: "galactic.World", settings: Settings, actor: Actor, episodes: Se
     envs = len(episodes)
     alone = dataclasses.replace(settings, envs=envs, halves=1, mini_batches=1)
     onlooker = {"camera": "follow", "width": WIDTH, "height": HEIGHT}
-    homes = Homes(world, alone, threads, task=task, onlooker=onlooker)
+    homes = Homes(world, alone, threads, task=task, is_evaluation=True, onlooker=onlooker)
     seen = rows_of(homes)
     homes.begin_episodes(dict(enumerate(episodes)), seen)
     assert homes.shown is not None
