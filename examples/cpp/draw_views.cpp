@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <vector>
 
 #include "galactic/batch_renderer.h"
@@ -10,45 +9,38 @@
 #include "galactic/world_models.h"
 #include "galactic/world_views.h"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   if (argc != 2) {
     std::fprintf(stderr, "usage: draw_views WORLD\n");
     return galactic::kExitUsage;
   }
-  const auto refuse = [](const galactic::Error& error) {
-    std::fprintf(stderr, "%s: %s\n", error.where.c_str(), error.message.c_str());
-    return static_cast<int>(error.code);
-  };
-  const std::vector<std::filesystem::path> packs{argv[1]};
-  const auto world = galactic::World::open(packs);
-  if (!world) return refuse(world.error());
-  galactic::SimulationOptions options = world->withTask();
+  const auto world = orThrow(galactic::World::open(argv[1]));
+  galactic::SimulationOptions options = world.withTask();
   options.envs = 16;
   options.body_transforms = true;  // cameras and links move with bodies
-  auto simulator = galactic::BatchSimulator::create(*world, options);
-  if (!simulator) return refuse(simulator.error());
+  auto simulator = orThrow(galactic::BatchSimulator::create(world, options));
 
-  const auto models = galactic::WorldModels::from(*world);
-  if (!models) return refuse(models.error());
-  const auto camera = galactic::chooseCamera(world->robot(), {.name = "follow"});
-  if (!camera) return refuse(camera.error());
-  const galactic::RenderOptions drawing{.width = 64, .height = 48, .near = camera->near};
-  auto renderer = galactic::BatchRenderer::create(models->library(), drawing);
-  if (!renderer) return refuse(renderer.error());
-  galactic::WorldViews views(*world, *models, *simulator, camera->mount);
+  const auto models = orThrow(galactic::WorldModels::from(world));
+  const auto camera = orThrow(galactic::chooseCamera(world.robot(), {.name = "follow"}));
+  const galactic::RenderOptions drawing{.width = 64, .height = 48, .near = camera.near};
+  auto renderer = orThrow(galactic::BatchRenderer::create(models.library(), drawing));
+  galactic::WorldViews views(world, models, simulator, camera.mount);
 
-  const std::size_t pixels = simulator->envCount() * drawing.height * drawing.width;
+  const std::size_t pixels = simulator.envCount() * drawing.height * drawing.width;
   std::vector<std::uint8_t> color(pixels * 4);
   std::vector<float> depth(pixels);
-  const std::vector<float> actions(simulator->envCount() * simulator->actionCount());
+  const std::vector<float> actions(simulator.envCount() * simulator.actionCount());
   for (int step = 0; step < 10; ++step) {
-    views.update(*simulator);
+    views.update(simulator);
     // Draws this state while the next one is simulated.
-    renderer->beginRender(views.views(), {.color = color, .depth = depth});
-    simulator->step(actions);
-    renderer->endRender();
+    renderer.beginRender(views.views(), {.color = color, .depth = depth});
+    simulator.step(actions);
+    renderer.endRender();
   }
-  std::printf("%s: farthest %.1f m\n", renderer->description().c_str(),
+  std::printf("%s: farthest %.1f m\n", renderer.description().c_str(),
               static_cast<double>(*std::ranges::max_element(depth)));
   return galactic::kExitOk;
+} catch (const galactic::ErrorException& failure) {
+  std::fprintf(stderr, "%s\n", failure.what());
+  return static_cast<int>(failure.error().code);
 }

@@ -1,34 +1,28 @@
 // Opens a scene pack and asks where a sphere may be. Usage: query_scene PACK
 #include <array>
 #include <cstdio>
+#include <vector>
 
+#include "galactic/error.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   if (argc != 2) {
     std::fprintf(stderr, "usage: query_scene PACK\n");
     return galactic::kExitUsage;
   }
   // Maps the file, then checks its hash, its structure and every value in it.
-  const auto pack = galactic::PackFile::open(argv[1]);
-  if (!pack) {
-    std::fprintf(stderr, "%s: %s\n", pack.error().where.c_str(), pack.error().message.c_str());
-    return static_cast<int>(pack.error().code);
-  }
+  const auto pack = orThrow(galactic::PackFile::open(argv[1]));
   // A view into the pack, which has to outlive it.
-  const auto scene = galactic::Scene::from(*pack);
-  if (!scene) {
-    std::fprintf(stderr, "%s: %s\n", scene.error().where.c_str(), scene.error().message.c_str());
-    return static_cast<int>(scene.error().code);
-  }
+  const auto scene = orThrow(galactic::Scene::from(pack));
   // Once, before the hot loop: which grid has spheres of 5 cm?
-  const auto index = scene->gridIndex(0.05F);
+  const auto index = scene.gridIndex(0.05F);
   if (!index) {
     std::fprintf(stderr, "the pack has no grid of radius 0.05 m\n");
     return static_cast<int>(galactic::ErrorCode::kInvalidInput);
   }
-  const galactic::ColumnGrid& grid = scene->grids()[*index];
+  const galactic::ColumnGrid& grid = scene.grids()[*index];
 
   // One sphere. World frame: y up, meters.
   const galactic::Contact contact = grid.contact({-0.5F, 1.2F, -2.0F});
@@ -56,5 +50,18 @@ int main(int argc, char** argv) {
         break;
     }
   }
+
+  // All free heights of a column: what galactic-pack column prints.
+  if (const auto column = grid.columnAt(-0.5F, -2.0F)) {
+    std::vector<galactic::Span> spans(grid.spanCount(column->i, column->k));
+    grid.spans(column->i, column->k, spans);
+    for (const galactic::Span& span : spans) {
+      std::printf("free from %.3f to %.3f m\n", static_cast<double>(span.lo),
+                  static_cast<double>(span.hi));
+    }
+  }
   return galactic::kExitOk;
+} catch (const galactic::ErrorException& failure) {
+  std::fprintf(stderr, "%s\n", failure.what());
+  return static_cast<int>(failure.error().code);
 }
