@@ -38,7 +38,8 @@ class Poses(NamedTuple):
 
 class EnvStates(NamedTuple):
     """The states of n envs: copies. M is the most objects that an episode of the world has; where an
-    env has fewer, its other poses are NaN."""
+    env has fewer, its other poses are NaN. What is changed in them can be set: Simulator.set_states().
+    """
 
     scene: NDArray[np.int32]
     """(n,), indices into World.scenes."""
@@ -63,6 +64,16 @@ class EnvStates(NamedTuple):
     """(n,), which of them is to be moved."""
     goal: Poses
     """Of n goals: where the targets are to be, in the world."""
+
+    def select(self, rows: Any) -> EnvStates:
+        """Copies of some of them, by their rows here: numbers, a mask, or whatever an array takes."""
+        return _selected(self, np.arange(len(self.episode))[rows])
+
+
+def _selected(states: Any, rows: NDArray[np.int64]) -> Any:
+    if isinstance(states, np.ndarray):
+        return states[rows]
+    return type(states)(*(_selected(part, rows) for part in states))
 
 
 def joined(parts: Sequence[Any]) -> Any:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from galactic import spaces
 from galactic._core import EpisodeTally, ErrorCode, Renderer, Simulator, World
+from galactic.env_states import EnvStates
 from galactic.errors import Error
 from galactic.task import Task
 from galactic.task_runner import TaskRunner, options_of
@@ -163,6 +164,21 @@ class HalfBatch:
             self._tally.restart(mask)
             self._began[mask] = time.perf_counter()
             self.is_cut_off = False
+
+    def set_states(self, states: EnvStates, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Goes on from states in the envs `rows`: see VectorEnv.set_states."""
+        with self._alone():
+            self.require_whole()
+            were_set = self.simulator.set_states(states, rows)
+            self.is_cut_off, self._is_new = True, False
+            mask = np.zeros(self.simulator.num_envs, np.bool_)
+            mask[rows[were_set]] = True
+            if self._task is not None:
+                self._task.begin_chosen(np.flatnonzero(mask))
+            self._tally.restart(mask)
+            self._began[mask] = time.perf_counter()
+            self.is_cut_off = False
+            return were_set
 
     def observe(self, out: Mapping[str, Array] | None = None) -> Observations:
         """What all envs see now."""

@@ -40,6 +40,11 @@ class Draws:
         """(n,), steps of the episode."""
         self.begin_first()
 
+    @property
+    def are_drawn(self) -> NDArray[np.bool_]:
+        """bool (n,): where chance has chosen the episode, and nobody has named it."""
+        return self.keys >= 0
+
     def begin_first(self) -> None:
         """All envs begin their first episodes."""
         self.begun[:] = -1
@@ -157,9 +162,9 @@ class Task:
     (`task=Reach`) or the trainer (`--task reach.py:Reach`).
 
     A VectorEnv makes one for each of its halves, by calling what it was given without arguments. It
-    calls prepare() and begin() once the envs stand at the start of their first episodes; with each
-    step step(), then, where episodes ended, measure(), choose() and begin(); and observe() whenever
-    somebody looks.
+    calls prepare(), place() and begin() once the envs stand at the start of their first episodes; with each
+    step step(), then, where episodes ended, measure(), choose(), place() and begin(); and observe()
+    whenever somebody looks.
 
     All is done for n envs at once, in arrays whose first axis is the env. Nothing but `memory` may be
     kept from one call to the next: it is saved with the state of the envs, so that runs can be resumed,
@@ -196,6 +201,15 @@ class Task:
         the env's own; None leaves it to the order of the VectorEnv. An episode in which the robot cannot
         start (Simulator.skipped_episodes) is a ValueError. Episodes that are named here have no end with
         order="partition"."""
+        return None
+
+    def place(
+        self, envs: TaskEnvs, which: NDArray[np.int64], states: EnvStates
+    ) -> EnvStates | None:
+        """Where the episodes of the envs `which` begin. `states` are those of the world, (len(which),): copies,
+        to be changed and returned, as Simulator.set_states() takes them; None leaves all as it is. An env in
+        which the robot would stand in something begins where the world has it: begin() sees where.
+        """
         return None
 
     def begin(self, envs: TaskEnvs, which: NDArray[np.int64]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galactic._core import EpisodeEnd, Simulator, World
+from galactic.env_states import EnvStates
 from galactic.sensors import ALWAYS, SENSORS
 from galactic.task import Outcome, Task, TaskEnvs
 
@@ -160,11 +161,37 @@ class TaskRunner:
         return np.where(episodes < 0, Simulator.NEXT_EPISODE, episodes.astype(np.int64))
 
     def begin(self, which: NDArray[np.int64]) -> None:
-        """Takes in that the envs `which` are at the start of an episode, but for idle ones."""
-        self._envs.forget()
+        """Takes in that the envs `which` are at the start of an episode, but for idle ones, and has it begin
+        where the task says."""
         playing = which[~self._envs.simulator.idle[which]]
-        if len(playing):
-            self._task.begin(self._envs, playing)
+        if len(playing) and type(self._task).place is not Task.place:
+            self._envs.forget()
+            self._place(playing)
+        self._take_in(playing)
+
+    def begin_chosen(self, which: NDArray[np.int64]) -> None:
+        """Takes in that the envs `which` go on from states that the caller has chosen."""
+        self._envs.draws.begin_next(which)
+        self._take_in(which)
+
+    def _place(self, which: NDArray[np.int64]) -> None:
+        simulator = self._envs.simulator
+        placed = self._task.place(self._envs, which, simulator.env_states(which))
+        if placed is None:
+            return
+        if not isinstance(placed, EnvStates):
+            raise TypeError(
+                f"{self._name}.place() returned {_described(placed)}, expected EnvStates or None"
+            )
+        simulator.check_states(placed)
+        are_drawn = self._envs.draws.are_drawn[which]
+        for drawn, rows in ((True, are_drawn), (False, ~are_drawn)):
+            simulator.set_states(placed.select(rows), which[rows], drawn=drawn)
+
+    def _take_in(self, beginning: NDArray[np.int64]) -> None:
+        self._envs.forget()
+        if len(beginning):
+            self._task.begin(self._envs, beginning)
             self._require_layout()
 
     def step(self, actions: NDArray[np.float32], idle: NDArray[np.bool_]) -> None:

@@ -270,6 +270,23 @@ class VectorEnv(_Base):
         self._require_idle()
         return joined([simulator.env_states() for simulator in self.simulators])
 
+    def set_states(self, states: EnvStates, envs: Iterable[int] | None = None) -> NDArray[np.bool_]:
+        """Has all envs, or those with the numbers `envs`, in that order, go on from states of one's own, as if an episode had begun there: Simulator.set_states(). observe() shows what they see.
+
+        Returns bool (n,): where an env has its state. Raises what Simulator.set_states() raises, and nothing
+        has changed then."""
+        self._require_idle()
+        chosen = np.arange(self.num_envs) if envs is None else env_numbers(envs, self.num_envs)
+        self._halves[0].simulator.check_states(states)
+        if len(chosen) != len(states.episode):
+            raise ValueError(f"there are {len(states.episode)} states, expected {len(chosen)}")
+        were_set = np.zeros(len(chosen), np.bool_)
+        for number, half in enumerate(self._halves):
+            part = self.rows(number)
+            here = np.flatnonzero((chosen >= part.start) & (chosen < part.stop))
+            were_set[here] = half.set_states(states.select(here), chosen[here] - part.start)
+        return were_set
+
     def rows(self, half: int) -> slice:
         """The envs of a half."""
         self._require_half(half)

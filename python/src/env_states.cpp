@@ -166,6 +166,15 @@ class GivenStates {
         objects_(*this, "objects", {count, most_}),
         goals_(*this, "goal", {count}) {}
 
+  /// What is given, if it is of the type. TypeError otherwise.
+  static const py::object& typed(const py::object& states) {
+    const py::object type = py::module_::import("galactic.env_states").attr("EnvStates");
+    if (py::isinstance(states, type)) return states;
+    throw py::type_error(
+        fmt::format("states is a {}, expected galactic.EnvStates, such as env_states() returns",
+                    typeName(states)));
+  }
+
   /// State `n`, of an episode that can be started.
   [[nodiscard]] EnvState at(const Simulator& simulator, py::ssize_t n) const {
     simulator.requireEpisode(episode_.data()[n]);
@@ -217,13 +226,6 @@ class GivenStates {
     Input<float> rotations_;
   };
 
-  static const py::object& typed(const py::object& states) {
-    const py::object type = py::module_::import("galactic.env_states").attr("EnvStates");
-    if (py::isinstance(states, type)) return states;
-    throw py::type_error(
-        fmt::format("states is a {}, expected galactic.EnvStates, such as env_states() returns",
-                    typeName(states)));
-  }
   [[nodiscard]] Input<std::int64_t> whole(const char* name, py::ssize_t count) const {
     const std::string full = fmt::format("states.{}", name);
     return wholeNumbersOf(states_.attr(name), full.c_str(), {count});
@@ -257,21 +259,38 @@ class GivenStates {
 
 }  // namespace
 
+namespace {
+
+std::vector<EnvState> listOf(const Simulator& simulator, const py::object& states,
+                             std::size_t count) {
+  const GivenStates given(states, simulator, static_cast<py::ssize_t>(count));
+  std::vector<EnvState> list;
+  for (std::size_t n = 0; n < count; ++n) {
+    list.push_back(given.at(simulator, static_cast<py::ssize_t>(n)));
+  }
+  return list;
+}
+
+}  // namespace
+
+void checkStates(Simulator& simulator, const py::object& states) {
+  const Confinement::Use use = simulator.readState();
+  const std::size_t count = py::len(GivenStates::typed(states).attr("episode"));
+  require(simulator.batch().checkStates(listOf(simulator, states, count)));
+}
+
 py::array_t<bool> setStates(Simulator& simulator, const py::object& states, const py::object& envs,
                             bool are_drawn) {
   const Confinement::Use use = simulator.readState();
   const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
-  const auto count = static_cast<py::ssize_t>(chosen.size());
-  const GivenStates given(states, simulator, count);
-  std::vector<EnvState> list;
-  for (py::ssize_t n = 0; n < count; ++n) list.push_back(given.at(simulator, n));
+  const std::vector<EnvState> list = listOf(simulator, states, chosen.size());
   std::vector<std::uint8_t> were_set;
   {
     const py::gil_scoped_release unlocked;
     were_set = valueOf(simulator.batch().setStates(
         chosen, list, are_drawn ? EpisodeChoice::kDrawn : EpisodeChoice::kNamed));
   }
-  py::array_t<bool> answer(count);
+  py::array_t<bool> answer(static_cast<py::ssize_t>(chosen.size()));
   std::ranges::transform(were_set, answer.mutable_data(),
                          [](std::uint8_t one) { return one != 0; });
   return answer;

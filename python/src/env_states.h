@@ -21,6 +21,9 @@ struct NamedEnvState : EnvState {
 /// The galactic.EnvStates of all envs, for None, or of a list of them.
 [[nodiscard]] py::object envStates(Simulator& simulator, const py::object& envs);
 
+/// Raises what setStates() would raise because of galactic.EnvStates, and does nothing else.
+void checkStates(Simulator& simulator, const py::object& states);
+
 /// Envs go on from galactic.EnvStates, all of them for None, or those of a list: bool (n,), where.
 [[nodiscard]] py::array_t<bool> setStates(Simulator& simulator, const py::object& states,
                                           const py::object& envs, bool are_drawn);

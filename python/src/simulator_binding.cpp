@@ -127,6 +127,8 @@ void bindStepping(py::class_<Simulator>& type) {
       "Nothing changes if one is wrong: IndexError and ValueError for episodes as in reset(),\n"
       "Error for numbers that are not finite, another target than the episode's or, where ways\n"
       "along the floor are observed or rewarded (geodesic), another goal.");
+  type.def("check_states", &checkStates, py::arg("states"),
+           "Raises what set_states() would raise because of these states, and does nothing else.");
   type.def("save_state", &Simulator::saveState, py::arg("envs") = py::none(),
            "The state of all envs as bytes, or of those with the numbers `envs`, in that order:\n"
            "with what the last step returned, the statistics and the seed. A mask is no list of\n"

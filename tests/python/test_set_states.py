@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from galactic import EnvStates, Error, PlanningScene, Simulator
+from galactic import EnvStates, Error, Outcome, PlanningScene, Simulator, Task, VectorEnv
 
 ENVS = 20
 
@@ -33,26 +33,19 @@ def assert_close(states: EnvStates, wanted: EnvStates):
         np.testing.assert_allclose(found.matrix, expected.matrix, atol=5e-5, err_msg=name)
 
 
-def some(states, rows):
-    """Some rows of states, of whatever depth."""
-    if isinstance(states, np.ndarray):
-        return states[rows]
-    return type(states)(*(some(part, rows) for part in states))
-
-
 def test_envs_go_on_where_others_are(played, fresh):
     wanted = played.env_states()
     assert (wanted.held >= 0).any() and (wanted.step > 0).any()
     were_set = fresh.set_states(wanted)
     assert were_set.dtype == bool and were_set.shape == (ENVS,) and were_set.mean() > 0.9
     rows = np.flatnonzero(were_set)
-    assert_close(some(fresh.env_states(), rows), some(wanted, rows))
+    assert_close(fresh.env_states().select(rows), wanted.select(rows))
     np.testing.assert_allclose(fresh.observations[rows], played.observations[rows], atol=1e-3)
 
 
 def test_one_state_becomes_that_of_many(played, fresh):
     rows = np.zeros(5, int)
-    one = some(played.env_states(), rows)
+    one = played.env_states().select(rows)
     one.joint_positions[:, 0] += np.linspace(0, 0.1, 5, dtype=np.float32)
     before = fresh.env_states()
     were_set = fresh.set_states(one, [3, 1, 4, 15, 9])
@@ -61,7 +54,7 @@ def test_one_state_becomes_that_of_many(played, fresh):
     np.testing.assert_allclose(now.joint_positions, one.joint_positions, atol=1e-6)
     assert (now.episode == one.episode).all()
     others = np.setdiff1d(np.arange(ENVS), [3, 1, 4, 15, 9])
-    assert_close(some(fresh.env_states(), others), some(before, others))
+    assert_close(fresh.env_states().select(others), before.select(others))
 
 
 def test_goals_and_steps_are_as_chosen(fresh):
@@ -129,7 +122,7 @@ def test_what_is_no_state_is_refused_and_nothing_changes(fresh, change, error, m
 
 
 def test_numbers_of_envs_have_to_be_there(fresh):
-    states = some(fresh.env_states(), [0, 1])
+    states = fresh.env_states().select([0, 1])
     with pytest.raises(IndexError, match="there is no env 20"):
         fresh.set_states(states, [0, ENVS])
     with pytest.raises(ValueError, match="states.episode"):
@@ -142,7 +135,7 @@ def test_numbers_of_envs_have_to_be_there(fresh):
 
 def test_luck_is_the_envs_or_the_episodes(world):
     noisy = Simulator(world, envs=2, threads=1, task="none", motion_noise=0.3)
-    states = some(noisy.env_states(), [0, 0])
+    states = noisy.env_states().select([0, 0])
     actions = np.ones((2, noisy.action_count), np.float32)
     actions[:, -1] = -1
     lifts = {}
@@ -152,3 +145,107 @@ def test_luck_is_the_envs_or_the_episodes(world):
         lifts[drawn] = noisy.env_states().joint_positions[:, 0]
     assert lifts[True][0] != lifts[True][1]
     assert lifts[False][0] == lifts[False][1]
+
+
+class Near(Task):
+    """Begins with the target 5 cm over its place, the sooner the earlier in training; counts what begins."""
+
+    parts = {"begun": 1}
+
+    def prepare(self, envs):
+        self.memory["begun"] = np.zeros(envs.num_envs, np.float32)
+        self.memory["lift"] = np.zeros(envs.num_envs, np.float32)
+
+    def place(self, envs, which, states):
+        assert len(states.episode) == len(which)
+        states.joint_positions[:, 0] += 0.2 * envs.uniform("lift")[which, 0]
+        states.step[:] = 2
+        return states
+
+    def begin(self, envs, which):
+        self.memory["begun"][which] += 1
+        self.memory["lift"][which] = envs.states.joint_positions[which, 0]
+
+    def step(self, envs):
+        return Outcome(self.memory["lift"])
+
+    def observe(self, envs):
+        return {"begun": self.memory["begun"][:, None]}
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_vector_envs_go_on_from_states_as_from_starts(world, played, halves):
+    env = VectorEnv(world, ENVS, halves=halves, seed=3, task="none", episode_steps=200)
+    env.reset()
+    actions = np.zeros(env.action_space.shape, np.float32)
+    env.step(actions)
+    states = played.env_states()
+    rows = [17, 3, 11, 0]
+    chosen = states.select(np.flatnonzero(states.held < 0)[:4])
+    chosen.step[:] = 199
+    were_set = env.set_states(chosen, rows)
+    assert were_set.shape == (4,) and were_set.any()
+    now = env.env_states().select(np.array(rows)[were_set])
+    assert_close(now, chosen.select(were_set))
+    observations, _, terminations, truncations, infos = env.step(actions)
+    ended = np.zeros(ENVS, bool)
+    ended[np.array(rows)[were_set]] = True
+    np.testing.assert_array_equal(truncations, ended)
+    # Of the steps since then alone.
+    assert (infos["episode"]["l"][ended] == 1).all()
+    with pytest.raises(ValueError, match="there are 4 states, expected 20"):
+        env.set_states(chosen)
+    with pytest.raises(Error, match="not finite"):
+        env.set_states(chosen._replace(joint_positions=chosen.joint_positions * np.nan), rows)
+    env.step(actions)
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_tasks_place_robots_and_objects(world, halves):
+    env = VectorEnv(world, ENVS, task=Near, halves=halves, seed=5, episode_steps=6)
+    plain = Simulator(world, envs=ENVS, seed=5, threads=1, task="none")
+    first, _ = env.reset()
+    assert (first[:, -1] == 1).all()
+    states = env.env_states()
+    assert (states.step == 2).all()
+    lifted = states.joint_positions[:, 0] - plain.env_states().joint_positions[:, 0]
+    assert lifted.min() > -1e-6 and lifted.max() > 0.1 and len(set(lifted.tolist())) > ENVS // 2
+    actions = np.zeros(env.action_space.shape, np.float32)
+    for step in range(4):
+        observations, rewards, _, truncations, _ = env.step(actions)
+        if step < 3:
+            np.testing.assert_allclose(rewards, states.joint_positions[:, 0], atol=1e-6)
+        # Two of its six steps were over.
+        assert truncations.all() == (step == 3)
+    assert (observations[:, -1] == 2).all() and (env.env_states().step == 2).all()
+    # States of the caller's count as begun, and are not placed.
+    wanted = env.env_states()
+    wanted.step[:] = 4
+    assert env.set_states(wanted).all()
+    assert (env.observe()[:, -1] == 3).all() and (env.env_states().step == 4).all()
+
+
+def test_named_episodes_are_placed_alike_in_any_env(world):
+    env = VectorEnv(world, ENVS, task=Near, seed=5)
+    plain = Simulator(world, envs=1, task="none")
+    episode = int(np.setdiff1d(np.arange(3), plain.skipped_episodes)[0])
+    env.reset(options={"episodes": np.full(ENVS, episode)})
+    lifts = env.env_states().joint_positions[:, 0]
+    assert len(set(lifts.tolist())) == 1
+
+
+def test_what_tasks_place_is_checked(world):
+    class Wrong(Near):
+        def place(self, envs, which, states):
+            return states.joint_positions
+
+    with pytest.raises(TypeError, match=r"Wrong.place\(\) returned float32 .*, expected EnvStates"):
+        VectorEnv(world, 4, task=Wrong)
+
+    class Lost(Near):
+        def place(self, envs, which, states):
+            states.goal.translation[:] = np.inf
+            return states
+
+    with pytest.raises(Error, match="not finite"):
+        VectorEnv(world, 4, task=Lost)

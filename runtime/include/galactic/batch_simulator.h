@@ -239,6 +239,9 @@ class BatchSimulator {
       std::span<const std::uint32_t> envs, std::span<const EnvState> states,
       EpisodeChoice choice = EpisodeChoice::kDrawn);
 
+  /// Fails as setStates() would because of a state, and does nothing else.
+  [[nodiscard]] Result<void> checkStates(std::span<const EnvState> states) const;
+
   /// The state of all envs as bytes, or of `envs`, in that order (numbers below envCount(), an
   /// ErrorException otherwise): with what the last step returned, the statistics and the seed.
   [[nodiscard]] std::vector<std::byte> saveState() const;

@@ -168,6 +168,15 @@ class BatchSimulator::Impl {
     return {};
   }
 
+  Result<void> checkStates(std::span<const EnvState> states) const {
+    for (std::size_t n = 0; n < states.size(); ++n) {
+      const std::string fault = simulation::faultOf(model_, states[n]);
+      if (fault.empty()) continue;
+      return fail(ErrorCode::kInvalidInput, "states", fmt::format("state {} {}", n, fault));
+    }
+    return {};
+  }
+
   /// A copy of what one env knows.
   EnvState envState(std::size_t env) const {
     constexpr const char* kCall = "BatchSimulator::envState";
@@ -183,12 +192,7 @@ class BatchSimulator::Impl {
     requireIdle(kCall);
     detail::checkLength(kCall, "states", states.size(), envs.size());
     for (const std::uint32_t env : envs) detail::checkIndex(kCall, "env", env, envCount());
-    for (std::size_t n = 0; n < envs.size(); ++n) {
-      const std::string fault = simulation::faultOf(model_, states[n]);
-      if (fault.empty()) continue;
-      return fail(ErrorCode::kInvalidInput, "states",
-                  fmt::format("state {}, for env {}, {}", n, envs[n], fault));
-    }
+    RETURN_IF_ERROR(checkStates(states));
     if (!chooser_) chooser_ = std::make_unique<simulation::StateChooser>(model_);
     std::vector<std::uint8_t> were_set(envs.size());
     for (std::size_t n = 0; n < envs.size(); ++n) {
@@ -372,6 +376,10 @@ Result<std::vector<std::uint8_t>> BatchSimulator::setStates(std::span<const std:
                                                             std::span<const EnvState> states,
                                                             EpisodeChoice choice) {
   return impl_->setStates(envs, states, choice);
+}
+
+Result<void> BatchSimulator::checkStates(std::span<const EnvState> states) const {
+  return impl_->checkStates(states);
 }
 
 std::vector<std::byte> BatchSimulator::saveState() const { return saveState(allEnvs(envCount())); }

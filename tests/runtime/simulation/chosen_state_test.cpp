@@ -347,7 +347,7 @@ TEST(ChosenStates, ThatAreNoneOfThisWorldAreRefused) {
   EXPECT_THAT(refused([](EnvState& s) { s.episode = 99; }), HasSubstr("is in episode 99"));
   EXPECT_THAT(refused([](EnvState& s) { s.episode = 2; }), HasSubstr("cannot be started"));
   EXPECT_THAT(refused([](EnvState& s) { s.objects.pop_back(); }),
-              HasSubstr("states: state 0, for env 0, has 1 objects, and its episode 2"));
+              HasSubstr("states: state 0 has 1 objects, and its episode 2"));
   EXPECT_THAT(refused([](EnvState& s) { s.joint_positions.clear(); }),
               HasSubstr("has 0 joint positions, and the robot 4"));
   EXPECT_THAT(refused([](EnvState& s) { s.held = 2; }), HasSubstr("holds object 2 of 2"));
