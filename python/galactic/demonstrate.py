@@ -16,7 +16,7 @@ import numpy as np
 import torch
 
 import galactic
-from galactic import demonstrations
+from galactic import demonstrations, files
 from galactic.demonstrations import About, Demonstration, Demonstrations
 from galactic.hashing import hashed
 from galactic.learning import checkpoint, own_code, own_tasks
@@ -147,9 +147,9 @@ def _demonstrate(options: argparse.Namespace) -> int:
         raise galactic.Error(galactic.ErrorCode.INVALID_INPUT, str(options.world), message)
     about = _about(options, homes, settings, len(episodes))
     folder: pathlib.Path = options.out
-    checkpoint.require_folder(folder)
+    files.require_folder(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    with checkpoint.alone_in(folder):
+    with files.alone_in(folder):
         _begin(folder, about)
         size = _episodes_of_part(settings)
         parts = [episodes[first : first + size] for first in range(0, len(episodes), size)]
@@ -304,7 +304,7 @@ def _begin(folder: pathlib.Path, about: About) -> None:
                 "choose another folder"
             )
         text = demonstrations.text_of(about)
-        checkpoint.write_atomically(file, lambda handle: handle.write(text), "w")
+        files.write_atomically(file, lambda handle: handle.write(text), "w")
         return
     found = demonstrations.read_about(folder)
     wanted = demonstrations.about_of(demonstrations.text_of(about), file)
@@ -365,11 +365,11 @@ def _write_part(part: pathlib.Path, episodes: Sequence[Demonstration]) -> None:
         unfinished.mkdir()
         for name, array in demonstrations.arrays_of(episodes):
             _write_array(unfinished / f"{name}.npy", array)
-        checkpoint.sync(unfinished)
+        files.sync(unfinished)
         os.replace(unfinished, part)
-        checkpoint.sync(part.parent)
+        files.sync(part.parent)
     except OSError as error:
-        raise checkpoint.unwritable(part, error) from None
+        raise files.unwritable(part, error) from None
     finally:
         shutil.rmtree(unfinished, ignore_errors=True)
 
@@ -380,7 +380,7 @@ def _write_array(file: pathlib.Path, array: np.ndarray) -> None:
         header = np.lib.format.header_data_from_array_1_0(array)
         np.lib.format.write_array_header_1_0(handle, header)
         handle.write(array.view(np.uint8).data)
-    checkpoint.sync(file)
+    files.sync(file)
 
 
 if __name__ == "__main__":

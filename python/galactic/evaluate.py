@@ -12,6 +12,7 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
+from galactic import files
 from galactic.learning import checkpoint, dynamics, evaluation, own_code, own_tasks
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
 from galactic.learning.fitting import other_meaning_of
@@ -167,10 +168,10 @@ def _evaluate(options: argparse.Namespace) -> int:
     recipe = [options.dynamics] if options.dynamics else []
     task_file = own_code.named(options.task, "--task").file if options.task else None
     code = [task_file] if task_file else []
-    checkpoint.require_apart(outputs, [options.policy, options.world, *recipe, *code])
+    files.require_apart(outputs, [options.policy, options.world, *recipe, *code])
     for file in outputs.values():
         if file:
-            checkpoint.require_writable(file)
+            files.require_writable(file)
     if options.contact_sheet:
         pictures.require_png(options.contact_sheet)
     if options.video:

@@ -16,7 +16,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from galactic import _core
+from galactic import _core, files
 from galactic.learning import checkpoint
 from galactic.learning.command import EXIT_CODES, OK, Parser, named_path, told
 from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
@@ -269,7 +269,7 @@ def _edge(size: Any) -> int:
 
 def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "") -> None:
     """Reads the checkpoint `file` and writes the policy pack `output`."""
-    checkpoint.require_apart({"--out": output}, [file])
+    files.require_apart({"--out": output}, [file])
     saved = checkpoint.load_policy(file)
     trained_with = {
         field.replace("_", "-"): typed(value) for field, value in saved.settings.to_dict().items()

@@ -15,10 +15,19 @@ from typing import Optional, Sequence
 import torch
 
 import galactic
+from galactic import files
 from galactic.demonstrations import Demonstrations
 from galactic.learning import checkpoint, evaluation, own_code, own_tasks
-from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy
-from galactic.learning.command import EXIT_CODES, INTERRUPTED, OK, Parser, named_path, told
+from galactic.learning.checkpoint import CheckpointFolder
+from galactic.learning.command import (
+    EXIT_CODES,
+    INTERRUPTED,
+    OK,
+    Parser,
+    lost_output,
+    named_path,
+    told,
+)
 from galactic.learning.distributed import Group, device_of, local_ranks
 from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.homes import Homes, sizes_of
@@ -27,8 +36,20 @@ from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, TAUGHT, preset
 from galactic.learning.privileges import other_meaning, parts_of_actor
 from galactic.learning.reports import log
-from galactic.learning.reports.curves import write_json
-from galactic.learning.setting_options import add_options, given_options, positive_integer
+from galactic.learning.run_folder import (
+    TEACHER,
+    Run,
+    begin_folder,
+    read_run,
+    require_no_run,
+    take_folder,
+)
+from galactic.learning.setting_options import (
+    add_options,
+    given_options,
+    option_lines,
+    positive_integer,
+)
 from galactic.learning.settings import (
     Settings,
     SettingsError,
@@ -37,23 +58,6 @@ from galactic.learning.settings import (
 )
 from galactic.learning.streams import put
 from galactic.learning.trainer import Trainer, Validation, threads_of
-
-
-TEACHER = "teacher.pt"
-"""The copy of the teacher in the folder of a run."""
-
-
-@dataclasses.dataclass
-class Run:
-    """What a run is about: kept in its settings.json."""
-
-    world: pathlib.Path
-    validation: Optional[pathlib.Path]
-    settings: Settings
-    start_from: Optional[pathlib.Path] = None
-    teacher: Optional[pathlib.Path] = None
-    task_file: Optional[pathlib.Path] = None
-    demonstrations: Sequence[pathlib.Path] = ()
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -69,7 +73,6 @@ def make_parser() -> argparse.ArgumentParser:
         "-o",
         "--out",
         type=named_path,
-        required=True,
         metavar="FOLDER",
         help="folder of the run",
     )
@@ -124,19 +127,28 @@ def make_parser() -> argparse.ArgumentParser:
         metavar="FILE.py:NAME|MODULE:NAME",
         help="hand each row of curves.csv to what this function of yours returns for (folder, settings)",
     )
+    parser.add_argument(
+        "--print-settings",
+        action="store_true",
+        help="print all settings that a run with these options has, and do nothing else",
+    )
     add_options(parser)
     return parser
 
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:
     given = sys.argv[1:] if arguments is None else list(arguments)
-    options = make_parser().parse_args(given)
+    parser = make_parser()
+    options = parser.parse_args(given)
+    if options.print_settings:
+        return told("galactic.train", lambda: _print_settings(options))
+    if options.out is None:
+        parser.error("the following arguments are required: -o/--out")
 
     def train() -> int:
         if "RANK" in os.environ:
             follow_launcher()
-        if options.log_to is not None:
-            own_code.named(options.log_to, "--log-to")
+        make_log = _log_maker(options)
         run = _resumed_run(options) if options.resume else _new_run(options)
         if options.resume and _is_complete(run, options.out):
             if os.environ.get("RANK", "0") == "0":
@@ -144,11 +156,11 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
             return OK
         if "RANK" not in os.environ:
             device_of(options.device, 0, run.settings.ranks)
-            checkpoint.require_folder(options.out)
+            files.require_folder(options.out)
             return launch(run.settings.ranks, [sys.executable, "-m", "galactic.train", *given])
         group = Group.join(options.device)
         try:
-            work = functools.partial(_train, run, options, group)
+            work = functools.partial(_train, run, options, group, make_log)
             return told("galactic.train", work, group.may_tell)
         finally:
             group.leave()
@@ -156,7 +168,16 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     return told("galactic.train", train)
 
 
-def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
+def _log_maker(options: argparse.Namespace) -> Optional[log.MakeTaker]:
+    """What --log-to names, of the one rank that uses it; before there are ranks, to tell what is wrong with
+    it."""
+    is_used = options.log_to is not None and os.environ.get("RANK", "0") == "0"
+    return log.maker(options.log_to) if is_used else None
+
+
+def _train(
+    run: Run, options: argparse.Namespace, group: Group, make_log: Optional[log.MakeTaker]
+) -> int:
     folder: pathlib.Path = options.out
     settings = run.settings
     threads = threads_of(settings.simulation_threads, local_ranks())
@@ -195,12 +216,14 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
     group.wait_for_all()
     with contextlib.ExitStack() as held:
-        group.raise_on_all(_take_folder(options, held) if group.rank == 0 else None)
+        group.raise_on_all(
+            take_folder(folder, held, resumes=options.resume) if group.rank == 0 else None
+        )
         if options.resume:
             trainer.resume()
-        group.raise_on_all(_begin_log(trainer, options) if group.rank == 0 else None)
+        group.raise_on_all(_begin_log(trainer, make_log, options.out, held) if make_log else None)
         group.raise_on_all(
-            _begin_folder(run, folder, teacher, resumes=options.resume) if group.rank == 0 else None
+            begin_folder(run, folder, teacher, resumes=options.resume) if group.rank == 0 else None
         )
         undisturbed = _carry_out(trainer, run, options)
     envs.close()
@@ -214,15 +237,16 @@ def _train(run: Run, options: argparse.Namespace, group: Group) -> int:
     return OK
 
 
-def _begin_log(trainer: Trainer, options: argparse.Namespace) -> Optional[Exception]:
-    """Lets a function of the user's take the curves; why that is impossible."""
-    if options.log_to is None:
-        return None
+def _begin_log(
+    trainer: Trainer, make: log.MakeTaker, folder: pathlib.Path, held: contextlib.ExitStack
+) -> Optional[Exception]:
+    """Lets a function of the user's take the curves, while `held` is; why that is impossible."""
     try:
-        take = log.taker(options.log_to, options.out, trainer.settings.to_dict())
+        take = make(folder, trainer.settings.to_dict())
     except SettingsError as error:
         return error
     trainer.log = log.Log(take, trainer.progress.say)
+    held.callback(trainer.log.close)
     return None
 
 
@@ -239,10 +263,26 @@ def _carry_out(trainer: Trainer, run: Run, options: argparse.Namespace) -> bool:
     return trainer.train(options.pause_at)
 
 
+def _print_settings(options: argparse.Namespace) -> int:
+    """Those of a new run with these options, whatever its world."""
+    if options.resume:
+        raise SettingsError(
+            "--print-settings is for a new run; one that is resumed has its own in settings.json"
+        )
+    run = _run_of(options, pathlib.Path())
+    if not put(sys.stdout, option_lines(run.settings)):
+        raise lost_output()
+    return OK
+
+
 def _new_run(options: argparse.Namespace) -> Run:
     if options.world is None:
         raise SettingsError("which world? Name a world pack, or --resume a run")
-    _require_no_run(options.out)
+    require_no_run(options.out)
+    return _run_of(options, options.world.resolve())
+
+
+def _run_of(options: argparse.Namespace, world: pathlib.Path) -> Run:
     given = given_options(options)
     for name in ("teacher_weight", "teacher_share"):
         if name in given and options.teacher is None:
@@ -255,7 +295,7 @@ def _new_run(options: argparse.Namespace) -> Run:
     if options.demonstrations:
         _require_imitation(options, settings)
     run = Run(
-        options.world.resolve(),
+        world,
         _absolute(options.validation),
         settings,
         _absolute(options.start_from),
@@ -303,13 +343,6 @@ def _task_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_tasks.Mak
     return own_tasks.maker(name, run.settings.task_options, siblings)
 
 
-def _require_no_run(folder: pathlib.Path) -> None:
-    if (folder / "settings.json").exists():
-        raise SettingsError(
-            f"{folder} already holds a run; continue it with --resume, or choose another folder"
-        )
-
-
 def _resumed_run(options: argparse.Namespace) -> Run:
     policies = options.start_from or options.teacher or options.demonstrations
     if options.world or options.preset or options.validation or policies:
@@ -321,7 +354,7 @@ def _resumed_run(options: argparse.Namespace) -> Run:
         raise galactic.Error(
             galactic.ErrorCode.IO, str(file), f"does not exist: {options.out} holds no run"
         )
-    run = _read_run(file)
+    run = read_run(file)
     settings = resumed(run.settings, given_options(options))
     done = CheckpointFolder(options.out, settings.keep).steps
     if settings.steps != run.settings.steps and settings.steps < done:
@@ -346,96 +379,6 @@ def _is_complete(run: Run, folder: pathlib.Path) -> bool:
 
 def _behind(option: str, found: int, done: int) -> str:
     return f"{option}: found {found:,}, and the run has done {done:,} steps; take more, or "
-
-
-def _read_run(file: pathlib.Path) -> Run:
-    remedy = "begin another run, which can have the weights of best.pt (--start-from)"
-    with checkpoint.refusing(f"{file} does not say what the run is", remedy):
-        run = json.loads(file.read_text(encoding="utf-8"))
-        blank = dict.fromkeys(("start_from", "teacher", "task_file"))
-        run, path = {**blank, "demonstrations": [], **run}, (str, type(None))
-        checkpoint.require_types(
-            run,
-            {
-                "world": str,
-                "validation": path,
-                "start_from": path,
-                "teacher": path,
-                "task_file": path,
-                "demonstrations": list,
-                "settings": dict,
-            },
-        )
-        return Run(
-            pathlib.Path(run["world"]),
-            pathlib.Path(run["validation"]) if run["validation"] else None,
-            Settings.from_dict(run["settings"]),
-            pathlib.Path(run["start_from"]) if run["start_from"] else None,
-            pathlib.Path(run["teacher"]) if run["teacher"] else None,
-            pathlib.Path(run["task_file"]) if run["task_file"] else None,
-            [pathlib.Path(folder) for folder in run["demonstrations"]],
-        )
-
-
-def _take_folder(options: argparse.Namespace, held: contextlib.ExitStack) -> Optional[Exception]:
-    """Keeps others from writing into the folder of the run, while `held` is; why that is impossible."""
-    folder: pathlib.Path = options.out
-    try:
-        if not options.resume:
-            checkpoint.require_folder(folder)
-            folder.mkdir(parents=True, exist_ok=True)
-        held.enter_context(checkpoint.alone_in(folder))
-        if not options.resume:
-            # Another one may have come and gone since.
-            _require_no_run(folder)
-    except (galactic.Error, OSError, SettingsError) as error:
-        return error
-    return None
-
-
-def _begin_folder(
-    run: Run,
-    folder: pathlib.Path,
-    teacher: Optional[tuple[SavedPolicy, pathlib.Path]],
-    *,
-    resumes: bool,
-) -> Optional[Exception]:
-    """Writes what the run is into its folder; why that is impossible."""
-    try:
-        if teacher is not None and teacher[1] != folder / TEACHER:
-            checkpoint.save_policy(teacher[0], folder / TEACHER)
-        if run.task_file is not None:
-            _keep_task(run.task_file, folder / own_tasks.COPY, resumes)
-        _write_run(run, folder)
-    except (galactic.Error, OSError) as error:
-        return error
-    return None
-
-
-def _keep_task(file: pathlib.Path, copy: pathlib.Path, resumes: bool) -> None:
-    """Copies the file of the run's task, with which the run can be resumed whatever becomes of it."""
-    if resumes:
-        return  # with the copy
-    code = file.read_bytes()
-    if copy.exists() and copy.read_bytes() != code:
-        message = f"is there already, and is not {file}; move it, or choose another folder"
-        raise galactic.Error(galactic.ErrorCode.IO, str(copy), message)
-    checkpoint.write_atomically(copy, lambda handle: handle.write(code))
-
-
-def _write_run(run: Run, folder: pathlib.Path) -> None:
-    write_json(
-        folder / "settings.json",
-        {
-            "world": str(run.world),
-            "validation": str(run.validation) if run.validation else None,
-            "start_from": str(run.start_from) if run.start_from else None,
-            "teacher": str(run.teacher) if run.teacher else None,
-            "task_file": str(run.task_file) if run.task_file else None,
-            "demonstrations": [str(folder) for folder in run.demonstrations],
-            "settings": run.settings.to_dict(),
-        },
-    )
 
 
 def _validation(

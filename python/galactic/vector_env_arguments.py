@@ -19,7 +19,7 @@ Array = NDArray[Any]
 _NO_OPTIONS = {
     "envs": "give num_envs",
     "auto_reset": "its envs begin the next episode by themselves, those of a Simulator need not",
-    "autoreset_mode": "episodes begin in the step in which others end (metadata), as SAME_STEP has it",
+    "autoreset_mode": "it is SAME_STEP; a Simulator with auto_reset=False leaves envs where episodes end",
 }
 _OF_THE_PAPER = 'a dictionary of "continuous" and "discrete": actions="paper"'
 

@@ -440,6 +440,8 @@ def test_options_of_a_simulator_that_it_does_not_have_are_refused(world):
         VectorEnv(world, envs=4)
     with pytest.raises(TypeError, match="VectorEnv has no option auto_reset; its envs begin"):
         VectorEnv(world, 2, auto_reset=False)
+    with pytest.raises(TypeError, match="no option autoreset_mode; it is SAME_STEP; a Simulator"):
+        VectorEnv(world, 2, autoreset_mode="disabled")
     with pytest.raises(TypeError, match="VectorEnv has no option width; give images={'width': 64}"):
         VectorEnv(world, 2, width=64)
     with pytest.raises(ValueError, match="no option 'episode'; expected reset_mask or episodes"):

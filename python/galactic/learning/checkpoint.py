@@ -10,7 +10,7 @@ A run's folder holds
     best.pt                          the policy.pt that did best
     teacher.pt                       the policy.pt of the teacher, if there is one
     curves.csv, curves.html          written while it runs
-    .lock                            held by who writes here: see alone_in()
+    .lock                            held by who writes here: see files.alone_in()
 
 A .pt file is a dictionary that `torch.load(..., weights_only=True)` reads: tensors under their names,
 and under "values" a JSON text with all else (torch 1.13 reads no plain floats that way). In policy.pt:
@@ -20,7 +20,7 @@ and under "values" a JSON text with all else (torch 1.13 reads no plain floats t
                 settings  Settings.to_dict()
                 shape     PolicyShape._asdict()
                 parts     names and sizes of the parts of an observation, in order: [[name, size], ...]
-                meanings  what their numbers mean: privileges.meaning_of(); not in older files
+                meanings  what their numbers mean: sensors.meaning_of(); not in older files
                 steps     steps of training
                 success   success rate by which it was judged, or null
 """
@@ -28,19 +28,18 @@ and under "values" a JSON text with all else (torch 1.13 reads no plain floats t
 from __future__ import annotations
 
 import contextlib
-import errno
-import fcntl
 import io
 import json
 import os
 import pathlib
 import shutil
 from dataclasses import dataclass, field
-from typing import Any, Callable, Iterable, Iterator, Mapping, Optional
+from typing import Any, Iterator, Mapping, Optional
 
 import torch
 from torch import Tensor
 
+from galactic import files
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.networks import Policy, PolicyShape, make_policy
@@ -61,7 +60,7 @@ class CheckpointError(Exception):
 @dataclass
 class SavedPolicy:
     """A policy as it was saved. `parts`: names and sizes of the parts of its observations. `meanings`: what
-    their numbers mean (privileges.meaning_of()), as far as that is known."""
+    their numbers mean (sensors.meaning_of()), as far as that is known."""
 
     policy: Policy
     settings: Settings
@@ -299,126 +298,12 @@ def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str
             ) from error
 
 
-def require_writable(file: pathlib.Path) -> None:
-    """Raises galactic.Error where write_atomically() could not write `file`, and leaves it as it is:
-    for outputs of long work, before it."""
-    try:
-        if file.is_dir():
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        temporary = _temporary(file)
-        temporary.touch()
-        temporary.unlink()
-    except OSError as error:
-        raise unwritable(file, error) from None
-
-
-def unwritable(file: pathlib.Path, error: OSError) -> Error:
-    """What there is to say where a file that is written atomically could not be."""
-    why = error.strerror or str(error)
-    message = f"cannot write the file: {why}; an existing file is left as it was"
-    return Error(ErrorCode.IO, str(file), message)
-
-
-def require_apart(
-    outputs: Mapping[str, Optional[pathlib.Path]], inputs: Iterable[pathlib.Path]
-) -> None:
-    """Raises galactic.Error where an output, by the option that names it, would replace one of the
-    inputs or another output. None: there is no such file."""
-    written: dict[pathlib.Path, str] = {}
-    read = {file.resolve() for file in inputs}
-    for option, file in outputs.items():
-        if file is None:
-            continue
-        place = file.resolve()
-        message = ""
-        if place in read:
-            message = "is also an input; write to another file"
-        elif place in written:
-            message = f"would be written twice: by {written[place]} and by {option}; give each its own name"
-        if message:
-            raise Error(ErrorCode.INVALID_INPUT, str(file), message)
-        written[place] = option
-
-
-def require_folder(folder: pathlib.Path) -> None:
-    """Raises galactic.Error where a run could not keep its files in `folder`, and leaves the disk as it
-    is: before there is work that would be lost."""
-    remedy = "give another -o"
-    missing: list[pathlib.Path] = []
-    try:
-        missing = [one for one in (folder, *folder.parents) if not one.exists()]
-        if not missing and not folder.is_dir():
-            message = f"is a file, expected a folder or nothing; {remedy}"
-            raise Error(ErrorCode.IO, str(folder), message)
-        folder.mkdir(parents=True, exist_ok=True)
-        require_writable(folder / "settings.json")
-    except OSError as error:
-        message = f"cannot make the folder: {error.strerror}; {remedy}"
-        raise Error(ErrorCode.IO, str(folder), message) from None
-    finally:
-        with contextlib.suppress(OSError):
-            for one in missing:
-                one.rmdir()
-
-
-@contextlib.contextmanager
-def alone_in(folder: pathlib.Path) -> Iterator[None]:
-    """Around writing into the folder of a run, which exists: raises galactic.Error where another process
-    does. The lock ends with its process, however that ends; its file stays, and means nothing. Where the
-    disk has no locks, nobody is refused."""
-    file = folder / ".lock"
-    try:
-        handle = open(file, "wb")
-    except OSError as error:
-        raise unwritable(file, error) from None
-    with handle:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            # The second is what disks say that lock by the ranges of POSIX, as NFS does.
-            if error.errno in (errno.EWOULDBLOCK, errno.EACCES):
-                message = (
-                    "a run is under way in this folder; wait for its end, interrupt it, or give "
-                    "another -o"
-                )
-                raise Error(ErrorCode.IO, str(folder), message) from None
-        yield
-
-
-def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: str = "wb") -> None:
-    """Calls write(handle) on a temporary file that then takes the name `file`: readers, and whoever
-    comes after a crash, find the old contents or the new ones."""
-    encoding = None if "b" in mode else "utf-8"
-    with replacing(file) as temporary, open(temporary, mode, encoding=encoding) as handle:
-        write(handle)
-
-
-@contextlib.contextmanager
-def replacing(file: pathlib.Path) -> Iterator[pathlib.Path]:
-    """A place beside `file`, of the same extension, for what takes its name when the block has written
-    it; for programs that write files by themselves, see write_atomically()."""
-    temporary = _temporary(file)
-    try:
-        yield temporary
-        sync(temporary)
-        os.replace(temporary, file)
-        sync(file.parent)
-    except OSError as error:
-        raise unwritable(file, error) from None
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _temporary(file: pathlib.Path) -> pathlib.Path:
-    return file.with_name(f".{os.getpid()}.{file.name}")
-
-
 def save(file: pathlib.Path, values: dict[str, Any], tensors: dict[str, Any]) -> None:
     """Writes what load() reads, atomically."""
     # Torch ends the process where the disk has no room for what it writes.
     contents = io.BytesIO()
     torch.save({"values": json.dumps(values), **tensors}, contents)
-    write_atomically(file, lambda handle: handle.write(contents.getbuffer()))
+    files.write_atomically(file, lambda handle: handle.write(contents.getbuffer()))
 
 
 class CheckpointFolder:
@@ -444,7 +329,7 @@ class CheckpointFolder:
         final = self.folder / f"{steps:012d}"
         shutil.rmtree(final, ignore_errors=True)
         os.replace(self._unfinished(steps), final)
-        sync(self.folder)
+        files.sync(self.folder)
         for old in self.complete()[: -self._keep]:
             shutil.rmtree(old, ignore_errors=True)
         return final
@@ -482,12 +367,3 @@ class CheckpointFolder:
 
     def _unfinished(self, steps: int) -> pathlib.Path:
         return self.folder / f".{steps:012d}.unfinished"
-
-
-def sync(path: pathlib.Path) -> None:
-    """Puts a file, or the names in a folder, on the disk."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -6,6 +6,7 @@ import argparse
 import dataclasses
 import math
 import re
+import shlex
 from typing import Any, Collection, Optional
 
 from galactic.learning.settings import MOST_WHOLE, Settings, option_name, typed
@@ -41,6 +42,31 @@ def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
         for name, value in vars(arguments).items()
         if name.startswith(prefix)
     }
+
+
+def option_lines(settings: Settings) -> str:
+    """The settings as one types them, an option to a line, in their groups; behind those that are none of the
+    defaults, which are. What is empty is left out."""
+    lines: list[str] = []
+    group = ""
+    for field in dataclasses.fields(Settings):
+        value = getattr(settings, field.name)
+        if field.metadata["group"] != group:
+            group = field.metadata["group"]
+            lines += [*([""] if lines else []), f"# {group}"]
+        option = option_name(field.name)
+        if isinstance(value, bool):
+            line = option if value else f"--no-{option[2:]}"
+        else:
+            line = f"{option} {shlex.quote(str(typed(value)))}"
+        if value != field.default:
+            line += (
+                f"  # default: {typed(field.default)}"
+                if field.default != ""
+                else "  # default: nothing"
+            )
+        lines += [line] if value != "" else []
+    return "\n".join(lines) + "\n"
 
 
 def positive_integer(text: str) -> int:

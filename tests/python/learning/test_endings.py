@@ -16,8 +16,7 @@ from typing import Any, Callable, Iterator
 import pytest
 
 import galactic
-from galactic import train
-from galactic.learning import checkpoint
+from galactic import files, train
 from galactic.learning.launch import LAUNCHER, launch
 
 WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
@@ -158,7 +157,7 @@ def run_of_two_ranks(folder: pathlib.Path) -> Iterator["subprocess.Popen[str]"]:
 
 def is_free(folder: pathlib.Path) -> bool:
     try:
-        with checkpoint.alone_in(folder):
+        with files.alone_in(folder):
             return True
     except galactic.Error:
         return False
@@ -280,9 +279,9 @@ def test_a_full_disk_is_one_sentence_and_leaves_what_was_saved(tmp_path: pathlib
 
 
 def test_a_folder_is_locked_once(tmp_path: pathlib.Path) -> None:
-    with checkpoint.alone_in(tmp_path):
+    with files.alone_in(tmp_path):
         with pytest.raises(galactic.Error, match="a run is under way in this folder; wait"):
-            with checkpoint.alone_in(tmp_path):
+            with files.alone_in(tmp_path):
                 pass
-    with checkpoint.alone_in(tmp_path):
+    with files.alone_in(tmp_path):
         pass

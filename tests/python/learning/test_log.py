@@ -7,7 +7,17 @@ import pathlib
 
 import pytest
 
-from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
+from programs import (
+    HELD_OUT,
+    SMALL,
+    SMALL_OF_ANY_RANKS,
+    UPDATE,
+    WORLD,
+    call,
+    curve,
+    needs_worlds,
+    run,
+)
 
 LOG = """
 import json
@@ -24,6 +34,27 @@ def to_nowhere(folder, settings):
 
 def to_nothing(folder, settings):
     return None
+
+class Tracker:
+    def __init__(self, folder, settings):
+        self.folder, self.rows = folder, 0
+
+    def __call__(self, row):
+        self.rows += 1
+
+    def close(self):
+        with open(self.folder / "closed", "a") as file:
+            print(self.rows, (self.folder / "report.json").exists(), file=file)
+
+class Finished(Tracker):
+    close = None
+
+    def finish(self):
+        Tracker.close(self)
+        raise ConnectionError("gone")
+
+def takes_less(folder):
+    pass
 
 no_function = 3
 """
@@ -71,6 +102,7 @@ def test_a_run_goes_on_without_its_tracker(tmp_path: pathlib.Path) -> None:
     [
         ("lab", 'found "lab", expected FILE.py:NAME or MODULE:NAME'),
         ("{lab}:to_line", "lab.py has no to_line"),
+        ("{lab}:takes_less", "takes_less cannot be called with a folder and settings: too many"),
         ("{lab}:no_function", "lab.py:no_function is no function; name one that takes a folder"),
         ("{lab}:to_nothing", "lab.py:to_nothing returned a NoneType, expected what takes a row"),
     ],
@@ -81,3 +113,28 @@ def test_what_cannot_take_rows_is_refused(tmp_path: pathlib.Path, name: str, mes
     done = call("train", WORLD, "-o", tmp_path / "run", *SMALL, "--log-to", name.format(lab=lab))
     assert done.returncode == 1 and message in done.stderr
     assert not (tmp_path / "run" / "settings.json").exists()
+
+
+@needs_worlds
+def test_the_end_is_told(tmp_path: pathlib.Path) -> None:
+    """Also of a part of a run."""
+    (tmp_path / "lab.py").write_text(LOG, encoding="utf-8")
+    folder, tracker = tmp_path / "run", f"{tmp_path / 'lab.py'}:Tracker"
+    options = [*SMALL, "--steps", 5 * UPDATE, "--pause-at", 2 * UPDATE, "--log-to", tracker]
+    assert call("train", WORLD, "-o", folder, *options).returncode == 0
+    assert call("train", "-o", folder, "--resume", "--log-to", tracker).returncode == 0
+    assert (folder / "closed").read_text() == "2 True\n3 True\n"
+    finished = f"{tmp_path / 'lab.py'}:Finished"
+    options = [*SMALL, "--steps", UPDATE, "--log-to", finished]
+    done = call("train", WORLD, "-o", tmp_path / "other", *options)
+    assert done.returncode == 0 and (tmp_path / "other" / "closed").read_text() == "1 True\n"
+    assert "--log-to: ConnectionError: gone; it came out of its finish()" in done.stderr
+
+
+@needs_worlds
+def test_code_that_cannot_be_imported_ends_before_there_are_ranks(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "lab.py").write_text("import nonesuch\ndef log(a, b): return print\n", "utf-8")
+    options = [*SMALL_OF_ANY_RANKS, "--ranks", 2, "--log-to", f"{tmp_path / 'lab.py'}:log"]
+    done = run("train", WORLD, "-o", tmp_path / "run", *options)
+    assert done.returncode == 1 and done.stderr.count("No module named 'nonesuch'") == 1
+    assert not (tmp_path / "run").exists()

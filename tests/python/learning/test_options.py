@@ -5,11 +5,14 @@ from __future__ import annotations
 import argparse
 import pathlib
 import re
+import shlex
 from typing import Any, Callable
 
 import pytest
 
 from galactic import evaluate, export, train
+from galactic.learning.presets import preset
+from galactic.learning.setting_options import given_options
 
 NO_NUMBER = ("", "nan", "-nan", "inf", "-inf", "1e300", "-1e300", "nonsense", "1x", " 1", "1,1")
 NO_WHOLE_NUMBER = (*NO_NUMBER, "-1", "1.5", "9" * 20)
@@ -126,6 +129,32 @@ def test_the_walk_reaches_options_that_are_taken(run: Any) -> None:
     # The policy that is missing is looked for after the options.
     assert run("evaluate", ["none.pt", "none.pack", "--seed", "7", "--episodes", "1"])[0] == 2
     assert run("export", ["none.pt", "-o", "out.pack", "--name", "a"])[0] == 2
+
+
+def test_settings_are_printed_as_one_types_them(run: Any, capsys: Any) -> None:
+    """Without a world or a folder; typed again, they are the same."""
+    changes = ["--no-normalize", "--camera-position=-0.1,0,.2", "--steps", "2e6"]
+    assert train.main(["--preset", "quick-depth", *changes, "--print-settings"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:2] == ["# Run", "--steps 2000000  # default: 200000000"]
+    assert "--no-normalize" in lines and "--camera-position -0.1,0,0.2  # default: 0,0,0" in lines
+    assert "--recurrent  # default: False" in lines and not any(
+        line.startswith("--task ") for line in lines
+    )
+    words = shlex.split("\n".join(lines), comments=True)
+    found = given_options(train.make_parser().parse_args(words))
+    assert preset("paper", **found) == preset(
+        "quick-depth", normalize=False, camera_position=(-0.1, 0.0, 0.2), steps=2_000_000
+    )
+    assert not list(pathlib.Path().iterdir())
+    for words, message in (
+        (["--resume", "-o", "run"], "--print-settings is for a new run; one that is resumed has"),
+        (["--preset", "quack"], '"quack" is not a preset; did you mean quick?'),
+    ):
+        code, said = run("train", [*words, "--print-settings"])
+        assert code == 1 and message in said
+    code, said = run("train", ["none.pack"])
+    assert code == 1 and "the following arguments are required: -o/--out" in said
 
 
 @pytest.mark.parametrize(

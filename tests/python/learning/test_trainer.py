@@ -14,6 +14,7 @@ import pytest
 import torch
 
 import galactic
+from galactic import files
 from galactic.learning import checkpoint
 from galactic.learning.checkpoint import (
     CheckpointError,
@@ -96,14 +97,14 @@ def test_an_unfinished_checkpoint_is_passed_over(tmp_path: pathlib.Path) -> None
 
 def test_a_write_that_fails_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
     file = tmp_path / "file"
-    checkpoint.write_atomically(file, lambda handle: handle.write(b"old"))
+    files.write_atomically(file, lambda handle: handle.write(b"old"))
 
     def fail(handle: Any) -> None:
         handle.write(b"ne")
         raise OSError("disk full")
 
     with pytest.raises(galactic.Error, match="file: cannot write the file: disk full; an existing"):
-        checkpoint.write_atomically(file, fail)
+        files.write_atomically(file, fail)
     assert file.read_bytes() == b"old" and os.listdir(tmp_path) == ["file"]
 
 

@@ -11,7 +11,7 @@ from typing import Any, Mapping, Optional, Sequence
 
 from galactic._core import ErrorCode
 from galactic.errors import Error
-from galactic.learning.checkpoint import write_atomically
+from galactic.files import write_atomically
 from galactic.learning.episode_sums import OwnNames
 from galactic.learning.reports.page import curves_page
 

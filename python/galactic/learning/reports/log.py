@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import pathlib
 from typing import Any, Callable, Mapping
 
@@ -12,21 +13,43 @@ TakeRow = Callable[[Mapping[str, float]], object]
 """Takes a row: what is known of the columns of reports.curves, by name."""
 
 
-def taker(text: str, folder: pathlib.Path, settings: Mapping[str, Any]) -> TakeRow:
-    """What the function that `text` names (own_code.named()) returns for a run in this folder with these
-    settings. What it raises is the caller's."""
+MakeTaker = Callable[[pathlib.Path, Mapping[str, Any]], TakeRow]
+"""Makes one for a run in this folder, with these settings."""
+
+
+def maker(text: str) -> MakeTaker:
+    """The function that `text` names (own_code.named()). Its file runs now; what that raises is the caller's."""
     code = own_code.named(text, "--log-to")
-    make = own_code.members_of(code).get(code.name)
-    if not callable(make):
-        found = f"{code.place} has no {code.name}" if make is None else f"{code} is no function"
-        raise SettingsError(f"--log-to: {found}; name one that takes a folder and settings")
-    with own_code.goes_on(code, "when it was called; return what takes a row"):
-        take = make(folder, settings)
-    if not callable(take):
+    found = own_code.members_of(code).get(code.name)
+    if not callable(found):
+        fault = f"{code.place} has no {code.name}" if found is None else f"{code} is no function"
+        raise SettingsError(f"--log-to: {fault}; name one that takes a folder and settings")
+    make: Callable[..., Any] = found
+    _require_parameters(make, code)
+
+    def taker(folder: pathlib.Path, settings: Mapping[str, Any]) -> TakeRow:
+        with own_code.goes_on(code, "when it was called; return what takes a row"):
+            take = make(folder, settings)
+        if not callable(take):
+            raise SettingsError(
+                f"--log-to: {code} returned a {type(take).__name__}, expected what takes a row"
+            )
+        return take
+
+    return taker
+
+
+def _require_parameters(make: Callable[..., Any], code: own_code.CodeName) -> None:
+    try:
+        signature = inspect.signature(make)
+    except ValueError:  # what is compiled may not tell
+        return
+    try:
+        signature.bind("folder", {})
+    except TypeError as error:
         raise SettingsError(
-            f"--log-to: {code} returned a {type(take).__name__}, expected what takes a row"
-        )
-    return take
+            f"--log-to: {code} cannot be called with a folder and settings: {error}"
+        ) from error
 
 
 class Log:
@@ -39,10 +62,21 @@ class Log:
         self._told: set[str] = set()
 
     def add(self, values: Mapping[str, float]) -> None:
+        self._try(lambda: self._take(dict(values)), "the row is lost, and the run goes on")
+
+    def close(self) -> None:
+        """Says that no more rows come: calls close() of what takes them, or else finish(), if it has any."""
+        for name in ("close", "finish"):
+            end = getattr(self._take, name, None)
+            if callable(end):
+                self._try(end, f"it came out of its {name}()")
+                return
+
+    def _try(self, work: Callable[[], object], outcome: str) -> None:
         try:
-            self._take(dict(values))
+            work()
         except Exception as error:  # of a stranger's code
             kind = type(error).__name__
             if kind not in self._told:
                 self._told.add(kind)
-                self._say(f"--log-to: {kind}: {error}; the row is lost, and the run goes on")
+                self._say(f"--log-to: {kind}: {error}; {outcome}")

@@ -17,7 +17,7 @@ from typing import Optional, Sequence
 import numpy as np
 
 import galactic
-from galactic.learning.checkpoint import replacing, write_atomically
+from galactic.files import replacing, write_atomically
 from galactic.learning.evaluation import Actor, EpisodeResult, rows_of
 from galactic.learning.homes import SUCCESS, Homes
 from galactic.learning.own_tasks import MakeTask
