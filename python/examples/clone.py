@@ -10,7 +10,7 @@ from torch import nn
 
 shown = galactic.Demonstrations(sys.argv[1])
 solved = [one for one in shown if one.is_solved]
-states = torch.from_numpy(np.concatenate([one.state[one.by_expert] for one in solved]))
+states = torch.from_numpy(np.concatenate([one.state[:-1][one.by_expert] for one in solved]))
 actions = torch.from_numpy(np.concatenate([one.actions[one.by_expert] for one in solved]))
 print(f"{len(solved)} of {len(shown)} episodes, {len(states)} steps")
 

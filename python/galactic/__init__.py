@@ -39,6 +39,7 @@ except ModuleNotFoundError as error:
         "it: cmake --build --preset release --target galactic_python (docs/python.md)",
         name=error.name,
     ) from None
+from galactic.demonstration_writer import DemonstrationWriter
 from galactic.demonstrations import Demonstration, Demonstrations
 from galactic.env_states import EnvStates, Poses
 from galactic.episode_table import EpisodeTable
@@ -49,6 +50,7 @@ from galactic.vector_env import VectorEnv
 __all__ = [
     "Action",
     "Demonstration",
+    "DemonstrationWriter",
     "Demonstrations",
     "EnvState",
     "EnvStates",

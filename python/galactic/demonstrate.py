@@ -7,7 +7,6 @@ import dataclasses
 import hashlib
 import os
 import pathlib
-import shutil
 import sys
 import time
 from typing import Optional, Sequence
@@ -17,7 +16,8 @@ import torch
 
 import galactic
 from galactic import demonstrations, files
-from galactic.demonstrations import About, Demonstration, Demonstrations
+from galactic.demonstration_writer import EPISODES_OF_PART, EPISODES_WITH_IMAGES, write_part
+from galactic.demonstrations import About, Demonstrations
 from galactic.hashing import hashed
 from galactic.learning import checkpoint, own_code, own_tasks
 from galactic.learning.checkpoint import SavedPolicy
@@ -61,9 +61,6 @@ _SETTINGS = (
     "network",
     *dict.fromkeys(CAMERA.values()),
 )
-# How many episodes make a part: what an interrupt may cost, and what memory has to hold at a time.
-_EPISODES_OF_PART = 256
-_EPISODES_WITH_IMAGES = 64
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -172,7 +169,7 @@ def _demonstrate(options: argparse.Namespace) -> int:
 
 
 def _episodes_of_part(settings: Settings) -> int:
-    return _EPISODES_WITH_IMAGES if SIGHT[settings.network] else _EPISODES_OF_PART
+    return EPISODES_WITH_IMAGES if SIGHT[settings.network] else EPISODES_OF_PART
 
 
 def _settings(options: argparse.Namespace) -> tuple[Settings, Optional[own_tasks.MakeTask]]:
@@ -344,9 +341,9 @@ def _make(folder: pathlib.Path, parts: list[list[int]], homes: Homes, expert: Ex
     for count, (number, episodes) in enumerate(missing):
         # Its noise does not depend on which parts were made before it.
         homes.restart(int(hashed(seed, np.array(number), np.array(0), 1)[0] >> np.uint64(32)))
-        recorder = Recorder(expert)
+        recorder = Recorder(expert, homes)
         results = evaluator.play(episodes, details=False, witness=recorder)
-        _write_part(demonstrations.part_folder(folder, number), recorder.demonstrations(results))
+        write_part(demonstrations.part_folder(folder, number), recorder.demonstrations(results))
         played += len(results)
         solved += sum(result.success for result in results)
         spent = time.monotonic() - begun
@@ -355,32 +352,6 @@ def _make(folder: pathlib.Path, parts: list[list[int]], homes: Homes, expert: Ex
             f"{len(parts) - len(missing) + count + 1} of {len(parts)} parts  "
             f"{100.0 * solved / played:.1f} % solved  {duration(left)} left"
         )
-
-
-def _write_part(part: pathlib.Path, episodes: Sequence[Demonstration]) -> None:
-    """Writes a part, which appears whole."""
-    unfinished = part.with_name(f".{part.name}.unfinished")
-    try:
-        shutil.rmtree(unfinished, ignore_errors=True)
-        unfinished.mkdir()
-        for name, array in demonstrations.arrays_of(episodes):
-            _write_array(unfinished / f"{name}.npy", array)
-        files.sync(unfinished)
-        os.replace(unfinished, part)
-        files.sync(part.parent)
-    except OSError as error:
-        raise files.unwritable(part, error) from None
-    finally:
-        shutil.rmtree(unfinished, ignore_errors=True)
-
-
-def _write_array(file: pathlib.Path, array: np.ndarray) -> None:
-    """As numpy.save() does, which does not say why a disk takes no more."""
-    with open(file, "wb") as handle:
-        header = np.lib.format.header_data_from_array_1_0(array)
-        np.lib.format.write_array_header_1_0(handle, header)
-        handle.write(array.view(np.uint8).data)
-    files.sync(file)
 
 
 if __name__ == "__main__":

@@ -1,16 +1,17 @@
 """Demonstrations: what an expert saw and did in episodes of a world, step by step, in a folder of arrays.
 
-`python3 -m galactic.demonstrate` makes them, `python3 -m galactic.train --demonstrations` learns from
-them, and numpy reads them:
+`python3 -m galactic.demonstrate` makes them, and a DemonstrationWriter of what one's own policies do;
+`python3 -m galactic.train --demonstrations` learns from them, and numpy reads them:
 
     demonstrations.json     what they are: About
     part-000000/            some episodes, one after the other: E of them, L steps together
         episodes.npy        int32 [E]    which episode of the world each is
         lengths.npy         int32 [E]    its steps
         endings.npy         uint8 [E]    how it ended, an EpisodeEnd
-        state.npy           float32 [L, S]    the row of observations before each step
-        rgb.npy             uint8 [L, height, width, 3]    images before it, where there are any
-        depth.npy           float16 [L, height, width]    meters
+        state.npy           float32 [L + E, S]    the row of observations before each step, and of each
+                                              episode the last one, behind its last step
+        rgb.npy             uint8 [L + E, height, width, 3]    images of then, where there are any
+        depth.npy           float16 [L + E, height, width]    meters
         actions.npy         float32 [L, A]    what was done then, as Simulator.step() takes it
         by_expert.npy       bool [L]    whether the expert did it; before, another one led to a place
         rewards.npy         float32 [L]    what it paid
@@ -33,7 +34,7 @@ from galactic._core import EpisodeEnd, ErrorCode
 from galactic.errors import Error
 
 INDEX = "demonstrations.json"
-FORMAT = 1
+FORMAT = 2
 
 _REMEDY = "remove its folder, and run galactic.demonstrate again to make what is missing"
 
@@ -46,6 +47,8 @@ _OF_STEPS: Mapping[str, Any] = {
     "by_expert": np.bool_,
     "rewards": np.float32,
 }
+# Of these, an episode has one more than it has steps.
+OBSERVED = ("state", "rgb", "depth")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -56,7 +59,7 @@ class Demonstration:
     """Which one of the world."""
     ending: EpisodeEnd
     state: np.ndarray
-    """float32 [L, S]: the row of observations before each step."""
+    """float32 [L + 1, S]: the row of observations before each step, and the last one, behind the last step."""
     actions: np.ndarray
     """float32 [L, A]: what was done then, as Simulator.step() takes it."""
     by_expert: np.ndarray
@@ -64,9 +67,9 @@ class Demonstration:
     rewards: np.ndarray
     """float32 [L]: what it paid."""
     rgb: Optional[np.ndarray] = None
-    """uint8 [L, height, width, 3], where there are color images."""
+    """uint8 [L + 1, height, width, 3], where there are color images."""
     depth: Optional[np.ndarray] = None
-    """float16 [L, height, width], meters, where there are depth images."""
+    """float16 [L + 1, height, width], meters, where there are depth images."""
 
     def __len__(self) -> int:
         return len(self.rewards)
@@ -83,10 +86,10 @@ class About:
 
     world: str
     """The world pack."""
-    episodes: int
-    """How many of its episodes there are to be."""
+    episodes: Optional[int]
+    """How many of its episodes there are to be, each once; None where each may have been played often."""
     expert: str
-    """Who acts: `scripted`, or a policy's file."""
+    """Who acts: `scripted`, a policy's file, or what a DemonstrationWriter was told."""
     parts: list[tuple[str, int]]
     """Names and sizes of the parts of a row of observations, in order."""
     options: dict[str, Any]
@@ -108,7 +111,7 @@ class About:
 
     @property
     def shapes(self) -> dict[str, tuple[int, ...]]:
-        """Of what each step has, by name."""
+        """Of what each step has, by name, and behind the last one the OBSERVED."""
         return {
             "state": (self.state_size,),
             "actions": (self.motions + 2,),
@@ -176,9 +179,10 @@ class Demonstrations(Sequence[Demonstration]):
         part, number = self._places[index]
         return part.episode(number)
 
-    def take(self, name: str, rows: Any) -> np.ndarray:
+    def take(self, name: str, rows: Any, *, after: bool = False) -> np.ndarray:
         """An array of Demonstration at these steps of all of them together, whole numbers from 0 to
-        `steps` - 1 (first_rows): shape [*rows.shape, ...]. A copy."""
+        `steps` - 1 (first_rows): shape [*rows.shape, ...]. A copy. `after`: what was observed after them, which
+        is of the same episode."""
         wanted = np.asarray(rows)
         flat = wanted.ravel().astype(np.int64)
         if flat.size and not 0 <= flat.min() <= flat.max() < self.steps:
@@ -186,11 +190,14 @@ class Demonstrations(Sequence[Demonstration]):
         shapes = self.about.shapes
         if name not in shapes:
             raise KeyError(f"found {name!r}, expected one of {', '.join(shapes)}")
+        if after and name not in OBSERVED:
+            raise KeyError(f"found {name!r} after steps, expected one of {', '.join(OBSERVED)}")
         taken = np.empty((flat.size, *shapes[name]), _OF_STEPS[name])
         parts = np.searchsorted(self._ends, flat, side="right")
         for number in np.unique(parts):
             part, chosen = self._parts[number], parts == number
-            taken[chosen] = part.array(name)[flat[chosen] - (self._ends[number] - part.steps)]
+            steps = flat[chosen] - (self._ends[number] - part.steps)
+            taken[chosen] = part.array(name)[part.places(name, steps) + after]
         if name == "depth" and not np.isfinite(taken).all():
             raise Error(
                 ErrorCode.INVALID_INPUT,
@@ -226,6 +233,8 @@ def _require_equal(folder: pathlib.Path, name: str, found: Any, wanted: Any) -> 
 def _require_once(parts: "list[_Part]", about: About, folder: pathlib.Path) -> None:
     """Raises Error where parts are not of one making."""
     episodes = _joined([part.episodes for part in parts], np.int32)
+    if about.episodes is None:
+        return
     if len(episodes) > about.episodes or len(set(episodes.tolist())) < len(episodes):
         message = (
             f"holds {len(episodes)} episodes, some of them twice or more than the {about.episodes} that "
@@ -282,12 +291,25 @@ class _Part:
                 raise _invalid(folder / f"{name}.npy", "holds numbers that are not from -1 to 1")
 
     def array(self, name: str) -> np.ndarray:
-        """That of all steps of the part."""
-        return self._load(name, _OF_STEPS[name], (self.steps, *self._shapes[name]))
+        """That of all steps of the part, and of what was observed behind the last ones."""
+        rows = self.steps + (len(self.episodes) if name in OBSERVED else 0)
+        return self._load(name, _OF_STEPS[name], (rows, *self._shapes[name]))
+
+    def places(self, name: str, steps: np.ndarray) -> np.ndarray:
+        """Where in that array these steps of the part are."""
+        if name not in OBSERVED:
+            return steps
+        # As many last observations are before a step as episodes.
+        return steps + np.searchsorted(self._bounds, steps, side="right") - 1
 
     def episode(self, number: int) -> Demonstration:
-        rows = slice(self._bounds[number], self._bounds[number + 1])
-        arrays = {name: self.array(name)[rows] for name in self._shapes}
+        first, end = self._bounds[number], self._bounds[number + 1]
+        arrays = {
+            name: self.array(name)[first + number : end + number + 1]
+            if name in OBSERVED
+            else self.array(name)[first:end]
+            for name in self._shapes
+        }
         ending = EpisodeEnd(int(self.endings[number]))
         return Demonstration(int(self.episodes[number]), ending, **arrays)
 
@@ -356,7 +378,7 @@ def about_of(text: str, file: pathlib.Path) -> About:
             parts=[(str(name), _size(size)) for name, size in about.parts],
             images={name: tuple(map(_size, shape)) for name, shape in about.images.items()},
             motions=_size(about.motions),
-            episodes=_size(about.episodes),
+            episodes=None if about.episodes is None else _size(about.episodes),
         )
     except (ValueError, TypeError, RecursionError) as error:
         message = f"does not say what the demonstrations are: {error}; make them again, elsewhere"
@@ -366,7 +388,7 @@ def about_of(text: str, file: pathlib.Path) -> About:
 # Types that JSON gives what an About has.
 _ABOUT = {
     "world": str,
-    "episodes": int,
+    "episodes": (int, type(None)),
     "expert": str,
     "parts": list,
     "options": dict,

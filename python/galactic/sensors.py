@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 ALWAYS = (
     "robot_target",
@@ -32,3 +33,12 @@ SENSORS: Mapping[str, tuple[str, ...]] = {
     "geodesic": ("geodesic",),
 }
 """Those that options add, and these options. All other parts are of tasks of one's own."""
+
+# Options that say how many numbers there are, or how exact.
+_NO_MEANING = ("laser_beams", "laser_noise")
+
+
+def meaning_of(names: Iterable[str], options: Mapping[str, Any]) -> dict[str, Any]:
+    """Those options of the simulation by which numbers of its parts `names` mean one thing or another."""
+    asked = ["observe_current", *(option for name in names for option in SENSORS.get(name, ()))]
+    return {name: options[name] for name in asked if name in options and name not in _NO_MEANING}

@@ -152,8 +152,11 @@ class VectorEnv(_Base):
         self.render_mode = render_mode
         self._render_threads = threads
         self._is_evaluation = is_evaluation
+        self._images = images
         options |= {"threads": threads, "seed": seed, "order": order}
         own_task = own_task_of(task)
+        self.has_own_task = own_task is not None
+        """Whether its task is one of the caller's own, and none of the simulation's."""
         if task is not None and own_task is None:
             options["task"] = task
         if cameras or render_mode is not None:
@@ -252,6 +255,11 @@ class VectorEnv(_Base):
         self._require_open()
         drawing = [half.renderers for half in self._halves if half.renderers]
         return tuple(one.get("", one) for one in drawing)
+
+    @property
+    def images(self) -> Mapping[str, Any] | None:
+        """Options of its cameras, as they were given."""
+        return self._images
 
     @property
     def halves(self) -> int:

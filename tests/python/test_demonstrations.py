@@ -34,11 +34,11 @@ def episode(number: int, length: int, ending: galactic.EpisodeEnd) -> Demonstrat
     return Demonstration(
         number,
         ending,
-        state=random.normal(size=(length, 3)).astype(np.float32),
+        state=random.normal(size=(length + 1, 3)).astype(np.float32),
         actions=random.uniform(-1, 1, (length, 4)).astype(np.float32),
         by_expert=np.arange(length) >= number % 3,
         rewards=random.normal(size=length).astype(np.float32),
-        depth=random.uniform(0, 10, (length, 4, 5)).astype(np.float16),
+        depth=random.uniform(0, 10, (length + 1, 4, 5)).astype(np.float16),
     )
 
 
@@ -118,11 +118,16 @@ def test_folders_are_read_one_after_the_other(tmp_path: pathlib.Path) -> None:
 
 def test_rows_are_those_of_all_episodes_together(folder: pathlib.Path) -> None:
     found = Demonstrations(folder)
-    states = np.concatenate([one.state for one in EPISODES])
+    states = np.concatenate([one.state[:-1] for one in EPISODES])
     rows = np.random.default_rng(1).integers(len(states), size=(7, 5))
     np.testing.assert_array_equal(found.take("state", rows), states[rows])
-    depth = np.concatenate([one.depth for one in EPISODES])
+    depth = np.concatenate([one.depth[:-1] for one in EPISODES])
     np.testing.assert_array_equal(found.take("depth", rows[0]), depth[rows[0]])
+    # What was observed after a step is of the same episode, also after its last one.
+    later = np.concatenate([one.state[1:] for one in EPISODES])
+    np.testing.assert_array_equal(found.take("state", rows, after=True), later[rows])
+    depth = np.concatenate([one.depth[1:] for one in EPISODES])
+    np.testing.assert_array_equal(found.take("depth", rows[0], after=True), depth[rows[0]])
     for number, one in enumerate(EPISODES):
         np.testing.assert_array_equal(
             found.take("rewards", found.first_rows[number] + np.arange(len(one))), one.rewards
@@ -138,6 +143,8 @@ def test_rows_that_are_not_there_are_refused(folder: pathlib.Path) -> None:
     assert found.take("depth", []).shape == (0, 4, 5)
     with pytest.raises(KeyError, match="expected one of state"):
         found.take("rgb", [0])
+    with pytest.raises(KeyError, match="'rewards' after steps, expected one of state, rgb, depth"):
+        found.take("rewards", [0], after=True)
 
 
 def test_a_file_that_is_replaced_is_read_again(folder: pathlib.Path) -> None:
@@ -220,7 +227,7 @@ def reindexed(**changes: object) -> object:
         (lambda folder: (folder / demonstrations.INDEX).write_text("{"), "does not say what"),
         (lambda folder: (folder / demonstrations.INDEX).write_text("[]"), "does not say what"),
         (lambda folder: (folder / demonstrations.INDEX).write_bytes(b"\xff"), "does not say what"),
-        (reindexed(format=2), "expected format 1"),
+        (reindexed(format=1), "expected format 2"),
         (reindexed(format=None), "format: found 'nothing'"),
         (reindexed(motions=-1), "found -1"),
         (reindexed(motions=True), "found True"),
@@ -246,9 +253,12 @@ def reindexed(**changes: object) -> object:
         (truncate, "state.npy: is no array of numpy"),
         (pickled, "state.npy: is no array of numpy"),
         (archived, "state.npy: found others"),
-        (resaved("state", lambda rows: rows[:-1]), r"state.npy: found float32 \[19, 3\]"),
-        (resaved("state", lambda rows: rows.astype(float)), r"found float64 \[20, 3\]"),
-        (resaved("depth", lambda rows: rows[..., 0]), r"depth.npy: found float16 \[20, 4\]"),
+        (
+            resaved("state", lambda rows: rows[:-1]),
+            r"state.npy: found float32 \[21, 3\], expected float32 \[22, 3\]",
+        ),
+        (resaved("state", lambda rows: rows.astype(float)), r"found float64 \[22, 3\]"),
+        (resaved("depth", lambda rows: rows[..., 0]), r"depth.npy: found float16 \[22, 4\]"),
         (resaved("lengths", lambda rows: rows - 9), "episodes without steps"),
         (resaved("lengths", lambda rows: rows[:1]), r"lengths.npy: found int32 \[1\], expected"),
         (resaved("endings", lambda rows: rows + 77), "endings.npy: holds numbers that are no"),

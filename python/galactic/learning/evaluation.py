@@ -75,8 +75,8 @@ class Witness(Protocol):
     def sees(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
         """Before each step: what Player.act() was told, and what it said. Only for the time of the call."""
 
-    def hears(self, rewards: np.ndarray) -> None:
-        """After it: what it paid, float32 [n]."""
+    def hears(self, step: Step) -> None:
+        """After it: what came of it."""
 
 
 class Actor:
@@ -160,7 +160,7 @@ class Evaluator:
             homes.send(0, actions, self._seen)
             step = homes.recv(0)
             if witness is not None:
-                witness.hears(step.rewards)
+                witness.hears(step)
             ended = step.terminated | step.truncated
             self._follow(step, ended, details)
             for one in (p for p, over in zip(self._played, ended) if p is not None and over):

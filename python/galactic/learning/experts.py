@@ -7,10 +7,10 @@ from typing import Protocol, Sequence
 import numpy as np
 
 import galactic
-from galactic._core import EpisodeEnd
+from galactic.demonstration_writer import EpisodeRecorder
 from galactic.demonstrations import Demonstration
 from galactic.hashing import hashed
-from galactic.learning.environments import Observation
+from galactic.learning.environments import Observation, Step
 from galactic.learning.evaluation import NO_EPISODE, Actor, EpisodeResult, Player
 from galactic.learning.homes import Homes
 
@@ -105,55 +105,19 @@ class RolledIn:
 class Recorder:
     """A Witness that keeps what an expert saw and did."""
 
-    def __init__(self, expert: Expert):
+    def __init__(self, expert: Expert, homes: Homes):
         self._expert = expert
-        self._steps: list[dict[str, np.ndarray]] = []
+        self._recorder = EpisodeRecorder(homes.env.observation_parts)
+        self._ended: dict[int, Demonstration] = {}
 
     def sees(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
-        playing = episodes != NO_EPISODE
-        images = {
-            name: rows.numpy()[playing]
-            for name, rows in (("rgb", seen.rgb), ("depth", seen.depth))
-            if rows is not None
-        }
-        if "depth" in images:
-            images["depth"] = images["depth"].astype(np.float16)
-        self._playing = playing
-        self._steps.append(
-            {
-                "episodes": episodes[playing],
-                "state": seen.state.numpy()[playing],
-                "actions": _as_executed(actions[playing]),
-                "by_expert": self._expert.acted[playing],
-                **images,
-            }
-        )
+        rows = {name: rows.numpy() for name, rows in seen._asdict().items() if rows is not None}
+        self._recorder.sees(rows, actions, self._expert.acted, episodes != NO_EPISODE)
 
-    def hears(self, rewards: np.ndarray) -> None:
-        self._steps[-1]["rewards"] = rewards[self._playing]
+    def hears(self, step: Step) -> None:
+        ended = self._recorder.hears(step.rewards, step.infos)
+        self._ended |= {one.episode: one for one in ended}
 
     def demonstrations(self, results: Sequence[EpisodeResult]) -> list[Demonstration]:
         """Those of the episodes whose results are given, in their order."""
-        if not results:
-            return []
-        # One copy is let go of while the next one is made: images are large.
-        names = list(self._steps[0])
-        arrays = {name: np.concatenate([step.pop(name) for step in self._steps]) for name in names}
-        episodes = arrays.pop("episodes")
-        order = np.argsort(episodes, kind="stable")
-        first = np.searchsorted(episodes[order], [result.episode for result in results])
-        rows = [order[begin : begin + result.length] for begin, result in zip(first, results)]
-        of_each: list[dict[str, np.ndarray]] = [{} for _ in results]
-        for name in list(arrays):
-            of_all = arrays.pop(name)
-            for one, chosen in zip(of_each, rows):
-                one[name] = of_all[chosen]
-        return [
-            Demonstration(result.episode, EpisodeEnd.__members__[result.ending.upper()], **one)
-            for result, one in zip(results, of_each)
-        ]
-
-
-def _as_executed(actions: np.ndarray) -> np.ndarray:
-    """As the simulation takes them: samples of a policy may be outside of its limits."""
-    return np.clip(actions, -1.0, 1.0)
+        return [self._ended[result.episode] for result in results]

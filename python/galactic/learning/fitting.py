@@ -15,7 +15,7 @@ from galactic.learning.privileges import (
 
 
 class Observed(NamedTuple):
-    """What is observed: names and sizes of the parts, what their numbers mean (privileges.meaning_of()),
+    """What is observed: names and sizes of the parts, what their numbers mean (sensors.meaning_of()),
     and how many motions there are."""
 
     parts: Sequence[tuple[str, int]]

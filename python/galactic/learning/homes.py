@@ -12,7 +12,6 @@ import galactic
 from galactic import task_runner
 from galactic.learning.environments import Observation, Step, Timeouts
 from galactic.learning.own_tasks import MakeTask
-from galactic.learning.privileges import meaning_of
 from galactic.learning.settings import (
     CAMERA,
     CAMERA_NOISE,
@@ -22,6 +21,7 @@ from galactic.learning.settings import (
     simulation_keyword,
 )
 from galactic.learning.sight import SIGHT
+from galactic.sensors import meaning_of
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
 # Cameras, where there are two.

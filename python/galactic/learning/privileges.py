@@ -6,10 +6,7 @@ from __future__ import annotations
 from typing import Any, Collection, Iterable, Mapping, NamedTuple, Optional, Sequence
 
 from galactic.learning.settings import SettingsError, did_you_mean
-from galactic.sensors import ALWAYS, SENSORS
-
-# Options that say how many numbers there are, or how exact.
-_NO_MEANING = ("laser_beams", "laser_noise")
+from galactic.sensors import ALWAYS, SENSORS, meaning_of
 
 
 def names_of(critic_only: str) -> list[str]:
@@ -60,12 +57,6 @@ def options_of_actor(critic_only: str, options: Mapping[str, Any]) -> dict[str, 
     """Options of the simulation without those of sensors that the critic alone sees."""
     left_out = {option for name in names_of(critic_only) for option in SENSORS.get(name, ())}
     return {name: value for name, value in options.items() if name not in left_out}
-
-
-def meaning_of(names: Iterable[str], options: Mapping[str, Any]) -> dict[str, Any]:
-    """Those options of the simulation by which numbers of its parts `names` mean one thing or another."""
-    asked = ["observe_current", *(option for name in names for option in SENSORS.get(name, ()))]
-    return {name: options[name] for name in asked if name in options and name not in _NO_MEANING}
 
 
 class OtherMeaning(NamedTuple):

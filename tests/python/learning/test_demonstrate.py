@@ -30,7 +30,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     """Demonstrations of 24 episodes of Mobile Pick, in three parts."""
     folder = tmp_path_factory.mktemp("shown") / "demos"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(demonstrate, "_EPISODES_OF_PART", 8)
+        patch.setattr(demonstrate, "EPISODES_OF_PART", 8)
         done = call("demonstrate", WORLD, "-o", folder, *QUICK, "--episodes", 24)
     assert done.returncode == 0, done.stderr
     return folder
@@ -68,17 +68,43 @@ def test_demonstrations_are_what_happens_when_their_actions_are_done(shown: path
             assert over[env] == (step + 1 == len(one))
             if over[env]:
                 assert infos["final_info"]["ending"][env] == one.ending
+                assert len(one.state) == len(one) + 1
+                np.testing.assert_array_equal(infos["final_obs"][env], one.state[-1])
     assert over.all()
+
+
+def test_a_writer_of_ones_own_keeps_the_same(shown: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    """And the trainer learns from it."""
+    made, mine = Demonstrations(shown), tmp_path / "mine"
+    homes = galactic.VectorEnv(WORLD, len(made), **made.about.options)
+    episodes = np.array([one.episode for one in made])
+    seen, _ = homes.reset(options={"episodes": episodes})
+    expert = galactic.ScriptedPolicy(homes.simulators[0])
+    with galactic.DemonstrationWriter(mine, homes, expert="scripted", world=WORLD) as writer:
+        for _ in range(int(made.lengths.max())):
+            actions = expert.act()
+            then, rewards, _, _, infos = homes.step(actions)
+            writer.add(seen, actions, rewards, infos)
+            seen = then
+    first: dict[int, galactic.Demonstration] = {}
+    for one in Demonstrations(mine):
+        first.setdefault(one.episode, one)
+    for one in made:
+        for name in ("state", "actions", "rewards", "by_expert"):
+            np.testing.assert_array_equal(getattr(first[one.episode], name), getattr(one, name))
+    options = [*SMALL, "--steps", 2 * UPDATE, "--demonstrations", mine, shown]
+    done = call("train", WORLD, "-o", tmp_path / "clone", *options)
+    assert done.returncode == 0, done.stderr
 
 
 def test_they_are_the_same_bytes_whoever_makes_them(
     shown: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In other threads, in another number of envs, and after an interrupt."""
-    monkeypatch.setattr(demonstrate, "_EPISODES_OF_PART", 8)
+    monkeypatch.setattr(demonstrate, "EPISODES_OF_PART", 8)
     monkeypatch.setattr(demonstrate, "MOST_ENVS", 5)
     options = [WORLD, "-o", tmp_path / "demos", *QUICK, "--episodes", 24, "--threads", 1]
-    write = demonstrate._write_part
+    write = demonstrate.write_part
 
     def interrupt(part: pathlib.Path, episodes: object) -> None:
         if part.name == "part-000001":
@@ -86,7 +112,7 @@ def test_they_are_the_same_bytes_whoever_makes_them(
         write(part, episodes)  # type: ignore[arg-type]
 
     with monkeypatch.context() as patch:
-        patch.setattr(demonstrate, "_write_part", interrupt)
+        patch.setattr(demonstrate, "write_part", interrupt)
         done = call("demonstrate", *options)
         assert done.returncode == 130 and "the same command makes what is missing" in done.stderr
     assert len(Demonstrations(tmp_path / "demos")) == 8
@@ -118,7 +144,7 @@ def test_they_are_the_same_bytes_whoever_makes_them(
 def test_noise_is_the_same_after_an_interrupt(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, sight: list[object]
 ) -> None:
-    for name in ("_EPISODES_OF_PART", "_EPISODES_WITH_IMAGES"):
+    for name in ("EPISODES_OF_PART", "EPISODES_WITH_IMAGES"):
         monkeypatch.setattr(demonstrate, name, 2)
     options = [WORLD, "-o", tmp_path / "demos", *sight, "--episodes", 6]
     assert call("demonstrate", *options).returncode == 0
@@ -319,7 +345,7 @@ def test_a_policy_can_be_the_expert(clone: pathlib.Path, tmp_path: pathlib.Path)
     # Of policies that are sampled, the episode decides what they do, not where it is played.
     again = tmp_path / "again"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(demonstrate, "_EPISODES_OF_PART", 24)
+        patch.setattr(demonstrate, "EPISODES_OF_PART", 24)
         patch.setattr(demonstrate, "MOST_ENVS", 3)
         assert call("demonstrate", WORLD, "-o", again, *QUICK, *options).returncode == 0
     for one, other in zip(made, Demonstrations(again)):
@@ -339,7 +365,7 @@ def test_images_are_kept(tmp_path: pathlib.Path) -> None:
     seen, _ = homes.reset(options={"reset_mask": np.ones(1, bool), "episodes": episodes})
     np.testing.assert_array_equal(seen["depth"][0].astype(np.float16), made[0].depth[0])
     for one in made:
-        assert one.depth is not None and one.depth.shape == (len(one), 36, 36)
+        assert one.depth is not None and one.depth.shape == (len(one) + 1, 36, 36)
         assert 0.0 < one.depth.max() < 20.0
     options = ["--envs", 8, "--horizon", 8, "--ranks", 1, "--steps", 128, "--log-every", 0]
     done = call(
