@@ -7,6 +7,13 @@ import pathlib
 
 import pytest
 
+import galactic
+from galactic.learning import own_code, own_tasks
+from galactic.learning.evaluation import Actor
+from galactic.learning.homes import Homes
+from galactic.learning.reports import pictures
+from galactic.learning.settings import Settings
+from policies import untrained
 from programs import (
     HELD_OUT,
     SMALL,
@@ -40,6 +47,12 @@ class Told(galactic.Task):
     def measure(self, envs, which):
         ones = np.ones(len(which))
         return {"progress": ones * envs.progress, "evaluation": ones * envs.is_evaluation}
+
+
+class Picks(Told):
+    """Of which the scripted policy knows what is to be done."""
+
+    base = "pick"
 '''
 
 
@@ -117,3 +130,28 @@ def test_a_run_is_resumed_with_a_class_that_says_as_much(
     assert resumed.returncode == 0, resumed.stderr
     *_, last = curve(folder)
     assert last["log_steps"] == pytest.approx(2.5) and last["log_more"] is None
+
+
+@needs_worlds
+def test_pictures_and_demonstrations_are_of_the_task_at_its_end(
+    tmp_path: pathlib.Path, task: list[object]
+) -> None:
+    settings = Settings(envs=2, halves=1, mini_batches=1, network="state", width=16)
+    name = own_code.named(str(task[1]), "--task")
+    make, world = own_tasks.maker(name, ""), galactic.World(HELD_OUT)
+    homes = Homes(world, settings, 1, task=make)
+    actor = Actor(untrained(settings, homes).policy, deterministic=True)
+    films = pictures.film(world, settings, actor, homes.playable_episodes()[:2], 1, make)
+    assert [len(film.frames) for film in films] == [9, 9]
+    folder = tmp_path / "demos"
+    options = [
+        "--preset",
+        "quick",
+        "--episodes",
+        2,
+        "--task",
+        str(task[1]).replace("Told", "Picks"),
+    ]
+    done = call("demonstrate", WORLD, "-o", folder, *options)
+    assert done.returncode == 0, done.stderr
+    assert galactic.Demonstrations(folder).lengths.tolist() == [8, 8]
