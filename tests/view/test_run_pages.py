@@ -61,6 +61,34 @@ class RunPages(PageCase):
         page.evaluate("galactic.view.ghost.setShown(false)")
         self.assertFalse(page.evaluate(visible))
 
+    def test_a_ghost_is_where_the_two_worlds_differ(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        parts = (
+            "(() => { const { ghost, home } = galactic.view;"
+            "return ghost.parts.filter(({ reach }) => reach > 0).map(({ figure, link, reach }) => {"
+            "const [a, b] = [ghost.robot.poses[link], home.robot.poses[link]];"
+            "return [figure.visible, a.position.distanceTo(b.position), a.rotation.angleTo(b.rotation), reach]; }); })()"
+        )
+        # Env 0 is its own twin, then the other one is.
+        counts = {True: 0, False: 0}
+        for twin in (0, 1):
+            page.evaluate(
+                f"(galactic.view.run.twins = [{twin}, 0], galactic.view.chooseEnv(0, 0).then(() => 1))"
+            )
+            for frame in (0, 20, 40):
+                page.evaluate(f"galactic.view.timeline.go({frame}).then(() => 1)")
+                found = page.evaluate(parts)
+                self.assertGreater(len(found), 1)
+                for is_visible, away, angle, reach in found:
+                    counts[is_visible] += 1
+                    self.assertGreater(reach, 0.01)
+                    if twin == 0:
+                        self.assertFalse(is_visible)
+                    elif away > 0.001:
+                        self.assertTrue(is_visible)
+        self.assertGreater(counts[True], 2)
+        self.assertGreater(counts[False], 2)
+
     def test_a_ghost_moves_as_evenly_as_the_robot(self):
         page = self.open("run", "env=0&t=0", "run 0")
         page.evaluate(

@@ -1,12 +1,29 @@
 // The same episode in another world, in the same picture: a robot, and objects where they are elsewhere.
-import { Color, Group, MeshLambertMaterial } from "three";
+import { Box3, Color, Group, MeshLambertMaterial } from "three";
 import { ObjectFigure, RobotFigure } from "./figures.js";
 import { disposeOf } from "./stage.js";
 
 export const kGhostColor = "#cc79a7";
 /// An object that is nearer to its twin than this is not shown twice, meters.
 const kApart = 0.005;
+/// Nor is a part of the robot whose points all are nearer than this.
+const kPartApart = 0.001;
 const kBody = { mesh: true, spheres: false, boxes: false, marks: false };
+
+/// How far the points of a part are from where they are in another pose, at most; `reach`: of the part, from its origin.
+function distanceOf(pose, other, reach) {
+  return pose.position.distanceTo(other.position) + 2 * reach * Math.sin(pose.rotation.angleTo(other.rotation) / 2);
+}
+
+/// What is drawn of the links of a robot that was not posed yet: { figure, link, reach }, how far it reaches from the
+/// link's origin.
+function partsOf(robot, { spheres }) {
+  const boxOf = (body) => new Box3().setFromObject(body);
+  const reachOf = ({ min, max }) => Math.max(0, ...[min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [min.z, max.z].map((z) => Math.hypot(x, y, z)))));
+  const links = robot.bodies.map((figure, link) => ({ figure, link, reach: figure.children.length > 0 ? reachOf(boxOf(figure)) : 0 }));
+  const clouds = robot.clouds.map(({ mesh }, n) => ({ figure: mesh, link: robot.robot.groups[n].link, reach: reachOf(boxOf(mesh)) }));
+  return spheres ? [...links, ...clouds] : links;
+}
 
 /// Makes a figure a ghost.
 function haunt(figure, { show }) {
@@ -27,7 +44,9 @@ export class Ghost {
     Object.assign(ghost, { page, home, objects: [], isShown: true });
     if (page.robotPack) {
       const bare = { ...kBody, spheres: home.shown.spheres };
-      ghost.robot = haunt(await RobotFigure.load(page.library, page.robotPack), { show: bare });
+      const robot = await RobotFigure.load(page.library, page.robotPack);
+      ghost.parts = partsOf(robot, bare);
+      ghost.robot = haunt(robot, { show: bare });
       home.group.add(ghost.robot.group);
     }
     return ghost;
@@ -64,8 +83,17 @@ export class Ghost {
       figure.setPose(pose);
       figure.group.visible = this.isShown && pose.position.distanceTo(other.position) > kApart;
     });
-    if (this.robot) this.robot.group.visible = this.isShown;
+    this.showParts();
     this.frame = [frame, moved];
+  }
+
+  /// Where both robots are the same, one sees that of the run alone.
+  showParts() {
+    if (!this.robot) return;
+    this.robot.group.visible = this.isShown;
+    for (const { figure, link, reach } of this.parts) {
+      figure.visible = distanceOf(this.robot.poses[link], this.home.robot.poses[link], reach) > kPartApart;
+    }
   }
 
   /// As RunView.showBetween(); past its end it stays.
