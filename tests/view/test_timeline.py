@@ -191,6 +191,57 @@ class Timeline(PageCase):
         self.assertEqual(drawn[0], len(("Reward", "Distance")), "only what was asked for anew")
         self.assertEqual(drawn[1:], [False, True, True])
 
+    def test_curves_have_numbers_beside_them_and_steps_below(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        charts = page.evaluate(
+            "(() => { const { curves } = galactic.view.timeline; const { prototype } = CanvasRenderingContext2D; const { fillText } = prototype;"
+            "const all = []; for (const chart of curves.charts) { const found = [];"
+            "prototype.fillText = function (text, x, y) { found.push([text, x, y]); fillText.call(this, text, x, y); };"
+            "curves.drawPicture(chart, getComputedStyle(document.documentElement));"
+            "all.push({ found, least: chart.least, most: chart.most, width: chart.canvas.clientWidth }); }"
+            "prototype.fillText = fillText; return all; })()"
+        )
+        for chart in charts:
+            split = [text for text, *_ in chart["found"]].index("step")
+            values = [(float(text), y) for text, _, y in chart["found"][:split]]
+            steps = [(int(text), x) for text, x, _ in chart["found"][split + 1 :]]
+            # Round, evenly spread, and the greater the higher.
+            self.assertIn(len(values), range(2, 6))
+            gaps = [b - a for (a, _), (b, _) in zip(values, values[1:])]
+            for gap in gaps:
+                self.assertAlmostEqual(gap, gaps[0], delta=1e-9)
+                self.assertIn(f"{gap:e}"[0], "125")
+            self.assertEqual([y for _, y in values], sorted((y for _, y in values), reverse=True))
+            self.assertGreaterEqual(values[0][0], chart["least"] - 1e-9)
+            self.assertLessEqual(values[-1][0], chart["most"] + 1e-9)
+            # Of 60 steps.
+            self.assertEqual([step for step, _ in steps], list(range(0, 61, 10)))
+            for step, x in steps:
+                self.assertAlmostEqual(x, 48 + step / 60 * (chart["width"] - 48), delta=1)
+        # Marks stand over the steps, and a click leads to the step below the pointer.
+        x, y, mark = page.evaluate(
+            "(() => { const { timeline } = galactic.view; const { canvas } = timeline.curves.charts[0]; const area = canvas.getBoundingClientRect();"
+            "const marks = timeline.marks.marks.getBoundingClientRect();"
+            "return [area.left + timeline.curves.x(30, area.width), area.top + 20, marks.left + marks.width / 2]; })()"
+        )
+        self.assertAlmostEqual(x, mark, delta=0.5)
+        page.click(x, y)
+        page.wait("galactic.view.frame === 30")
+
+    def test_ticks_are_round_at_all_sizes(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        for least, most, wanted in (
+            (0, 1, ["0", "0.5", "1"]),
+            (-1, 1, ["-1", "0", "1"]),
+            (-0.3, 0.1, ["-0.2", "0"]),
+            (0, 4.7e-4, ["0", "0.0002", "0.0004"]),
+            (0, 123456, ["0", "50000", "100000"]),
+        ):
+            texts = page.evaluate(
+                f"galactic.view.timeline.curves.ticks({least}, {most}).map((one) => one.text)"
+            )
+            self.assertEqual(texts, wanted)
+
     def test_who_comes_back_to_a_run_that_waited_goes_on_where_he_was(self):
         page = self.open("run", "env=0&t=0", "run 0")
         # No picture was made for a minute.
