@@ -63,6 +63,33 @@ class PackPages(PageCase):
         page.evaluate("galactic.view.setHeight(0.3); galactic.stage.drawNow(); 1")
         self.assertLess(self.count(page, TABLE), 1000)
 
+    def test_what_is_opened_fills_the_picture_and_is_seen_whole(self):
+        # How far the corners of what is drawn reach from the middle of the picture, as shares of the way to its edges.
+        reach = """(() => {
+          const { stage, view } = galactic;
+          const figure = view.mesh ?? view.figure?.group ?? view.home.robot.group;
+          const most = view.isCut && view.layer ? view.layer.height : Infinity;
+          const found = [0, 0];
+          figure.updateMatrixWorld(true);
+          figure.traverseVisible((one) => {
+            const places = one.isInstancedMesh ? null : one.geometry?.attributes.position;
+            for (let n = 0; n < (places?.count ?? 0); ++n) {
+              const at = stage.camera.position.clone().fromBufferAttribute(places, n).applyMatrix4(one.matrixWorld);
+              at.y = Math.min(at.y, most);
+              at.project(stage.camera);
+              [at.x, at.y].forEach((share, axis) => { found[axis] = Math.max(found[axis], Math.abs(share)); });
+            }
+          });
+          return found;
+        })()"""
+        for kind in ("scene", "object", "robot", "episode"):
+            for size in ((900, 520), (1280, 800), (400, 700)):
+                page = self.open("world", f"view={kind}&n=0&theme=light", f"{kind} 0", size)
+                found = page.evaluate(reach)
+                self.assertLess(max(found), 1, f"{kind}, {size}")
+                # An episode shows more than the robot.
+                self.assertGreater(max(found), 0.1 if kind == "episode" else 0.75, f"{kind}, {size}")
+
     def test_columns_are_those_of_the_pack(self):
         scene = self.folder / "scenes/kitchen.pack"
         page = self.open("world", "view=scene&radius=0.05", "scene 0")

@@ -227,6 +227,7 @@ export class RobotFigure {
       }
     });
     for (const body of this.bodies) box.expandByObject(body);
+    if (this.marks.visible) box.expandByObject(this.marks);
     return box;
   }
 

@@ -158,7 +158,8 @@ export class Home {
   bounds() {
     const { placements, target, goal, base } = this.episode;
     const box = new Box3().setFromPoints([placements[target].pose.position, goal.position, new Vector3(base.x, base.y, base.z)]);
-    return box.expandByScalar(0.7);
+    box.expandByScalar(0.7);
+    return this.robot ? box.union(this.robot.bounds()) : box;
   }
 
   /// The grid that tells what stands before a camera: of the smallest radius of 5 cm or more, else

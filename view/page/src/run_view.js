@@ -82,11 +82,14 @@ export class RunView {
   frameHome() {
     const { stage } = this.page;
     const { robot } = this.home;
-    const around = new Box3().setFromCenterAndSize(robot.poses[0].position, new Vector3(2.2, 1.6, 2.2));
+    const root = robot.poses[0].position;
+    const around = new Box3().setFromCenterAndSize(root, new Vector3(2.2, 1.6, 2.2));
     const box = this.camera === "free" ? this.home.bounds() : around;
+    // A robot that is followed stays in the middle.
+    const middle = this.camera === "free" ? {} : { target: root };
     const points = robot.clouds.flatMap((_, n) => robot.centersOf(n)).map(({ center }) => center);
-    const picture = { target: box.getCenter(new Vector3()), distance: stage.distanceTo(box), ...stage.opening };
-    stage.frame(box, this.sight ? bestDirection(this.sight, points, picture, this.cutHeight() ?? Infinity) : undefined);
+    const fit = (direction) => ({ ...stage.fit(box, direction), ...middle, ...stage.opening });
+    stage.frame(box, this.sight ? bestDirection(this.sight, points, fit, this.cutHeight() ?? Infinity) : undefined);
     this.lastRoot = null;
   }
 

@@ -90,13 +90,14 @@ function roomShare(grid, place, direction, { distance, up, sideways }, { floor, 
 }
 
 /// The direction from which a picture shows the most of a robot, whose parts are at `points`, and of
-/// the rooms around it. The picture: { target, distance, up, sideways }, as Stage has it.
-export function bestDirection(grid, points, picture, cut = Infinity) {
+/// the rooms around it. `fit(direction)`: the picture from there, { target, distance, up, sideways }, as Stage has it.
+export function bestDirection(grid, points, fit, cut = Infinity) {
   const free = points.filter((one) => grid.isFree(one));
   const floor = Math.min(...points.map(({ y }) => y));
   let best = { value: -Infinity };
   for (let n = 0; n < 360 / kTurnStep; ++n) for (const rise of kFirstRises) {
     const direction = directionOf(kFirst.turn + n * kTurnStep, rise);
+    const picture = fit(direction);
     const place = picture.target.clone().addScaledVector(direction, picture.distance);
     const seen = free.filter((one) => freeShare(grid, one, place, cut) === 1).length / (free.length || 1);
     const turned = Math.min(n * kTurnStep, 360 - n * kTurnStep);

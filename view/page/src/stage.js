@@ -6,6 +6,8 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const kFov = 50;
+/// What a picture that is filled leaves free at its edges.
+const kMargin = 0.05;
 
 /// Frees what a group drew. Textures go with the geometry that they are on: see freeWith().
 export function disposeOf(group) {
@@ -69,7 +71,8 @@ export class Stage {
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
-    if (width === 0 || height === 0) return;
+    if (width === 0 || height === 0 || (width === this.width && height === this.height)) return;
+    Object.assign(this, { width, height });
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -127,20 +130,34 @@ export class Stage {
     return { up, sideways: up * this.camera.aspect };
   }
 
-  /// From where the camera sees a box whole.
-  distanceTo(box) {
-    const radius = Math.max(0.05, box.getSize(new Vector3()).length() / 2);
+  /// How a box fills the picture, seen from a direction that has length one: what the camera looks at, as deep in the
+  /// picture as the middle of the box is, and from how far away. All its corners lie between the four planes through
+  /// the camera that bound what it sees; of the two planes above and below, as of those at the sides, each has a corner
+  /// as near as the other has.
+  fit(box, direction) {
+    const middle = box.getCenter(new Vector3());
+    const right = new Vector3(0, 1, 0).cross(direction).normalize();
+    const above = direction.clone().cross(right);
+    const corners = Array.from({ length: 8 }, (_, n) => new Vector3(...["x", "y", "z"].map((axis, bit) => box[n & (1 << bit) ? "max" : "min"][axis])).sub(middle));
     const { up, sideways } = this.opening;
-    return radius / Math.min(up, sideways);
+    const along = (axis, opening) => {
+      const [most, least] = [1, -1].map((side) => Math.max(...corners.map((one) => one.dot(direction) + (side * one.dot(axis)) / (opening * (1 - kMargin)))));
+      return { distance: (most + least) / 2, shift: ((most - least) / 2) * opening * (1 - kMargin) };
+    };
+    const [x, y] = [along(right, sideways), along(above, up)];
+    return { target: middle.addScaledVector(right, x.shift).addScaledVector(above, y.shift), distance: Math.max(x.distance, y.distance) };
   }
 
   /// Turns the camera to see a box, from a direction.
   frame(box, direction = new Vector3(0.9, 0.75, 1.1)) {
     if (box.isEmpty()) box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 1, 1));
-    const center = box.getCenter(new Vector3());
+    // What stands beside the picture may just have appeared.
+    this.resize();
     const radius = Math.max(0.05, box.getSize(new Vector3()).length() / 2);
-    this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(direction.clone().normalize(), this.distanceTo(box));
+    const towards = direction.clone().normalize();
+    const { target, distance } = this.fit(box, towards);
+    this.controls.target.copy(target);
+    this.camera.position.copy(target).addScaledVector(towards, Math.max(distance, 0.1));
     this.camera.near = Math.max(0.005, radius / 200);
     this.camera.far = Math.max(50, radius * 12);
     this.camera.updateProjectionMatrix();
