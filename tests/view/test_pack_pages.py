@@ -90,6 +90,20 @@ class PackPages(PageCase):
                 # An episode shows more than the robot.
                 self.assertGreater(max(found), 0.1 if kind == "episode" else 0.75, f"{kind}, {size}")
 
+    def test_marks_of_a_robot_have_their_colors_beside_their_names(self):
+        page = self.open("world", "view=robot", "robot 0")
+        rows = page.evaluate(
+            "[...document.querySelectorAll('#panel label .text')].filter((one) => one.querySelector('.swatch'))"
+            ".map((one) => [one.textContent, ...[...one.querySelectorAll('.swatch')].map((s) => [getComputedStyle(s).backgroundColor, s.clientWidth > 5])])"
+        )
+        self.assertEqual(
+            rows,
+            [
+                ["Grasp point, camera, footprint"]
+                + [[f"rgb({color})", True] for color in ("230, 159, 0", "0, 114, 178", "204, 121, 167")]
+            ],
+        )
+
     def test_columns_are_those_of_the_pack(self):
         scene = self.folder / "scenes/kitchen.pack"
         page = self.open("world", "view=scene&radius=0.05", "scene 0")

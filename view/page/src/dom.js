@@ -16,10 +16,11 @@ export const keyOf = ({ key }) => (key.length === 1 ? key.toLowerCase() : key);
 export const heading = (text) => el("h2", {}, text);
 export const note = (text) => el("p", { className: "note" }, text);
 
+/// `text`: what stands beside the box, or a list of it and of swatches.
 export function checkbox(text, checked, onChange, swatch) {
   const input = el("input", { type: "checkbox", checked });
   input.addEventListener("change", () => onChange(input.checked));
-  const row = el("label", { className: "row" }, input, el("span", { className: "text" }, text), swatch);
+  const row = el("label", { className: "row" }, input, el("span", { className: "text" }, ...[text].flat()), swatch);
   row.input = input;
   return row;
 }

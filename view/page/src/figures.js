@@ -3,11 +3,14 @@ import {
   Box3, BoxGeometry, BufferGeometry, Color, EdgesGeometry, Float32BufferAttribute, Group, IcosahedronGeometry,
   InstancedMesh, LineBasicMaterial, LineLoop, LineSegments, Matrix4, Mesh, MeshLambertMaterial, Quaternion, Vector3,
 } from "three";
+import { swatch } from "./dom.js";
 import { linkPoses, Pose } from "./kinematics.js";
 
 /// By the rank of the radius, least first; people with color-blindness tell them apart.
 const kSphereColors = ["#56b4e9", "#0072b2", "#009e73", "#cc79a7", "#f0e442", "#999999", "#e69f00", "#222222"];
 const kTouchColor = new Color("#d55e00");
+/// What is drawn of a robot beside its body.
+const kMarks = { grasp: { name: "Grasp point", color: "#e69f00" }, camera: { name: "Camera", color: "#0072b2" }, base: { name: "Footprint", color: "#cc79a7" } };
 
 export function radiiOf(spheres) {
   const radii = new Set();
@@ -112,7 +115,7 @@ function frustumLines(fov, length) {
   const half = length * Math.tan(fov / 2);
   const corners = [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([y, z]) => new Vector3(length, y * half, z * half));
   const points = corners.flatMap((corner, n) => [new Vector3(), corner, corner, corners[(n + 1) % 4]]);
-  return new LineSegments(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({ color: 0x0072b2 }));
+  return new LineSegments(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({ color: kMarks.camera.color }));
 }
 
 function footprintLine(base) {
@@ -128,7 +131,13 @@ function footprintLine(base) {
   }
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new Float32BufferAttribute(points, 3));
-  return new LineLoop(geometry, new LineBasicMaterial({ color: 0xcc79a7 }));
+  return new LineLoop(geometry, new LineBasicMaterial({ color: kMarks.base.color }));
+}
+
+/// What the marks of a robot are, with their colors; nothing without a robot.
+export function marksText(figure) {
+  const found = Object.entries(kMarks).filter(([key]) => figure?.robot[key]).map(([, one]) => one);
+  return found.flatMap(({ name, color }, n) => [n > 0 ? ", " : "", swatch(color), n > 0 ? name.toLowerCase() : name]);
 }
 
 /// Spheres of two groups that touch, as pairs of their numbers.
@@ -166,7 +175,7 @@ export class RobotFigure {
     this.marks = new Group();
     const { grasp, camera, base } = this.robot;
     if (grasp) {
-      this.grasp = new Mesh(unitSphere(), material(0xe69f00, 0.6));
+      this.grasp = new Mesh(unitSphere(), material(kMarks.grasp.color, 0.6));
       this.grasp.scale.setScalar(Math.max(0.01, grasp.radius));
       this.marks.add(this.grasp);
     }
