@@ -56,12 +56,13 @@ class PackPages(PageCase):
             page.wait(f"location.hash.includes('view=pack&n={number}')")
 
     def test_the_mesh_has_the_colors_of_its_materials(self):
-        page = self.open("world", "view=scene&shade=0&sliced=0&slice=1.2", "scene 0")
-        self.assertGreater(self.count(page, TABLE), 1000)
+        page = self.open("world", "view=scene&shade=0&slice=1.2", "scene 0")
+        whole = self.count(page, TABLE)
+        self.assertGreater(whole, 2000)
         self.assertGreater(self.count(page, ROOM), 5000)
         # Cut off under the table top, it is not seen from above.
         page.evaluate("galactic.view.setHeight(0.3); galactic.stage.drawNow(); 1")
-        self.assertLess(self.count(page, TABLE), 1000)
+        self.assertLess(self.count(page, TABLE), whole / 3)
 
     def test_what_is_opened_fills_the_picture_and_is_seen_whole(self):
         # How far the corners of what is drawn reach from the middle of the picture, as shares of the way to its edges.
@@ -89,6 +90,24 @@ class PackPages(PageCase):
                 self.assertLess(max(found), 1, f"{kind}, {size}")
                 # An episode shows more than the robot.
                 self.assertGreater(max(found), 0.1 if kind == "episode" else 0.75, f"{kind}, {size}")
+
+    def test_scenes_open_cut_above_the_furniture_and_without_a_slice(self):
+        page = self.open("world", "view=scene&radius=0.05", "scene 0")
+        look = "[galactic.view.layer.slice.visible, galactic.view.layer.height, galactic.stage.cut.constant]"
+        # The floor is at 0, and a sphere's center above it.
+        for is_sliced, height in ((False, 1.65), (True, 0.65), (False, 1.65)):
+            if is_sliced != page.evaluate(look)[0]:
+                page.evaluate(f"(galactic.view.showSlice({str(is_sliced).lower()}), 1)")
+            shown, *heights = page.evaluate(look)
+            self.assertEqual(shown, is_sliced)
+            for one in heights:
+                self.assertAlmostEqual(one, height, delta=0.01)
+            page.wait(f"location.hash.includes('sliced=1') === {str(is_sliced).lower()}")
+        # A height that somebody chose stays.
+        page.evaluate("(galactic.view.setHeight(1), galactic.view.showSlice(true), 1)")
+        self.assertEqual(page.evaluate(look), [True, 1, 1])
+        page = self.open("world", "view=scene&radius=0.05&slice=0.9&sliced=1", "scene 0")
+        self.assertEqual(page.evaluate(look), [True, 0.9, 0.9])
 
     def test_marks_of_a_robot_have_their_colors_beside_their_names(self):
         page = self.open("world", "view=robot", "robot 0")
@@ -223,7 +242,7 @@ class PackPages(PageCase):
         self.assertEqual([after[key] for key in ("kept", "textures", "geometries")], [0, 0, 0])
 
     def test_views_that_are_left_free_all_that_they_drew(self):
-        page = self.open("world", "view=scene&n=0", "scene 0")
+        page = self.open("world", "view=scene&n=0&sliced=1", "scene 0")
         before = self.memory(page)
         page.evaluate(
             "(async () => { const { view } = galactic; for (const grid of view.stored.grids) { await view.chooseGrid(grid);"
@@ -242,7 +261,7 @@ class PackPages(PageCase):
         self.assertEqual(self.memory(page), episode)
 
     def test_a_click_marks_what_a_sphere_reaches(self):
-        page = self.open("world", "view=scene&radius=0.05&slice=0.4", "scene 0")
+        page = self.open("world", "view=scene&radius=0.05&slice=0.4&sliced=1", "scene 0")
         self.assertNotIn(
             "free space", page.evaluate("document.getElementById('panel').textContent")
         )

@@ -46,6 +46,21 @@ export class Grid {
     return spans;
   }
 
+  /// The height at which most of the free space begins: a sphere's center over the floor. Spans count by their heights,
+  /// in steps of 10 cm; what begins at the lower end of the grid has no floor.
+  floorHeight() {
+    const [steps, width] = [new Map(), 0.1 / this.quantum];
+    for (let n = 0; n < this.codes.length; n += 2) {
+      const [from, to] = this.codes.subarray(n, n + 2);
+      if (from === 0) continue;
+      const step = Math.floor(from / width);
+      const { space, sum } = steps.get(step) ?? { space: 0, sum: 0 };
+      steps.set(step, { space: space + to - from, sum: sum + (to - from) * from });
+    }
+    const { space, sum } = [...steps.values()].reduce((best, one) => (one.space > best.space ? one : best), { space: 0, sum: 0 });
+    return this.height(space > 0 ? sum / space : 0);
+  }
+
   /// The span of a column at a height, as a number of all spans; -1 where it is blocked.
   spanAt(column, code) {
     for (let n = this.first[column]; n < this.first[column + 1]; ++n) {

@@ -6,6 +6,10 @@ import { Grid } from "./grid.js";
 import { cssColor, GridLayer, kSliceColors } from "./grid_layer.js";
 import { Queue } from "./queue.js";
 
+/// Above the floor: where the mesh is cut so that one sees into the rooms, and where a slice meets furniture.
+const kCutHeight = 1.6;
+const kSliceHeight = 0.6;
+
 export class SceneView {
   constructor(page, pack) {
     this.page = page;
@@ -24,11 +28,16 @@ export class SceneView {
     this.hasFloors = !this.mesh;
     const radius = addressNumber("radius", this.stored.grids[0].radius);
     await this.chooseGrid(this.stored.grids.find((one) => Math.abs(one.radius - radius) < 1e-6) ?? this.stored.grids[0]);
-    const bounds = new Box3(new Vector3(...this.stored.min), new Vector3(...this.stored.max));
-    if (this.isCut) bounds.max.y = Math.min(bounds.max.y, this.layer.height);
-    stage.frame(bounds, new Vector3(0.45, 1.25, 0.8));
+    stage.frame(this.bounds(), new Vector3(0.45, 1.25, 0.8));
     this.fillPanel();
     this.listen();
+  }
+
+  /// Of what there is to see.
+  bounds() {
+    const bounds = this.mesh ? new Box3().setFromObject(this.mesh) : new Box3(new Vector3(...this.stored.min), new Vector3(...this.stored.max));
+    if (this.isCut) bounds.max.y = Math.min(bounds.max.y, Math.max(bounds.min.y, this.layer.height));
+    return bounds;
   }
 
   /// Another part of the page is opened.
@@ -41,49 +50,57 @@ export class SceneView {
     if (!this.layers.has(stored)) {
       this.layers.set(stored, new GridLayer(this.page.stage, await Grid.load(this.page.data, stored)));
     }
-    const height = this.layer?.height ?? addressNumber("slice", Math.min(stored.high, stored.low + 0.6));
+    this.height ??= addressNumber("slice", null);
     this.layer?.group.removeFromParent();
     this.layer = this.layers.get(stored);
     this.page.stage.content.add(this.layer.group);
-    this.layer.setHeight(Math.min(stored.high, Math.max(stored.low, height)));
     this.pinned = null;
-    this.showSlice(this.isSliced ?? address.get("sliced") !== "0");
-    this.setCut(this.isCut ?? address.get("cut") !== "0");
+    this.isCut ??= address.get("cut") !== "0";
+    this.showSlice(this.isSliced ?? address.get("sliced") === "1");
     this.layer.setFloors(this.hasFloors);
     if (this.panel) this.fillPanel();
   }
 
+  /// Cut and slice are at this height, or at the usual one while nobody chose another.
+  place() {
+    const { grid } = this.layer;
+    const height = this.height ?? grid.floorHeight() + (this.isSliced ? kSliceHeight : kCutHeight);
+    this.layer.setHeight(Math.min(grid.high, Math.max(grid.low, height)));
+    this.heightSlider?.set(this.layer.height);
+    this.page.stage.setCut(this.isCut ? this.layer.height : null);
+  }
+
   setHeight(height) {
-    this.layer.setHeight(height);
-    if (this.isCut) this.page.stage.setCut(height);
+    this.height = height;
+    this.place();
     setAddress({ slice: height.toFixed(3) });
   }
 
   showSlice(isSliced) {
     this.isSliced = isSliced;
     this.layer.slice.visible = isSliced;
-    setAddress({ sliced: isSliced ? null : 0 });
-    this.page.stage.draw();
+    setAddress({ sliced: isSliced ? 1 : null });
+    this.place();
   }
 
   setCut(isCut) {
     this.isCut = isCut;
     setAddress({ cut: isCut ? null : 0 });
-    this.page.stage.setCut(isCut ? this.layer.height : null);
+    this.place();
   }
 
   fillPanel() {
     const { grid } = this.layer;
     const step = Math.max(0.005, grid.quantum);
-    this.heightSlider = slider("Height of the slice", { least: grid.low, most: grid.high, step, value: this.layer.height, format: meters }, (value) => this.setHeight(value));
+    this.heightSlider = slider("Height of cut and slice", { least: grid.low, most: grid.high, step, value: this.layer.height, format: meters }, (value) => this.setHeight(value));
     this.columnPart = el("div");
     this.reachPart = el("div");
     this.panel = [
       heading("Show"),
       this.mesh ? checkbox("Mesh", this.mesh.visible, (on) => { this.mesh.visible = on; this.page.stage.draw(); }) : note("Baked without render meshes."),
       this.page.shadeBox(),
-      checkbox("Slice", this.isSliced, (on) => this.showSlice(on)),
-      checkbox("Cut off what is above the slice", this.isCut, (on) => this.setCut(on)),
+      checkbox("Slice: where the sphere's center is free", this.isSliced, (on) => this.showSlice(on)),
+      checkbox("Cut off what is above", this.isCut, (on) => this.setCut(on)),
       checkbox("Floors of all spans, colored by height", this.hasFloors, (on) => { this.hasFloors = on; this.layer.setFloors(on); }),
       heading("Sphere radius"),
       ...radios("radius", this.stored.grids.map((one) => [meters(one.radius), one]), this.stored.grids.find((one) => one.radius === grid.radius),
@@ -118,7 +135,7 @@ export class SceneView {
   showCell(cell) {
     this.layer.showColumn(cell);
     if (!cell) {
-      this.columnPart.replaceChildren(note("Point at the slice to read a column; click to mark it and to see where the sphere gets from there."));
+      this.columnPart.replaceChildren(note("Show the slice, and point at it to read a column; click to mark it and to see where the sphere gets from there."));
       return;
     }
     const { grid } = this.layer;
@@ -176,8 +193,7 @@ export class SceneView {
     const change = { PageUp: step, PageDown: -step }[event.key];
     if (!change) return false;
     const { grid } = this.layer;
-    this.heightSlider.set(Math.min(grid.high, Math.max(grid.low, this.layer.height + change)));
-    this.setHeight(Number(this.heightSlider.input.value));
+    this.setHeight(Math.min(grid.high, Math.max(grid.low, this.layer.height + change)));
     return true;
   }
 }
