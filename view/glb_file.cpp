@@ -66,6 +66,17 @@ void writeSampler(JsonWriter& json) {
 
 std::span<const float> listOf(const Vec3& v) { return {&v.x, 3}; }
 
+/// Validators want rotations of length one, and no component beyond 1: composed ones are off by a
+/// few roundings.
+Quat unitOf(const Quat& q) {
+  const double length =
+      std::hypot(std::hypot(double{q.x}, double{q.y}), std::hypot(double{q.z}, double{q.w}));
+  const auto part = [length](float value) {
+    return std::clamp(static_cast<float>(double{value} / length), -1.0F, 1.0F);
+  };
+  return length > 0 ? Quat{part(q.x), part(q.y), part(q.z), part(q.w)} : Quat{};
+}
+
 JsonWriter object() {
   JsonWriter json(JsonLayout::kCompact);
   json.begin('{');
@@ -182,8 +193,8 @@ void GlbFile::writeNode(JsonWriter& json, const Node& node) {
   json.begin("", '{');
   json.text("name", node.node.name);
   if (pose.translation != Vec3{}) json.numbers("translation", listOf(pose.translation));
-  if (pose.rotation != Quat{}) {
-    json.numbers("rotation", std::span<const float>(&pose.rotation.x, 4));
+  if (const Quat rotation = unitOf(pose.rotation); rotation != Quat{}) {
+    json.numbers("rotation", std::span<const float>(&rotation.x, 4));
   }
   if (node.node.scale != Vec3{1, 1, 1}) json.numbers("scale", listOf(node.node.scale));
   if (node.node.mesh) json.number("mesh", *node.node.mesh);
@@ -211,7 +222,7 @@ void GlbFile::addAnimation(std::string_view name, std::span<const float> times,
     std::vector<Quat> turns;
     for (const Pose& pose : motion.parent_from_node) {
       // The shorter way from one key to the next is the one without a change of sign.
-      const Quat& q = pose.rotation;
+      const Quat q = unitOf(pose.rotation);
       const Quat& last = turns.empty() ? q : turns.back();
       const bool is_far = q.x * last.x + q.y * last.y + q.z * last.z + q.w * last.w < 0;
       places.push_back(pose.translation);
