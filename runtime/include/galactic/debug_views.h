@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "galactic/batch_renderer.h"
@@ -20,6 +21,16 @@ struct DebugOptions {
   float radius = 0;
 };
 
+/// A color of the debug view: RGBA, R lowest, and what has it.
+struct DebugColor {
+  std::uint32_t color = 0;
+  std::string_view meaning;
+};
+inline constexpr DebugColor kDebugRobot{0xFF48B028, "robot"};
+inline constexpr DebugColor kDebugHeld{0xFFE8742E, "held object"};
+inline constexpr DebugColor kDebugObject{0xFF1482F0, "object"};
+inline constexpr DebugColor kDebugTask{0xFF8C1ED6, "target, and its goal as a frame"};
+
 /// Whose spheres are shown.
 enum class DebugSpheres : std::uint8_t {
   kRobot,  ///< Green.
@@ -28,8 +39,8 @@ enum class DebugSpheres : std::uint8_t {
 
 /// What the simulation knows of a world, as models to draw (paper, figures 3 and 13): the free
 /// space of the column grid as gray floors, walls and ceilings, seen from inside; spheres of each
-/// radius; the oriented box of each object in orange; its edges alone, for a goal. Immutable,
-/// so safe to share between threads. Copies are cheap and share one content.
+/// radius; the oriented box of each object in orange, that of a target in magenta; its edges alone,
+/// for a goal. Immutable, so safe to share between threads. Copies are cheap and share one content.
 class DebugModels {
  public:
   /// Reads all grids of that radius. Fails with kInvalidInput when `options.radius` is none of the
@@ -42,6 +53,10 @@ class DebugModels {
   [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const;
   /// The box of an object (index into EpisodeSet::objectNames()), in the object's frame.
   [[nodiscard]] std::uint32_t boxModel(std::uint32_t object) const { return first_box_ + object; }
+  /// The same box in magenta: of the object that has to go to the goal.
+  [[nodiscard]] std::uint32_t targetModel(std::uint32_t object) const {
+    return first_target_ + object;
+  }
   /// The same box as a frame of thin beams, magenta.
   [[nodiscard]] std::uint32_t goalModel(std::uint32_t object) const { return first_goal_ + object; }
   /// A sphere about the origin; `radius_index` counts in World::radii().
@@ -56,6 +71,7 @@ class DebugModels {
 
   std::shared_ptr<const RenderLibrary> library_;
   std::uint32_t first_box_ = 0;
+  std::uint32_t first_target_ = 0;
   std::uint32_t first_goal_ = 0;
   std::uint32_t first_robot_sphere_ = 0;
   std::uint32_t first_held_sphere_ = 0;

@@ -12,12 +12,6 @@
 namespace galactic {
 namespace {
 
-// RGBA, R lowest: as in figure 3 of the paper.
-constexpr std::uint32_t kGreen = 0xFF48B028;
-constexpr std::uint32_t kBlue = 0xFFE8742E;
-constexpr std::uint32_t kOrange = 0xFF1482F0;
-constexpr std::uint32_t kMagenta = 0xFF8C1ED6;
-
 /// What semantic ids tell apart, in their order.
 enum Semantic : std::uint16_t { kGrid, kRobotSphere, kHeldSphere, kRestingBox, kGoal };
 
@@ -82,17 +76,22 @@ Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& op
   }
   models.first_robot_sphere_ = parts.count();
   for (const float radius : world.radii()) {
-    parts.add(debug::sphereSurface(radius, kGreen), kRobotSphere);
+    parts.add(debug::sphereSurface(radius, kDebugRobot.color), kRobotSphere);
   }
   models.first_held_sphere_ = parts.count();
   for (const float radius : world.radii()) {
-    parts.add(debug::sphereSurface(radius, kBlue), kHeldSphere);
+    parts.add(debug::sphereSurface(radius, kDebugHeld.color), kHeldSphere);
   }
   const std::vector<OrientedBox> boxes = boxesOf(world);
   models.first_box_ = parts.count();
-  for (const OrientedBox& box : boxes) parts.add(debug::boxSurface(box, kOrange), kRestingBox);
+  for (const OrientedBox& box : boxes)
+    parts.add(debug::boxSurface(box, kDebugObject.color), kRestingBox);
+  models.first_target_ = parts.count();
+  for (const OrientedBox& box : boxes)
+    parts.add(debug::boxSurface(box, kDebugTask.color), kRestingBox);
   models.first_goal_ = parts.count();
-  for (const OrientedBox& box : boxes) parts.add(debug::boxFrameSurface(box, kMagenta), kGoal);
+  for (const OrientedBox& box : boxes)
+    parts.add(debug::boxFrameSurface(box, kDebugTask.color), kGoal);
 
   Result<RenderMeshStorage> built = buildRenderMeshes(parts.source());
   if (!built) return tl::unexpected<Error>(built.error());

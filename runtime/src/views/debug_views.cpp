@@ -62,12 +62,16 @@ void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
       simulator.bodyTransforms().subspan(env * body_count_, body_count_);
   const EpisodeSet& episodes = world_.episodes();
   const Episode& episode = episodes.episodes()[state.episode];
-  const Placement& target = episodes.placements(episode)[episode.target];
+  const std::span<const Placement> all = episodes.placements(episode);
+  const Placement& target = all[episode.target];
+  // Without distractors the target is the only object.
+  const std::size_t target_number = state.placements.size() == all.size() ? episode.target : 0;
   std::size_t count = 0;
   if (const auto scene = models_.sceneModel(state.scene)) room[count++] = {*scene, {}};
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
     if (static_cast<std::int32_t>(n) == state.held) continue;
-    room[count++] = {models_.boxModel(state.placements[n].object),
+    const std::uint32_t object = state.placements[n].object;
+    room[count++] = {n == target_number ? models_.targetModel(object) : models_.boxModel(object),
                      rigidTransform(state.objects[n])};
   }
   room[count++] = {models_.goalModel(target.object), rigidTransform(state.goal)};

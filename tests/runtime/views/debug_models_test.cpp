@@ -160,8 +160,8 @@ TEST(DebugModels, NumbersModelsByWhatTheyShow) {
   const auto models = DebugModels::from(home.world(), {});
   ASSERT_TRUE(models) << models.error().message;
   const RenderLibrary& library = models->library();
-  // One scene, two spheres of three radii, two boxes and two goals.
-  EXPECT_EQ(library.modelCount(), 1U + 6 + 2 + 2);
+  // One scene, two spheres of three radii, two boxes, two targets and two goals.
+  EXPECT_EQ(library.modelCount(), 1U + 6 + 2 + 2 + 2);
   EXPECT_EQ(models->sceneModel(0), 0U);
   for (std::uint32_t n = 0; n < 3; ++n) {
     const float radius = home.world().radii()[n];
@@ -175,6 +175,8 @@ TEST(DebugModels, NumbersModelsByWhatTheyShow) {
   const RenderModel& box = library.model(models->boxModel(1));
   EXPECT_NEAR(box.bounds_max.y, 0.1F, 4e-5F);
   EXPECT_EQ(box.triangles, 12U);
+  EXPECT_EQ(library.model(models->targetModel(1)).bounds_max.y, box.bounds_max.y);
+  EXPECT_EQ(library.model(models->targetModel(1)).triangles, 12U);
   EXPECT_EQ(library.model(models->goalModel(1)).triangles, 144U);
   EXPECT_EQ(library.semanticNames()[1], "grid");
 }

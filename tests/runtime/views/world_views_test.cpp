@@ -464,6 +464,13 @@ TEST_F(WorldViewsOfAHome, TheDebugViewShowsSpheresBoxesAndTheGoal) {
   const Episode& episode = world_->episodes().episodes()[objects.episode];
   const Placement& target = world_->episodes().placements(episode)[episode.target];
   views.update(*simulator_);
+  // The target is told apart from all other objects, unless the hand has it.
+  const bool is_resting = objects.held != static_cast<std::int32_t>(episode.target);
+  const auto resting = find(0, models->targetModel(target.object));
+  ASSERT_EQ(resting.size(), is_resting ? 1U : 0U);
+  if (is_resting) {
+    EXPECT_EQ(difference(resting[0], rigidTransform(objects.objects[episode.target])), 0);
+  }
   const auto goal = find(0, models->goalModel(target.object));
   ASSERT_EQ(goal.size(), 1U);
   EXPECT_EQ(difference(goal[0], rigidTransform(episode.goal)), 0);
