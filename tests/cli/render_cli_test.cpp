@@ -281,7 +281,7 @@ TEST_F(RenderCli, ASheetThatIsTooLargeIsRefusedBeforeTheRun) {
        "--render", "rgb", "--size", "4096x1", "--contact-sheet", "a.png", "--record", "a.rec"});
   EXPECT_EQ(result.exit_code, 5);
   EXPECT_EQ(result.err,
-            "galactic-run: a.png: would be a picture of 1231208 x 70 pixels, which is more than "
+            "galactic-run: a.png: would be a picture of 1231208 x 92 pixels, which is more than "
             "PNG files are made of here; show fewer envs (--frame-envs), or smaller images "
             "(--size)\n");
   EXPECT_THAT(result.out, IsEmpty());

@@ -22,12 +22,16 @@ DrawnSteps::DrawnSteps(Rendering rendering, PictureOutput output)
 
 Result<DrawnSteps> DrawnSteps::create(const World& world, const BatchSimulator& simulator,
                                       const RunOptions& options) {
-  const RunLength length{options.steps, simulator.envCount()};
-  const std::size_t shown = std::min<std::size_t>(options.drawing.frame_envs, length.envs);
+  const PicturedRun run{
+      .steps = options.steps,
+      .envs = simulator.envCount(),
+      .longest_name = std::ranges::max(world.episodes().objectNames(), {}, &std::string_view::size),
+      .episodes = world.episodes().episodes().size()};
+  const std::size_t shown = std::min<std::size_t>(options.drawing.frame_envs, run.envs);
   Result<Rendering> rendering =
       Rendering::create(world, simulator, options, options.drawing.makesPictures() ? shown : 0);
   if (!rendering) return tl::unexpected<Error>(rendering.error());
-  Result<PictureOutput> output = PictureOutput::open(options.drawing, length);
+  Result<PictureOutput> output = PictureOutput::open(options.drawing, run);
   if (!output) return tl::unexpected<Error>(output.error());
   if (options.drawing.hasSemantics()) {
     const std::string legend = semanticLegend(rendering->semanticNames());

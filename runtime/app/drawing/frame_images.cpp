@@ -51,12 +51,15 @@ Image colorPicture(const DrawnImage& image) {
   });
 }
 
+Rgb depthColor(float depth) {
+  const auto gray = static_cast<std::uint8_t>(std::lround(255 / (1 + depth / kHalfBright)));
+  return {gray, gray, gray};
+}
+
 Image depthPicture(const DrawnImage& image) {
   return pictureOf(image, [&](std::size_t pixel) {
     const float depth = image.depth[pixel];
-    if (!(depth > 0)) return Rgb{};
-    const auto gray = static_cast<std::uint8_t>(std::lround(255 / (1 + depth / kHalfBright)));
-    return Rgb{gray, gray, gray};
+    return depth > 0 ? depthColor(depth) : Rgb{};
   });
 }
 

@@ -28,6 +28,8 @@ struct DrawnImage {
 /// is.
 [[nodiscard]] pictures::Image depthPicture(const DrawnImage& image);
 inline constexpr float kHalfBright = 2;
+/// The gray of a depth there, meters; not negative.
+[[nodiscard]] pictures::Rgb depthColor(float depth);
 
 /// The color of an id in semanticPicture; black of 0.
 [[nodiscard]] pictures::Rgb semanticColor(std::uint32_t id);

@@ -1,6 +1,7 @@
 #include "drawing/picture_output.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,8 @@
 #include <utility>
 
 #include "drawing/contact_sheet.h"
+#include "galactic/debug_views.h"
+#include "pictures/drawing.h"
 #include "pictures/png_file.h"
 #include "support/atomic_file.h"
 #include "support/out_of_memory.h"
@@ -53,17 +56,69 @@ std::size_t tileColumns(std::size_t count) {
   return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
 }
 
-std::string captionOf(std::size_t env, std::uint64_t step, bool is_idle) {
-  return fmt::format("env {}{} step {}", env, is_idle ? " (idle)" : "", step);
+/// What an idle env shows is no task any more.
+std::string captionOf(std::size_t env, std::uint64_t step, const EnvFrame& frame) {
+  if (frame.is_idle) return fmt::format("env {}, step {}, idle", env, step);
+  std::string caption = fmt::format("env {}, step {}, episode {}", env, step, frame.episode);
+  if (!frame.target.empty()) caption += fmt::format(", target {}", frame.target);
+  if (!frame.held.empty()) caption += fmt::format(", holds {}", frame.held);
+  return caption;
+}
+
+/// The images of a tile, from left to right.
+std::vector<std::string_view> imagesOf(const DrawingOptions& options) {
+  std::vector<std::string_view> images;
+  if (options.hasColor()) images.push_back("color");
+  if (options.hasDepth()) images.push_back("depth");
+  if (options.hasSemantics()) images.push_back("ids");
+  if (options.debug_view) images.push_back("debug");
+  return images;
 }
 
 /// A tile as it will be, of nothing.
 Image emptyTile(const DrawingOptions& options) {
-  const int images = (options.hasColor() ? 1 : 0) + (options.hasDepth() ? 1 : 0) +
-                     (options.hasSemantics() ? 1 : 0) + (options.debug_view ? 1 : 0);
+  const int images = static_cast<int>(imagesOf(options).size());
   return {images * (static_cast<int>(options.width) + kTileGap) - kTileGap,
           static_cast<int>(options.height),
           {}};
+}
+
+/// What depths and the colors of the debug view mean, and which image is which.
+SheetGuide guideOf(const DrawingOptions& options) {
+  SheetGuide guide;
+  const std::vector<std::string_view> images = imagesOf(options);
+  int left = 0;
+  for (const std::string_view image : images) {
+    guide.headings.push_back({left, std::string(image)});
+    left += static_cast<int>(options.width) + kTileGap;
+  }
+  const auto is_narrow = [&](std::string_view image) {
+    return pictures::textWidth(image) > static_cast<int>(options.width);
+  };
+  if (std::ranges::any_of(images, is_narrow)) {
+    guide.headings.clear();
+    guide.legend.push_back(
+        {{std::nullopt, fmt::format("from left to right: {}", fmt::join(images, ", "))}});
+  }
+  if (options.hasDepth()) {
+    auto& line = guide.legend.emplace_back();
+    line.push_back({std::nullopt, "depth"});
+    for (const float depth : {0.0F, 1.0F, 2.0F, 4.0F, 8.0F}) {
+      line.push_back({depthColor(depth), fmt::format("{} m", depth)});
+    }
+    line.push_back({pictures::Rgb{}, "nothing"});
+  }
+  if (options.debug_view) {
+    auto& line = guide.legend.emplace_back();
+    line.push_back({std::nullopt, "debug"});
+    for (const auto& [color, meaning] : {kDebugRobot, kDebugHeld, kDebugObject, kDebugTask}) {
+      const auto channel = [value = color](unsigned shift) {
+        return static_cast<std::uint8_t>(value >> shift & 0xFFU);
+      };
+      line.push_back({pictures::Rgb{channel(0), channel(8), channel(16)}, std::string(meaning)});
+    }
+  }
+  return guide;
 }
 
 }  // namespace
@@ -100,14 +155,14 @@ Image tileOf(const EnvFrame& frame) {
   return tile;
 }
 
-PictureOutput::PictureOutput(const DrawingOptions& options, const RunLength& length)
-    : options_(options), envs_(std::min<std::size_t>(options.frame_envs, length.envs)) {
-  if (!options.contact_sheet.empty()) sheet_.emplace(length.steps, options.frame_every);
+PictureOutput::PictureOutput(const DrawingOptions& options, const PicturedRun& run)
+    : options_(options), envs_(std::min<std::size_t>(options.frame_envs, run.envs)) {
+  if (!options.contact_sheet.empty()) sheet_.emplace(run.steps, options.frame_every);
 }
 
-Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const RunLength& length) {
-  PictureOutput output(options, length);
-  RETURN_IF_ERROR(output.checkSheet(length.steps));
+Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const PicturedRun& run) {
+  PictureOutput output(options, run);
+  RETURN_IF_ERROR(output.checkSheet(run));
   if (!options.video.empty()) {
     const std::vector<Image> tiles(output.envs_, emptyTile(options));
     Result<VideoPipe> video = VideoPipe::start(options.video, output.videoFrame(tiles));
@@ -118,12 +173,14 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const R
 }
 
 /// Before the run: it would be a pity afterwards.
-Result<void> PictureOutput::checkSheet(std::uint64_t steps) const {
+Result<void> PictureOutput::checkSheet(const PicturedRun& run) const {
   if (!sheet_) return {};
-  constexpr bool kIsIdle = true;
-  const std::string longest = captionOf(envs_ - 1, steps, kIsIdle);
-  const SheetLayout layout =
-      sheetLayout(envs_ * sheet_->planned(), envs_, emptyTile(options_), std::span(&longest, 1));
+  EnvFrame frame;
+  frame.episode = static_cast<std::uint32_t>(run.episodes);
+  frame.target = frame.held = run.longest_name;
+  const std::string longest = captionOf(envs_ - 1, run.steps, frame);
+  const SheetLayout layout = sheetLayout(envs_ * sheet_->planned(), envs_, emptyTile(options_),
+                                         std::span(&longest, 1), guideOf(options_));
   constexpr const char* kAdvice = "show fewer envs (--frame-envs), or smaller images (--size)";
   if (!pictures::fitsPng(layout.width(), layout.height())) {
     return fail(ErrorCode::kUnsupported, options_.contact_sheet,
@@ -180,7 +237,7 @@ Result<void> PictureOutput::show(std::uint64_t step, std::span<const EnvFrame> f
   if (is_on_sheet) {
     SheetMoments::Moment moment{.step = step, .cells = {}};
     for (std::size_t env = 0; env < frames.size(); ++env) {
-      moment.cells.push_back({std::move(tiles[env]), captionOf(env, step, frames[env].is_idle)});
+      moment.cells.push_back({std::move(tiles[env]), captionOf(env, step, frames[env])});
     }
     sheet_->add(std::move(moment));
   }
@@ -201,7 +258,7 @@ Result<void> PictureOutput::writeSheet() {
     std::ranges::move(moment.cells, std::back_inserter(cells));
   }
   if (cells.empty()) return {};
-  return pictures::writePng(options_.contact_sheet, contactSheet(cells, envs_));
+  return pictures::writePng(options_.contact_sheet, contactSheet(cells, envs_, guideOf(options_)));
 }
 
 bool PictureOutput::isFrame(std::uint64_t step) const { return step % options_.frame_every == 0; }

@@ -24,12 +24,19 @@ struct EnvFrame {
   RenderCamera seen_from = {};
   /// Whether the env is idle (BatchSimulator::idle()).
   bool is_idle = false;
+  /// Number of the episode, its target, and what the hand holds; empty: nothing.
+  std::uint32_t episode = 0;
+  std::string_view target = {};
+  std::string_view held = {};
 };
 
-/// How long the run is that pictures are made of.
-struct RunLength {
+/// The run that pictures are made of.
+struct PicturedRun {
   std::uint64_t steps = 0;
   std::size_t envs = 0;
+  /// Of all objects and episodes.
+  std::string_view longest_name = {};
+  std::size_t episodes = 0;
 };
 
 /// What `frame` looks like in sheets and videos: color, depth, semantics and debug view side by
@@ -49,7 +56,7 @@ class PictureOutput {
   /// Whether files can be written is for others to try: makeFrameFolder() and tryFile(). Fails with
   /// the errors of VideoPipe, and with kUnsupported when the sheet would be too large.
   [[nodiscard]] static Result<PictureOutput> open(const DrawingOptions& options,
-                                                  const RunLength& length);
+                                                  const PicturedRun& run);
 
   /// Writes what the ids of semantic images mean beside the frames; nothing where there are none.
   [[nodiscard]] Result<void> writeLegend(std::string_view json) const;
@@ -70,9 +77,9 @@ class PictureOutput {
   [[nodiscard]] Result<void> finish();
 
  private:
-  PictureOutput(const DrawingOptions& options, const RunLength& length);
+  PictureOutput(const DrawingOptions& options, const PicturedRun& run);
 
-  [[nodiscard]] Result<void> checkSheet(std::uint64_t steps) const;
+  [[nodiscard]] Result<void> checkSheet(const PicturedRun& run) const;
   [[nodiscard]] Result<void> show(std::uint64_t step, std::span<const EnvFrame> frames,
                                   bool is_on_sheet);
   [[nodiscard]] Result<void> writeSheet();

@@ -132,15 +132,14 @@ class DebugBatch {
 
 /// Stays in one place: its parts look at each other.
 struct Rendering::Parts {
-  explicit Parts(WorldModels world_models) : models(std::move(world_models)) {}
+  Parts(const World& of, WorldModels world_models) : world(of), models(std::move(world_models)) {}
 
+  const World& world;
   WorldModels models;
   std::optional<WorldViews> views;
   std::optional<ImageBatch> images;
   std::unique_ptr<DebugBatch> debug;
   std::vector<EnvFrame> frames;
-  /// Of the envs that are shown, at the last update().
-  std::vector<std::uint8_t> is_idle;
 };
 
 Rendering::Rendering(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -161,7 +160,7 @@ Result<Rendering> Rendering::create(const World& world, const BatchSimulator& si
   if (!camera) return tl::unexpected<Error>(camera.error());
   Result<WorldModels> models = WorldModels::from(world);
   if (!models) return tl::unexpected<Error>(models.error());
-  auto parts = std::make_unique<Parts>(std::move(*models));
+  auto parts = std::make_unique<Parts>(world, std::move(*models));
   ASSIGN_OR_RETURN(parts->images, ImageBatch::create(parts->models.library(),
                                                      rendererOptions(options, camera->near),
                                                      simulator.envCount()));
@@ -178,8 +177,22 @@ Result<Rendering> Rendering::create(const World& world, const BatchSimulator& si
 void Rendering::update(const BatchSimulator& simulator) {
   parts_->views->update(simulator);
   if (parts_->debug) parts_->debug->update(simulator);
-  const auto idle = simulator.idle().first(parts_->frames.size());
-  parts_->is_idle.assign(idle.begin(), idle.end());
+  const World& world = parts_->world;
+  for (std::size_t env = 0; env < parts_->frames.size(); ++env) {
+    const EnvObjects objects = simulator.envObjects(env);
+    const Episode& episode = world.episodes().episodes()[objects.episode];
+    const auto name_of = [&](const Placement& placement) {
+      return world.episodes().objectNames()[placement.object];
+    };
+    EnvFrame& frame = parts_->frames[env];
+    frame.is_idle = simulator.idle()[env] != 0;
+    frame.episode = objects.episode;
+    frame.target = name_of(world.episodes().placements(episode)[episode.target]);
+    frame.held = {};
+    if (objects.held >= 0) {
+      frame.held = name_of(objects.placements[static_cast<std::size_t>(objects.held)]);
+    }
+  }
 }
 void Rendering::begin() { parts_->images->begin(parts_->views->views()); }
 void Rendering::end() { parts_->images->end(); }
@@ -191,7 +204,6 @@ std::span<const EnvFrame> Rendering::frames() {
     frame.camera = parts_->images->image(env);
     frame.seen_from = parts_->views->views()[env].camera;
     if (parts_->debug) frame.debug = parts_->debug->image(env);
-    frame.is_idle = parts_->is_idle[env] != 0;
   }
   return parts_->frames;
 }

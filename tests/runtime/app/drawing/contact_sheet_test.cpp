@@ -53,8 +53,8 @@ TEST(ContactSheet, BreaksCaptionsThatAreWiderThanTheirPictures) {
   const Image one_line = sheet_of("env 0");
   EXPECT_EQ(one_line.width(), 3 * kSheetGap + 2 * kWidth);
   EXPECT_EQ(one_line.height(), 3 * kSheetGap + 4 + pictures::kTextHeight);
-  ASSERT_GT(pictures::textWidth("env 0 step 0"), kWidth);
-  const Image two_lines = sheet_of("env 0 step 0");
+  ASSERT_GT(pictures::textWidth("env 0, step 0"), kWidth);
+  const Image two_lines = sheet_of("env 0, step 0");
   EXPECT_EQ(two_lines.width(), one_line.width());
   EXPECT_EQ(two_lines.height(), one_line.height() + kCaptionAdvance);
   // Both lines have ink, and between the captions there is none.
@@ -70,6 +70,10 @@ TEST(ContactSheet, BreaksCaptionsThatAreWiderThanTheirPictures) {
   EXPECT_TRUE(inked(two_lines, {kSheetGap, first, kWidth, pictures::kTextHeight}));
   EXPECT_TRUE(
       inked(two_lines, {kSheetGap, first + kCaptionAdvance, kWidth, pictures::kTextHeight}));
+  // As many as it takes; a phrase is not broken.
+  EXPECT_EQ(sheet_of("env 0, step 0, a cup, the fork").height(),
+            one_line.height() + 3 * kCaptionAdvance);
+  EXPECT_EQ(sheet_of("a, b, c, d, e").height(), one_line.height() + kCaptionAdvance);
   // A word that is wider yet makes the cells wider, and leaves a gap.
   const std::string word(12, 'W');
   const Image wide = sheet_of(word);
@@ -78,6 +82,37 @@ TEST(ContactSheet, BreaksCaptionsThatAreWiderThanTheirPictures) {
   EXPECT_TRUE(inked(wide, {right_of_word - 2, 0, 2, wide.height()}));
   EXPECT_FALSE(inked(wide, {right_of_word, 0, kCaptionGap, wide.height()}));
   EXPECT_TRUE(inked(wide, {right_of_word + kCaptionGap, 0, 2, wide.height()}));
+}
+
+TEST(ContactSheet, HasHeadingsAboveItsColumnsAndALegendBelow) {
+  const pictures::Rgb green{0, 200, 0};
+  const Image grey(64, 4, {90, 90, 90});
+  const std::vector<SheetCell> cells{{grey, "a"}, {grey, "b"}, {grey, "c"}, {grey, "d"}};
+  const Image plain = contactSheet(cells, 2);
+  SheetGuide guide{.headings = {{0, "II"}, {32, "I"}}, .legend = {{{green, "yes"}, {{}, "no"}}}};
+  const Image sheet = contactSheet(cells, 2, guide);
+  const int above = kSheetGap + pictures::kTextHeight;
+  EXPECT_EQ(sheet.width(), plain.width());
+  EXPECT_EQ(sheet.height(), plain.height() + above + kSheetGap + kCaptionAdvance);
+  // The bars of the letters of each heading, over both columns.
+  for (const int column : {0, 1}) {
+    const int left = kSheetGap + column * (64 + kSheetGap);
+    for (const int x : {left, left + pictures::kTextAdvance, left + 32}) {
+      EXPECT_EQ(sheet.at(x + 2 * pictures::kTextScale, kSheetGap), pictures::kInk) << x;
+    }
+  }
+  // What was there is below the headings.
+  for (int y = kSheetGap; y < plain.height(); ++y) {
+    for (int x = 0; x < plain.width(); ++x) ASSERT_EQ(sheet.at(x, y + above), plain.at(x, y));
+  }
+  const int legend = plain.height() + above;
+  EXPECT_EQ(sheet.at(kSheetGap + 4, legend + 4), green);
+  // An entry that does not fit goes to the next line, and what fits on none makes the sheet wider.
+  guide.legend[0].push_back({{}, "perhaps"});
+  EXPECT_EQ(contactSheet(cells, 2, guide).height(), sheet.height() + kCaptionAdvance);
+  const std::string wide(20, 'W');
+  guide.legend.push_back({{{}, wide}});
+  EXPECT_EQ(contactSheet(cells, 2, guide).width(), pictures::textWidth(wide) + 2 * kSheetGap);
 }
 
 /// The steps that a sheet shows of a run of `planned` steps that ends after `done`.

@@ -115,32 +115,60 @@ TEST_F(Pictures, ASheetShowsSixMomentsFromTheFirstToTheLast) {
     const std::string png = test::fileContent(options.contact_sheet);
     return static_cast<unsigned char>(png[22]) * 256 + static_cast<unsigned char>(png[23]);
   };
-  const int row = 1 + kSheetGap + pictures::kTextHeight + kCaptionAdvance + kSheetGap;
-  EXPECT_EQ(height_of(100, 100), kSheetGap + 6 * row);
-  EXPECT_EQ(height_of(3, 3), kSheetGap + 4 * row);
+  // Env, step and episode stand below each other.
+  const int row = 1 + kSheetGap + pictures::kTextHeight + 2 * kCaptionAdvance + kSheetGap;
+  // Which image is which, and two lines of depths.
+  const int around = kSheetGap + kSheetGap + 3 * kCaptionAdvance;
+  EXPECT_EQ(height_of(100, 100), around + 6 * row);
+  EXPECT_EQ(height_of(3, 3), around + 4 * row);
   // Runs that were stopped.
-  EXPECT_EQ(height_of(100, 41), kSheetGap + 6 * row);
-  EXPECT_EQ(height_of(1000000, 41), kSheetGap + 6 * row);
-  EXPECT_EQ(height_of(1000000, 0), kSheetGap + 1 * row);
+  EXPECT_EQ(height_of(100, 41), around + 6 * row);
+  EXPECT_EQ(height_of(1000000, 41), around + 6 * row);
+  EXPECT_EQ(height_of(1000000, 0), around + 1 * row);
 }
 
-TEST_F(Pictures, ASheetSaysWhichEnvsAreIdle) {
+TEST_F(Pictures, ASheetSaysWhatItShows) {
+  constexpr std::uint32_t kWidth = 128;
   DrawingOptions options = smallOptions();
   options.contact_sheet = file("sheet.png");
-  const SmallImage small;
-  EnvFrame idle = small.frame();
+  options.width = kWidth;
+  options.debug_view = true;
+  const std::vector<std::uint8_t> color(std::size_t{kWidth} * 4, 77);
+  const std::vector<float> depth(kWidth, 3);
+  const std::vector<std::uint32_t> ids(kWidth, 5);
+  EnvFrame frame;
+  frame.camera = {kWidth, 1, ColorFormat::kRgba8, color, depth, ids};
+  frame.debug = DrawnImage{kWidth, 1, ColorFormat::kRgba8, color, {}, {}};
+  frame.episode = 14;
+  frame.target = "mug";
+  EnvFrame idle = frame;
   idle.is_idle = true;
-  auto output = PictureOutput::open(options, {7, 2});
+  EnvFrame holding = frame;
+  holding.held = "bowl";
+  auto output = PictureOutput::open(options, {.steps = 7, .envs = 2});
   ASSERT_TRUE(output) << output.error().message;
-  ASSERT_TRUE(output->add(0, std::vector{small.frame(), small.frame()}));
-  ASSERT_TRUE(output->addLast(3, std::vector{small.frame(), idle}));
+  ASSERT_TRUE(output->add(0, std::vector{frame, frame}));
+  ASSERT_TRUE(output->addLast(3, std::vector{holding, idle}));
   ASSERT_TRUE(output->finish());
   const Image tile = tileOf(idle);
-  const Image wanted = contactSheet({{tile, "env 0 step 0"},
-                                     {tile, "env 1 step 0"},
-                                     {tile, "env 0 step 3"},
-                                     {tile, "env 1 (idle) step 3"}},
-                                    2);
+  const SheetGuide guide{.headings = {{0, "color"}, {130, "depth"}, {260, "ids"}, {390, "debug"}},
+                         .legend = {{{{}, "depth"},
+                                     {Rgb{255, 255, 255}, "0 m"},
+                                     {Rgb{170, 170, 170}, "1 m"},
+                                     {Rgb{128, 128, 128}, "2 m"},
+                                     {Rgb{85, 85, 85}, "4 m"},
+                                     {Rgb{51, 51, 51}, "8 m"},
+                                     {Rgb{}, "nothing"}},
+                                    {{{}, "debug"},
+                                     {Rgb{40, 176, 72}, "robot"},
+                                     {Rgb{46, 116, 232}, "held object"},
+                                     {Rgb{240, 130, 20}, "object"},
+                                     {Rgb{214, 30, 140}, "target, and its goal as a frame"}}}};
+  const Image wanted = contactSheet({{tile, "env 0, step 0, episode 14, target mug"},
+                                     {tile, "env 1, step 0, episode 14, target mug"},
+                                     {tile, "env 0, step 3, episode 14, target mug, holds bowl"},
+                                     {tile, "env 1, step 3, idle"}},
+                                    2, guide);
   ASSERT_TRUE(pictures::writePng(file("wanted.png"), wanted));
   EXPECT_TRUE(test::fileContent(options.contact_sheet) == test::fileContent(file("wanted.png")));
 }
@@ -163,13 +191,21 @@ TEST_F(Pictures, ShowWhoIsIdleInTheStateThatIsDrawn) {
   for (std::size_t step = 0; step < kStates; ++step) {
     const auto now = simulator.idle();
     const std::vector<std::uint8_t> wanted(now.begin(), now.end());
+    const std::vector states{simulator.envState(0), simulator.envState(1)};
     rendering.update(simulator);
     rendering.begin();
     // As a run does, which draws and steps at once.
     simulator.step(actions);
     rendering.end();
     for (std::size_t env = 0; env < wanted.size(); ++env) {
-      EXPECT_EQ(rendering.frames()[env].is_idle, wanted[env] != 0) << env << " at " << step;
+      const EnvFrame& frame = rendering.frames()[env];
+      EXPECT_EQ(frame.is_idle, wanted[env] != 0) << env << " at " << step;
+      EXPECT_EQ(frame.episode, states[env].episode) << env << " at " << step;
+      const EpisodeSet& episodes = home.world().episodes();
+      const Episode& episode = episodes.episodes()[states[env].episode];
+      EXPECT_EQ(frame.target,
+                episodes.objectNames()[episodes.placements(episode)[episode.target].object]);
+      EXPECT_EQ(frame.held, "");
       idle += wanted[env];
     }
   }
