@@ -149,7 +149,8 @@ class Comparison {
       result_.rests.push_back({.displacement = lengthOf(now.translation - put.translation),
                                .lean = std::acos(std::clamp(up.y, -1.0F, 1.0F)),
                                .drop = put.translation.y - now.translation.y,
-                               .step = static_cast<std::uint32_t>(release.step)});
+                               .step = static_cast<std::uint32_t>(release.step),
+                               .world_from_object = now});
     }
   }
 

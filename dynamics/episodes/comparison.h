@@ -60,6 +60,8 @@ struct Rest {
   float drop = 0;
   /// Number of the step in which it was let go.
   std::uint32_t step = 0;
+  /// Where it is then.
+  Pose world_from_object = {};
 };
 
 /// A contact that the simulation does not see.

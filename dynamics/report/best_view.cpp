@@ -149,6 +149,16 @@ Still BestView::take(const BatchSimulator& simulator) {
   return still;
 }
 
+Still BestView::withoutRobot(const Still& still, std::size_t object,
+                             const Pose& world_from_object) {
+  Still other = still;
+  other.view.attached = {};
+  if (const auto place = other.places[object]) {
+    other.posed[*place].world_from_model = world_from_object;
+  }
+  return other;
+}
+
 BestView::Cutout BestView::cutOut(const Still& still, const PictureSubject& subject) const {
   Cutout cutout;
   for (const std::size_t object : subject.objects) {

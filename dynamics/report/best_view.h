@@ -48,6 +48,10 @@ class BestView {
   /// Valid as long as this lives.
   [[nodiscard]] Still take(const BatchSimulator& simulator);
 
+  /// The same moment without the robot, an object at another place.
+  [[nodiscard]] static Still withoutRobot(const Still& still, std::size_t object,
+                                          const Pose& world_from_object);
+
   /// Cameras for two stills, which see their subjects from the same side and as far away, so that
   /// the pictures compare: from where most of both is seen. They stand where the column grids are
   /// free and outside of robot and objects. Where no such camera sees anything of the subject,

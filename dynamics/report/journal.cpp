@@ -39,6 +39,16 @@ EpisodeEnd endOf(const Json& json) {
   return static_cast<EpisodeEnd>(end);
 }
 
+Json jsonOf(const Pose& pose) {
+  const auto& [t, q] = pose;
+  return {t.x, t.y, t.z, q.x, q.y, q.z, q.w};
+}
+
+Pose poseOf(const Json& json) {
+  const auto n = [&json](std::size_t at) { return json.at(at).get<float>(); };
+  return {{n(0), n(1), n(2)}, {n(3), n(4), n(5), n(6)}};
+}
+
 Json contactsOf(const EpisodeComparison& c) {
   Json missed = Json::array();
   for (const auto& [key, steps] : c.missed) missed.push_back({jsonOf(key), steps});
@@ -54,7 +64,8 @@ Json contactsOf(const EpisodeComparison& c) {
 Json jsonOf(const EpisodeComparison& c) {
   Json rests = Json::array();
   for (const Rest& rest : c.rests) {
-    rests.push_back({rest.displacement, rest.lean, rest.drop, rest.step});
+    rests.push_back(
+        {rest.displacement, rest.lean, rest.drop, rest.step, jsonOf(rest.world_from_object)});
   }
   return {{"of", {c.env, c.episode}},
           {"here", {static_cast<int>(c.end), c.steps}},
@@ -112,7 +123,8 @@ EpisodeComparison comparisonOf(const Json& json) {
     c.rests.push_back({.displacement = one.at(0).get<float>(),
                        .lean = one.at(1).get<float>(),
                        .drop = one.at(2).get<float>(),
-                       .step = one.at(3).get<std::uint32_t>()});
+                       .step = one.at(3).get<std::uint32_t>(),
+                       .world_from_object = poseOf(one.at(4))});
   }
   return c;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "dynamics/report/names.h"
 
@@ -30,7 +31,7 @@ std::optional<Moment> apartIn(const EpisodeComparison& episode) {
       episode.grip_gap.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(
                                      episode.parted.value_or(UINT32_MAX), episode.grip_gap.size()));
   const auto farthest = std::max_element(episode.grip_gap.begin(), end);
-  if (farthest == end || *farthest == 0) return std::nullopt;
+  if (farthest == end || *farthest <= kDisturbed) return std::nullopt;
   return Moment{.kind = MomentKind::kApart,
                 .step = static_cast<std::uint32_t>(farthest - episode.grip_gap.begin()),
                 .meters = *farthest};
@@ -38,7 +39,9 @@ std::optional<Moment> apartIn(const EpisodeComparison& episode) {
 
 std::optional<Moment> movedIn(const EpisodeComparison& episode) {
   const auto farthest = std::ranges::max_element(episode.rests, {}, &Rest::displacement);
-  if (farthest == episode.rests.end()) return std::nullopt;
+  if (farthest == episode.rests.end() || farthest->displacement <= kDisturbed) {
+    return std::nullopt;
+  }
   return Moment{
       .kind = MomentKind::kMoved, .step = farthest->step, .meters = farthest->displacement};
 }
@@ -62,6 +65,44 @@ Ranking rank(const std::vector<EpisodeComparison>& episodes) {
   return ranking;
 }
 
+/// Number of the last step.
+std::uint32_t lastOf(const RunTrack& track) {
+  return static_cast<std::uint32_t>(track.steps()) - 1;
+}
+
+/// After which step the robot of a track stands most as it does after a step of another one: by
+/// where its root is, a point ahead of it, and its joints.
+std::uint32_t likestStep(const RunTrack& track, const RunTrack& other, std::uint32_t step) {
+  constexpr Vec3 kAhead{0.5F, 0, 0};
+  // Meters for a radian, as a joint moves a hand.
+  constexpr float kReach = 0.5F;
+  const std::size_t positions = track.positionCount();
+  // The first frame is of the start.
+  const auto root_of = [](const RunTrack& one, std::size_t at) -> const Pose& {
+    return one.envs().front().world_from_root[at + 1];
+  };
+  const auto joints_of = [positions](const RunTrack& one, std::size_t at) {
+    return std::span(one.envs().front().joints).subspan((at + 1) * positions, positions);
+  };
+  const auto distance = [&](std::uint32_t at) {
+    const Pose& a = root_of(track, at);
+    const Pose& b = root_of(other, step);
+    const Vec3 away = a.translation - b.translation;
+    const Vec3 ahead = a * kAhead - b * kAhead;
+    float sum = dot(away, away) + dot(ahead, ahead);
+    for (std::size_t n = 0; n < positions; ++n) {
+      const float turned = kReach * (joints_of(track, at)[n] - joints_of(other, step)[n]);
+      sum += turned * turned;
+    }
+    return sum;
+  };
+  std::uint32_t best = 0;
+  for (std::uint32_t at = 1; at <= lastOf(track); ++at) {
+    if (distance(at) < distance(best)) best = at;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes, std::size_t most,
@@ -82,6 +123,37 @@ MomentPlace placeOf(const Moment& moment, std::size_t steps_here, std::size_t st
       moment.kind == MomentKind::kMissed || moment.kind == MomentKind::kMoved;
   const auto last = static_cast<std::uint32_t>(is_simulation ? steps_here : steps_there);
   return {is_simulation, std::min(moment.step + 1, last)};
+}
+
+MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
+                    const BothTracks& tracks) {
+  const auto& [here, there, is_closed] = tracks;
+  const std::string what = fmt::format("{}, {:.3f} m", nameOf(moment.kind), moment.meters);
+  MomentSides sides{.step_here = std::min(moment.step, lastOf(here)),
+                    .said_here = what,
+                    .step_there = std::min(moment.step, lastOf(there)),
+                    .said_there = {},
+                    .rest = {}};
+  if (moment.kind == MomentKind::kMoved) {
+    const auto rest = std::ranges::find(episode.rests, moment.step, &Rest::step);
+    sides.said_here = "let go";
+    sides.said_there = "dynamics, 2 s later, " + what;
+    sides.rest = rest->world_from_object;
+  } else if (is_closed && moment.kind == MomentKind::kLost) {
+    sides.step_here = lastOf(here);
+    sides.said_here = nameOf(episode.end);
+    sides.step_there = lastOf(there);
+    sides.said_there = fmt::format("{}, {}", nameOf(episode.end_there), what);
+  } else if (is_closed) {
+    sides.step_there = likestStep(there, here, sides.step_here);
+    sides.said_there = "most like it";
+  }
+  const auto stepped = [](std::string_view world, std::uint32_t step, const std::string& said) {
+    return fmt::format("{}, step {}{}{}", world, step + 1, said.empty() ? "" : ", ", said);
+  };
+  sides.said_here = stepped("simulation", sides.step_here, sides.said_here);
+  if (!sides.rest) sides.said_there = stepped("dynamics", sides.step_there, sides.said_there);
+  return sides;
 }
 
 std::string describe(const Moment& moment, const EpisodeComparison& episode, const World& world) {

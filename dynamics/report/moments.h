@@ -2,12 +2,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "dynamics/episodes/comparison.h"
 #include "galactic/world.h"
+#include "view/run_track.h"
 
 namespace galactic::dynamics {
 
@@ -37,7 +39,8 @@ struct Moment {
 
 /// The worst moments, at most `most`: in turn the worst of each kind that is left, in the order of
 /// the kinds. Of each kind and episode there is one. Without `is_replay` the actions differ, and
-/// that the grips are apart means nothing.
+/// that the grips are apart means nothing. What is no more than kDisturbed apart or moved is no
+/// moment.
 [[nodiscard]] std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes,
                                                std::size_t most, bool is_replay);
 
@@ -55,6 +58,32 @@ struct MomentPlace {
 /// end is seen.
 [[nodiscard]] MomentPlace placeOf(const Moment& moment, std::size_t steps_here,
                                   std::size_t steps_there);
+
+/// An episode in both worlds, each the first env of its track.
+struct BothTracks {
+  const RunTrack& here;
+  const RunTrack& there;
+  /// Whether each world has actions of its own.
+  bool is_closed = false;
+};
+
+/// What a moment looks like in both worlds: after which steps, and what is to be said of it.
+struct MomentSides {
+  std::uint32_t step_here = 0;
+  std::string said_here;
+  std::uint32_t step_there = 0;
+  std::string said_there;
+  /// Of an object that was let go, where it is in the dynamics two seconds later: all else is as in
+  /// the simulation, and the robot is gone.
+  std::optional<Pose> rest;
+};
+
+/// In a replay both are seen after the same step. In a closed loop the same step says nothing:
+/// where a success is lost, both ends are seen, and else the dynamics when the robot stands there
+/// most as it does in the simulation. What an object did that was let go is seen two seconds later.
+/// Where an episode ends before, its end is seen.
+[[nodiscard]] MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
+                                  const BothTracks& tracks);
 
 /// "episode 17, step 203: grips apart, 0.123 m".
 [[nodiscard]] std::string describe(const Moment& moment, const EpisodeComparison& episode,

@@ -32,9 +32,8 @@ constexpr std::size_t kWithoutMoments = 4;
 /// What one world looks like while an episode is played in it.
 class Onlooker {
  public:
-  /// `best`: takes the stills; null without pictures. `steps`: after which ones there is one.
-  Onlooker(const World& world, BestView* best, std::vector<std::uint32_t> steps)
-      : world_(world), best_(best), steps_(std::move(steps)) {}
+  /// `best`: takes a still after each step; null without pictures.
+  Onlooker(const World& world, BestView* best) : world_(world), best_(best) {}
 
   void look(const BatchSimulator& simulator, std::span<const float> actions) {
     if (actions.empty()) {
@@ -42,27 +41,19 @@ class Onlooker {
       return;
     }
     track_->add(simulator, actions);
-    const auto step = static_cast<std::uint32_t>(track_->steps()) - 1;
-    if (best_ == nullptr) return;
-    // Where the episode ends before, its end is shown.
-    if (std::ranges::find(steps_, step) != steps_.end() || simulator.dones()[0] != 0) {
-      stills_.insert_or_assign(step, best_->take(simulator));
-    }
+    if (best_ != nullptr) stills_.push_back(best_->take(simulator));
   }
 
   [[nodiscard]] const RunTrack& track() const { return *track_; }
-  /// After this step or, where there was none, the last one.
-  [[nodiscard]] const Still& still(std::uint32_t step) const {
-    const auto found = stills_.find(step);
-    return found == stills_.end() ? stills_.rbegin()->second : found->second;
-  }
+  /// After a step.
+  [[nodiscard]] const Still& still(std::uint32_t step) const { return stills_[step]; }
 
  private:
   const World& world_;
   BestView* best_;
-  std::vector<std::uint32_t> steps_;
   std::optional<RunTrack> track_;
-  std::map<std::uint32_t, Still> stills_;
+  /// By step.
+  std::vector<Still> stills_;
 };
 
 /// Lets a lane follow what the simulation did.
@@ -157,12 +148,10 @@ class SideBySide {
   [[nodiscard]] const std::vector<Moment>& worst() const { return parts_.comparisons.worst; }
 
   Result<void> play(std::size_t comparison, const std::vector<std::size_t>& moments) {
-    std::vector<std::uint32_t> steps;
-    steps.reserve(moments.size());
-    for (const std::size_t n : moments) steps.push_back(worst()[n].step);
     const World& world = parts_.worlds.world;
-    Onlooker here(world, best_.get(), steps);
-    Onlooker there(world, best_.get(), steps);
+    BestView* const best = moments.empty() ? nullptr : best_.get();
+    Onlooker here(world, best);
+    Onlooker there(world, best);
     ASSIGN_OR_RETURN(const auto trace, parts_.trace_of(comparison));
     replayHere(trace, parts_.here, here);
     RETURN_IF_ERROR(
@@ -173,7 +162,7 @@ class SideBySide {
     keep(here.track(), there.track(), trace.episode);
     for (const std::size_t n : moments) {
       keep(n, here.track(), there.track());
-      if (best_) draw(n, trace, {&here.still(worst()[n].step), &there.still(worst()[n].step)});
+      if (best != nullptr) draw(n, trace, here, there);
     }
     return {};
   }
@@ -201,16 +190,23 @@ class SideBySide {
                              .text = describe(moment, episode, parts_.worlds.world)});
   }
 
-  void draw(std::size_t n, const EpisodeTrace& trace, const std::array<const Still*, 2>& stills) {
+  void draw(std::size_t n, const EpisodeTrace& trace, const Onlooker& here, const Onlooker& there) {
     const Moment& moment = worst()[n];
     const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
-    const auto cameras =
-        best_->camerasFor(stills, subjectOf(moment, episode, trace, parts_.worlds.world.robot()));
+    const PictureSubject subject = subjectOf(moment, episode, trace, parts_.worlds.world.robot());
+    const MomentSides sides =
+        sidesOf(moment, episode, {here.track(), there.track(), parts_.is_closed});
+    const std::array stills{here.still(sides.step_here),
+                            sides.rest
+                                ? BestView::withoutRobot(here.still(sides.step_here),
+                                                         subject.objects.front(), *sides.rest)
+                                : there.still(sides.step_there)};
+    const auto cameras = best_->camerasFor({&stills[0], &stills[1]}, subject);
     const std::array captions{
-        fmt::format("{}. episode {}, step {}", n + 1, episode.episode, moment.step + 1),
-        fmt::format("dynamics: {}, {:.3f} m", nameOf(moment.kind), moment.meters)};
+        fmt::format("{}. episode {}, {}", n + 1, episode.episode, sides.said_here),
+        sides.said_there};
     for (std::size_t side = 0; side < stills.size(); ++side) {
-      cells_[2 * n + side] = {colorPicture(best_->draw(*stills[side], cameras[side])),
+      cells_[2 * n + side] = {colorPicture(best_->draw(stills[side], cameras[side])),
                               captions[side]};
     }
   }
@@ -237,9 +233,9 @@ Result<std::vector<std::string>> writeSideBySide(const SideBySideParts& parts,
   if (!files.pictures.empty() && parts.comparisons.worst.empty()) {
     possible.pictures.clear();
     notes.push_back(fmt::format(
-        "{} is not written: there is no moment to draw, as the two worlds do not part in any "
-        "episode",
-        files.pictures.string()));
+        "{} is not written: there is no moment to draw, as in no episode a success is lost, a "
+        "contact missed, or anything more than {:.0f} cm from where the simulation has it",
+        files.pictures.string(), static_cast<double>(kDisturbed) * 100));
   }
   if (possible.view.empty() && possible.pictures.empty()) return notes;
   SideBySide both(parts, possible);

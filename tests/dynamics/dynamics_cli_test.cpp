@@ -316,8 +316,9 @@ TEST_F(DynamicsCli, ShowsTheFirstEpisodesWhereNothingPartsTheWorlds) {
   EXPECT_THAT(fileContent(path("calm.html")), HasSubstr("<title>calm</title>"));
   EXPECT_FALSE(std::filesystem::exists(path("calm.png")));
   EXPECT_EQ(done.err,
-            "galactic-dynamics: calm.png is not written: there is no moment to draw, as the two "
-            "worlds do not part in any episode\n");
+            "galactic-dynamics: calm.png is not written: there is no moment to draw, as in no "
+            "episode a success is lost, a contact missed, or anything more than 2 cm from where "
+            "the simulation has it\n");
 }
 
 TEST_F(DynamicsCli, RefusesWhatItCannotDo) {

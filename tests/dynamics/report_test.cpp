@@ -8,13 +8,16 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "dynamics/report/journal.h"
 #include "dynamics/report/moments.h"
 #include "dynamics/report/report_sums.h"
+#include "galactic/batch_simulator.h"
 #include "support/homes/small_home.h"
 #include "support/journal.h"
 #include "support/scratch_folder.h"
+#include "view/run_track.h"
 
 namespace galactic::test::report_test {
 namespace {
@@ -49,7 +52,11 @@ EpisodeComparison made(std::uint32_t episode) {
   one.hindered = 2;
   one.invented[dynamics::InventedCause::kFloor] = 1;
   one.disturbed = 1;
-  one.rests = {{.displacement = 0.06F, .lean = 0.6F, .drop = 0.2F, .step = 3}};
+  one.rests = {{.displacement = 0.06F,
+                .lean = 0.6F,
+                .drop = 0.2F,
+                .step = 3,
+                .world_from_object = {{1, 2, 1.0F / 3}, {0, 0.6F, 0, 0.8F}}}};
   return one;
 }
 
@@ -74,6 +81,7 @@ void expectSame(const EpisodeComparison& found, const EpisodeComparison& wanted)
   ASSERT_EQ(found.rests.size(), wanted.rests.size());
   EXPECT_EQ(found.rests[0].displacement, wanted.rests[0].displacement);
   EXPECT_EQ(found.rests[0].step, wanted.rests[0].step);
+  EXPECT_EQ(found.rests[0].world_from_object, wanted.rests[0].world_from_object);
 }
 
 ComparisonJournal openJournal(const std::filesystem::path& file) {
@@ -137,6 +145,63 @@ TEST(TheWorstMoments, AreOfEachKindInTurn) {
   }
   EXPECT_EQ(worst[4].kind, MomentKind::kLost);
   EXPECT_EQ(worst[4].comparison, 1U);
+}
+
+TEST(TheWorstMoments, AreWorthALook) {
+  std::vector<EpisodeComparison> episodes{made(0)};
+  episodes[0].end_there = EpisodeEnd::kSuccess;
+  episodes[0].deepest.reset();
+  EXPECT_EQ(worstMoments(episodes, 6, true).size(), 2U);
+  // Two centimeters are nothing to look at.
+  episodes[0].rests[0].displacement = dynamics::kDisturbed;
+  episodes[0].grip_gap = {0, dynamics::kDisturbed, 0.7F};
+  EXPECT_TRUE(worstMoments(episodes, 6, true).empty());
+}
+
+/// The first env of a world, moved ahead step by step, of which it waits the first `waits`.
+RunTrack drivenTrack(const World& world, std::uint32_t steps, std::uint32_t waits) {
+  SimulationOptions options;
+  options.envs = 1;
+  BatchSimulator simulator = BatchSimulator::create(world, options).value();
+  RunTrack track(world, simulator, 1);
+  std::vector<float> actions(simulator.actionCount());
+  for (std::uint32_t step = 0; step < steps; ++step) {
+    actions[kForward] = step < waits ? 0.0F : -0.2F;
+    simulator.step(actions);
+    track.add(simulator, actions);
+  }
+  return track;
+}
+
+TEST(AMoment, IsToldWithTheStepsOfBothWorlds) {
+  const SmallHome home;
+  const World& world = home.world();
+  const RunTrack here = drivenTrack(world, 12, 0);
+  const RunTrack there = drivenTrack(world, 20, 5);
+  const EpisodeComparison episode = made(0);
+  const auto sides = [&](MomentKind kind, std::uint32_t step, bool is_closed) {
+    return sidesOf({.kind = kind, .step = step, .meters = 0.5F}, episode, {here, there, is_closed});
+  };
+  const auto told = [](const dynamics::MomentSides& one) {
+    return one.said_here + " | " + one.said_there;
+  };
+  EXPECT_EQ(told(sides(MomentKind::kMissed, 7, false)),
+            "simulation, step 8, contact missed, 0.500 m | dynamics, step 8");
+  // Here it ends before.
+  EXPECT_EQ(told(sides(MomentKind::kLost, 15, false)),
+            "simulation, step 12, success lost, 0.500 m | dynamics, step 16");
+  EXPECT_EQ(told(sides(MomentKind::kLost, 7, true)),
+            "simulation, step 12, success | dynamics, step 20, time out, success lost, 0.500 m");
+  // The robot there comes by five steps later.
+  EXPECT_EQ(told(sides(MomentKind::kMissed, 7, true)),
+            "simulation, step 8, contact missed, 0.500 m | dynamics, step 13, most like it");
+  for (const bool is_closed : {false, true}) {
+    const auto moved = sides(MomentKind::kMoved, 3, is_closed);
+    EXPECT_EQ(told(moved),
+              "simulation, step 4, let go | dynamics, 2 s later, object moved, 0.500 m");
+    EXPECT_EQ(moved.rest, episode.rests[0].world_from_object);
+    EXPECT_EQ(moved.step_here, 3U);
+  }
 }
 
 TEST(AMoment, IsSeenInTheWorldWhoseStepItIs) {
