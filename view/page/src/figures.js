@@ -3,7 +3,7 @@ import {
   Box3, BoxGeometry, BufferGeometry, Color, EdgesGeometry, Float32BufferAttribute, Group, IcosahedronGeometry,
   InstancedMesh, LineBasicMaterial, LineLoop, LineSegments, Matrix4, Mesh, MeshLambertMaterial, Quaternion, Vector3,
 } from "three";
-import { swatch } from "./dom.js";
+import { el, swatch } from "./dom.js";
 import { linkPoses, Pose } from "./kinematics.js";
 
 /// By the rank of the radius, least first; people with color-blindness tell them apart.
@@ -137,7 +137,7 @@ function footprintLine(base) {
 /// What the marks of a robot are, with their colors; nothing without a robot.
 export function marksText(figure) {
   const found = Object.entries(kMarks).filter(([key]) => figure?.robot[key]).map(([, one]) => one);
-  return found.flatMap(({ name, color }, n) => [n > 0 ? ", " : "", swatch(color), n > 0 ? name.toLowerCase() : name]);
+  return found.flatMap(({ name, color }, n) => [n > 0 ? ", " : "", el("span", { className: "named" }, swatch(color), n > 0 ? name.toLowerCase() : name)]);
 }
 
 /// Spheres of two groups that touch, as pairs of their numbers.
