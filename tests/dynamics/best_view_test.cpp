@@ -119,6 +119,18 @@ TEST(TheBestView, LooksIntoANicheFromItsOpenSide) {
   EXPECT_GE(hidden_behind_the_robot, 2);
 }
 
+TEST(TheBestView, ShowsAnObjectElsewhereWithoutTheRobot) {
+  Seen seen(std::vector<Block>{});
+  const Still& still = seen.still();
+  ASSERT_FALSE(still.view.attached.empty());
+  const Pose aside{{1.5F, 0.701F, 1.5F}, {}};
+  const Still other = BestView::withoutRobot(still, 1, aside);
+  EXPECT_TRUE(other.view.attached.empty());
+  EXPECT_EQ(other.posed[*other.places[1]].world_from_model, aside);
+  EXPECT_EQ(other.posed[*other.places[0]].world_from_model,
+            still.posed[*still.places[0]].world_from_model);
+}
+
 TEST(TheBestView, ShowsBothWorlds) {
   // Open on two sides here; there the target lies on the table, behind the niche.
   for (const auto& [open, behind] : {std::pair(kFront, Vec3{1.5F, 0.701F, 1.5F}),
