@@ -69,10 +69,11 @@ std::span<const float> listOf(const Vec3& v) { return {&v.x, 3}; }
 /// Validators want rotations of length one, and no component beyond 1: composed ones are off by a
 /// few roundings.
 Quat unitOf(const Quat& q) {
+  const auto wide = [](float value) { return static_cast<double>(value); };
   const double length =
-      std::hypot(std::hypot(double{q.x}, double{q.y}), std::hypot(double{q.z}, double{q.w}));
-  const auto part = [length](float value) {
-    return std::clamp(static_cast<float>(double{value} / length), -1.0F, 1.0F);
+      std::hypot(std::hypot(wide(q.x), wide(q.y)), std::hypot(wide(q.z), wide(q.w)));
+  const auto part = [&](float value) {
+    return std::clamp(static_cast<float>(wide(value) / length), -1.0F, 1.0F);
   };
   return length > 0 ? Quat{part(q.x), part(q.y), part(q.z), part(q.w)} : Quat{};
 }

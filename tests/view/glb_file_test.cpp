@@ -34,7 +34,7 @@ void expectUnit(const std::array<float, 4>& q) {
   double squares = 0;
   for (const float part : q) {
     EXPECT_LE(std::fabs(part), 1.0F);
-    squares += double{part} * double{part};
+    squares += static_cast<double>(part) * static_cast<double>(part);
   }
   EXPECT_NEAR(std::sqrt(squares), 1, kRounding);
 }

@@ -89,7 +89,9 @@ class PackPages(PageCase):
                 found = page.evaluate(reach)
                 self.assertLess(max(found), 1, f"{kind}, {size}")
                 # An episode shows more than the robot.
-                self.assertGreater(max(found), 0.1 if kind == "episode" else 0.75, f"{kind}, {size}")
+                self.assertGreater(
+                    max(found), 0.1 if kind == "episode" else 0.75, f"{kind}, {size}"
+                )
 
     def test_scenes_open_cut_above_the_furniture_and_without_a_slice(self):
         page = self.open("world", "view=scene&radius=0.05", "scene 0")
@@ -119,7 +121,10 @@ class PackPages(PageCase):
             rows,
             [
                 ["Grasp point, camera, footprint"]
-                + [[f"rgb({color})", True] for color in ("230, 159, 0", "0, 114, 178", "204, 121, 167")]
+                + [
+                    [f"rgb({color})", True]
+                    for color in ("230, 159, 0", "0, 114, 178", "204, 121, 167")
+                ]
             ],
         )
 
