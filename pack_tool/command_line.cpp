@@ -304,10 +304,11 @@ void addPicture(CLI::App& app, PictureOptions& options) {
   addFigureOptions(verb, options.figures);
   verb.add_option(
           "--size", options.size,
-          fmt::format(
-              "Meshes, objects and robots: edge of a view (default {}, on a contact sheet {})",
-              pictures::kDefaultViewSize, pictures::kDefaultTileSize))
-      ->check(wholeCheck(pictures::kSmallestView, pictures::kLargestView))
+          fmt::format("Meshes, objects and robots: edge of a view (default {}, on a contact sheet "
+                      "{}), at most {}; grids: about the width of each plan or slice",
+                      pictures::kDefaultViewSize, pictures::kDefaultTileSize,
+                      pictures::kLargestView))
+      ->check(wholeCheck(pictures::kSmallestView, pictures::kLargestPlot))
       ->type_name("PIXELS");
   addTrusted(verb, options.trust);
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,22 +25,31 @@ enum class PlanValue {
   kSpanCount,     ///< Number of its free spans.
 };
 
+/// The width that a plot of a grid may be asked to have, pixels.
+inline constexpr int kLargestPlot = 4096;
+
 struct FloorPlanOptions {
   PlanValue value = PlanValue::kTotalHeight;
+  /// About how wide each plot is, pixels, up to kLargestPlot. Not given: 1000, or 560 of several.
+  std::optional<int> width = std::nullopt;
   /// First words of the heading, usually the scene's name.
   std::string title = {};
 };
 
 /// Draws the grids from above, side by side on one color scale: x to the right, z down, as seen
-/// looking down the Y axis. Blocked columns are dark gray. One grid is about 1000 pixels wide, a
-/// whole number of pixels per cell where a cell is at least one pixel. `grids` must not be empty.
-/// Safe to call from many threads.
+/// looking down the Y axis. Blocked columns are dark gray. A cell is a whole number of pixels where
+/// it is at least one; a pixel that shows several cells has the least of their values, and is
+/// blocked where one of them is: no wall is lost. `grids` must not be empty. Safe to call from many
+/// threads.
 [[nodiscard]] Picture drawPlan(std::span<const ColumnGrid> grids, const FloorPlanOptions& options);
 
 struct SliceOptions {
   /// The line that the vertical slice stands on.
   pack_tool::GroundPoint from;
   pack_tool::GroundPoint to;
+  /// How wide a plot is, pixels, up to kLargestPlot; less where it would be higher than wide and
+  /// higher than 900.
+  int width = 1000;
   /// First words of the heading, usually the scene's name.
   std::string title = {};
 };

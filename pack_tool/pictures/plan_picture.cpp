@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/pictures.h"
@@ -16,9 +19,10 @@ constexpr int kBarWidth = 24;
 constexpr int kBarHeight = 320;
 /// Room for the color bar, its labels and its caption.
 constexpr int kLegendWidth = 12 * kTextAdvance;
-/// Width that a single plot and one of several plots aim at, and the largest height of a plot.
+/// Width that a single plot and one of several plots aim at where nothing is asked for.
 constexpr int kSingleWidth = 1000;
 constexpr int kSheetWidth = 560;
+/// Of a plot, where it is not asked to be as wide.
 constexpr int kLargestHeight = 2000;
 /// Pixels of a cell's edge: more would only make tiny grids huge.
 constexpr double kLargestCell = 32;
@@ -71,24 +75,50 @@ std::vector<float> planValues(const ColumnGrid& grid, PlanValue value) {
 PixelRect plotSize(const ColumnGrid& grid, int target_width) {
   const auto x = static_cast<double>(grid.columnsX());
   const auto z = static_cast<double>(grid.columnsZ());
-  const double pixels = std::min(target_width / x, kLargestHeight / z);
+  const double pixels = std::min(target_width / x, std::max(target_width, kLargestHeight) / z);
   const double cell = pixels >= 1 ? std::clamp(std::round(pixels), 1.0, kLargestCell) : pixels;
   return {0, 0, std::max(1, static_cast<int>(std::lround(x * cell))),
           std::max(1, static_cast<int>(std::lround(z * cell)))};
 }
 
+/// The columns that a row or column of pixels shows: each is shown once, unless it is larger.
+struct CellRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+std::vector<CellRange> cellRanges(int pixels, std::uint32_t cells) {
+  std::vector<CellRange> ranges;
+  const auto count = static_cast<std::size_t>(pixels);
+  for (std::size_t pixel = 0; pixel < count; ++pixel) {
+    const std::size_t begin = pixel * cells / count;
+    ranges.push_back({begin, std::max(begin + 1, (pixel + 1) * cells / count)});
+  }
+  return ranges;
+}
+
+/// The least value of the columns of a pixel, blocked before all: walls one column thick stay
+/// closed, and are drawn no thicker than a pixel.
+float leastValue(const Panel& panel, const CellRange& columns, const CellRange& rows) {
+  float least = std::numeric_limits<float>::max();
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    const auto first = panel.values.begin() +
+                       static_cast<std::ptrdiff_t>(row * panel.grid->columnsX() + columns.begin);
+    const auto count = static_cast<std::ptrdiff_t>(columns.end - columns.begin);
+    least = std::min(least, *std::min_element(first, first + count));
+  }
+  return least;
+}
+
 void drawColumns(Image& image, const Panel& panel, double top_value) {
-  const ColumnGrid& grid = *panel.grid;
   const PixelRect& plot = panel.plot;
-  const auto cell_at = [](int pixel, int pixels, std::uint32_t cells) {
-    return static_cast<std::size_t>(pixel) * cells / static_cast<std::size_t>(pixels);
-  };
-  for (int y = 0; y < plot.height; ++y) {
-    const std::size_t row = cell_at(y, plot.height, grid.columnsZ()) * grid.columnsX();
-    for (int x = 0; x < plot.width; ++x) {
-      const float value = panel.values[row + cell_at(x, plot.width, grid.columnsX())];
+  const auto columns = cellRanges(plot.width, panel.grid->columnsX());
+  const auto rows = cellRanges(plot.height, panel.grid->columnsZ());
+  for (std::size_t y = 0; y < rows.size(); ++y) {
+    for (std::size_t x = 0; x < columns.size(); ++x) {
+      const float value = leastValue(panel, columns[x], rows[y]);
       const bool blocked = value == kBlockedValue;
-      image.set(plot.x + x, plot.y + y,
+      image.set(plot.x + static_cast<int>(x), plot.y + static_cast<int>(y),
                 blocked ? kBlocked : scaleColor(static_cast<double>(value) / top_value));
     }
   }
@@ -148,7 +178,8 @@ Picture drawPlan(std::span<const ColumnGrid> grids, const FloorPlanOptions& opti
   const int top = kMargin + 2 * kTextHeight + kAxisNameHeight;
   for (const ColumnGrid& grid : grids) {
     Panel& panel = panels.emplace_back(Panel{&grid, planValues(grid, options.value), {}});
-    panel.plot = plotSize(grid, grids.size() == 1 ? kSingleWidth : kSheetWidth);
+    panel.plot =
+        plotSize(grid, options.width.value_or(grids.size() == 1 ? kSingleWidth : kSheetWidth));
     panel.plot.x = x + kAxisLabelWidth;
     panel.plot.y = top;
     x = panel.plot.right() + kMargin;

@@ -15,7 +15,6 @@ namespace {
 using pack_tool::GroundPoint;
 
 constexpr int kMargin = 24;
-constexpr int kPlotWidth = 1000;
 constexpr int kSmallestPlotWidth = 240;
 constexpr int kLargestPlotHeight = 900;
 constexpr int kLineGap = 36;
@@ -34,9 +33,10 @@ double heightRange(const ColumnGrid& grid) {
   return static_cast<double>(grid.heights().hi) - static_cast<double>(grid.heights().lo);
 }
 
-PixelRect plotSize(const ColumnGrid& grid, double length) {
+PixelRect plotSize(const ColumnGrid& grid, double length, int target_width) {
   const double range = std::max(heightRange(grid), 1e-3);
-  const double pixels_per_meter = std::min(kPlotWidth / length, kLargestPlotHeight / range);
+  const double pixels_per_meter =
+      std::min(target_width / length, std::max(target_width, kLargestPlotHeight) / range);
   const int width = static_cast<int>(std::lround(length * pixels_per_meter));
   const int height = static_cast<int>(std::lround(range * pixels_per_meter));
   return {0, 0, std::max(width, kSmallestPlotWidth), std::max(height, 1)};
@@ -186,7 +186,7 @@ Result<Picture> drawSlice(std::span<const ColumnGrid> grids, const SliceOptions&
   int y = kMargin + kTextHeight + 14;
   int plot_width = 0;
   for (const ColumnGrid& grid : grids) {
-    PixelRect& plot = plots.emplace_back(plotSize(grid, lengthOf(options)));
+    PixelRect& plot = plots.emplace_back(plotSize(grid, lengthOf(options), options.width));
     plot.x = kMargin + kAxisLabelWidth;
     plot.y = y + kAxisNameHeight;
     y = plot.bottom() + kAxisBottomHeight + 16;

@@ -20,7 +20,6 @@ namespace galactic::pack_tool {
 namespace {
 
 using pictures::Image;
-using pictures::Rgb;
 
 constexpr int kPlanWidth = 360;
 constexpr int kViewSize = 200;
@@ -28,26 +27,13 @@ constexpr int kViewSize = 200;
 /// be, and than anybody looks at.
 constexpr std::size_t kMostOnSheet = 240;
 
-/// Means of blocks of pixels, at most `width` wide; the cut is that of the plot alone.
-Image shrunk(const Image& image, const pictures::PixelRect& part, int width) {
-  const int step = std::max(1, (part.width + width - 1) / width);
-  Image small(std::max(1, part.width / step), std::max(1, part.height / step), {});
-  for (int y = 0; y < small.height(); ++y) {
-    for (int x = 0; x < small.width(); ++x) {
-      std::array<int, 3> sum{};
-      for (int n = 0; n < step * step; ++n) {
-        const Rgb color = image.at(part.x + x * step + n % step, part.y + y * step + n / step);
-        sum[0] += color.r;
-        sum[1] += color.g;
-        sum[2] += color.b;
-      }
-      const auto mean = [&](std::size_t channel) {
-        return static_cast<std::uint8_t>(sum[channel] / (step * step));
-      };
-      small.set(x, y, {mean(0), mean(1), mean(2)});
-    }
+/// A part of a picture.
+Image cutOut(const Image& image, const pictures::PixelRect& part) {
+  Image plot(part.width, part.height, {});
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x) plot.set(x, y, image.at(part.x + x, part.y + y));
   }
-  return small;
+  return plot;
 }
 
 Result<Thumbnail> encoded(std::string caption, const Image& image) {
@@ -57,10 +43,10 @@ Result<Thumbnail> encoded(std::string caption, const Image& image) {
 
 Result<void> addPlans(const Scene& scene, std::vector<Thumbnail>& thumbnails) {
   for (const ColumnGrid& grid : scene.grids()) {
-    const auto plan = pictures::drawPlan(std::span(&grid, 1), {});
+    const auto plan = pictures::drawPlan(std::span(&grid, 1), {.width = kPlanWidth});
     ASSIGN_OR_RETURN(auto thumbnail,
                      encoded(fmt::format("free height, radius {:g} m", grid.radius()),
-                             shrunk(plan.image, plan.plots.front(), kPlanWidth)));
+                             cutOut(plan.image, plan.plots.front())));
     thumbnails.push_back(std::move(thumbnail));
   }
   return {};

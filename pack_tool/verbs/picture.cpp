@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 
 #include "pack_tool/figure/shared_textures_of.h"
@@ -18,29 +19,42 @@ namespace {
 
 using pictures::Image;
 
-Result<Image> drawGrids(const PackFile& pack, const GridPictureOptions& options) {
+Result<Image> drawGrids(const PackFile& pack, const GridPictureOptions& options,
+                        std::optional<int> size) {
   ASSIGN_OR_RETURN(const auto scene, sceneOf(pack));
   ASSIGN_OR_RETURN(const auto grids, gridsOf(scene, pack.where(), options.radius));
   const std::string title = printable(scene.name());
   if (!options.slice) {
     const auto value = options.value.value_or(pictures::PlanValue::kTotalHeight);
-    return pictures::drawPlan(grids, {.value = value, .title = title}).image;
+    return pictures::drawPlan(grids, {.value = value, .width = size, .title = title}).image;
   }
-  auto slice = pictures::drawSlice(
-      grids, {.from = options.slice->from, .to = options.slice->to, .title = title});
+  pictures::SliceOptions line{.from = options.slice->from, .to = options.slice->to, .title = title};
+  line.width = size.value_or(line.width);
+  auto slice = pictures::drawSlice(grids, line);
   if (!slice) return fail(slice.error().code, pack.where(), slice.error().message);
   return std::move(slice->image);
+}
+
+/// The edge of a view that is asked for, or `usual`.
+Result<int> viewSize(const PackFile& pack, const PictureOptions& options, int usual) {
+  const int size = options.size.value_or(usual);
+  if (size <= pictures::kLargestView) return size;
+  return fail(ErrorCode::kInvalidInput, pack.where(),
+              fmt::format("found --size {}, expected at most {} for views of meshes, objects and "
+                          "robots; only plans and slices of grids may be larger",
+                          size, pictures::kLargestView));
 }
 
 Result<Image> drawFigures(const PackFile& pack, const PictureOptions& options,
                           AbsentTextures& absent) {
   ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, options.figures.value_or(FigureOptions{})));
   absent.note(pack, figures.front().render_meshes.get());
-  if (figures.size() == 1) {
-    return pictures::drawFigure(figures.front(), options.size.value_or(pictures::kDefaultViewSize));
-  }
-  auto sheet =
-      pictures::drawContactSheet(figures, options.size.value_or(pictures::kDefaultTileSize));
+  const bool is_one = figures.size() == 1;
+  ASSIGN_OR_RETURN(
+      const int size,
+      viewSize(pack, options, is_one ? pictures::kDefaultViewSize : pictures::kDefaultTileSize));
+  if (is_one) return pictures::drawFigure(figures.front(), size);
+  auto sheet = pictures::drawContactSheet(figures, size);
   if (!sheet) sheet.error().where = pack.where();
   return sheet;
 }
@@ -50,19 +64,19 @@ Result<Image> drawMeshes(const PackFile& pack, const PictureOptions& options,
                          AbsentTextures& absent) {
   ASSIGN_OR_RETURN(const auto figures, figuresOf(pack, *options.figures));
   absent.note(pack, figures.front().render_meshes.get());
-  auto image =
-      pictures::drawScene(figures.front(), options.size.value_or(pictures::kDefaultViewSize));
+  ASSIGN_OR_RETURN(const int size, viewSize(pack, options, pictures::kDefaultViewSize));
+  auto image = pictures::drawScene(figures.front(), size);
   if (!image) image.error().where = pack.where();
   return image;
 }
 
 Result<Image> draw(const PackFile& pack, const PictureOptions& options, AbsentTextures& absent) {
   if (pack.kind() == PackKind::kScene) {
-    if (!options.figures && !options.size) return drawGrids(pack, options.grids);
-    if (options.figures && !options.grids.anyGiven()) return drawMeshes(pack, options, absent);
+    if (!options.figures) return drawGrids(pack, options.grids, options.size);
+    if (!options.grids.anyGiven()) return drawMeshes(pack, options, absent);
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "is a scene: a picture is either of its grids, with --radius, --slice and --value, "
-                "or of its meshes, with --what mesh and --size");
+                "or of its meshes, with --what mesh");
   }
   if (!options.grids.anyGiven()) return drawFigures(pack, options, absent);
   return fail(ErrorCode::kInvalidInput, pack.where(),

@@ -102,7 +102,7 @@ struct PictureOptions {
   GridPictureOptions grids = {};
   /// For objects and robots, and for the render meshes of a scene instead of its grids.
   std::optional<FigureOptions> figures = std::nullopt;
-  /// Edge of a view, pixels; for objects and robots.
+  /// Edge of a view of meshes, or about the width of a plot of grids; pixels.
   std::optional<int> size = std::nullopt;
   Trust trust = Trust::kVerify;
 };

@@ -91,6 +91,52 @@ TEST(PlanPicture, ShrinksGridsLargerThanThePicture) {
   EXPECT_GE(picture.plots.front().height, 1);
 }
 
+/// Free everywhere but for a wall one column thick with a door.
+test::TestGrid longHall(std::uint32_t columns, std::uint32_t wall, std::uint32_t door) {
+  GridBuilder builder(GridSpec{.spacing = 0.03125F, .columns_x = columns, .columns_z = 90});
+  for (std::uint32_t k = 0; k < 90; ++k) {
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const bool is_wall = i == wall && (k < door || k >= door + 27);
+      if (!is_wall) builder.column(i, k, {{0, i < wall ? 2.0F : 1.0F}});
+    }
+  }
+  return builder.build();
+}
+
+TEST(PlanPicture, KeepsWallsAndDoorsOfGridsLargerThanThePicture) {
+  constexpr std::uint32_t kDoor = 30;
+  for (const std::uint32_t wall : {1U, 700U, 1000U, 1397U}) {
+    const auto grid = longHall(1400, wall, kDoor);
+    const auto second = longHall(1400, wall + 1, kDoor);
+    for (const auto& picture : {drawPlan(std::vector{grid.view()}, {}),
+                                drawPlan(std::vector{grid.view(), second.view()}, {}),
+                                drawPlan(std::vector{grid.view()}, {.width = 128})}) {
+      const PixelRect& plot = picture.plots.front();
+      for (unsigned y = 0; y < static_cast<unsigned>(plot.height); ++y) {
+        int blocked = 0;
+        for (int x = 0; x < plot.width; ++x) {
+          blocked += picture.image.at(plot.x + x, plot.y + static_cast<int>(y)) == kBlocked ? 1 : 0;
+        }
+        // Rows of pixels that show a part of the wall beside the door are blocked.
+        const std::uint32_t first = y * 90U / static_cast<unsigned>(plot.height);
+        const std::uint32_t end =
+            std::max(first + 1, (y + 1) * 90U / static_cast<unsigned>(plot.height));
+        const bool is_door = first >= kDoor && end <= kDoor + 27;
+        EXPECT_EQ(blocked, is_door ? 0 : 1) << "wall " << wall << ", row " << y;
+      }
+    }
+  }
+}
+
+TEST(PlanPicture, IsAboutAsWideAsAskedFor) {
+  const auto grid = longHall(1400, 700, 30);
+  for (const int width : {64, 700, 1400, 2800, kLargestPlot}) {
+    const Picture picture = drawPlan(std::vector{grid.view()}, {.width = width});
+    EXPECT_NEAR(picture.plots.front().width, width, width / 2.0);
+    EXPECT_GE(picture.image.width(), picture.plots.front().right());
+  }
+}
+
 TEST(PlanPicture, PutsSeveralGridsSideBySideOnOneScale) {
   const auto low = GridBuilder(GridSpec{}).column(0, 0, {{1, 3}}).build();
   const auto high = GridBuilder(GridSpec{.radius = 0.75F}).column(0, 0, {{1, 5}}).build();
@@ -177,6 +223,19 @@ TEST(SlicePicture, OfALineAcrossACornerHasItsColumn) {
   const auto past =
       drawSlice(std::vector{grid.view()}, {.from = {-1000, 999.985}, .to = {1000, -1000.015}});
   EXPECT_FALSE(past);
+}
+
+TEST(SlicePicture, IsAsWideAsAskedForButNoHigherThanThat) {
+  const auto grid = sliceGrid();
+  for (const auto& [width, wanted] :
+       {std::pair{300, PixelRect{0, 0, 300, 480}}, {kLargestPlot, {0, 0, 2560, kLargestPlot}}}) {
+    const auto picture =
+        drawSlice(std::vector{grid.view()}, {.from = {0, 2.5}, .to = {5, 2.5}, .width = width});
+    ASSERT_TRUE(picture) << picture.error().message;
+    // Five meters wide and eight high.
+    EXPECT_EQ(picture->plots.front().width, wanted.width);
+    EXPECT_EQ(picture->plots.front().height, wanted.height);
+  }
 }
 
 TEST(SlicePicture, RefusesALineThatIsTooShortOrMissesTheGrid) {
