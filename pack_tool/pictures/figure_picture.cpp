@@ -129,7 +129,7 @@ void drawTile(Image& image, const ViewPlace& place, int width, const Figure& fig
     y += kLine;
   }
   const ViewPlace view{place.left, place.top + 3 * kLine, place.size};
-  drawFigureView(image, view, figure, axes, scale);
+  drawFigureView(image, view, figure, {.axes = axes, .pixels_per_meter = scale});
   drawFrame(image, {view.left, view.top, view.size, view.size}, kFaintInk);
   drawScaleBar(image, {view.left, view.top + view.size + 6}, scale, view.size / 2);
 }
@@ -161,7 +161,8 @@ Image drawFigure(const Figure& figure, int view_size) {
   int x = kMargin;
   for (const NamedView& view : views) {
     drawText(image, {x + view_size / 2, kMargin + 2 * kLine, Anchor::kCenter}, view.name, kInk);
-    drawFigureView(image, {x, views_top, view_size}, figure, view.axes, scale);
+    drawFigureView(image, {x, views_top, view_size}, figure,
+                   {.axes = view.axes, .pixels_per_meter = scale});
     drawFrame(image, {x, views_top, view_size, view_size}, kFaintInk);
     x += view_size + kMargin;
   }

@@ -82,16 +82,6 @@ std::vector<RasterLine> markLines(const Figure& figure) {
   return lines;
 }
 
-/// What hides the rooms of a scene from above: over doors and furniture, under lamps and beams; of
-/// lower rooms the ceiling.
-RoomCut ceilingsOf(const Figure& scene) {
-  constexpr float kAnyShare = 0.8F;
-  constexpr float kLevelShare = 0.6F;
-  const pack_tool::FigureBounds bounds = boundsOf(scene);
-  const float height = bounds.max.y - bounds.min.y;
-  return {bounds.min.y + kAnyShare * height, bounds.min.y + kLevelShare * height};
-}
-
 void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part) {
   const bool robot = figure.kind == FigureKind::kRobot;
   if (part.render_model) {
@@ -147,13 +137,14 @@ ViewWindow windowOf(const Figure& figure, const ViewAxes& axes) {
 double fittingScale(double meters, int pixels) { return (1 - 2 * kBorder) * pixels / meters; }
 
 void drawFigureView(Image& image, const ViewPlace& place, const Figure& figure,
-                    const ViewAxes& axes, double pixels_per_meter) {
+                    const FigureView& view) {
+  const ViewAxes& axes = view.axes;
   const ViewWindow window = windowOf(figure, axes);
   const auto right = static_cast<float>(0.5 * (window.low_right + window.high_right));
   const auto up = static_cast<float>(0.5 * (window.low_up + window.high_up));
   MeshRaster raster(
-      {axes, axes.right * right + axes.up * up, pixels_per_meter, place.size, place.size});
-  if (figure.kind == FigureKind::kScene) raster.openRooms(ceilingsOf(figure));
+      {axes, axes.right * right + axes.up * up, view.pixels_per_meter, place.size, place.size});
+  if (view.cut) raster.openRooms(*view.cut);
   for (const FigurePart& part : figure.parts) drawPart(raster, figure, part);
   for (const RasterLine& line : markLines(figure)) raster.drawLine(line);
   raster.compose(image, place.left, place.top);

@@ -1,6 +1,9 @@
 #pragma once
+#include <optional>
+
 #include "pack_tool/figure/figure.h"
 #include "pack_tool/pictures/mesh_raster.h"
+#include "pack_tool/pictures/room_cut.h"
 #include "pictures/image.h"
 
 namespace galactic::pictures {
@@ -40,8 +43,16 @@ struct ViewPlace {
   int size = 0;
 };
 
-/// Draws a figure along `axes` into the square `place` of `image`, in its middle.
+/// How a figure is looked at.
+struct FigureView {
+  ViewAxes axes;
+  double pixels_per_meter = 1;
+  /// What is left out of its render meshes.
+  std::optional<RoomCut> cut = std::nullopt;
+};
+
+/// Draws a figure into the square `place` of `image`, in its middle.
 void drawFigureView(Image& image, const ViewPlace& place, const pack_tool::Figure& figure,
-                    const ViewAxes& axes, double pixels_per_meter);
+                    const FigureView& view);
 
 }  // namespace galactic::pictures

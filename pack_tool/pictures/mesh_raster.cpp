@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <span>
+#include <utility>
 
 #include "galactic/batch_renderer.h"
 #include "galactic/render_library.h"
@@ -36,6 +38,8 @@ constexpr double kAmbient = 0.35;
 constexpr double kDiffuse = 0.65;
 /// Textures have light in them: their shading is weaker.
 constexpr double kLeastOfTextures = 0.55;
+/// The least light of what is not shaded.
+constexpr double kAsItIs = 1;
 constexpr std::array<double, 3> kLight{-0.37, 0.56, 0.74};
 /// How much of what lies behind a sphere it covers.
 constexpr double kSphereShare = 0.5;
@@ -94,29 +98,22 @@ Rgb unpacked(std::uint32_t color) {
           static_cast<std::uint8_t>(color >> 16U)};
 }
 
-/// Whether a triangle of the world lies wholly above where a cut leaves things out.
-bool isCutOff(const RoomCut& cut, const std::array<Vec3, 3>& corners) {
-  // Of the length of the normal: within 18 degrees of level.
-  constexpr float kLevel = 0.95F;
-  const float lowest = std::min({corners[0].y, corners[1].y, corners[2].y});
-  if (lowest > cut.any) return true;
-  const Vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  return lowest > cut.level && std::abs(normal.y) > kLevel * std::sqrt(dot(normal, normal));
-}
+/// What one surface of a model is made of.
+using SurfaceKind = std::pair<std::uint16_t, bool>;
 
-void cutOff(const RoomCut& cut, const Pose& world_from_model, RenderSurface& surface) {
-  std::size_t kept = 0;
-  for (std::size_t n = 0; n + 2 < surface.corners.size(); n += 3) {
-    std::array<Vec3, 3> corners;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      corners[corner] = world_from_model * surface.vertices[surface.corners[n + corner]].position;
-    }
-    if (isCutOff(cut, corners)) continue;
-    for (std::size_t corner = n; corner < n + 3; ++corner) {
-      surface.corners[kept++] = surface.corners[corner];
-    }
+SurfaceKind kindOf(const RenderSurface& surface) { return {surface.material, surface.two_sided}; }
+
+/// The kinds whose vertices have colors of their own: light that was baked, or scanned. White is
+/// what the others of a pack have.
+std::set<SurfaceKind> kindsWithLight(std::span<const RenderSurface> surfaces) {
+  constexpr std::uint32_t kWhite = 0xFFFFFF;
+  std::set<SurfaceKind> kinds;
+  for (const RenderSurface& surface : surfaces) {
+    const bool has_light = std::ranges::any_of(
+        surface.vertices, [](const RenderVertex& v) { return (v.color & kWhite) != kWhite; });
+    if (has_light) kinds.insert(kindOf(surface));
   }
-  surface.corners.resize(kept);
+  return kinds;
 }
 
 /// Whether a picture can hold it; a comparison with NaN is false.
@@ -215,29 +212,52 @@ std::size_t MeshRaster::firstMaterialOf(const RenderMeshes& meshes) {
 
 void MeshRaster::openRooms(const RoomCut& cut) { cut_ = cut; }
 
+void MeshRaster::drawSection(std::span<const SectionLine> section, float height) {
+  RenderSurface& surface = source_.parts[0].surfaces.front();
+  for (const SectionRect& rect : filledSection(section, 1 / view_.pixels_per_meter)) {
+    const auto corner = [&](float x, float z) {
+      return RenderVertex{.position = inView({x, height, z}), .color = packed(kBlocked)};
+    };
+    const RenderVertex low = corner(rect.low_x, rect.low_z);
+    const RenderVertex high = corner(rect.high_x, rect.high_z);
+    addTriangle(surface, {low, corner(rect.low_x, rect.high_z), high}, kAsItIs);
+    addTriangle(surface, {low, high, corner(rect.high_x, rect.low_z)}, kAsItIs);
+  }
+  for (const SectionLine& line : section) {
+    drawLine({{line.from_x, height, line.from_z}, {line.to_x, height, line.to_z}, kInk});
+  }
+}
+
 void MeshRaster::drawRenderModel(const RenderMeshes& meshes, const RenderModel& model,
                                  const Pose& world_from_model) {
   const std::size_t first = firstMaterialOf(meshes);
-  for (RenderSurface& stored : surfacesOf(meshes, model)) {
+  std::vector<RenderSurface> surfaces = surfacesOf(meshes, model);
+  const std::set<SurfaceKind> with_light = kindsWithLight(surfaces);
+  std::vector<SectionLine> section;
+  for (RenderSurface& stored : surfaces) {
     RenderSurface& surface = source_.parts[0].surfaces.emplace_back();
     surface.material = static_cast<std::uint16_t>(first + stored.material);
     surface.two_sided = stored.two_sided;
-    const bool textured = meshes.materials[stored.material].texture >= 0;
-    if (cut_) cutOff(*cut_, world_from_model, stored);
     for (RenderVertex& vertex : stored.vertices) {
-      vertex.position = inView(world_from_model * vertex.position);
+      vertex.position = world_from_model * vertex.position;
       if (!(std::abs(vertex.u) < kMostImages && std::abs(vertex.v) < kMostImages)) {
         vertex.u = 0;
         vertex.v = 0;
       }
     }
+    if (cut_) cutThrough(*cut_, stored, section);
+    for (RenderVertex& vertex : stored.vertices) vertex.position = inView(vertex.position);
+    const bool textured = meshes.materials[stored.material].texture >= 0;
+    const double without_light = textured ? kLeastOfTextures : kAmbient;
+    const double least_light = with_light.contains(kindOf(stored)) ? kAsItIs : without_light;
     for (std::size_t n = 0; n + 2 < stored.corners.size(); n += 3) {
       const std::array<RenderVertex, 3> corners{stored.vertices[stored.corners[n]],
                                                 stored.vertices[stored.corners[n + 1]],
                                                 stored.vertices[stored.corners[n + 2]]};
-      addTriangle(surface, corners, textured ? kLeastOfTextures : kAmbient);
+      addTriangle(surface, corners, least_light);
     }
   }
+  if (cut_) drawSection(section, cut_->height);
 }
 
 void MeshRaster::drawSphere(const RasterSphere& sphere, Rgb color) {

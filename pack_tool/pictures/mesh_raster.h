@@ -9,6 +9,7 @@
 
 #include "galactic/pose.h"
 #include "layout/render_mesh_builder.h"
+#include "pack_tool/pictures/room_cut.h"
 #include "pictures/image.h"
 
 namespace galactic::pictures {
@@ -61,14 +62,6 @@ struct RasterLine {
   Rgb color;
 };
 
-/// What is left out of rooms so that one can look into them: triangles wholly above these heights
-/// of the world, meters.
-struct RoomCut {
-  float any = 0;
-  /// Of those that are about level.
-  float level = 0;
-};
-
 /// Draws opaque meshes, translucent spheres and lines, four samples per pixel. Meshes and spheres
 /// are drawn by the soft backend of BatchRenderer, through a lens so long that the view is parallel
 /// to half a pixel. They may come in any order; spheres form one translucent shell. Lines shine
@@ -77,11 +70,13 @@ class MeshRaster {
  public:
   explicit MeshRaster(const RasterView& view);
 
-  /// Cuts the render models that are drawn from now on: rooms are seen without their ceilings.
+  /// Cuts the render models that are drawn from now on: rooms are seen without their ceilings, and
+  /// what the cut goes through is dark, with an outline.
   void openRooms(const RoomCut& cut);
 
   void drawMesh(const RasterMesh& mesh, const Pose& world_from_mesh);
-  /// With materials and textures, shaded so that its shape is seen. `meshes` outlives this.
+  /// With materials and textures. What has no light of its own in the colors of its vertices is
+  /// shaded so that its shape is seen. `meshes` outlives this.
   void drawRenderModel(const RenderMeshes& meshes, const RenderModel& model,
                        const Pose& world_from_model);
   void drawSphere(const RasterSphere& sphere, Rgb color);
@@ -114,9 +109,11 @@ class MeshRaster {
   [[nodiscard]] Vec3 inView(const Vec3& point) const;
   [[nodiscard]] Sample project(const Vec3& point) const;
   [[nodiscard]] std::size_t indexOf(SamplePlace place) const;
-  /// `least_light`: what is left of a color in the shadow.
+  /// `least_light`: what is left of a color in the shadow; 1: nothing is shaded.
   void addTriangle(RenderSurface& to, std::array<RenderVertex, 3> corners,
                    double least_light) const;
+  /// `height` of the cut in the world.
+  void drawSection(std::span<const SectionLine> section, float height);
   /// The first material of a pack among those of the picture.
   std::size_t firstMaterialOf(const RenderMeshes& meshes);
   /// The meshes and the spheres as images.

@@ -19,6 +19,7 @@
 #include "pictures/palette.h"
 #include "support/printable.h"
 #include "support/try.h"
+#include "view/render_surfaces.h"
 
 namespace galactic::pictures {
 
@@ -101,6 +102,28 @@ Result<std::array<RenderCamera, kInsideViews>> insideCameras(const RenderLibrary
   return std::array<RenderCamera, kInsideViews>{cameras[best[0].second], cameras[best[1].second]};
 }
 
+/// What hides the rooms of a scene that is seen from outside: over doors and furniture, under lamps
+/// and beams; of lower rooms the ceiling.
+RoomCut ceilingsOf(const Figure& scene) {
+  constexpr float kAnyShare = 0.8F;
+  constexpr float kLevelShare = 0.6F;
+  const pack_tool::FigureBounds bounds = boundsOf(scene);
+  const float height = bounds.max.y - bounds.min.y;
+  return {bounds.min.y + kAnyShare * height, bounds.min.y + kLevelShare * height};
+}
+
+RoomCut planCutOf(const Figure& scene) {
+  const pack_tool::FigurePart& part = scene.parts.front();
+  const RenderMeshes& meshes = *scene.render_meshes;
+  std::vector<RenderSurface> surfaces = surfacesOf(meshes, meshes.models[*part.render_model]);
+  for (RenderSurface& surface : surfaces) {
+    for (RenderVertex& vertex : surface.vertices) {
+      vertex.position = part.world_from_part * vertex.position;
+    }
+  }
+  return floorPlanCut(surfaces);
+}
+
 /// The mean of the samples of each pixel.
 void place(Image& image, const ViewPlace& view, std::span<const std::uint8_t> samples) {
   const auto size = static_cast<std::size_t>(view.size);
@@ -153,10 +176,14 @@ Result<void> drawInside(Image& image, const std::array<ViewPlace, kInsideViews>&
 Result<Image> drawScene(const Figure& scene, int view_size) {
   constexpr std::array<std::string_view, 4> kNames{"from above", "three-quarter", "inside",
                                                    "inside"};
-  const std::array<ViewAxes, 2> axes{kTopView, threeQuarterView()};
+  std::array<FigureView, 2> outside{{{.axes = kTopView, .cut = planCutOf(scene)},
+                                     {.axes = threeQuarterView(), .cut = ceilingsOf(scene)}}};
   double extent = 0;
-  for (const ViewAxes& view : axes) extent = std::max(extent, windowOf(scene, view).extent());
+  for (const FigureView& view : outside) {
+    extent = std::max(extent, windowOf(scene, view.axes).extent());
+  }
   const double scale = fittingScale(extent, view_size);
+  for (FigureView& view : outside) view.pixels_per_meter = scale;
   const std::string name = printable(scene.name);
   const int width = 2 * kMargin + std::max(4 * (view_size + kMargin) - kMargin, textWidth(name));
   const int top = kMargin + 2 * kLine;
@@ -167,7 +194,7 @@ Result<Image> drawScene(const Figure& scene, int view_size) {
     places[n] = {kMargin + static_cast<int>(n) * (view_size + kMargin), top, view_size};
     drawText(image, {places[n].left + view_size / 2, kMargin + kLine, Anchor::kCenter}, kNames[n],
              kInk);
-    if (n < axes.size()) drawFigureView(image, places[n], scene, axes[n], scale);
+    if (n < outside.size()) drawFigureView(image, places[n], scene, outside[n]);
   }
   RETURN_IF_ERROR(drawInside(image, {places[2], places[3]}, scene));
   for (const ViewPlace& view : places) {

@@ -5,10 +5,11 @@
 
 namespace galactic::pictures {
 
-/// Draws the render meshes of a scene: from above, from between front, side and top, and twice from
-/// inside, at the height of a standing person's eyes, where most of the room is seen. From
-/// outside without ceilings: what lies in the uppermost fifth, and level faces above 60 %. `scene`
-/// has one part, with a render model. `view_size` as of drawFigure. Fails as BatchRenderer::create.
+/// Draws the render meshes of a scene: from above, cut open like a floor plan (see floorPlanCut),
+/// from between front, side and top, and twice from inside, at the height of a standing person's
+/// eyes, where most of the room is seen. Between front, side and top, what lies in the uppermost
+/// fifth is left out, and level faces above 60 % of the height. `scene` has one part, with a render
+/// model. `view_size` as of drawFigure. Fails as BatchRenderer::create.
 [[nodiscard]] Result<Image> drawScene(const pack_tool::Figure& scene, int view_size);
 
 }  // namespace galactic::pictures

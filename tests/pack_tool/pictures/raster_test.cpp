@@ -182,6 +182,34 @@ TEST(MeshRaster, DrawsRenderModelsWithTheirTexturesAndSides) {
   EXPECT_LT(back, 60U * 60 * 95 / 100);
 }
 
+/// A square of a plain color that leans away from the light, and what its vertices have.
+Rgb leaningSquare(std::uint32_t color) {
+  RenderMeshSource source;
+  source.materials = {{"plain", 0xFFFFFFFF}};
+  source.semantics = {"wall"};
+  RenderSurface surface;
+  for (const Vec3& corner : {Vec3{-1, -1, 0.5F}, {1, -1, 0.5F}, {1, 1, -0.5F}, {-1, 1, -0.5F}}) {
+    surface.vertices.push_back({.position = corner, .color = color});
+  }
+  surface.corners = {0, 2, 1, 0, 3, 2};
+  surface.two_sided = true;
+  source.parts = {{.part = 0, .surfaces = {surface}}};
+  const auto storage = buildRenderMeshes(source);
+  EXPECT_TRUE(storage);
+  const RenderMeshes meshes = storage->view();
+  MeshRaster raster({kFrontView, {0, 0, 0}, 20, kSize, kSize});
+  // Seen from its side's front, turned away from the lamp.
+  raster.drawRenderModel(meshes, meshes.models.front(), {{0, 0, 0}, {0, 0.8F, 0, 0.6F}});
+  return imageOf(raster).at(kSize / 2, kSize / 2);
+}
+
+TEST(MeshRaster, ShadesOnlyWhatHasNoLightInItsVertices) {
+  const Rgb without = leaningSquare(0xFFFFFFFF);
+  EXPECT_LT(without.g, 240);
+  const Rgb with = leaningSquare(0xFF80C0E0);
+  EXPECT_EQ(with, (Rgb{0xE0, 0xC0, 0x80}));
+}
+
 TEST(ViewAxes, AreRightHanded) {
   for (const ViewAxes& axes : {kFrontView, kSideView, kTopView, threeQuarterView()}) {
     const Vec3 toward = cross(axes.right, axes.up);
