@@ -8,6 +8,8 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -295,17 +297,27 @@ void addGridPictureOptions(CLI::App& verb, GridPictureOptions& options) {
       ->type_name("total|lowest|spans");
 }
 
+void addEpisodePictureOptions(CLI::App& verb, EpisodePictureOptions& options) {
+  verb.add_option("--scene", options.scene, "Worlds and episodes: only the scene of this name")
+      ->type_name("NAME");
+  verb.add_option("--episode", options.episode,
+                  "Worlds and episodes: only the episode of this number, from 0 on, in its scene")
+      ->check(wholeCheck(0, std::numeric_limits<std::int32_t>::max()))
+      ->type_name("N");
+}
+
 void addPicture(CLI::App& app, PictureOptions& options) {
-  CLI::App& verb =
-      *app.add_subcommand("picture", "Draw a scene's grids, objects or a robot into a PNG file");
-  addPack(verb, {"PACK", "A pack of a scene, of objects or of a robot"}, options.pack);
+  CLI::App& verb = *app.add_subcommand(
+      "picture", "Draw a scene, objects, a robot or the episodes of a world into a PNG file");
+  addPack(verb, {"PACK", "A pack of any kind but policies and textures"}, options.pack);
   addOutput(verb, options.output);
   addGridPictureOptions(verb, options.grids);
   addFigureOptions(verb, options.figures);
+  addEpisodePictureOptions(verb, options.episodes);
   verb.add_option(
           "--size", options.size,
           fmt::format("Meshes, objects and robots: edge of a view (default {}, on a contact sheet "
-                      "{}), at most {}; grids: about the width of each plan or slice",
+                      "{}), at most {}; plans and slices: about their width",
                       pictures::kDefaultViewSize, pictures::kDefaultTileSize,
                       pictures::kLargestView))
       ->check(wholeCheck(pictures::kSmallestView, pictures::kLargestPlot))

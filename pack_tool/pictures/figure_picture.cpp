@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/figure_view.h"
+#include "pack_tool/pictures/sheet.h"
 #include "pictures/palette.h"
 #include "support/printable.h"
+#include "support/try.h"
 
 namespace galactic::pictures {
 
@@ -22,16 +24,8 @@ using pack_tool::Figure;
 using pack_tool::FigureKind;
 using pack_tool::FigurePart;
 
-constexpr int kMargin = 20;
+constexpr int kMargin = kSheetMargin;
 constexpr int kLine = kTextHeight + 10;
-constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
-
-/// The beginning of a text, as much of it as is no wider than `pixels`.
-std::string shortened(const std::string& text, int pixels) {
-  if (textWidth(text) <= pixels) return text;
-  const auto room = static_cast<std::size_t>(std::max(0, pixels / kTextAdvance - 2));
-  return text.substr(0, room) + "..";
-}
 
 struct LegendEntry {
   Rgb color;
@@ -86,15 +80,6 @@ struct NamedView {
 
 constexpr std::string_view kSheetNote = "gap: mean/p95/max; every object at its own scale";
 
-/// How a contact sheet is divided: about as many columns as rows.
-struct SheetLayout {
-  std::uint64_t columns = 1;
-  std::uint64_t rows = 1;
-  /// Pixels.
-  std::uint64_t tile_width = 0;
-  std::uint64_t tile_height = 0;
-};
-
 /// As wide as a view, or as the widest text over one; names that never end are cut off.
 int tileWidth(std::span<const Figure> figures, int view_size) {
   int widest = view_size;
@@ -104,18 +89,6 @@ int tileWidth(std::span<const Figure> figures, int view_size) {
   }
   constexpr int kMostText = 500;
   return std::min(widest, std::max(view_size, kMostText));
-}
-
-SheetLayout layOut(std::span<const Figure> figures, int view_size) {
-  SheetLayout layout;
-  const std::size_t count = figures.size();
-  while (layout.columns * layout.columns < count) ++layout.columns;
-  layout.rows = (count + layout.columns - 1) / layout.columns;
-  layout.tile_width = static_cast<std::uint64_t>(tileWidth(figures, view_size) + kMargin);
-  // Name and two lines of caption above, the scale bar below.
-  constexpr int kTileTextHeight = 4 * kLine + kMargin;
-  layout.tile_height = static_cast<std::uint64_t>(view_size) + kTileTextHeight;
-  return layout;
 }
 
 /// `width` is what texts may take.
@@ -172,29 +145,25 @@ Image drawFigure(const Figure& figure, int view_size) {
 }
 
 Result<Image> drawContactSheet(std::span<const Figure> figures, int view_size) {
-  const SheetLayout layout = layOut(figures, view_size);
   const std::vector<LegendEntry> legend = legendOf(figures.front());
-  const std::uint64_t width =
-      std::max(std::uint64_t(kMargin) + layout.columns * layout.tile_width,
-               std::uint64_t(2 * kMargin + std::max(legendWidth(legend), textWidth(kSheetNote))));
-  const std::uint64_t height =
-      std::uint64_t(kMargin + 2 * kLine + kMargin) + layout.rows * layout.tile_height;
-  if (width > kMostPixels || height > kMostPixels || width * height > kMostPixels) {
-    return fail(ErrorCode::kUnsupported, "",
-                fmt::format("a sheet of {} objects at {} pixels each has {} x {} pixels, more than "
-                            "a picture may have; choose a smaller --size or one --object",
-                            figures.size(), view_size, width, height));
-  }
-  Image image(static_cast<int>(width), static_cast<int>(height), kPaper);
+  const int width = tileWidth(figures, view_size);
+  // Name and two lines of caption above, the scale bar below.
+  constexpr int kTileTextHeight = 4 * kLine;
+  ASSIGN_OR_RETURN(
+      auto sheet, Sheet::create({.count = figures.size(),
+                                 .things = "objects",
+                                 .view_size = view_size,
+                                 .tile_width = width,
+                                 .tile_height = view_size + kTileTextHeight,
+                                 .foot_width = std::max(legendWidth(legend), textWidth(kSheetNote)),
+                                 .foot_height = 2 * kLine}));
   for (std::size_t n = 0; n < figures.size(); ++n) {
-    const auto x = static_cast<int>(kMargin + n % layout.columns * layout.tile_width);
-    const auto y = static_cast<int>(kMargin + n / layout.columns * layout.tile_height);
-    drawTile(image, {x, y, view_size}, static_cast<int>(layout.tile_width) - kMargin, figures[n]);
+    const PixelRect tile = sheet.tile(n);
+    drawTile(sheet.image, {tile.x, tile.y, view_size}, tile.width, figures[n]);
   }
-  const int legend_top = static_cast<int>(kMargin + layout.rows * layout.tile_height);
-  drawLegend(image, legend, legend_top);
-  drawText(image, {kMargin, legend_top + kLine}, kSheetNote, kFaintInk);
-  return image;
+  drawLegend(sheet.image, legend, sheet.foot_top);
+  drawText(sheet.image, {kMargin, sheet.foot_top + kLine}, kSheetNote, kFaintInk);
+  return std::move(sheet.image);
 }
 
 }  // namespace galactic::pictures

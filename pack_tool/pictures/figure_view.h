@@ -16,6 +16,10 @@ inline constexpr Rgb kBoxEdge{240, 130, 20};
 inline constexpr Rgb kGraspMark{214, 30, 140};
 inline constexpr Rgb kCameraMark{120, 60, 200};
 inline constexpr Rgb kFootprintMark{120, 120, 128};
+// Of episodes; people with color-blindness tell them apart.
+inline constexpr Rgb kStartMark{0x00, 0x72, 0xb2};
+inline constexpr Rgb kTargetMark{0xe6, 0x9f, 0x00};
+inline constexpr Rgb kGoalMark{0x00, 0x9e, 0x73};
 
 /// The rectangle that a figure takes along the axes of a view, meters; marks are part of it. Empty
 /// while low is above high.

@@ -8,7 +8,9 @@
 
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
+#include "pack_tool/figure/episode_plans.h"
 #include "pack_tool/figure/figures_of_pack.h"
+#include "pack_tool/pictures/episode_plan.h"
 #include "pack_tool/pictures/figure_picture.h"
 #include "pack_tool/pictures/pictures.h"
 #include "pack_tool/pictures/scene_picture.h"
@@ -26,6 +28,7 @@ constexpr int kViewSize = 200;
 /// Of a set with more objects there are several sheets: a picture of thousands is more than one may
 /// be, and than anybody looks at.
 constexpr std::size_t kMostOnSheet = 240;
+constexpr std::size_t kMostPlansOnSheet = 60;
 
 /// A part of a picture.
 Image cutOut(const Image& image, const pictures::PixelRect& part) {
@@ -91,12 +94,49 @@ Result<void> addFigures(const PackFile& pack, AbsentTextures& absent,
   return {};
 }
 
+/// Of the packs of a page, the one of this number and the scenes, the nearest first: a page may be
+/// about several worlds with scenes of one name.
+std::vector<const PackFile*> withScenes(std::span<const PackFile> packs, std::size_t number) {
+  std::vector<std::size_t> scenes;
+  for (std::size_t n = 0; n < packs.size(); ++n) {
+    if (packs[n].kind() == PackKind::kScene) scenes.push_back(n);
+  }
+  std::ranges::stable_sort(
+      scenes, {}, [number](std::size_t n) { return n < number ? number - n : n - number; });
+  std::vector<const PackFile*> chosen{&packs[number]};
+  for (const std::size_t n : scenes) chosen.push_back(&packs[n]);
+  return chosen;
+}
+
+Result<void> addEpisodes(std::span<const PackFile> packs, std::size_t number,
+                         std::vector<Thumbnail>& thumbnails) {
+  ASSIGN_OR_RETURN(auto plans, episodePlansOf(withScenes(packs, number), packs[number].where()));
+  std::erase_if(plans, [](const pictures::EpisodePlan& plan) { return plan.episodes.empty(); });
+  const std::span<const pictures::EpisodePlan> all(plans);
+  for (std::size_t first = 0; first < all.size(); first += kMostPlansOnSheet) {
+    const auto some = all.subspan(first, std::min(kMostPlansOnSheet, all.size() - first));
+    ASSIGN_OR_RETURN(const auto image, pictures::drawEpisodeSheet(some, kPlanWidth));
+    const std::string caption =
+        some.size() == all.size() ? "starts, targets and goals"
+                                  : fmt::format("starts, targets and goals, scenes {} to {} of {}",
+                                                first + 1, first + some.size(), all.size());
+    ASSIGN_OR_RETURN(auto thumbnail, encoded(caption, image));
+    thumbnails.push_back(std::move(thumbnail));
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack, AbsentTextures& absent) {
+Result<std::vector<Thumbnail>> thumbnailsOf(std::span<const PackFile> packs, std::size_t number,
+                                            AbsentTextures& absent) {
+  const PackFile& pack = packs[number];
   std::vector<Thumbnail> thumbnails;
   if (hasFigures(pack)) {
     RETURN_IF_ERROR(addFigures(pack, absent, thumbnails));
+  }
+  if (pack.kind() == PackKind::kEpisodes) {
+    RETURN_IF_ERROR(addEpisodes(packs, number, thumbnails));
   }
   if (pack.kind() == PackKind::kScene) {
     ASSIGN_OR_RETURN(const auto scene, sceneOf(pack));

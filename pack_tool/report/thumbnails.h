@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,10 +19,12 @@ struct Thumbnail {
   std::string png;
 };
 
-/// Pictures of what is in a pack: each grid of a scene from above, and its meshes; each object, a
-/// robot from four sides. None of other kinds. Notes the shared textures that were not found for
-/// them. Fails as the pictures do.
-[[nodiscard]] Result<std::vector<Thumbnail>> thumbnailsOf(const PackFile& pack,
+/// Pictures of what is in `packs[number]`: each grid of a scene from above, and its meshes; each
+/// object, a robot from four sides; of episodes their scenes from above, those of `packs` that are
+/// nearest in it. None of other kinds. Notes the shared textures that were not found for them.
+/// Fails as the pictures do.
+[[nodiscard]] Result<std::vector<Thumbnail>> thumbnailsOf(std::span<const PackFile> packs,
+                                                          std::size_t number,
                                                           AbsentTextures& absent);
 
 }  // namespace galactic::pack_tool

@@ -2,8 +2,12 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "pack_tool/figure/episode_plans.h"
 #include "pack_tool/figure/shared_textures_of.h"
+#include "pack_tool/pictures/episode_plan.h"
 #include "pack_tool/pictures/figure_picture.h"
 #include "pack_tool/pictures/scene_picture.h"
 #include "pack_tool/support/open_scene.h"
@@ -41,7 +45,7 @@ Result<int> viewSize(const PackFile& pack, const PictureOptions& options, int us
   if (size <= pictures::kLargestView) return size;
   return fail(ErrorCode::kInvalidInput, pack.where(),
               fmt::format("found --size {}, expected at most {} for views of meshes, objects and "
-                          "robots; only plans and slices of grids may be larger",
+                          "robots and for sheets of scenes; only a plan or slice may be larger",
                           size, pictures::kLargestView));
 }
 
@@ -70,19 +74,70 @@ Result<Image> drawMeshes(const PackFile& pack, const PictureOptions& options,
   return image;
 }
 
-Result<Image> draw(const PackFile& pack, const PictureOptions& options, AbsentTextures& absent) {
-  if (pack.kind() == PackKind::kScene) {
-    if (!options.figures) return drawGrids(pack, options.grids, options.size);
-    if (!options.grids.anyGiven()) return drawMeshes(pack, options, absent);
-    return fail(ErrorCode::kInvalidInput, pack.where(),
-                "is a scene: a picture is either of its grids, with --radius, --slice and --value, "
-                "or of its meshes, with --what mesh");
+Result<Image> drawEpisodes(const PackFile& pack, const PictureOptions& options) {
+  ASSIGN_OR_RETURN(const auto others, openForPlans(pack, options.trust));
+  std::vector<const PackFile*> packs{&pack};
+  for (const PackFile& other : others) {
+    RETURN_IF_ERROR(checkOutput(other, options.output));
+    packs.push_back(&other);
   }
-  if (!options.grids.anyGiven()) return drawFigures(pack, options, absent);
+  ASSIGN_OR_RETURN(const auto plans, episodePlansOf(packs, pack.where(),
+                                                    {.scene = options.episodes.scene,
+                                                     .episode = options.episodes.episode,
+                                                     .radius = options.grids.radius}));
+  if (plans.size() == 1) {
+    const int width = options.size.value_or(pictures::kDefaultEpisodePlan);
+    return pictures::drawEpisodePlan(plans.front(), width).image;
+  }
+  ASSIGN_OR_RETURN(const int size, viewSize(pack, options, pictures::kDefaultTileSize));
+  auto sheet = pictures::drawEpisodeSheet(plans, size);
+  if (!sheet) sheet.error().where = pack.where();
+  return sheet;
+}
+
+Result<Image> drawScenePack(const PackFile& pack, const PictureOptions& options,
+                            AbsentTextures& absent) {
+  if (!options.figures) return drawGrids(pack, options.grids, options.size);
+  if (!options.grids.anyGiven()) return drawMeshes(pack, options, absent);
   return fail(ErrorCode::kInvalidInput, pack.where(),
-              fmt::format("is a pack of kind {} and holds no column grids; --radius, --slice and "
-                          "--value are for scenes",
-                          packKindName(pack.kind())));
+              "is a scene: a picture is either of its grids, with --radius, --slice and --value, "
+              "or of its meshes, with --what mesh");
+}
+
+bool hasEpisodes(const PackFile& pack) {
+  return pack.kind() == PackKind::kWorld || pack.kind() == PackKind::kEpisodes;
+}
+
+/// Options that are for other kinds of packs.
+Result<void> checkOptions(const PackFile& pack, const PictureOptions& options) {
+  const std::string_view kind = packKindName(pack.kind());
+  const auto refuse = [&](std::string_view what) {
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                fmt::format("is a pack of kind {} and {}", kind, what));
+  };
+  if (options.episodes.anyGiven() && !hasEpisodes(pack)) {
+    return refuse("holds no episodes; --scene and --episode are for worlds and episodes");
+  }
+  if (pack.kind() == PackKind::kScene) return {};
+  if (options.grids.slice || options.grids.value) {
+    return refuse("holds no column grids; --slice and --value are for scenes");
+  }
+  if (options.grids.radius && !hasEpisodes(pack)) {
+    return refuse("holds no column grids; --radius is for scenes, worlds and episodes");
+  }
+  if (options.figures && hasEpisodes(pack)) {
+    return refuse(
+        "is drawn from above; --object, --joints, --all-zero and --what are for objects, "
+        "robots and scenes, one by one");
+  }
+  return {};
+}
+
+Result<Image> draw(const PackFile& pack, const PictureOptions& options, AbsentTextures& absent) {
+  RETURN_IF_ERROR(checkOptions(pack, options));
+  if (pack.kind() == PackKind::kScene) return drawScenePack(pack, options, absent);
+  if (hasEpisodes(pack)) return drawEpisodes(pack, options);
+  return drawFigures(pack, options, absent);
 }
 
 Result<void> makePicture(const PictureOptions& options, AbsentTextures& absent) {

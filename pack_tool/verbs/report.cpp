@@ -1,3 +1,4 @@
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -23,11 +24,12 @@ std::string nameFrom(const std::filesystem::path& folder, const std::filesystem:
   return (is_below ? relative : pack.filename()).generic_string();
 }
 
-Result<PackEntry> entryOf(const PackFile& pack, const std::filesystem::path& folder,
-                          AbsentTextures& absent) {
+Result<PackEntry> entryOf(const std::vector<PackFile>& packs, std::size_t number,
+                          const std::filesystem::path& folder, AbsentTextures& absent) {
+  const PackFile& pack = packs[number];
   PackEntry entry{.description = describePack(pack, Detail::kSummary), .thumbnails = {}};
   entry.description["file"] = nameFrom(folder, entry.description.at("file").get<std::string>());
-  ASSIGN_OR_RETURN(auto thumbnails, thumbnailsOf(pack, absent));
+  ASSIGN_OR_RETURN(auto thumbnails, thumbnailsOf(packs, number, absent));
   entry.thumbnails = std::move(thumbnails);
   return entry;
 }
@@ -38,7 +40,7 @@ std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs,
                                          AbsentTextures& absent) {
   std::vector<Result<PackEntry>> entries(packs.size());
   detail::forEachPart(detail::threadCount(0), packs.size(),
-                      [&](std::size_t n) { entries[n] = entryOf(packs[n], folder, absent); });
+                      [&](std::size_t n) { entries[n] = entryOf(packs, n, folder, absent); });
   return entries;
 }
 

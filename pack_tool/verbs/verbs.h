@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "galactic/pack.h"
@@ -86,7 +87,8 @@ struct SliceLine {
 
 /// What is drawn of a scene's grids.
 struct GridPictureOptions {
-  /// Only the grid of this radius, meters. Not given: all of them.
+  /// Only the grid of this radius, meters. Not given: all of them, and the least one below
+  /// episodes.
   std::optional<float> radius = std::nullopt;
   /// A slice instead of a plan.
   std::optional<SliceLine> slice = std::nullopt;
@@ -95,13 +97,23 @@ struct GridPictureOptions {
   [[nodiscard]] bool anyGiven() const { return radius || slice || value; }
 };
 
+/// Of which scenes and episodes a plan is drawn.
+struct EpisodePictureOptions {
+  std::optional<std::string> scene = std::nullopt;
+  std::optional<std::uint32_t> episode = std::nullopt;
+
+  [[nodiscard]] bool anyGiven() const { return scene || episode; }
+};
+
 struct PictureOptions {
   std::filesystem::path pack = {};
   std::filesystem::path output = {};
-  /// For scenes.
+  /// For scenes; the radius for worlds and episodes, too.
   GridPictureOptions grids = {};
   /// For objects and robots, and for the render meshes of a scene instead of its grids.
   std::optional<FigureOptions> figures = std::nullopt;
+  /// For worlds and episodes.
+  EpisodePictureOptions episodes = {};
   /// Edge of a view of meshes, or about the width of a plot of grids; pixels.
   std::optional<int> size = std::nullopt;
   Trust trust = Trust::kVerify;
@@ -109,7 +121,8 @@ struct PictureOptions {
 
 /// Draws a pack into a PNG file, replacing an existing one: the grids of a scene from above or as a
 /// slice, or its render meshes, where figures are asked for; a robot or an object from four sides;
-/// several objects on a contact sheet.
+/// several objects on a contact sheet; the scenes of a world or of episodes from above, with
+/// starts, targets and goals.
 [[nodiscard]] int runPicture(const PictureOptions& options, const Console& console);
 
 struct ReportOptions {

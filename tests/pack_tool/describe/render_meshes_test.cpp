@@ -295,10 +295,12 @@ TEST(ScenePicture, ShowsTheMeshesWhenAskedTo) {
   const ScratchFolder folder;
   const auto path = writeScene(folder, "a.pack", paintedMeshes());
   PictureOptions options{.pack = path, .output = folder.path() / "a.png", .size = 64};
-  const Answer neither = answerOf(runPicture, options);
-  EXPECT_EQ(neither.exit_code, kInvalid);
-  EXPECT_THAT(neither.err, HasSubstr("a picture is either of its grids, "));
   options.figures.emplace();
+  options.grids.radius = 0.5F;
+  const Answer both = answerOf(runPicture, options);
+  EXPECT_EQ(both.exit_code, kInvalid);
+  EXPECT_THAT(both.err, HasSubstr("a picture is either of its grids, "));
+  options.grids.radius.reset();
   const Answer drawn = answerOf(runPicture, options);
   EXPECT_EQ(drawn.exit_code, kExitOk) << drawn.err;
   EXPECT_TRUE(std::filesystem::exists(options.output));

@@ -81,6 +81,15 @@ TEST(Report, HasSeveralSheetsOfManyObjects) {
   EXPECT_EQ(countOf(html, "as it is drawn, 241 to 241 of 241</figcaption>"), 1U);
 }
 
+TEST(Report, ShowsEpisodesOnTheirScenes) {
+  const ScratchFolder folder;
+  const fs::path world = writeWorld(folder, {});
+  const fs::path page = folder.path() / "page.html";
+  const Ran ran = run({.packs = {world}, .output = page});
+  ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
+  EXPECT_EQ(countOf(contentOf(page), "starts, targets and goals</figcaption>"), 1U);
+}
+
 TEST(Report, NamesPacksWithoutTheFoldersOfThisMachine) {
   const ScratchFolder folder;
   const fs::path pack = writePack(folder, "home/kitchen.pack", kitchenScene());

@@ -1,0 +1,178 @@
+#include "pack_tool/figure/episode_plans.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "galactic/episode_set.h"
+#include "galactic/pack_reference.h"
+#include "galactic/scene.h"
+#include "pack_tool/support/open_scene.h"
+#include "support/nearest_name.h"
+#include "support/printable.h"
+#include "support/try.h"
+
+namespace galactic::pack_tool {
+
+namespace {
+
+using pictures::EpisodeMarks;
+using pictures::EpisodePlan;
+using PlanByScene = std::map<std::string, EpisodePlan, std::less<>>;
+
+GroundPoint groundOf(const Vec3& point) {
+  return {static_cast<double>(point.x), static_cast<double>(point.z)};
+}
+
+EpisodeMarks marksOf(const EpisodeSet& set, std::size_t number) {
+  const Episode& episode = set.episodes()[number];
+  EpisodeMarks marks{.number = number,
+                     .start = groundOf(episode.base_position),
+                     .yaw = static_cast<double>(episode.base_yaw),
+                     .target = {},
+                     .goal = groundOf(episode.goal.translation),
+                     .others = {}};
+  const auto placements = set.placements(episode);
+  for (std::size_t n = 0; n < placements.size(); ++n) {
+    const GroundPoint point = groundOf(placements[n].pose.translation);
+    if (n == episode.target) {
+      marks.target = point;
+    } else {
+      marks.others.push_back(point);
+    }
+  }
+  return marks;
+}
+
+EpisodePlan& planOf(PlanByScene& plans, std::string_view scene) {
+  EpisodePlan& plan = plans[std::string(scene)];
+  plan.scene = scene;
+  return plan;
+}
+
+Result<void> addEpisodes(const EpisodeSet& set, const std::string& where,
+                         const EpisodeChoice& choice, PlanByScene& plans) {
+  const std::size_t count = set.episodes().size();
+  if (choice.episode && *choice.episode >= count) {
+    const std::string known =
+        count == 0 ? "none" : fmt::format("{}, numbered 0 to {}", count, count - 1);
+    return fail(ErrorCode::kInvalidInput, where,
+                fmt::format("has no episode {}; it has {}", *choice.episode, known));
+  }
+  for (const std::string_view scene : set.sceneNames()) planOf(plans, scene);
+  for (std::size_t n = 0; n < count; ++n) {
+    if (choice.episode && n != *choice.episode) continue;
+    const std::string_view scene = set.sceneNames()[set.episodes()[n].scene];
+    planOf(plans, scene).episodes.push_back(marksOf(set, n));
+  }
+  return {};
+}
+
+Result<void> addScene(const PackFile& pack, const EpisodeChoice& choice, PlanByScene& plans) {
+  ASSIGN_OR_RETURN(const auto scene, sceneOf(pack));
+  EpisodePlan& plan = planOf(plans, scene.name());
+  if (plan.grid) return {};
+  ASSIGN_OR_RETURN(const auto grids, gridsOf(scene, pack.where(), choice.radius));
+  plan.grid = grids.front();
+  return {};
+}
+
+std::vector<std::string> namesOf(const PlanByScene& plans) {
+  std::vector<std::string> names;
+  for (const auto& [name, plan] : plans) names.push_back(name);
+  return names;
+}
+
+/// The pack of a scene in a file, if that is there.
+std::optional<PackFile> scenePack(const std::filesystem::path& path, std::string_view scene,
+                                  Trust trust) {
+  auto pack = PackFile::open(path, trust);
+  if (!pack || pack->kind() != PackKind::kScene) return std::nullopt;
+  const auto found = Scene::from(*pack);
+  if (!found || found->name() != scene) return std::nullopt;
+  return std::move(*pack);
+}
+
+/// Whether a name can be that of a file in a folder.
+bool isFileName(std::string_view name) {
+  return !name.empty() && std::filesystem::path(name).filename() == name && name != "." &&
+         name != "..";
+}
+
+}  // namespace
+
+Result<std::vector<EpisodePlan>> episodePlansOf(std::span<const PackFile* const> packs,
+                                                const std::string& where,
+                                                const EpisodeChoice& choice) {
+  PlanByScene plans;
+  bool has_episodes = false;
+  for (const PackFile* pack : packs) {
+    if (pack->kind() == PackKind::kScene) {
+      RETURN_IF_ERROR(addScene(*pack, choice, plans));
+    } else if (pack->kind() == PackKind::kEpisodes && !has_episodes) {
+      has_episodes = true;
+      ASSIGN_OR_RETURN(const auto set, EpisodeSet::from(*pack));
+      RETURN_IF_ERROR(addEpisodes(set, where, choice, plans));
+    }
+  }
+  if (choice.episode && !has_episodes) {
+    return fail(ErrorCode::kInvalidInput, where,
+                fmt::format("has no episodes, wanted episode {}; give a world that lists an "
+                            "episode pack (EPIS)",
+                            *choice.episode));
+  }
+  if (choice.scene && !plans.contains(*choice.scene)) {
+    return fail(ErrorCode::kInvalidInput, where,
+                fmt::format("has no scene \"{}\"; {}", printable(*choice.scene),
+                            printable(suggestNames(*choice.scene, namesOf(plans)))));
+  }
+  if (plans.empty()) {
+    return fail(ErrorCode::kInvalidInput, where,
+                "has neither scenes nor episodes, nothing to draw a plan of; give the packs that "
+                "it lists one by one");
+  }
+  std::vector<EpisodePlan> chosen;
+  for (auto& [name, plan] : plans) {
+    if (choice.scene && name != *choice.scene) continue;
+    if (choice.episode && plan.episodes.empty()) continue;
+    chosen.push_back(std::move(plan));
+  }
+  if (!chosen.empty()) return chosen;
+  return fail(ErrorCode::kInvalidInput, where,
+              fmt::format("episode {} is not in the scene \"{}\"; leave out one of --episode and "
+                          "--scene",
+                          *choice.episode, printable(*choice.scene)));
+}
+
+Result<std::vector<PackFile>> openForPlans(const PackFile& pack, Trust trust) {
+  std::vector<PackFile> packs;
+  if (pack.kind() == PackKind::kWorld) {
+    ASSIGN_OR_RETURN(const auto references, packReferences(pack));
+    for (const PackReference& reference : references) {
+      if (reference.kind != PackKind::kScene && reference.kind != PackKind::kEpisodes) continue;
+      ASSIGN_OR_RETURN(auto listed, openReference(pack, reference, trust));
+      packs.push_back(std::move(listed));
+    }
+    return packs;
+  }
+  ASSIGN_OR_RETURN(const auto set, EpisodeSet::from(pack));
+  const std::filesystem::path folder = std::filesystem::path(pack.where()).parent_path();
+  for (const std::string_view scene : set.sceneNames()) {
+    if (!isFileName(scene)) continue;
+    const std::string file = std::string(scene) + ".pack";
+    for (const std::filesystem::path& path : {folder / "scenes" / file, folder / file}) {
+      auto beside = scenePack(path, scene, trust);
+      if (!beside) continue;
+      packs.push_back(std::move(*beside));
+      break;
+    }
+  }
+  return packs;
+}
+
+}  // namespace galactic::pack_tool

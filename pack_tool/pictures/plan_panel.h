@@ -1,0 +1,30 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "galactic/column_grid.h"
+#include "pack_tool/pictures/pictures.h"
+#include "pictures/drawing.h"
+#include "pictures/image.h"
+
+namespace galactic::pictures {
+
+/// The value of a column without a span.
+inline constexpr float kBlockedValue = -1;
+
+/// A grid in a picture.
+struct PlanPanel {
+  const ColumnGrid* grid = nullptr;
+  /// As of planValues.
+  std::vector<float> values;
+  PixelRect plot;
+};
+
+/// One for each column of `grid`, row by row along Z; kBlockedValue where there is no span.
+[[nodiscard]] std::vector<float> planValues(const ColumnGrid& grid, PlanValue value);
+
+/// Paints the columns of a grid over its plot. A pixel that shows several columns has the least of
+/// their values, and so is blocked where one of them is.
+void paintColumns(Image& image, const PlanPanel& panel, const std::function<Rgb(float)>& color_of);
+
+}  // namespace galactic::pictures
