@@ -32,30 +32,34 @@ struct LegendEntry {
   std::string meaning;
 };
 
-std::vector<LegendEntry> legendOf(const Figure& figure) {
-  const auto any = [&figure](auto&& has) {
-    return std::any_of(figure.parts.begin(), figure.parts.end(), has);
+std::vector<LegendEntry> legendOf(std::span<const Figure> figures, std::span<const float> radii) {
+  const auto any = [figures](auto&& has) { return std::ranges::any_of(figures, has); };
+  const auto any_part = [&any](auto&& has) {
+    return any([&has](const Figure& figure) { return std::ranges::any_of(figure.parts, has); });
   };
-  const bool robot = figure.kind == FigureKind::kRobot;
+  const bool robot = any([](const Figure& f) { return f.kind == FigureKind::kRobot; });
   std::vector<LegendEntry> legend;
-  const bool textured = any([](const FigurePart& part) { return part.render_model.has_value(); });
-  if (textured || any([](const FigurePart& part) { return !part.surface.empty(); })) {
+  const bool textured =
+      any_part([](const FigurePart& part) { return part.render_model.has_value(); });
+  if (textured || any_part([](const FigurePart& part) { return !part.surface.empty(); })) {
     legend.push_back({kMeshGray, robot || textured ? "mesh, in its own colors" : "mesh"});
   }
-  if (any([](const FigurePart& part) { return !part.spheres.empty(); })) {
-    std::string radii;
-    for (auto r = figure.radii.rbegin(); r != figure.radii.rend(); ++r) {
-      radii += fmt::format("{}{}", radii.empty() ? "" : ", ", *r);
-    }
-    legend.push_back(
-        {robot ? kRobotSpheres : kObjectSpheres, fmt::format("spheres of radius {} m", radii)});
+  for (std::size_t rank = 0; rank < radii.size(); ++rank) {
+    legend.push_back({sphereColor(rank),
+                      fmt::format("{}{} m", rank == 0 ? "spheres of radius " : "", radii[rank])});
   }
-  if (any([](const FigurePart& part) { return part.box.has_value(); })) {
+  if (any_part([](const FigurePart& part) { return part.box.has_value(); })) {
     legend.push_back({kBoxEdge, "oriented box"});
   }
-  if (figure.grasp) legend.push_back({kGraspMark, "grasp point"});
-  if (figure.camera) legend.push_back({kCameraMark, "camera"});
-  if (!figure.footprint.empty()) legend.push_back({kFootprintMark, "footprint"});
+  if (any([](const Figure& f) { return f.grasp.has_value(); })) {
+    legend.push_back({kGraspMark, "grasp point"});
+  }
+  if (any([](const Figure& f) { return f.camera.has_value(); })) {
+    legend.push_back({kCameraMark, "camera"});
+  }
+  if (any([](const Figure& f) { return !f.footprint.empty(); })) {
+    legend.push_back({kFootprintMark, "footprint"});
+  }
   return legend;
 }
 
@@ -91,8 +95,11 @@ int tileWidth(std::span<const Figure> figures, int view_size) {
   return std::min(widest, std::max(view_size, kMostText));
 }
 
-/// `width` is what texts may take.
-void drawTile(Image& image, const ViewPlace& place, int width, const Figure& figure) {
+/// `radii`: as of FigureView.
+void drawTile(Image& image, const PixelRect& tile, int view_size, const Figure& figure,
+              std::span<const float> radii) {
+  const ViewPlace place{tile.x, tile.y, view_size};
+  const int width = tile.width;
   const ViewAxes axes = threeQuarterView();
   const double scale = fittingScale(windowOf(figure, axes).extent(), place.size);
   drawText(image, {place.left, place.top}, shortened(printable(figure.name), width), kInk);
@@ -102,7 +109,7 @@ void drawTile(Image& image, const ViewPlace& place, int width, const Figure& fig
     y += kLine;
   }
   const ViewPlace view{place.left, place.top + 3 * kLine, place.size};
-  drawFigureView(image, view, figure, {.axes = axes, .pixels_per_meter = scale});
+  drawFigureView(image, view, figure, {.axes = axes, .pixels_per_meter = scale, .radii = radii});
   drawFrame(image, {view.left, view.top, view.size, view.size}, kFaintInk);
   drawScaleBar(image, {view.left, view.top + view.size + 6}, scale, view.size / 2);
 }
@@ -120,7 +127,8 @@ Image drawFigure(const Figure& figure, int view_size) {
   }
   const double scale = fittingScale(extent, view_size);
   const std::string name = printable(figure.name);
-  const std::vector<LegendEntry> legend = legendOf(figure);
+  const std::vector<float> radii = radiiOf({&figure, 1});
+  const std::vector<LegendEntry> legend = legendOf({&figure, 1}, radii);
   const int legend_width = legendWidth(legend);
   const int views_width = static_cast<int>(views.size()) * (view_size + kMargin) - kMargin;
   const int width = 2 * kMargin + std::max({views_width, legend_width, textWidth(name),
@@ -135,7 +143,7 @@ Image drawFigure(const Figure& figure, int view_size) {
   for (const NamedView& view : views) {
     drawText(image, {x + view_size / 2, kMargin + 2 * kLine, Anchor::kCenter}, view.name, kInk);
     drawFigureView(image, {x, views_top, view_size}, figure,
-                   {.axes = view.axes, .pixels_per_meter = scale});
+                   {.axes = view.axes, .pixels_per_meter = scale, .radii = radii});
     drawFrame(image, {x, views_top, view_size, view_size}, kFaintInk);
     x += view_size + kMargin;
   }
@@ -145,7 +153,8 @@ Image drawFigure(const Figure& figure, int view_size) {
 }
 
 Result<Image> drawContactSheet(std::span<const Figure> figures, int view_size) {
-  const std::vector<LegendEntry> legend = legendOf(figures.front());
+  const std::vector<float> radii = radiiOf(figures);
+  const std::vector<LegendEntry> legend = legendOf(figures, radii);
   const int width = tileWidth(figures, view_size);
   // Name and two lines of caption above, the scale bar below.
   constexpr int kTileTextHeight = 4 * kLine;
@@ -158,8 +167,7 @@ Result<Image> drawContactSheet(std::span<const Figure> figures, int view_size) {
                                  .foot_width = std::max(legendWidth(legend), textWidth(kSheetNote)),
                                  .foot_height = 2 * kLine}));
   for (std::size_t n = 0; n < figures.size(); ++n) {
-    const PixelRect tile = sheet.tile(n);
-    drawTile(sheet.image, {tile.x, tile.y, view_size}, tile.width, figures[n]);
+    drawTile(sheet.image, sheet.tile(n), view_size, figures[n], radii);
   }
   drawLegend(sheet.image, legend, sheet.foot_top);
   drawText(sheet.image, {kMargin, sheet.foot_top + kLine}, kSheetNote, kFaintInk);

@@ -11,6 +11,7 @@ using pack_tool::CameraMark;
 using pack_tool::Figure;
 using pack_tool::FigureKind;
 using pack_tool::FigurePart;
+using pack_tool::GraspMark;
 
 /// What remains white around a figure: share of a view.
 constexpr double kBorder = 0.06;
@@ -19,6 +20,8 @@ constexpr double kLeastExtent = 1e-3;
 /// point, which is seen also where the radius is tiny: shares of the robot's size.
 constexpr float kCameraLength = 0.1F;
 constexpr float kGraspCross = 0.02F;
+/// Of the ball around the grasp point, meters.
+constexpr float kLeastGraspRadius = 0.01F;
 
 double along(const Vec3& axis, const Vec3& point) {
   return static_cast<double>(axis.x) * static_cast<double>(point.x) +
@@ -60,6 +63,8 @@ float sizeOf(const Figure& figure) {
   return std::max({edges.x, edges.y, edges.z});
 }
 
+float graspRadius(const GraspMark& grasp) { return std::max(grasp.radius, kLeastGraspRadius); }
+
 std::vector<RasterLine> markLines(const Figure& figure) {
   std::vector<RasterLine> lines;
   if (figure.kind != FigureKind::kRobot) return lines;
@@ -73,7 +78,7 @@ std::vector<RasterLine> markLines(const Figure& figure) {
     lines.insert(lines.end(), camera.begin(), camera.end());
   }
   if (figure.grasp) {
-    const float half = std::max(figure.grasp->radius, kGraspCross * size);
+    const float half = std::max(graspRadius(*figure.grasp), kGraspCross * size);
     for (const Vec3& arm : {Vec3{half, 0, 0}, Vec3{0, half, 0}, Vec3{0, 0, half}}) {
       const Vec3& center = figure.grasp->center_in_world;
       lines.push_back({center - arm, center + arm, kGraspMark});
@@ -82,7 +87,8 @@ std::vector<RasterLine> markLines(const Figure& figure) {
   return lines;
 }
 
-void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part) {
+void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part,
+              std::span<const float> radii) {
   const bool robot = figure.kind == FigureKind::kRobot;
   if (part.render_model) {
     const RenderMeshes& meshes = *figure.render_meshes;
@@ -93,8 +99,10 @@ void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part) 
                     part.world_from_part);
   }
   for (const SetSphere& sphere : part.spheres) {
-    raster.drawSphere({part.world_from_part * sphere.center, figure.radii[sphere.radius_index]},
-                      robot ? kRobotSpheres : kObjectSpheres);
+    const float radius = figure.radii[sphere.radius_index];
+    const auto rank = std::ranges::lower_bound(radii, radius) - radii.begin();
+    raster.drawSphere({part.world_from_part * sphere.center, radius},
+                      sphereColor(static_cast<std::size_t>(rank)));
   }
   if (!part.box) return;
   const auto corners = pack_tool::cornersOf(*part.box);
@@ -105,6 +113,21 @@ void drawPart(MeshRaster& raster, const Figure& figure, const FigurePart& part) 
 }
 
 }  // namespace
+
+std::vector<float> radiiOf(std::span<const Figure> figures) {
+  std::vector<float> radii;
+  for (const Figure& figure : figures) {
+    for (const FigurePart& part : figure.parts) {
+      for (const SetSphere& sphere : part.spheres) {
+        radii.push_back(figure.radii[sphere.radius_index]);
+      }
+    }
+  }
+  std::ranges::sort(radii);
+  const auto again = std::ranges::unique(radii);
+  radii.erase(again.begin(), again.end());
+  return radii;
+}
 
 double ViewWindow::extent() const { return std::max({width(), height(), kLeastExtent}); }
 
@@ -145,8 +168,11 @@ void drawFigureView(Image& image, const ViewPlace& place, const Figure& figure,
   MeshRaster raster(
       {axes, axes.right * right + axes.up * up, view.pixels_per_meter, place.size, place.size});
   if (view.cut) raster.openRooms(*view.cut);
-  for (const FigurePart& part : figure.parts) drawPart(raster, figure, part);
+  for (const FigurePart& part : figure.parts) drawPart(raster, figure, part, view.radii);
   for (const RasterLine& line : markLines(figure)) raster.drawLine(line);
+  if (figure.kind == FigureKind::kRobot && figure.grasp) {
+    raster.drawSphere({figure.grasp->center_in_world, graspRadius(*figure.grasp)}, kGraspMark);
+  }
   raster.compose(image, place.left, place.top);
 }
 

@@ -1,11 +1,17 @@
 // The software rasterizer and the pictures of figures.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "pack_tool/asset_packs.h"
@@ -15,6 +21,7 @@
 #include "pack_tool/pictures/figure_view.h"
 #include "pack_tool/pictures/mesh_raster.h"
 #include "pictures/palette.h"
+#include "support/source_folder.h"
 
 namespace galactic::pictures::raster_test {
 namespace {
@@ -222,39 +229,66 @@ TEST(ViewAxes, AreRightHanded) {
   }
 }
 
-/// How many pixels of views are clearly of a color's kind: its strongest channel leads by far.
-int pixelsLike(const Image& image, int channel) {
-  int count = 0;
-  for (const Rgb& pixel : image.pixels()) {
-    const std::array<int, 3> values{pixel.r, pixel.g, pixel.b};
-    const int own = values[static_cast<std::size_t>(channel)];
-    const int a = values[static_cast<std::size_t>((channel + 1) % 3)];
-    const int b = values[static_cast<std::size_t>((channel + 2) % 3)];
-    if (own > a + 30 && own > b + 30) ++count;
-  }
-  return count;
+/// How many pixels have about the hue of a color: the same share of light in each channel.
+int pixelsLike(const Image& image, Rgb color) {
+  const auto shares = [](Rgb c) {
+    const double sum = std::max(1, c.r + c.g + c.b);
+    return std::array{c.r / sum, c.g / sum, c.b / sum};
+  };
+  constexpr double kNear = 0.05;
+  const auto wanted = shares(color);
+  return static_cast<int>(std::ranges::count_if(image.pixels(), [&](const Rgb& pixel) {
+    const auto found = shares(pixel);
+    bool is_near = pixel.r + pixel.g + pixel.b > 60;
+    for (std::size_t n = 0; n < found.size(); ++n) {
+      is_near = is_near && std::abs(found[n] - wanted[n]) < kNear;
+    }
+    return is_near;
+  }));
 }
 
-TEST(FigurePicture, ShowsObjectsWithBlueSpheresAndRobotsWithGreenOnes) {
-  constexpr int kRedChannel = 0;
-  constexpr int kGreenChannel = 1;
-  constexpr int kBlueChannel = 2;
+/// Of a color where half of what lies behind shines through.
+Rgb halfOf(Rgb color, Rgb behind) { return blend(behind, color, 0.5); }
+
+TEST(FigurePicture, ShowsSpheresByRadiusAndMarksInTheirColors) {
   const ToyPack objects{ToyObjects{}};
   const auto figures = figuresOf(*objects, {});
   ASSERT_TRUE(figures.has_value());
+  EXPECT_EQ(radiiOf(*figures).size(), 2U);
   const Image object = drawFigure(figures->front(), 128);
-  EXPECT_GT(pixelsLike(object, kBlueChannel), 200);
-  EXPECT_EQ(pixelsLike(object, kGreenChannel), 0);
-  // The box's lines.
-  EXPECT_GT(pixelsLike(object, kRedChannel), 100);
+  EXPECT_GT(pixelsLike(object, kBoxEdge), 100);
+  EXPECT_GT(pixelsLike(object, sphereColor(0)), 50);
+  EXPECT_GT(pixelsLike(object, halfOf(sphereColor(1), kMeshGray)), 50);
+  EXPECT_EQ(pixelsLike(object, kFootprintMark), 0);
 
   const ToyPack robot{ToyRobot{}};
   const auto arm = figuresOf(*robot, {});
   ASSERT_TRUE(arm.has_value());
   const Image picture = drawFigure(arm->front(), 128);
-  EXPECT_GT(pixelsLike(picture, kGreenChannel), 200);
+  // Swatches of the legend alone have 196 pixels.
+  constexpr int kSwatch = kTextHeight * kTextHeight;
+  EXPECT_GT(pixelsLike(picture, kGraspMark), kSwatch);
+  EXPECT_GT(pixelsLike(picture, kCameraMark), kSwatch);
+  EXPECT_GT(pixelsLike(picture, kFootprintMark), kSwatch);
   // The mesh has its own color, red.
-  EXPECT_GT(pixelsLike(picture, kRedChannel), 200);
+  EXPECT_GT(pixelsLike(picture, {255, 0, 0}), 200);
+}
+
+/// Pages and pictures are written in two languages, and mean the same by a color.
+TEST(FigureColors, AreThoseOfPages) {
+  const std::filesystem::path page = test::sourceFolder() / "view" / "page" / "src";
+  std::string source;
+  for (const auto& file : std::filesystem::directory_iterator(page)) {
+    std::ifstream stream(file.path());
+    source.append(std::istreambuf_iterator<char>(stream), {});
+  }
+  std::vector<Rgb> colors{kMeshGray,      kBoxEdge,    kGraspMark, kCameraMark,
+                          kFootprintMark, kTargetMark, kGoalMark};
+  colors.insert(colors.end(), kSphereColors.begin(), kSphereColors.end());
+  for (const Rgb& color : colors) {
+    const std::string hex = fmt::format("{:02x}{:02x}{:02x}", color.r, color.g, color.b);
+    EXPECT_NE(source.find(hex), std::string::npos) << hex << " is in no source of the page";
+  }
 }
 
 TEST(FigurePicture, HasFourViewsOfTheSizeAskedFor) {
