@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "errors.h"
+#include "galactic/error.h"
 
 namespace galactic::python {
 namespace {

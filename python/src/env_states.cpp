@@ -12,8 +12,8 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "errors.h"
 #include "filled.h"
+#include "galactic/error.h"
 
 namespace galactic::python {
 namespace {
@@ -276,7 +276,7 @@ std::vector<EnvState> listOf(const Simulator& simulator, const py::object& state
 void checkStates(Simulator& simulator, const py::object& states) {
   const Confinement::Use use = simulator.readState();
   const std::size_t count = py::len(GivenStates::typed(states).attr("episode"));
-  require(simulator.batch().checkStates(listOf(simulator, states, count)));
+  orThrow(simulator.batch().checkStates(listOf(simulator, states, count)));
 }
 
 py::array_t<bool> setStates(Simulator& simulator, const py::object& states, const py::object& envs,
@@ -287,7 +287,7 @@ py::array_t<bool> setStates(Simulator& simulator, const py::object& states, cons
   std::vector<std::uint8_t> were_set;
   {
     const py::gil_scoped_release unlocked;
-    were_set = valueOf(simulator.batch().setStates(
+    were_set = orThrow(simulator.batch().setStates(
         chosen, list, are_drawn ? EpisodeChoice::kDrawn : EpisodeChoice::kNamed));
   }
   py::array_t<bool> answer(static_cast<py::ssize_t>(chosen.size()));

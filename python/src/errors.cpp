@@ -1,8 +1,8 @@
-#include "errors.h"
 
 #include <exception>
 
 #include "bindings.h"
+#include "galactic/error.h"
 
 namespace galactic::python {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "arrays.h"
-#include "errors.h"
+#include "galactic/error.h"
 #include "galactic/option_text.h"
 
 namespace galactic::python {

@@ -14,7 +14,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "errors.h"
+#include "galactic/error.h"
 #include "galactic/path_finder.h"
 #include "options.h"
 
@@ -137,7 +137,7 @@ std::unique_ptr<PathFinder> makeFinder(const World& world, const py::object& sce
   keywords["floor_drop"] = drop;
   const GroundOptions ground = optionsOf(world, keywords).ground;
   const py::gil_scoped_release unlocked;
-  return std::make_unique<PathFinder>(valueOf(PathFinder::make(world, number, place, ground)));
+  return std::make_unique<PathFinder>(orThrow(PathFinder::make(world, number, place, ground)));
 }
 
 /// Floats or truths of all cells, (columns in Z, columns in X).
@@ -173,7 +173,7 @@ GeodesicFields fieldsTo(const PathFinder& finder, const py::object& goals, bool 
   const GoalOf of = hand ? GoalOf::kHand : GoalOf::kBase;
   const std::uint32_t count = threadsOf(threads);
   const py::gil_scoped_release unlocked;
-  return valueOf(finder.fieldsTo(points, of, count));
+  return orThrow(finder.fieldsTo(points, of, count));
 }
 
 void bindFields(py::module_& module) {

@@ -18,7 +18,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "confinement.h"
-#include "errors.h"
+#include "galactic/error.h"
 #include "galactic/learned_policy.h"
 #include "galactic/option_text.h"
 #include "galactic/policy_pack.h"
@@ -183,7 +183,7 @@ void writePack(const Path& path, const py::dict& content, const py::dict& traine
   provenance.source.assign(first, first + bytes.size());
   const PolicyContent native = contentOf(Fields(content));
   const py::gil_scoped_release unlocked;
-  require(writePolicyPack(path, native, provenance));
+  orThrow(writePolicyPack(path, native, provenance));
 }
 
 /// The pack at a path, where many have the checkpoint that it is made of.
@@ -195,7 +195,7 @@ PackFile openPolicy(const Path& path) {
          "is a checkpoint, expected a policy pack; python3 -m galactic.export makes one "
          "of it"}};
   }
-  return valueOf(std::move(pack));
+  return orThrow(std::move(pack));
 }
 
 /// A policy pack that acts on arrays, used by one thread at a time.
@@ -254,8 +254,8 @@ class PlayedPolicy {
   static constexpr std::uint64_t kMostEnvs = 1U << 20U;
 
   PlayedPolicy(const PackFile& pack, std::size_t envs, const LearnedPolicyOptions& options)
-      : batch_(batchOf(valueOf(policyInterface(pack)), envs)),
-        policy_(valueOf(LearnedPolicy::create(pack, batch_, options))) {}
+      : batch_(batchOf(orThrow(policyInterface(pack)), envs)),
+        policy_(orThrow(LearnedPolicy::create(pack, batch_, options))) {}
 
   template <class T>
   static std::span<const T> spanOf(const py::object& array) {

@@ -9,7 +9,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "dlpack.h"
-#include "errors.h"
+#include "galactic/error.h"
 
 namespace galactic::python {
 namespace {
@@ -58,14 +58,14 @@ std::unique_ptr<Renderer> Renderer::create(const py::object& simulator,
                           "was made without body_transforms, which drawing needs; make it with "
                           "body_transforms=True"}};
   }
-  const ChosenCamera camera = valueOf(chooseCamera(shown.world().robot(), options.camera));
+  const ChosenCamera camera = orThrow(chooseCamera(shown.world().robot(), options.camera));
   std::unique_ptr<Renderer> renderer(
-      new Renderer(simulator, valueOf(WorldModels::from(shown.world()))));
+      new Renderer(simulator, orThrow(WorldModels::from(shown.world()))));
   RenderOptions render = options.render;
   render.near = camera.near;
   const Confinement::Use use = shown.readState();
   const py::gil_scoped_release unlocked;
-  renderer->renderer_.emplace(valueOf(BatchRenderer::create(renderer->models_.library(), render)));
+  renderer->renderer_.emplace(orThrow(BatchRenderer::create(renderer->models_.library(), render)));
   renderer->views_.emplace(shown.world(), renderer->models_, shown.batch(), camera.mount,
                            options.ids);
   return renderer;
@@ -157,7 +157,7 @@ py::dict Renderer::renderToDevice(std::uintptr_t stream) {
   const std::span<const RenderView> views = viewsOf(py::none());
   const DeviceImages images = [&] {
     const py::gil_scoped_release unlocked;
-    return valueOf(renderer_->renderToDevice(views, stream));
+    return orThrow(renderer_->renderToDevice(views, stream));
   }();
   const RenderOptions& options = renderer_->options();
   const py::object self = py::cast(this);

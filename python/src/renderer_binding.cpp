@@ -14,7 +14,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "dlpack.h"
-#include "errors.h"
+#include "galactic/error.h"
 #include "options.h"
 #include "renderer.h"
 

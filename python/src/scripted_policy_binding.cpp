@@ -9,7 +9,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "errors.h"
+#include "galactic/error.h"
 #include "options.h"
 #include "scripted/scripted_policy.h"
 #include "simulator.h"
@@ -23,7 +23,7 @@ class Expert {
   Expert(const py::object& simulator, const py::object& most_plans)
       : simulator_(&simulatorOf(simulator)),
         policy_(
-            valueOf(ScriptedPolicy::create(simulator_->world(), simulator_->batch().options()))) {
+            orThrow(ScriptedPolicy::create(simulator_->world(), simulator_->batch().options()))) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
     policy_.allowPlans(static_cast<std::uint32_t>(wholeOf("most_plans", most_plans, 1, kMost)));
   }

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "errors.h"
+#include "galactic/error.h"
 #include "options.h"
 
 namespace galactic::python {
@@ -45,7 +45,7 @@ std::unique_ptr<Simulator> Simulator::create(std::shared_ptr<const World> world,
   const SimulationOptions options = optionsOf(*world, keywords);
   BatchSimulator batch = [&] {
     const py::gil_scoped_release unlocked;
-    return valueOf(BatchSimulator::create(*world, options));
+    return orThrow(BatchSimulator::create(*world, options));
   }();
   return std::unique_ptr<Simulator>(new Simulator(std::move(world), std::move(batch)));
 }
@@ -197,7 +197,7 @@ py::bytes Simulator::saveState(const py::object& envs) {
 void Simulator::restoreState(const py::object& state, const py::object& envs) {
   const InputBytes input(state);
   const Confinement::Use use = readState();
-  require(envs.is_none() ? batch_.restoreState(input.bytes())
+  orThrow(envs.is_none() ? batch_.restoreState(input.bytes())
                          : batch_.restoreState(input.bytes(), placesOf(envs)));
 }
 

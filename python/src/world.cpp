@@ -19,7 +19,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "episode_table.h"
-#include "errors.h"
+#include "galactic/error.h"
 #include "options.h"
 
 namespace galactic::python {
@@ -40,7 +40,7 @@ std::shared_ptr<World> openWorld(const py::object& given, bool is_trusted) {
                                           : py::detail::cast_op<std::vector<Path>>(std::move(list));
   const py::gil_scoped_release unlocked;
   return std::make_shared<World>(
-      valueOf(World::open(paths, is_trusted ? Trust::kTrusted : Trust::kVerify)));
+      orThrow(World::open(paths, is_trusted ? Trust::kTrusted : Trust::kVerify)));
 }
 
 py::tuple sceneNames(const World& world) {
