@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import pathlib
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import TracebackType
 from typing import Any, Optional, Union
 
@@ -52,7 +52,8 @@ class DemonstrationWriter:
                 writer.add(seen, actions, rewards, infos)
                 seen = then
 
-    Episodes are kept when they end; those of which the beginning was not added are left out.
+    Episodes are kept when they end; those of which the beginning was not added are left out. Where env has broken
+    off episodes, by reset() or by a state that was set or restored, say so: forget().
 
     Args:
         folder: where to; it holds no demonstrations yet.
@@ -118,6 +119,10 @@ class DemonstrationWriter:
             self._write(self._kept[: self._size])
             del self._kept[: self._size]
 
+    def forget(self, envs: Optional[Iterable[int]] = None) -> None:
+        """Drops what was added of the episodes under way, in all envs or in those with the numbers `envs`."""
+        self._recorder.forget(range(self._env.num_envs) if envs is None else envs)
+
     def close(self) -> None:
         """Writes the episodes that have ended since the last part."""
         if self._kept:
@@ -175,6 +180,11 @@ class EpisodeRecorder:
         ended = np.intersect1d(np.flatnonzero(infos["_final_info"]), self._playing)
         found = [self._ended(env, infos) for env in ended.tolist()]
         return [one for one in found if one is not None]
+
+    def forget(self, envs: Iterable[int]) -> None:
+        """Drops the episodes under way in these envs."""
+        for env in envs:
+            self._under_way.pop(int(env), None)
 
     def _ended(self, env: int, infos: Mapping[str, Any]) -> Optional[Demonstration]:
         """The episode that ended in an env; None where its beginning is not known."""

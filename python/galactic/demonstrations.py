@@ -367,8 +367,11 @@ def about_of(text: str, file: pathlib.Path) -> About:
     try:
         values = json.loads(text)
         _require_types(values, {"format": int, **_ABOUT})
-        if values.pop("format") != FORMAT:
-            raise ValueError(f"expected format {FORMAT}")
+        form = values.pop("format")
+        if form != FORMAT:
+            raise ValueError(
+                f"has format {form}, expected {FORMAT}, in which each episode has its last observation"
+            )
         _require_types(values["made_with"], {"settings": dict, "sha256": dict})
         about = About(**values)
         if not set(about.images) <= {"rgb", "depth"}:

@@ -93,6 +93,8 @@ def _restore_some(
         raise _refused(f"has {count} envs, expected {len(envs)}, or one that becomes all of them")
     of_saved = np.zeros(len(envs), np.int64) if count == 1 else np.arange(count)
     works: list[_Work] = []
+    for half in halves:
+        half.require_whole()
     for half, places, rows in _by_half(halves, envs):
         saved = {name: array[of_saved[places]] for name, array in own.items()}
         half.check_rows(saved, rows)

@@ -183,6 +183,10 @@ class TaskRunner:
             raise TypeError(
                 f"{self._name}.place() returned {_described(placed)}, expected EnvStates or None"
             )
+        if len(placed.episode) != len(which):
+            raise ValueError(
+                f"{self._name}.place() returned {len(placed.episode)} states, expected {len(which)}"
+            )
         simulator.check_states(placed)
         are_drawn = self._envs.draws.are_drawn[which]
         for drawn, rows in ((True, are_drawn), (False, ~are_drawn)):

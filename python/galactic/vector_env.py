@@ -288,11 +288,18 @@ class VectorEnv(_Base):
         self._halves[0].simulator.check_states(states)
         if len(chosen) != len(states.episode):
             raise ValueError(f"there are {len(states.episode)} states, expected {len(chosen)}")
+        for half in self._halves:
+            half.require_whole()
         were_set = np.zeros(len(chosen), np.bool_)
-        for number, half in enumerate(self._halves):
-            part = self.rows(number)
-            here = np.flatnonzero((chosen >= part.start) & (chosen < part.stop))
-            were_set[here] = half.set_states(states.select(here), chosen[here] - part.start)
+        try:
+            for number, half in enumerate(self._halves):
+                part = self.rows(number)
+                here = np.flatnonzero((chosen >= part.start) & (chosen < part.stop))
+                were_set[here] = half.set_states(states.select(here), chosen[here] - part.start)
+        except BaseException:  # such as a task's: no half goes on alone
+            for half in self._halves:
+                half.is_cut_off = True
+            raise
         return were_set
 
     def rows(self, half: int) -> slice:

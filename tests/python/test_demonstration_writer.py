@@ -173,3 +173,31 @@ def test_a_folder_says_that_episodes_may_be_there_often(tmp_path, world):
     index.write_text(json.dumps({**about, "episodes": 1000}))
     with pytest.raises(galactic.Error, match="some of them twice"):
         Demonstrations(tmp_path)
+
+
+def test_episodes_that_were_broken_off_are_forgotten(tmp_path, world):
+    env = VectorEnv(world, 4, task="pick", **OPTIONS)
+    draw = drawing()
+    seen, _ = env.reset()
+    with DemonstrationWriter(tmp_path / "mine", env, expert="chance") as writer:
+        for step in range(40):
+            if step == 3:
+                state = env.save_state()
+            if step == 5:
+                # Two steps of each episode were in vain; what was before is no beginning any more.
+                env.restore_state(state)
+                seen = env.observe()
+                writer.forget([0, 2])
+                writer.forget()
+            actions = draw(4, ACTIONS)
+            then, rewards, _, _, infos = env.step(actions)
+            writer.add(seen, actions, rewards, infos)
+            seen = then
+    shown = Demonstrations(tmp_path / "mine")
+    lengths = [len(one.rewards) for one in shown]
+    assert lengths and max(lengths) <= OPTIONS["episode_steps"]
+    for one in shown:
+        # Each begins where an episode of the world does.
+        start = galactic.Simulator(world, 1, task="pick", **OPTIONS)
+        start.reset(np.array([one.episode]))
+        np.testing.assert_allclose(one.state[0], start.observations[0], atol=1e-6)

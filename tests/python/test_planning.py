@@ -32,7 +32,8 @@ def test_many_plans_begin_where_one_env_is(world, halves, task):
     # Returns and lengths go on, too.
     lengths = np.concatenate([half._tally.lengths for half in planner._halves])
     returns = np.concatenate([half._tally.returns for half in planner._halves])
-    assert lengths.tolist() == [9] * 10 or 0 in lengths
+    # 0 where the step has ended the episode.
+    assert set(lengths.tolist()) <= {9, 0} and lengths[4] == 9
     assert returns[4] == real._halves[0]._tally.returns[2]
 
 

@@ -148,7 +148,7 @@ def test_luck_is_the_envs_or_the_episodes(world):
 
 
 class Near(Task):
-    """Begins with the target 5 cm over its place, the sooner the earlier in training; counts what begins."""
+    """Begins two steps into episodes, with targets moved and arms lifted; counts what begins."""
 
     parts = {"begun": 1}
 
@@ -160,6 +160,8 @@ class Near(Task):
         assert len(states.episode) == len(which)
         states.joint_positions[:, 0] += 0.2 * envs.uniform("lift")[which, 0]
         states.step[:] = 2
+        rows = np.arange(len(which))
+        states.objects.translation[rows, states.target, 0] += 0.01
         return states
 
     def begin(self, envs, which):
@@ -210,6 +212,16 @@ def test_tasks_place_robots_and_objects(world, halves):
     assert (states.step == 2).all()
     lifted = states.joint_positions[:, 0] - plain.env_states().joint_positions[:, 0]
     assert lifted.min() > -1e-6 and lifted.max() > 0.1 and len(set(lifted.tolist())) > ENVS // 2
+    rows = np.arange(ENVS)
+    targets, starts = (
+        of.objects.translation[rows, of.target, 0] for of in (states, plain.env_states())
+    )
+    np.testing.assert_allclose(targets, starts + 0.01, atol=1e-6)
+    way = np.linalg.norm(
+        states.objects.translation[rows, states.target] - states.world_from_grip.translation, axis=1
+    )
+    seen = first[:, env.observation_parts["grip_target"]]
+    np.testing.assert_allclose(np.linalg.norm(seen, axis=1), way, atol=1e-5)
     actions = np.zeros(env.action_space.shape, np.float32)
     for step in range(4):
         observations, rewards, _, truncations, _ = env.step(actions)
@@ -241,6 +253,13 @@ def test_what_tasks_place_is_checked(world):
 
     with pytest.raises(TypeError, match=r"Wrong.place\(\) returned float32 .*, expected EnvStates"):
         VectorEnv(world, 4, task=Wrong)
+
+    class Few(Near):
+        def place(self, envs, which, states):
+            return states.select([0])
+
+    with pytest.raises(ValueError, match=r"Few.place\(\) returned 1 states, expected 4"):
+        VectorEnv(world, 4, task=Few)
 
     class Lost(Near):
         def place(self, envs, which, states):

@@ -174,6 +174,9 @@ def refusing(fault: str, remedy: str) -> Iterator[None]:
             raise  # of a disk, which has nothing to do with what the file holds
         # Of layers that do not fit, torch has a line each; the first of them tells enough.
         found = " ".join(line.strip() for line in str(error).splitlines()[:2])
+        if isinstance(error, Error) and error.code == ErrorCode.UNSUPPORTED:
+            # Of another version: those before it are no better.
+            raise CheckpointError(f"{fault}: {found}") from error
         raise CheckpointError(f"{fault}: {found}; {remedy}") from error
 
 

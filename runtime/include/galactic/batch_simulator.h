@@ -225,8 +225,10 @@ class BatchSimulator {
   /// there, after EnvState::step steps of it, with robot, objects and goal where the state says.
   /// The base goes to the floor under it and joints into their limits. What is held is in the hand
   /// as world_from_grip and its pose in `objects` say, and follows joints that you change. `scene`,
-  /// `begun` and the goal's rotation play no part, and positions that neither actions nor episodes
-  /// move stay as they are. The luck of the env is its own or, with EpisodeChoice::kNamed, the
+  /// `begun`, roll and pitch of the root and the goal's rotation play no part, and positions that
+  /// neither actions nor episodes move stay as they are. Where the target rests counts as where it
+  /// began. What a state does not say begins anew: the last actions, whether something was in the
+  /// way (bump), odometry. The luck of the env is its own or, with EpisodeChoice::kNamed, the
   /// episode's. What the last step returned stays, but for the observations of these envs.
   ///
   /// 1 where an env has its state now; 0 where it stays as it was, as no floor carries the base, or

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -219,6 +220,58 @@ TEST(ChosenStates, PutTheTargetWhereItSucceeds) {
   EXPECT_THAT(simulator.endings(), ElementsAre(EpisodeEnd::kSuccess));
 }
 
+TEST(ChosenStates, HaveTheirTargetsObservedWhereTheyAre) {
+  const SmallHome home;
+  BatchSimulator simulator = simulatorOf(home.world(), optionsOf(1));
+  EnvState state = simulator.envState(0);
+  state.objects[state.target].translation.z += 0.2F;
+  ASSERT_TRUE(isSet(simulator, state));
+  BatchSimulator other = simulatorOf(home.world(), optionsOf(1));
+  ASSERT_TRUE(other.restoreState(simulator.saveState()));
+  const auto& parts = simulator.observationParts();
+  const auto part = std::ranges::find(parts, "grip_target", &ObservationPart::name);
+  const std::vector<float> still(kSmallHomeActions);
+  for (BatchSimulator* one : {&simulator, &other}) {
+    for (int step = 0; step < 3; ++step) {
+      const float* seen = one->observations().data() + part->first;
+      const EnvState now = one->envState(0);
+      const Vec3 way = now.objects[now.target].translation - now.world_from_grip.translation;
+      EXPECT_NEAR(dot({seen[0], seen[1], seen[2]}, {seen[0], seen[1], seen[2]}), dot(way, way),
+                  1e-5F);
+      one->step(still);
+      EXPECT_NEAR(one->rewards()[0], other.rewards()[0], 1e-6F);
+    }
+  }
+}
+
+TEST(ChosenStates, PayForThePickOfATargetOnce) {
+  const SmallHome home;
+  const BatchSimulator from = holding(home.world(), optionsOf(1));
+  // Laid down beside its place in the middle of the episode; and so at its beginning.
+  EnvState state = from.envState(0);
+  state.held = -1;
+  state.objects[state.target] =
+      home.world()
+          .episodes()
+          .placements(home.world().episodes().episodes()[state.episode])[state.target]
+          .pose;
+  state.objects[state.target].translation.z += 0.02F;
+  for (const std::uint32_t step : {0U, 40U}) {
+    state.step = step;
+    BatchSimulator simulator = simulatorOf(home.world(), optionsOf(1));
+    ASSERT_TRUE(isSet(simulator, state));
+    float earned = 0;
+    for (int n = 0; n < 40 && simulator.envState(0).held < 0; ++n) {
+      simulator.step(solve(simulator.envState(0)));
+      earned = std::max(earned, simulator.rewards()[0]);
+    }
+    ASSERT_GE(simulator.envState(0).held, 0);
+    const float pick = simulator.options().task.pick_reward;
+    EXPECT_GT(pick, 1);
+    EXPECT_EQ(earned > pick - 1, step == 0) << earned;
+  }
+}
+
 TEST(ChosenStates, HoldWhatFollowsTheHandAndIsLetGoOf) {
   const SmallHome home;
   const BatchSimulator from = holding(home.world(), optionsOf(1));
@@ -350,6 +403,8 @@ TEST(ChosenStates, ThatAreNoneOfThisWorldAreRefused) {
               HasSubstr("states: state 0 has 1 objects, and its episode 2"));
   EXPECT_THAT(refused([](EnvState& s) { s.joint_positions.clear(); }),
               HasSubstr("has 0 joint positions, and the robot 4"));
+  EXPECT_THAT(refused([](EnvState& s) { s.step = 121; }),
+              HasSubstr("is after 121 steps, and an episode has 120"));
   EXPECT_THAT(refused([](EnvState& s) { s.held = 2; }), HasSubstr("holds object 2 of 2"));
   EXPECT_THAT(refused([](EnvState& s) { s.held = -2; }), HasSubstr("holds object -2"));
   EXPECT_THAT(refused([](EnvState& s) { s.target = 5; }), HasSubstr("has the target 5"));

@@ -48,6 +48,10 @@ std::string faultOf(const Model& model, const EnvState& state) {
     return fmt::format("has the target {}, and its episode {}", state.target,
                        model.targetOf(episode));
   }
+  const std::uint32_t most_steps = model.options.task.most_steps;
+  if (most_steps != 0 && state.step > most_steps) {
+    return fmt::format("is after {} steps, and an episode has {}", state.step, most_steps);
+  }
   const bool holds = state.held >= 0;
   if (!isPlain(state.world_from_root) || !arePlain(state.joint_positions) ||
       !isPlain(state.goal.translation) || (holds && !isPlain(state.world_from_grip)) ||
@@ -151,6 +155,14 @@ void StateChooser::leaveWhatIsInReach() {
   }
 }
 
+/// Whether the target has been in the hand: is now, or lies elsewhere after steps of the episode.
+bool StateChooser::hasPicked(const EnvState& chosen) const {
+  const Env& env = state_.env(0);
+  if (env.held == static_cast<std::int32_t>(env.target)) return true;
+  const Placement& start = model_.placements(model_.episodeOf(env.start))[env.target];
+  return chosen.step > 0 && !(chosen.objects[env.target] == start.pose);
+}
+
 SavedEnv StateChooser::taken(const EnvState& chosen) {
   const Env& env = state_.env(0);
   keepBodies(step(), {~std::uint32_t{0}});
@@ -160,9 +172,11 @@ SavedEnv StateChooser::taken(const EnvState& chosen) {
   saved.env.objects = env.objects;
   saved.env.held = env.held;
   saved.env.left = env.left;
-  saved.env.has_picked = env.held == static_cast<std::int32_t>(env.target);
+  saved.env.has_picked = hasPicked(chosen);
   saved.held = state_.held(0);
   saved.goal = chosen.goal.translation;
+  // Of a held one it is where the episode has it.
+  saved.target_start = state_.objects(0)[env.target].translation;
   saved.base = chunk_.base(0);
   const PoseArrays pose = chunk_.candidates(0);
   saved.yaw = *pose.yaw;

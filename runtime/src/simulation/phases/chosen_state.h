@@ -34,6 +34,7 @@ class StateChooser {
   void setVariables(const EnvState& chosen);
   void takeInHand(const EnvState& chosen);
   void leaveWhatIsInReach();
+  [[nodiscard]] bool hasPicked(const EnvState& chosen) const;
   [[nodiscard]] SavedEnv taken(const EnvState& chosen);
 
   const Model& model_;

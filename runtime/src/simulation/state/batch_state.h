@@ -189,6 +189,9 @@ class BatchState {
     setPoint(targetStartRow(), n, objects(n)[target].translation);
   }
   [[nodiscard]] Vec3 goal(std::size_t n) const { return point(goalRow(), n); }
+  /// Where the target was when the episode began.
+  [[nodiscard]] Vec3 targetStart(std::size_t n) const { return point(targetStartRow(), n); }
+  void setTargetStart(std::size_t n, const Vec3& place) { setPoint(targetStartRow(), n, place); }
 
   [[nodiscard]] GripFrame grip(std::size_t n) const {
     GripFrame grip{};

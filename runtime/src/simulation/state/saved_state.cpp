@@ -59,6 +59,7 @@ struct EnvRecord {
   std::array<std::uint32_t, 8> counts{};
   Pose grip_from_held;
   Vec3 goal;
+  Vec3 target_start;
   Vec3 base;
   float yaw = 0;
   GripFrame grip{};
@@ -68,10 +69,9 @@ struct EnvRecord {
   std::uint16_t was_refused = 0;
   std::uint32_t is_idle = 0;
   std::uint32_t is_named = 0;
-  std::uint32_t reserved = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
-              sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 12 + 16 + sizeof(GripFrame) + 24);
+              sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 24 + 16 + sizeof(GripFrame) + 20);
 
 /// What tells a world from all others: kinds, sizes and hashes of its packs, in any order.
 std::uint64_t worldHash(const World& world) {
@@ -189,6 +189,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
                  counters.episodes, counters.successes, counters.failures},
       .grip_from_held = state.held(n).grip_from_object,
       .goal = state.goal(n),
+      .target_start = state.targetStart(n),
       .base = state.base(n),
       .yaw = state.yaw(n),
       .grip = state.grip(n),
@@ -223,9 +224,9 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
       record.is_named > 1 || record.ordinal == 0 || record.turns > record.ordinal)
     return "has a wrong flag or count";
   const bool is_held_plain = record.held < 0 || isPlain(record.grip_from_held);
-  if (!isPlain(record.goal) || !isPlain(record.base) || !isPlain(record.yaw) ||
-      !arePlain(record.grip) || !isPlain(record.reward) || !std::isfinite(record.reward_sum) ||
-      !is_held_plain) {
+  if (!isPlain(record.goal) || !isPlain(record.target_start) || !isPlain(record.base) ||
+      !isPlain(record.yaw) || !arePlain(record.grip) || !isPlain(record.reward) ||
+      !std::isfinite(record.reward_sum) || !is_held_plain) {
     return "has a number that no simulation leaves";
   }
   return {};
@@ -260,6 +261,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
                     .is_named = record.is_named != 0};
   saved.moves = {.refused = refused, .slid = slid};
   saved.goal = record.goal;
+  saved.target_start = record.target_start;
   saved.base = record.base;
   saved.yaw = record.yaw;
   saved.grip = record.grip;
@@ -404,6 +406,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   env.left = saved.env.left;
   env.reward_sum = saved.env.reward_sum;
   state.setErrand(n, env.target, saved.goal);
+  state.setTargetStart(n, saved.target_start);
   state.counters(n) = saved.counters;
   state.moves(n) = saved.moves;
   const PoseArrays to = state.poses(n);

@@ -28,6 +28,7 @@ struct SavedEnv {
   MoveCounters moves;
   Held held;
   Vec3 goal;
+  Vec3 target_start;
   Vec3 base;
   float yaw = 0;
   /// Where the robot takes itself to be; where there is odometry.
