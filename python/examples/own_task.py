@@ -16,7 +16,7 @@ class Reach(galactic.Task):
     options = {"episode_steps": 100}
     parts = {"distance": 1}
 
-    def __init__(self, radius=0.3, share=0.25, easy=0.05):
+    def __init__(self, radius=0.3, share=0.25, easy=0.03):
         self.radius = radius
         self.share = share
         self.easy = easy
