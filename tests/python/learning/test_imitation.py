@@ -77,7 +77,10 @@ def make(folder: pathlib.Path, act: Act = from_state, count: int = 20,
         actions = np.where(by_expert[:, None] & is_solved, actions, wrong)
         ending = galactic.EpisodeEnd.SUCCESS if is_solved else galactic.EpisodeEnd.TIME_OUT
         rewards = np.full(length, 0.5, np.float32)
-        episodes.append(Demonstration(number, ending, state, actions, by_expert, rewards))
+        # Of what nobody learns from.
+        last = np.full((1, 3), 1e6, np.float32)
+        states = np.concatenate([state, last])
+        episodes.append(Demonstration(number, ending, states, actions, by_expert, rewards))
     folder.mkdir()
     (folder / demonstrations.INDEX).write_text(demonstrations.text_of(ABOUT))
     for part in (0, 1):
