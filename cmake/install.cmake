@@ -37,6 +37,13 @@ install(FILES ${PROJECT_BINARY_DIR}/galacticConfig.cmake ${PROJECT_BINARY_DIR}/g
 # For builds without CMake. The prefix is found from where the file lies: cmake --install may be given another one.
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
   OUTPUT_VARIABLE GALACTIC_PREFIX_FROM_PC)
+foreach(folder IN ITEMS LIBDIR INCLUDEDIR)
+  # Some distributions give them as absolute paths.
+  set(GALACTIC_PC_${folder} ${CMAKE_INSTALL_${folder}})
+  if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_${folder}}")
+    string(PREPEND GALACTIC_PC_${folder} "\${prefix}/")
+  endif()
+endforeach()
 set(GALACTIC_PC_EPOXY "")
 if(GALACTIC_HAS_GL)
   set(GALACTIC_PC_EPOXY " -Wl,--push-state,--as-needed,-lepoxy,--pop-state")

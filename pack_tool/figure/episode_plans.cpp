@@ -76,7 +76,9 @@ Result<void> addEpisodes(const EpisodeSet& set, const std::string& where,
 Result<void> addScene(const PackFile& pack, const EpisodeChoice& choice, PlanByScene& plans) {
   ASSIGN_OR_RETURN(const auto scene, sceneOf(pack));
   EpisodePlan& plan = planOf(plans, scene.name());
-  if (plan.grid) return {};
+  const bool is_left_out =
+      (choice.scene && *choice.scene != scene.name()) || (choice.episode && plan.episodes.empty());
+  if (plan.grid || is_left_out) return {};
   ASSIGN_OR_RETURN(const auto grids, gridsOf(scene, pack.where(), choice.radius));
   plan.grid = grids.front();
   return {};
@@ -88,11 +90,14 @@ std::vector<std::string> namesOf(const PlanByScene& plans) {
   return names;
 }
 
-/// The pack of a scene in a file, if that is there.
-std::optional<PackFile> scenePack(const std::filesystem::path& path, std::string_view scene,
-                                  Trust trust) {
+/// The pack of a scene in a file, if that is there. Fails where it is and cannot be read.
+Result<std::optional<PackFile>> scenePack(const std::filesystem::path& path, std::string_view scene,
+                                          Trust trust) {
+  std::error_code fault;
+  if (!std::filesystem::is_regular_file(path, fault)) return std::nullopt;
   auto pack = PackFile::open(path, trust);
-  if (!pack || pack->kind() != PackKind::kScene) return std::nullopt;
+  if (!pack) return tl::unexpected<Error>(pack.error());
+  if (pack->kind() != PackKind::kScene) return std::nullopt;
   const auto found = Scene::from(*pack);
   if (!found || found->name() != scene) return std::nullopt;
   return std::move(*pack);
@@ -112,13 +117,13 @@ Result<std::vector<EpisodePlan>> episodePlansOf(std::span<const PackFile* const>
   PlanByScene plans;
   bool has_episodes = false;
   for (const PackFile* pack : packs) {
-    if (pack->kind() == PackKind::kScene) {
-      RETURN_IF_ERROR(addScene(*pack, choice, plans));
-    } else if (pack->kind() == PackKind::kEpisodes && !has_episodes) {
-      has_episodes = true;
-      ASSIGN_OR_RETURN(const auto set, EpisodeSet::from(*pack));
-      RETURN_IF_ERROR(addEpisodes(set, where, choice, plans));
-    }
+    if (pack->kind() != PackKind::kEpisodes || has_episodes) continue;
+    has_episodes = true;
+    ASSIGN_OR_RETURN(const auto set, EpisodeSet::from(*pack));
+    RETURN_IF_ERROR(addEpisodes(set, where, choice, plans));
+  }
+  for (const PackFile* pack : packs) {
+    if (pack->kind() == PackKind::kScene) RETURN_IF_ERROR(addScene(*pack, choice, plans));
   }
   if (choice.episode && !has_episodes) {
     return fail(ErrorCode::kInvalidInput, where,
@@ -166,7 +171,7 @@ Result<std::vector<PackFile>> openForPlans(const PackFile& pack, Trust trust) {
     if (!isFileName(scene)) continue;
     const std::string file = std::string(scene) + ".pack";
     for (const std::filesystem::path& path : {folder / "scenes" / file, folder / file}) {
-      auto beside = scenePack(path, scene, trust);
+      ASSIGN_OR_RETURN(auto beside, scenePack(path, scene, trust));
       if (!beside) continue;
       packs.push_back(std::move(*beside));
       break;

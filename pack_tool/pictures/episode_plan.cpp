@@ -100,8 +100,9 @@ struct Plot {
   }
   /// Of a point that it holds.
   [[nodiscard]] Spot spotOf(const GroundPoint& point) const {
-    return {rect.x + (point.x - window.low.x) * pixelsPerMeter(),
-            rect.y + (point.z - window.low.z) * pixelsPerMeter()};
+    // Width and height are whole pixels, each rounded by itself.
+    return {rect.x + (point.x - window.low.x) / window.width() * rect.width,
+            rect.y + (point.z - window.low.z) / window.depth() * rect.height};
   }
 };
 
@@ -309,7 +310,7 @@ Picture drawEpisodePlan(const EpisodePlan& plan, int width) {
   Plot plot = fittingPlot(plan, width, kMostHeights * width);
   plot.rect.x = kMargin + kAxisLabelWidth;
   plot.rect.y = kMargin + 2 * kLine + kAxisNameHeight;
-  const std::string name = printable(plan.scene);
+  const std::string name = titleOf(plan.scene);
   std::string caption = captionOf(plan, plot);
   if (plan.grid) caption += fmt::format("; grid of radius {} m", plan.grid->radius());
   const std::vector<LegendEntry> legend = legendOf({&plan, 1});

@@ -126,7 +126,7 @@ Image drawFigure(const Figure& figure, int view_size) {
     extent = std::max(extent, windowOf(figure, view.axes).extent());
   }
   const double scale = fittingScale(extent, view_size);
-  const std::string name = printable(figure.name);
+  const std::string name = titleOf(figure.name);
   const std::vector<float> radii = radiiOf({&figure, 1});
   const std::vector<LegendEntry> legend = legendOf({&figure, 1}, radii);
   const int legend_width = legendWidth(legend);

@@ -6,6 +6,7 @@
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/pictures.h"
 #include "pack_tool/pictures/plan_panel.h"
+#include "pack_tool/pictures/sheet.h"
 #include "pictures/palette.h"
 
 namespace galactic::pictures {
@@ -103,9 +104,9 @@ Picture drawPlan(std::span<const ColumnGrid> grids, const FloorPlanOptions& opti
     bottom = std::max(bottom, panel.plot.height);
   }
   const int legend_x = x + kMargin;
-  const std::string heading =
-      fmt::format("{}: {}, columns {} m apart", options.title.empty() ? "plan" : options.title,
-                  captionOf(options.value), grids.front().spacing());
+  const std::string heading = fmt::format("{}: {}, columns {} m apart",
+                                          options.title.empty() ? "plan" : titleOf(options.title),
+                                          captionOf(options.value), grids.front().spacing());
   const int width = std::max(legend_x + kLegendWidth, 2 * kMargin + textWidth(heading));
   const int height = top + bottom + kAxisBottomHeight + kTextHeight + 8 + kMargin;
 

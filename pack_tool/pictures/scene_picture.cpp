@@ -16,8 +16,8 @@
 #include "galactic/render_library.h"
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/figure_view.h"
+#include "pack_tool/pictures/sheet.h"
 #include "pictures/palette.h"
-#include "support/printable.h"
 #include "support/try.h"
 #include "view/render_surfaces.h"
 
@@ -184,7 +184,7 @@ Result<Image> drawScene(const Figure& scene, int view_size) {
   }
   const double scale = fittingScale(extent, view_size);
   for (FigureView& view : outside) view.pixels_per_meter = scale;
-  const std::string name = printable(scene.name);
+  const std::string name = titleOf(scene.name);
   const int width = 2 * kMargin + std::max(4 * (view_size + kMargin) - kMargin, textWidth(name));
   const int top = kMargin + 2 * kLine;
   Image image(width, top + view_size + kMargin + kLine + kMargin, kPaper);

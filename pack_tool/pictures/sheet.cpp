@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "pictures/palette.h"
+#include "support/printable.h"
 
 namespace galactic::pictures {
 
@@ -50,6 +51,11 @@ std::string shortened(const std::string& text, int pixels) {
   if (textWidth(text) <= pixels) return text;
   const auto room = static_cast<std::size_t>(std::max(0, pixels / kTextAdvance - 2));
   return text.substr(0, room) + "..";
+}
+
+std::string titleOf(const std::string& name) {
+  constexpr int kMostTitle = 1200;
+  return shortened(printable(name), kMostTitle);
 }
 
 }  // namespace galactic::pictures

@@ -46,4 +46,7 @@ struct Sheet {
 /// The beginning of a text, as much of it as is no wider than `pixels`.
 [[nodiscard]] std::string shortened(const std::string& text, int pixels);
 
+/// A name as a title: printable, and cut off where it never ends, as pictures are as wide as it.
+[[nodiscard]] std::string titleOf(const std::string& name);
+
 }  // namespace galactic::pictures

@@ -5,6 +5,7 @@
 
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/pictures.h"
+#include "pack_tool/pictures/sheet.h"
 #include "pictures/palette.h"
 #include "support/try.h"
 
@@ -33,7 +34,8 @@ double heightRange(const ColumnGrid& grid) {
   return static_cast<double>(grid.heights().hi) - static_cast<double>(grid.heights().lo);
 }
 
-PixelRect plotSize(const ColumnGrid& grid, double length, int target_width) {
+PixelRect plotSize(const ColumnGrid& grid, double length, int wanted_width) {
+  const int target_width = std::max(wanted_width, kSmallestPlotWidth);
   const double range = std::max(heightRange(grid), 1e-3);
   const double pixels_per_meter =
       std::min(target_width / length, std::max(target_width, kLargestPlotHeight) / range);
@@ -193,7 +195,7 @@ Result<Picture> drawSlice(std::span<const ColumnGrid> grids, const SliceOptions&
     plot_width = std::max(plot_width, plot.width);
   }
   const std::string heading =
-      fmt::format("{}{}slice from x {:g}, z {:g} to x {:g}, z {:g}", options.title,
+      fmt::format("{}{}slice from x {:g}, z {:g} to x {:g}, z {:g}", titleOf(options.title),
                   options.title.empty() ? "" : ": ", options.from.x, options.from.z, options.to.x,
                   options.to.z);
   const int width = std::max({kMargin + kAxisLabelWidth + plot_width + 2 * kMargin,

@@ -1,7 +1,7 @@
 // Episodes, one after the other: placements, target, goal, robot start.
 import { Vector3 } from "three";
 import { button, checkbox, el, heading, keyOf, legendRow, note, table } from "./dom.js";
-import { marksText } from "./figures.js";
+import { marksBoxes } from "./figures.js";
 import { Home } from "./home.js";
 import { Queue } from "./queue.js";
 
@@ -75,7 +75,7 @@ export class EpisodeView {
       checkbox("Meshes of robot and objects", true, toggle("mesh")),
       checkbox("Spheres", this.home.shown.spheres, toggle("spheres")),
       checkbox("Oriented boxes", this.home.shown.boxes, toggle("boxes")),
-      checkbox(marksText(this.home.robot), false, toggle("marks")),
+      ...marksBoxes(this.home.robot, false, toggle("marks")),
       checkbox("Floor that it can drive to", false, (on) => this.setReach(on)),
       legendRow("#e69f00", "Target"),
       legendRow("#009e73", "Goal"),

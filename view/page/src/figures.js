@@ -3,7 +3,7 @@ import {
   Box3, BoxGeometry, BufferGeometry, Color, EdgesGeometry, Float32BufferAttribute, Group, IcosahedronGeometry,
   InstancedMesh, LineBasicMaterial, LineLoop, LineSegments, Matrix4, Mesh, MeshLambertMaterial, Quaternion, Vector3,
 } from "three";
-import { el, swatch } from "./dom.js";
+import { checkbox, el, swatch } from "./dom.js";
 import { linkPoses, Pose } from "./kinematics.js";
 
 /// By the rank of the radius, least first; people with color-blindness tell them apart.
@@ -134,10 +134,11 @@ function footprintLine(base) {
   return new LineLoop(geometry, new LineBasicMaterial({ color: kMarks.base.color }));
 }
 
-/// What the marks of a robot are, with their colors; nothing without a robot.
-export function marksText(figure) {
+/// A list of the check box for the marks of a robot, which names them with their colors; empty where there are none.
+export function marksBoxes(figure, isOn, toggle) {
   const found = Object.entries(kMarks).filter(([key]) => figure?.robot[key]).map(([, one]) => one);
-  return found.flatMap(({ name, color }, n) => [n > 0 ? ", " : "", el("span", { className: "named" }, swatch(color), n > 0 ? name.toLowerCase() : name)]);
+  const names = found.flatMap(({ name, color }, n) => [n > 0 ? ", " : "", el("span", { className: "named" }, swatch(color), n > 0 ? name.toLowerCase() : name)]);
+  return found.length > 0 ? [checkbox(names, isOn, toggle)] : [];
 }
 
 /// Spheres of two groups that touch, as pairs of their numbers.

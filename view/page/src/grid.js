@@ -49,16 +49,20 @@ export class Grid {
   /// The height at which most of the free space begins: a sphere's center over the floor. Spans count by their heights,
   /// in steps of 10 cm; what begins at the lower end of the grid has no floor.
   floorHeight() {
-    const [steps, width] = [new Map(), 0.1 / this.quantum];
+    if (this.floor_height !== undefined) return this.floor_height;
+    const width = 0.1 / this.quantum;
+    const count = this.codes.reduce((most, code) => Math.max(most, code), 0) / width + 1;
+    const [spaces, sums] = [new Float64Array(count), new Float64Array(count)];
     for (let n = 0; n < this.codes.length; n += 2) {
-      const [from, to] = this.codes.subarray(n, n + 2);
+      const [from, space] = [this.codes[n], this.codes[n + 1] - this.codes[n]];
       if (from === 0) continue;
       const step = Math.floor(from / width);
-      const { space, sum } = steps.get(step) ?? { space: 0, sum: 0 };
-      steps.set(step, { space: space + to - from, sum: sum + (to - from) * from });
+      spaces[step] += space;
+      sums[step] += space * from;
     }
-    const { space, sum } = [...steps.values()].reduce((best, one) => (one.space > best.space ? one : best), { space: 0, sum: 0 });
-    return this.height(space > 0 ? sum / space : 0);
+    const most = spaces.reduce((best, space, step) => (space > spaces[best] ? step : best), 0);
+    this.floor_height = this.height(spaces[most] > 0 ? sums[most] / spaces[most] : 0);
+    return this.floor_height;
   }
 
   /// The span of a column at a height, as a number of all spans; -1 where it is blocked.

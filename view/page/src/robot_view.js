@@ -1,6 +1,6 @@
 // A robot: a slider for each joint, spheres, marks, and which parts touch each other.
 import { checkbox, button, el, heading, legendRow, meters, note, slider, table } from "./dom.js";
-import { marksText, RobotFigure } from "./figures.js";
+import { marksBoxes, RobotFigure } from "./figures.js";
 import { positionNames } from "./kinematics.js";
 import { address, setAddress } from "./address.js";
 
@@ -86,7 +86,7 @@ export class RobotView {
       checkbox("Mesh", this.shown.mesh, (on) => this.toggle("mesh", on)),
       this.page.shadeBox(),
       checkbox("Spheres", this.shown.spheres, (on) => this.toggle("spheres", on)),
-      checkbox(marksText(this.figure), this.shown.marks, (on) => this.toggle("marks", on)),
+      ...marksBoxes(this.figure, this.shown.marks, (on) => this.toggle("marks", on)),
       ...this.figure.palette.radii.map((radius) => legendRow(this.figure.palette.color(radius), meters(radius), true)),
       heading("Self-collision"),
       this.touchPart,

@@ -2,7 +2,7 @@
 import { Box3, Vector3 } from "three";
 import { address, addressNumber, setAddress } from "./address.js";
 import { button, checkbox, el, heading, keyOf, legendRow, meters, note, table, tree } from "./dom.js";
-import { marksText } from "./figures.js";
+import { marksBoxes } from "./figures.js";
 import { Ghost, kGhostColor } from "./ghost.js";
 import { Home } from "./home.js";
 import { Queue } from "./queue.js";
@@ -227,7 +227,7 @@ export class RunView {
       checkbox("Meshes of robot and objects", true, toggle("mesh")),
       checkbox("Spheres", this.home.shown.spheres, toggle("spheres")),
       checkbox("Oriented boxes", this.home.shown.boxes, toggle("boxes")),
-      checkbox(marksText(this.home.robot), false, toggle("marks")),
+      ...marksBoxes(this.home.robot, false, toggle("marks")),
       checkbox("Floor that it can drive to", false, (on) => this.setReach(on)),
       ...(this.ghost ? [checkbox("The same step in the other world", true, (on) => this.ghost.setShown(on))] : []),
       ...(this.ghost ? [legendRow(kGhostColor, "In the other world")] : []),
