@@ -120,6 +120,29 @@ TEST(EpisodePlanPicture, DrawsSmallerMarksWhereThereAreManyEpisodes) {
   EXPECT_GT(colored(2000), 4U);
 }
 
+TEST(EpisodePlanPicture, IsNoWiderForANameThatNeverEnds) {
+  const auto grid = hall();
+  const std::string endless(100000, 'n');
+  const Picture picture = drawEpisodePlan({endless, grid.view(), {tidyUp()}}, 400);
+  EXPECT_LT(picture.image.width(), 1400);
+}
+
+TEST(EpisodePlanPicture, MarksWhatIsAtTheEndsOfNarrowPlans) {
+  EpisodeMarks marks = tidyUp();
+  marks.start = {0, 0};
+  marks.target = {0.2, 30};
+  marks.goal = {0.3, 60};
+  const Picture picture = drawEpisodePlan({"corridor", std::nullopt, {marks}}, 64);
+  const PixelRect& plot = picture.plots.front();
+  bool is_goal_there = false;
+  for (int y = plot.bottom() - 5; y < plot.bottom(); ++y) {
+    for (int x = plot.x; x < plot.right(); ++x) {
+      is_goal_there = is_goal_there || picture.image.at(x, y) == kGoalMark;
+    }
+  }
+  EXPECT_TRUE(is_goal_there);
+}
+
 TEST(EpisodeSheet, HasATileForEachSceneAndRefusesToBecomeHuge) {
   const auto grid = hall();
   const std::vector<EpisodePlan> plans(5, {"hall", grid.view(), {tidyUp()}});
@@ -252,6 +275,16 @@ TEST(PictureOfAWorld, IsThatOfItsEpisodesBesideTheScenes) {
   hall.name = "hall";
   writeTo(folder, "b/kitchen.pack", hall);
   EXPECT_EQ(pictureOf(folder, folder.path() / "b/episodes.pack"), alone);
+}
+
+TEST(PictureOfAWorld, TellsOfAScenePackThatIsDamaged) {
+  const ScratchFolder folder;
+  writeTo(folder, "episodes.pack", test::smallEpisodes());
+  static_cast<void>(folder.write("kitchen.pack", "no pack"));
+  const Ran ran =
+      run({.pack = folder.path() / "episodes.pack", .output = folder.path() / "picture.png"});
+  EXPECT_EQ(ran.exit_code, 3);
+  EXPECT_THAT(ran.err, HasSubstr("kitchen.pack"));
 }
 
 TEST(PictureOfAWorld, LooksForScenesInNoOtherFolder) {
