@@ -213,7 +213,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     actor = evaluation.Actor(saved.policy, deterministic=options.deterministic, seed=options.seed)
     results = evaluation.Evaluator(homes, actor).play(episodes)
     homes.close()
-    summary = evaluation.summary(results)
+    summary = evaluation.summary(results, world)
     is_told = put(sys.stdout, _text(summary))
     there = None
     if options.dynamics:

@@ -258,8 +258,10 @@ def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
     )
 
 
-def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
-    """Means, counts of the endings, and every episode: the report of galactic.evaluate."""
+def summary(results: Sequence[EpisodeResult], world: "galactic.World") -> dict[str, Any]:
+    """Means, counts of the endings, and every episode, with the names of its scene and of the object that
+    is to be moved: the report of galactic.evaluate."""
+    table = world.episode_table()
     count = max(len(results), 1)
     endings: dict[str, int] = {}
     for result in results:
@@ -280,5 +282,12 @@ def summary(results: Sequence[EpisodeResult]) -> dict[str, Any]:
         **({"measures": measures} if measures else {}),
         **({"logs": logs} if logs else {}),
         "endings": dict(sorted(endings.items())),
-        "each": [asdict(result) for result in results],
+        "each": [
+            {
+                **asdict(result),
+                "scene": world.scenes[table.scene[result.episode]],
+                "target": world.objects[table.target_kind[result.episode]],
+            }
+            for result in results
+        ],
     }

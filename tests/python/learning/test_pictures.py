@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import os
 import pathlib
 import shutil
@@ -74,6 +75,10 @@ def test_what_is_filmed_is_what_was_played(network: str, more: dict[str, Any]) -
     films = pictures.film(homes.env.world, settings, actor, episodes, 1)
     for one, film in zip(played, films):
         assert film.episode == one.episode
+        world = homes.env.world
+        kind = world.episode_table().target_kind[one.episode]
+        assert film.target == world.objects[kind]
+        assert film.label.endswith(f" {one.length} steps, {film.target}")
         assert galactic.EpisodeEnd(film.ending).name.lower() == one.ending
         assert film.reward == pytest.approx(one.reward, abs=1e-3)
         # What it began with, and what each step led to, the last one, too.
@@ -105,7 +110,14 @@ def test_an_evaluation_draws_a_contact_sheet_and_a_video(tmp_path: pathlib.Path)
     _, _, saved = policy_of("state")
     checkpoint.save_policy(saved, tmp_path / "policy.pt")
     command = [str(tmp_path / "policy.pt"), str(WORLD), "--episodes", "5", "--shown", "3"]
-    assert evaluate.main([*command, "--contact-sheet", str(tmp_path / "sheet.png")]) == 0
+    report = tmp_path / "report.json"
+    sheet_command = [*command, "--contact-sheet", str(tmp_path / "sheet.png")]
+    assert evaluate.main([*sheet_command, "--report", str(report)]) == 0
+    world = galactic.World(WORLD)
+    table = world.episode_table()
+    for one in json.loads(report.read_text(encoding="utf-8"))["each"]:
+        assert one["target"] == world.objects[table.target_kind[one["episode"]]]
+        assert one["scene"] == world.scenes[table.scene[one["episode"]]]
     sheet = np.asarray(image.open(tmp_path / "sheet.png"))
     row = pictures.HEIGHT + 16
     assert sheet.shape == (3 * row, pictures.MOMENTS * pictures.WIDTH, 3)
@@ -204,7 +216,7 @@ def test_a_video_appears_whole_or_not_at_all(
     (tmp_path / "runs").mkdir()
     file = tmp_path / "runs" / "film.mp4"
     frame = np.zeros((pictures.HEIGHT, pictures.WIDTH, 3), np.uint8)
-    films = [pictures.Film(0, [frame, frame])]
+    films = [pictures.Film(0, "mug", [frame, frame])]
 
     def write_with(script: str) -> None:
         tool.write_text(f"#!/bin/sh\nfor last; do :; done\n{script}\n", encoding="utf-8")

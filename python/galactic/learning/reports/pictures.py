@@ -36,6 +36,7 @@ class Film:
     """An episode, frame by frame: what it began with, and what each step led to."""
 
     episode: int
+    target: str  # the name of the object that is to be moved
     frames: list[np.ndarray] = field(default_factory=list)  # each [HEIGHT, WIDTH, 3] uint8
     ending: int = 0  # an EpisodeEnd
     reward: float = 0.0  # the sum
@@ -43,7 +44,8 @@ class Film:
     @property
     def label(self) -> str:
         ending = galactic.EpisodeEnd(self.ending).name.lower().replace("_", " ")
-        return f"episode {self.episode}: {ending}, {len(self.frames) - 1} steps"
+        # The name last, as narrow pictures cut it off.
+        return f"episode {self.episode}: {ending}, {len(self.frames) - 1} steps, {self.target}"
 
     @property
     def color(self) -> tuple[int, int, int]:
@@ -71,7 +73,7 @@ def require_video(file: pathlib.Path) -> None:
     """Raises galactic.Error where ffmpeg knows no format by the name: it writes a frame to a file of that
     name elsewhere."""
     with tempfile.TemporaryDirectory(prefix="galactic-video-") as folder:
-        blank = Film(0, [np.zeros((HEIGHT, WIDTH, 3), np.uint8)])
+        blank = Film(0, "", [np.zeros((HEIGHT, WIDTH, 3), np.uint8)])
         _require_encoded(_encode([blank], pathlib.Path(folder) / file.name), file)
 
 
@@ -95,7 +97,11 @@ def film(world: "galactic.World", settings: Settings, actor: Actor, episodes: Se
     seen = rows_of(homes)
     homes.begin_episodes(dict(enumerate(episodes)), seen)
     assert homes.shown is not None
-    films = [Film(episode, [frame]) for episode, frame in zip(episodes, homes.shown)]
+    kinds = world.episode_table().target_kind
+    films = [
+        Film(episode, world.objects[kinds[episode]], [frame])
+        for episode, frame in zip(episodes, homes.shown)
+    ]
     actor.begin(envs)
     step = 0
     while any(not one.ending for one in films):
