@@ -33,7 +33,10 @@ class RecipeCheck {
     }
   }
 
-  Result<void> run() const;
+  /// Links exist, and fit what is said of them.
+  [[nodiscard]] Result<void> checkLinks() const;
+  /// Of a robot whose joints are coupled.
+  [[nodiscard]] Result<void> checkJoints() const;
 
  private:
   [[nodiscard]] Result<void> checkLink(const RecipeName& name) const;
@@ -145,29 +148,21 @@ Result<void> RecipeCheck::checkPair(const RecipeName& a, const RecipeName& b) co
   return invalid(a.where, fmt::format("link '{}' is paired with itself; name two links", a.name));
 }
 
-Result<void> RecipeCheck::run() const {
-  if (auto checked = checkLink(recipe_.end_effector.link); !checked) return checked;
-  if (recipe_.camera) {
-    if (auto checked = checkLink(recipe_.camera->link); !checked) return checked;
-  }
-  if (recipe_.laser) {
-    if (auto checked = checkLink(recipe_.laser->link); !checked) return checked;
-  }
-  for (const RecipeLimits& limits : recipe_.limits) {
-    if (auto checked = checkLimits(limits); !checked) return checked;
-  }
-  for (const RecipeJoint& joint : recipe_.joints) {
-    if (auto checked = checkJoint(joint); !checked) return checked;
-  }
-  for (const RecipeStart& start : recipe_.start_pose) {
-    if (auto checked = checkStart(start); !checked) return checked;
-  }
+Result<void> RecipeCheck::checkLinks() const {
+  RETURN_IF_ERROR(checkLink(recipe_.end_effector.link));
+  if (recipe_.camera) RETURN_IF_ERROR(checkLink(recipe_.camera->link));
+  if (recipe_.laser) RETURN_IF_ERROR(checkLink(recipe_.laser->link));
   for (const RecipeLinkSpheres& spheres : recipe_.spheres.links) {
-    if (auto checked = checkSpheres(spheres); !checked) return checked;
+    RETURN_IF_ERROR(checkSpheres(spheres));
   }
-  for (const auto& [a, b] : recipe_.ignored_pairs) {
-    if (auto checked = checkPair(a, b); !checked) return checked;
-  }
+  for (const auto& [a, b] : recipe_.ignored_pairs) RETURN_IF_ERROR(checkPair(a, b));
+  return {};
+}
+
+Result<void> RecipeCheck::checkJoints() const {
+  for (const RecipeLimits& limits : recipe_.limits) RETURN_IF_ERROR(checkLimits(limits));
+  for (const RecipeJoint& joint : recipe_.joints) RETURN_IF_ERROR(checkJoint(joint));
+  for (const RecipeStart& start : recipe_.start_pose) RETURN_IF_ERROR(checkStart(start));
   return {};
 }
 
@@ -185,7 +180,13 @@ Result<void> checkRecipe(const RobotRecipe& recipe, const SourceRobot& robot) {
   if (robot.links.empty()) {
     return invalid(recipe.source, fmt::format("the robot '{}' has no links", robot.name));
   }
-  return RecipeCheck(recipe, robot).run();
+  RETURN_IF_ERROR(RecipeCheck(recipe, robot).checkLinks());
+  // Its tree alone.
+  SourceRobot coupled;
+  coupled.name = robot.name;
+  coupled.links = robot.links;
+  RETURN_IF_ERROR(coupleJoints(recipe, coupled));
+  return RecipeCheck(recipe, coupled).checkJoints();
 }
 
 }  // namespace galactic::bake

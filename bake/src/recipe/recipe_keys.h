@@ -37,6 +37,8 @@ inline constexpr NumberRange kTolerance{0.001, 1, "m"};
 inline constexpr NumberRange kHeight{0, 10, "m"};
 inline constexpr NumberRange kSphereCount{1, 10'000, ""};
 inline constexpr NumberRange kJointPosition{-1e6, 1e6, ""};
+/// Packs hold no larger ones.
+inline constexpr NumberRange kMimicNumber{-1000, 1000, ""};
 
 template <class V>
 void visitKeys(RecipeEndEffector& effector, V& v) {
@@ -90,6 +92,13 @@ void visitKeys(RecipeJoint& joint, V& v) {
   v.number({"min", "narrower limits than the URDF's; default: the URDF's", "-1.5"}, joint.min,
            kJointPosition);
   v.number({"max", "", "1.5"}, joint.max, kJointPosition);
+}
+
+template <class V>
+void visitKeys(RecipeMimic& mimic, V& v) {
+  v.name({"joint", "the joint that it follows", "torso_lift_joint"}, mimic.leader);
+  v.number({"multiplier", "of the followed joint's position"}, mimic.multiplier, kMimicNumber);
+  v.number({"offset", "added to it; radians or meters"}, mimic.offset, kMimicNumber);
 }
 
 template <class V>
@@ -161,6 +170,12 @@ void visitKeys(RobotRecipe& recipe, V& v) {
             "prismatic one -1 to 1 m, with a warning.",
             "torso_lift_joint = [0.0, 0.38]"},
            recipe.limits);
+  v.mimics(
+      {"mimic",
+       "A joint that follows another, by its name, as with <mimic> in a URDF: one action moves "
+       "both. For the stages of a telescope, or fingers.",
+       "bellows_joint"},
+      recipe.mimics);
   v.positions(
       {"start_pose", "Where joints start, controlled or not; default 0, or the limit nearest to 0.",
        "torso_lift_joint = 0.2"},

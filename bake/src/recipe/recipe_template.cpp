@@ -81,6 +81,9 @@ class RecipeExplainer {
   void limits(const RecipeSection& section, const std::vector<RecipeLimits>& /*field*/) {
     addEntry(section, section.example);
   }
+  void mimics(const RecipeSection& section, const std::vector<RecipeMimic>& /*field*/) {
+    explain<RecipeMimic>(section, fmt::format("{}.{}", section.name, section.example), "[{}]");
+  }
   void positions(const RecipeSection& section, const std::vector<RecipeStart>& /*field*/) {
     addEntry(section, section.example);
   }

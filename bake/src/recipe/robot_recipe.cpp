@@ -133,6 +133,7 @@ class RecipeReader {
   void joints(const RecipeSection& section, std::vector<RecipeJoint>& field);
   void links(const RecipeSection& section, std::vector<RecipeLinkSpheres>& field);
   void limits(const RecipeSection& section, std::vector<RecipeLimits>& field);
+  void mimics(const RecipeSection& section, std::vector<RecipeMimic>& field);
   void positions(const RecipeSection& section, std::vector<RecipeStart>& field);
   void pairs(const RecipeSection& section, std::string_view key,
              std::vector<std::pair<RecipeName, RecipeName>>& field);
@@ -241,6 +242,18 @@ void RecipeReader::limits(const RecipeSection& section, std::vector<RecipeLimits
                                          table.full(joint), lower, upper));
     }
     field.push_back({{joint, errors_.place(value.line)}, {lower, upper}});
+  }
+}
+
+void RecipeReader::mimics(const RecipeSection& section, std::vector<RecipeMimic>& field) {
+  const TomlTable* mimics = table_.table(section.name);
+  if (mimics == nullptr) return;
+  for (const auto& [joint, entry] : *mimics) {
+    const std::string name = fmt::format("{}.{}", table_.full(section.name), joint);
+    RecipeMimic mimic;
+    mimic.joint = {joint, errors_.place(entry.line)};
+    readOne(entry, name, fmt::format("[{}]", name), mimic);
+    field.push_back(std::move(mimic));
   }
 }
 

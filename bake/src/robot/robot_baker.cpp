@@ -119,7 +119,7 @@ class RobotBaker {
       baked_.joint_names.push_back(link.joint_name);
     }
     baked_.kinematics = flattenKinematics(robot_, recipe_);
-    warnOfAssumedLimits();
+    warnOfLimits();
     makeSurfaces();
     RETURN_IF_ERROR(makeSpheres());
     {
@@ -131,19 +131,27 @@ class RobotBaker {
   }
 
  private:
-  void warnOfAssumedLimits() {
+  /// Of limits that the URDF leaves out, or that let nothing move, unless the recipe states others.
+  void warnOfLimits() {
     for (const SourceLink& link : robot_.links) {
-      if (!link.limits_are_assumed || link.mimic) continue;
+      if (!link.limits || link.mimic) continue;
       const bool is_given =
           recipe_ != nullptr &&
           std::any_of(recipe_->limits.begin(), recipe_->limits.end(),
                       [&](const RecipeLimits& l) { return l.joint.name == link.joint_name; });
       if (is_given) continue;
-      baked_.warnings.push_back(
-          fmt::format("joint '{}': the URDF states no limits for it; {:.3g} to {:.3g} {} are "
-                      "assumed, [limits] of the recipe may state others",
-                      link.joint_name, link.limits->lower, link.limits->upper,
-                      link.joint_type == JointType::kPrismatic ? "m" : "rad"));
+      if (link.limits_are_assumed) {
+        baked_.warnings.push_back(
+            fmt::format("joint '{}': the URDF states no limits for it; {:.3g} to {:.3g} {} are "
+                        "assumed, [limits] of the recipe may state others",
+                        link.joint_name, link.limits->lower, link.limits->upper,
+                        link.joint_type == JointType::kPrismatic ? "m" : "rad"));
+      } else if (link.limits->lower == link.limits->upper) {
+        baked_.warnings.push_back(
+            fmt::format("joint '{}': its limits are both {}, so it cannot move; [limits] of the "
+                        "recipe may state others",
+                        link.joint_name, link.limits->lower));
+      }
     }
   }
 
@@ -306,7 +314,12 @@ Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe
        {checkNames(robot, recipe), checkShapeOptions(options), checkHandSpheres(robot, options)}) {
     if (!checked) return tl::unexpected(checked.error());
   }
-  return RobotBaker(robot, recipe, options).bake();
+  if (recipe == nullptr || recipe->mimics.empty()) {
+    return RobotBaker(robot, recipe, options).bake();
+  }
+  SourceRobot coupled = robot;
+  RETURN_IF_ERROR(coupleJoints(*recipe, coupled));
+  return RobotBaker(coupled, recipe, options).bake();
 }
 
 }  // namespace galactic::bake

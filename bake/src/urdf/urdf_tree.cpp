@@ -195,10 +195,6 @@ Result<void> checkLimits(UrdfJoint& joint, const std::string& place,
                                       "correct them",
                                       joint.lower, joint.upper));
   }
-  if (joint.lower == joint.upper && joint.mimic.empty()) {
-    warnings.push_back(fmt::format("joint '{}': its limits are both {}, so it cannot move",
-                                   joint.name, joint.lower));
-  }
   return {};
 }
 

@@ -58,6 +58,19 @@ std::vector<Misfit> misfits() {
        "its [[joints]]"},
       {"LimitsThatLockAControlledJoint", joint("shoulder", "[limits]\nshoulder = [1, 1]\n"),
        "r.toml:7", "joint 'shoulder' cannot move: both its limits are 1"},
+      {"MimicOfUnknownJoint", with("[mimic]\nlocked = { joint = \"wirst\" }\n"), "r.toml:7",
+       "the robot 'small' has no joint 'wirst' that turns or slides; did you mean 'wrist'?"},
+      {"UnknownJointThatMimics", with("[mimic.loked]\njoint = \"wrist\"\n"), "r.toml:6",
+       "the robot 'small' has no joint 'loked' that turns or slides; did you mean 'locked'?"},
+      {"FixedJointThatMimics", with("[mimic.mount]\njoint = \"wrist\"\n"), "r.toml:6",
+       "the robot 'small' has no joint 'mount' that turns or slides; known are 'shoulder', "
+       "'wrist', 'grip', 'locked'"},
+      {"MimicsInACircle",
+       with("[mimic]\nshoulder = { joint = \"grip\" }\nwrist = { joint = \"shoulder\" }\n"),
+       "r.toml: joint 'shoulder'",
+       "it mimics itself in a circle of joints; one of them must move freely"},
+      {"ControlledJointThatMimics", joint("shoulder", "[mimic.shoulder]\njoint = \"wrist\"\n"),
+       "r.toml:7", "joint 'shoulder' mimics 'wrist' and cannot be set by itself; name that one"},
       {"StartBeyondTheRecipesLimits",
        with("[limits]\nshoulder = [0, 1]\n[start_pose]\nshoulder = 1.5\n"), "r.toml:9",
        "joint 'shoulder' starts at 1.5, above its limit 1"},
@@ -113,6 +126,23 @@ TEST(RecipesThatFit, MayWidenLimitsAndFreeLockedJoints) {
   const bake::SourceLink& arm = smallRobot().links[1];
   EXPECT_EQ(bake::jointLimits(arm, &*recipe)->lower, -3);
   EXPECT_EQ(bake::jointLimits(arm, nullptr)->lower, -1);
+}
+
+TEST(RecipesThatFit, MayCoupleJoints) {
+  const ScratchFolder folder;
+  const auto recipe = readText(
+      folder, with("[mimic]\nwrist = { joint = \"shoulder\", multiplier = -2, offset = 0.5 }\n"));
+  ASSERT_TRUE(recipe.has_value()) << recipe.error().message;
+  bake::SourceRobot robot = smallRobot();
+  const auto coupled = bake::coupleJoints(*recipe, robot);
+  ASSERT_TRUE(coupled.has_value()) << coupled.error().message;
+  // The finger followed the wrist in the URDF: now both follow the shoulder.
+  for (const std::size_t link : {std::size_t{2}, std::size_t{3}}) {
+    ASSERT_TRUE(robot.links[link].mimic.has_value());
+    EXPECT_EQ(robot.links[link].mimic->link, 1U);
+    EXPECT_EQ(robot.links[link].mimic->multiplier, -2);
+    EXPECT_EQ(robot.links[link].mimic->offset, 0.5);
+  }
 }
 
 TEST(RecipesThatFit, NeedARobotWithLinks) {

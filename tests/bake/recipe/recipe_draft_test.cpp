@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -206,6 +209,121 @@ TEST(RecipeDraft, GraspsAtTheLinkWhereThatIsInFrontOfTheBody) {
   EXPECT_THAT(draftWith(shifted(0, 0.2, 0)).end_effector.grasp_point, ElementsAre(0, 0, 0));
   EXPECT_THAT(draftWith(kNoChange).end_effector.grasp_point, ElementsAre(0, 0, 0))
       << "nothing says where the front is";
+}
+
+/// A lift that carries the stages of a telescope, with a hand at their end.
+SourceRobot telescope(const std::vector<JointFields>& stages) {
+  RobotMaker maker("telescope");
+  maker.link("base").box({0.6, 0.2, 0.4});
+  maker.link("lift", 0, {.type = JointType::kPrismatic, .limits = JointLimits{0, 1.1}});
+  for (std::size_t n = 0; n < stages.size(); ++n) {
+    maker.link("stage" + std::to_string(n), static_cast<int>(n) + 1, stages[n]);
+  }
+  return maker.link("hand", static_cast<int>(stages.size()) + 1).robot();
+}
+
+JointFields stage(JointLimits limits, const std::array<double, 3>& axis = {0, 0, 1}) {
+  return {.type = JointType::kPrismatic, .axis = axis, .limits = limits};
+}
+
+TEST(RecipeDraft, MovesTheStagesOfATelescopeByOneAction) {
+  const SourceRobot robot =
+      telescope({stage({0, 0.13}), stage({0, 0.13}), stage({0, 0.13}), stage({0, 0.13})});
+  const RobotRecipe recipe = draftOf(robot);
+  EXPECT_THAT(namesOf(recipe.joints), ElementsAre("lift_joint", "stage0_joint"));
+  EXPECT_NEAR(recipe.joints[1].step, 0.05 / 4, 1e-9) << "the hand moves four times as far";
+  ASSERT_EQ(recipe.mimics.size(), 3U);
+  for (const bake::RecipeMimic& mimic : recipe.mimics) {
+    EXPECT_EQ(mimic.leader.name, "stage0_joint");
+    EXPECT_EQ(mimic.multiplier, 1);
+  }
+  EXPECT_EQ(recipe.start_pose.size(), 2U) << "followers start nowhere of their own";
+  const auto baked = bakeQuickly(robot, &recipe);
+  ASSERT_TRUE(baked.has_value()) << baked.error().text();
+  EXPECT_EQ(baked->controlled_joints.size(), 2U);
+  EXPECT_EQ(baked->kinematics.limits.size(), 2U) << "a lift and one value for all stages";
+  EXPECT_EQ(baked->kinematics.links[5].position, baked->kinematics.links[2].position);
+}
+
+TEST(RecipeDraft, CouplesNoJointsThatOnlyLookLikeATelescope) {
+  const std::vector<std::string> both{"lift_joint", "stage0_joint", "stage1_joint"};
+  for (const JointFields& second :
+       {stage({0, 0.2}), stage({0, 0.13}, {1, 0, 0}), stage({0, 0.13}, {0, 0, -1})}) {
+    const RobotRecipe recipe = draftOf(telescope({stage({0, 0.13}), second}));
+    EXPECT_EQ(namesOf(recipe.joints), both);
+    EXPECT_THAT(recipe.mimics, IsEmpty());
+  }
+}
+
+TEST(RecipeDraft, LeavesJointsWithLimitsThatStandForNoneToPeople) {
+  SourceRobot robot = telescope({stage({0, 0.13})});
+  robot.links[1].joint_type = JointType::kRevolute;
+  robot.links[1].limits = JointLimits{-1e6, 1e6};
+  EXPECT_THAT(namesOf(draftOf(robot).joints), ElementsAre("stage0_joint"));
+  EXPECT_THAT(bake::draftRobotRecipe(robot),
+              HasSubstr("# 'lift_joint' leads to 'hand', too, but its limits of -1e+06 to 1e+06 "
+                        "stand for none: no\n"));
+}
+
+TEST(RecipeDraft, ListsFingersWhoseLimitsLetThemMoveNowhere) {
+  SourceRobot robot = telescope({stage({0, 0.13})});
+  RobotMaker fingers;
+  fingers.link("base").link("finger", 0,
+                            {.type = JointType::kRevolute, .limits = JointLimits{0, 0}});
+  robot.links.push_back(fingers.robot().links.back());
+  robot.links.back().parent = 3;
+  const std::string text = bake::draftRobotRecipe(robot);
+  EXPECT_THAT(text, HasSubstr("# \"finger_joint\" = [0, 0.5]\n"));
+  EXPECT_THAT(text, HasSubstr("# \"finger_joint\" = 0.25   # with limits in [limits]\n"));
+  // As comments they change nothing; without the signs they open the hand.
+  EXPECT_THAT(draftOf(robot).limits, IsEmpty());
+  std::string opened = text;
+  for (auto at = opened.find("# \"finger"); at != std::string::npos;
+       at = opened.find("# \"finger")) {
+    opened.erase(at, 2);
+  }
+  const ScratchFolder folder;
+  const auto recipe = readText(folder, opened);
+  ASSERT_TRUE(recipe.has_value()) << recipe.error().text();
+  const auto baked = bakeQuickly(robot, &*recipe);
+  ASSERT_TRUE(baked.has_value()) << baked.error().text();
+  EXPECT_EQ(baked->kinematics.start_positions.back(), 0.25F);
+  EXPECT_THAT(baked->warnings, testing::Each(testing::Not(HasSubstr("cannot move"))));
+}
+
+TEST(RecipeDraft, TurnsACameraThatLiesOnItsSideUpright) {
+  // Turned about the forward axis: by how much, and the roll that turns it back.
+  const double right = std::numbers::pi / 2;
+  for (const auto& [turn, roll] :
+       {std::pair{0.0, 0}, {0.3, 0}, {right, -90}, {-right, 90}, {2 * right, 180}}) {
+    for (const char* name : {"camera", "camera_optical"}) {
+      // An optical frame has its Z axis, up in the runtime's frame, along the view.
+      const double c = std::cos(turn);
+      const double s = std::sin(turn);
+      const bake::Affine looking{1, 0, 0, 0, 0, c, -s, 1, 0, s, c, 0};
+      // Columns: where X, Y and Z of the link's frame are. Its Y is the view, its Z is up.
+      const bake::Affine optical{0, 1, 0, 0, -s, 0, c, 1, c, 0, s, 0};
+      const bool is_optical = std::string(name) == "camera_optical";
+      const SourceRobot robot =
+          RobotMaker()
+              .link("base")
+              .box({1, 1, 1})
+              .link(name, 0, {.parent_from_joint = is_optical ? optical : looking})
+              .robot();
+      const RobotRecipe recipe = draftOf(robot);
+      ASSERT_TRUE(recipe.camera.has_value());
+      // The camera's Y axis is up in the image.
+      const bake::Affine& mount = recipe.camera->link_from_camera;
+      const bake::Affine& link = robot.links[1].parent_from_joint;
+      const double up = link[4] * mount[1] + link[5] * mount[5] + link[6] * mount[9];
+      const double forward = link[0] * mount[0] + link[1] * mount[4] + link[2] * mount[8];
+      EXPECT_NEAR(up, std::abs(turn) == 0.3 ? std::cos(0.3) : 1, 1e-6) << name << " by " << turn;
+      EXPECT_NEAR(forward, 1, 1e-6) << name << " by " << turn;
+      EXPECT_EQ(bake::draftRobotRecipe(robot).find("At the start pose its image would") ==
+                    std::string::npos,
+                roll == 0);
+    }
+  }
 }
 
 TEST(RecipeDraft, OfARobotThatCannotMoveHasNoJoints) {

@@ -143,6 +143,19 @@ TEST(RobotBaker, WarnsOfAGraspPointInsideOfWhatMovesWithTheHand) {
   EXPECT_THAT(bakeWell(robot, &recipe, coarse()).warnings, IsEmpty());
 }
 
+TEST(RobotBaker, WarnsOfJointsThatCannotMoveUnlessTheRecipeFreesThem) {
+  SourceRobot robot = smallArm();
+  robot.links[1].joint_type = JointType::kRevolute;
+  robot.links[1].limits = bake::JointLimits{0, 0};
+  const std::string name = robot.links[1].joint_name;
+  const auto warns = HasSubstr("joint '" + name + "': its limits are both 0, so it cannot move");
+  EXPECT_THAT(bakeWell(robot, nullptr, coarse()).warnings, testing::Contains(warns));
+  RobotRecipe recipe = recipeFor("hand");
+  EXPECT_THAT(bakeWell(robot, &recipe, coarse()).warnings, testing::Contains(warns));
+  recipe.limits = {{{name, "tiny.toml:9"}, {0, 0.6}}};
+  EXPECT_THAT(bakeWell(robot, &recipe, coarse()).warnings, IsEmpty());
+}
+
 TEST(RobotBaker, WithoutARecipeHasNoHandCameraBaseOrActions) {
   const BakedRobot robot = bakeWell(smallArm(), nullptr, coarse());
   EXPECT_EQ(robot.name, "tiny");

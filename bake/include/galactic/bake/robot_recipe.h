@@ -87,6 +87,15 @@ struct RecipeLimits {
   JointLimits limits;
 };
 
+/// A joint that follows another, as <mimic> of a URDF says it.
+struct RecipeMimic {
+  RecipeName joint;
+  /// position of `joint` = multiplier * position of `leader` + offset; radians or meters.
+  RecipeName leader;
+  double multiplier = 1;
+  double offset = 0;
+};
+
 struct RecipeStart {
   RecipeName joint;
   /// Radians or meters.
@@ -138,6 +147,8 @@ struct RobotRecipe {
   std::vector<RecipeJoint> joints;
   /// Of revolute and prismatic joints, by name.
   std::vector<RecipeLimits> limits;
+  /// Joints that follow others, by name, beside those that the URDF says.
+  std::vector<RecipeMimic> mimics;
   /// Joints that do not start at 0 (or at their limit nearest to 0), by name.
   std::vector<RecipeStart> start_pose;
   RecipeSpheres spheres;
@@ -164,6 +175,11 @@ struct RobotRecipe {
 /// null.
 [[nodiscard]] std::optional<JointLimits> jointLimits(const SourceLink& link,
                                                      const RobotRecipe* recipe);
+
+/// Makes the joints of `robot` follow others as the recipe says, in place of what its URDF says of
+/// them. Fails with kInvalidInput where a joint does not exist or has no single position, and where
+/// joints follow each other in a circle.
+[[nodiscard]] Result<void> coupleJoints(const RobotRecipe& recipe, SourceRobot& robot);
 
 /// Whether the recipe fits the robot: links and joints exist (with the nearest names otherwise),
 /// controlled joints can move and mimic nothing, ranges and start positions lie within limits, the
