@@ -61,10 +61,10 @@ void printTable(const RobotFigures& robot, const PackFigures& pack, Verbosity ve
   }
   printWarnings(robot.warnings, verbosity);
   fmt::print(
-      "  {:.3f} s: import {:.3f}, spheres {:.3f}, self-collision {:.3f}, render {:.3f}; {:.2f} "
-      "MB\n",
+      "  {:.3f} s: import {:.3f}, spheres {:.3f}, self-collision {:.3f}, render {:.3f}, write "
+      "{:.3f}; {:.2f} MB\n",
       robot.seconds.all, robot.seconds.import, robot.seconds.bake.spheres,
-      robot.seconds.bake.self_collision, robot.seconds.bake.render,
+      robot.seconds.bake.self_collision, robot.seconds.bake.render, robot.seconds.write,
       static_cast<double>(pack.pack_bytes) / 1e6);
 }
 

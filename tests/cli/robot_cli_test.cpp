@@ -151,6 +151,10 @@ TEST_F(RobotCli, ReportsGroupsAndPairs) {
   EXPECT_EQ(robot["pairs"][1]["first"], "post");
   EXPECT_EQ(robot["pairs"][1]["second"], "hand");
   EXPECT_EQ(robot["pairs"][1]["kind"], "never");
+  // Every stage has taken some time.
+  for (const char* stage : {"import", "spheres", "self_collision", "render", "write", "all"}) {
+    EXPECT_GT(robot["seconds"][stage], 0) << stage;
+  }
 }
 
 TEST_F(RobotCli, PrintsARecipeThatItReads) {

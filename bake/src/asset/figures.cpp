@@ -110,7 +110,10 @@ RobotFigures figuresOf(const RobotOutcome& outcome) {
                        .joint_positions = robot.kinematics.limits.size(),
                        .controlled_joints = robot.controlled_joints.size(),
                        .meshes = outcome.resolutions,
-                       .seconds = {outcome.import_seconds, robot.times, outcome.seconds},
+                       .seconds = {.import = outcome.import_seconds,
+                                   .bake = robot.times,
+                                   .write = outcome.write_seconds,
+                                   .all = outcome.seconds},
                        .render_meshes = figuresOf(robot.render_meshes),
                        .warnings = robot.warnings};
   for (const BakedGroup& group : robot.groups) {

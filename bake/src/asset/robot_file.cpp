@@ -56,9 +56,12 @@ Result<BakedRobot> bakeParts(const RobotJob& job, SourceRobot& robot, const Bake
   auto baked = bakeWithRecipe(job, robot);
   if (!baked) return baked;
   context.show(item, "render meshes", 0.9);
-  const StageTimer timer(baked->times.render);
-  ASSIGN_OR_RETURN(auto meshes, drawRobot(robot, job.draw, job.input, *baked));
-  baked->render_meshes = std::move(meshes);
+  auto meshes = [&] {
+    const StageTimer timer(baked->times.render);
+    return drawRobot(robot, job.draw, job.input, *baked);
+  }();
+  if (!meshes) return tl::unexpected(meshes.error());
+  baked->render_meshes = std::move(*meshes);
   return baked;
 }
 
@@ -99,6 +102,7 @@ Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
   Made made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     context.show(item, "write", 1);
+    const StageTimer timer(outcome.write_seconds);
     ASSIGN_OR_RETURN(const auto bytes, writeRobotPack(context.output, outcome.robot,
                                                       provenanceOf(job, std::move(robot->files),
                                                                    outcome.robot.warnings)));

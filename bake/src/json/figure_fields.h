@@ -243,6 +243,7 @@ void listFields(V& v, RobotFigures::Times& times) {
   v.field("spheres", times.bake.spheres);
   v.field("self_collision", times.bake.self_collision);
   v.field("render", times.bake.render);
+  v.field("write", times.write);
   v.field("all", times.all);
 }
 

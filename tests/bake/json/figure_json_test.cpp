@@ -97,7 +97,7 @@ bake::RobotFigures robotFigures() {
                      {"cover", {"cover"}, false, 0.02F, 0.04F, sphereFigures(), false}},
           .pairs = {{"hand", "cover", bake::PairKind::kNever}},
           .meshes = {"hand.stl: found"},
-          .seconds = {.import = 1, .bake = {.spheres = 2}, .all = 4},
+          .seconds = {.import = 1, .bake = {.spheres = 2}, .write = 0.5, .all = 4},
           .warnings = {"no laser"}};
 }
 

@@ -110,6 +110,7 @@ struct RobotOutcome {
   /// Where each mesh was found.
   std::vector<std::string> resolutions;
   double import_seconds = 0;
+  double write_seconds = 0;
   double seconds = 0;
 };
 

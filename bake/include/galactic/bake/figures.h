@@ -125,6 +125,7 @@ struct RobotFigures {
   struct Times {
     double import = 0;
     RobotTimes bake{};
+    double write = 0;
     double all = 0;
   };
   std::string input{};
