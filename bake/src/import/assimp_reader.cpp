@@ -403,9 +403,7 @@ void SceneReader::nameFiles() {
   // Other readers ask for files that may be there, or say themselves that they lack.
   if (format_.reader != kObjReader) return;
   for (const std::string& file : missing) {
-    asset_.warnings.push_back(
-        fmt::format("material file '{}' is missing: its materials get default colors",
-                    nameRelativeTo(path_, file)));
+    asset_.missing_materials.push_back(nameRelativeTo(path_, file));
   }
 }
 

@@ -95,18 +95,18 @@ std::optional<fs::path> substituteFor(const std::string& reference, SourceAsset&
   return namesake;
 }
 
-/// Gives an OBJ without MTL the mesh's namesake, where there is one. Meshes without texture
-/// coordinates stay as they are.
-void paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearch& search) {
+/// Gives an OBJ without MTL the mesh's namesake, where there is one; says whether it did. Meshes
+/// without texture coordinates stay as they are.
+bool paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearch& search) {
   const bool is_obj = asset.format == "Wavefront OBJ";
   const bool has_coordinates =
       std::any_of(asset.meshes.begin(), asset.meshes.end(),
                   [](const SourceMesh& mesh) { return !mesh.uvs.empty(); });
   // An MTL that was read, whatever its name, states what colors there are.
   const bool has_mtl = asset.files.size() > 1;
-  if (!is_obj || has_mtl || !has_coordinates) return;
+  if (!is_obj || has_mtl || !has_coordinates) return false;
   const auto namesake = namesakeOf(main_input, search);
-  if (!namesake) return;
+  if (!namesake) return false;
   const std::string name = nameRelativeTo(main_input, *namesake);
   for (SourceMaterial& material : asset.materials) {
     material.base_color_texture = name;
@@ -114,8 +114,12 @@ void paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearc
     material.base_color = {1, 1, 1, material.base_color[3]};
   }
   asset.files.push_back({.name = name});
-  asset.warnings.push_back(
-      fmt::format("it has no MTL that names a texture: '{}' is drawn on all of it", name));
+  const std::string why =
+      asset.missing_materials.empty()
+          ? "it has no MTL that names a texture"
+          : fmt::format("its material file '{}' is missing", asset.missing_materials.front());
+  asset.warnings.push_back(fmt::format("{}: '{}' is drawn on all of it", why, name));
+  return true;
 }
 
 Result<void> hashFile(SourceFile& file, const fs::path& path) {
@@ -218,7 +222,12 @@ void findTextures(SourceAsset& asset, const fs::path& main_input, Reach reach) {
                       reference, material.name));
     }
   }
-  if (found.empty()) paintWithNamesake(asset, main_input, search);
+  const bool is_painted = found.empty() && paintWithNamesake(asset, main_input, search);
+  for (const std::string& file : asset.missing_materials) {
+    if (is_painted) break;
+    asset.warnings.push_back(
+        fmt::format("material file '{}' is missing: its materials get default colors", file));
+  }
   for (const fs::path& file : search.absent()) {
     asset.absent_files.push_back(nameRelativeTo(main_input, file));
   }

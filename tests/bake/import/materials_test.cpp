@@ -289,6 +289,21 @@ TEST(ObjMaterials, ThatAreMissingDrawAWarningWhateverTheirName) {
   }
 }
 
+TEST(ObjMaterials, ThatAreMissingAreToldOnceWhereANamesakeIsDrawn) {
+  const ScratchFolder folder;
+  (void)folder.write("texture.png", "image");
+  const auto warningsOf = [&](const std::string& head) {
+    const auto asset = importMesh(folder.write("mug.obj", objWithCoordinates(head)));
+    EXPECT_TRUE(asset.has_value());
+    return asset ? asset->warnings : std::vector<std::string>{};
+  };
+  EXPECT_THAT(warningsOf("mtllib lost.mtl\nusemtl m\n"),
+              ElementsAre("its material file 'lost.mtl' is missing: 'texture.png' is drawn on all "
+                          "of it"));
+  EXPECT_THAT(warningsOf(""), ElementsAre("it has no MTL that names a texture: 'texture.png' is "
+                                          "drawn on all of it"));
+}
+
 TEST(NamedFiles, OutsideOfTheMeshesFolderAreReadOnlyWhenAllowed) {
   const ScratchFolder folder;
   (void)folder.write("far/lost.mtl", "newmtl m\nmap_Kd wood.png\n");

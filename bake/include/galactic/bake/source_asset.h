@@ -93,6 +93,8 @@ struct SourceAsset {
   /// What was looked for and is not there, relative to the folder of the main input: once it is
   /// there, another asset may be read.
   std::vector<std::string> absent_files;
+  /// Files of materials that are named and missing, likewise.
+  std::vector<std::string> missing_materials;
   /// One sentence each: missing textures, a doubtful unit and so on.
   std::vector<std::string> warnings;
 };
