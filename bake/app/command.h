@@ -53,8 +53,11 @@ struct DatasetCommand {
 struct RecipeCommand {
   /// Where its files are looked for that are not beside it; empty: nowhere else.
   std::filesystem::path data{};
+  EpisodeOverrides episodes{};
 };
 
+/// Those of them that a recipe may have, too.
+void visitOptions(EpisodeOverrides& episodes, OptionVisitor& visitor);
 void visitOptions(DatasetCommand& command, OptionVisitor& visitor);
 void visitOptions(RecipeCommand& command, OptionVisitor& visitor);
 

@@ -349,6 +349,10 @@ bool isOfCommandLine(std::string_view name) {
     visitOptions(many, set);
     visitOptions(recipe, set);
     set.names.insert({"as", "list"});
+    // Recipes have these, too.
+    NameSet shared;
+    visitOptions(recipe.episodes, shared);
+    for (const std::string& option : shared.names) set.names.erase(option);
     set.names.insert(kNotInFiles.begin(), kNotInFiles.end());
     return set.names;
   }();

@@ -145,6 +145,7 @@ Result<JobList> jobsOf(const BakeCommand& command) {
   if (const auto* recipe = std::get_if<RecipeCommand>(&command.what)) {
     return jobsOfRecipe({.recipe = command.inputs.front(),
                          .data = recipe->data,
+                         .episodes = recipe->episodes,
                          .is_of_command_line = isOfCommandLine},
                         world);
   }

@@ -141,8 +141,18 @@ void visitOptions(DatasetCommand& command, OptionVisitor& v) {
   v.option({"list", "", "Print the names of the scenes, bake nothing"}, flag(list));
 }
 
+void visitOptions(EpisodeOverrides& episodes, OptionVisitor& v) {
+  auto& [count, seed] = episodes;
+  v.group("Episodes");
+  v.option({"count", "N", "How many episodes, instead of what the recipe says"},
+           whole(count, {1, 1'000'000}));
+  v.option({"seed", "N", "The number from which they are drawn, instead of the recipe's"},
+           whole(seed, {0, std::numeric_limits<std::uint64_t>::max()}));
+}
+
 void visitOptions(RecipeCommand& command, OptionVisitor& v) {
-  auto& [data] = command;
+  auto& [data, episodes] = command;
+  visitOptions(episodes, v);
   v.group("Datasets, worlds from recipes");
   v.option({"data", "DIR", "Where a recipe's files are looked for that are not beside it"},
            path(data));

@@ -42,6 +42,7 @@ class RecipeJobs {
     if (recipe_.robot) {
       if (auto added = addRobot(*recipe_.robot); !added) return added;
     }
+    RETURN_IF_ERROR(checkOverrides());
     if (recipe_.episodes) RETURN_IF_ERROR(addEpisodes(*recipe_.episodes));
     return packs_.checkRadii();
   }
@@ -95,11 +96,25 @@ class RecipeJobs {
     return {};
   }
 
+  /// What stands on the command line is about episodes that the recipe generates.
+  [[nodiscard]] Result<void> checkOverrides() const {
+    const auto& [count, seed] = source_.episodes;
+    if (!count && !seed) return {};
+    if (recipe_.episodes && recipe_.episodes->inputs.empty()) return {};
+    return fail(
+        ErrorCode::kInvalidInput, count ? "count" : "seed",
+        fmt::format("is about episodes that are generated, and the recipe {}; leave it out, "
+                    "or give the recipe a table [episodes] without `files`",
+                    recipe_.episodes ? "imports its own" : "has none"));
+  }
+
   Result<void> addEpisodes(const RecipeAssets& assets) {
     // Those that are generated are made in packs that do not exist yet.
     if (assets.inputs.empty()) {
       EpisodeGenerationJob job;
       if (auto read = readOptions(assets, "generated episodes", job); !read) return read;
+      if (source_.episodes.count) job.generate.episodes = *source_.episodes.count;
+      if (source_.episodes.seed) job.generate.seed = *source_.episodes.seed;
       if (auto checked = packs_.checkForEpisodes(); !checked) {
         return located(checked.error(), assets.place);
       }

@@ -206,9 +206,12 @@ void visitGeneration(EpisodeGeneratorOptions& options, OptionVisitor& v) {
   auto& [episodes, objects, seed, heights, flatness, target_to_goal, shorten_way, start_to_target,
          goal_on_other_support, most_skipped, supports, split, jobs] = options;
   v.group("Episodes");
-  v.option({"seed", "N", "Generate: the number from which the random ones are drawn"},
-           whole(seed, {0, kMostSeed}));
-  v.option({"count", "N", "Generate: how many episodes"}, whole(episodes, {1, 1'000'000}));
+  v.option(
+      {"seed", "N",
+       "Generate: the number from which the random ones are drawn; also instead of a recipe's"},
+      whole(seed, {0, kMostSeed}));
+  v.option({"count", "N", "Generate: how many episodes; also instead of a recipe's"},
+           whole(episodes, {1, 1'000'000}));
   v.option({"objects", "N|LEAST,MOST", "Generate: objects of each episode, the target among them"},
            counts(objects, {1, 1024}));
   v.option({"heights", "LOW,HIGH", "Generate: objects stand this high above the floor, meters"},

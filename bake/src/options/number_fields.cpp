@@ -309,6 +309,10 @@ FieldPointer whole(std::optional<std::uint32_t>& field, Within<std::uint64_t> ra
   using Field = std::optional<std::uint32_t>;
   return std::make_unique<WholeField<Field>>(field, range, false);
 }
+FieldPointer whole(std::optional<std::uint64_t>& field, Within<std::uint64_t> range) {
+  using Field = std::optional<std::uint64_t>;
+  return std::make_unique<WholeField<Field>>(field, range, false);
+}
 FieldPointer powerOfTwo(std::uint32_t& field, Within<std::uint64_t> range) {
   return std::make_unique<WholeField<std::uint32_t>>(field, range, true);
 }

@@ -233,6 +233,49 @@ std::set<std::string> keysOf(const Parsed& parsed) {
   return keys;
 }
 
+/// The options of the generated episodes of a recipe, with these arguments.
+const EpisodeGeneratorOptions* episodesOf(const JobList& list) {
+  const auto* job =
+      list.episodes ? std::get_if<EpisodeGenerationJob>(&list.episodes->job) : nullptr;
+  return job == nullptr ? nullptr : &job->generate;
+}
+
+TEST(Recipes, MakeSeveralWorldsThatDifferInTheirEpisodes) {
+  const test::ScratchFolder folder;
+  for (const char* name : {"room.glb", "mug.glb", "arm.urdf", "arm.toml"}) {
+    ASSERT_FALSE(folder.write(name, "text").empty());
+  }
+  const std::string head =
+      "[[scenes]]\nfiles = \"room.glb\"\n[[objects]]\nfiles = \"mug.glb\"\n"
+      "[robot]\nfiles = \"arm.urdf\"\nrecipe = \"arm.toml\"\n";
+  const std::string recipe =
+      folder.write("home.toml", head + "[episodes]\ncount = 1000\nseed = 101\nflatness = 0.01\n")
+          .string();
+  const auto list = jobsOf(*commandFrom({recipe, "--seed", "303", "--count", "100"}));
+  ASSERT_TRUE(list) << list.error().text();
+  const EpisodeGeneratorOptions* validation = episodesOf(*list);
+  ASSERT_NE(validation, nullptr);
+  EXPECT_EQ(validation->episodes, 100U);
+  EXPECT_EQ(validation->seed, 303U);
+  EXPECT_EQ(validation->flatness, 0.01F);
+  const auto same = jobsOf(*commandFrom({recipe}));
+  ASSERT_TRUE(same) << same.error().text();
+  EXPECT_EQ(episodesOf(*same)->episodes, 1000U);
+  EXPECT_EQ(episodesOf(*same)->seed, 101U);
+  // Everything but the episodes has the same keys in the cache.
+  EXPECT_EQ(list->assets.size(), same->assets.size());
+  for (std::size_t n = 0; n < list->assets.size(); ++n) {
+    EXPECT_EQ(keyOf(list->assets[n].job, ""), keyOf(same->assets[n].job, ""));
+  }
+
+  const auto without =
+      jobsOf(*commandFrom({folder.write("none.toml", head).string(), "--seed", "3"}));
+  ASSERT_FALSE(without);
+  EXPECT_EQ(without.error().text(),
+            "seed: is about episodes that are generated, and the recipe has none; leave it out, or "
+            "give the recipe a table [episodes] without `files`");
+}
+
 TEST(Recipes, TakeNoOptionsOfTheCommandLine) {
   const test::ScratchFolder folder;
   const auto mesh = folder.write("a.glb", "a mesh");
@@ -264,6 +307,8 @@ TEST(CommandLine, KeepsTheKeysOfJobsWhateverTheRunIsLike) {
   for (const auto& options :
        {test::walk(ToolOptions{}), test::walk(ManyPacksOptions{}), test::walk(RecipeCommand{})}) {
     for (const WalkedOption& option : options) {
+      // What the recipe would say of its episodes.
+      if (option.name == "count" || option.name == "seed") continue;
       SCOPED_TRACE(option.name);
       const auto before = keysOf(parse({recipe}));
       ASSERT_EQ(before.size(), 1U);

@@ -1,6 +1,8 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,11 +50,19 @@ void visitOptions(DatasetJobs& dataset, OptionVisitor& visitor);
 [[nodiscard]] Result<JobList> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
                                              const std::filesystem::path& world);
 
+/// What may be said of the episodes of a recipe instead of what the recipe says, so that it makes
+/// several worlds that differ in their episodes.
+struct EpisodeOverrides {
+  std::optional<std::uint32_t> count{};
+  std::optional<std::uint64_t> seed{};
+};
+
 /// A recipe, and what is around it.
 struct RecipeSource {
   std::filesystem::path recipe;
   /// Where its files are looked for that are not beside it; empty: nowhere else.
   std::filesystem::path data{};
+  EpisodeOverrides episodes{};
   /// Names that would be options, but of a command line only.
   std::function<bool(std::string_view)> is_of_command_line{};
 };

@@ -120,6 +120,7 @@ class OptionVisitor {
 [[nodiscard]] FieldPointer whole(std::uint32_t& field, Within<std::uint64_t> range);
 [[nodiscard]] FieldPointer whole(std::uint64_t& field, Within<std::uint64_t> range);
 [[nodiscard]] FieldPointer whole(std::optional<std::uint32_t>& field, Within<std::uint64_t> range);
+[[nodiscard]] FieldPointer whole(std::optional<std::uint64_t>& field, Within<std::uint64_t> range);
 /// One of these powers of two.
 [[nodiscard]] FieldPointer powerOfTwo(std::uint32_t& field, Within<std::uint64_t> range);
 /// Several numbers; given again, they follow the others.
