@@ -1,10 +1,12 @@
 #include "galactic/bake/scene_baker.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "column_grid/way_out.h"
 #include "common/stage_timer.h"
 #include "support/out_of_memory.h"
 #include "support/try.h"
@@ -72,12 +74,91 @@ double freeBeyond(const Columns& cells, const Columns& lines) {
   return length;
 }
 
+/// Collects what is to be said of the rooms of a scene: once, however many radii show it.
+class RegionWarnings {
+ public:
+  explicit RegionWarnings(const SceneBakeOptions& options) : options_(options) {}
+
+  /// Notes what a grid shows; `room`: the spans that it keeps. Radii come in ascending order.
+  void add(const BakedGrid& baked, const Columns& room) {
+    const float radius = baked.grid.frame.radius;
+    const double volume = baked.totals[static_cast<std::size_t>(Region::kRoom)].volume;
+    if (!(volume > 0)) {
+      full_.push_back(radius);
+      return;
+    }
+    if (options_.free_space.keep == Keep::kAll) return;
+    for (const Component& part : baked.components) {
+      if (part.region == Region::kRoom && part.touches_border) addOpen(radius, part, room);
+      if (part.region == Region::kEnclosed && part.volume >= kWorthMentioning * volume) {
+        addClosed(radius, part, volume);
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> take() {
+    if (!full_.empty()) {
+      closed_.push_back(fmt::format("radius {} m: no free space at all", fmt::join(full_, " m, ")));
+    }
+    if (!open_.empty()) {
+      closed_.push_back(fmt::format(
+          "radius {} m: the room is one with the outside, and all of it is stored: {}; a scan with "
+          "an open door or window works as it is, and for grids of the room alone close it in the "
+          "mesh",
+          fmt::join(open_, " m, "), way_out_));
+    }
+    return std::move(closed_);
+  }
+
+ private:
+  /// The hole through which the largest sphere passes is the last that is told.
+  void addOpen(float radius, const Component& part, const Columns& room) {
+    if (open_.empty() || open_.back() != radius) open_.push_back(radius);
+    if (part.columns_at_edge == 0) {
+      way_out_ = part.volume_open_above >= part.volume_open_below
+                     ? "it leads over the walls, there is no ceiling"
+                     : "it leads under the walls, there is no floor";
+      return;
+    }
+    const std::optional<WayOut> way = findWayOut(room, options_.free_space.seeds);
+    way_out_ = way ? fmt::format(
+                         "the narrowest passage on the way out is at ({:.2f}, {:.2f}, "
+                         "{:.2f}), some {:.2f} m wide",
+                         way->at.x, way->at.y, way->at.z, way->width + 2 * room.frame.radius)
+                   : "nothing narrows the way out";
+  }
+
+  /// Larger spheres leave less of the same part.
+  void addClosed(float radius, const Component& part, double room) {
+    const Bounds& bounds = part.bounds;
+    const Vec3 middle = (bounds.min + bounds.max) * 0.5F;
+    const bool is_known = std::ranges::any_of(known_, [&](const Bounds& known) {
+      return middle.x >= known.min.x && middle.x <= known.max.x && middle.y >= known.min.y &&
+             middle.y <= known.max.y && middle.z >= known.min.z && middle.z <= known.max.z;
+    });
+    if (is_known) return;
+    known_.push_back(bounds);
+    closed_.push_back(fmt::format(
+        "radius {} m: a closed part of {:.1f} m3 (room: {:.1f} m3) from ({:.2f}, {:.2f}, {:.2f}) "
+        "to ({:.2f}, {:.2f}, {:.2f}) is left out; keep it with `inside` or `keep-components`",
+        radius, part.volume, room, bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x,
+        bounds.max.y, bounds.max.z));
+  }
+
+  const SceneBakeOptions& options_;
+  std::vector<float> full_;
+  std::vector<float> open_;
+  std::string way_out_;
+  std::vector<Bounds> known_;
+  std::vector<std::string> closed_;
+};
+
 class SceneBaker {
  public:
   SceneBaker(const TriangleMesh& mesh, const SceneBakeOptions& options, StageTimes& times)
       : mesh_(mesh), options_(options), times_(times) {}
 
-  Result<BakedGrid> bakeGrid(float radius) {
+  Result<BakedGrid> bakeGrid(float radius, RegionWarnings& warnings) {
     ASSIGN_OR_RETURN(const auto frame, makeGridFrame(mesh_.bounds, radius, options_.spacing));
     RETURN_IF_ERROR(checkMemory(kBytesPerColumn * static_cast<double>(frame.columnCount()),
                                 fmt::format("{} columns", frame.columnCount()),
@@ -93,6 +174,10 @@ class SceneBaker {
     baked.totals = free.totals;
     baked.raw_spans = raw.columns.spans.size();
     baked.merged_gaps = raw.merged_gaps;
+    {
+      const StageTimer timer(times_.regions);
+      warnings.add(baked, free.columns);
+    }
     if (wantsCheck()) baked.cast_check = check(frame, raw.columns);
     return baked;
   }
@@ -146,48 +231,6 @@ class SceneBaker {
   std::optional<BulletColumnCaster> caster_;
 };
 
-/// Where a room that reaches the grid's border leaves the scene.
-std::string wayOut(const Component& room) {
-  if (room.columns_at_edge == 0) {
-    return room.volume_open_above >= room.volume_open_below
-               ? "it leads over the walls, there is no ceiling"
-               : "it leads under the walls, there is no floor";
-  }
-  return fmt::format(
-      "it reaches the edge of the scene in {} columns, first at ({:.2f}, {:.2f}, {:.2f})",
-      room.columns_at_edge, room.first_at_edge.x, room.first_at_edge.y, room.first_at_edge.z);
-}
-
-/// Warns of a grid in which a sphere has no room, of rooms that have no bounds, and of parts left
-/// out that may be rooms too.
-void warnOfRegions(const BakedGrid& baked, const SceneBakeOptions& options,
-                   std::vector<std::string>& warnings) {
-  const float radius = baked.grid.frame.radius;
-  const double room = baked.totals[static_cast<std::size_t>(Region::kRoom)].volume;
-  if (!(room > 0)) {
-    warnings.push_back(fmt::format("radius {} m: no free space at all", radius));
-    return;
-  }
-  if (options.free_space.keep == Keep::kAll) return;
-  for (const Component& part : baked.components) {
-    if (part.region != Region::kRoom || !part.touches_border) continue;
-    warnings.push_back(
-        fmt::format("radius {} m: the room is one with the outside, and all of it is "
-                    "stored: {}; close it in the mesh, unless the scene is meant to "
-                    "be open",
-                    radius, wayOut(part)));
-  }
-  for (const Component& part : baked.components) {
-    if (part.region != Region::kEnclosed || part.volume < kWorthMentioning * room) continue;
-    warnings.push_back(fmt::format(
-        "radius {} m: a closed part of {:.1f} m3 (room: {:.1f} m3) from ({:.2f}, {:.2f}, {:.2f}) "
-        "to "
-        "({:.2f}, {:.2f}, {:.2f}) is left out; keep it with `inside` or `keep-components`",
-        radius, part.volume, room, part.bounds.min.x, part.bounds.min.y, part.bounds.min.z,
-        part.bounds.max.x, part.bounds.max.y, part.bounds.max.z));
-  }
-}
-
 }  // namespace
 
 Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& options,
@@ -213,13 +256,14 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
   scene.warnings = asset.warnings;
 
   SceneBaker baker(cleaned->mesh, options, times);
+  RegionWarnings warnings(options);
   for (std::size_t i = 0; i < options.radii.size(); ++i) {
     progress(fmt::format("grid r={} m", options.radii[i]),
              static_cast<double>(i) / static_cast<double>(options.radii.size()));
-    ASSIGN_OR_RETURN(auto grid, baker.bakeGrid(options.radii[i]));
-    warnOfRegions(grid, options, scene.warnings);
+    ASSIGN_OR_RETURN(auto grid, baker.bakeGrid(options.radii[i], warnings));
     scene.grids.push_back(std::move(grid));
   }
+  for (std::string& warning : warnings.take()) scene.warnings.push_back(std::move(warning));
   return scene;
 }
 

@@ -118,9 +118,7 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
         component.volume_inside += inside;
         if (heights.hi > scene.max.y) component.volume_open_above += inside;
         if (heights.lo < scene.min.y) component.volume_open_below += inside;
-        if (at_edge && overlap(heights, scene) > 0 && component.columns_at_edge++ == 0) {
-          component.first_at_edge = {x, std::max(heights.lo, scene.min.y), z};
-        }
+        if (at_edge && overlap(heights, scene) > 0) ++component.columns_at_edge;
         Bounds& bounds = component.bounds;
         bounds.min = {std::min(bounds.min.x, x), std::min(bounds.min.y, heights.lo),
                       std::min(bounds.min.z, z)};

@@ -181,6 +181,36 @@ TEST(SceneBaker, ChecksNothingWhenAskedTo) {
   EXPECT_FALSE(scene->grids[0].cast_check);
 }
 
+/// A room of thin walls and 3 x 2.5 x 4 m, with a door of 0.8 m in its wall at x = 3, on a ground
+/// that reaches 2 m beyond its walls, and one that is closed.
+SourceAsset roomWithADoor() {
+  test::MeshBuilder builder;
+  builder.box({-2, -0.1F, -2}, {5, 0, 6}).box({0, 2.5F, 0}, {3, 2.6F, 4});
+  builder.box({-0.1F, 0, 0}, {0, 2.5F, 4}).box({0, 0, -0.1F}, {3, 2.5F, 0});
+  builder.box({0, 0, 4}, {3, 2.5F, 4.1F});
+  builder.box({3, 0, 0}, {3.1F, 2.5F, 1}).box({3, 0, 1.8F}, {3.1F, 2.5F, 4});
+  builder.box({3, 2, 1}, {3.1F, 2.5F, 1.8F});
+  return test::sourceAssetOf(builder.build());
+}
+
+TEST(SceneBaker, NamesTheHoleThroughWhichARoomIsOpenOnceForAllRadii) {
+  for (const std::vector<Vec3>& seeds : {std::vector<Vec3>{}, {{1, 1, 1}}}) {
+    SceneBakeOptions options{.radii = {0.05F, 0.12F}, .check_columns = 0};
+    options.free_space.seeds = seeds;
+    const auto scene = bake(roomWithADoor(), options);
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_EQ(scene->warnings.size(), 1U);
+    EXPECT_THAT(
+        scene->warnings[0],
+        testing::MatchesRegex(
+            "radius 0\\.05 m, 0\\.12 m: the room is one with the outside, and all of it is "
+            "stored: the narrowest passage on the way out is at \\((2\\.[89]|3\\.[012])[0-9], "
+            "[01]\\.[0-9]+, 1\\.[345][0-9]\\), some 0\\.[78][0-9] m wide; a scan with an "
+            "open door or window works as it is, and for grids of the room alone close it "
+            "in the mesh"));
+  }
+}
+
 /// Two closed rooms, the second as big as the first but for `shorter` meters.
 SourceAsset twoClosedRooms(float shorter) {
   test::MeshBuilder builder;
@@ -189,7 +219,7 @@ SourceAsset twoClosedRooms(float shorter) {
 }
 
 TEST(SceneBaker, WarnsOfAClosedRoomThatItLeavesOut) {
-  SceneBakeOptions options{.radii = {0.05F}, .check_columns = 0};
+  SceneBakeOptions options{.radii = {0.05F, 0.12F}, .check_columns = 0};
   options.free_space.seeds = {{1, 1, 1}};
   const auto scene = bake(twoClosedRooms(0.5F), options);
   ASSERT_TRUE(scene) << scene.error().message;

@@ -79,9 +79,7 @@ struct FreeSpaceOptions {
 struct Component {
   Region region = Region::kEnclosed;
   bool touches_border = false;
-  /// Where it reaches the edge of the scene's bounds, x and z, ascending z then x: the first place,
-  /// and how many columns of the edge it has. Of a closed room none.
-  Vec3 first_at_edge;
+  /// In how many columns it reaches the edge of the scene's bounds, in x or z. Of a closed room 0.
   std::uint64_t columns_at_edge = 0;
   std::uint64_t spans = 0;
   /// Cubic meters of sphere centers.
