@@ -208,6 +208,36 @@ GeneratedEpisodes gather(const GenerationWorld& world, std::span<const SceneOfPa
   return generated;
 }
 
+/// Says which options would help where hardly a place is flat enough, or far enough from another.
+void adviseOn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generated) {
+  // With so many times more places, surfaces are bumpy and not small.
+  constexpr std::size_t kManyMore = 2;
+  constexpr std::uint64_t kManyDrafts = 100;
+  std::vector<std::string>& warnings = generated.episodes.warnings;
+  for (const GeneratedScene& scene : generated.scenes) {
+    if (scene.bumpy_places < kManyMore * scene.support_places) continue;
+    warnings.push_back(fmt::format(
+        "scene {}: objects stand at {} places on {} surfaces, which are flat to {} m; with "
+        "`flatness` {}, as scans need it, there are {}",
+        scene.name, scene.support_places, scene.surfaces, options.flatness, kScanFlatness,
+        scene.bumpy_places));
+  }
+  std::uint64_t all = 0;
+  for (std::size_t n = 0; n < kRejectionCount; ++n) {
+    all += generated.rejections[static_cast<EpisodeRejection>(n)];
+  }
+  const std::uint64_t by_distance = generated.rejections[EpisodeRejection::kDistance];
+  const bool is_most = by_distance > all / 3 * 2;
+  // Another warning says of such scenes that the distance is shorter there.
+  const bool are_shortened = std::ranges::all_of(
+      generated.scenes, [](const GeneratedScene& one) { return one.shortened_way.has_value(); });
+  if (!is_most || are_shortened || by_distance < kManyDrafts * options.episodes) return;
+  warnings.push_back(fmt::format(
+      "{} of {} places drawn and not taken were goals that are not {} away from their targets: "
+      "with a shorter `goal-distance` episodes are drawn sooner and use more places",
+      by_distance, all, textOf(options.target_to_goal)));
+}
+
 /// Says what is not as it was asked for.
 void warn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generated) {
   std::vector<std::string>& warnings = generated.episodes.warnings;
@@ -247,6 +277,7 @@ Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
   std::ranges::sort(left_out, {}, &UnusableScene::name);
   generated.left_out = std::move(left_out);
   warn(options, generated);
+  adviseOn(options, generated);
   return generated;
 }
 

@@ -205,6 +205,36 @@ TEST(SmallScenes, HaveTheirGoalsNearerWhereThatIsAllowed) {
   }
 }
 
+TEST(EpisodesOnFewPlaces, SayWhichOptionsWouldHelp) {
+  // Two small tables 3 m apart that are flat, and one between them of slats as wide as two columns.
+  MeshBuilder room = madeRoom(4, 3);
+  for (const float x : {0.2F, 3.2F}) room.box({x, 0.6F, 1.2F}, {x + 0.4F, 0.65F, 1.6F});
+  for (int n = 0; n < 20; ++n) {
+    const float x = 1.2F + 0.06F * static_cast<float>(n);
+    room.box({x, 0.6F, 0.2F}, {x + 0.06F, n % 2 == 0 ? 0.65F : 0.654F, 0.9F});
+  }
+  const MadeWorld world(room.build(), stickRobot());
+  EpisodeGeneratorOptions options = optionsFor(4, 1);
+  options.flatness = 0.002F;
+  options.target_to_goal = {2.95F, 2.954F};
+  const auto made = generated(world, options);
+  ASSERT_TRUE(made.has_value()) << made.error().message;
+  EXPECT_THAT(made->episodes.warnings,
+              ElementsAre(testing::MatchesRegex(
+                              "scene room: objects stand at [0-9]+ places on [0-9]+ surfaces, "
+                              "which are flat to 0.002 m; with `flatness` 0.01, as scans need it, "
+                              "there are [0-9]+"),
+                          testing::MatchesRegex(
+                              "[0-9]+ of [0-9]+ places drawn and not taken were goals that are not "
+                              "2.95 to 2.954 m away from their targets: with a shorter "
+                              "`goal-distance` episodes are drawn sooner and use more places")));
+  options.flatness = 0.01F;
+  options.target_to_goal = {0.3F, 5};
+  const auto easy = generated(world, options);
+  ASSERT_TRUE(easy.has_value()) << easy.error().message;
+  EXPECT_THAT(easy->episodes.warnings, IsEmpty());
+}
+
 TEST(SmallScenes, AreLeftOutBesideOthers) {
   const MadeWorld world(tablesRoom(), stickRobot());
   const MemoryPack small = scenePackOf(closet(), "closet");

@@ -155,6 +155,9 @@ struct EpisodeInputs {
   std::function<bool()> stops{};
 };
 
+/// Scanned surfaces bend by that, meters.
+inline constexpr float kScanFlatness = 0.01F;
+
 /// What was found in a scene.
 struct GeneratedScene {
   std::string name;
@@ -166,6 +169,9 @@ struct GeneratedScene {
   /// Columns over a flat surface within reach, and how many surfaces they make.
   std::size_t support_places = 0;
   std::size_t surfaces = 0;
+  /// How many columns there would be with kScanFlatness; 0 where that was not asked, as in scenes
+  /// with many or with surfaces that may be as bumpy.
+  std::size_t bumpy_places = 0;
   std::size_t receptacles = 0;
   /// Whether the scene's triangles were there to settle objects on.
   bool has_mesh = false;

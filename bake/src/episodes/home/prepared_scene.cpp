@@ -35,8 +35,7 @@ bool covers(const Bounds& mesh, const Bounds& grid) {
 /// What to do where no goal was found. Of each target that stood and was reached, some place was
 /// too near for its goal or on its own surface.
 std::string adviceFor(const RejectionCounts& rejections, float flatness) {
-  // Scanned surfaces bend by that, and nearly every try fails where they have to be flatter.
-  constexpr float kScanFlatness = 0.01F;
+  // On scans nearly every try fails where surfaces have to be flatter.
   constexpr double kNearlyAll = 0.98;
   const std::uint64_t bumpy =
       rejections[EpisodeRejection::kNoRoom] + rejections[EpisodeRejection::kUneven];
@@ -195,6 +194,17 @@ DraftHome PreparedScene::draftHome() const {
           .target_to_goal = target_to_goal_};
 }
 
+std::size_t PreparedScene::bumpyPlaces() const {
+  // Some square meters: where there are more, there is room for objects.
+  constexpr std::size_t kMany = 2000;
+  if (context_.options.flatness >= kScanFlatness || supports_.places().size() > kMany) return 0;
+  EpisodeGeneratorOptions options = context_.options;
+  options.flatness = kScanFlatness;
+  return SupportPlaces(scene_, {floor_, context_.reach}, details_.receptacles, options)
+      .places()
+      .size();
+}
+
 GeneratedScene PreparedScene::summary() const {
   const bool is_shortened = target_to_goal_.least < context_.options.target_to_goal.least;
   return {.name = std::string(scene_.name()),
@@ -203,6 +213,7 @@ GeneratedScene PreparedScene::summary() const {
           .floor_places = floor_.places().size(),
           .support_places = supports_.places().size(),
           .surfaces = supports_.surfaceCount(),
+          .bumpy_places = unusable_.empty() ? bumpyPlaces() : 0,
           .receptacles = details_.receptacles.size(),
           .has_mesh = settling_ != nullptr,
           .shortened_way = is_shortened ? std::optional(target_to_goal_.least) : std::nullopt};

@@ -42,6 +42,8 @@ class PreparedScene {
  private:
   PreparedScene(const GenerationContext& context, const Scene& scene, SceneDetails details);
   [[nodiscard]] std::string whyUnusable() const;
+  /// GeneratedScene::bumpy_places.
+  [[nodiscard]] std::size_t bumpyPlaces() const;
   Result<void> useMesh();
   /// How far apart two objects can be, meters: a little more than is possible, never less.
   [[nodiscard]] float widestWay() const;
