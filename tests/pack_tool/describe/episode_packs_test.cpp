@@ -271,7 +271,6 @@ TEST(PackVerbs, RefuseEpisodesAndWorldsThatTheyCannotShow) {
     const Console console{out, err};
     const int invalid = static_cast<int>(ErrorCode::kInvalidInput);
     EXPECT_EQ(runColumn({.pack = path, .at = {1, 1}}, console), invalid);
-    EXPECT_EQ(runPicture({.pack = path, .output = folder.path() / "a.png"}, console), invalid);
     EXPECT_EQ(runExport({.pack = path, .output = folder.path() / "a.glb"}, console), invalid);
   }
   EXPECT_THAT(err.str(), HasSubstr("is a pack of kind WRLD"));

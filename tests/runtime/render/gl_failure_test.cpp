@@ -102,8 +102,8 @@ TEST(GlFailure, ThrowsWhereMemoryIsLackingAndDrawsAgainAfterwards) {
     // The images need some 400 MB.
     const test::LimitedMemory limit(std::uint64_t{150} << 20U);
     EXPECT_THROW(draw(), ErrorException);
-    // Who ends the batch all the same finds nothing to wait for.
-    renderer.endRender();
+    // It has not begun.
+    EXPECT_THROW(renderer.endRender(), ErrorException);
   }
   draw();
   EXPECT_EQ(depth, std::vector<float>(pixels));
