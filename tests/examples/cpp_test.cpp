@@ -53,8 +53,7 @@ class CppExamples : public testing::Test {
 
 TEST_F(CppExamples, QuerySceneAsksAGrid) {
   const std::filesystem::path room = sourceFolder() / "packs/golden/room-column.pack";
-  EXPECT_THAT(said("query_scene", {room.string()}),
-              AllOf(HasSubstr("outside the grid\n"), HasSubstr("free from ")));
+  EXPECT_THAT(said("query_scene", {room.string()}), HasSubstr("outside the grid\n"));
 }
 
 TEST_F(CppExamples, StepHomesStepsAndSaysWhereThingsAre) {
