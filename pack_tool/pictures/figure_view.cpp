@@ -124,8 +124,7 @@ std::vector<float> radiiOf(std::span<const Figure> figures) {
     }
   }
   std::ranges::sort(radii);
-  const auto again = std::ranges::unique(radii);
-  radii.erase(again.begin(), again.end());
+  radii.erase(std::unique(radii.begin(), radii.end()), radii.end());
   return radii;
 }
 

@@ -110,7 +110,7 @@ bool hasEpisodes(const PackFile& pack) {
 
 /// Options that are for other kinds of packs.
 Result<void> checkOptions(const PackFile& pack, const PictureOptions& options) {
-  const std::string_view kind = packKindName(pack.kind());
+  const std::string kind = packKindName(pack.kind());
   const auto refuse = [&](std::string_view what) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 fmt::format("is a pack of kind {} and {}", kind, what));

@@ -20,6 +20,7 @@
 #include "pack_tool/pictures/figure_picture.h"
 #include "pack_tool/pictures/figure_view.h"
 #include "pack_tool/pictures/mesh_raster.h"
+#include "pictures/drawing.h"
 #include "pictures/palette.h"
 #include "support/source_folder.h"
 
