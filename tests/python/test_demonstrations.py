@@ -227,7 +227,7 @@ def reindexed(**changes: object) -> object:
         (lambda folder: (folder / demonstrations.INDEX).write_text("{"), "does not say what"),
         (lambda folder: (folder / demonstrations.INDEX).write_text("[]"), "does not say what"),
         (lambda folder: (folder / demonstrations.INDEX).write_bytes(b"\xff"), "does not say what"),
-        (reindexed(format=1), "expected format 2"),
+        (reindexed(format=1), "has format 1, expected 2"),
         (reindexed(format=None), "format: found 'nothing'"),
         (reindexed(motions=-1), "found -1"),
         (reindexed(motions=True), "found True"),
