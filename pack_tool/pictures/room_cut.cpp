@@ -180,7 +180,8 @@ SectionRaster rasterOf(std::span<const SectionLine> section, double cell) {
   const auto count = [cell](float low, float high) {
     constexpr double kMost = 1e9;
     const double length = static_cast<double>(high) - static_cast<double>(low);
-    return static_cast<std::size_t>(std::min(std::ceil(length / cell), kMost));
+    // Of no lines at all, it is below 0.
+    return static_cast<std::size_t>(std::max(0.0, std::min(std::ceil(length / cell), kMost)));
   };
   return {static_cast<double>(box.low_x), static_cast<double>(box.low_z), cell,
           count(box.low_x, box.high_x), count(box.low_z, box.high_z)};
