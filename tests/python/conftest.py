@@ -43,6 +43,18 @@ def draw_actions():
 
 
 @pytest.fixture
+def played(world: galactic.World, draw_actions) -> galactic.Simulator:
+    """20 envs, after steps in which hands closed."""
+    envs = 20
+    simulator = galactic.Simulator(world, envs=envs, threads=1, seed=7, task="none")
+    for _ in range(60):
+        actions = draw_actions(envs, 8)
+        actions[:, -2] = 1
+        simulator.step(actions)
+    return simulator
+
+
+@pytest.fixture
 def refused_at_once():
     """A function that calls each of `calls` so many times, each in a thread of its own, all at once;
     what the RuntimeErrors among them said."""

@@ -11,17 +11,6 @@ from galactic import EnvStates, Pose, Simulator, VectorEnv
 ENVS = 20
 
 
-@pytest.fixture
-def simulator(world, draw_actions):
-    """After steps in which hands closed."""
-    simulator = Simulator(world, envs=ENVS, threads=1, seed=7, task="none")
-    for _ in range(60):
-        actions = draw_actions(ENVS, 8)
-        actions[:, -2] = 1
-        simulator.step(actions)
-    return simulator
-
-
 def assert_same_pose(poses, at, pose: Pose):
     np.testing.assert_array_equal(poses.translation[at], pose.translation)
     np.testing.assert_array_equal(poses.rotation[at], pose.rotation)
@@ -45,23 +34,23 @@ def assert_same(states: EnvStates, row: int, simulator: Simulator, env: int, wor
     assert np.isnan(states.objects.translation[row, there:]).all()
 
 
-def test_arrays_hold_what_single_envs_say(simulator, world):
-    states = simulator.env_states()
+def test_arrays_hold_what_single_envs_say(played, world):
+    states = played.env_states()
     for env in range(ENVS):
-        assert_same(states, env, simulator, env, world)
+        assert_same(states, env, played, env, world)
     assert (states.held >= 0).any() and (states.held < 0).any()
-    counts = {len(simulator.env_state(env).objects) for env in range(ENVS)}
+    counts = {len(played.env_state(env).objects) for env in range(ENVS)}
     assert len(counts) > 1 and states.objects.rotation.shape == (ENVS, max(counts), 4)
 
 
-def test_some_envs_in_any_order(simulator, world):
-    states = simulator.env_states([7, 2, 7])
+def test_some_envs_in_any_order(played, world):
+    states = played.env_states([7, 2, 7])
     for row, env in enumerate([7, 2, 7]):
-        assert_same(states, row, simulator, env, world)
+        assert_same(states, row, played, env, world)
     with pytest.raises(IndexError, match="there is no env 20"):
-        simulator.env_states([ENVS])
+        played.env_states([ENVS])
     with pytest.raises(TypeError):
-        simulator.env_states(np.ones(ENVS, bool))
+        played.env_states(np.ones(ENVS, bool))
 
 
 def test_without_distractors_there_is_the_target_alone(world):
@@ -71,12 +60,12 @@ def test_without_distractors_there_is_the_target_alone(world):
     assert_same(states, 3, alone, 3, world)
 
 
-def test_arrays_are_copies(simulator, draw_actions):
-    states = simulator.env_states()
+def test_arrays_are_copies(played, draw_actions):
+    states = played.env_states()
     before = copy.deepcopy(states)
-    simulator.step(draw_actions(ENVS, 8))
+    played.step(draw_actions(ENVS, 8))
     np.testing.assert_array_equal(states.joint_positions, before.joint_positions)
-    assert (simulator.env_states().joint_positions != before.joint_positions).any()
+    assert (played.env_states().joint_positions != before.joint_positions).any()
 
 
 @pytest.mark.parametrize("halves", [1, 2])
@@ -95,8 +84,8 @@ def test_vector_env_has_those_of_all_envs(world, draw_actions, halves):
     env.recv()
 
 
-def test_states_can_be_pickled_and_copied(simulator):
-    state = simulator.env_state(int(np.argmax(simulator.env_states().held)))
+def test_states_can_be_pickled_and_copied(played):
+    state = played.env_state(int(np.argmax(played.env_states().held)))
     for other in (pickle.loads(pickle.dumps(state)), copy.deepcopy(state)):
         assert repr(other) == repr(state)
         assert (other.held, other.target, other.scene) == (state.held, state.target, state.scene)
@@ -106,15 +95,15 @@ def test_states_can_be_pickled_and_copied(simulator):
             np.testing.assert_array_equal(getattr(other, name).matrix, getattr(state, name).matrix)
         for one, wanted in zip(other.objects, state.objects, strict=True):
             np.testing.assert_array_equal(one.matrix, wanted.matrix)
-    states = pickle.loads(pickle.dumps(simulator.env_states()))
-    np.testing.assert_array_equal(states.goal.matrix, simulator.env_states().goal.matrix)
+    states = pickle.loads(pickle.dumps(played.env_states()))
+    np.testing.assert_array_equal(states.goal.matrix, played.env_states().goal.matrix)
 
 
-def test_what_is_no_state_does_not_become_one(simulator):
-    kind, parts = type(simulator.env_state(0)), list(simulator.env_state(0).__getstate__())
+def test_what_is_no_state_does_not_become_one(played):
+    kind, parts = type(played.env_state(0)), list(played.env_state(0).__getstate__())
     made = kind.__new__(kind)
     made.__setstate__(tuple(parts))
-    assert repr(made) == repr(simulator.env_state(0))
+    assert repr(made) == repr(played.env_state(0))
     held, target, names = 7, 8, 10
     for place, wrong in ((held, 99), (target, 99), (names, ["mug"] * 99)):
         with pytest.raises(ValueError, match="this is no EnvState"):

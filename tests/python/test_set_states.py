@@ -9,17 +9,6 @@ ENVS = 20
 
 
 @pytest.fixture
-def played(world, draw_actions):
-    """After steps in which hands closed."""
-    simulator = Simulator(world, envs=ENVS, threads=1, seed=7, task="none")
-    for _ in range(60):
-        actions = draw_actions(ENVS, 8)
-        actions[:, -2] = 1
-        simulator.step(actions)
-    return simulator
-
-
-@pytest.fixture
 def fresh(world):
     return Simulator(world, envs=ENVS, threads=2, seed=3, task="none")
 
