@@ -45,7 +45,7 @@ std::vector<RealRobot> realRobots() {
       {kGalacticFetch, 26, 2, 14, 12, 26, true},
       {kSpot, 21, 21, 21, 21, 2},
       {"robots/kuka_iiwa/model_free_base.urdf", 8, 8, 8, 8, 0},
-      {kStretch, 61, 36, 37, 60, 3},
+      {kStretch, 61, 36, 37, 60, 1},
   };
 }
 
