@@ -386,8 +386,10 @@ TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
 }
 
 TEST_F(RenderCli, ASecondSignalEndsARunAtOnceThatHasMuchToFinish) {
-  // It waits for an ffmpeg that takes its time.
-  const auto script = folder_.write("bin/ffmpeg", "#!/bin/sh\ncat > ended\nsleep 20\n");
+  // It waits for an ffmpeg that takes its time. What that says must not grow: whoever reads a file
+  // that grows as fast never comes to its end.
+  const auto script =
+      folder_.write("bin/ffmpeg", "#!/bin/sh\nhead -c 1 > begun\ncat > /dev/null\nsleep 20\n");
   std::filesystem::permissions(script, std::filesystem::perms::owner_all);
   const std::string before = std::getenv("PATH");
   ::setenv("PATH", ((folder_.path() / "bin").string() + ":" + before).c_str(), 1);
@@ -396,7 +398,7 @@ TEST_F(RenderCli, ASecondSignalEndsARunAtOnceThatHasMuchToFinish) {
       {"world.pack", "--backend", "soft", "--envs", "1", "--steps", "1000000000", "--render", "rgb",
        "--size", "16", "--video", "run.mp4", "--record", "run.rec"});
   ::setenv("PATH", before.c_str(), 1);
-  const auto has_begun = [&] { return !content("ended").empty(); };
+  const auto has_begun = [&] { return !content("begun").empty(); };
   for (int n = 0; n < 2000 && !has_begun(); ++n) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
