@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# build_pgo.sh [WORLD.pack]: the run side and the Python package in build/pgo, optimized by what they do when they step,
-# draw and sense the sample world, or WORLD. Works from any folder. With Clang 19, whose packages it installs.
+# build_pgo.sh [WORLD.pack [TARGET...]]: the run side and the Python package in build/pgo, or only these targets of them,
+# optimized by what they do when they step, draw and sense the sample world, or WORLD. Works from any folder. With Clang
+# 19, whose packages it installs.
 #
 # Builds twice, one and two minutes on two cores: programs that record, which play the world, then those to use.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
 world=$(realpath -m -- "${1:-$galactic_root/build/release/sample/world.pack}")
+targets=("${@:2}")
+[ $# -gt 1 ] || targets=(all)
 cd "$galactic_root"
 
 recorder=build/pgo-record
@@ -76,5 +79,5 @@ phase pgo-record-build "Building programs that record" \
   cmake --build --preset pgo-record --target galactic-run learned_policy
 phase pgo-record "Stepping, drawing and sensing $world" record
 phase pgo-configure "Configuring (preset pgo)" cmake --preset pgo
-phase pgo-build "Building by that record" cmake --build --preset pgo
+phase pgo-build "Building by that record" cmake --build --preset pgo --target "${targets[@]}"
 phase pgo-compare "Comparing results" compare
