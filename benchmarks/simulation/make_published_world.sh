@@ -4,6 +4,7 @@
 #
 #   benchmarks/simulation/make_published_world.sh ASSETS OUT_FOLDER [BIN_FOLDER]
 #
+# docs/internals/simulation_speed.md says what ASSETS holds, and where it comes from.
 # Leaves OUT_FOLDER/world.pack, and held_world.pack with the target of each episode in the hand.
 set -euo pipefail
 assets=$(cd "$1" && pwd)
