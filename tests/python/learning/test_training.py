@@ -44,8 +44,8 @@ pytestmark = needs_worlds
 
 
 def test_a_policy_learns_what_chance_does_not(tmp_path: pathlib.Path) -> None:
-    """Mobile Pick on unseen episodes. An untrained policy picks a few percent; see docs/learning.md
-    for what longer runs reach."""
+    """Mobile Pick on unseen episodes. An untrained policy picks a few percent; docs/learning_results.md
+    says what longer runs reach."""
     # Fewer envs than the preset, for more updates in fewer steps, and nothing that costs to sense.
     common = ["--preset", "quick", "--seed", "5", "--validation", HELD_OUT, "--envs", "128"]
     common += ["--simulation", BLIND, "--final-log-std", "2"]
