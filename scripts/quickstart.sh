@@ -33,7 +33,7 @@ draw() {
   "$bin/galactic-run" "$world" --envs 4 --steps 500 --policy scripted --view "$out/run.html"
 }
 
-phase setup "Installing packages" scripts/setup.sh
+phase setup "Installing packages" scripts/setup.sh --to-use
 phase quickstart-configure "Configuring (preset release)" cmake --preset release
 phase quickstart-build "Building the tools" \
   cmake --build --preset release --target galactic-bake galactic-run galactic-pack

@@ -1,9 +1,14 @@
 #!/usr/bin/env bash
-# setup.sh [PACKAGE...]: installs the Debian packages of scripts/packages.txt, and these, that are not there yet. Asks
-# no questions; as a user other than root it calls sudo.
+# setup.sh [--to-use] [PACKAGE...]: installs the Debian packages of scripts/packages.txt, and these, that are not there yet;
+# with --to-use not those that are only to check changes. Asks no questions; as a user other than root it calls sudo.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-mapfile -t wanted < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$here/packages.txt")
+last='$'
+if [ "${1:-}" = --to-use ]; then
+  last='/^# ONLY TO CHECK/'
+  shift
+fi
+mapfile -t wanted < <(sed -n "1,${last}p" "$here/packages.txt" | sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d')
 wanted+=("$@")
 
 if ! command -v apt-get >/dev/null; then
