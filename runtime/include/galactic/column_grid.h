@@ -92,6 +92,10 @@ class ColumnGrid {
   /// The same with the distances down and up to contact in that column.
   [[nodiscard]] Contact contact(Vec3 center) const noexcept;
 
+  /// The same in a column of the caller's choice, at height `y`: for those who go from cell to
+  /// cell. kOutside where there is no such column.
+  [[nodiscard]] Contact contact(ColumnIndex column, float y) const noexcept;
+
   /// `contact` for each center, eight at a time where the processor has AVX2 (chosen at run time).
   /// The answers equal those of `contact` bit for bit. Neither allocates nor throws.
   /// All spans of `centers` and `out.clearance` have one length; `out.down` and `out.up` have that

@@ -103,19 +103,17 @@ inline GroundPoint groundPoint(const ColumnGridLayout& grid, float x, float z) {
   return {(x - grid.min_x) * grid.inverse_spacing, (z - grid.min_z) * grid.inverse_spacing};
 }
 
-/// The one definition of a query. contactAvx2 repeats it operation by operation.
-inline Contact contactAt(const ColumnGridLayout& grid, Vec3 center) {
-  const GroundPoint point = groundPoint(grid, center.x, center.z);
-  const bool inside =
-      point.isInside(grid) && center.y >= grid.heights.lo && center.y <= grid.heights.hi;
-  if (!inside) return {.clearance = clearanceElsewhere(center)};
+inline bool isWithin(const ColumnGridLayout& grid, float y) {
+  return y >= grid.heights.lo && y <= grid.heights.hi;
+}
 
-  const auto [i, k] = point.column();
-  const std::uint32_t index = cellIndex(i, k, grid.tiles_x);
+/// In a column of the grid, at a height of its range.
+inline Contact contactInColumn(const ColumnGridLayout& grid, ColumnIndex column, float y) {
+  const std::uint32_t index = cellIndex(column.i, column.k, grid.tiles_x);
   const std::uint64_t cell = grid.cells[index];
-  if (isOverflow(cell)) return detail::contactInOverflow(grid, overflowStart(cell), center.y);
+  if (isOverflow(cell)) return detail::contactInOverflow(grid, overflowStart(cell), y);
 
-  const float code = codeOf(grid, center.y, tileBase(grid, index));
+  const float code = codeOf(grid, y, tileBase(grid, index));
   const InlineSpans spans = inlineSpans(cell);
   const bool in_second =
       code >= static_cast<float>(spans.lo1) && code <= static_cast<float>(spans.hi1);
@@ -124,8 +122,16 @@ inline Contact contactAt(const ColumnGridLayout& grid, Vec3 center) {
   if (!(code >= lo && code <= hi)) return {};
   const float margin = detail::contactMargin(grid);
   // The highest code may lie above the grid's heights.
-  const float up = lesser((hi - code) * grid.quantum, grid.heights.hi - center.y);
+  const float up = lesser((hi - code) * grid.quantum, grid.heights.hi - y);
   return {Clearance::kFree, clearOf((code - lo) * grid.quantum, margin), clearOf(up, margin)};
+}
+
+/// The one definition of a query. contactAvx2 repeats it operation by operation.
+inline Contact contactAt(const ColumnGridLayout& grid, Vec3 center) {
+  const GroundPoint point = groundPoint(grid, center.x, center.z);
+  const bool inside = point.isInside(grid) && isWithin(grid, center.y);
+  if (!inside) return {.clearance = clearanceElsewhere(center)};
+  return contactInColumn(grid, point.column(), center.y);
 }
 
 }  // namespace
@@ -214,6 +220,13 @@ Clearance ColumnGrid::clearance(Vec3 center) const noexcept {
 }
 
 Contact ColumnGrid::contact(Vec3 center) const noexcept { return contactAt(layout_, center); }
+
+Contact ColumnGrid::contact(ColumnIndex column, float y) const noexcept {
+  if (std::isnan(y)) return {};
+  const bool inside =
+      column.i < layout_.columns_x && column.k < layout_.columns_z && isWithin(layout_, y);
+  return inside ? contactInColumn(layout_, column, y) : Contact{.clearance = Clearance::kOutside};
+}
 
 void ColumnGrid::contact(const SphereCenters& centers, const ContactArrays& out) const noexcept {
   const std::size_t count = centers.x.size();

@@ -87,10 +87,17 @@ struct Clip {
   }
 };
 
-/// A vertical line in a box's frame: the points at + t * slope, t in meters above the box's center.
+/// A line in a box's frame: the points at + t * slope, t in meters, slope of unit length.
 struct Line {
-  Triple at;
-  Triple slope;
+  Line(const Frame& frame, const Triple& from_center, const Triple& along) {
+    for (std::size_t n = 0; n < 3; ++n) {
+      at[n] = dotOf(frame.axes[n], from_center);
+      slope[n] = dotOf(frame.axes[n], along);
+    }
+  }
+
+  Triple at{};
+  Triple slope{};
 };
 
 /// The hull of what a line meets of the parts of a rounded box.
@@ -100,6 +107,8 @@ class RoundedBox {
 
   [[nodiscard]] Clip meet(const Line& line) {
     for (std::size_t axis = 0; axis < 3; ++axis) addSlab(line, axis);
+    // What is not rounded is all slab.
+    if (radius_ == 0) return hull_;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (unsigned corner = 0; corner < 4; ++corner) addEdge(line, axis, corner);
     }
@@ -205,15 +214,23 @@ std::optional<Span> overlapHeights(const RestingBox& box, float x, float z, floa
   const Frame frame(box);
   const Triple offset{static_cast<double>(x) - static_cast<double>(box.center.x), 0,
                       static_cast<double>(z) - static_cast<double>(box.center.z)};
-  Line line{};
-  for (std::size_t n = 0; n < 3; ++n) {
-    line.at[n] = dotOf(frame.axes[n], offset);
-    line.slope[n] = frame.axes[n][1];
-  }
+  const Line line(frame, offset, {0, 1, 0});
   const Clip met = RoundedBox(frame.half, static_cast<double>(radius)).meet(line);
   if (met.isEmpty()) return std::nullopt;
   const auto height = static_cast<double>(box.center.y);
   return Span{static_cast<float>(height + met.lo), static_cast<float>(height + met.hi)};
+}
+
+std::optional<double> wayToOverlap(const RestingBox& box, const Vec3& from,
+                                   const std::array<double, 3>& along, float radius) noexcept {
+  const Frame frame(box);
+  Triple offset = triple(from);
+  const Triple center = triple(box.center);
+  for (std::size_t n = 0; n < 3; ++n) offset[n] -= center[n];
+  const Line line(frame, offset, along);
+  const Clip met = RoundedBox(frame.half, static_cast<double>(radius)).meet(line);
+  if (met.isEmpty() || !(met.hi > 0)) return std::nullopt;
+  return std::max(met.lo, 0.0);
 }
 
 std::optional<Span> overlapShifts(const RestingBox& moving, const RestingBox& fixed) noexcept {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 
 #include "galactic/pose.h"
@@ -47,6 +48,13 @@ static_assert(sizeof(RestingBox) == 64);
 /// the edges and eight balls around the corners. Their union is convex, so a vertical line meets it
 /// in one interval: the hull of what it meets of each part.
 [[nodiscard]] std::optional<Span> overlapHeights(const RestingBox& box, float x, float z,
+                                                 float radius) noexcept;
+
+/// How far a ball of `radius` can move from `from` along the unit vector `along` before it overlaps
+/// the box, meters: 0 when it does there, none when it passes by. The same parts of the grown box
+/// as in overlapHeights().
+[[nodiscard]] std::optional<double> wayToOverlap(const RestingBox& box, const Vec3& from,
+                                                 const std::array<double, 3>& along,
                                                  float radius) noexcept;
 
 /// How far `moving` has to be shifted up (negative: down) to overlap `fixed`: an interval of

@@ -1,0 +1,260 @@
+#include "galactic/ray_caster.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "column_grid/free_way.h"
+#include "galactic/kinematics.h"
+#include "galactic/robot.h"
+#include "simulation/collision/resting_box.h"
+#include "support/call_check.h"
+#include "support/workers.h"
+
+namespace galactic {
+namespace {
+
+using detail::StraightLine;
+using simulation::RestingBox;
+
+/// What a thread takes at a time.
+constexpr std::size_t kLinesOfAPart = 256;
+/// A ball around a box is so much larger that no rounding leaves out a corner.
+constexpr double kSlack = 1 + 1e-6;
+
+/// A sphere of the robot, or of what it holds.
+struct Ball {
+  Vec3 center;
+  float radius = 0;
+  CastEnd of = CastEnd::kRobot;
+  std::int32_t index = -1;
+};
+
+struct Box {
+  RestingBox box;
+  /// Of a ball around it.
+  double radius = 0;
+  std::int32_t index = -1;
+};
+
+/// How far along a line it enters a ball: 0 from inside, none when it passes by.
+std::optional<double> wayToBall(const StraightLine& line, const Vec3& center, double radius) {
+  const double x = static_cast<double>(center.x) - static_cast<double>(line.from.x);
+  const double y = static_cast<double>(center.y) - static_cast<double>(line.from.y);
+  const double z = static_cast<double>(center.z) - static_cast<double>(line.from.z);
+  const double beyond = x * x + y * y + z * z - radius * radius;
+  if (beyond < 0) return 0;
+  const double ahead = x * line.along[0] + y * line.along[1] + z * line.along[2];
+  const double square = ahead * ahead - beyond;
+  if (!(ahead > 0 && square > 0)) return std::nullopt;
+  return beyond / (ahead + std::sqrt(square));
+}
+
+/// What a line has come to so far.
+struct Nearest {
+  double distance = 0;
+  CastEnd end = CastEnd::kNothing;
+  std::int32_t index = -1;
+
+  /// Where nothing is in the way, what is right at the end counts.
+  [[nodiscard]] bool isBehind(double other) const {
+    return other < distance || (other == distance && end == CastEnd::kNothing);
+  }
+  void take(std::optional<double> other, CastEnd of, std::int32_t number) {
+    if (other && isBehind(*other)) *this = {*other, of, number};
+  }
+};
+
+CastEnd endOf(Clearance clearance) {
+  switch (clearance) {
+    case Clearance::kFree:
+      return CastEnd::kNothing;
+    case Clearance::kBlocked:
+      return CastEnd::kScene;
+    case Clearance::kOutside:
+      break;
+  }
+  return CastEnd::kOutside;
+}
+
+bool isFinite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+void checkLines(const char* call, const CastLines& lines, std::size_t hits) {
+  const std::size_t count = lines.origins.size();
+  detail::checkLength(call, "directions", lines.directions.size(), count);
+  detail::checkLength(call, "lengths", lines.lengths.size(), count);
+  detail::checkLength(call, "hits", hits, count);
+  for (std::size_t n = 0; n < count; ++n) {
+    if (!isFinite(lines.origins[n])) {
+      detail::refuseCall(call, fmt::format("origins[{}] holds a number that is not finite", n));
+    }
+    if (!isFinite(lines.directions[n])) {
+      detail::refuseCall(call, fmt::format("directions[{}] holds a number that is not finite", n));
+    }
+    if (lines.directions[n] == Vec3{}) {
+      detail::refuseCall(call, fmt::format("directions[{}] is zero, and leads nowhere", n));
+    }
+    if (!(lines.lengths[n] >= 0)) {
+      detail::refuseCall(
+          call, fmt::format("lengths[{}] is {}, expected 0 or more meters", n, lines.lengths[n]));
+    }
+  }
+}
+
+StraightLine lineOf(const CastLines& lines, std::size_t n) {
+  const Vec3& direction = lines.directions[n];
+  const auto x = static_cast<double>(direction.x);
+  const auto y = static_cast<double>(direction.y);
+  const auto z = static_cast<double>(direction.z);
+  const double length = std::sqrt(x * x + y * y + z * z);
+  return {lines.origins[n],
+          {x / length, y / length, z / length},
+          static_cast<double>(lines.lengths[n])};
+}
+
+/// Of the objects of a state: without distractors, the target alone.
+std::span<const Placement> placementsOf(const World& world, const EnvState& state) {
+  constexpr const char* kCall = "RayCaster";
+  detail::checkIndex(kCall, "scene", state.scene, world.scenes().size());
+  detail::checkIndex(kCall, "episode", state.episode, world.episodes().episodes().size());
+  const Episode& episode = world.episodes().episodes()[state.episode];
+  const std::span<const Placement> all = world.episodes().placements(episode);
+  detail::checkLength(kCall, "joint_positions", state.joint_positions.size(),
+                      world.robot().positionCount());
+  if (state.objects.size() == 1) return all.subspan(episode.target, 1);
+  detail::checkLength(kCall, "objects", state.objects.size(), all.size());
+  return all;
+}
+
+}  // namespace
+
+class RayCaster::Impl {
+ public:
+  explicit Impl(const Scene& scene) : scene_(scene) {}
+  Impl(const World& world, const EnvState& state, CastRobot robot);
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+
+  /// What moves is met by a ball of `radius`, the scene by that of the grid.
+  void cast(const ColumnGrid& grid, float radius, const CastLines& lines, std::span<CastHit> hits,
+            std::uint32_t threads) const;
+
+ private:
+  void addRobot(const World& world, const EnvState& state);
+  void addHeld(const World& world, const ObjectModel& model, const EnvState& state);
+  [[nodiscard]] CastHit castOne(const ColumnGrid& grid, float radius,
+                                const StraightLine& line) const;
+
+  /// What keeps the packs of the scene, where it is not the caller.
+  std::optional<World> world_;
+  Scene scene_;
+  std::vector<Box> boxes_;
+  std::vector<Ball> balls_;
+};
+
+RayCaster::Impl::Impl(const World& world, const EnvState& state, CastRobot robot)
+    : world_(world), scene_(world.scenes()[0]) {
+  const std::span<const Placement> placements = placementsOf(world, state);
+  scene_ = world.scenes()[state.scene];
+  for (std::size_t n = 0; n < placements.size(); ++n) {
+    const ObjectModel& model = world.objectOf(placements[n]);
+    const auto index = static_cast<std::int32_t>(n);
+    if (index != state.held) {
+      const RestingBox box = simulation::restingBox(model.box, state.objects[n]);
+      const auto squared = static_cast<double>(dot(box.half_extents, box.half_extents));
+      boxes_.push_back({box, std::sqrt(squared), index});
+    } else if (robot == CastRobot::kIsSeen) {
+      addHeld(world, model, state);
+    }
+  }
+  if (robot == CastRobot::kIsSeen) addRobot(world, state);
+}
+
+void RayCaster::Impl::addHeld(const World& world, const ObjectModel& model, const EnvState& state) {
+  const Pose& world_from_object = state.objects[static_cast<std::size_t>(state.held)];
+  for (const SetSphere& sphere : model.spheres) {
+    balls_.push_back({world_from_object * sphere.center, world.radii()[sphere.radius_index],
+                      CastEnd::kObject, state.held});
+  }
+}
+
+void RayCaster::Impl::addRobot(const World& world, const EnvState& state) {
+  const Robot& robot = world.robot();
+  std::vector<Pose> world_from_links(robot.links().size());
+  forwardKinematics(robot.links(), state.world_from_root, state.joint_positions, world_from_links);
+  for (const SphereGroup& group : robot.groups()) {
+    for (const SetSphere& sphere : group.spheres) {
+      balls_.push_back({world_from_links[group.link] * sphere.center,
+                        robot.radii()[sphere.radius_index], CastEnd::kRobot,
+                        static_cast<std::int32_t>(group.link)});
+    }
+  }
+}
+
+CastHit RayCaster::Impl::castOne(const ColumnGrid& grid, float radius,
+                                 const StraightLine& line) const {
+  const detail::FreeWay way = detail::freeWay(grid, line);
+  Nearest nearest{way.length, endOf(way.end)};
+  const auto wider = static_cast<double>(radius);
+  for (const Box& one : boxes_) {
+    const auto around = wayToBall(line, one.box.center, (one.radius + wider) * kSlack);
+    if (!around || !nearest.isBehind(*around)) continue;
+    nearest.take(simulation::wayToOverlap(one.box, line.from, line.along, radius), CastEnd::kObject,
+                 one.index);
+  }
+  for (const Ball& ball : balls_) {
+    const double reach = static_cast<double>(ball.radius) + wider;
+    nearest.take(wayToBall(line, ball.center, reach), ball.of, ball.index);
+  }
+  return {static_cast<float>(nearest.distance), nearest.end, nearest.index};
+}
+
+void RayCaster::Impl::cast(const ColumnGrid& grid, float radius, const CastLines& lines,
+                           std::span<CastHit> hits, std::uint32_t threads) const {
+  const std::size_t count = hits.size();
+  const std::size_t parts = (count + kLinesOfAPart - 1) / kLinesOfAPart;
+  detail::forEachPart(threads, parts, [&](std::size_t part) {
+    const std::size_t end = std::min(count, (part + 1) * kLinesOfAPart);
+    for (std::size_t n = part * kLinesOfAPart; n < end; ++n) {
+      hits[n] = castOne(grid, radius, lineOf(lines, n));
+    }
+  });
+}
+
+RayCaster::RayCaster(const Scene& scene) : impl_(std::make_shared<const Impl>(scene)) {}
+
+RayCaster::RayCaster(const World& world, const EnvState& state, CastRobot robot)
+    : impl_(std::make_shared<const Impl>(world, state, robot)) {}
+
+void RayCaster::castRays(const CastLines& lines, std::span<CastHit> hits,
+                         std::uint32_t threads) const {
+  checkLines("RayCaster::castRays", lines, hits.size());
+  impl_->cast(impl_->scene().grids().front(), 0, lines, hits, threads);
+}
+
+void RayCaster::sweepSpheres(float radius, const CastLines& lines, std::span<CastHit> hits,
+                             std::uint32_t threads) const {
+  constexpr const char* kCall = "RayCaster::sweepSpheres";
+  checkLines(kCall, lines, hits.size());
+  const Scene& scene = impl_->scene();
+  const std::optional<std::size_t> index = scene.gridIndex(radius);
+  if (!index) {
+    std::string radii;
+    for (const ColumnGrid& grid : scene.grids()) {
+      radii += fmt::format("{}{}", radii.empty() ? "" : ", ", grid.radius());
+    }
+    detail::refuseCall(kCall, fmt::format("found the radius {} m, expected one that the scene has "
+                                          "a grid for: {}",
+                                          radius, radii));
+  }
+  const ColumnGrid& grid = scene.grids()[*index];
+  impl_->cast(grid, grid.radius(), lines, hits, threads);
+}
+
+}  // namespace galactic
