@@ -1,10 +1,11 @@
-// Opens a scene pack and asks where a sphere may be. Usage: query_scene PACK
+// Opens a scene pack and asks where a sphere may be, and what a ray meets. Usage: query_scene PACK
 #include <array>
 #include <cstdio>
 #include <vector>
 
 #include "galactic/error.h"
 #include "galactic/pack.h"
+#include "galactic/ray_caster.h"
 #include "galactic/scene.h"
 
 int main(int argc, char** argv) try {
@@ -59,6 +60,17 @@ int main(int argc, char** argv) try {
       std::printf("free from %.3f to %.3f m\n", static_cast<double>(span.lo),
                   static_cast<double>(span.hi));
     }
+  }
+
+  // Rays, here a single one: how far do they get, and what do they come to?
+  const galactic::RayCaster caster(scene);
+  const std::array<galactic::Vec3, 1> origin{{{-0.5F, 1.2F, -2.0F}}};
+  const std::array<galactic::Vec3, 1> direction{{{1, 0, 0}}};
+  const std::array<float, 1> length{10};
+  std::array<galactic::CastHit, 1> hit{};
+  caster.castRays({origin, direction, length}, hit);
+  if (hit[0].end == galactic::CastEnd::kScene) {
+    std::printf("something is %.3f m along X\n", static_cast<double>(hit[0].distance));
   }
   return galactic::kExitOk;
 } catch (const galactic::ErrorException& failure) {

@@ -2,7 +2,8 @@
 
 World opens packs, Simulator steps a batch of environments, Renderer draws them, VectorEnv is
 Gymnasium's vector environment over them, Task one of your own in it, LearnedPolicy plays policy packs, ScriptedPolicy is an
-expert to imitate, PlanningScene answers planners, PathFinder knows the ways along a floor. docs/python.md has the tour.
+expert to imitate, PlanningScene answers planners, PathFinder knows the ways along a floor,
+RayCaster casts rays and sweeps spheres. docs/python.md has the tour.
 """
 
 import sys
@@ -15,6 +16,7 @@ programs.end_without_libraries()
 try:
     from galactic._core import (
         Action,
+        CastEnd,
         EnvState,
         EpisodeEnd,
         ErrorCode,
@@ -23,6 +25,7 @@ try:
         PathFinder,
         PlanningScene,
         Pose,
+        RayCaster,
         Renderer,
         ScriptedPhase,
         ScriptedPolicy,
@@ -39,6 +42,7 @@ except ModuleNotFoundError as error:
         "it: cmake --build --preset release --target galactic_python (docs/python.md)",
         name=error.name,
     ) from None
+from galactic.cast_hits import CastHits
 from galactic.demonstration_writer import DemonstrationWriter
 from galactic.demonstrations import Demonstration, Demonstrations
 from galactic.env_states import EnvStates, Poses
@@ -49,6 +53,8 @@ from galactic.vector_env import VectorEnv
 
 __all__ = [
     "Action",
+    "CastEnd",
+    "CastHits",
     "Demonstration",
     "DemonstrationWriter",
     "Demonstrations",
@@ -65,6 +71,7 @@ __all__ = [
     "PlanningScene",
     "Pose",
     "Poses",
+    "RayCaster",
     "Renderer",
     "ScriptedPhase",
     "ScriptedPolicy",

@@ -8,6 +8,7 @@ from typing import Any, Literal, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from galactic.cast_hits import CastHits
 from galactic.env_states import EnvStates
 from galactic.episode_table import EpisodeTable
 
@@ -253,6 +254,35 @@ class PathFinder:
     def fields(
         self, goals: ArrayLike, *, hand: bool = False, threads: int = 0
     ) -> GeodesicFields: ...
+
+class CastEnd(IntEnum):
+    NOTHING = 0
+    SCENE = 1
+    OBJECT = 2
+    ROBOT = 3
+    OUTSIDE = 4
+
+class RayCaster:
+    def __init__(self, world: World, scene: int) -> None: ...
+    @staticmethod
+    def of_env(simulator: Simulator, env: int = 0, *, robot: bool = False) -> RayCaster: ...
+    def cast_rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        lengths: ArrayLike = ...,
+        *,
+        threads: int = 1,
+    ) -> CastHits: ...
+    def sweep_spheres(
+        self,
+        radius: float,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        lengths: ArrayLike = ...,
+        *,
+        threads: int = 1,
+    ) -> CastHits: ...
 
 class EpisodeTally:
     def __init__(self, simulator: Simulator) -> None: ...

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <string_view>
 #include <type_traits>
 
 namespace galactic::python {
@@ -83,6 +85,42 @@ py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumber
         [](std::int64_t one) { return one < 0; }, std::numeric_limits<std::int64_t>::max());
   }
   return numbers;
+}
+
+py::array numbersIn(const py::handle& given, const char* name) {
+  py::array array = py::array::ensure(given);
+  if (!array) {
+    PyErr_Clear();
+    throw py::type_error(
+        fmt::format("{} is a {}, expected an array of numbers", name, typeName(given)));
+  }
+  if (std::string_view("biuf").find(array.dtype().kind()) == std::string_view::npos) {
+    throw py::type_error(
+        fmt::format("{} has the type {}, expected numbers", name, typeText(array.dtype())));
+  }
+  return array;
+}
+
+std::vector<Vec3> pointsOf(const py::handle& given, const char* name) {
+  constexpr py::ssize_t kNumbers = 3;
+  const py::array shaped = py::array::ensure(given);
+  if (!shaped) PyErr_Clear();
+  if (shaped && shaped.ndim() == 1 && shaped.size() == 0) return {};
+  if (!shaped || shaped.ndim() != 2 || shaped.shape(1) != kNumbers) {
+    const std::string found = shaped ? shapeText(shapeOf(shaped)) : "no array";
+    throw py::value_error(fmt::format("{} has the shape {}, expected (n, 3)", name, found));
+  }
+  const auto array = inputOf<float>(numbersIn(shaped, name), name, {shaped.shape(0), kNumbers});
+  const float* numbers = array.data();
+  std::vector<Vec3> points;
+  points.reserve(static_cast<std::size_t>(array.shape(0)));
+  for (py::ssize_t n = 0; n < array.shape(0); ++n, numbers += kNumbers) {
+    if (!std::all_of(numbers, numbers + kNumbers, [](float one) { return std::isfinite(one); })) {
+      throw py::value_error(fmt::format("{}[{}] holds a number that is not finite", name, n));
+    }
+    points.push_back({numbers[0], numbers[1], numbers[2]});
+  }
+  return points;
 }
 
 template <class T>

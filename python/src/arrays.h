@@ -46,6 +46,14 @@ template <class T>
 [[nodiscard]] py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumbersOf(
     const py::handle& given, const char* name, const Shape& shape);
 
+/// What a caller gives as `name`, as an array of numbers of any shape. TypeError for others, whom
+/// numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
+[[nodiscard]] py::array numbersIn(const py::handle& given, const char* name);
+
+/// `given` as points, float (n, 3), or an empty list; ValueError for another shape or numbers that
+/// are not finite.
+[[nodiscard]] std::vector<Vec3> pointsOf(const py::handle& given, const char* name);
+
 /// Memory of the caller, as `name`, that results are written to: an array of exactly this type and
 /// shape, writable and in rows without gaps; nothing is converted. TypeError or ValueError when it
 /// is another.

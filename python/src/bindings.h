@@ -16,6 +16,7 @@ void bindEnvState(py::module_& module);
 void bindSimulator(py::module_& module);
 void bindPlanningScene(py::module_& module);
 void bindPathFinder(py::module_& module);
+void bindRayCaster(py::module_& module);
 void bindEpisodeTally(py::module_& module);
 void bindPolicy(py::module_& module);
 void bindScriptedPolicy(py::module_& module);

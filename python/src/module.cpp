@@ -46,6 +46,7 @@ PYBIND11_MODULE(_core, module) {
   galactic::python::bindSimulator(module);
   galactic::python::bindPlanningScene(module);
   galactic::python::bindPathFinder(module);
+  galactic::python::bindRayCaster(module);
   galactic::python::bindEpisodeTally(module);
   galactic::python::bindPolicy(module);
   galactic::python::bindScriptedPolicy(module);

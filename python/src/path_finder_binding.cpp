@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,35 +20,6 @@ namespace galactic::python {
 namespace {
 
 constexpr py::ssize_t kNumbers = 3;
-
-/// `given` as points, float (n, 3), or an empty list; ValueError for another shape or numbers that
-/// are not finite.
-std::vector<Vec3> pointsOf(const py::handle& given, const char* name) {
-  const py::array shaped = py::array::ensure(given);
-  if (!shaped) PyErr_Clear();
-  if (shaped && shaped.ndim() == 1 && shaped.size() == 0) return {};
-  if (!shaped || shaped.ndim() != 2 || shaped.shape(1) != kNumbers) {
-    const std::string found =
-        shaped ? shapeText({shaped.shape(), shaped.shape() + shaped.ndim()}) : "no array";
-    throw py::value_error(fmt::format("{} has the shape {}, expected (n, 3)", name, found));
-  }
-  // What numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
-  if (std::string_view("biuf").find(shaped.dtype().kind()) == std::string_view::npos) {
-    throw py::type_error(fmt::format("{} has the type {}, expected numbers", name,
-                                     py::str(shaped.dtype()).cast<std::string>()));
-  }
-  const auto array = inputOf<float>(shaped, name, {shaped.shape(0), kNumbers});
-  const float* numbers = array.data();
-  std::vector<Vec3> points;
-  points.reserve(static_cast<std::size_t>(array.shape(0)));
-  for (py::ssize_t n = 0; n < array.shape(0); ++n, numbers += kNumbers) {
-    if (!std::all_of(numbers, numbers + kNumbers, [](float one) { return std::isfinite(one); })) {
-      throw py::value_error(fmt::format("{}[{}] holds a number that is not finite", name, n));
-    }
-    points.push_back({numbers[0], numbers[1], numbers[2]});
-  }
-  return points;
-}
 
 Vec3 pointOf(const py::handle& given, const char* name) {
   const auto array = inputOf<float>(given, name, {kNumbers});

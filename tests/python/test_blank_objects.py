@@ -53,6 +53,8 @@ def test_no_member_of_a_blank_object_can_be_used(bound):
         lambda world, simulator: galactic.PathFinder(world, 0, (0, 0, 0)),
         lambda world, simulator: galactic.Renderer(simulator),
         lambda world, simulator: galactic.PlanningScene(simulator),
+        lambda world, simulator: galactic.RayCaster(world, 0),
+        lambda world, simulator: galactic.RayCaster.of_env(simulator),
         lambda world, simulator: galactic.ScriptedPolicy(simulator),
         lambda world, simulator: _core.EpisodeTally(simulator),
     ],

@@ -1,0 +1,20 @@
+"""How far rays and swept spheres get: what the casts of a RayCaster return."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class CastHits(NamedTuple):
+    """Of n rays or spheres, in their order."""
+
+    distance: NDArray[np.float32]
+    """(n,), meters; 0 where one begins in what it comes to, or outside the grid."""
+    end: NDArray[np.uint8]
+    """(n,), what each comes to: a CastEnd."""
+    index: NDArray[np.int32]
+    """(n,), where that is an object, its index into EnvState.objects; of the robot, its link's into
+    World.links; else -1."""
