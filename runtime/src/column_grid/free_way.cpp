@@ -53,6 +53,21 @@ Clearance endAt(const ColumnGridLayout& grid, double y) {
 
 }  // namespace
 
+double lengthOf(const Vec3& v) noexcept {
+  const auto x = static_cast<double>(v.x);
+  const auto y = static_cast<double>(v.y);
+  const auto z = static_cast<double>(v.z);
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+StraightLine straightLine(const Vec3& from, const Vec3& direction, double length) noexcept {
+  const double whole = lengthOf(direction);
+  return {from,
+          {static_cast<double>(direction.x) / whole, static_cast<double>(direction.y) / whole,
+           static_cast<double>(direction.z) / whole},
+          length};
+}
+
 FreeWay freeWay(const ColumnGrid& grid, const StraightLine& line) noexcept {
   const ColumnGridLayout& layout = grid.layout();
   const Contact start = grid.contact(line.from);

@@ -15,6 +15,12 @@ struct StraightLine {
   double length = 0;
 };
 
+[[nodiscard]] double lengthOf(const Vec3& v) noexcept;
+
+/// In a direction that is finite and not zero.
+[[nodiscard]] StraightLine straightLine(const Vec3& from, const Vec3& direction,
+                                        double length) noexcept;
+
 /// How far a sphere gets along a line, and what is there: kFree where the line ends, kBlocked where
 /// the sphere touches something, kOutside where the grid ends.
 struct FreeWay {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "column_grid/free_way.h"
+
 namespace galactic {
 namespace {
 
@@ -52,16 +54,11 @@ RigidTransform raised(const RigidTransform& from, const Vec3& pivot, float angle
 /// How much of the way from `from` to `to` is free, 0 to 1.
 float freeShare(const ColumnGrid& grid, const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
-  const float length = std::sqrt(dot(way, way));
-  const float pace = 0.5F * std::min(grid.radius(), grid.spacing());
-  const auto steps = std::max(1, static_cast<int>(std::ceil(length / pace)));
-  for (int n = 0; n <= steps; ++n) {
-    const float share = static_cast<float>(n) / static_cast<float>(steps);
-    if (grid.clearance(from + way * share) != Clearance::kFree) {
-      return static_cast<float>(std::max(n - 1, 0)) / static_cast<float>(steps);
-    }
-  }
-  return 1;
+  const double length = detail::lengthOf(way);
+  if (length == 0) return 1;
+  if (!std::isfinite(length)) return 0;
+  const auto free = detail::freeWay(grid, detail::straightLine(from, way, length));
+  return static_cast<float>(free.length / length);
 }
 
 /// The point of the camera's axis that is nearest to the vertical line through `base`.

@@ -1,4 +1,4 @@
-// Scans of the sample apartment against rays through its triangles.
+// Scans of the sample apartment and rays in it, against rays through its triangles.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,6 +10,7 @@
 #include "engines/triangle_rays.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "galactic/ray_caster.h"
 #include "sensors/scan_kernels.h"
 #include "sensors/scan_plane.h"
 #include "support/homes/sample_world.h"
@@ -114,6 +115,55 @@ TEST(Scans, EndWhereRaysMeetTheScene) {
   EXPECT_LT(late, beams / 200);
   EXPECT_LT(unfounded, met / 200);
   // The others are met at a grazing angle, or pass close by.
+  EXPECT_GT(steep, 17 * met / 20);
+}
+
+/// The same in all directions, where level surfaces are met 15 mm before.
+TEST(Rays, EndWhereTheMeshIs) {
+  RecordProperty("seed", static_cast<int>(kSeed));
+  const MemoryPack pack = bakeSampleApartment();
+  const Scene scene = Scene::from(pack.pack()).value();
+  const TriangleRays triangles = apartmentRays();
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> share(0, 1);
+  constexpr std::size_t kRays = 8000;
+  const ColumnGridLayout& layout = scene.grids().front().layout();
+  std::vector<Vec3> origins;
+  std::vector<Vec3> directions;
+  while (origins.size() < kRays) {
+    const Vec3 origin{
+        layout.min_x + share(random) * static_cast<float>(layout.columns_x) * layout.spacing,
+        layout.heights.lo + share(random) * (layout.heights.hi - layout.heights.lo),
+        layout.min_z + share(random) * static_cast<float>(layout.columns_z) * layout.spacing};
+    if (scene.grids().back().clearance(origin) != Clearance::kFree) continue;
+    origins.push_back(origin);
+    const float y = 2 * share(random) - 1;
+    const float across = std::sqrt(1 - y * y);
+    const float angle = 6.2831853F * share(random);
+    directions.push_back({across * std::cos(angle), y, across * std::sin(angle)});
+  }
+  std::vector<CastHit> hits(kRays);
+  RayCaster(scene).castRays({origins, directions, std::vector<float>(kRays, kRange)}, hits, 2);
+  int met = 0;
+  int late = 0;
+  int unfounded = 0;
+  int steep = 0;
+  for (std::size_t n = 0; n < kRays; ++n) {
+    const float distance = hits[n].distance;
+    const float ray =
+        triangles.first({.origin = origins[n], .direction = directions[n]}).value_or(kRange);
+    late += distance > std::min(ray, kRange) + kLate ? 1 : 0;
+    if (hits[n].end != CastEnd::kScene) continue;
+    ++met;
+    unfounded += isAnythingNear(triangles, origins[n] + directions[n] * distance) ? 0 : 1;
+    steep += std::fabs(distance - ray) < kSteep ? 1 : 0;
+  }
+  std::printf("rays %zu met %d late %d unfounded %d within %.0f mm of the mesh %d\n", kRays, met,
+              late, unfounded, 1000 * static_cast<double>(kSteep), steep);
+  const auto count = static_cast<int>(kRays);
+  EXPECT_GT(met, count / 2);
+  EXPECT_LT(late, count / 200);
+  EXPECT_LT(unfounded, met / 200);
   EXPECT_GT(steep, 17 * met / 20);
 }
 

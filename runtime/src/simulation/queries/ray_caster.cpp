@@ -107,17 +107,6 @@ void checkLines(const char* call, const CastLines& lines, std::size_t hits) {
   }
 }
 
-StraightLine lineOf(const CastLines& lines, std::size_t n) {
-  const Vec3& direction = lines.directions[n];
-  const auto x = static_cast<double>(direction.x);
-  const auto y = static_cast<double>(direction.y);
-  const auto z = static_cast<double>(direction.z);
-  const double length = std::sqrt(x * x + y * y + z * z);
-  return {lines.origins[n],
-          {x / length, y / length, z / length},
-          static_cast<double>(lines.lengths[n])};
-}
-
 /// Of the objects of a state: without distractors, the target alone.
 std::span<const Placement> placementsOf(const World& world, const EnvState& state) {
   constexpr const char* kCall = "RayCaster";
@@ -222,7 +211,9 @@ void RayCaster::Impl::cast(const ColumnGrid& grid, float radius, const CastLines
   detail::forEachPart(threads, parts, [&](std::size_t part) {
     const std::size_t end = std::min(count, (part + 1) * kLinesOfAPart);
     for (std::size_t n = part * kLinesOfAPart; n < end; ++n) {
-      hits[n] = castOne(grid, radius, lineOf(lines, n));
+      const auto length = static_cast<double>(lines.lengths[n]);
+      hits[n] = castOne(grid, radius,
+                        detail::straightLine(lines.origins[n], lines.directions[n], length));
     }
   });
 }
