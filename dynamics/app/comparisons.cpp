@@ -16,6 +16,7 @@
 #include "galactic/option_text.h"
 #include "run/recording.h"
 #include "support/content_hash.h"
+#include "support/range_text.h"
 #include "support/standard_streams.h"
 #include "support/stop_request.h"
 #include "support/try.h"
@@ -89,10 +90,11 @@ Result<std::string> hashOf(const std::filesystem::path& path) {
 Result<void> requireExactMotions(const SimulationOptions& options, const std::string& where,
                                  const std::string& remedy) {
   if (!options.noise.changesMotion()) return {};
-  return fail(ErrorCode::kUnsupported, where,
-              fmt::format("has motion-noise {} and motion-bias {}, which things with mass do not "
-                          "have; {}",
-                          options.noise.motion, options.noise.motion_bias, remedy));
+  return fail(
+      ErrorCode::kUnsupported, where,
+      fmt::format("has motion-noise {} and motion-bias {}, which things with mass do not "
+                  "have; {}",
+                  drawnText(options.noise.motion), drawnText(options.noise.motion_bias), remedy));
 }
 
 }  // namespace

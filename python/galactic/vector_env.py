@@ -278,6 +278,12 @@ class VectorEnv(_Base):
         self._require_idle()
         return joined([simulator.env_states() for simulator in self.simulators])
 
+    def episode_noise(self) -> dict[str, NDArray[np.float32]]:
+        """The noise that the episode of each env has drawn where options give ranges, float32 (num_envs,) of
+        each: Simulator.episode_noise(). For critics that may know it, and for logs."""
+        self._require_idle()
+        return _joined([simulator.episode_noise() for simulator in self.simulators])
+
     def set_states(self, states: EnvStates, envs: Iterable[int] | None = None) -> NDArray[np.bool_]:
         """Has all envs, or those with the numbers `envs`, in that order, go on from states of one's own, as if an episode had begun there: Simulator.set_states(). observe() shows what they see.
 

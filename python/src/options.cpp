@@ -72,7 +72,7 @@ std::string textOf(const std::string& keyword, const py::handle& value) {
       "the option {} is {}, expected a number, a truth value or a word", keyword, kindOf(value)));
 }
 
-/// Of heights: numbers, and pairs of them, which are ranges.
+/// Of heights: numbers, and pairs of them, which are ranges. Of a pair, joined by '-', a range.
 std::string listText(const std::string& keyword, const py::sequence& values, char between) {
   std::string text;
   for (const auto& element : values) {
@@ -122,6 +122,11 @@ std::optional<std::uint64_t> wholeUpTo(const py::handle& value, std::uint64_t mo
   return found <= most ? std::optional(found) : std::nullopt;
 }
 
+bool mayBeDrawn(const std::string& name) {
+  const std::vector<std::string> drawn = drawnOptionNames();
+  return std::ranges::find(drawn, name) != drawn.end();
+}
+
 /// Gives `options` what keywords name; the names that are of the option table.
 std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions& options) {
   std::vector<OptionText> texts;
@@ -137,6 +142,8 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
           truthOf(keyword.c_str(), value);
     } else if (keyword == "laser_heights" && isList(value)) {
       texts.push_back({dashed(keyword), listText(keyword, value.cast<py::sequence>(), ',')});
+    } else if (isList(value) && py::len(value) == 2 && mayBeDrawn(dashed(keyword))) {
+      texts.push_back({dashed(keyword), listText(keyword, value.cast<py::sequence>(), '-')});
     } else {
       texts.push_back({dashed(keyword), textOf(keyword, value)});
     }

@@ -13,6 +13,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "env_states.h"
+#include "filled.h"
 #include "galactic/batch_simulator.h"
 #include "options.h"
 #include "simulator.h"
@@ -64,6 +65,23 @@ py::dict statistics(Simulator& simulator, const py::object& env) {
   figures["nan_actions"] = sum.nan_actions;
   figures["reward"] = sum.reward;
   return figures;
+}
+
+py::dict episodeNoise(Simulator& simulator, const py::object& envs) {
+  const Confinement::Use use = simulator.readState();
+  const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
+  const Shape each{static_cast<py::ssize_t>(chosen.size())};
+  Filled<float> motion(each), motion_bias(each), localization(each), laser(each);
+  for (const std::uint32_t env : chosen) {
+    const EpisodeNoise noise = simulator.batch().episodeNoise(env);
+    motion.put(noise.motion);
+    motion_bias.put(noise.motion_bias);
+    localization.put(noise.localization);
+    laser.put(noise.laser);
+  }
+  using namespace py::literals;
+  return py::dict("motion_noise"_a = motion.array(), "motion_bias"_a = motion_bias.array(),
+                  "localization_noise"_a = localization.array(), "laser_noise"_a = laser.array());
 }
 
 py::dict phaseTimes(Simulator& simulator) {
@@ -219,6 +237,10 @@ void bindQueries(py::class_<Simulator>& type) {
            "copy.");
   type.def("statistics", &statistics, py::arg("env") = py::none(),
            "What happened in all envs since they were made, added up; or in one of them.");
+  type.def("episode_noise", &episodeNoise, py::arg("envs") = py::none(),
+           "The noise that the episode of each env, or of each of the numbers `envs`, has drawn\n"
+           "where options give ranges: motion_noise, motion_bias, localization_noise and\n"
+           "laser_noise, float32 (n,), copies.");
   type.def(
       "sample_phases",
       [](Simulator& one, const py::object& every) {

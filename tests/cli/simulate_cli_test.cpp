@@ -314,9 +314,29 @@ TEST_F(SimulateCli, ReplaysTheNoiseOfARecording) {
   EXPECT_THAT(other.err, HasSubstr("was recorded with motion-noise 0.2"));
 }
 
+TEST_F(SimulateCli, ReplaysTheNoiseThatEpisodesHaveDrawn) {
+  const std::vector<std::string> plain{"--envs", "5", "--steps", "60", "--seed", "9"};
+  std::vector<std::string> drawn = plain;
+  drawn.insert(drawn.end(), {"--motion-noise", "0.1-0.6", "--laser-beams", "8", "--laser-noise",
+                             "0.01-0.05", "--record", "drawn.rec"});
+  const json report = reportOf(drawn);
+  EXPECT_EQ(report["options"]["motion-noise"], "0.1-0.6");
+  EXPECT_EQ(report["options"]["laser-noise"], "0.01-0.05");
+  EXPECT_NE(report["reward"], reportOf(plain)["reward"]);
+  for (const char* threads : {"1", "2"}) {
+    const ProgramRun replay = run({"--policy", "replay:drawn.rec", "--threads", threads});
+    EXPECT_EQ(replay.exit_code, 0) << replay.err;
+    EXPECT_THAT(replay.out, HasSubstr("replay        60 steps, bit for bit the same\n"));
+  }
+  const ProgramRun other = run({"--policy", "replay:drawn.rec", "--motion-noise", "0.1-0.5"});
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_THAT(other.err, HasSubstr("was recorded with motion-noise 0.1-0.6"));
+}
+
 TEST_F(SimulateCli, RefusesNoiseThatIsNoShare) {
   for (const char* option : {"--motion-noise", "--motion-bias", "--localization-noise"}) {
-    for (const char* value : {"-0.1", "1.1", "nan", "much"}) {
+    for (const char* value :
+         {"-0.1", "1.1", "nan", "much", "0.5-0.2", "0.1-1.1", "0-nan", "0.1..0.2"}) {
       const ProgramRun result = run({"--steps", "1", option, value});
       EXPECT_EQ(result.exit_code, 1) << option << " " << value;
       EXPECT_THAT(result.err, HasSubstr(option));

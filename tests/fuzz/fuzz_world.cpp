@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .target_goal = true,
       .target_up = true,
       .near_objects = 2,
-      .laser = {.beams = 8, .heights = {{0.25F, 0.25F}, {0.4F, 0.6F}}},
+      .laser = {.beams = 8, .heights = {{0.25F, 0.25F}, {0.4F, 0.6F}}, .noise = {0.01F, 0.05F}},
       .geodesic = true};
   const auto outcome = world.use(kSteps, all_sensors);
   if (!outcome.finding.empty()) galactic::test::reportFinding(outcome.finding);

@@ -116,6 +116,62 @@ def test_an_episode_that_a_task_draws_has_other_noise_each_time(world) -> None:
     assert len(np.unique([moved(**named) for _ in range(3)])) == 1
 
 
+DRAWN = {"motion_noise": (0.1, 0.6), "motion_bias": "0-0.3", "laser_noise": [0.01, 0.05]}
+
+
+def test_each_episode_draws_noise_from_a_range(world) -> None:
+    simulator = Simulator(world, envs=400, threads=1, laser_beams=4, task="none", **DRAWN)
+    assert simulator.options["motion_noise"] == "0.1-0.6"
+    first = simulator.episode_noise()
+    assert list(first) == ["motion_noise", "motion_bias", "localization_noise", "laser_noise"]
+    for name, (least, most) in (("motion_noise", (0.1, 0.6)), ("laser_noise", (0.01, 0.05))):
+        values = first[name]
+        assert (values.dtype, values.shape) == (np.float32, (400,))
+        assert values.min() >= np.float32(least) and values.max() <= np.float32(most)
+        assert len(np.unique(values)) > 390
+        assert values.mean() == pytest.approx((least + most) / 2, rel=0.1)
+    assert not first["localization_noise"].any()
+    simulator.step(np.zeros((400, 8), np.float32))
+    np.testing.assert_array_equal(simulator.episode_noise()["motion_noise"], first["motion_noise"])
+    some = simulator.episode_noise(envs=[7, 3])["motion_bias"]
+    np.testing.assert_array_equal(some, first["motion_bias"][[7, 3]])
+    simulator.reset()
+    assert (simulator.episode_noise()["motion_noise"] != first["motion_noise"]).mean() > 0.98
+    again = Simulator(world, threads=1, **simulator.options)
+    np.testing.assert_array_equal(again.episode_noise()["motion_noise"], first["motion_noise"])
+
+
+def test_drawn_noise_does_not_depend_on_halves_and_threads(world_path) -> None:
+    def made(halves: int, threads: int) -> VectorEnv:
+        return VectorEnv(world_path, 24, halves=halves, threads=threads, laser_beams=4, **DRAWN)
+
+    one, two = made(1, 1), made(2, 2)
+    np.testing.assert_array_equal(play(two), play(one))
+    for name, values in one.episode_noise().items():
+        np.testing.assert_array_equal(two.episode_noise()[name], values)
+
+
+def test_a_number_is_the_noise_of_all_episodes(world) -> None:
+    noise = Simulator(world, envs=3, threads=1, **NOISE).episode_noise()
+    for name, value in NOISE.items():
+        np.testing.assert_array_equal(noise[name], np.full(3, value, np.float32))
+
+
+@pytest.mark.parametrize("name", NOISE)
+@pytest.mark.parametrize(
+    "value", [(0.5, 0.2), (-0.1, 0.2), (0.2, 1.5), (0, float("nan")), "0.1..0.2", "-0.1-0.2"]
+)
+def test_what_is_no_range_is_refused(world, name, value) -> None:
+    with pytest.raises(galactic.Error, match="expected 0 to 1, or a range from 0 to 1 such as"):
+        Simulator(world, envs=1, **{name: value})
+
+
+@pytest.mark.parametrize("value", [(), (0.1,), (0.1, 0.2, 0.3), (0.1, None)])
+def test_what_is_no_pair_is_refused(world, value) -> None:
+    with pytest.raises(TypeError, match="the option motion_noise is a"):
+        Simulator(world, envs=1, motion_noise=value)
+
+
 @pytest.mark.parametrize("name", NOISE)
 @pytest.mark.parametrize("value", (-0.1, 1.5, float("nan")))
 def test_what_is_no_share_is_refused(world, name, value) -> None:

@@ -11,6 +11,7 @@
 
 #include "support/height_text.h"
 #include "support/option_table.h"
+#include "support/range_text.h"
 
 namespace galactic::bake {
 namespace {
@@ -53,6 +54,21 @@ class TaskReader {
       field = static_cast<float>(*number);
     } else {
       refuse(name, *value, fmt::format("a number from {} to {}", within.least, within.most));
+    }
+  }
+  /// A number, or a range in quotes.
+  void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view) {
+    const TomlValue* value = take(name);
+    if (value == nullptr) return;
+    const auto* text = std::get_if<std::string>(&value->value);
+    const std::optional<double> number = numberOf(*value);
+    std::optional<DrawnNumber> read;
+    if (text != nullptr) read = drawnFrom(*text, within);
+    if (number) read = static_cast<float>(*number);
+    if (read && isDrawnWithin(*read, within)) {
+      field = *read;
+    } else {
+      refuse(name, *value, wantedDrawn(within));
     }
   }
   void heights(std::string_view name, std::vector<Span>& field, const Span& within,

@@ -82,7 +82,11 @@ def play(run: DynamicsRun) -> dict[str, Any]:
 def noise_left_out(options: Mapping[str, Any]) -> str:
     """What the tool leaves out of a simulation with these options, as a user types it; "" for nothing."""
     left_out = [name for name, value in EXACT.items() if options[name] != value]
-    return " ".join(f"{_typed(name)}={options[name]:.3g}" for name in left_out)
+    return " ".join(f"{_typed(name)}={_shown(options[name])}" for name in left_out)
+
+
+def _shown(value: Any) -> str:
+    return value if isinstance(value, str) else f"{value:.3g}"  # a range is text
 
 
 def _typed(name: str) -> str:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import numbers
+import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
@@ -564,8 +565,10 @@ def _is_robot_noise(word: str) -> bool:
     not."""
     if simulation_keyword(word) not in ROBOT_NOISE:
         return False
+    # Of a number, or of both ends of a range: a "-" behind a digit or point stands between them.
+    ends = re.split(r"(?<=[0-9.])-", word.partition("=")[2])
     try:
-        return float(word.partition("=")[2]) != 0.0
+        return any(float(end) != 0.0 for end in ends)
     except ValueError:  # no number, which the simulation refuses
         return False
 

@@ -25,6 +25,7 @@
 #include "support/number_text.h"
 #include "support/option_table.h"
 #include "support/printable.h"
+#include "support/range_text.h"
 #include "support/standard_streams.h"
 
 namespace galactic {
@@ -112,19 +113,17 @@ class CommandLineVisitor {
         ->check(numberCheck(static_cast<double>(within.least), static_cast<double>(within.most)))
         ->option_text(fmt::format("{} [{}]", placeholderOf(help), field));
   }
+  void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view help) {
+    parsed(
+        name, field, help, [within](const std::string& text) { return drawnFrom(text, within); },
+        wantedDrawn(within))
+        ->option_text(fmt::format("{}|LOW-HIGH [{}]", placeholderOf(help), drawnText(field)));
+  }
   void heights(std::string_view name, std::vector<Span>& field, const Span& within,
                std::string_view help) {
-    const auto fault_of = [within](const std::string& text) {
-      if (heightsFrom(text, within)) return std::string();
-      return fmt::format("found {}, expected {}", text.empty() ? "nothing" : text,
-                         wantedHeights(within));
-    };
-    const auto set = [&field, within](const std::string& text) {
-      field = *heightsFrom(text, within);
-    };
-    app_.add_option_function<std::string>(dashed(name), set, std::string(help))
-        ->check(fault_of)
-        ->group(heading_)
+    parsed(
+        name, field, help, [within](const std::string& text) { return heightsFrom(text, within); },
+        wantedHeights(within))
         ->option_text(fmt::format("H,LOW-HIGH,... [{}]", heightText(field)));
   }
   void flag(std::string_view name, const Switch& value, std::string_view help) {
@@ -175,6 +174,20 @@ class CommandLineVisitor {
   template <class T>
   CLI::Option* add(std::string_view name, T& field, std::string_view help) {
     return app_.add_option(dashed(name), field, std::string(help))->group(heading_);
+  }
+
+  /// What `parse` makes of a text; none of what is not `wanted`.
+  template <class T, class Parse>
+  CLI::Option* parsed(std::string_view name, T& field, std::string_view help, const Parse& parse,
+                      const std::string& wanted) {
+    const auto fault_of = [parse, wanted](const std::string& text) {
+      if (parse(text)) return std::string();
+      return fmt::format("found {}, expected {}", text.empty() ? "nothing" : text, wanted);
+    };
+    const auto set = [&field, parse](const std::string& text) { field = *parse(text); };
+    return app_.add_option_function<std::string>(dashed(name), set, std::string(help))
+        ->check(fault_of)
+        ->group(heading_);
   }
 
   CLI::App& app_;

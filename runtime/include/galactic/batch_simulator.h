@@ -135,6 +135,16 @@ struct PhaseTime {
   double seconds = 0;
 };
 
+/// What the options say of noise, as an episode has drawn it: standard deviations. See RobotNoise
+/// and LaserOptions.
+struct EpisodeNoise {
+  float motion = 0;
+  float motion_bias = 0;
+  float localization = 0;
+  /// Meters; 0 without a laser.
+  float laser = 0;
+};
+
 /// Who has chosen an episode that begins, and so whose RobotNoise it has.
 enum class EpisodeChoice : std::uint8_t {
   /// Somebody who compares policies by it: the episode's own, the same in whatever env it is
@@ -291,6 +301,8 @@ class BatchSimulator {
   [[nodiscard]] EnvObjects envObjects(std::size_t env) const noexcept;
   /// What the random numbers of the sensors of an env, which is not checked, follow from.
   [[nodiscard]] EnvMoment envMoment(std::size_t env) const noexcept;
+  /// The noise of the episode that an env, which is not checked, is in.
+  [[nodiscard]] EpisodeNoise episodeNoise(std::size_t env) const noexcept;
   /// A body is a group of links that no joint moves against each other in this run (joints that
   /// neither actions nor episodes move count as fixed). The root's is body 0.
   [[nodiscard]] std::size_t bodyCount() const;

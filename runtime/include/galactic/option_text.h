@@ -44,6 +44,9 @@ struct OptionFault {
 /// The names of the options, in the order of the table.
 [[nodiscard]] std::vector<std::string> optionNames(OptionScope scope);
 
+/// Those of them that may be ranges from which each episode draws (DrawnNumber).
+[[nodiscard]] std::vector<std::string> drawnOptionNames();
+
 /// The options with their values, in the order of the table; numbers read back exactly. Presets are
 /// not listed; the options that they set are.
 [[nodiscard]] std::vector<OptionText> listOptions(const SimulationOptions& options,

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "galactic/drawn_number.h"
 #include "galactic/pose.h"
 
 namespace galactic {
@@ -138,7 +139,7 @@ struct LaserOptions {
   /// Nearest distance, meters: what is nearer is measured as this. By default 0.
   float least_range = kOfRobot;
   /// Standard deviation of a distance, meters; by default 0.
-  float noise = kOfRobot;
+  DrawnNumber noise = kOfRobot;
 };
 
 /// The most objects near the hand that an observation can tell of.
@@ -165,17 +166,19 @@ struct SensorOptions {
 /// How far real robots are from doing what they are asked to, and from knowing where they are: for
 /// policies that are to work on them. All off by default; see docs/simulation.md. Numbers are
 /// standard deviations, as shares of the motion, so that a robot that is asked to stand still
-/// stands still.
+/// stands still. Each may be a range from which episodes draw.
 struct RobotNoise {
   /// Of each motion in each step: base and joints. Driving a whole step also turns the base by such
   /// a share of a whole turn.
-  float motion = 0;
+  DrawnNumber motion = 0;
   /// The same of what stays for an episode: gains that are off.
-  float motion_bias = 0;
+  DrawnNumber motion_bias = 0;
   /// Of what odometry adds up to where the robot takes itself to be.
-  float localization = 0;
+  DrawnNumber localization = 0;
 
-  [[nodiscard]] constexpr bool changesMotion() const { return motion > 0 || motion_bias > 0; }
+  [[nodiscard]] constexpr bool changesMotion() const {
+    return motion.most > 0 || motion_bias.most > 0;
+  }
 };
 
 /// In which order an env takes the episodes of a world.

@@ -96,7 +96,7 @@ Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& ro
       options.fov_degrees < 0 ? settings.field_of_view : options.fov_degrees * kDegree;
   settings.range = orRobots(options.range, settings.range);
   settings.least_range = orRobots(options.least_range, settings.least_range);
-  settings.noise = orRobots(options.noise, settings.noise);
+  if (options.noise.least >= 0) settings.noise = options.noise;
   if (options.beams > kMostBeams) {
     return refuse(fmt::format("laser-beams is {}, expected at most {}", options.beams, kMostBeams));
   }
@@ -190,7 +190,7 @@ void Laser::scan(const LaserView& view, std::span<float> out) const noexcept {
                       view.base.z - view.sine * settings_.ahead + view.cosine * settings_.right};
     const std::span<float> distances = std::span(room).first(beams_ahead_.size());
     scanPlane(view, floor.planes[n].view(), settings_.heights[n], origin, distances);
-    finish(distances, random, out.subspan(n * settings_.beams, settings_.beams));
+    finish(distances, view.noise, random, out.subspan(n * settings_.beams, settings_.beams));
   }
 }
 
@@ -215,14 +215,13 @@ void Laser::scanPlane(const LaserView& view, const ScanPlaneView& plane, const S
   });
 }
 
-void Laser::finish(std::span<const float> distances, RandomStream& random,
+void Laser::finish(std::span<const float> distances, float noise, RandomStream& random,
                    std::span<float> out) const noexcept {
   const float range = settings_.range;
   for (std::size_t n = 0; n < out.size(); ++n) {
     float distance = distances[n];
     // What returns nothing has nothing to be wrong about.
-    if (settings_.noise > 0 && distance < range)
-      distance += settings_.noise * random.nearlyNormal();
+    if (noise > 0 && distance < range) distance += noise * random.nearlyNormal();
     out[n] = std::clamp(distance, settings_.least_range, range) / range;
   }
 }

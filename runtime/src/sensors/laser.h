@@ -27,7 +27,7 @@ struct LaserSettings {
   /// Meters.
   float range = 0;
   float least_range = 0;
-  float noise = 0;
+  DrawnNumber noise = 0;
   /// Where beams leave, in the frame of the base, meters: +X is ahead, +Z to the right.
   float ahead = 0;
   float right = 0;
@@ -58,6 +58,8 @@ struct LaserView {
   float cosine = 1;
   float sine = 0;
   const simulation::RestingObjects& objects;
+  /// Standard deviation of a distance, meters: of this episode.
+  float noise = 0;
   /// Of this env and step.
   RandomStream random;
 };
@@ -83,6 +85,8 @@ class Laser {
 
   /// Elements of a scan.
   [[nodiscard]] std::size_t size() const { return settings_.size(); }
+  /// Standard deviation of a distance, meters: from what episodes draw it.
+  [[nodiscard]] const DrawnNumber& noise() const { return settings_.noise; }
   /// Of all planes.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -97,7 +101,7 @@ class Laser {
   [[nodiscard]] const Floor& floorAt(std::uint32_t scene, float height) const noexcept;
   void scanPlane(const LaserView& view, const ScanPlaneView& plane, const Span& heights,
                  const Vec3& origin, std::span<float> distances) const noexcept;
-  void finish(std::span<const float> distances, RandomStream& random,
+  void finish(std::span<const float> distances, float noise, RandomStream& random,
               std::span<float> out) const noexcept;
 
   LaserSettings settings_;

@@ -16,6 +16,7 @@
 #include "simulation/state/batch_state.h"
 #include "simulation/state/env_moment.h"
 #include "simulation/state/env_state.h"
+#include "simulation/state/episode_draws.h"
 #include "simulation/state/grip_frame.h"
 #include "simulation/state/model.h"
 #include "simulation/state/saved_state.h"
@@ -465,6 +466,10 @@ EnvObjects BatchSimulator::envObjects(std::size_t env) const noexcept {
 
 EnvMoment BatchSimulator::envMoment(std::size_t env) const noexcept {
   return simulation::momentOf(impl_->model(), impl_->state(), env);
+}
+
+EpisodeNoise BatchSimulator::episodeNoise(std::size_t env) const noexcept {
+  return simulation::episodeNoiseIn(impl_->model(), envMoment(env));
 }
 
 std::size_t BatchSimulator::bodyCount() const { return impl_->model().motion.nodes.size() + 1; }

@@ -3,39 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <system_error>
 
 #include "galactic/simulation_options.h"
+#include "support/range_text.h"
 
 namespace galactic {
 namespace {
 
 constexpr std::string_view kOfRobotText = "robot";
 
-/// Takes a number from the beginning of `text`.
-std::optional<float> takeNumber(std::string_view& text) {
-  float value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, problem] = std::from_chars(text.data(), end, value);
-  if (problem != std::errc()) return std::nullopt;
-  text.remove_prefix(static_cast<std::size_t>(stop - text.data()));
-  return value;
-}
-
-bool takeLetter(std::string_view& text, char letter) {
-  if (!text.starts_with(letter)) return false;
+bool takeComma(std::string_view& text) {
+  if (!text.starts_with(',')) return false;
   text.remove_prefix(1);
   return true;
-}
-
-std::optional<Span> takeSpan(std::string_view& text) {
-  const std::optional<float> lo = takeNumber(text);
-  if (!lo) return std::nullopt;
-  if (!takeLetter(text, '-')) return Span{*lo, *lo};
-  const std::optional<float> hi = takeNumber(text);
-  if (!hi) return std::nullopt;
-  return Span{*lo, *hi};
 }
 
 }  // namespace
@@ -45,7 +25,7 @@ std::string heightText(std::span<const Span> heights) {
   std::string text;
   for (const Span& one : heights) {
     if (!text.empty()) text += ',';
-    text += one.lo == one.hi ? fmt::format("{}", one.lo) : fmt::format("{}-{}", one.lo, one.hi);
+    text += rangeText(one);
   }
   return text;
 }
@@ -54,10 +34,10 @@ std::optional<std::vector<Span>> heightsFrom(std::string_view text, const Span& 
   std::vector<Span> heights;
   if (text == kOfRobotText) return heights;
   do {
-    const std::optional<Span> one = takeSpan(text);
+    const std::optional<Span> one = takeRange(text);
     if (!one) return std::nullopt;
     heights.push_back(*one);
-  } while (takeLetter(text, ','));
+  } while (takeComma(text));
   if (!text.empty() || !areHeights(heights, within)) return std::nullopt;
   return heights;
 }

@@ -73,8 +73,9 @@ struct Switch {
 /// command line of galactic-run, recordings, reports, world packs and the recipes of worlds. Calls
 /// on `v`
 ///   group(heading), whole(name, field, Within, help), real(name, field, Within, help),
-///   heights(name, field, within, help), choice(name, field, names, help), flag(name, Switch,
-///   help), seed(name, field, help), preset(name, field, Preset, help), before its parts.
+///   drawn(name, field, within, help), heights(name, field, within, help), choice(name, field,
+///   names, help), flag(name, Switch, help), seed(name, field, help), preset(name, field, Preset,
+///   help), before its parts.
 template <class Visitor>
 void visitBatchOptions(SimulationOptions& o, Visitor& v) {
   v.group("Simulation");
@@ -164,11 +165,11 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
 /// The same, of what is off about the robot.
 template <class Visitor>
 void visitNoiseOptions(RobotNoise& n, Visitor& v) {
-  constexpr Within<float> kShare{0, 1};
+  constexpr Span kShare{0, 1};
   v.group("Noise of motion and localization (standard deviations, as shares of motions)");
-  v.real("motion-noise", n.motion, kShare, "Of what the robot does in a step");
-  v.real("motion-bias", n.motion_bias, kShare, "Of what it does in all steps of an episode");
-  v.real("localization-noise", n.localization, kShare, "Of odometry, which tells it where it is");
+  v.drawn("motion-noise", n.motion, kShare, "Of what the robot does in a step");
+  v.drawn("motion-bias", n.motion_bias, kShare, "Of what it does in all steps of an episode");
+  v.drawn("localization-noise", n.localization, kShare, "Of odometry, which tells it where it is");
 }
 
 /// The same, of what the robot senses.
@@ -192,8 +193,8 @@ void visitSensorOptions(SensorOptions& s, Visitor& v) {
   v.real("laser-range", laser.range, Within<float>{kOfRobot, 1000}, "Farthest distance, meters");
   v.real("laser-min-range", laser.least_range, Within<float>{kOfRobot, 1000},
          "Nearest distance, meters");
-  v.real("laser-noise", laser.noise, Within<float>{kOfRobot, 10},
-         "Standard deviation of a distance, meters");
+  v.drawn("laser-noise", laser.noise, Span{kOfRobot, 10},
+          "Standard deviation of a distance, meters");
   v.flag("geodesic", Switch{s.geodesic, true},
          "Observe the paths along the floor to target and goal");
   v.whole("geodesic-megabytes", s.geodesic_megabytes, Within<std::uint32_t>{1, 1U << 20U},

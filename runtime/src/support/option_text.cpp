@@ -12,6 +12,7 @@
 
 #include "support/height_text.h"
 #include "support/option_table.h"
+#include "support/range_text.h"
 
 namespace galactic {
 namespace {
@@ -36,6 +37,10 @@ class Namer {
     names_.emplace_back(name);
   }
   template <class... Rest>
+  void drawn(std::string_view name, const Rest&...) {
+    names_.emplace_back(name);
+  }
+  template <class... Rest>
   void heights(std::string_view name, const Rest&...) {
     names_.emplace_back(name);
   }
@@ -57,6 +62,34 @@ class Namer {
   bool with_presets_;
 };
 
+/// Collects names of numbers that episodes may draw.
+class DrawnNamer {
+ public:
+  explicit DrawnNamer(std::vector<std::string>& names) : names_(names) {}
+
+  void drawn(std::string_view name, const DrawnNumber&, const Span&, std::string_view) {
+    names_.emplace_back(name);
+  }
+  void group(std::string_view) {}
+  template <class... Rest>
+  void whole(const Rest&...) {}
+  template <class... Rest>
+  void seed(const Rest&...) {}
+  template <class... Rest>
+  void real(const Rest&...) {}
+  template <class... Rest>
+  void heights(const Rest&...) {}
+  template <class... Rest>
+  void flag(const Rest&...) {}
+  template <class... Rest>
+  void choice(const Rest&...) {}
+  template <class... Rest>
+  void preset(const Rest&...) {}
+
+ private:
+  std::vector<std::string>& names_;
+};
+
 /// Collects names and values.
 class Lister {
  public:
@@ -71,6 +104,9 @@ class Lister {
   }
   void real(std::string_view name, float value, Within<float>, std::string_view) {
     add(name, fmt::format("{}", value), false);
+  }
+  void drawn(std::string_view name, const DrawnNumber& value, const Span&, std::string_view) {
+    add(name, drawnText(value), value.isRange());
   }
   void heights(std::string_view name, std::span<const Span> value, const Span&, std::string_view) {
     add(name, heightText(value), true);
@@ -113,6 +149,13 @@ class Setter {
   }
   void real(std::string_view name, float& field, Within<float> within, std::string_view) {
     number(name, field, within);
+  }
+  void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view) {
+    const std::string* text = take(name);
+    if (text == nullptr) return;
+    const std::optional<DrawnNumber> number = drawnFrom(*text, within);
+    require(number.has_value(), wantedDrawn(within));
+    if (number) field = *number;
   }
   void heights(std::string_view name, std::vector<Span>& field, const Span& within,
                std::string_view) {
@@ -203,6 +246,10 @@ class Checker {
   void real(std::string_view name, float value, Within<float> within, std::string_view) {
     number(name, value, within);
   }
+  void drawn(std::string_view name, const DrawnNumber& value, const Span& within,
+             std::string_view) {
+    if (!isDrawnWithin(value, within)) refuse(name, drawnText(value), wantedDrawn(within));
+  }
   void heights(std::string_view name, std::span<const Span> value, const Span& within,
                std::string_view) {
     if (!areHeights(value, within)) refuse(name, heightText(value), wantedHeights(within));
@@ -252,6 +299,14 @@ std::vector<std::string> optionNames(OptionScope scope) {
   SimulationOptions options;
   Namer namer(names, scope == OptionScope::kTyped);
   visit(options, scope, namer);
+  return names;
+}
+
+std::vector<std::string> drawnOptionNames() {
+  std::vector<std::string> names;
+  SimulationOptions options;
+  DrawnNamer namer(names);
+  visitOptions(options, namer);
   return names;
 }
 

@@ -64,6 +64,11 @@ TEST_F(RecipeTask, GivesThePartsOfAPresetWhichRefineIt) {
               ElementsAre("slide-direction=glide", "slide-attempts=0", "slide-step=0.15"));
 }
 
+TEST_F(RecipeTask, TakesRangesThatEpisodesDrawFrom) {
+  EXPECT_THAT(taskOf("motion-noise = \"0.2-0.8\"\nmotion-bias = 0.1\nlaser-noise = 1\n"),
+              ElementsAre("motion-noise=0.2-0.8", "motion-bias=0.1", "laser-noise=1"));
+}
+
 TEST_F(RecipeTask, KnowsEveryOptionOfTheTask) {
   std::string lines;
   std::size_t count = 0;
@@ -115,6 +120,10 @@ TEST_F(RecipeTask, RefusesEachMistakeWithItsLine) {
        "the key task.episode-step is unknown; did you mean 'episode-steps' or 'slide-step'?"},
       {"safe_drop = true", "the key task.safe_drop is unknown; did you mean 'safe-drop'?"},
       {"wings = 2", "the key task.wings is unknown; "},
+      {"motion-noise = 1.5", "task.motion-noise: found 1.5, expected 0 to 1, or a range from 0 to"},
+      {"motion-noise = nan", "task.motion-noise: found nan, expected 0 to 1, or a range from 0 to"},
+      {"motion-noise = \"0.8-0.2\"", "task.motion-noise: found \"0.8-0.2\", expected 0 to 1, or a"},
+      {"motion-noise = [0.2, 0.8]", "task.motion-noise: found a list, expected 0 to 1, or a range"},
       {"envs = 5", "task.envs says how a batch runs, not what its task is; give it to "},
       {"seed = 5", "task.seed says how a batch runs, not what its task is; give it to "},
       {"order = \"linear\"", "task.order says how a batch runs, not what its task is; give it to "},

@@ -273,9 +273,36 @@ TEST(Laser, HasNoiseOfTheGivenDeviation) {
   EXPECT_NEAR(static_cast<double>(beyond_one) / count, 0.317, 0.04);
 }
 
+TEST(Laser, HasNoiseOfTheDeviationThatAnEpisodeHasDrawn) {
+  const BoxWorld world(walls(), {middle()});
+  SimulationOptions options = withLaser({.beams = 64, .range = 3});
+  options.envs = 256;
+  const BatchSimulator still = BatchSimulator::create(world.world(), options).value();
+  options.sensors.laser.noise = {0.005F, 0.05F};
+  const BatchSimulator noisy = BatchSimulator::create(world.world(), options).value();
+  double squares = 0;
+  int in_lower_half = 0;
+  for (std::size_t env = 0; env < 256; ++env) {
+    const auto drawn = static_cast<double>(noisy.episodeNoise(env).laser);
+    ASSERT_GE(drawn, 0.005);
+    ASSERT_LE(drawn, 0.05);
+    in_lower_half += drawn < 0.0275 ? 1 : 0;
+    for (std::size_t n = 0; n < 64; ++n) {
+      const double error =
+          3.0 * static_cast<double>(scanOf(noisy, env)[n] - scanOf(still, env)[n]) / drawn;
+      squares += error * error;
+    }
+  }
+  // Of each env, by what it has drawn.
+  EXPECT_NEAR(std::sqrt(squares / (256 * 64)), 1, 0.05);
+  // Half of 256, within four deviations.
+  EXPECT_NEAR(in_lower_half, 128, 32);
+  EXPECT_EQ(still.episodeNoise(0).laser, 0);
+}
+
 TEST(Laser, HasTheSameNoiseInAnyEnvWhereAnEpisodeIsNamed) {
   const BoxWorld world(walls(), {middle(), middle()});
-  SimulationOptions options = withLaser({.beams = 21, .noise = 0.02F});
+  SimulationOptions options = withLaser({.beams = 21, .noise = {0.01F, 0.03F}});
   options.envs = 9;
   BatchSimulator batch = BatchSimulator::create(world.world(), options).value();
   const auto scans = [&] {

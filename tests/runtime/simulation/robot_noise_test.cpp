@@ -264,9 +264,66 @@ TEST(MotionNoise, IsNothingThatTheRobotPaysFor) {
   EXPECT_THAT(simulator.rewards(), testing::Each(-(0.25F * 0.25F + 0.5F * 0.5F)));
 }
 
+double drawnMotion(const BatchSimulator& simulator, std::size_t env) {
+  return static_cast<double>(simulator.episodeNoise(env).motion);
+}
+
+TEST(DrawnNoise, IsAsEachEpisodeHasDrawnIt) {
+  const BoxWorld world = emptyWorld();
+  SimulationOptions options = noisy({.motion = {0.1F, 0.4F}});
+  options.task.most_steps = 2;
+  BatchSimulator simulator = made(world, options);
+  std::vector<double> drawn;
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    drawn.push_back(drawnMotion(simulator, env));
+    ASSERT_GE(drawn[env], 0.1);
+    ASSERT_LE(drawn[env], 0.4);
+  }
+  const auto of_drawn = [&](std::size_t env) { return drawn[env]; };
+  expectSpread(kEnvs, 0.25, 0.3 / std::sqrt(12), of_drawn);
+  // It is what the robots do, and stays until the episode ends.
+  const std::vector<Motions> done = motionsOf(simulator, {0, 0.5F, 0, 0, 0, 0});
+  expectSpread(kEnvs, 0, 1,
+               [&](std::size_t env) { return (done[env][kWrist] / 0.5 - 1) / drawn[env]; });
+  for (std::size_t env = 0; env < kEnvs; ++env) ASSERT_EQ(drawnMotion(simulator, env), drawn[env]);
+  simulator.step(everywhere(kEnvs, {}));
+  ASSERT_EQ(simulator.statistics().episodes, kEnvs);
+  const auto next = [&](std::size_t env) { return drawnMotion(simulator, env); };
+  expectSpread(kEnvs, 0.25, 0.3 / std::sqrt(12), next);
+  expectApart(kEnvs, of_drawn, next);
+}
+
+TEST(DrawnNoise, HasDrawsOfItsOwnForEachOption) {
+  const BoxWorld world = emptyWorld();
+  const BatchSimulator simulator =
+      made(world, noisy({.motion = {0, 1}, .motion_bias = {0, 1}, .localization = {0, 1}}));
+  const auto of = [&](float EpisodeNoise::*part) {
+    return [&simulator, part](std::size_t env) {
+      return static_cast<double>(simulator.episodeNoise(env).*part);
+    };
+  };
+  expectApart(kEnvs, of(&EpisodeNoise::motion), of(&EpisodeNoise::motion_bias));
+  expectApart(kEnvs, of(&EpisodeNoise::motion), of(&EpisodeNoise::localization));
+  expectApart(kEnvs, of(&EpisodeNoise::motion_bias), of(&EpisodeNoise::localization));
+  EXPECT_EQ(simulator.episodeNoise(0).laser, 0);
+}
+
+TEST(DrawnNoise, OfOneNumberIsThatNumber) {
+  const BoxWorld world = emptyWorld();
+  const BatchSimulator simulator =
+      made(world, noisy({.motion = 0.3F, .motion_bias = 0.2F, .localization = 0.1F}, 3));
+  for (std::size_t env = 0; env < 3; ++env) {
+    const EpisodeNoise noise = simulator.episodeNoise(env);
+    EXPECT_EQ(noise.motion, 0.3F);
+    EXPECT_EQ(noise.motion_bias, 0.2F);
+    EXPECT_EQ(noise.localization, 0.1F);
+  }
+}
+
+/// A number that all episodes have, and ranges from which each draws its own.
 SimulationOptions wild(std::uint32_t envs, std::uint32_t threads = 1) {
   SimulationOptions options = optionsFor(envs, threads);
-  options.noise = {.motion = 0.3F, .motion_bias = 0.2F, .localization = 0.1F};
+  options.noise = {.motion = {0.1F, 0.5F}, .motion_bias = 0.2F, .localization = {0, 0.2F}};
   return options;
 }
 
@@ -351,7 +408,7 @@ TEST(RobotNoise, GoesOnWhereAStateIsRestored) {
   const Result<void> refused = plain.restoreState(saved);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message,
-              HasSubstr("expected motion-noise=0, found motion-noise=0.3"));
+              HasSubstr("expected motion-noise=0, found motion-noise=0.1-0.5"));
 }
 
 /// Where a part of the observation begins.
@@ -488,10 +545,15 @@ TEST(RobotNoise, OutOfItsRangeMakesNoSimulator) {
     return simulator ? "" : simulator.error().message;
   };
   EXPECT_EQ(refusal({.motion = 1, .motion_bias = 1, .localization = 1}), "");
-  EXPECT_EQ(refusal({.motion = -0.5F}), "motion-noise is -0.5, expected 0 to 1");
-  EXPECT_EQ(refusal({.motion_bias = 1.5F}), "motion-bias is 1.5, expected 0 to 1");
-  EXPECT_EQ(refusal({.localization = std::numeric_limits<float>::quiet_NaN()}),
-            "localization-noise is nan, expected 0 to 1");
+  const std::string wanted = ", expected 0 to 1, or a range from 0 to 1 such as 0.1-0.3";
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(refusal({.motion = -0.5F}), "motion-noise is -0.5" + wanted);
+  EXPECT_EQ(refusal({.motion_bias = 1.5F}), "motion-bias is 1.5" + wanted);
+  EXPECT_EQ(refusal({.localization = kNan}), "localization-noise is nan-nan" + wanted);
+  EXPECT_EQ(refusal({.motion = {0, 1}}), "");
+  EXPECT_EQ(refusal({.motion = {0.5F, 0.25F}}), "motion-noise is 0.5-0.25" + wanted);
+  EXPECT_EQ(refusal({.motion = {-0.5F, 0.25F}}), "motion-noise is -0.5-0.25" + wanted);
+  EXPECT_EQ(refusal({.motion = {0, kNan}}), "motion-noise is 0-nan" + wanted);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ SimulationOptions homeOptions(std::uint32_t envs, std::uint32_t threads = 1) {
   options.sensors.geodesic = true;
   options.task.geodesic_weight = 0.5F;
   options.sensors.laser.beams = 8;
-  options.sensors.laser.noise = 0.01F;
+  options.sensors.laser.noise = {0.01F, 0.02F};
   options.noise = {.motion = 0.1F, .motion_bias = 0.1F, .localization = 0.1F};
   return options;
 }

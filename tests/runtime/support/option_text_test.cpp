@@ -75,6 +75,25 @@ TEST(OptionTexts, ThatSomebodyTypesMayBePresetsWhichTheirPartsRefine) {
   EXPECT_EQ(options.slide.step, 0.25F);
 }
 
+TEST(OptionTexts, TellWhatEpisodesMayDraw) {
+  EXPECT_EQ(drawnOptionNames(), (std::vector<std::string>{"motion-noise", "motion-bias",
+                                                          "localization-noise", "laser-noise"}));
+  SimulationOptions options;
+  const std::vector<OptionText> texts{{"motion-noise", "0.2-0.8"}, {"motion-bias", "0.1"}};
+  EXPECT_FALSE(setOptions(texts, OptionScope::kTask, options));
+  EXPECT_EQ(options.noise.motion, DrawnNumber(0.2F, 0.8F));
+  EXPECT_EQ(options.noise.motion_bias, DrawnNumber(0.1F));
+  for (const OptionText& listed : listOptions(options)) {
+    // JSON has numbers for numbers.
+    if (listed.name == "motion-noise") {
+      EXPECT_EQ(listed, (OptionText{"motion-noise", "0.2-0.8", true}));
+    }
+    if (listed.name == "motion-bias") {
+      EXPECT_EQ(listed, (OptionText{"motion-bias", "0.1", false}));
+    }
+  }
+}
+
 TEST(OptionTexts, HaveTheNamesOfTheTable) {
   std::vector<std::string> listed;
   for (const OptionText& option : listOptions({})) listed.push_back(option.name);
@@ -116,6 +135,18 @@ class RangeProbe {
     }
     probe(name, fmt::format("{}", within.least), true);
     probe(name, fmt::format("{}", within.most), true);
+  }
+  void drawn(std::string_view name, DrawnNumber&, const Span& within, std::string_view) {
+    const std::string least = fmt::format("{}", within.lo);
+    const std::string most = fmt::format("{}", within.hi);
+    for (const std::string& good : {least, most, "0-" + most, std::string("0.25-0.5")}) {
+      probe(name, good, true);
+    }
+    for (const std::string& wrong :
+         {most + ".5", "0-" + most + ".5", "-" + most + "-0.5", std::string("0.5-0.25"),
+          std::string("0-nan"), std::string("nan"), std::string("0.1-0.2-0.3")}) {
+      probe(name, wrong, false);
+    }
   }
   void heights(std::string_view name, std::vector<Span>&, const Span& within, std::string_view) {
     const std::string most = fmt::format("{}", within.hi);
@@ -182,6 +213,14 @@ class FieldProbe {
   void group(std::string_view) {}
   void seed(std::string_view, std::uint64_t&, std::string_view) {}
   void flag(std::string_view, const Switch&, std::string_view) {}
+  void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view) {
+    for (const DrawnNumber& wrong :
+         {DrawnNumber(within.lo - 1), DrawnNumber(within.hi + 1), DrawnNumber(std::nanf("")),
+          DrawnNumber(0, within.hi + 1), DrawnNumber(-0.5F, within.hi),
+          DrawnNumber(within.hi, within.lo), DrawnNumber(0, std::nanf(""))}) {
+      probe(name, field, wrong);
+    }
+  }
   void heights(std::string_view name, std::vector<Span>& field, const Span& within,
                std::string_view) {
     for (const Span& wrong : {Span{within.lo, within.hi + 1}, Span{within.lo - 1, within.hi},

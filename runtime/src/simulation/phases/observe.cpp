@@ -7,6 +7,7 @@
 #include "simulation/phases/robot_noise.h"
 #include "simulation/phases/task.h"
 #include "simulation/state/env_moment.h"
+#include "simulation/state/episode_draws.h"
 #include "simulation/state/grip_frame.h"
 #include "support/random_stream.h"
 
@@ -245,6 +246,7 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
        .cosine = headingCosine(grip),
        .sine = headingSine(grip),
        .objects = state.resting(env_number),
+       .noise = drawnIn(moment, model.laser.noise(), kLaserDraw),
        .random = RandomStream(moment.seed ^ kLaserSalt, moment.env, moment.episode, moment.step)},
       next(model.laser.size()));
   if (sensors.geodesic) senseWays(model, state, env_number, next(sensors::kGeodesicSize));

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "simulation/state/env_moment.h"
+#include "simulation/state/episode_draws.h"
 #include "support/random_stream.h"
 
 namespace galactic::simulation {
@@ -40,8 +41,8 @@ class Errors {
 void disturb(const ChunkStep& step, std::size_t e) {
   const RobotNoise& noise = step.model.options.noise;
   const EnvMoment moment = momentOf(step.model, step.state, step.first + e);
-  Errors fleeting(noise.motion, luckOf(moment, kMotionSalt));
-  Errors lasting(noise.motion_bias, lastingLuckOf(moment, kBiasSalt));
+  Errors fleeting(drawnIn(moment, noise.motion, kMotionDraw), luckOf(moment, kMotionSalt));
+  Errors lasting(drawnIn(moment, noise.motion_bias, kBiasDraw), lastingLuckOf(moment, kBiasSalt));
   const std::span<EnvRow> motions = step.chunk.motions();
   for (std::size_t m = 0; m < motions.size(); ++m) {
     motions[m].values[e] = step.chunk.action(m, e) * (1 + fleeting.next() + lasting.next());
@@ -85,8 +86,9 @@ void followOdometry(const ChunkStep& step) noexcept {
     const float turn = wrapped(now.yaw - was.yaw);
     const float length = std::sqrt(dot(way, way));
     if (length == 0 && turn == 0) continue;
-    Errors errors(step.model.options.noise.localization,
-                  luckOf(momentOf(step.model, step.state, n), kOdometrySalt));
+    const EnvMoment moment = momentOf(step.model, step.state, n);
+    Errors errors(drawnIn(moment, step.model.options.noise.localization, kLocalizationDraw),
+                  luckOf(moment, kOdometrySalt));
     // As motions are off: see disturb().
     const float felt_turn = turn * (1 + errors.next());
     const float drift = length / steps.forward_step * steps.turn_step * errors.next();

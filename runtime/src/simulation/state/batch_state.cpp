@@ -9,7 +9,7 @@ namespace galactic::simulation {
 namespace {
 
 std::size_t odometryRows(const Model& model) {
-  return model.options.noise.localization > 0 ? kOdometryRows : 0;
+  return model.options.noise.localization.most > 0 ? kOdometryRows : 0;
 }
 
 /// Rows of a chunk: its robots, three points, the joint actions of the step before, and odometry.

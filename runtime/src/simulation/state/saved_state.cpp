@@ -297,7 +297,7 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
   SavedEnv saved = envOf(model, record);
   saved.variables = in.takeMany<float>(model.variableCount());
   saved.last_actions = in.takeMany<float>(model.motion.controlled.size());
-  if (model.options.noise.localization > 0) in.take(saved.believed);
+  if (model.options.noise.localization.most > 0) in.take(saved.believed);
   saved.ignored = in.takeMany<std::uint64_t>(model.heldWords());
   saved.leaving = in.takeMany<std::uint64_t>(saved.env.objects * model.bodyWords());
   saved.objects = in.takeMany<Pose>(saved.env.objects);

@@ -31,7 +31,7 @@ SimulationOptions unusualOptions() {
                        .direction_spread = 3.14159265F,
                        .jitter = 1e-8F};
   options.ground = {.most_rise = 0.2F, .most_drop = 0.4F};
-  options.noise = {.motion = 0.1F, .motion_bias = 0.03F, .localization = 0.2F};
+  options.noise = {.motion = {0.1F / 3, 0.1F}, .motion_bias = 0.03F, .localization = 0.2F};
   options.sensors = {.bump = true,
                      .target_goal = true,
                      .target_up = true,
@@ -76,6 +76,7 @@ TEST(OptionText, ReadsBackWhatItWrote) {
   EXPECT_EQ(read->placement.clearance, options.placement.clearance);
   EXPECT_EQ(read->placement.jitter, options.placement.jitter);
   EXPECT_EQ(read->sensors.laser.heights, options.sensors.laser.heights);
+  EXPECT_EQ(read->noise.motion, options.noise.motion);
   EXPECT_EQ(read->task.kind, TaskKind::kMobilePick);
   EXPECT_FALSE(read->task.distractors);
 }
@@ -109,6 +110,8 @@ TEST(OptionText, RefusesWhatMakesNoSense) {
       {"no-terminate=yes\n", "no-terminate is \"yes\", expected true or false"},
       {"slide-step=nan\n", "slide-step is \"nan\""},
       {"slide-step=inf\n", "slide-step is \"inf\""},
+      {"motion-noise=0.5-0.2\n", "motion-noise is \"0.5-0.2\", expected 0 to 1, or a range"},
+      {"laser-noise=-1-0.2\n", "laser-noise is \"-1-0.2\", expected -1 to 10, or a range from 0"},
       {"envs=1\nenvs=1\n", "each name once"},
       {"envs=1", "lines name=value"},
       {"envs\n", "lines name=value"},
