@@ -14,6 +14,7 @@ from galactic import spaces
 from galactic._core import EpisodeTally, ErrorCode, Renderer, Simulator, World
 from galactic.env_states import EnvStates
 from galactic.errors import Error
+from galactic.step_events import StepEvents
 from galactic.task import Task
 from galactic.task_runner import TaskRunner, options_of
 
@@ -45,6 +46,7 @@ class HalfBatch:
         copy: whether results are arrays of their own, and no views.
         task: one of the caller's own, over the simulator's.
         is_evaluation: what the task is told of it.
+        events: whether infos tell what happened in each step.
     """
 
     def __init__(
@@ -57,6 +59,7 @@ class HalfBatch:
         copy: bool,
         task: Task | None = None,
         is_evaluation: bool = False,
+        events: bool = False,
     ) -> None:
         if task is not None:
             options = options_of(task, options)
@@ -89,6 +92,7 @@ class HalfBatch:
         self._rows = np.zeros((envs, self.observation_size), np.float32)
         self._seen = {"state": self._rows, "rewards": np.zeros(envs, np.float32)}
         self._tally = EpisodeTally(self.simulator)
+        self._events = StepEvents(self.simulator) if events else None
         self._is_new = True
         self.is_cut_off = False
         """Whether an exception has cut off a step or a reset, which envs, tasks and sums have taken in in
@@ -264,6 +268,8 @@ class HalfBatch:
         with self._alone():
             self.require_whole()
             was_idle = self.simulator.idle.copy()
+            if self._events is not None:
+                self._events.begin()
             self._move(actions)
             result = self._taken_in(actions, was_idle, out)
             self.is_cut_off = False
@@ -315,6 +321,8 @@ class HalfBatch:
             self._landed("endings", endings, out)
         images = self._draw(out)
         infos = self._logged(~was_idle)
+        if self._events is not None:
+            infos |= self._events.infos(~was_idle)
         if len(ended):
             more = {**self._measures(ended), **self._cameras(ended)}
             infos |= self._infos(ended, self._renew(ended, images), more)

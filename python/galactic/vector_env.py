@@ -72,7 +72,10 @@ class VectorEnv(_Base):
 
     each beside a mask of its name with "_" in front, bool (num_envs,). In steps in which no episode
     ends, it has none of them. What a task of one's own says of each step (Task.logs) is in its "log", a
-    dictionary of float32 (num_envs,), with masks of the envs that are not idle.
+    dictionary of float32 (num_envs,), with masks of the envs that are not idle. So is, with `events=True`,
+    what happened to them in it in its "events", bool (num_envs,): refused (something kept the robot where
+    it was), slid (something pushed it aside), touched (either), grasped, dropped (what the hand let go of
+    lies somewhere), and restored (it found no place, and is back where it was).
 
     Observations are one flat float32 array (num_envs, observation_size), or with
     `observation="dict"` a dictionary of its named parts (docs/simulation.md lists them). With
@@ -106,6 +109,7 @@ class VectorEnv(_Base):
             that inherits from galactic.Task, or anything that makes one without arguments.
         is_evaluation: what such a task is told: whether policies are judged by what happens here, so that
             it is to be as at the end of their training (`progress` is 1).
+        events: whether `infos` have "events".
         threads, seed, order, rank, ranks, options: of galactic.Simulator. body_transforms=True
             lets you draw its `simulators` with a Renderer of your own, also without images.
     """
@@ -131,6 +135,7 @@ class VectorEnv(_Base):
         render_mode: str | None = None,
         task: str | Callable[[], Task] | None = None,
         is_evaluation: bool = False,
+        events: bool = False,
         threads: int = 0,
         seed: int = 1,
         order: str = "shuffled",
@@ -144,6 +149,7 @@ class VectorEnv(_Base):
         require_envs(num_envs, halves)
         require(isinstance(copy, bool), "copy", copy, "True or False")
         require(isinstance(is_evaluation, bool), "is_evaluation", is_evaluation, "True or False")
+        require(isinstance(events, bool), "events", events, "True or False")
         cameras = cameras_of(images)
         require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
         require_simulator_options(options)
@@ -177,6 +183,7 @@ class VectorEnv(_Base):
                 copy=copy,
                 task=None if own_task is None else made_by(own_task),
                 is_evaluation=is_evaluation,
+                events=events,
             )
             for half in range(halves)
         ]

@@ -67,6 +67,36 @@ py::dict statistics(Simulator& simulator, const py::object& env) {
   return figures;
 }
 
+/// The statistics of each env, as columns.
+py::dict counts(Simulator& simulator, const py::object& envs) {
+  const Confinement::Use use = simulator.readState();
+  const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
+  const Shape each{static_cast<py::ssize_t>(chosen.size())};
+  Filled<std::int64_t> steps(each), refused(each), slid(each), grasps(each), drops(each),
+      restored(each), episodes(each), successes(each), failures(each), nan_actions(each);
+  Filled<double> reward(each);
+  for (const std::uint32_t env : chosen) {
+    const SimulationStatistics of_env = simulator.batch().statistics(env);
+    steps.put(static_cast<std::int64_t>(of_env.steps));
+    refused.put(static_cast<std::int64_t>(of_env.refused));
+    slid.put(static_cast<std::int64_t>(of_env.slid));
+    grasps.put(static_cast<std::int64_t>(of_env.grasps));
+    drops.put(static_cast<std::int64_t>(of_env.drops));
+    restored.put(static_cast<std::int64_t>(of_env.restored));
+    episodes.put(static_cast<std::int64_t>(of_env.episodes));
+    successes.put(static_cast<std::int64_t>(of_env.successes));
+    failures.put(static_cast<std::int64_t>(of_env.failures));
+    nan_actions.put(static_cast<std::int64_t>(of_env.nan_actions));
+    reward.put(of_env.reward);
+  }
+  using namespace py::literals;
+  return py::dict("steps"_a = steps.array(), "refused"_a = refused.array(), "slid"_a = slid.array(),
+                  "grasps"_a = grasps.array(), "drops"_a = drops.array(),
+                  "restored"_a = restored.array(), "episodes"_a = episodes.array(),
+                  "successes"_a = successes.array(), "failures"_a = failures.array(),
+                  "nan_actions"_a = nan_actions.array(), "reward"_a = reward.array());
+}
+
 py::dict episodeNoise(Simulator& simulator, const py::object& envs) {
   const Confinement::Use use = simulator.readState();
   const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
@@ -237,6 +267,9 @@ void bindQueries(py::class_<Simulator>& type) {
            "copy.");
   type.def("statistics", &statistics, py::arg("env") = py::none(),
            "What happened in all envs since they were made, added up; or in one of them.");
+  type.def("counts", &counts, py::arg("envs") = py::none(),
+           "The same of each env, or of each of the numbers `envs`, in arrays (n,): copies. What\n"
+           "changes from one step to the next is what happened in it.");
   type.def("episode_noise", &episodeNoise, py::arg("envs") = py::none(),
            "The noise that the episode of each env, or of each of the numbers `envs`, has drawn\n"
            "where options give ranges: motion_noise, motion_bias, localization_noise and\n"
