@@ -20,19 +20,16 @@ from galactic import _core, files
 from galactic.learning import checkpoint
 from galactic.learning.command import EXIT_CODES, OK, Parser, named_path, told
 from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
-from galactic.learning.homes import camera_options, simulation_keywords
-from galactic.learning.networks import (
-    ActorHead,
+from galactic.learning.encoders import (
     Encoder,
-    FeedForwardPolicy,
-    Policy,
-    RecurrentPolicy,
     ResidualBlock,
     ResNet,
     SimpleCNN,
     SpaceToDepth,
     StateEncoder,
 )
+from galactic.learning.homes import camera_options, simulation_keywords
+from galactic.learning.networks import ActorHead, FeedForwardPolicy, Policy, RecurrentPolicy
 from galactic.learning.normalization import MOST
 from galactic.learning.privileges import of_own_tasks, options_of_actor, parts_of_actor
 from galactic.learning.settings import Settings, typed

@@ -10,10 +10,11 @@ import torch
 from torch import Tensor
 
 from galactic.learning.checkpoint import require_tensors, require_types
+from galactic.learning.encoders import Inputs
 from galactic.learning.environments import Environments, Step, Timeouts
 from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
-from galactic.learning.networks import Inputs, Policy
+from galactic.learning.networks import Policy
 from galactic.learning.noise import action_noise
 from galactic.learning.precision import Precision
 from galactic.learning.rollout import Rollout

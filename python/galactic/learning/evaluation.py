@@ -9,10 +9,11 @@ import numpy as np
 import torch
 
 import galactic
+from galactic.learning.encoders import Inputs
 from galactic.learning.environments import Observation, Step
 from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.homes import Homes
-from galactic.learning.networks import Inputs, Policy
+from galactic.learning.networks import Policy
 from galactic.learning.noise import noise_of
 from galactic.learning.rollout import Rollout
 

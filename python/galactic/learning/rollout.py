@@ -8,8 +8,8 @@ from typing import Mapping, Optional
 import torch
 from torch import Tensor
 
+from galactic.learning.encoders import Inputs
 from galactic.learning.environments import Observation
-from galactic.learning.networks import Inputs
 
 
 @dataclass

@@ -17,8 +17,9 @@ _core = pytest.importorskip("galactic._core", reason="the compiled module is not
 import galactic  # noqa: E402
 from galactic import export  # noqa: E402
 from galactic.learning import checkpoint  # noqa: E402
+from galactic.learning.encoders import Inputs  # noqa: E402
 from galactic.learning.homes import Homes  # noqa: E402
-from galactic.learning.networks import Inputs, PolicyShape  # noqa: E402
+from galactic.learning.networks import PolicyShape  # noqa: E402
 from galactic.learning.privileges import critic_columns  # noqa: E402
 from galactic.learning.settings import Settings  # noqa: E402
 from galactic.learning.sight import SIGHT  # noqa: E402

@@ -7,7 +7,8 @@ import torch
 from torch.nn import functional
 
 from galactic.learning.distributions import ActionDistribution
-from galactic.learning.networks import Inputs, PolicyShape, Tanh, make_policy
+from galactic.learning.encoders import Inputs, Tanh
+from galactic.learning.networks import PolicyShape, make_policy
 from galactic.learning.normalization import Normalizer
 from galactic.learning.sequences import run_gru
 from galactic.learning.sight import SIGHT
@@ -255,7 +256,7 @@ def test_decisions_are_never_surer_than_their_limit(network: str) -> None:
 
 
 def test_pictures_are_scaled_as_the_paper_says() -> None:
-    from galactic.learning.networks import images
+    from galactic.learning.encoders import images
 
     rgb = torch.full((1, 1, 2, 2, 3), 255, dtype=torch.uint8)
     depth = torch.tensor([0.0, 5.0, 10.0, 70.0]).view(1, 1, 2, 2)

@@ -95,7 +95,7 @@ def test_a_rollout_is_what_the_policy_did_and_saw(recurrent: bool) -> None:
     by_hand = ReachAndGrasp(6, limit=2)
     state = torch.zeros(6, 4)
     from galactic.learning.environments import Observation
-    from galactic.learning.networks import Inputs
+    from galactic.learning.encoders import Inputs
 
     by_hand.reset(Observation(state))
     hidden, starts = policy.initial_hidden(6, CPU), torch.ones(1, 6, dtype=torch.bool)

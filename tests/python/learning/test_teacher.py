@@ -15,7 +15,8 @@ from galactic.learning.checkpoint import CheckpointError, SavedPolicy, new_polic
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.distributions import ActionDistribution
-from galactic.learning.networks import Inputs, PolicyShape
+from galactic.learning.encoders import Inputs
+from galactic.learning.networks import PolicyShape
 from galactic.learning.ppo import PpoLearner
 from galactic.learning.rollout import Rollout
 from galactic.learning.settings import Settings

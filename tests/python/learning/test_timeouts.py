@@ -10,8 +10,8 @@ import pytest
 import torch
 from torch import Tensor
 
+from galactic.learning.encoders import Inputs
 from galactic.learning.environments import Step
-from galactic.learning.networks import Inputs
 from galactic.learning.rollout import Rollout
 from galactic.learning.settings import Settings
 from toys import ReachAndGrasp
