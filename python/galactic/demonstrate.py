@@ -19,7 +19,7 @@ from galactic import demonstrations, files
 from galactic.demonstration_writer import EPISODES_OF_PART, EPISODES_WITH_IMAGES, write_part
 from galactic.demonstrations import About, Demonstrations
 from galactic.hashing import hashed
-from galactic.learning import checkpoint, own_code, own_tasks
+from galactic.learning import checkpoint, own_code, own_networks, own_tasks
 from galactic.learning.checkpoint import SavedPolicy
 from galactic.learning.command import (
     EXIT_CODES,
@@ -46,7 +46,6 @@ from galactic.learning.settings import (
     option_name,
     typed,
 )
-from galactic.learning.sight import SIGHT
 from galactic.learning.streams import put
 from galactic.learning.trainer import threads_of
 
@@ -61,6 +60,8 @@ _SETTINGS = (
     "network",
     *dict.fromkeys(CAMERA.values()),
 )
+# The same of a network of one's own.
+_OF_OWN_NETWORK = ("network_options", "sees")
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -119,7 +120,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--threads", type=whole(0, 4096), default=0, metavar="N", help="0: all processors (0)"
     )
-    add_options(parser, _SETTINGS)
+    add_options(parser, (*_SETTINGS, *_OF_OWN_NETWORK))
     return parser
 
 
@@ -169,7 +170,7 @@ def _demonstrate(options: argparse.Namespace) -> int:
 
 
 def _episodes_of_part(settings: Settings) -> int:
-    return EPISODES_WITH_IMAGES if SIGHT[settings.network] else EPISODES_OF_PART
+    return EPISODES_WITH_IMAGES if settings.sight else EPISODES_OF_PART
 
 
 def _settings(options: argparse.Namespace) -> tuple[Settings, Optional[own_tasks.MakeTask]]:
@@ -217,6 +218,7 @@ def _about(options: argparse.Namespace, homes: Homes, settings: Settings, episod
     task_file = own_code.named(options.setting_task, "--task").file if settings.task else None
     if settings.task:
         del keywords["task"]  # of which VectorEnv takes the class
+    names = (*_SETTINGS, *(_OF_OWN_NETWORK if settings.has_own_network else ()))
     read = {
         "world": options.world,
         "expert": pathlib.Path(options.expert) if is_learned else None,
@@ -229,7 +231,7 @@ def _about(options: argparse.Namespace, homes: Homes, settings: Settings, episod
         expert=str(pathlib.Path(options.expert).resolve()) if is_learned else SCRIPTED,
         parts=homes.parts,
         options=keywords,
-        camera=exact_camera(settings) if SIGHT[settings.network] else None,
+        camera=exact_camera(settings) if settings.sight else None,
         meanings=homes.meanings,
         images=dict(homes.images),
         motions=homes.motions,
@@ -237,7 +239,7 @@ def _about(options: argparse.Namespace, homes: Homes, settings: Settings, episod
             "learner": str(options.learner.resolve()) if has_learner else None,
             "learner_steps": _learner_steps(options, homes) if has_learner else None,
             "deterministic": options.deterministic,
-            "settings": {name: getattr(settings, name) for name in _SETTINGS},
+            "settings": {name: getattr(settings, name) for name in names},
             "sha256": {name: _sha256(file) for name, file in read.items() if file is not None},
         },
     )
@@ -267,7 +269,8 @@ def _require_limit(homes: Homes) -> None:
 
 def _actor(file: pathlib.Path, homes: Homes, settings: Settings, deterministic: bool) -> Actor:
     """The policy of a file, that plays in these homes."""
-    saved = checkpoint.load_policy(file)
+    own = own_networks.own_network(settings.network) if settings.has_own_network else None
+    saved = checkpoint.load_policy(file, network=own)
     _require_sight(saved, file, settings)
     observed = Observed(homes.parts, homes.meanings, homes.motions)
     columns = columns_of(saved, file, observed, "take another policy")
@@ -276,11 +279,12 @@ def _actor(file: pathlib.Path, homes: Homes, settings: Settings, deterministic: 
 
 def _require_sight(saved: SavedPolicy, file: pathlib.Path, settings: Settings) -> None:
     """Raises CheckpointError where a policy that sees images would see others here."""
-    needed = SIGHT[saved.settings.network]
-    if set(needed) - set(SIGHT[settings.network]):
+    needed = saved.settings.sight
+    if set(needed) - set(settings.sight):
+        seeing = f" --sees {saved.settings.sees}" if saved.settings.has_own_network else ""
         raise checkpoint.CheckpointError(
             f"{file} sees images ({', '.join(needed)}), which the network {settings.network} does not; give "
-            f"--network {saved.settings.network}, or take another policy"
+            f"--network {saved.settings.network}{seeing}, or take another policy"
         )
     for name in dict.fromkeys(CAMERA.values()) if needed else ():
         found, wanted = getattr(settings, name), getattr(saved.settings, name)

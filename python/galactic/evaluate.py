@@ -90,6 +90,12 @@ def make_parser() -> argparse.ArgumentParser:
         metavar="N",
         help="how many episodes the pictures show (8)",
     )
+    parser.add_argument(
+        "--network",
+        metavar="FILE.py:CLASS|MODULE:CLASS",
+        help="the class of a network of your own; needed for a policy that was trained with one, as no policy "
+        "runs code by itself",
+    )
     own = parser.add_argument_group("A task of your own, for what pays and what a success is")
     own.add_argument(
         "--task",
@@ -166,8 +172,9 @@ def _evaluate(options: argparse.Namespace) -> int:
         "--video": options.video,
     }
     recipe = [options.dynamics] if options.dynamics else []
-    task_file = own_code.named(options.task, "--task").file if options.task else None
-    code = [task_file] if task_file else []
+    own = (("--task", options.task), ("--network", options.network))
+    code_files = [own_code.named(name, option).file for option, name in own if name is not None]
+    code = [file for file in code_files if file is not None]
     files.require_apart(outputs, [options.policy, options.world, *recipe, *code])
     for file in outputs.values():
         if file:
@@ -176,7 +183,7 @@ def _evaluate(options: argparse.Namespace) -> int:
         pictures.require_png(options.contact_sheet)
     if options.video:
         pictures.require_video(options.video)
-    saved = checkpoint.load_policy(options.policy)
+    saved = checkpoint.load_with(options.network, options.policy)
     task = _task(options, saved.settings)
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
@@ -231,6 +238,7 @@ def _evaluate(options: argparse.Namespace) -> int:
             **(
                 {"task": options.task, "task_options": options.task_options} if options.task else {}
             ),
+            **({"network": options.network} if options.network else {}),
             **summary,
             **({"dynamics": there} if there else {}),
         }
@@ -282,14 +290,10 @@ def _task(options: argparse.Namespace, settings: Settings) -> Optional[own_tasks
         # Those of the training are for its class.
         if given is None and str(name).rpartition(":")[2] == settings.task.rpartition(":")[2]:
             given = settings.task_options
-        siblings = own_tasks.siblings_of(name.file) if name.file else None
-        return own_tasks.maker(name, given or "", siblings)
+        return own_tasks.maker(name, given or "", own_code.siblings_of(name))
     if not settings.task:
         return None
-    copy = own_tasks.copy_beside(options.policy)
-    _, _, class_name = settings.task.rpartition(":")
-    # The policy may be a stranger's, and so is what it calls its task.
-    place = f"{copy}:{class_name}" if copy and class_name.isidentifier() else "FILE.py:CLASS"
+    place = own_code.place_beside(options.policy, "--task", settings.task)
     raise SettingsError(
         f"{options.policy} was trained with a task of its own; if you trust it, add --task "
         f"{shlex.quote(place)}"

@@ -8,20 +8,23 @@ from __future__ import annotations
 
 import argparse
 import math
+import operator
 import pathlib
 import sys
 from typing import Any, Optional, Sequence
 
 import numpy as np
 import torch
-from torch import nn
+from torch import fx, nn
+from torch.nn import functional
 
 from galactic import _core, files
-from galactic.learning import checkpoint
+from galactic.learning import checkpoint, own_code
 from galactic.learning.command import EXIT_CODES, OK, Parser, named_path, told
 from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
 from galactic.learning.encoders import (
     Encoder,
+    Eyes,
     ResidualBlock,
     ResNet,
     SimpleCNN,
@@ -29,15 +32,52 @@ from galactic.learning.encoders import (
     StateEncoder,
 )
 from galactic.learning.homes import camera_options, simulation_keywords
-from galactic.learning.networks import ActorHead, FeedForwardPolicy, Policy, RecurrentPolicy
+from galactic.learning.networks import (
+    ActorHead,
+    EncoderPolicy,
+    FeedForwardPolicy,
+    Policy,
+    RecurrentPolicy,
+)
 from galactic.learning.normalization import MOST
 from galactic.learning.privileges import of_own_tasks, options_of_actor, parts_of_actor
 from galactic.learning.settings import Settings, typed
-from galactic.learning.sight import FARTHEST, SIGHT
+from galactic.learning.sight import FARTHEST
 
 
 class ExportError(checkpoint.CheckpointError):
     """A module that no layer of a policy pack can express: names it and says what was expected."""
+
+
+class _Tracer(fx.Tracer):
+    """Follows a forward() down to the layers that Layers.module() is asked for."""
+
+    def is_leaf_module(self, m: nn.Module, module_qualified_name: str) -> bool:
+        if isinstance(m, nn.Sequential):
+            return False
+        return type(m).__module__.startswith(("torch.nn.", "galactic.learning."))
+
+
+_RELU = (torch.relu, functional.relu, "relu")
+_TANH = (torch.tanh, functional.tanh, "tanh")
+_SUM = (operator.add, torch.add, "add")
+_JOIN = (torch.cat, torch.concat)
+
+
+def _is_image(node: fx.Node) -> bool:
+    """Whether it reads a picture, which an export knows where Eyes do."""
+    return node.target is getattr and node.args[1] in ("rgb", "depth")
+
+
+def _is_plain(columns: Any) -> bool:
+    """Whether it is a slice from one number to another."""
+    return (
+        isinstance(columns, slice)
+        and isinstance(columns.start, int)
+        and isinstance(columns.stop, int)
+        and 0 <= columns.start < columns.stop
+        and columns.step in (None, 1)
+    )
 
 
 class Layers:
@@ -132,7 +172,63 @@ class Layers:
             felt = self.module(encoder.state, seen)
             before = self.module(encoder.previous, self.add("previous_action"))
             return self.add("concatenate", image, felt, before)
-        raise ExportError(f"the encoder {type(encoder).__name__} is unknown")
+        return self.traced(encoder, seen)
+
+    def traced(self, encoder: Encoder, seen: int) -> int:
+        """What an encoder of the user's does, as torch.fx follows its forward()."""
+        if encoder.memory:
+            raise ExportError(
+                "the network has a memory of its own, and a policy pack has a GRU alone: train one without, with "
+                "--recurrent"
+            )
+        try:
+            graph = _Tracer().trace(encoder)
+        except Exception as error:  # torch.fx raises whatever the code does with what it is given
+            raise ExportError(
+                f"forward() cannot be followed ({type(error).__name__}: {error}): write it of layers alone, without "
+                "conditions on what is seen"
+            ) from error
+        values: dict[fx.Node, int] = {}
+        for node in graph.nodes:
+            if node.op == "output":
+                (made,) = node.all_input_nodes
+                return values[made]
+            if node.op != "placeholder" and not _is_image(node):
+                values[node] = self._node(encoder, node, values, seen)
+        raise ExportError("forward() returns nothing")
+
+    def _node(self, encoder: Encoder, node: fx.Node, values: dict[fx.Node, int], seen: int) -> int:
+        """What one operation of a forward() makes of the values before it."""
+        if node.op == "call_module":
+            module = encoder.get_submodule(str(node.target))
+            if isinstance(module, Eyes):
+                return self.module(module.layers, self.add("image"))
+            if len(node.args) == 1 and node.args[0] in values:
+                return self.module(module, values[node.args[0]])
+        if node.target is getattr and node.args[1] == "state":
+            return seen
+        if node.target is getattr and node.args[1] == "previous":
+            return self.add("previous_action")
+        given = node.args[0] if node.args else None
+        if isinstance(given, fx.Node) and given in values:
+            if node.target in (*_RELU, *_TANH):
+                return self.add("relu" if node.target in _RELU else "tanh", values[given])
+            other = node.args[1] if len(node.args) > 1 else None
+            if node.target in _SUM and isinstance(other, fx.Node) and not node.kwargs:
+                return self.add("sum", values[given], values[other])
+            columns = other[-1] if isinstance(other, tuple) and other[:1] == (...,) else None
+            if node.target is operator.getitem and _is_plain(columns):
+                size = columns.stop - columns.start
+                return self.add("slice", values[given], first=columns.start, size=size)
+        if node.target in _JOIN and isinstance(given, (list, tuple)):
+            if {*node.args[1:], *node.kwargs.values()} == {-1}:
+                return self.add("concatenate", *(values[one] for one in given))
+        name = getattr(node.target, "__name__", node.target)
+        raise ExportError(
+            f"a policy pack has no layer for {name} in forward() ({node.format_node()}): it has the layers of "
+            "docs/policies.md, slices of the last dimension, torch.cat(..., -1), sums, ReLU and tanh; images are for "
+            "encoders.Eyes"
+        )
 
     def _convolution(self, module: nn.Conv2d, x: int) -> int:
         kernel, stride, padding = _edge(module.kernel_size), _edge(module.stride), module.padding
@@ -188,6 +284,8 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
         features = layers.module(policy.encoder, seen)
     elif isinstance(policy, RecurrentPolicy):
         features = layers.gru(policy.rnn, layers.encoder(policy.encoder, seen))
+    elif isinstance(policy, EncoderPolicy):
+        features = layers.encoder(policy.encoder, seen)
     else:
         raise ExportError(f"the policy {type(policy).__name__} is unknown")
     actions = _actions(layers, policy.action, features)
@@ -198,7 +296,7 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
             privileges, simulation_keywords(saved.settings.without_robot_noise().simulation)
         ),
         "observation": observation,
-        "image": _image(saved.settings) if SIGHT[saved.settings.network] else None,
+        "image": _image(saved.settings) if saved.settings.sight else None,
         "layers": layers.list,
         **actions,
     }
@@ -240,7 +338,7 @@ def _image(settings: Settings) -> dict[str, Any]:
         "height": seen["height"],
         "color": seen["color"] is not None,
         "color_scale": 1.0 / 255.0,
-        "depth": True,
+        "depth": "depth" in settings.sight,
         "depth_limit": FARTHEST,
         "depth_scale": 1.0 / FARTHEST,
         "camera": seen["camera"],
@@ -264,10 +362,12 @@ def _edge(size: Any) -> int:
     return int(size)
 
 
-def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "") -> None:
-    """Reads the checkpoint `file` and writes the policy pack `output`."""
-    files.require_apart({"--out": output}, [file])
-    saved = checkpoint.load_policy(file)
+def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "",
+          network: Optional[str] = None) -> None:  # fmt: skip
+    """Reads the checkpoint `file` and writes the policy pack `output`. `network`: what --network names."""
+    code = own_code.named(network, "--network").file if network is not None else None
+    files.require_apart({"--out": output}, [file, *([code] if code else [])])
+    saved = checkpoint.load_with(network, file)
     trained_with = {
         field.replace("_", "-"): typed(value) for field, value in saved.settings.to_dict().items()
     }
@@ -301,6 +401,11 @@ def make_parser() -> argparse.ArgumentParser:
         default="",
         help="the only robot that it may move (default: any with as many actions)",
     )
+    parser.add_argument(
+        "--network",
+        metavar="FILE.py:CLASS|MODULE:CLASS",
+        help="the class of a network of your own, which a policy that was trained with one needs",
+    )
     return parser
 
 
@@ -308,7 +413,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     options = make_parser().parse_args(arguments)
 
     def export() -> int:
-        write(options.policy, options.out, options.name, options.robot)
+        write(options.policy, options.out, options.name, options.robot, options.network)
         return OK
 
     return told("galactic.export", export)

@@ -17,7 +17,7 @@ import torch
 import galactic
 from galactic import files
 from galactic.demonstrations import Demonstrations
-from galactic.learning import checkpoint, evaluation, own_code, own_tasks
+from galactic.learning import checkpoint, evaluation, own_code, own_networks, own_tasks
 from galactic.learning.checkpoint import CheckpointFolder
 from galactic.learning.command import (
     EXIT_CODES,
@@ -40,6 +40,7 @@ from galactic.learning.run_folder import (
     TEACHER,
     Run,
     begin_folder,
+    kept_code,
     read_run,
     require_no_run,
     take_folder,
@@ -183,7 +184,8 @@ def _train(
     threads = threads_of(settings.simulation_threads, local_ranks())
     sharing = 1 if settings.network == "state" else 0
     torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
-    task = _task_of(run, folder if options.resume else None)
+    kept = folder if options.resume else None
+    task, network = _task_of(run, kept), _network_of(run, kept)
     shown = Demonstrations(*run.demonstrations) if run.demonstrations else None
     # Of those in which nobody acts, one is enough.
     played = (
@@ -200,7 +202,8 @@ def _train(
         if options.resume:
             file = folder / TEACHER
             remedy = f"put back this copy of {run.teacher}, or begin another run"
-        teacher = checkpoint.load_policy(file, remedy), file
+        without = "give another --teacher, of the network state"
+        teacher = checkpoint.load_policy(file, remedy, without=without), file
     trainer = Trainer(
         settings,
         envs,
@@ -209,6 +212,7 @@ def _train(
         validation=validation,
         teacher=teacher,
         demonstrations=shown,
+        network=network,
         title=folder.resolve().name,
     )
     if run.start_from and not options.resume:
@@ -302,7 +306,8 @@ def _run_of(options: argparse.Namespace, world: pathlib.Path) -> Run:
         _absolute(options.teacher),
         demonstrations=[folder.resolve() for folder in options.demonstrations],
     )
-    return _with_task(run, given.get("simulation", "")) if settings.task else run
+    run = _with_task(run, given.get("simulation", "")) if settings.task else run
+    return _with_network(run) if settings.has_own_network else run
 
 
 def _require_imitation(options: argparse.Namespace, settings: Settings) -> None:
@@ -336,11 +341,36 @@ def _task_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_tasks.Mak
     """What makes the run's task, if that is one's own; of the copy in `folder` if it is given."""
     if not run.settings.task:
         return None
-    name, siblings = own_code.named(run.settings.task, "--task"), None
-    if run.task_file is not None:
-        file = run.task_file if folder is None else folder / own_tasks.COPY
-        name, siblings = name._replace(place=str(file)), run.task_file.parent
+    name, siblings = _code_of(run.settings.task, "--task", run.task_file, folder)
     return own_tasks.maker(name, run.settings.task_options, siblings)
+
+
+def _with_network(run: Run) -> Run:
+    """The run with the network of one's own that its settings name. Looks for its class, as _with_task() does."""
+    name = own_code.named(run.settings.network, "--network")
+    own_networks.with_options(own_networks.network_of(name), run.settings.network_options)
+    settings = dataclasses.replace(run.settings, network=str(name))
+    return dataclasses.replace(run, settings=settings, network_file=_absolute(name.file))
+
+
+def _network_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_networks.OwnNetwork]:
+    """What makes the run's network, if that is one's own; of the copy in `folder` if it is given."""
+    if not run.settings.has_own_network:
+        return None
+    name, siblings = _code_of(run.settings.network, "--network", run.network_file, folder)
+    found = own_networks.network_of(name, siblings)
+    return own_networks.with_options(found, run.settings.network_options)
+
+
+def _code_of(
+    text: str, option: str, file: Optional[pathlib.Path], folder: Optional[pathlib.Path]
+) -> tuple[own_code.CodeName, Optional[pathlib.Path]]:
+    """What the settings of a run call code that is in a module or a `file`, and where the modules are that this
+    imports."""
+    name = own_code.named(text, option)
+    if file is None:
+        return name, None
+    return name._replace(place=str(kept_code(file, option, folder))), file.parent
 
 
 def _resumed_run(options: argparse.Namespace) -> Run:

@@ -21,6 +21,7 @@ and under "values" a JSON text with all else (torch 1.13 reads no plain floats t
                 shape     PolicyShape._asdict()
                 parts     names and sizes of the parts of an observation, in order: [[name, size], ...]
                 meanings  what their numbers mean: sensors.meaning_of(); not in older files
+                network_digest  SHA-256 of the file of a network of one's own; not in older files
                 steps     steps of training
                 success   success rate by which it was judged, or null
 """
@@ -32,9 +33,10 @@ import io
 import json
 import os
 import pathlib
+import shlex
 import shutil
 from dataclasses import dataclass, field
-from typing import Any, Iterator, Mapping, Optional
+from typing import Any, Iterator, Mapping, Optional, Sequence
 
 import torch
 from torch import Tensor
@@ -43,8 +45,16 @@ from galactic import files
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.networks import Policy, PolicyShape, make_policy
+from galactic.learning.own_code import place_beside
+from galactic.learning.own_networks import (
+    NetworkError,
+    OwnNetwork,
+    own_network,
+    seen_by,
+    with_options,
+)
 from galactic.learning.privileges import critic_columns, names_of
-from galactic.learning.settings import Settings
+from galactic.learning.settings import Settings, SettingsError
 from galactic.learning.sight import OF_THE_PAPER
 
 FORMAT = 1
@@ -60,7 +70,8 @@ class CheckpointError(Exception):
 @dataclass
 class SavedPolicy:
     """A policy as it was saved. `parts`: names and sizes of the parts of its observations. `meanings`: what
-    their numbers mean (sensors.meaning_of()), as far as that is known."""
+    their numbers mean (sensors.meaning_of()), as far as that is known. `network`: what has made its network,
+    if that is one of the user's."""
 
     policy: Policy
     settings: Settings
@@ -69,11 +80,17 @@ class SavedPolicy:
     steps: int
     success: Optional[float]
     meanings: Mapping[str, Any] = field(default_factory=dict)
+    network: Optional[OwnNetwork] = None
 
 
-def new_policy(settings: Settings, shape: PolicyShape) -> Policy:
-    """The policy that the settings describe, with weights from torch's global random stream."""
+def new_policy(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, int]] = (),
+               network: Optional[OwnNetwork] = None) -> Policy:  # fmt: skip
+    """The policy that the settings describe, with weights from torch's global random stream. `network` makes
+    one of the user's, which is told where the `parts` of an observation are."""
     free = settings.log_std == "parameter"
+    encoder = None
+    if network is not None:
+        encoder = network.make(seen_by(settings, shape, parts), settings.recurrent)
     return make_policy(
         settings.network,
         shape,
@@ -84,6 +101,7 @@ def new_policy(settings: Settings, shape: PolicyShape) -> Policy:
         activation=settings.activation,
         initial_log_std=settings.initial_log_std if free else None,
         odds_limit=settings.odds_limit,
+        own=encoder,
     )
 
 
@@ -95,21 +113,61 @@ def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
         "shape": saved.shape._asdict(),
         "parts": [list(part) for part in saved.parts],
         "meanings": dict(saved.meanings),
+        "network_digest": saved.network.digest if saved.network else "",
         "steps": saved.steps,
         "success": saved.success,
     }
     save(file, values, {"policy": saved.policy.state_dict()})
 
 
-def load_policy(file: pathlib.Path, remedy: str = "") -> SavedPolicy:
+def load_policy(file: pathlib.Path, remedy: str = "", network: Optional[OwnNetwork] = None,
+                without: str = "") -> SavedPolicy:  # fmt: skip
     """Reads a policy.pt or best.pt; the policy is on the processor, ready to act. `remedy` is as in
-    load()."""
+    load(). `network` makes the network where it is one of the user's, as no file runs code by itself;
+    `without` is what to do where nobody has named it."""
     values, tensors = load(file, remedy)
     remedy = remedy or _ANOTHER_POLICY
     if values.get("format") != FORMAT or "policy" not in tensors:
         raise CheckpointError(f"{file} is not a policy of format {FORMAT}; {remedy}")
     with refusing(f"{file} is not a policy of this version", remedy):
-        return _policy_of(values, tensors["policy"])
+        values = {"meanings": {}, "network_digest": "", **values}
+        require_types(values, _POLICY)
+        settings = Settings.from_dict(values["settings"])
+        if not settings.has_own_network:
+            network = None
+        else:
+            network = _same_network(file, settings, values["network_digest"], network, without)
+        return _policy_of(values, tensors["policy"], settings, network)
+
+
+def load_with(network: Optional[str], file: pathlib.Path) -> SavedPolicy:
+    """load_policy() with what --network names, if it is given. Raises SettingsError where it is of no use."""
+    named = own_network(network) if network is not None else None
+    saved = load_policy(file, network=named)
+    if named is not None and saved.network is None:
+        raise SettingsError(
+            f"--network: found {named.code}, and {file} has the network {saved.settings.network}; leave it out"
+        )
+    return saved
+
+
+def _same_network(file: pathlib.Path, settings: Settings, digest: str,
+                  network: Optional[OwnNetwork], without: str) -> OwnNetwork:  # fmt: skip
+    """The network that was named for a policy, if it is the one that the policy learned with, made with the
+    same options."""
+    place = place_beside(file, "--network", settings.network)
+    trusted = f"if you trust it, add --network {shlex.quote(place)}"
+    learned = f"{file} was trained with a network of its own, {settings.network!r}"
+    if network is None:
+        raise NetworkError(f"{learned}; {without or trusted}")
+    if network.code.name != settings.network.rpartition(":")[2]:
+        raise NetworkError(f"{learned}, found --network {network.code}; {without or trusted}")
+    if digest and network.digest and network.digest != digest:
+        raise NetworkError(
+            f"{learned}, and {network.code.file} is another file than it was then; put it back, or name the copy "
+            "that a run keeps, network.py"
+        )
+    return with_options(network, settings.network_options)
 
 
 # Of what is in a policy.pt, and of its shape: types that JSON gives them.
@@ -118,6 +176,7 @@ _POLICY = {
     "shape": dict,
     "parts": list,
     "meanings": dict,
+    "network_digest": str,
     "steps": int,
     "success": (float, int, type(None)),
 }
@@ -132,21 +191,19 @@ _SHAPE = {
 }
 
 
-def _policy_of(values: dict[str, Any], state: dict[str, Any]) -> SavedPolicy:
-    values = {"meanings": {}, **values}
-    require_types(values, _POLICY)
+def _policy_of(values: dict[str, Any], state: dict[str, Any], settings: Settings,
+               network: Optional[OwnNetwork]) -> SavedPolicy:  # fmt: skip
     sizes = {**PolicyShape._field_defaults, **values["shape"]}
     require_types(sizes, _SHAPE)
     sizes["critic_only"] = tuple(sizes["critic_only"])
-    settings, shape = Settings.from_dict(values["settings"]), PolicyShape(**sizes)
+    shape = PolicyShape(**sizes)
     parts = [(str(name), int(size)) for name, size in values["parts"]]
     _require_columns(settings, shape, parts)
-    policy = new_policy(settings, shape)
+    policy = new_policy(settings, shape, parts, network)
     policy.load_state_dict(state)
     policy.eval()
-    return SavedPolicy(
-        policy, settings, shape, parts, values["steps"], values["success"], values["meanings"]
-    )
+    steps, success, meanings = values["steps"], values["success"], values["meanings"]
+    return SavedPolicy(policy, settings, shape, parts, steps, success, meanings, network)
 
 
 def _require_columns(settings: Settings, shape: PolicyShape, parts: list[tuple[str, int]]) -> None:
@@ -167,7 +224,7 @@ def refusing(fault: str, remedy: str) -> Iterator[None]:
     """
     try:
         yield
-    except CheckpointError:
+    except (CheckpointError, NetworkError):
         raise
     except Exception as error:
         if isinstance(error, Error) and error.code == ErrorCode.IO:
@@ -211,19 +268,30 @@ def _described(value: Any) -> str:
 NEW_TERMINATE_LOGIT = -4.0
 """Log-odds, in every state, of a terminate action that the policy has not learned yet: one step in 55."""
 
-_NETWORK = ("network", "image_size", "recurrent", "width", "layers", "activation", "log_std")
+_NETWORK = (
+    "network",
+    "network_options",
+    "sees",
+    "image_size",
+    "recurrent",
+    "width",
+    "layers",
+    "activation",
+    "log_std",
+)
 
 
 def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
-               parts: list[tuple[str, int]], file: pathlib.Path) -> SavedPolicy:  # fmt: skip
-    """Gives `policy`, a new_policy(settings, shape) that sees `parts`, the weights of the policy in
+               parts: list[tuple[str, int]], file: pathlib.Path,
+               network: Optional[OwnNetwork] = None) -> SavedPolicy:  # fmt: skip
+    """Gives `policy`, a new_policy(settings, shape, parts, network), the weights of the policy in
     `file`, and returns that: networks, standard deviations, means and variances of observations.
 
     Both must be the same network and see the same observations; CheckpointError says where they differ.
     The task may be another one. Where only the new one is about to terminate, it starts with
     NEW_TERMINATE_LOGIT, since what the head holds was never used.
     """
-    saved = load_policy(file)
+    saved = load_policy(file, network=network)
     ours = {name: getattr(settings, name) for name in _NETWORK}
     theirs = {name: getattr(saved.settings, name) for name in _NETWORK}
     if settings.network in OF_THE_PAPER:

@@ -25,10 +25,33 @@ class Inputs(NamedTuple):
 
 
 class Encoder(nn.Module):
-    """Inputs -> features [T, n, F], F being `features`."""
+    """Inputs -> features [T, n, F].
+
+    With a memory of its own, forward() takes more, the memory before the first step, [n, M], and where
+    episodes begin, bool [T, n], and returns more, the memory after the last step:
+
+        features, memory = encoder(inputs, memory, starts)
+
+    Where an episode begins, the memory is empty, which is all zeros: see sequences.run_gru().
+    """
 
     features = 0
+    """F."""
+    memory = 0
+    """M, numbers for each env; 0: it has none."""
     needs_previous = False
+    """Whether it reads Inputs.previous."""
+
+
+class Eyes(nn.Module):
+    """Convolutions -> numbers [T, n, F]: `layers` make F numbers of each picture, [C, H, W] as images() has it."""
+
+    def __init__(self, layers: nn.Module):
+        super().__init__()
+        self.layers = layers
+
+    def forward(self, inputs: Inputs) -> Tensor:
+        return self.layers(images(inputs)).float().view(*inputs.state.shape[:2], -1)
 
 
 class StateEncoder(Encoder):
@@ -175,17 +198,23 @@ class SpaceToDepth(nn.Module):
 
 
 def images(inputs: Inputs) -> Tensor:
-    """The pictures as a network wants them: [T n, 4, H, W], in [0, 1], channels last in memory.
+    """The pictures as a network wants them: [T n, C, H, W], in [0, 1], channels last in memory: red, green and
+    blue, if there are colors, then depth, if there is any.
 
     RGB stays bytes until here. Depth counts up to 10 m.
     """
-    assert inputs.rgb is not None and inputs.depth is not None
-    batch, (height, width) = inputs.depth.shape[:2].numel(), inputs.depth.shape[2:]
-    packed = torch.empty(batch, height, width, 4, device=inputs.depth.device)
-    packed[..., :3] = inputs.rgb.reshape(batch, height, width, 3)
-    packed[..., :3] *= 1.0 / 255.0
-    packed[..., 3] = inputs.depth.reshape(batch, height, width)
-    packed[..., 3].clamp_(0.0, FARTHEST).mul_(1.0 / FARTHEST)
+    there = [part for part in (inputs.rgb, inputs.depth) if part is not None]
+    assert there, "the network sees no images"
+    batch, (height, width) = there[0].shape[:2].numel(), there[0].shape[2:4]
+    colors = 0 if inputs.rgb is None else 3
+    channels = colors + (inputs.depth is not None)
+    packed = torch.empty(batch, height, width, channels, device=inputs.state.device)
+    if inputs.rgb is not None:
+        packed[..., :3] = inputs.rgb.reshape(batch, height, width, 3)
+        packed[..., :3] *= 1.0 / 255.0
+    if inputs.depth is not None:
+        packed[..., colors] = inputs.depth.reshape(batch, height, width)
+        packed[..., colors].clamp_(0.0, FARTHEST).mul_(1.0 / FARTHEST)
     return packed.permute(0, 3, 1, 2)
 
 

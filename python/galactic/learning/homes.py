@@ -20,7 +20,6 @@ from galactic.learning.settings import (
     option_name,
     simulation_keyword,
 )
-from galactic.learning.sight import SIGHT
 from galactic.sensors import meaning_of
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
@@ -54,9 +53,11 @@ def simulation_keywords(text: str) -> dict[str, Any]:
 
 def camera_options(settings: Settings) -> dict[str, Any]:
     """What the network sees, as options of galactic.Renderer."""
-    color = "rgb" if "rgb" in SIGHT[settings.network] else None
+    color = "rgb" if "rgb" in settings.sight else None
     chosen = {option: getattr(settings, name) for option, name in CAMERA.items()}
-    return {"color": color, **chosen}
+    # Depth is drawn unless it is said.
+    depth = {} if "depth" in settings.sight else {"depth": False}
+    return {"color": color, **depth, **chosen}
 
 
 def exact_camera(settings: Settings) -> dict[str, Any]:
@@ -94,7 +95,7 @@ class Homes:
                  task: Optional[MakeTask] = None, is_evaluation: bool = False,
                  onlooker: Optional[Mapping[str, Any]] = None):  # fmt: skip
         keywords = simulation_keywords(settings.simulation)
-        images = camera_options(settings) if SIGHT[settings.network] else None
+        images = camera_options(settings) if settings.sight else None
         # What begins the names of the network's images.
         self._eye = ""
         if onlooker is not None:

@@ -23,7 +23,6 @@ from galactic.learning.learner import Learner
 from galactic.learning.networks import Policy
 from galactic.learning.rollout import Rollout
 from galactic.learning.settings import Settings
-from galactic.learning.sight import SIGHT
 from galactic.learning.stopwatch import Stopwatch
 
 
@@ -66,7 +65,7 @@ class Streams:
         """No env has finished an episode: none is played."""
         self.stopwatch = Stopwatch()
         about = demonstrations.about
-        images = {name: about.images[name] for name in SIGHT[settings.network]}
+        images = {name: about.images[name] for name in settings.sight}
         empty = Rollout.empty(
             settings.horizon,
             settings.envs,
@@ -279,7 +278,9 @@ def require_same(demonstrations: Demonstrations, settings: Settings, observed: O
     about = demonstrations.about
     camera = about.camera
     if images and camera is not None:
-        camera = {**exact_camera(settings), "color": camera.get("color")}
+        drawn = ("color", "depth")
+        seen = {name: value for name, value in exact_camera(settings).items() if name not in drawn}
+        camera = {**seen, **{name: camera[name] for name in drawn if name in camera}}
     wanted = dataclasses.replace(
         about,
         parts=list(observed.parts),

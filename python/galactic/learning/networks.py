@@ -1,5 +1,5 @@
-"""The policies: the paper's three networks, and two for processors, `state` without a camera and
-`depth` with one.
+"""The policies: the paper's three networks, two for processors, `state` without a camera and
+`depth` with one, and those around an encoder of one's own.
 
 Every policy is the same plain chain, kept in these attributes so that an exporter can walk it:
 
@@ -14,7 +14,8 @@ Every policy is the same plain chain, kept in these attributes so that an export
 
 A policy without `rnn` (class FeedForwardPolicy) has two encoders, `encoder` for the actor and
 `value_encoder` for the critic, which share nothing but what is before them. One with `rnn` has a
-`value_encoder` behind it where the critic sees more than the actor.
+`value_encoder` behind it where the critic sees more than the actor, and so has an EncoderPolicy, whose
+memory, if there is one, is the encoder's.
 
 Rows of `action.linear`: a mean for each motion (before tanh), a log-std for each, then two logits (no,
 yes) each for grasp and terminate.
@@ -215,6 +216,12 @@ class Policy(nn.Module):
         """The same, as the actor reads them."""
         return seen if self.blinkers is None else self.blinkers(seen)
 
+    def _judged(self, features: Tensor, seen: Tensor, join: Optional[nn.Module]) -> Tensor:
+        """The features as the critic reads them, joined with what it alone sees."""
+        if self.blinkers is None or join is None:
+            return features
+        return join(torch.cat([features, self.blinkers.hidden(seen)], -1))
+
 
 class FeedForwardPolicy(Policy):
     """Two perceptrons side by side, actor and critic, behind the same eyes or none: no memory."""
@@ -273,22 +280,54 @@ class RecurrentPolicy(Policy):
         seen = self._seen(inputs)
         features = self.encoder(inputs._replace(state=self._by_actor(seen)))
         features, hidden = run_gru(self.rnn, features, hidden, starts)
-        judged = features
-        if self.blinkers is not None and self.value_encoder is not None:
-            judged = self.value_encoder(torch.cat([features, self.blinkers.hidden(seen)], -1))
+        judged = self._judged(features, seen, self.value_encoder)
+        return Outputs(self.action(features), self.critic(judged).squeeze(-1), hidden)
+
+
+class EncoderPolicy(Policy):
+    """An encoder, which has a memory of its own or none, and heads for actor and critic on it; the critic's
+    behind a layer that joins what it alone sees."""
+
+    def __init__(self, encoder: Encoder, shape: PolicyShape, initial_log_std: Optional[float],
+                 odds_limit: float):  # fmt: skip
+        super().__init__(shape)
+        self.hidden_size = encoder.memory
+        self.needs_previous = encoder.needs_previous
+        self.encoder = encoder
+        width = encoder.features
+        self.action = ActorHead(width, shape, initial_log_std, odds_limit)
+        self.value_encoder: Optional[nn.Module] = None
+        if shape.critic_only:
+            self.value_encoder = perceptron(width + shape.apart, width, 1, "tanh")
+        self.critic = orthogonal(HeadLinear(width, 1), 1.0)
+
+    def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+        seen = self._seen(inputs)
+        inputs = inputs._replace(state=self._by_actor(seen))
+        if hidden is None:
+            features = self.encoder(inputs)
+        else:
+            features, memory = self.encoder(inputs, hidden, starts)
+            hidden = memory.float()
+        judged = self._judged(features, seen, self.value_encoder)
         return Outputs(self.action(features), self.critic(judged).squeeze(-1), hidden)
 
 
 def make_policy(network: str, shape: PolicyShape, *, image_size: int = IMAGE_SIZE,
                 recurrent: bool = False, width: int = 128, layers: int = 2,
                 activation: str = "tanh", initial_log_std: Optional[float] = None,
-                odds_limit: float = 0.0) -> Policy:  # fmt: skip
-    """A policy by its name, one of SIGHT, with an ActorHead of `odds_limit`.
+                odds_limit: float = 0.0, own: Optional[Encoder] = None) -> Policy:  # fmt: skip
+    """A policy by its name, one of SIGHT, or around an encoder of one's `own`, with an ActorHead of
+    `odds_limit`.
 
     `image_size`, `recurrent`, `width`, `layers`, `activation` and `initial_log_std` are for `state`
-    and `depth` alone: the paper's networks are what they are. Weights come from torch's global random
-    stream.
+    and `depth` alone: the paper's networks are what they are. Around that encoder, `recurrent` puts a GRU of
+    `width` behind it. Weights come from torch's global random stream.
     """
+    if own is not None:
+        if recurrent:
+            return RecurrentPolicy(own, shape, width, initial_log_std, odds_limit)
+        return EncoderPolicy(own, shape, initial_log_std, odds_limit)
     if network in ("state", "depth"):
         eyes = DepthCNN(image_size, width) if network == "depth" else None
         if not recurrent:

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import hashlib
 import importlib
 import importlib.util
+import inspect
+import json
 import os
 import pathlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple, Optional
 
-from galactic.learning.settings import SettingsError
+from galactic.learning.settings import SettingsError, did_you_mean
+
+RUN = "settings.json"
+"""What a run is, in its folder."""
+COPIES = {"--task": "task.py", "--network": "network.py"}
+"""The copies of the files that options name, beside RUN."""
 
 
 class CodeName(NamedTuple):
@@ -57,6 +65,116 @@ def goes_on(code: CodeName, when: str) -> Iterator[None]:
         yield
     except SystemExit as end:
         raise SettingsError(f"{code.option}: {code} ended the program {when}") from end
+
+
+def class_of(code: CodeName, base: type, base_name: str, siblings: Optional[pathlib.Path]) -> Any:
+    """The class of that name, which inherits from `base`."""
+    members = members_of(code, siblings)
+    found = members.get(code.name)
+    if isinstance(found, type) and issubclass(found, base):
+        return found
+    if code.name in members:
+        raise SettingsError(f"{code.option}: {code} is no class that inherits from {base_name}")
+    known = [
+        name
+        for name, value in members.items()
+        if isinstance(value, type) and issubclass(value, base) and value is not base
+    ]
+    it_has = f"; it has {', '.join(known)}" if known else f"; it has no {base_name}"
+    hint = did_you_mean(code.name, known) or it_has
+    raise SettingsError(f"{code.option}: {code.place} has no {code.name}{hint}")
+
+
+def factory_of(code: CodeName, what: str) -> Callable[..., Any]:
+    """The function or class of that name, which is called with a folder and settings, and returns `what`. Its
+    file runs now; what that raises is the caller's."""
+    found = members_of(code).get(code.name)
+    if not callable(found):
+        fault = f"{code.place} has no {code.name}" if found is None else f"{code} is no function"
+        raise SettingsError(f"{code.option}: {fault}; name one that takes a folder and settings")
+    fault = mismatch(found, ("folder", {}), {})
+    if fault:
+        raise SettingsError(
+            f"{code.option}: {code} cannot be called with a folder and settings: {fault}"
+        )
+    make: Callable[..., Any] = found
+
+    def product_of(folder: pathlib.Path, settings: Mapping[str, Any]) -> Any:
+        with goes_on(code, f"when it was called; return {what}"):
+            made = make(folder, settings)
+        if not callable(made):
+            raise SettingsError(
+                f"{code.option}: {code} returned a {type(made).__name__}, expected {what}"
+            )
+        return made
+
+    return product_of
+
+
+def mismatch(found: Any, positional: tuple[Any, ...], keywords: Mapping[str, Any]) -> str:
+    """Why something cannot be called so; nothing where it can, or where what is compiled does not tell."""
+    try:
+        signature = inspect.signature(found)
+    except ValueError:
+        return ""
+    try:
+        signature.bind(*positional, **keywords)
+    except TypeError as error:
+        return str(error)
+    return ""
+
+
+_WORDS = {"true": "True", "false": "False", "none": "None"}
+
+
+def keywords_of(options: str, option: str) -> dict[str, Any]:
+    """What was given with `option` as keywords: "radius=0.2 kind=near dense=false" is {"radius": 0.2, "kind":
+    "near", "dense": False}. What reads as a number, list or other literal of Python is one, all else is
+    text."""
+    keywords: dict[str, Any] = {}
+    for word in options.split():
+        name, equals, value = word.partition("=")
+        name = name.lstrip("-").replace("-", "_")
+        if not equals or not name.isidentifier():
+            raise SettingsError(f'{option}: found "{word}", expected NAME=VALUE')
+        try:
+            keywords[name] = ast.literal_eval(_WORDS.get(value.lower(), value))
+        except (ValueError, SyntaxError):
+            keywords[name] = value
+    return keywords
+
+
+def copy_beside(policy: pathlib.Path, option: str) -> Optional[pathlib.Path]:
+    """The copy of what `option` named that belongs to a policy of a run's folder, or of one of its
+    checkpoints."""
+    parents, copy = policy.absolute().parents, COPIES[option]
+    for folder in [
+        parents[0],
+        *(parents[2:3] if parents[1:2] and parents[1].name == "checkpoints" else []),
+    ]:
+        if (folder / RUN).is_file() and (folder / copy).is_file():
+            return folder / copy
+    return None
+
+
+def place_beside(policy: pathlib.Path, option: str, trained: str) -> str:
+    """What to give with `option` to a policy that was trained with the class `trained`. The policy may be a
+    stranger's, and so is what it calls its class."""
+    copy = copy_beside(policy, option)
+    _, _, name = trained.rpartition(":")
+    return f"{copy}:{name}" if copy and name.isidentifier() else "FILE.py:CLASS"
+
+
+def siblings_of(code: CodeName) -> Optional[pathlib.Path]:
+    """Where the modules are that a run's copy of a file imports: where it was copied from. None for what is
+    no such copy."""
+    if code.file is None or code.file.name != COPIES.get(code.option):
+        return None
+    try:
+        run = json.loads((code.file.parent / RUN).read_text(encoding="utf-8"))
+        return pathlib.Path(run[f"{code.file.stem}_file"]).parent
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
 
 
 def _module_of(code: CodeName, siblings: Optional[pathlib.Path]) -> Any:

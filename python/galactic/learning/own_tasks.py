@@ -2,46 +2,16 @@
 
 from __future__ import annotations
 
-import ast
-import inspect
-import json
 import pathlib
 from collections.abc import Mapping, Sequence
 from typing import Any, Callable, Optional
 
-from galactic.learning.own_code import CodeName, goes_on, members_of
-from galactic.learning.settings import SettingsError, did_you_mean, latest_words, simulation_keyword
+from galactic.learning.own_code import CodeName, class_of, goes_on, keywords_of, mismatch
+from galactic.learning.settings import SettingsError, latest_words, simulation_keyword
 from galactic.task import Task
 from galactic.task_runner import require_options
 
 MakeTask = Callable[[], Task]
-
-COPY = "task.py"
-"""The copy of the class's file in the folder of a run, beside RUN."""
-RUN = "settings.json"
-"""What a run is."""
-
-
-def copy_beside(policy: pathlib.Path) -> Optional[pathlib.Path]:
-    """The copy that belongs to a policy of a run's folder, or of one of its checkpoints."""
-    parents = policy.absolute().parents
-    for folder in [
-        parents[0],
-        *(parents[2:3] if parents[1:2] and parents[1].name == "checkpoints" else []),
-    ]:
-        if (folder / RUN).is_file() and (folder / COPY).is_file():
-            return folder / COPY
-    return None
-
-
-def siblings_of(file: pathlib.Path) -> Optional[pathlib.Path]:
-    """Where the modules are that a run's copy of a task imports: where it was copied from. None for a file
-    that is no such copy."""
-    try:
-        run = json.loads((file.parent / RUN).read_text(encoding="utf-8"))
-        return pathlib.Path(run["task_file"]).parent if file.name == COPY else None
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
 
 
 def require_use(given: Mapping[str, Any]) -> None:
@@ -51,39 +21,18 @@ def require_use(given: Mapping[str, Any]) -> None:
 
 
 def maker(task: CodeName, options: str, siblings: Optional[pathlib.Path] = None) -> MakeTask:
-    """What makes the task with these options (keywords_of()): see members_of()."""
-    found = _class_of(task, siblings)
-    keywords = keywords_of(options)
-    try:
-        inspect.signature(found).bind(**keywords)
-    except TypeError as error:
-        raise SettingsError(f"--task-options: {task} cannot be made of them: {error}") from error
+    """What makes the task with these options (own_code.keywords_of()): see members_of()."""
+    found = class_of(task, Task, "galactic.Task", siblings)
+    keywords = keywords_of(options, "--task-options")
+    fault = mismatch(found, (), keywords)
+    if fault:
+        raise SettingsError(f"--task-options: {task} cannot be made of them: {fault}")
 
     def make() -> Task:
         with goes_on(task, "when it was made; raise an exception instead"):
             return found(**keywords)
 
     return make
-
-
-_WORDS = {"true": "True", "false": "False", "none": "None"}
-
-
-def keywords_of(options: str) -> dict[str, Any]:
-    """Settings.task_options as keywords: "radius=0.2 kind=near dense=false" is {"radius": 0.2, "kind":
-    "near", "dense": False}. What reads as a number, list or other literal of Python is one, all else is
-    text."""
-    keywords: dict[str, Any] = {}
-    for word in options.split():
-        name, equals, value = word.partition("=")
-        name = name.lstrip("-").replace("-", "_")
-        if not equals or not name.isidentifier():
-            raise SettingsError(f'--task-options: found "{word}", expected NAME=VALUE')
-        try:
-            keywords[name] = ast.literal_eval(_WORDS.get(value.lower(), value))
-        except (ValueError, SyntaxError):
-            keywords[name] = value
-    return keywords
 
 
 def simulation_below(task: Task, preset: str, given: str) -> str:
@@ -114,23 +63,3 @@ def _word(name: str, value: Any) -> str:
         ]
         return f"{name}={','.join(parts)}"
     return f"{name}={value}"
-
-
-def _class_of(task: CodeName, siblings: Optional[pathlib.Path]) -> Callable[..., Task]:
-    members = members_of(task, siblings)
-    found = members.get(task.name)
-    if isinstance(found, type) and issubclass(found, Task):
-        return found
-    if task.name in members:
-        raise SettingsError(f"--task: {task} is no class that inherits from galactic.Task")
-    raise SettingsError(f"--task: {task.place} has no {task.name}{_hint(task.name, members)}")
-
-
-def _hint(name: str, members: Mapping[str, Any]) -> str:
-    tasks = [
-        known
-        for known, value in members.items()
-        if isinstance(value, type) and issubclass(value, Task) and value is not Task
-    ]
-    known = f"; it has {', '.join(tasks)}" if tasks else "; it has no galactic.Task"
-    return did_you_mean(name, tasks) or known

@@ -10,7 +10,7 @@ from typing import Optional, Sequence
 
 import galactic
 from galactic import files
-from galactic.learning import checkpoint, own_tasks
+from galactic.learning import checkpoint, own_code
 from galactic.learning.checkpoint import SavedPolicy
 from galactic.learning.reports.curves import write_json
 from galactic.learning.settings import Settings, SettingsError
@@ -29,6 +29,7 @@ class Run:
     start_from: Optional[pathlib.Path] = None
     teacher: Optional[pathlib.Path] = None
     task_file: Optional[pathlib.Path] = None
+    network_file: Optional[pathlib.Path] = None
     demonstrations: Sequence[pathlib.Path] = ()
 
 
@@ -36,7 +37,7 @@ def read_run(file: pathlib.Path) -> Run:
     remedy = "begin another run, which can have the weights of best.pt (--start-from)"
     with checkpoint.refusing(f"{file} does not say what the run is", remedy):
         run = json.loads(file.read_text(encoding="utf-8"))
-        blank = dict.fromkeys(("start_from", "teacher", "task_file"))
+        blank = dict.fromkeys(("start_from", "teacher", "task_file", "network_file"))
         run, path = {**blank, "demonstrations": [], **run}, (str, type(None))
         checkpoint.require_types(
             run,
@@ -46,6 +47,7 @@ def read_run(file: pathlib.Path) -> Run:
                 "start_from": path,
                 "teacher": path,
                 "task_file": path,
+                "network_file": path,
                 "demonstrations": list,
                 "settings": dict,
             },
@@ -57,6 +59,7 @@ def read_run(file: pathlib.Path) -> Run:
             pathlib.Path(run["start_from"]) if run["start_from"] else None,
             pathlib.Path(run["teacher"]) if run["teacher"] else None,
             pathlib.Path(run["task_file"]) if run["task_file"] else None,
+            pathlib.Path(run["network_file"]) if run["network_file"] else None,
             [pathlib.Path(folder) for folder in run["demonstrations"]],
         )
 
@@ -96,18 +99,28 @@ def begin_folder(
     try:
         if teacher is not None and teacher[1] != folder / TEACHER:
             checkpoint.save_policy(teacher[0], folder / TEACHER)
-        if run.task_file is not None:
-            _keep_task(run.task_file, folder / own_tasks.COPY, resumes)
+        for option, file in (("--task", run.task_file), ("--network", run.network_file)):
+            # A run that is resumed has the copy, with which it goes on.
+            if file is not None and not resumes:
+                _keep_code(file, folder / own_code.COPIES[option])
         _write_run(run, folder)
     except (galactic.Error, OSError) as error:
         return error
     return None
 
 
-def _keep_task(file: pathlib.Path, copy: pathlib.Path, resumes: bool) -> None:
-    """Copies the file of the run's task, with which the run can be resumed whatever becomes of it."""
-    if resumes:
-        return  # with the copy
+def kept_code(file: pathlib.Path, option: str, folder: Optional[pathlib.Path]) -> pathlib.Path:
+    """Where the code is that `option` named: `file`, or the copy of it in the `folder` of a run that is resumed.
+    Raises Error where that copy is missing."""
+    copy = file if folder is None else folder / own_code.COPIES[option]
+    if folder is not None and not copy.is_file():
+        message = f"is missing, the copy of {file} with which the run began; put it back, or begin another run"
+        raise galactic.Error(galactic.ErrorCode.IO, str(copy), message)
+    return copy
+
+
+def _keep_code(file: pathlib.Path, copy: pathlib.Path) -> None:
+    """Copies a file of the user's, so that the run can be resumed whatever becomes of it."""
     code = file.read_bytes()
     if copy.exists() and copy.read_bytes() != code:
         message = f"is there already, and is not {file}; move it, or choose another folder"
@@ -124,6 +137,7 @@ def _write_run(run: Run, folder: pathlib.Path) -> None:
             "start_from": str(run.start_from) if run.start_from else None,
             "teacher": str(run.teacher) if run.teacher else None,
             "task_file": str(run.task_file) if run.task_file else None,
+            "network_file": str(run.network_file) if run.network_file else None,
             "demonstrations": [str(folder) for folder in run.demonstrations],
             "settings": run.settings.to_dict(),
         },

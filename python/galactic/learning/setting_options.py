@@ -30,7 +30,8 @@ def add_options(parser: argparse.ArgumentParser, names: Optional[Collection[str]
             readers = {int: _integer, float: _real, str: str, tuple: _three}
             keywords["type"] = readers[type(field.default)]
             name = "N,N,N" if isinstance(field.default, tuple) else field.name.upper()
-            keywords["metavar"] = "|".join(field.metadata["choices"]) or name
+            own = ("FILE.py:CLASS", "MODULE:CLASS") if field.metadata["may_be_own"] else ()
+            keywords["metavar"] = "|".join((*field.metadata["choices"], *own)) or name
         group.add_argument(option_name(field.name), **keywords)
 
 

@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from typing import Any, Iterable, Mapping, Optional, Sequence
 
-from galactic.learning.sight import IMAGE_SIZE, OF_THE_PAPER, SIGHT, SMALLEST_IMAGE
+from galactic.learning.sight import IMAGE_SIZE, OF_THE_PAPER, OWN_SIGHT, SIGHT, SMALLEST_IMAGE
 
 
 class SettingsError(ValueError):
@@ -30,8 +30,9 @@ MOST_NUMBER = 1e9
 
 def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
              high: Optional[float] = None, choices: Sequence[str] = (),
-             may_change: bool = False) -> Any:  # fmt: skip
-    """A field of Settings. `may_change`: a resumed run may have another value."""
+             may_change: bool = False, may_be_own: bool = False) -> Any:  # fmt: skip
+    """A field of Settings. `may_change`: a resumed run may have another value. `may_be_own`: beside the
+    choices it can be the name of code of one's own (own_code.named())."""
     if high is None and isinstance(default, (int, float)) and not isinstance(default, bool):
         high = MOST_WHOLE if isinstance(default, int) else MOST_NUMBER
     return dataclasses.field(
@@ -43,6 +44,7 @@ def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None
             "high": high,
             "choices": tuple(choices),
             "may_change": may_change,
+            "may_be_own": may_be_own,
         },
     )
 
@@ -117,8 +119,18 @@ class Settings:
         "resnet18",
         "Network",
         "`state` sees no images, `depth` depth alone, with few channels; the others are the paper's "
-        "(table 4)",
+        "(table 4); or one of your own, `FILE.py:CLASS` or `MODULE:CLASS`",
         choices=tuple(SIGHT),
+        may_be_own=True,
+    )
+    network_options: str = _setting(
+        "", "Network", "what its class is made with, as NAME=VALUE separated by spaces"
+    )
+    sees: str = _setting(
+        "none",
+        "Network",
+        "which images a network of your own sees; `rgbd` are `rgb` and `depth`",
+        choices=tuple(OWN_SIGHT),
     )
     camera: str = _setting(
         "head",
@@ -194,10 +206,14 @@ class Settings:
     recurrent: bool = _setting(
         False,
         "Network",
-        "put a GRU into the network `state` or `depth`; the others always have one",
+        "put a GRU into the network `state` or `depth`, or behind one of your own; the paper's always have one",
     )
     width: int = _setting(
-        128, "Network", "units per layer of `state` and `depth`", low=1, high=65536
+        128,
+        "Network",
+        "units per layer of `state` and `depth`, and of the GRU behind one of your own",
+        low=1,
+        high=65536,
     )
     layers: int = _setting(2, "Network", "hidden layers of `state` and `depth`", low=1, high=64)
     activation: str = _setting(
@@ -209,7 +225,7 @@ class Settings:
     log_std: str = _setting(
         "output",
         "Network",
-        "standard deviations of `state` and `depth`: an `output` of the network, clamped to "
+        "standard deviations of `state`, `depth` and networks of your own: an `output` of the network, clamped to "
         "exp(-5)..exp(2), or a `parameter`, the same everywhere",
         choices=("output", "parameter"),
     )
@@ -423,19 +439,35 @@ class Settings:
                 f"image_size: found {self.image_size}, expected {IMAGE_SIZE}, which {self.network} is "
                 "made for; the network depth takes others"
             )
+        for name, unused in (("network_options", ""), ("sees", "none")):
+            if getattr(self, name) != unused and not self.has_own_network:
+                raise SettingsError(
+                    f"{name} applies only to networks of your own, and the network {self.network} is none; "
+                    "name a class, as FILE.py:CLASS, or leave it out"
+                )
         for field in dataclasses.fields(self):
             is_default = getattr(self, field.name) == field.default
-            if not SIGHT[self.network] and field.name in CAMERA.values() and not is_default:
+            if not self.sight and field.name in CAMERA.values() and not is_default:
                 raise SettingsError(
                     f"{field.name} applies only to networks that see images, and the network "
                     f"{self.network} does not; choose another one, such as depth"
                 )
         for name in COLOR_NOISE:
-            if getattr(self, name) and "rgb" not in SIGHT[self.network]:
+            if getattr(self, name) and "rgb" not in self.sight:
                 raise SettingsError(
                     f"{name} applies only to networks that see colors, and the network {self.network} "
                     "does not; choose another one, such as simple_cnn"
                 )
+
+    @property
+    def has_own_network(self) -> bool:
+        """Whether the network is a class of the user's."""
+        return self.network not in SIGHT
+
+    @property
+    def sight(self) -> tuple[str, ...]:
+        """Which images the network sees."""
+        return OWN_SIGHT[self.sees] if self.has_own_network else SIGHT[self.network]
 
     def require_pace(self) -> None:
         """Raises SettingsError where nothing could be measured that paces the learning rate. Not so with
@@ -528,8 +560,10 @@ def _check(field: "dataclasses.Field[Any]", value: Any) -> None:
     kind = type(field.default)
     if not _is_a(value, kind):
         raise SettingsError(f"{field.name}: found {value!r}, expected {_KINDS[kind]}")
-    if choices and value not in choices:
-        raise SettingsError(f'{field.name} is "{value}"; it can be {", ".join(choices)}')
+    may_be_own = field.metadata["may_be_own"]
+    if choices and value not in choices and not (may_be_own and ":" in value):
+        own = ", or FILE.py:CLASS or MODULE:CLASS" if may_be_own else ""
+        raise SettingsError(f'{field.name} is "{value}"; it can be {", ".join(choices)}{own}')
     if low is None or high is None:
         return
     for number in value if kind is tuple else (value,):

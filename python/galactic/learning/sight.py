@@ -12,6 +12,13 @@ SIGHT: Mapping[str, tuple[str, ...]] = {
     "resnet18": ("rgb", "depth"),
 }
 """The networks, and what each of them sees."""
+OWN_SIGHT: Mapping[str, tuple[str, ...]] = {
+    "none": (),
+    "depth": ("depth",),
+    "rgb": ("rgb",),
+    "rgbd": ("rgb", "depth"),
+}
+"""What a network of one's own can see."""
 OF_THE_PAPER = ("simple_cnn", "resnet9", "resnet18")
 """Those whose layers nobody chooses."""
 IMAGE_SIZE = 128

@@ -32,6 +32,7 @@ from galactic.learning.fitting import Observed
 from galactic.learning.imitation import ImitationLearner, Streams, require_same
 from galactic.learning.learner import Learner
 from galactic.learning.networks import Policy, PolicyShape
+from galactic.learning.own_networks import OwnNetwork
 from galactic.learning.ppo import PpoLearner
 from galactic.learning.privileges import columns_among, critic_columns, other_meaning
 from galactic.learning.reports.curves import COLUMNS, VALIDATION, Curves, columns_of, write_json
@@ -53,13 +54,14 @@ class Trainer:
 
     `folder` None writes nothing. `parts` are names and sizes of the parts of an observation, for those
     who use the policy. `teacher`: see Teacher, with the file it comes from. `demonstrations`: what it learns
-    from, instead of what it does in `envs`. Every rank makes one, and calls the same methods.
+    from, instead of what it does in `envs`. `network` makes that of the settings, if it is one of the user's. Every rank makes one, and calls the same methods.
     """
 
     def __init__(self, settings: Settings, envs: Environments, group: Group,
                  folder: Optional[pathlib.Path], *, validation: Optional[Validation] = None,
                  teacher: Optional[tuple[SavedPolicy, pathlib.Path]] = None,
                  demonstrations: Optional[Demonstrations] = None,
+                 network: Optional[OwnNetwork] = None,
                  title: str = "run"):  # fmt: skip
         self.settings = settings
         self.envs = envs
@@ -79,7 +81,8 @@ class Trainer:
             settings.second_closeup,
             critic_columns(settings.critic_only, self.parts),
         )
-        self.policy = new_policy(settings, self.shape).to(group.device)
+        self.network = network
+        self.policy = new_policy(settings, self.shape, self.parts, network).to(group.device)
         if envs.images:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.learner: Learner
@@ -143,7 +146,9 @@ class Trainer:
 
     def start_from(self, file: pathlib.Path) -> None:
         """Gives the policy the weights of another run's: see checkpoint.begin_with(). Before begin()."""
-        saved = checkpoint.begin_with(self.policy, self.settings, self.shape, self.parts, file)
+        saved = checkpoint.begin_with(
+            self.policy, self.settings, self.shape, self.parts, file, self.network
+        )
         other = other_meaning(dict(saved.parts), saved.meanings, self.meanings)
         if other:
             self.progress.say(
@@ -375,7 +380,7 @@ class Trainer:
             self._take_counters(counters)
             self.learner.optimizer.load_state_dict(tensors.get("optimizer", {}))
         file = folder / "policy.pt"
-        saved = checkpoint.load_policy(file, remedy)
+        saved = checkpoint.load_policy(file, remedy, self.network)
         with _fitting(file, remedy):
             self.policy.load_state_dict(saved.policy.state_dict())
         file = folder / f"rank-{self.group.rank}.pt"
@@ -413,7 +418,14 @@ class Trainer:
 
     def _saved_policy(self, success: Optional[float]) -> SavedPolicy:
         return SavedPolicy(
-            self.policy, self.settings, self.shape, self.parts, self.steps, success, self.meanings
+            self.policy,
+            self.settings,
+            self.shape,
+            self.parts,
+            self.steps,
+            success,
+            self.meanings,
+            self.network,
         )
 
     def _counters(self) -> dict[str, Any]:

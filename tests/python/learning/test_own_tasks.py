@@ -394,12 +394,12 @@ def test_a_file_that_is_called_like_a_library_does_not_hide_it(
 
 def test_options_become_keywords() -> None:
     words = "radius=0.2 --kind=near most=3 places=[1,2] far-too=True dense=false no=None empty="
-    assert own_tasks.keywords_of(words) == {
+    assert own_code.keywords_of(words, "--task-options") == {
         "radius": 0.2, "kind": "near", "most": 3, "places": [1, 2], "far_too": True, "dense": False,
         "no": None, "empty": "",
     }  # fmt: skip
     with pytest.raises(SettingsError, match='found "=3", expected NAME=VALUE'):
-        own_tasks.keywords_of("=3")
+        own_code.keywords_of("=3", "--task-options")
 
 
 @pytest.mark.parametrize(

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import inspect
 import pathlib
 from typing import Any, Callable, Mapping
 
 from galactic.learning import own_code
-from galactic.learning.settings import SettingsError
 
 TakeRow = Callable[[Mapping[str, float]], object]
 """Takes a row: what is known of the columns of reports.curves, by name."""
@@ -19,37 +17,7 @@ MakeTaker = Callable[[pathlib.Path, Mapping[str, Any]], TakeRow]
 
 def maker(text: str) -> MakeTaker:
     """The function that `text` names (own_code.named()). Its file runs now; what that raises is the caller's."""
-    code = own_code.named(text, "--log-to")
-    found = own_code.members_of(code).get(code.name)
-    if not callable(found):
-        fault = f"{code.place} has no {code.name}" if found is None else f"{code} is no function"
-        raise SettingsError(f"--log-to: {fault}; name one that takes a folder and settings")
-    make: Callable[..., Any] = found
-    _require_parameters(make, code)
-
-    def taker(folder: pathlib.Path, settings: Mapping[str, Any]) -> TakeRow:
-        with own_code.goes_on(code, "when it was called; return what takes a row"):
-            take = make(folder, settings)
-        if not callable(take):
-            raise SettingsError(
-                f"--log-to: {code} returned a {type(take).__name__}, expected what takes a row"
-            )
-        return take
-
-    return taker
-
-
-def _require_parameters(make: Callable[..., Any], code: own_code.CodeName) -> None:
-    try:
-        signature = inspect.signature(make)
-    except ValueError:  # what is compiled may not tell
-        return
-    try:
-        signature.bind("folder", {})
-    except TypeError as error:
-        raise SettingsError(
-            f"--log-to: {code} cannot be called with a folder and settings: {error}"
-        ) from error
+    return own_code.factory_of(own_code.named(text, "--log-to"), "what takes a row")
 
 
 class Log:

@@ -1,0 +1,219 @@
+"""Networks of one's own: encoders that the user writes, and the checks that tell what is wrong with one before
+anything is learned."""
+
+from __future__ import annotations
+
+import hashlib
+import pathlib
+import traceback
+from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence
+
+import torch
+from torch import Tensor
+
+from galactic.learning.encoders import Encoder, Inputs
+from galactic.learning.networks import PolicyShape
+from galactic.learning.own_code import (
+    CodeName,
+    class_of,
+    goes_on,
+    keywords_of,
+    mismatch,
+    named,
+    siblings_of,
+)
+from galactic.learning.privileges import parts_of_actor
+from galactic.learning.settings import Settings, SettingsError
+
+BASE = "galactic.learning.encoders.Encoder"
+
+
+class NetworkError(SettingsError):
+    """A class that is no network, or not the one that a policy learned with: says what was found, what was
+    expected and what to do."""
+
+
+class Seen(NamedTuple):
+    """What a network sees, in sizes: what its class is made with."""
+
+    state: int
+    """S, numbers of Inputs.state: normalized as the settings say, without what the critic alone sees, and
+    behind them their closeups."""
+    parts: Mapping[str, slice]
+    """Where the parts of the observation are in a row of the state, by name."""
+    images: Mapping[str, tuple[int, ...]]
+    """Of one picture, by name: `rgb` is (height, width, 3), `depth` (height, width)."""
+    actions: int
+    """A, numbers of Inputs.previous: the motions, then grasp and terminate."""
+
+    @property
+    def channels(self) -> int:
+        """C, channels of a picture, as encoders.images() has it."""
+        return 3 * ("rgb" in self.images) + ("depth" in self.images)
+
+
+def seen_by(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, int]]) -> Seen:
+    """What the network of such a policy sees."""
+    edge = settings.image_size
+    places, first = {}, 0
+    for name, size in parts_of_actor(settings.critic_only, parts):
+        places[name] = slice(first, first + size)
+        first += size
+    images = {name: (edge, edge, 3) if name == "rgb" else (edge, edge) for name in settings.sight}
+    return Seen(shape.seen - shape.apart, places, images, shape.motions + 2)
+
+
+class OwnNetwork(NamedTuple):
+    """The class of a network, and what it is made with. `digest`: SHA-256 of its file, by which another one is
+    told apart; nothing for a module, whose versions are its own affair."""
+
+    code: CodeName
+    make_encoder: Callable[..., Encoder]
+    keywords: Mapping[str, Any]
+    digest: str
+
+    def make(self, seen: Seen, recurrent: bool) -> Encoder:
+        """One, tried out. Raises NetworkError where it cannot be part of a policy, with a GRU behind it if that
+        is `recurrent`."""
+        with goes_on(self.code, "when it was made; raise an exception instead"):
+            encoder = self._tried("__init__()", lambda: self.make_encoder(seen, **self.keywords))
+        if recurrent and encoder.memory:
+            raise self._fault(
+                "has a memory of its own; leave --recurrent out, which puts a GRU behind it"
+            )
+        self._require_contract(encoder, seen)
+        return encoder
+
+    def _require_contract(self, encoder: Encoder, seen: Seen) -> None:
+        for name, least in (("features", 1), ("memory", 0)):
+            size = getattr(encoder, name)
+            if not isinstance(size, int) or size < least:
+                raise self._fault(f"has {name} = {size!r}, expected a whole number from {least}")
+        features, memory = self._result(encoder.eval(), seen, memory=0.0)
+        if not bool(torch.isfinite(features).all()):
+            raise self._fault("returned features that are no numbers (NaN or infinite)")
+        for name, parameter in encoder.named_parameters():
+            if parameter.dtype != torch.float32 or not bool(torch.isfinite(parameter).all()):
+                kind = str(parameter.dtype).removeprefix("torch.")
+                raise self._fault(
+                    f"has a parameter {name} of {kind}, expected float32, and numbers"
+                )
+        if encoder.memory:
+            self._require_forgetting(encoder, seen, features)
+        trained, _ = self._result(encoder.train(), seen, memory=0.0)
+        if not torch.allclose(trained, features, atol=1e-4):
+            raise self._fault(
+                "computes something else while it learns than while it acts, which PPO compares: take LayerNorm or "
+                "GroupNorm in the place of BatchNorm, and no Dropout"
+            )
+
+    def _require_forgetting(self, encoder: Encoder, seen: Seen, features: Tensor) -> None:
+        """All of the episodes begin in the first step, so that the memory before it is of no account."""
+        other, _ = self._result(encoder, seen, memory=1.0)
+        if not torch.allclose(other, features, atol=1e-4):
+            raise self._fault(
+                "remembers what was before the start of an episode; empty the memory where `starts` is true, "
+                "as sequences.run_gru() does"
+            )
+
+    def _result(self, encoder: Encoder, seen: Seen, memory: float) -> tuple[Tensor, Tensor]:
+        """Features and memory after two steps of three envs, whose episodes begin in the first."""
+        steps, envs = 2, 3
+        inputs = _some_inputs(encoder, seen, steps, envs)
+        starts = torch.zeros(steps, envs, dtype=torch.bool)
+        starts[0] = True
+        with torch.no_grad(), goes_on(self.code, "in forward(); raise an exception instead"):
+            if encoder.memory:
+                before = torch.full((envs, encoder.memory), memory)
+                found = self._tried("forward()", lambda: encoder(inputs, before, starts))
+                if not isinstance(found, tuple) or len(found) != 2:
+                    raise self._fault(
+                        f"returned {_described(found)}, expected features and memory: memory is {encoder.memory}"
+                    )
+                features, after = found
+            else:
+                features = self._tried("forward()", lambda: encoder(inputs))
+                after = torch.zeros(envs, 0)
+        self._require_shape("features", features, [steps, envs, encoder.features])
+        self._require_shape("memory", after, [envs, encoder.memory])
+        return features, after
+
+    def _require_shape(self, name: str, found: Any, wanted: list[int]) -> None:
+        if (
+            not isinstance(found, Tensor)
+            or not found.is_floating_point()
+            or list(found.shape) != wanted
+        ):
+            meaning = "[T, n, features]" if name == "features" else "[n, memory]"
+            raise self._fault(
+                f"returned {name} of {_described(found)}, expected {wanted}, which is {meaning}"
+            )
+
+    def _tried(self, method: str, work: Callable[[], Any]) -> Any:
+        """What it returns. What it raises becomes a sentence that says where."""
+        try:
+            return work()
+        except Exception as error:  # of the user's code
+            lines = traceback.extract_tb(error.__traceback__)
+            own = [line for line in lines if line.filename == _source(self.make_encoder)]
+            where = f", in line {own[-1].lineno}" if own else ""
+            said = " ".join(str(error).split()) or "nothing more"
+            raise self._fault(
+                f"failed in {method}{where}: {type(error).__name__}: {said}"
+            ) from error
+
+    def _fault(self, what: str) -> NetworkError:
+        return NetworkError(f"--network: {self.code} {what}")
+
+
+def own_network(text: str) -> OwnNetwork:
+    """What `text` names, for policies that know the options that they were made with."""
+    code = named(text, "--network")
+    return network_of(code, siblings_of(code))
+
+
+def with_options(network: OwnNetwork, options: str) -> OwnNetwork:
+    """The same, to be made with these options. Raises SettingsError where it cannot be."""
+    keywords = keywords_of(options, "--network-options")
+    fault = mismatch(network.make_encoder, (Seen(0, {}, {}, 0),), keywords)
+    if fault:
+        raise SettingsError(
+            f"--network-options: {network.code} cannot be made of what it sees, one argument, and these: {fault}"
+        )
+    return network._replace(keywords=keywords)
+
+
+def network_of(code: CodeName, siblings: Optional[pathlib.Path] = None) -> OwnNetwork:
+    """The class of that name. Its file runs now: see own_code.members_of()."""
+    found = class_of(code, Encoder, BASE, siblings)
+    if found.forward is Encoder.forward:
+        raise NetworkError(f"--network: {code} has no forward(); write one, which returns features")
+    digest = hashlib.sha256(code.file.read_bytes()).hexdigest() if code.file else ""
+    return OwnNetwork(code, found, {}, digest)
+
+
+def _some_inputs(encoder: Encoder, seen: Seen, steps: int, envs: int) -> Inputs:
+    """Made up, the same each time, and other numbers everywhere."""
+    random = torch.Generator().manual_seed(1)
+
+    def some(*shape: int) -> Tensor:
+        return torch.rand(steps, envs, *shape, generator=random)
+
+    rgb = depth = None
+    if "rgb" in seen.images:
+        rgb = (255.0 * some(*seen.images["rgb"])).to(torch.uint8)
+    if "depth" in seen.images:
+        depth = 5.0 * some(*seen.images["depth"])
+    previous = some(seen.actions) if encoder.needs_previous else None
+    return Inputs(some(seen.state), rgb, depth, previous)
+
+
+def _described(value: Any) -> str:
+    if isinstance(value, Tensor):
+        return f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
+    return type(value).__name__
+
+
+def _source(found: Any) -> str:
+    """The file that a class is from."""
+    return str(found.forward.__code__.co_filename)
