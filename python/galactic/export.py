@@ -203,8 +203,9 @@ class Layers:
             module = encoder.get_submodule(str(node.target))
             if isinstance(module, Eyes):
                 return self.module(module.layers, self.add("image"))
-            if len(node.args) == 1 and node.args[0] in values:
-                return self.module(module, values[node.args[0]])
+            (made,) = node.all_input_nodes if len(node.all_input_nodes) == 1 else (node,)
+            if made in values:
+                return self.module(module, values[made])
         if node.target is getattr and node.args[1] == "state":
             return seen
         if node.target is getattr and node.args[1] == "previous":
@@ -221,8 +222,10 @@ class Layers:
                 size = columns.stop - columns.start
                 return self.add("slice", values[given], first=columns.start, size=size)
         if node.target in _JOIN and isinstance(given, (list, tuple)):
-            if {*node.args[1:], *node.kwargs.values()} == {-1}:
-                return self.add("concatenate", *(values[one] for one in given))
+            joined = [values[one] for one in given if isinstance(one, fx.Node) and one in values]
+            along = {*node.args[1:], *node.kwargs.values()}
+            if along == {-1} and len(joined) == len(given):
+                return self.add("concatenate", *joined)
         name = getattr(node.target, "__name__", node.target)
         raise ExportError(
             f"a policy pack has no layer for {name} in forward() ({node.format_node()}): it has the layers of "

@@ -17,7 +17,7 @@ import torch
 import galactic
 from galactic import files
 from galactic.demonstrations import Demonstrations
-from galactic.learning import checkpoint, evaluation, own_code, own_networks, own_tasks
+from galactic.learning import callbacks, checkpoint, evaluation, own_code, own_networks, own_tasks
 from galactic.learning.checkpoint import CheckpointFolder
 from galactic.learning.command import (
     EXIT_CODES,
@@ -129,6 +129,12 @@ def make_parser() -> argparse.ArgumentParser:
         help="hand each row of curves.csv to what this function of yours returns for (folder, settings)",
     )
     parser.add_argument(
+        "--callback",
+        metavar="FILE.py:NAME|MODULE:NAME",
+        help="what this function of yours returns for (folder, settings) is called after each update and validation, "
+        "and at the end; it may add to the curves, and end the run",
+    )
+    parser.add_argument(
         "--print-settings",
         action="store_true",
         help="print all settings that a run with these options has, and do nothing else",
@@ -150,6 +156,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
         if "RANK" in os.environ:
             follow_launcher()
         make_log = _log_maker(options)
+        make_callback = None if options.callback is None else callbacks.maker(options.callback)
         run = _resumed_run(options) if options.resume else _new_run(options)
         if options.resume and _is_complete(run, options.out):
             if os.environ.get("RANK", "0") == "0":
@@ -161,7 +168,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
             return launch(run.settings.ranks, [sys.executable, "-m", "galactic.train", *given])
         group = Group.join(options.device)
         try:
-            work = functools.partial(_train, run, options, group, make_log)
+            work = functools.partial(_train, run, options, group, make_log, make_callback)
             return told("galactic.train", work, group.may_tell)
         finally:
             group.leave()
@@ -177,7 +184,11 @@ def _log_maker(options: argparse.Namespace) -> Optional[log.MakeTaker]:
 
 
 def _train(
-    run: Run, options: argparse.Namespace, group: Group, make_log: Optional[log.MakeTaker]
+    run: Run,
+    options: argparse.Namespace,
+    group: Group,
+    make_log: Optional[log.MakeTaker],
+    make_callback: Optional[callbacks.MakeCallback],
 ) -> int:
     folder: pathlib.Path = options.out
     settings = run.settings
@@ -225,6 +236,7 @@ def _train(
         )
         if options.resume:
             trainer.resume()
+        group.raise_on_all(_begin_callback(trainer, make_callback, folder))
         group.raise_on_all(_begin_log(trainer, make_log, options.out, held) if make_log else None)
         group.raise_on_all(
             begin_folder(run, folder, teacher, resumes=options.resume) if group.rank == 0 else None
@@ -251,6 +263,20 @@ def _begin_log(
         return error
     trainer.log = log.Log(take, trainer.progress.say)
     held.callback(trainer.log.close)
+    return None
+
+
+def _begin_callback(
+    trainer: Trainer, make: Optional[callbacks.MakeCallback], folder: pathlib.Path
+) -> Optional[Exception]:
+    """Lets code of the user's look on, in the first rank, and all ranks know of it; why that is impossible."""
+    try:
+        if make is not None and trainer.group.rank == 0:
+            trainer.callback = make(folder, trainer.settings.to_dict())
+        elif make is not None:
+            trainer.callback = lambda moment: None
+    except SettingsError as error:
+        return error
     return None
 
 

@@ -1,0 +1,73 @@
+"""Callbacks: code of one's own that looks on while a policy learns, adds to the curves, and may end the run."""
+
+from __future__ import annotations
+
+import math
+import numbers
+import pathlib
+from typing import Any, Callable, Mapping
+
+from galactic.learning import own_code
+from galactic.learning.networks import Policy
+from galactic.learning.settings import SettingsError
+
+CALLBACK = "callback_"
+"""What names of columns begin with that a callback adds: no other one does."""
+UPDATE, VALIDATION, END = "update", "validation", "end"
+
+
+class Moment:
+    """Where a run is when it calls. `row` has what a row of the curves has, by name; `policy` is not to be
+    changed."""
+
+    def __init__(self, kind: str, row: Mapping[str, float], policy: Policy):
+        self.kind = kind
+        """`update`, `validation`, or `end`: when this part of the run is over and saved."""
+        self.row = dict(row)
+        self.policy = policy
+        self.added: dict[str, float] = {}
+        """What log() was told, by the names of columns."""
+        self.reason = ""
+        """Why the run is to end; nothing where it goes on."""
+
+    def log(self, name: str, value: float) -> None:
+        """Adds a number to the next row of the curves, in the column callback_NAME. Raises ValueError for a
+        name or a number that is none."""
+        if not isinstance(name, str) or not name.isidentifier():
+            raise ValueError(f"log(): found the name {name!r}, expected letters, digits and _")
+        if not isinstance(value, numbers.Real) or math.isnan(value):
+            raise ValueError(f"log(): {name} is {value!r}, expected a number")
+        self.added[CALLBACK + name] = float(value)
+
+    def stop(self, reason: str) -> None:
+        """Ends the run here: it validates, saves and ends as it does at its last step."""
+        self.reason = str(reason) or "a callback stopped it"
+
+
+Callback = Callable[[Moment], object]
+"""What a run calls after each update, after each validation, and at the end."""
+MakeCallback = Callable[[pathlib.Path, Mapping[str, Any]], Callback]
+"""Makes one for a run in this folder, with these settings."""
+
+
+def maker(text: str) -> MakeCallback:
+    """The function or class that `text` names (own_code.named()). Its file runs now; what that raises is the
+    caller's, and so is what a callback raises."""
+    code = own_code.named(text, "--callback")
+    make = own_code.factory_of(code, "what takes a moment of the run")
+
+    def made(folder: pathlib.Path, settings: Mapping[str, Any]) -> Callback:
+        callback = make(folder, settings)
+        fault = own_code.mismatch(callback, (None,), {})
+        if fault:
+            raise SettingsError(
+                f"--callback: what {code} returned cannot be called with a moment of the run: {fault}"
+            )
+
+        def call(moment: Moment) -> None:
+            with own_code.goes_on(code, "when it was called; call stop() of the moment instead"):
+                callback(moment)
+
+        return call
+
+    return made

@@ -16,6 +16,8 @@ from galactic import interrupts
 from galactic.demonstrations import Demonstrations
 from galactic.errors import Error
 from galactic.learning import checkpoint
+from galactic.learning.callbacks import END, UPDATE, Callback, Moment
+from galactic.learning.callbacks import VALIDATION as VALIDATED
 from galactic.learning.checkpoint import (
     CheckpointError,
     CheckpointFolder,
@@ -102,6 +104,8 @@ class Trainer:
         self.progress = ProgressLine(quiet=group.rank > 0)
         self.log: Optional[Log] = None
         """Who else takes rows of the curves."""
+        self.callback: Optional[Callback] = None
+        """What looks on: the same on all ranks, of which the first one calls it."""
         self.steps = 0
         self.updates = 0
         self.best: Optional[float] = None
@@ -114,6 +118,8 @@ class Trainer:
         self._logged = (0.0, 0)
         self._interrupted = False
         self._must_validate = False
+        # What the callback has said since the latest row.
+        self._added: dict[str, float] = {}
 
     def _taught_by(self, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]) -> Optional[Teacher]:
         if teacher is None:
@@ -164,8 +170,8 @@ class Trainer:
         self._started = time.perf_counter()
 
     def train(self, pause_at: Optional[int] = None) -> bool:
-        """Trains until `settings.steps` are done, or `pause_at` of them, or a signal asks to stop;
-        validates in the first two cases, saves in all. A validation that a signal has put off comes first.
+        """Trains until `settings.steps` are done, or `pause_at` of them, or the callback or a signal asks to
+        stop; validates in all cases but the last, saves in all. A validation that a signal has put off comes first.
         Returns whether all is done. Raises TrainingError when the loss is not a number."""
         settings = self.settings
         end = settings.steps if pause_at is None else min(pause_at, settings.steps)
@@ -176,10 +182,14 @@ class Trainer:
             while self.steps < end:
                 before = self.steps
                 losses, stop = self._iterate()
+                if self._calls_stop(UPDATE, lambda: self._values(losses)):
+                    end = self.steps
                 if self._validates and self._is_due(settings.validate_every, before, end):
                     self._must_validate = True
                 if self._must_validate and not stop:
-                    self._validate()
+                    row = self._validate()
+                    if self._calls_stop(VALIDATED, lambda: row):
+                        end = self.steps
                 is_last = stop or self.steps >= end
                 if is_last or self.seconds - self._logged[0] >= settings.log_every:
                     self._log(losses, is_last=is_last)
@@ -187,11 +197,27 @@ class Trainer:
                     self.save()
                 if stop:
                     break
+            self._calls_stop(END, lambda: self._values({}))
             self.progress.close()
             # Here, too, a signal that comes again is not to end it. It may have been cut off behind its last
             # checkpoint the time before.
             self._write_report()
         return self.steps >= end and not self._must_validate
+
+    def _calls_stop(self, kind: str, row: Callable[[], dict[str, float]]) -> bool:
+        """Lets the callback know where the run is. Returns whether the run is to end, on all ranks."""
+        if self.callback is None:
+            return False
+        stop = torch.zeros(1, device=self.group.device)
+        if self.group.rank == 0:
+            moment = Moment(kind, row(), self.policy)
+            with self.stopwatch.time("reports"):
+                self.callback(moment)
+            self._added |= moment.added
+            if moment.reason and kind != END:
+                self.progress.say(f"--callback: {moment.reason}")
+                stop += 1.0
+        return bool(self.group.sum(stop) > 0.0)
 
     @property
     def _validates(self) -> bool:
@@ -253,26 +279,31 @@ class Trainer:
         return {} if self._waiting else self.recent().means()
 
     def _add_row(self, values: dict[str, float]) -> None:
+        values = {**values, **self._added}
+        self._added.clear()
         self.curves.add(values)
         if self.log is not None:
             with self.stopwatch.time("reports"):
                 self.log.add(values)
 
-    def _log(self, losses: dict[str, float], is_last: bool = False) -> None:
-        figures = self.figures()
+    def _values(self, losses: dict[str, float]) -> dict[str, float]:
+        """A row of the curves."""
         seconds, steps = self._logged
-        speed = (self.steps - steps) / max(self.seconds - seconds, 1e-9)
-        self._logged = (self.seconds, self.steps)
-        values = {
+        return {
             "steps": self.steps,
             "seconds": self.seconds,
             "updates": self.updates,
-            "sps": speed,
+            "sps": (self.steps - steps) / max(self.seconds - seconds, 1e-9),
             "episodes": self.recent().episodes,
             "learning_rate": self.learner.optimizer.learning_rate,
             **losses,
-            **figures,
+            **self.figures(),
         }
+
+    def _log(self, losses: dict[str, float], is_last: bool = False) -> None:
+        values, figures = self._values(losses), self.figures()
+        self._logged = (self.seconds, self.steps)
+        speed = values["sps"]
         self._add_row(values)
         left = (self.settings.steps - self.steps) / max(speed, 1e-9)
         if isinstance(self.source, Streams):
@@ -293,7 +324,8 @@ class Trainer:
             shares = self.stopwatch.shares(self.seconds)
             self.curves.write(self.settings.to_dict(), shares, is_last=is_last)
 
-    def _validate(self) -> None:
+    def _validate(self) -> dict[str, float]:
+        """Returns the row of the curves."""
         assert self.validation is not None
         with self.stopwatch.time("validation"):
             sums = torch.tensor(
@@ -304,7 +336,8 @@ class Trainer:
             found = EpisodeSums.of(self.group.sum(sums).tolist(), self.names)
         means = found.means()
         named = {VALIDATION + name: value for name, value in means.items()}
-        self._add_row({"steps": self.steps, "seconds": self.seconds, **named})
+        row = {"steps": self.steps, "seconds": self.seconds, **named}
+        self._add_row(row)
         self.progress.say(
             f"validation after {amount(self.steps)} steps: success "
             f"{100.0 * means['success']:.1f} % of {found.episodes:.0f} episodes, return "
@@ -312,6 +345,7 @@ class Trainer:
         )
         self._keep_if_best(means["success"])
         self._must_validate = False
+        return row
 
     def _keep_if_best(self, success: Optional[float]) -> None:
         """Writes best.pt when none was better; equal ones replace it, being trained longer."""
@@ -360,7 +394,7 @@ class Trainer:
             # Checkpoints of before do not know who waits, as in Collector.load_state_dict(), nor of a
             # paced rate, of processor time, of what a task says or of what a signal has put off.
             before: dict[str, Any] = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0}
-            before |= {"measures": [], "logs": [], "must_validate": False}
+            before |= {"measures": [], "logs": [], "must_validate": False, "added_columns": []}
             counters = {**before, **counters}
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
@@ -400,7 +434,7 @@ class Trainer:
             if isinstance(row, list) and len(row) == _COLUMNS_OF_BEFORE:
                 row += [None] * (len(COLUMNS) - len(row))
         names = OwnNames(tuple(counters["measures"]), tuple(counters["logs"]))
-        columns = columns_of(names)
+        columns = (*columns_of(names), *map(str, counters["added_columns"]))
         rows = _rows(counters, "rows", len(columns), (float, int, type(None)))
         self.curves.take_up(rows, columns)
         width = len(EpisodeSums().numbers(names))
@@ -436,6 +470,7 @@ class Trainer:
             "rate_share": self.learner.rate.share,
             "must_validate": self._must_validate,
             "rows": self.curves.rows,
+            "added_columns": self.curves.added,
             "waiting": self._waiting,
             **self.names._asdict(),
             "window": [sums.numbers(self.names) for sums in self._window],
@@ -489,6 +524,7 @@ _COUNTERS = {
     "rate_share": (float, int),
     "must_validate": bool,
     "rows": list,
+    "added_columns": list,
     "waiting": int,
     "measures": list,
     "logs": list,

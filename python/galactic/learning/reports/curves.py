@@ -7,11 +7,12 @@ import io
 import json
 import pathlib
 import time
-from typing import Any, Mapping, Optional, Sequence
+from typing import Any, Iterable, Mapping, Optional, Sequence
 
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.files import write_atomically
+from galactic.learning.callbacks import CALLBACK
 from galactic.learning.episode_sums import OwnNames
 from galactic.learning.reports.page import curves_page
 
@@ -47,7 +48,7 @@ VALIDATION = "validation_"
 
 
 def columns_of(names: OwnNames) -> tuple[str, ...]:
-    """COLUMNS, and behind them means of what a task of one's own says, of training and validations."""
+    """COLUMNS, and behind them, before those of a callback, means of what a task of one's own says, of training and validations."""
     means = names.of_means
     return (*COLUMNS, *means, *(VALIDATION + name for name in means))
 
@@ -63,19 +64,34 @@ class Curves:
         self._folder = folder
         self._title = title
         self.columns = columns_of(names)
+        self._own = len(self.columns)
         self.rows: list[list[Optional[float]]] = []
         # How many of them the table has; None: it is none of this run's yet, or of its time before.
         self._in_table: Optional[int] = None
         self._next_page = 0.0
 
     def add(self, values: Mapping[str, float]) -> None:
-        unknown = set(values) - set(self.columns)
-        assert not unknown, unknown
+        self._widen(values)
         self.rows.append([values.get(name) for name in self.columns])
+
+    @property
+    def added(self) -> list[str]:
+        """The columns of a callback, which come as it names them."""
+        return list(self.columns[self._own :])
+
+    def _widen(self, names: Iterable[str]) -> None:
+        new = [name for name in names if name not in self.columns]
+        assert all(name.startswith(CALLBACK) for name in new), new
+        if new:
+            self.columns = (*self.columns, *new)
+            for row in self.rows:
+                row += [None] * len(new)
+            self._in_table = None  # which has a row of names to begin with
 
     def take_up(self, rows: Sequence[Sequence[Optional[float]]], columns: Sequence[str]) -> None:
         """Goes on behind these rows, which may lack some of the columns."""
         before = [dict(zip(columns, row)) for row in rows]
+        self._widen(name for name in columns if name.startswith(CALLBACK))
         self.rows = [[values.get(name) for name in self.columns] for values in before]
 
     def latest_validation(self) -> dict[str, float]:

@@ -1,0 +1,341 @@
+"""Networks of one's own: galactic.train --network, and what uses its policies."""
+
+from __future__ import annotations
+
+import dataclasses
+import pathlib
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+import galactic
+from galactic import export
+from galactic.learning import checkpoint, own_code, own_networks
+from galactic.learning.checkpoint import CheckpointError
+from galactic.learning.encoders import Inputs
+from galactic.learning.own_networks import NetworkError, OwnNetwork, Seen
+from galactic.learning.settings import Settings, SettingsError
+from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
+from toys import Remember
+from trainers import SETTINGS, UPDATE as TOY_UPDATE, make_trainer, parameters
+
+EXAMPLE = pathlib.Path(__file__).parents[3] / "python" / "examples" / "own_network.py"
+WRONG = """
+import torch
+from torch import nn
+from galactic.learning.encoders import Encoder, Eyes
+from galactic.learning.sequences import run_gru
+
+class Net(Encoder):
+    features = 8
+
+    def __init__(self, seen):
+        super().__init__()
+        self.layer = nn.Linear(seen.state, 8)
+
+    def forward(self, inputs):
+        return self.layer(inputs.state)
+
+class Narrow(Net):
+    features = 9
+
+class Nameless(Net):
+    features = 0
+
+class Flat(Net):
+    def forward(self, inputs):
+        return self.layer(inputs.state).sum(-1)
+
+class Nothing(Net):
+    def forward(self, inputs):
+        pass
+
+class Misfit(Net):
+    def forward(self, inputs):
+        return self.layer(inputs.state[..., 1:])
+
+class Blind(Net):
+    def forward(self, inputs):
+        return self.layer(inputs.state) + inputs.depth.mean()
+
+class Unmade(Net):
+    def __init__(self, seen):
+        raise KeyError("no such part")
+
+class Ends(Net):
+    def __init__(self, seen):
+        raise SystemExit(0)
+
+class NaNs(Net):
+    def forward(self, inputs):
+        return self.layer(inputs.state) / 0.0 * 0.0
+
+class Wide(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.scale = nn.Parameter(torch.ones(8, dtype=torch.float64))
+
+class Drops(Net):
+    def forward(self, inputs):
+        return nn.functional.dropout(self.layer(inputs.state), 0.5, self.training)
+
+class Remembers(Net):
+    memory = 4
+
+    def forward(self, inputs, memory, starts):
+        return self.layer(inputs.state) + memory.sum(), memory
+
+class Forgets(Remembers):
+    def forward(self, inputs, memory, starts):
+        return self.layer(inputs.state)
+
+class Short(Remembers):
+    def forward(self, inputs, memory, starts):
+        return self.layer(inputs.state), memory[..., 1:]
+
+class Formless(Encoder):
+    features = 8
+
+class Looks(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.features = 8 + seen.state
+        self.eyes = Eyes(nn.Sequential(
+            nn.Conv2d(seen.channels, 4, 8, 8), nn.ReLU(), nn.Flatten(), nn.Linear(4 * 4 * 4, 8)))
+
+    def forward(self, inputs):
+        return torch.cat([self.eyes(inputs), inputs.state], -1)
+
+class Sines(Net):
+    def forward(self, inputs):
+        return torch.sin(self.layer(inputs.state))
+
+class Branches(Net):
+    def forward(self, inputs):
+        return self.layer(inputs.state) if inputs.state.sum() > 0 else self.layer(-inputs.state)
+
+class Sums(Net):
+    features = 12
+
+    def forward(self, inputs):
+        x = self.layer(inputs.state)
+        return torch.cat([torch.relu(x) + torch.tanh(x), x[..., 2:6]], -1)
+
+def no_class(seen):
+    pass
+"""
+SEEN = Seen(6, {"way": slice(0, 3)}, {}, 4)
+
+
+@pytest.fixture
+def lab(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
+    """WRONG in a file."""
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    file = tmp_path / "lab.py"
+    file.write_text(WRONG, encoding="utf-8")
+    return file
+
+
+def named(file: pathlib.Path, name: str, options: str = "") -> OwnNetwork:
+    found = own_networks.network_of(own_code.named(f"{file}:{name}", "--network"))
+    return own_networks.with_options(found, options)
+
+
+@pytest.mark.parametrize(
+    "name, message",
+    [
+        ("Narrow", r"returned features of float32 \[2, 3, 8\], expected \[2, 3, 9\], which is \[T, n, fe"),
+        ("Nameless", "has features = 0, expected a whole number from 1"),
+        ("Flat", r"returned features of float32 \[2, 3\], expected \[2, 3, 8\]"),
+        ("Nothing", r"returned features of NoneType, expected \[2, 3, 8\]"),
+        ("Misfit", r"failed in forward\(\), in line 33: RuntimeError: mat1 and mat2 shapes cannot be"),
+        ("Blind", r"failed in forward\(\), in line 37: AttributeError: 'NoneType' object has no attri"),
+        ("Unmade", r"failed in __init__\(\), in line 41: KeyError: 'no such part'"),
+        ("Ends", "ended the program when it was made; raise an exception instead"),
+        ("NaNs", r"returned features that are no numbers \(NaN or infinite\)"),
+        ("Wide", "has a parameter scale of float64, expected float32"),
+        ("Drops", "computes something else while it learns than while it acts"),
+        ("Remembers", "remembers what was before the start of an episode; empty the memory where `star"),
+        ("Forgets", "returned float32 .*, expected features and memory: memory is 4"),
+        ("Short", r"returned memory of float32 \[3, 3\], expected \[3, 4\]"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_a_network_says_why(lab: pathlib.Path, name: str, message: str) -> None:
+    with pytest.raises(SettingsError, match=f"^--network: lab.py:{name} {message}"):
+        named(lab, name).make(SEEN, recurrent=False)
+
+
+@pytest.mark.parametrize(
+    "name, options, message",
+    [
+        ("Nett", "", "has no Nett; did you mean Net?"),
+        ("no_class", "", "is no class that inherits from galactic.learning.encoders.Encoder"),
+        ("Formless", "", r"has no forward\(\); write one, which returns features"),
+        ("Net", "width=3", "--network-options: lab.py:Net cannot be made of what it sees, one argument"),
+        ("Net", "width", '--network-options: found "width", expected NAME=VALUE'),
+    ],
+)  # fmt: skip
+def test_what_is_no_network_is_told_apart(
+    lab: pathlib.Path, name: str, options: str, message: str
+) -> None:
+    with pytest.raises(SettingsError, match=message):
+        named(lab, name, options)
+
+
+def test_two_memories_are_one_too_many() -> None:
+    with pytest.raises(NetworkError, match="has a memory of its own; leave --recurrent out"):
+        named(EXAMPLE, "Remembering").make(SEEN, recurrent=True)
+
+
+def test_settings_of_a_network_of_ones_own_are_checked() -> None:
+    own = Settings(network="lab.py:Net", sees="rgb", image_size=36, color_noise=1.0)
+    assert own.sight == ("rgb",) and Settings.from_dict(own.to_dict()) == own
+    for wrong, message in (
+        ({"network": "lab.py"}, "or FILE.py:CLASS or MODULE:CLASS"),
+        ({"network": "state", "sees": "depth"}, "sees applies only to networks of your own"),
+        ({"network_options": "width=3"}, "network_options applies only to networks of your own"),
+        ({"network": "lab.py:Net", "camera": "top"}, "camera applies only to networks that see"),
+        ({"network": "lab.py:Net", "sees": "depth", "color_noise": 1.0}, "that see colors"),
+    ):
+        with pytest.raises(SettingsError, match=message):
+            Settings(**wrong)  # type: ignore[arg-type]
+
+
+def test_it_learns_what_only_a_memory_of_its_own_knows() -> None:
+    own = named(EXAMPLE, "Remembering", "width=16")
+    settings = Settings(
+        envs=32, horizon=16, steps=32 * 16 * 30, network="own_network.py:Remembering", epochs=4,
+        mini_batches=2, learning_rate=1e-2, log_std="parameter", gamma=0.9, validate_every=0, window=200,
+    )  # fmt: skip
+    trainer = make_trainer(None, settings, Remember, network=own)
+    trainer.begin()
+    trainer.train()
+    assert trainer.figures()["success"] > 0.8  # without a memory, 0.5
+
+
+def test_a_resumed_run_is_the_run_that_would_have_been(
+    tmp_path: pathlib.Path, lab: pathlib.Path
+) -> None:
+    settings = dataclasses.replace(SETTINGS, network="lab.py:Net", checkpoint_every=TOY_UPDATE)
+    own = named(lab, "Net")
+    for name in ("whole", "half"):
+        (tmp_path / name).mkdir()
+    whole = make_trainer(tmp_path / "whole", settings, network=own)
+    whole.begin()
+    whole.train()
+    half = make_trainer(tmp_path / "half", settings, network=own)
+    half.begin()
+    half.train(pause_at=4 * TOY_UPDATE)
+    resumed = make_trainer(tmp_path / "half", settings, network=own)
+    resumed.resume()
+    resumed.train()
+    assert torch.equal(parameters(whole), parameters(resumed))
+    # The file is another one now.
+    file = next((tmp_path / "half").glob("checkpoints/*/policy.pt"))
+    lab.write_text(WRONG + "# changed\n", encoding="utf-8")
+    with pytest.raises(NetworkError, match="lab.py is another file than it was then; put it back"):
+        checkpoint.load_policy(file, network=named(lab, "Net"))
+    with pytest.raises(NetworkError, match="found --network lab.py:Narrow; if you trust it, add"):
+        checkpoint.load_policy(file, network=named(lab, "Narrow"))
+    with pytest.raises(NetworkError, match="with a network of its own, 'lab.py:Net'; if you trust"):
+        checkpoint.load_policy(file)
+
+
+def test_weights_of_another_class_of_the_name_are_refused(
+    tmp_path: pathlib.Path, lab: pathlib.Path
+) -> None:
+    """As those of a module, whose file may change."""
+    settings = dataclasses.replace(SETTINGS, network="lab:Net", steps=TOY_UPDATE)
+    (tmp_path / "run").mkdir()
+    trainer = make_trainer(
+        tmp_path / "run", settings, network=named(lab, "Net")._replace(digest="")
+    )
+    trainer.begin()
+    trainer.train()
+    lab.write_text(WRONG.replace("8)", "7)").replace("= 8", "= 7"), encoding="utf-8")
+    with pytest.raises(CheckpointError, match="is not a policy of this version: Error"):
+        checkpoint.load_policy(tmp_path / "run" / "best.pt", network=named(lab, "Net"))
+
+
+def saved_policy(own: OwnNetwork, **settings: Any) -> checkpoint.SavedPolicy:
+    parts = [("robot_target", 3), ("joints", 3)]
+    made = Settings(**{"network": str(own.code), "simulation": "task=pick", **settings})
+    shape = checkpoint.PolicyShape(6, 9)
+    torch.manual_seed(2)
+    policy = checkpoint.new_policy(made, shape, parts, own)
+    policy.action.linear.weight.data.normal_(0.0, 0.3)
+    return checkpoint.SavedPolicy(policy.eval(), made, shape, parts, 1, None, {}, own)
+
+
+@pytest.mark.parametrize("name, recurrent", [("Sums", False), ("Sums", True), ("Net", False)])
+def test_a_pack_of_known_layers_does_what_the_network_does(
+    tmp_path: pathlib.Path, lab: pathlib.Path, name: str, recurrent: bool
+) -> None:
+    saved, pack = saved_policy(named(lab, name), recurrent=recurrent), tmp_path / "own.pack"
+    checkpoint.save_policy(saved, tmp_path / "own.pt")
+    export.write(tmp_path / "own.pt", pack, network=f"{lab}:{name}")
+    seen = np.random.default_rng(1).normal(size=(5, 6)).astype(np.float32)
+    with torch.inference_mode():
+        hidden = saved.policy.initial_hidden(5, torch.device("cpu"))
+        starts = torch.ones(1, 5, dtype=torch.bool)
+        said = saved.policy.act(Inputs(torch.from_numpy(seen)[None]), hidden, starts)
+    played = galactic.LearnedPolicy(pack, 5, deterministic=True).act(seen)
+    np.testing.assert_allclose(played, said.actions.mode()[0].numpy(), atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "name, message",
+    [
+        ("Sines", r"a policy pack has no layer for sin in forward\(\)"),
+        ("Branches", r"forward\(\) cannot be followed \(TraceError"),
+    ],
+)
+def test_what_a_pack_does_not_know_is_refused(
+    tmp_path: pathlib.Path, lab: pathlib.Path, name: str, message: str
+) -> None:
+    checkpoint.save_policy(saved_policy(named(lab, name)), tmp_path / "own.pt")
+    with pytest.raises(CheckpointError, match=message):
+        export.write(tmp_path / "own.pt", tmp_path / "own.pack", network=f"{lab}:{name}")
+    assert not (tmp_path / "own.pack").exists()
+
+
+def test_a_pack_has_no_memory_of_ones_own(tmp_path: pathlib.Path) -> None:
+    checkpoint.save_policy(saved_policy(named(EXAMPLE, "Remembering")), tmp_path / "own.pt")
+    with pytest.raises(CheckpointError, match="has a memory of its own, and .* with --recurrent"):
+        export.write(tmp_path / "own.pt", tmp_path / "a.pack", network=f"{EXAMPLE}:Remembering")
+
+
+@needs_worlds
+def test_programs_take_a_network_of_ones_own(tmp_path: pathlib.Path, lab: pathlib.Path) -> None:
+    """It sees colors alone; it is trained, resumed, judged, exported, and shows others what to do."""
+    run, name = tmp_path / "run", f"{lab}:Looks"
+    own = ["--network", name, "--sees", "rgb", "--image-size", 36]
+    options = [*SMALL, *own, "--steps", 2 * UPDATE, "--validation", HELD_OUT]
+    options += ["--validation-episodes", 2, "--pause-at", UPDATE]
+    done = call("train", WORLD, "-o", run, *options)
+    assert done.returncode == 0, done.stderr
+    lab.unlink()
+    kept = f"{run / 'network.py'}:Looks"
+    assert call("train", "-o", run, "--resume").returncode == 0 and len(curve(run)) >= 2
+    refused = call("evaluate", run / "best.pt", HELD_OUT)
+    assert refused.returncode == 1 and f"if you trust it, add --network {kept}\n" in refused.stderr
+    done = call("evaluate", run / "best.pt", HELD_OUT, "--episodes", 2, "--network", kept)
+    assert done.returncode == 0, done.stderr
+    pack = tmp_path / "own.pack"
+    done = call("export", run / "best.pt", "-o", pack, "--network", kept)
+    assert done.returncode == 0, done.stderr
+    assert galactic.LearnedPolicy(pack, 2).images["depth"] is False
+    demos = tmp_path / "demos"
+    own[1] = kept
+    done = call("demonstrate", WORLD, "-o", demos, "--preset", "quick", *own, "--episodes", 2,
+                "--expert", run / "best.pt")  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    # A teacher is of another kind, and without its copy a run does not go on.
+    done = call("train", WORLD, "-o", tmp_path / "b", *SMALL, "--teacher", run / "best.pt")
+    assert done.returncode == 1 and "give another --teacher, of the network state" in done.stderr
+    (run / "network.py").unlink()
+    done = call("train", "-o", run, "--resume", "--steps", 9 * UPDATE)
+    assert done.returncode == 2 and f"{run / 'network.py'}: is missing, the copy of" in done.stderr
