@@ -193,7 +193,7 @@ class Layers:
             if node.op == "output":
                 (made,) = node.all_input_nodes
                 return values[made]
-            if node.op != "placeholder" and not _is_image(node):
+            if node.op.startswith(("call", "get")) and not _is_image(node):
                 values[node] = self._node(encoder, node, values, seen)
         raise ExportError("forward() returns nothing")
 
