@@ -55,8 +55,7 @@ Result<void> DrawnSteps::step(BatchSimulator& simulator, std::span<const float> 
     simulator.step(actions);
     drawn.physics.add(secondsSince(rendered));
   } else {
-    simulator.beginStep(actions);
-    simulator.endStep();
+    simulator.step(actions);
     rendering_.end();
     if (report.steps > 0) drawn.overlapped.add(secondsSince(start));
   }
