@@ -45,33 +45,33 @@ template <class Lap>
 void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) noexcept {
   step.state.prefetchBounds(step.first);
   readActions(step, input.actions);
-  lap(0);
+  lap(Phase::kActions);
   proposePoses(step);
-  lap(1);
+  lap(Phase::kPropose);
   followFloor(step);
-  lap(2);
+  lap(Phase::kFloor);
   placeBodies(step);
-  lap(3);
+  lap(Phase::kKinematics);
   moveRobots(step);
-  lap(4);
+  lap(Phase::kCollide);
   useHands(step);
-  lap(5);
+  lap(Phase::kHands);
   judge(step, input.resets);
-  lap(6);
+  lap(Phase::kTask);
   followOdometry(step);
   observe(step.model, step.state, step.first);
-  lap(7);
+  lap(Phase::kObserve);
   senseAll(step);
-  lap(8);
+  lap(Phase::kSense);
   renewEpisodes(step);
   resetEpisodes(step, input.resets);
-  lap(9);
+  lap(Phase::kRenew);
 }
 
 }  // namespace
 
 void stepChunk(const ChunkStep& step, const StepInput& input) noexcept {
-  runPhases(step, input, [](std::size_t) {});
+  runPhases(step, input, [](Phase) {});
 }
 
 void stepChunkMeasured(const ChunkStep& step, const StepInput& input,
@@ -80,9 +80,9 @@ void stepChunkMeasured(const ChunkStep& step, const StepInput& input,
   // Asking takes as long as a short phase.
   const double asking = detail::threadSeconds() - before;
   before += asking;
-  runPhases(step, input, [&](std::size_t phase) {
+  runPhases(step, input, [&](Phase phase) {
     const double now = detail::threadSeconds();
-    seconds[phase] += std::max(0.0, now - before - asking);
+    seconds[static_cast<std::size_t>(phase)] += std::max(0.0, now - before - asking);
     before = now;
   });
 }

@@ -18,9 +18,23 @@ struct StepInput {
 };
 
 /// The phases of a step, in order.
+enum class Phase : std::uint8_t {
+  kActions,
+  kPropose,
+  kFloor,
+  kKinematics,
+  kCollide,
+  kHands,
+  kTask,
+  kObserve,
+  kSense,
+  kRenew,
+};
+/// By phase.
 inline constexpr std::array<std::string_view, 10> kPhaseNames{
     "actions", "propose", "floor",   "kinematics", "collide",
     "hands",   "task",    "observe", "sense",      "renew"};
+static_assert(kPhaseNames.size() == static_cast<std::size_t>(Phase::kRenew) + 1);
 using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 
 /// Copies the actions of the chunk's envs, clamped; what is not a number becomes 0 and is counted.
