@@ -7,6 +7,7 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "layout/column_cell.h"
+#include "support/processor.h"
 
 namespace galactic {
 namespace {

@@ -56,28 +56,6 @@ struct EightsOfCenters {
 [[nodiscard]] std::uint64_t notFreeAvx2(const ColumnGridLayout& grid,
                                         const EightsOfCenters& centers) noexcept;
 
-/// Whether the AVX2 versions can run on this processor. Inlined everywhere: it is asked before each
-/// small kernel.
-[[nodiscard, gnu::always_inline]] inline bool hasAvx2() noexcept {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
-#endif
-}
-
-/// Whether code built for AVX-512 (F, BW, DQ, VL) and instructions for bits (BMI, BMI2) can run on
-/// this processor.
-[[nodiscard, gnu::always_inline]] inline bool hasAvx512() noexcept {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
-         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
-         __builtin_cpu_supports("bmi") != 0 && __builtin_cpu_supports("bmi2") != 0;
-#else
-  return false;
-#endif
-}
-
 /// What is taken off the distances to contact, meters: more than all rounding from a height to its
 /// code and back, so that whoever moves by a distance and asks again finds the place free.
 // A height's code is off by less than 2^-21 of the height above the grid's lowest one: four

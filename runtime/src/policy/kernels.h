@@ -71,11 +71,9 @@ struct Kernels {
 
 /// For any processor; slow where it has no fused multiplication.
 [[nodiscard]] Kernels portableKernels() noexcept;
-/// For processors with AVX2 and FMA.
+/// For processors with AVX2 and FMA: see detail::hasFusedAvx2().
 [[nodiscard]] Kernels avx2Kernels() noexcept;
 /// The faster ones that this processor can run.
 [[nodiscard]] Kernels kernels() noexcept;
-/// Whether avx2Kernels() can run on this processor.
-[[nodiscard]] bool hasFusedAvx2() noexcept;
 
 }  // namespace galactic::policy

@@ -1,4 +1,5 @@
 #include "policy/kernels.h"
+#include "support/processor.h"
 
 namespace galactic::policy {
 namespace {
@@ -23,14 +24,6 @@ namespace galactic::policy {
 
 Kernels portableKernels() noexcept { return listKernels(); }
 
-bool hasFusedAvx2() noexcept {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-#else
-  return false;
-#endif
-}
-
-Kernels kernels() noexcept { return hasFusedAvx2() ? avx2Kernels() : portableKernels(); }
+Kernels kernels() noexcept { return detail::hasFusedAvx2() ? avx2Kernels() : portableKernels(); }
 
 }  // namespace galactic::policy

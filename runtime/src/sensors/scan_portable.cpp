@@ -1,7 +1,7 @@
 // The kernels of a scan for any processor, one beam at a time: what scan_avx2.cpp repeats operation
 // by operation.
-#include "column_grid/column_grid_kernels.h"
 #include "sensors/scan_kernels.h"
+#include "support/processor.h"
 
 namespace galactic::sensors {
 namespace {

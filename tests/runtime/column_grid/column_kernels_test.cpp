@@ -9,6 +9,7 @@
 
 #include "column_grid/column_grid_kernels.h"
 #include "support/packs/grid_builder.h"
+#include "support/processor.h"
 #include "support/sanitized.h"
 
 namespace galactic::test::column_kernels_test {

@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "support/processor.h"
+
 namespace galactic::policy::kernels_test {
 namespace {
 
@@ -25,7 +27,7 @@ std::vector<float> numbers(std::size_t count, unsigned seed, float scale = 2) {
 class KernelPair : public testing::Test {
  protected:
   void SetUp() override {
-    if (!hasFusedAvx2()) GTEST_SKIP() << "this processor has no AVX2 with FMA";
+    if (!detail::hasFusedAvx2()) GTEST_SKIP() << "this processor has no AVX2 with FMA";
   }
   /// `run(kernels, out)` fills `count` floats with either.
   template <class Run>

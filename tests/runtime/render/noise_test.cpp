@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "column_grid/column_grid_kernels.h"
 #include "render/noise/noise_kernels.h"
 #include "support/packs/render_model_builder.h"
+#include "support/processor.h"
 #include "support/render_images.h"
 
 namespace galactic::test::noise_test {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "column_grid/column_grid_kernels.h"
 #include "render/soft/soft_engine.h"
 #include "runtime/render/mixed_models.h"
 #include "support/packs/render_model_builder.h"
+#include "support/processor.h"
 #include "support/render_images.h"
 
 namespace galactic::test::soft_batch_test {

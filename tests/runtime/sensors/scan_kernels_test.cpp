@@ -12,10 +12,10 @@
 #include <random>
 #include <vector>
 
-#include "column_grid/column_grid_kernels.h"
 #include "scattered_grid.h"
 #include "sensors/scan_plane.h"
 #include "support/oracles/resting_oracle.h"
+#include "support/processor.h"
 
 namespace galactic::test::scan_kernels_test {
 namespace {

@@ -1,7 +1,7 @@
 #include "render/noise/noise_pass.h"
 
-#include "column_grid/column_grid_kernels.h"
 #include "render/noise/noise_kernels.h"
+#include "support/processor.h"
 #include "support/random_stream.h"
 
 namespace galactic::render {

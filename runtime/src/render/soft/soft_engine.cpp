@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "column_grid/column_grid_kernels.h"
 #include "render/raster/placed_model.h"
 #include "support/counted.h"
+#include "support/processor.h"
 
 namespace galactic::render {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
-#include "column_grid/column_grid_kernels.h"
 #include "support/huge_pages.h"
+#include "support/processor.h"
 
 namespace galactic::simulation {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "column_grid/column_grid_kernels.h"
+#include "support/processor.h"
 
 namespace galactic::simulation {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "column_grid/column_grid_kernels.h"
 #include "simulation/collision/packed_bounds.inl"
+#include "support/processor.h"
 
 namespace galactic::simulation {
 namespace {

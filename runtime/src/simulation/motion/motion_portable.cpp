@@ -1,4 +1,3 @@
-#include "column_grid/column_grid_kernels.h"
 #include "simulation/motion/motion_kernels.h"
 
 // Each needs what is above it.
@@ -7,6 +6,7 @@
 #include "simulation/motion/motion_kernel.inl"
 #include "simulation/motion/shift_kernel.inl"
 #include "simulation/motion/step_kernel.inl"
+#include "support/processor.h"
 
 namespace galactic::simulation {
 

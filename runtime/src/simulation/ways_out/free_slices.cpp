@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "column_grid/column_grid_kernels.h"
 #include "support/huge_pages.h"
+#include "support/processor.h"
 
 namespace galactic::simulation {
 namespace {

@@ -1,10 +1,10 @@
-#include "column_grid/column_grid_kernels.h"
 #include "simulation/ways_out/way_out_kernels.h"
 
 // Each needs what is above it.
 #include "simulation/lanes/lanes_eight.inl"
 #include "simulation/lanes/operations.inl"
 #include "simulation/ways_out/way_out_kernel.inl"
+#include "support/processor.h"
 
 namespace galactic::simulation {
 

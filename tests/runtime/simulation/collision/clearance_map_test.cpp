@@ -14,6 +14,7 @@
 #include "simulation/collision/collision.h"
 #include "support/homes/box_room.h"
 #include "support/packs/grid_builder.h"
+#include "support/processor.h"
 
 namespace galactic::test::clearance_map_test {
 namespace {

@@ -12,10 +12,10 @@
 #include <set>
 #include <span>
 
-#include "column_grid/column_grid_kernels.h"
 #include "support/homes/resting_bodies.h"
 #include "support/homes/resting_robot.h"
 #include "support/oracles/resting_oracle.h"
+#include "support/processor.h"
 
 namespace galactic::test::resting_objects_test {
 namespace {

@@ -9,11 +9,11 @@
 #include <set>
 #include <vector>
 
-#include "column_grid/column_grid_kernels.h"
 #include "simulation/collision/resting_objects.h"
 #include "support/homes/resting_bodies.h"
 #include "support/homes/resting_robot.h"
 #include "support/oracles/resting_oracle.h"
+#include "support/processor.h"
 
 namespace galactic::test::shared_objects_test {
 namespace {

@@ -13,10 +13,10 @@
 #include <span>
 #include <string>
 
-#include "column_grid/column_grid_kernels.h"
 #include "motion_batch.h"
 #include "support/homes/box_world.h"
 #include "support/homes/random_robot.h"
+#include "support/processor.h"
 #include "support/sanitized.h"
 #include "support/source_folder.h"
 

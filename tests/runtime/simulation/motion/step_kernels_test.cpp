@@ -11,9 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "column_grid/column_grid_kernels.h"
 #include "simulation/motion/motion_kernels.h"
 #include "support/oracles/resting_oracle.h"
+#include "support/processor.h"
 
 namespace galactic::test::step_kernels_test {
 namespace {

@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "column_grid/column_grid_kernels.h"
 #include "support/homes/box_room.h"
+#include "support/processor.h"
 
 namespace galactic::test::free_slices_test {
 namespace {

@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "column_grid/column_grid_kernels.h"
 #include "support/oracles/resting_oracle.h"
+#include "support/processor.h"
 
 namespace galactic::test::way_out_kernels_test {
 namespace {
