@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstring>
 
-#include "render/soft/bc1.h"
+#include "layout/bc1.h"
 
 namespace galactic {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/soft/bc1.h"
+#include "layout/bc1.h"
 #include "render/soft/soft_scene.h"
 #include "support/packs/render_model_builder.h"
 #include "support/render_images.h"

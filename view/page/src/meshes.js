@@ -72,7 +72,7 @@ function geometryOf(clusters, arrays, step) {
   return geometry;
 }
 
-/// A level of BC1 blocks as RGBA, as runtime/src/render/soft/bc1.cpp decodes it.
+/// A level of BC1 blocks as RGBA, as runtime/src/layout/bc1.cpp decodes it.
 function decodeBlocks(blocks, size) {
   const out = new Uint8Array(4 * size * size);
   const edge = Math.max(1, size >> 2);

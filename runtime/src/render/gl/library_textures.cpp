@@ -8,8 +8,8 @@
 #include <iterator>
 #include <map>
 
+#include "layout/bc1.h"
 #include "render/raster/tables.h"
-#include "render/soft/bc1.h"
 
 namespace galactic::render::gl {
 namespace {

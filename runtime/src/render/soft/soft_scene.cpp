@@ -5,8 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "layout/bc1.h"
 #include "render/raster/tables.h"
-#include "render/soft/bc1.h"
 
 namespace galactic::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/soft/bc1.h"
+#include "layout/bc1.h"
 
 #include <array>
 #include <cassert>
