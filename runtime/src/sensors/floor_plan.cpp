@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "simulation/phases/move.h"
+#include "simulation/collision/floor_query.h"
 
 namespace galactic::sensors {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "sensors/floor_plan.h"
 #include "sensors/way_field.h"
+#include "simulation/collision/floor_query.h"
 #include "simulation/motion/motion_model.h"
-#include "simulation/phases/move.h"
 #include "support/workers.h"
 
 namespace galactic {
@@ -99,11 +99,9 @@ std::optional<PlanCell> nextCell(const FloorPlan& plan, std::span<const std::uin
   return next;
 }
 
-/// Height of the floor at a start or up to half a meter under it, as episodes look for theirs.
-float floorBelow(const Scene& scene, const Vec3& start, GroundOptions ground) {
-  constexpr float kDeepestSearch = 0.5F;
-  ground.most_drop = std::max(ground.most_drop, kDeepestSearch);
-  const simulation::FloorUnder under = simulation::floorUnder(scene, start, ground);
+/// Height of the floor at a start or under it, as episodes look for theirs.
+float floorBelow(const Scene& scene, const Vec3& start, const GroundOptions& ground) {
+  const simulation::FloorUnder under = simulation::floorUnderStart(scene, start, ground);
   return under.floor == simulation::Floor::kDrops ? start.y : under.height;
 }
 

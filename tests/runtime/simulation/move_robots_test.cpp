@@ -87,59 +87,6 @@ void expectAt(const Drive& drive, const Vec3& wanted) {
   EXPECT_NEAR(drive.at().z, wanted.z, kRounding);
 }
 
-Floor floorAt(const BoxRoom& room, const Vec3& base) {
-  return floorUnder(room.scene(), base, {}).floor;
-}
-
-TEST(FloorUnder, FindsTheFloorAHandAboveAndBelow) {
-  const BoxRoom room({plainFloor(), {{1, -0.25F, 0}, {2, 0.04F, 3}}});
-  const auto height = [&](const Vec3& base) { return floorUnder(room.scene(), base, {}).height; };
-  for (const float y : {-0.04F, 0.0F, 0.04F}) {
-    EXPECT_EQ(floorAt(room, {0.5F, y, 0.5F}), Floor::kCarries);
-    EXPECT_NEAR(height({0.5F, y, 0.5F}), 0, kHeightTolerance);
-  }
-  EXPECT_EQ(floorAt(room, {1.5F, 0, 0.5F}), Floor::kCarries);
-  EXPECT_NEAR(height({1.5F, 0, 0.5F}), 0.04F, kHeightTolerance);
-}
-
-TEST(FloorUnder, BlocksWhatIsTooHighAndRefusesWhatIsTooDeepOrUnknown) {
-  const BoxRoom room({plainFloor(), {{1, 0, 0}, {2, 0.06F, 3}}});
-  EXPECT_EQ(floorAt(room, {1.5F, 0, 0.5F}), Floor::kBlocks);
-  EXPECT_EQ(floorAt(room, {0.5F, 0.06F, 0.5F}), Floor::kDrops);
-  EXPECT_EQ(floorAt(room, {0.5F, 0.049F, 0.5F}), Floor::kCarries);
-  EXPECT_EQ(floorAt(room, {-0.01F, 0, 0.5F}), Floor::kDrops);
-  EXPECT_EQ(floorAt(room, {0.5F, 0, 3.01F}), Floor::kDrops);
-  EXPECT_EQ(floorAt(room, {0.5F, 7, 0.5F}), Floor::kDrops);
-  EXPECT_NE(floorAt(room, {std::numeric_limits<float>::quiet_NaN(), 0, 0.5F}), Floor::kCarries);
-}
-
-TEST(FloorUnder, ObeysItsOptions) {
-  const BoxRoom room({plainFloor(), {{1, 0, 0}, {2, 0.2F, 3}}});
-  const GroundOptions climber{.most_rise = 0.25F, .most_drop = 0.01F};
-  const FloorUnder under = floorUnder(room.scene(), {1.5F, 0, 0.5F}, climber);
-  EXPECT_EQ(under.floor, Floor::kCarries);
-  EXPECT_NEAR(under.height, 0.2F, kHeightTolerance);
-  EXPECT_EQ(floorUnder(room.scene(), {0.5F, 0.02F, 0.5F}, climber).floor, Floor::kDrops);
-}
-
-TEST(FloorUnder, IsFoundUnderACeilingThatIsLowerThanTheHighestRise) {
-  // A hall with a step of 20 cm and a slab 1 m above the floor; a corner of it is open to the top.
-  const BoxRoom room({plainFloor(), {{1, -0.25F, 0}, {2, 0.2F, 3}}, {{0, 1, 0}, {3, 1.2F, 2}}});
-  for (const float rise : {0.1F, 0.25F, 0.9F, 0.98F, 1.1F, 2.95F, 100.0F}) {
-    const GroundOptions climber{.most_rise = rise};
-    const auto under = [&](const Vec3& base) { return floorUnder(room.scene(), base, climber); };
-    EXPECT_EQ(under({0.5F, 0, 0.5F}).floor, Floor::kCarries) << rise;
-    EXPECT_NEAR(under({0.5F, 0, 2.5F}).height, 0, kHeightTolerance) << rise;
-    const bool is_above_slab = rise > 1.2F && rise < 3;
-    EXPECT_NEAR(under({0.5F, 0, 0.5F}).height, is_above_slab ? 1.2F : 0, kHeightTolerance) << rise;
-    const bool reaches_step = rise > 0.2F && rise < 3;
-    EXPECT_EQ(under({1.5F, 0, 2.5F}).floor, reaches_step ? Floor::kCarries : Floor::kBlocks)
-        << rise;
-    EXPECT_EQ(under({0.5F, 0.3F, 2.5F}).floor, Floor::kDrops) << rise;
-    EXPECT_EQ(under({-0.01F, 0, 0.5F}).floor, Floor::kDrops) << rise;
-  }
-}
-
 TEST(MoveRobots, GlidesAlongAWallUnderACeilingThatIsLowerThanTheHighestRise) {
   // The slab keeps the base from rising; the robot drives as it does without it.
   const std::vector<Block> walls{plainFloor(), {{2, 0, 0}, {2.1F, 0.8F, 3}}};

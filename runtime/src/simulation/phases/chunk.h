@@ -8,6 +8,7 @@
 #include "galactic/pose.h"
 #include "simulation/collision/clearance_map.h"
 #include "simulation/collision/collision.h"
+#include "simulation/collision/floor_query.h"
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/model.h"
@@ -16,15 +17,6 @@
 #include "simulation/ways_out/way_out.h"
 
 namespace galactic::simulation {
-
-/// What the floor under a candidate's base allows.
-enum class Floor : std::uint8_t {
-  kCarries = 0,
-  /// Higher than the base may climb, or no height for it.
-  kBlocks = 1,
-  /// Deeper than the base may drop, or unknown.
-  kDrops = 2,
-};
 
 /// What a look at one candidate found of eight groups of eight spheres; groups as bits.
 struct SeenGroups {

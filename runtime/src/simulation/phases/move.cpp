@@ -64,69 +64,17 @@ void acceptPoses(const ChunkStep& step, const EnvMask& accepted) {
   }
 }
 
-/// Where a larger most_rise ends in a ceiling or beyond what the grid knows, the floor is looked
-/// for from so high: as by default.
-constexpr float kLowRise = GroundOptions{}.most_rise;
-
-/// The smallest sphere, standing so far above a base.
-Vec3 probeAbove(const Scene& scene, const Vec3& base, float rise) {
-  return {base.x, base.y + rise + scene.grids().front().radius(), base.z};
-}
-
-/// Whether a probe found nothing that one less high might not find.
-bool isTooHigh(Clearance clearance, const GroundOptions& options) {
-  return clearance != Clearance::kFree && options.most_rise > kLowRise;
-}
-
-/// What the floor's probe found at the height `probe`; `down`: how far the floor is under it.
-FloorUnder floorFound(const ColumnGrid& grid, const Vec3& base, float probe, Clearance clearance,
-                      float down, const GroundOptions& options) {
-  if (clearance == Clearance::kBlocked) return {Floor::kBlocks, base.y};
-  if (clearance == Clearance::kOutside) return {Floor::kDrops, base.y};
-  const float height = probe - down - grid.radius();
-  if (height < base.y - options.most_drop) return {Floor::kDrops, base.y};
-  return {Floor::kCarries, height};
-}
-
-/// What a probe finds that is so far above a base.
-FloorUnder lookDown(const Scene& scene, const Vec3& base, float rise,
-                    const GroundOptions& options) {
-  const ColumnGrid& grid = scene.grids().front();
-  const Vec3 probe = probeAbove(scene, base, rise);
-  const Contact contact = grid.contact(probe);
-  if (rise > kLowRise && isTooHigh(contact.clearance, options)) {
-    return lookDown(scene, base, kLowRise, options);
-  }
-  return floorFound(grid, base, probe.y, contact.clearance, contact.down, options);
-}
-
-/// The floors under some candidates in one scene: one batched query, so that none waits for what
-/// another one asks the memory for.
+/// The floors under some candidates in one scene.
 void followFloor(const ChunkStep& step, const Scene& scene, std::size_t first, std::size_t count) {
-  const GroundOptions& options = step.model.options.ground;
-  const ColumnGrid& grid = scene.grids().front();
-  std::array<float, kChunk> x;
-  std::array<float, kChunk> y;
-  std::array<float, kChunk> z;
+  static_assert(kChunk <= kMostBases);
+  std::array<Vec3, kChunk> bases;
+  for (std::size_t n = 0; n < count; ++n) bases[n] = step.chunk.base(first + n);
+  std::array<FloorUnder, kChunk> under;
+  floorsUnder(scene, std::span(bases).first(count), step.model.options.ground,
+              std::span(under).first(count));
   for (std::size_t n = 0; n < count; ++n) {
-    const Vec3 probe = probeAbove(scene, step.chunk.base(first + n), options.most_rise);
-    x[n] = probe.x;
-    y[n] = probe.y;
-    z[n] = probe.z;
-  }
-  std::array<Clearance, kChunk> clearance;
-  std::array<float, kChunk> down;
-  std::array<float, kChunk> up;
-  grid.contact({std::span(x).first(count), std::span(y).first(count), std::span(z).first(count)},
-               {std::span(clearance).first(count), std::span(down).first(count),
-                std::span(up).first(count)});
-  for (std::size_t n = 0; n < count; ++n) {
-    const Vec3 base = step.chunk.base(first + n);
-    const FloorUnder under = isTooHigh(clearance[n], options)
-                                 ? lookDown(scene, base, kLowRise, options)
-                                 : floorFound(grid, base, y[n], clearance[n], down[n], options);
-    step.chunk.floor(first + n) = under.floor;
-    *step.chunk.candidates(first + n).y = under.height;
+    step.chunk.floor(first + n) = under[n].floor;
+    *step.chunk.candidates(first + n).y = under[n].height;
   }
 }
 
@@ -168,19 +116,9 @@ bool followLevelFloors(const ChunkStep& step, std::size_t first, std::size_t cou
 }  // namespace
 
 Vec3 floorProbe(const ChunkStep& step, std::size_t e) noexcept {
-  const GroundOptions& options = step.model.options.ground;
-  const Scene& scene = step.model.scenes[step.state.env(step.first + e).scene];
-  float rise = options.most_rise;
-  if (rise > kLowRise) {
-    // Under a low ceiling no way out leads to where the higher probe is free.
-    const Vec3 before = probeAbove(scene, step.state.base(step.first + e), rise);
-    if (isTooHigh(scene.grids().front().contact(before).clearance, options)) rise = kLowRise;
-  }
-  return probeAbove(scene, step.chunk.base(e), rise);
-}
-
-FloorUnder floorUnder(const Scene& scene, const Vec3& base, const GroundOptions& options) noexcept {
-  return lookDown(scene, base, options.most_rise, options);
+  const std::size_t n = step.first + e;
+  return floorProbe(step.model.scenes[step.state.env(n).scene], step.chunk.base(e),
+                    step.state.base(n), step.model.options.ground);
 }
 
 void keepBodies(const ChunkStep& step, const EnvMask& wanted) noexcept {

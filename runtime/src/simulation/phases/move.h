@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "simulation/collision/floor_query.h"
 #include "simulation/phases/chunk.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/model.h"
@@ -28,19 +29,10 @@ void placeBodies(const ChunkStep& step) noexcept;
 /// appendix I.1); where that fails the robot stays where it was.
 void moveRobots(const ChunkStep& step) noexcept;
 
-/// Of a candidate under which there is no floor: the smallest sphere of the working set, standing
-/// on a rise as high as the base may climb or, where that is too high for the room in which it was,
-/// as high as by default. Where it is free there is a floor under it.
+/// The floor probe of a candidate under which there is no floor.
 [[nodiscard]] Vec3 floorProbe(const ChunkStep& step, std::size_t e) noexcept;
 
-/// How far a base at `base` (its y: the floor it comes from) is from the floor under it.
-struct FloorUnder {
-  Floor floor = Floor::kDrops;
-  float height = 0;
-};
-[[nodiscard]] FloorUnder floorUnder(const Scene& scene, const Vec3& base,
-                                    const GroundOptions& options) noexcept;
-/// The same in the scene of the chunk's env `e`, mostly without a query.
+/// What is under a base in the scene of the chunk's env `e`, mostly without a query.
 [[nodiscard]] FloorUnder floorUnder(const ChunkStep& step, std::size_t e,
                                     const Vec3& base) noexcept;
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "simulation/collision/floor_clearance.h"
-#include "simulation/phases/move.h"
+#include "simulation/collision/floor_query.h"
 #include "simulation/ways_out/floor_slices.h"
 #include "support/workers.h"
 

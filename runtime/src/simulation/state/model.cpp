@@ -83,11 +83,8 @@ class StartFinder {
 
   /// The floor at or under the episode's base: at once, or further down.
   bool setBase(const Episode& episode) {
-    constexpr float kDeepestSearch = 0.5F;
-    const Scene& scene = model_.world->sceneOf(episode);
-    GroundOptions options = model_.options.ground;
-    options.most_drop = std::max(options.most_drop, kDeepestSearch);
-    const FloorUnder under = floorUnder(scene, episode.base_position, options);
+    const FloorUnder under = floorUnderStart(model_.world->sceneOf(episode), episode.base_position,
+                                             model_.options.ground);
     const PoseArrays pose = chunk_.candidates(0);
     *pose.x = episode.base_position.x;
     *pose.y = under.height;

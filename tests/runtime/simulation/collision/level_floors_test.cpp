@@ -10,7 +10,7 @@
 #include <random>
 
 #include "galactic/simulation_options.h"
-#include "simulation/phases/move.h"
+#include "simulation/collision/floor_query.h"
 #include "support/homes/box_room.h"
 #include "support/packs/grid_builder.h"
 #include "support/sanitized.h"
