@@ -74,7 +74,7 @@ class OneRobot {
 
   /// The hand takes an object, which lies at `place`.
   void take(std::uint32_t object, const Vec3& place) {
-    state_.placeObject(0, object, {place, {}});
+    state_.setObjectPose(0, object, {place, {}});
     simulation::takeInHand(step(), 0, object);
   }
 
@@ -91,7 +91,7 @@ class OneRobot {
     state_.env(0).held = static_cast<std::int32_t>(object);
     state_.held(0).grip_from_object = inverse(simulation::gripPose(state_.grip(0))) * there;
     // Where the object goes back to if it can rest nowhere.
-    state_.placeObject(0, object, there);
+    state_.setObjectPose(0, object, there);
     simulation::measureHeld(simulation::heldModel(model_, env()), state_.held(0));
     noActions();
     chunk_.action(afterJoints(kHand), 0) = -1;

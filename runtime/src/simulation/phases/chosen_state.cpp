@@ -78,7 +78,7 @@ std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
   if (!standOnFloor(chosen)) return std::nullopt;
   setVariables(chosen);
   placeBodies(step());
-  if (chosen.held >= 0) takeInHand(chosen);
+  if (chosen.held >= 0) fillHand(chosen);
   leaveWhatIsInReach();
   if (!isFree(step(), 0)) return std::nullopt;
   return taken(chosen);
@@ -86,14 +86,11 @@ std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
 
 void StateChooser::moveObjects(const EnvState& chosen) {
   const Env& env = state_.env(0);
-  RestingObjects& resting = state_.resting(0);
   for (std::uint32_t object = 0; object < env.objects; ++object) {
     const Pose& pose = chosen.objects[object];
     const bool is_held = static_cast<std::int32_t>(object) == chosen.held;
     if (is_held || pose == state_.objects(0)[object]) continue;
-    state_.placeObject(0, object, pose);
-    resting.remove(object);
-    resting.insert(object, restingBox(model_.object(env.start, object).box, pose));
+    restObject(model_, state_, 0, object, pose);
   }
 }
 
@@ -122,7 +119,7 @@ void StateChooser::setVariables(const EnvState& chosen) {
   }
 }
 
-void StateChooser::takeInHand(const EnvState& chosen) {
+void StateChooser::fillHand(const EnvState& chosen) {
   const auto object = static_cast<std::uint32_t>(chosen.held);
   Env& env = state_.env(0);
   RestingObjects& resting = state_.resting(0);

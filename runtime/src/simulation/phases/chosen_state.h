@@ -32,7 +32,7 @@ class StateChooser {
   void moveObjects(const EnvState& chosen);
   [[nodiscard]] bool standOnFloor(const EnvState& chosen);
   void setVariables(const EnvState& chosen);
-  void takeInHand(const EnvState& chosen);
+  void fillHand(const EnvState& chosen);
   void leaveWhatIsInReach();
   [[nodiscard]] bool hasPicked(const EnvState& chosen) const;
   [[nodiscard]] SavedEnv taken(const EnvState& chosen);

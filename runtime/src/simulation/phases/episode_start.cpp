@@ -33,7 +33,7 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
 void placeObjects(const Model& model, BatchState& state, std::size_t n, std::uint32_t start) {
   const std::span<const Placement> placements = model.placements(model.episodeOf(start));
   for (std::uint32_t object = 0; object < placements.size(); ++object) {
-    state.placeObject(n, object, placements[object].pose);
+    state.setObjectPose(n, object, placements[object].pose);
   }
   state.resting(n).share(model.objectsAt(start));
 }

@@ -46,13 +46,10 @@ void proposeCurrent(const ChunkStep& step, std::size_t e) {
 void moveObjects(const ChunkStep& step, std::size_t n, std::span<const Pose> poses) {
   const Env& env = step.state.env(n);
   const std::span<const Pose> objects = step.state.objects(n);
-  RestingObjects& resting = step.state.resting(n);
   for (std::uint32_t object = 0; object < env.objects; ++object) {
     const bool is_held = env.held == static_cast<std::int32_t>(object);
     if (is_held || objects[object] == poses[object]) continue;
-    step.state.placeObject(n, object, poses[object]);
-    resting.remove(object);
-    resting.insert(object, restingBox(step.model.object(env.start, object).box, poses[object]));
+    restObject(step.model, step.state, n, object, poses[object]);
   }
 }
 

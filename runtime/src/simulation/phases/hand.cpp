@@ -99,9 +99,7 @@ void layDown(const ChunkStep& step, std::size_t e, const Pose& world_from_object
   const std::size_t n = step.first + e;
   Env& env = step.state.env(n);
   const auto object = static_cast<std::uint32_t>(env.held);
-  step.state.placeObject(n, object, world_from_object);
-  step.state.resting(n).insert(object,
-                               restingBox(heldModel(step.model, env).box, world_from_object));
+  restObject(step.model, step.state, n, object, world_from_object);
   beginToLeave(step, e, object);
   env.events.released_target = object == env.target;
   env.held = -1;

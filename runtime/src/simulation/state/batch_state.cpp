@@ -57,6 +57,15 @@ void prefetchRow(std::span<const Value> row) noexcept {
 
 }  // namespace
 
+void restObject(const Model& model, BatchState& state, std::size_t n, std::uint32_t object,
+                const Pose& world_from_object) noexcept {
+  state.setObjectPose(n, object, world_from_object);
+  RestingObjects& resting = state.resting(n);
+  if (resting.isResting(object)) resting.remove(object);
+  const OrientedBox& box = model.object(state.env(n).start, object).box;
+  resting.insert(object, restingBox(box, world_from_object));
+}
+
 void measureHeld(const ObjectModel& object, Held& held) noexcept {
   if (object.spheres.empty()) return;
   Vec3 least = object.spheres.front().center;

@@ -141,6 +141,13 @@ static_assert(sizeof(Env) == 64);
 /// Sets what is kept about the spheres of the object in the hand.
 void measureHeld(const ObjectModel& object, Held& held) noexcept;
 
+class BatchState;
+
+/// From now on an object of env `n`, which rests elsewhere or is on its way from the hand, rests at
+/// `world_from_object`: its pose, and what is in the robot's way.
+void restObject(const Model& model, BatchState& state, std::size_t n, std::uint32_t object,
+                const Pose& world_from_object) noexcept;
+
 /// What a BatchState of so many envs allocates, about.
 [[nodiscard]] std::size_t stateBytes(const Model& model, std::size_t envs);
 
@@ -176,8 +183,9 @@ class BatchState {
   [[nodiscard]] std::span<const Pose> objects(std::size_t n) const {
     return std::span(objects_).subspan(n * most_objects_, most_objects_);
   }
-  /// Every change of an object's pose comes through here.
-  void placeObject(std::size_t n, std::size_t object, const Pose& world_from_object) {
+  /// Every change of an object's pose comes through here. That an object rests somewhere else is
+  /// restObject()'s to say, which lets the robot meet it there, too.
+  void setObjectPose(std::size_t n, std::size_t object, const Pose& world_from_object) {
     objects_[n * most_objects_ + object] = world_from_object;
     if (object == envs_[n].target) setPoint(targetRow(), n, world_from_object.translation);
   }

@@ -14,7 +14,6 @@
 #include <type_traits>
 
 #include "galactic/option_text.h"
-#include "simulation/collision/resting_box.h"
 #include "simulation/phases/episode_start.h"
 #include "simulation/state/plain_numbers.h"
 
@@ -434,11 +433,13 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
     const Pose& pose = saved.objects[object];
     const bool is_held = static_cast<std::int32_t>(object) == env.held;
     const bool has_moved = !(pose == state.objects(n)[object]);
-    state.placeObject(n, object, pose);
     // While nobody has moved any, they are shared with other envs.
-    if (is_held || has_moved) resting.remove(object);
-    if (is_held || !has_moved) continue;
-    resting.insert(object, restingBox(model.object(env.start, object).box, pose));
+    if (has_moved && !is_held) {
+      restObject(model, state, n, object, pose);
+      continue;
+    }
+    state.setObjectPose(n, object, pose);
+    if (is_held) resting.remove(object);
   }
   state.idle()[n] = saved.is_idle ? 1 : 0;
   state.rewards()[n] = saved.reward;
