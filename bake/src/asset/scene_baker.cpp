@@ -8,6 +8,7 @@
 
 #include "column_grid/way_out.h"
 #include "common/stage_timer.h"
+#include "galactic/scene.h"
 #include "support/out_of_memory.h"
 #include "support/try.h"
 
@@ -24,12 +25,11 @@ constexpr double kBytesPerColumn = 100;
 constexpr float kGreatestRadius = 10;
 
 Result<void> checkRadii(const std::vector<float>& radii) {
-  constexpr std::size_t kMaxRadii = 8;
   const auto invalid = [](std::string message) {
     return fail(ErrorCode::kInvalidInput, "radii", std::move(message));
   };
-  if (radii.empty() || radii.size() > kMaxRadii) {
-    return invalid(fmt::format("has {} radii, expected 1 to {}", radii.size(), kMaxRadii));
+  if (radii.empty() || radii.size() > kMostRadii) {
+    return invalid(fmt::format("has {} radii, expected 1 to {}", radii.size(), kMostRadii));
   }
   for (std::size_t i = 0; i < radii.size(); ++i) {
     if (!std::isfinite(radii[i]) || radii[i] <= 0) {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "galactic/scene.h"
 #include "sphere_set/prepared_fit.h"
 
 namespace galactic::bake::sphere_set {
 namespace {
 
-constexpr std::size_t kMostRadii = 8;
 /// Meters; below, spheres would be smaller than the rounding of their centers.
 constexpr float kLeastLength = 1e-4F;
 constexpr float kGreatestLength = 10.0F;

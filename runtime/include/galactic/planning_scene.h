@@ -36,8 +36,8 @@ struct BasePlace {
 /// the constructor, update() and hold(). Not safe to share between threads; use one for each.
 class PlanningScene {
  public:
-  /// Of `options` it takes TaskOptions::distractors, the ground and
-  /// the placement of released objects. Call update() and setJoints() before anything else:
+  /// Of `options` it takes TaskOptions::distractors, the ground, ActionOptions::grasp_shape and the
+  /// placement of released objects. Call update() and setJoints() before anything else:
   /// without update(), questions throw ErrorException with kInvalidInput.
   PlanningScene(const World& world, const SimulationOptions& options);
   ~PlanningScene();

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "galactic/pack.h"
 
 namespace galactic {
+
+/// Radii of a working set, at most.
+inline constexpr std::size_t kMostRadii = 8;
 
 /// The static scene of a scene pack: column grids ready to query.
 class Scene {

@@ -4,11 +4,10 @@
 #include <tuple>
 
 #include "check/offence.h"
+#include "galactic/scene.h"
 
 namespace galactic::detail {
 namespace {
-
-constexpr std::size_t kMaxRadii = 8;
 
 /// The order of spheres: radius descending, then x, y, z ascending.
 auto sphereKey(const schema::SetSphere& sphere) {
@@ -66,8 +65,8 @@ Result<void> checkImport(const schema::ImportStatistics& counts, const std::stri
 
 Result<void> checkRadii(const flatbuffers::Vector<float>& radii, const std::string& where) {
   Offence offence(where);
-  offence.require(radii.size() >= 1 && radii.size() <= kMaxRadii, "radii",
-                  "has {} elements, expected 1 to {}", radii.size(), kMaxRadii);
+  offence.require(radii.size() >= 1 && radii.size() <= kMostRadii, "radii",
+                  "has {} elements, expected 1 to {}", radii.size(), kMostRadii);
   float previous = 0;
   for (flatbuffers::uoffset_t n = 0; n < radii.size() && !offence.found(); ++n) {
     const float radius = radii.Get(n);

@@ -40,7 +40,6 @@ class Geodesic {
                                              std::span<const Errand> errands,
                                              std::uint32_t most_megabytes, std::uint32_t threads);
 
-  [[nodiscard]] bool isOff() const noexcept { return errands_.empty(); }
   /// The way of errand `n` to its goal.
   [[nodiscard]] Way toGoal(std::uint32_t n, const Vec3& base) const noexcept;
   /// The way to the target, which is at `target` now; none where that is neither near to where it

@@ -20,13 +20,6 @@ namespace galactic::simulation {
           grip[2] * point.x + grip[5] * point.y + grip[8] * point.z + grip[11]};
 }
 
-/// A point in the world, in the grip's frame.
-[[nodiscard]] inline Vec3 worldToGrip(const GripFrame& grip, const Vec3& point) {
-  const Vec3 away = point - gripOrigin(grip);
-  return {dot(away, {grip[0], grip[1], grip[2]}), dot(away, {grip[3], grip[4], grip[5]}),
-          dot(away, {grip[6], grip[7], grip[8]})};
-}
-
 /// The frame as a pose: world_from_grip.
 [[nodiscard]] Pose gripPose(const GripFrame& grip);
 
