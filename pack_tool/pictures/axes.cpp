@@ -16,6 +16,14 @@ constexpr int kTickLength = 6;
 constexpr int kHorizontalGap = 70;
 constexpr int kVerticalGap = 36;
 
+/// Of a legend, pixels: from a color to its meaning, and from there to the next color.
+constexpr int kSwatchGap = 8;
+constexpr int kEntryGap = 28;
+
+int widthOf(const Legend::Entry& entry) {
+  return kTextHeight + kSwatchGap + textWidth(entry.meaning) + kEntryGap;
+}
+
 }  // namespace
 
 double AxisScale::pixelsPerUnit() const {
@@ -88,14 +96,25 @@ void drawScaleBar(Image& image, const BarPlace& place, double pixels_per_meter, 
   drawText(image, {place.x + length + 10, place.y}, fmt::format("{:g} m", meters), kInk);
 }
 
-int swatchWidth(std::string_view meaning) { return kTextHeight + 8 + textWidth(meaning) + 28; }
+int Legend::width() const {
+  int width = 0;
+  for (const Entry& entry : entries) width += widthOf(entry);
+  return width;
+}
 
-int drawSwatch(Image& image, int x, int y, Rgb color, std::string_view meaning) {
-  const PixelRect square{x, y, kTextHeight, kTextHeight};
-  fillRect(image, square, color);
-  drawFrame(image, square, kInk);
-  drawText(image, {square.right() + 8, y}, meaning, kInk);
-  return swatchWidth(meaning);
+void Legend::draw(Image& image, const TextPlace& place) const {
+  int x = place.x;
+  for (const Entry& entry : entries) {
+    const PixelRect square{x, place.y, kTextHeight, kTextHeight};
+    if (entry.mark) {
+      entry.mark(image, square);
+    } else {
+      fillRect(image, square, entry.color);
+      drawFrame(image, square, kInk);
+    }
+    drawText(image, {square.right() + kSwatchGap, place.y}, entry.meaning, kInk);
+    x += widthOf(entry);
+  }
 }
 
 void drawColorBar(Image& image, const PixelRect& bar, double top_value) {

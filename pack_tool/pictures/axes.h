@@ -1,5 +1,7 @@
 #pragma once
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pictures/drawing.h"
@@ -53,11 +55,21 @@ inline constexpr int kScaleBarPixels = 220;
 void drawScaleBar(Image& image, const BarPlace& place, double pixels_per_meter,
                   int longest = kScaleBarPixels);
 
-/// The width that drawSwatch uses, pixels.
-[[nodiscard]] int swatchWidth(std::string_view meaning);
+/// What the colors and marks of a picture mean, in one line.
+struct Legend {
+  struct Entry {
+    std::string meaning;
+    Rgb color;
+    /// Draws what stands in that square instead of the color; none for the color.
+    std::function<void(Image& image, const PixelRect& square)> mark = {};
+  };
+  std::vector<Entry> entries;
 
-/// A square of `color` and its meaning; returns the width used, gap to the next one included.
-int drawSwatch(Image& image, int x, int y, Rgb color, std::string_view meaning);
+  /// Pixels, the gap after each entry included.
+  [[nodiscard]] int width() const;
+  /// The first entry at `place`.
+  void draw(Image& image, const TextPlace& place) const;
+};
 
 /// A vertical color bar with ticks on its right side. `bar` is the bar alone.
 void drawColorBar(Image& image, const PixelRect& bar, double top_value);

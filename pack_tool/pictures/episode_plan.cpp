@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -260,48 +261,31 @@ std::string captionOf(const EpisodePlan& plan, const Plot& plot) {
   return caption;
 }
 
-/// One entry of the legend: a color of the ground, or else a mark.
-struct LegendEntry {
-  std::string_view meaning;
-  std::optional<Rgb> color = std::nullopt;
-  void (MarkPen::*draw)(const Spot& spot, double size) = nullptr;
-};
+using DrawMark = void (MarkPen::*)(const Spot& spot, double size);
 
-std::vector<LegendEntry> legendOf(std::span<const EpisodePlan> plans) {
+/// An entry of the legend that shows a mark.
+Legend::Entry entryOf(std::string meaning, DrawMark draw) {
+  const auto mark = [draw](Image& image, const PixelRect& square) {
+    MarkPen pen(image, {0, 0, image.width(), image.height()});
+    (pen.*draw)({square.x + 0.5 * square.width, square.y + 0.5 * square.height}, kPlanMark);
+  };
+  return {std::move(meaning), kInk, mark};
+}
+
+Legend legendOf(std::span<const EpisodePlan> plans) {
   const auto any = [&plans](auto&& has) { return std::ranges::any_of(plans, has); };
-  std::vector<LegendEntry> legend{{.meaning = "start", .draw = &MarkPen::drawStartAhead},
-                                  {.meaning = "target", .draw = &MarkPen::drawTarget},
-                                  {.meaning = "goal", .draw = &MarkPen::drawGoal}};
+  Legend legend{{entryOf("start", &MarkPen::drawStartAhead),
+                 entryOf("target", &MarkPen::drawTarget), entryOf("goal", &MarkPen::drawGoal)}};
   if (any([](const EpisodePlan& plan) { return showsOthers(plan); })) {
-    legend.push_back({.meaning = "other object", .draw = &MarkPen::drawOther});
+    legend.entries.push_back(entryOf("other object", &MarkPen::drawOther));
   }
   if (any([](const EpisodePlan& plan) { return plan.grid.has_value(); })) {
     constexpr double kTable = 0.35;
-    legend.push_back({"floor", kOpenFloor});
-    legend.push_back({"less than 2 m free", blend(kLowSpace, kOpenFloor, kTable)});
-    legend.push_back({"blocked", kMutedBlocked});
+    legend.entries.push_back({"floor", kOpenFloor});
+    legend.entries.push_back({"less than 2 m free", blend(kLowSpace, kOpenFloor, kTable)});
+    legend.entries.push_back({"blocked", kMutedBlocked});
   }
   return legend;
-}
-
-int legendWidth(const std::vector<LegendEntry>& legend) {
-  int width = 0;
-  for (const LegendEntry& entry : legend) width += swatchWidth(entry.meaning);
-  return width;
-}
-
-void drawLegend(Image& image, const std::vector<LegendEntry>& legend, int y) {
-  int x = kMargin;
-  MarkPen pen(image, {0, 0, image.width(), image.height()});
-  for (const LegendEntry& entry : legend) {
-    if (entry.color) {
-      x += drawSwatch(image, x, y, *entry.color, entry.meaning);
-      continue;
-    }
-    (pen.*entry.draw)({x + 0.5 * kTextHeight, y + 0.5 * kTextHeight}, kPlanMark);
-    drawText(image, {x + kTextHeight + 8, y}, entry.meaning, kInk);
-    x += swatchWidth(entry.meaning);
-  }
 }
 
 }  // namespace
@@ -313,10 +297,10 @@ Picture drawEpisodePlan(const EpisodePlan& plan, int width) {
   const std::string name = titleOf(plan.scene);
   std::string caption = captionOf(plan, plot);
   if (plan.grid) caption += fmt::format("; grid of radius {} m", plan.grid->radius());
-  const std::vector<LegendEntry> legend = legendOf({&plan, 1});
+  const Legend legend = legendOf({&plan, 1});
   const int foot_top = plot.rect.bottom() + kAxisBottomHeight + kMargin;
   Image image(std::max({plot.rect.right() + kMargin, 2 * kMargin + textWidth(name),
-                        2 * kMargin + textWidth(caption), 2 * kMargin + legendWidth(legend)}),
+                        2 * kMargin + textWidth(caption), 2 * kMargin + legend.width()}),
               foot_top + 2 * kLine + kMargin, kPaper);
   drawText(image, {kMargin, kMargin}, name, kInk);
   drawText(image, {kMargin, kMargin + kLine}, caption, kFaintInk);
@@ -326,20 +310,20 @@ Picture drawEpisodePlan(const EpisodePlan& plan, int width) {
   drawVerticalAxis(image, plot.rect, {low.z, high.z, plot.rect.y, plot.rect.bottom()}, "z (m)");
   drawMarks(image, plan, plot, kPlanMark);
   drawNumbers(image, plan, plot);
-  drawLegend(image, legend, foot_top);
+  legend.draw(image, {kMargin, foot_top});
   drawScaleBar(image, {kMargin, foot_top + kLine}, plot.pixelsPerMeter());
   return {std::move(image), {plot.rect}};
 }
 
 Result<Image> drawEpisodeSheet(std::span<const EpisodePlan> plans, int view_size) {
-  const std::vector<LegendEntry> legend = legendOf(plans);
+  const Legend legend = legendOf(plans);
   // Name and caption above, the scale bar below.
   ASSIGN_OR_RETURN(auto sheet, Sheet::create({.count = plans.size(),
                                               .things = "scenes",
                                               .view_size = view_size,
                                               .tile_width = view_size,
                                               .tile_height = view_size + 3 * kLine,
-                                              .foot_width = legendWidth(legend),
+                                              .foot_width = legend.width(),
                                               .foot_height = kTextHeight}));
   for (std::size_t n = 0; n < plans.size(); ++n) {
     const EpisodePlan& plan = plans[n];
@@ -355,7 +339,7 @@ Result<Image> drawEpisodeSheet(std::span<const EpisodePlan> plans, int view_size
     drawScaleBar(sheet.image, {tile.x, plot.rect.bottom() + 6}, plot.pixelsPerMeter(),
                  view_size / 2);
   }
-  drawLegend(sheet.image, legend, sheet.foot_top);
+  legend.draw(sheet.image, {kMargin, sheet.foot_top});
   return std::move(sheet.image);
 }
 

@@ -27,53 +27,36 @@ using pack_tool::FigurePart;
 constexpr int kMargin = kSheetMargin;
 constexpr int kLine = kTextHeight + 10;
 
-struct LegendEntry {
-  Rgb color;
-  std::string meaning;
-};
-
-std::vector<LegendEntry> legendOf(std::span<const Figure> figures, std::span<const float> radii) {
+Legend legendOf(std::span<const Figure> figures, std::span<const float> radii) {
   const auto any = [figures](auto&& has) { return std::ranges::any_of(figures, has); };
   const auto any_part = [&any](auto&& has) {
     return any([&has](const Figure& figure) { return std::ranges::any_of(figure.parts, has); });
   };
   const bool robot = any([](const Figure& f) { return f.kind == FigureKind::kRobot; });
-  std::vector<LegendEntry> legend;
+  Legend legend;
   const bool textured =
       any_part([](const FigurePart& part) { return part.render_model.has_value(); });
   if (textured || any_part([](const FigurePart& part) { return !part.surface.empty(); })) {
-    legend.push_back({kMeshGray, robot || textured ? "mesh, in its own colors" : "mesh"});
+    legend.entries.push_back({robot || textured ? "mesh, in its own colors" : "mesh", kMeshGray});
   }
   for (std::size_t rank = 0; rank < radii.size(); ++rank) {
-    legend.push_back({sphereColor(rank),
-                      fmt::format("{}{} m", rank == 0 ? "spheres of radius " : "", radii[rank])});
+    legend.entries.push_back(
+        {fmt::format("{}{} m", rank == 0 ? "spheres of radius " : "", radii[rank]),
+         sphereColor(rank)});
   }
   if (any_part([](const FigurePart& part) { return part.box.has_value(); })) {
-    legend.push_back({kBoxEdge, "oriented box"});
+    legend.entries.push_back({"oriented box", kBoxEdge});
   }
   if (any([](const Figure& f) { return f.grasp.has_value(); })) {
-    legend.push_back({kGraspMark, "grasp point"});
+    legend.entries.push_back({"grasp point", kGraspMark});
   }
   if (any([](const Figure& f) { return f.camera.has_value(); })) {
-    legend.push_back({kCameraMark, "camera"});
+    legend.entries.push_back({"camera", kCameraMark});
   }
   if (any([](const Figure& f) { return !f.footprint.empty(); })) {
-    legend.push_back({kFootprintMark, "footprint"});
+    legend.entries.push_back({"footprint", kFootprintMark});
   }
   return legend;
-}
-
-int legendWidth(const std::vector<LegendEntry>& legend) {
-  int width = 0;
-  for (const LegendEntry& entry : legend) width += swatchWidth(entry.meaning);
-  return width;
-}
-
-void drawLegend(Image& image, const std::vector<LegendEntry>& legend, int y) {
-  int x = kMargin;
-  for (const LegendEntry& entry : legend) {
-    x += drawSwatch(image, x, y, entry.color, entry.meaning);
-  }
 }
 
 /// One view of a figure's picture.
@@ -128,8 +111,8 @@ Image drawFigure(const Figure& figure, int view_size) {
   const double scale = fittingScale(extent, view_size);
   const std::string name = titleOf(figure.name);
   const std::vector<float> radii = radiiOf({&figure, 1});
-  const std::vector<LegendEntry> legend = legendOf({&figure, 1}, radii);
-  const int legend_width = legendWidth(legend);
+  const Legend legend = legendOf({&figure, 1}, radii);
+  const int legend_width = legend.width();
   const int views_width = static_cast<int>(views.size()) * (view_size + kMargin) - kMargin;
   const int width = 2 * kMargin + std::max({views_width, legend_width, textWidth(name),
                                             textWidth(figure.caption)});
@@ -147,29 +130,29 @@ Image drawFigure(const Figure& figure, int view_size) {
     drawFrame(image, {x, views_top, view_size, view_size}, kFaintInk);
     x += view_size + kMargin;
   }
-  drawLegend(image, legend, legend_top);
+  legend.draw(image, {kMargin, legend_top});
   drawScaleBar(image, {kMargin, legend_top + kLine}, scale, view_size / 2);
   return image;
 }
 
 Result<Image> drawContactSheet(std::span<const Figure> figures, int view_size) {
   const std::vector<float> radii = radiiOf(figures);
-  const std::vector<LegendEntry> legend = legendOf(figures, radii);
+  const Legend legend = legendOf(figures, radii);
   const int width = tileWidth(figures, view_size);
   // Name and two lines of caption above, the scale bar below.
   constexpr int kTileTextHeight = 4 * kLine;
-  ASSIGN_OR_RETURN(
-      auto sheet, Sheet::create({.count = figures.size(),
-                                 .things = "objects",
-                                 .view_size = view_size,
-                                 .tile_width = width,
-                                 .tile_height = view_size + kTileTextHeight,
-                                 .foot_width = std::max(legendWidth(legend), textWidth(kSheetNote)),
-                                 .foot_height = 2 * kLine}));
+  ASSIGN_OR_RETURN(auto sheet,
+                   Sheet::create({.count = figures.size(),
+                                  .things = "objects",
+                                  .view_size = view_size,
+                                  .tile_width = width,
+                                  .tile_height = view_size + kTileTextHeight,
+                                  .foot_width = std::max(legend.width(), textWidth(kSheetNote)),
+                                  .foot_height = 2 * kLine}));
   for (std::size_t n = 0; n < figures.size(); ++n) {
     drawTile(sheet.image, sheet.tile(n), view_size, figures[n], radii);
   }
-  drawLegend(sheet.image, legend, sheet.foot_top);
+  legend.draw(sheet.image, {kMargin, sheet.foot_top});
   drawText(sheet.image, {kMargin, sheet.foot_top + kLine}, kSheetNote, kFaintInk);
   return std::move(sheet.image);
 }

@@ -84,7 +84,7 @@ void drawLegend(Image& image, int x, int y, double top_value, PlanValue value) {
   drawText(image, {x, y}, value == PlanValue::kSpanCount ? "spans" : "meters", kInk);
   const PixelRect bar{x, y + kTextHeight + 14, kBarWidth, kBarHeight};
   drawColorBar(image, bar, top_value);
-  drawSwatch(image, x, bar.bottom() + 22, kBlocked, "blocked");
+  Legend{{{"blocked", kBlocked}}}.draw(image, {x, bar.bottom() + 22});
 }
 
 }  // namespace

@@ -174,9 +174,10 @@ Result<void> checkLine(std::span<const ColumnGrid> grids, const SliceOptions& op
 }
 
 void drawMeanings(Image& image, int x, int y) {
-  x += drawSwatch(image, x, y, kFree, "free for the sphere's center");
-  x += drawSwatch(image, x, y, kBlocked, "blocked");
-  drawSwatch(image, x, y, kUncovered, "outside the grid");
+  const Legend legend{{{"free for the sphere's center", kFree},
+                       {"blocked", kBlocked},
+                       {"outside the grid", kUncovered}}};
+  legend.draw(image, {x, y});
 }
 
 }  // namespace

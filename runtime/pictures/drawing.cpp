@@ -33,6 +33,12 @@ void fillRect(Image& image, const PixelRect& rect, Rgb color) {
   }
 }
 
+void paste(Image& onto, const Image& picture, int left, int top) {
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) onto.set(left + x, top + y, picture.at(x, y));
+  }
+}
+
 void drawFrame(Image& image, const PixelRect& rect, Rgb color) {
   fillRect(image, {rect.x - 1, rect.y - 1, rect.width + 2, 1}, color);
   fillRect(image, {rect.x - 1, rect.bottom(), rect.width + 2, 1}, color);

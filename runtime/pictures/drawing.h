@@ -34,6 +34,9 @@ inline constexpr int kTextAdvance = 6 * kTextScale;
 /// Fills a rectangle; what lies outside the image is cut off.
 void fillRect(Image& image, const PixelRect& rect, Rgb color);
 
+/// Copies a picture into another, its top left corner at (left, top).
+void paste(Image& onto, const Image& picture, int left, int top);
+
 /// A frame one pixel wide just outside `rect`.
 void drawFrame(Image& image, const PixelRect& rect, Rgb color);
 

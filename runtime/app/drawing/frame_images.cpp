@@ -87,10 +87,4 @@ DeepImage semanticNumbers(const DrawnImage& image) {
   return numbers;
 }
 
-void paste(Image& onto, const Image& picture, int left, int top) {
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x) onto.set(left + x, top + y, picture.at(x, y));
-  }
-}
-
 }  // namespace galactic

@@ -43,7 +43,4 @@ inline constexpr float kHalfBright = 2;
 /// Ids; 65535 for that and higher ones.
 [[nodiscard]] pictures::DeepImage semanticNumbers(const DrawnImage& image);
 
-/// Copies a picture into another, its top left corner at (left, top).
-void paste(pictures::Image& onto, const pictures::Image& picture, int left, int top);
-
 }  // namespace galactic
