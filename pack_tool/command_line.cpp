@@ -490,6 +490,10 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
     return tl::unexpected(
         usageError(console, withSuggestions(complaintOf(app, error), longNamesOf(app))));
   }
+  if (app.got_subcommand("export")) {
+    const std::string fault = exportFault(options.export_);
+    if (!fault.empty()) return tl::unexpected(usageError(console, fault));
+  }
   return chosenRequest(app, options);
 }
 

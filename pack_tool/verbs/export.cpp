@@ -40,26 +40,6 @@ Result<ExportFormat> formatOf(const ExportOptions& options) {
                           extension));
 }
 
-/// Options that the format cannot heed.
-Result<void> checkOptions(const ExportOptions& options, ExportFormat format) {
-  const bool grid = format == ExportFormat::kObj || format == ExportFormat::kPly;
-  if (options.figures && format != ExportFormat::kGlb) {
-    return fail(ErrorCode::kInvalidInput, options.output.string(),
-                "--object, --joints, --all-zero and --what are for GLB files; leave them out");
-  }
-  if (options.object_up && format != ExportFormat::kEpisodeSet) {
-    return fail(ErrorCode::kInvalidInput, options.output.string(),
-                "--object-up is for episode sets; leave it out");
-  }
-  const bool patches = options.radius || options.patch_height != PatchHeight::kSphereCenter ||
-                       options.parts != MeshParts::kFloorsAndCeilings;
-  if (patches && !grid) {
-    return fail(ErrorCode::kInvalidInput, options.output.string(),
-                "--radius, --surface and --floors-only are for OBJ and PLY files; leave them out");
-  }
-  return {};
-}
-
 Result<std::string> gridMesh(const PackFile& pack, const ExportOptions& options,
                              ExportFormat format) {
   if (pack.kind() == PackKind::kEpisodes) {
@@ -141,7 +121,6 @@ std::filesystem::path outputOf(const ExportOptions& options) {
 
 Result<void> exportPack(const ExportOptions& options, AbsentTextures& absent) {
   ASSIGN_OR_RETURN(const auto format, formatOf(options));
-  if (auto checked = checkOptions(options, format); !checked) return checked;
   ASSIGN_OR_RETURN(const auto pack, PackFile::open(options.pack, options.trust));
   ASSIGN_OR_RETURN(const auto bytes, encode(pack, options, format, absent));
   const std::filesystem::path output = outputOf(options);
@@ -150,6 +129,24 @@ Result<void> exportPack(const ExportOptions& options, AbsentTextures& absent) {
 }
 
 }  // namespace
+
+std::string exportFault(const ExportOptions& options) {
+  const Result<ExportFormat> format = formatOf(options);
+  if (!format) return {};
+  if (options.figures && *format != ExportFormat::kGlb) {
+    return "--object, --joints, --all-zero and --what are for GLB files; leave them out";
+  }
+  if (options.object_up && *format != ExportFormat::kEpisodeSet) {
+    return "--object-up is for episode sets; leave it out";
+  }
+  const bool grid = *format == ExportFormat::kObj || *format == ExportFormat::kPly;
+  const bool patches = options.radius || options.patch_height != PatchHeight::kSphereCenter ||
+                       options.parts != MeshParts::kFloorsAndCeilings;
+  if (patches && !grid) {
+    return "--radius, --surface and --floors-only are for OBJ and PLY files; leave them out";
+  }
+  return {};
+}
 
 int runExport(const ExportOptions& options, const Console& console) {
   AbsentTextures absent;

@@ -183,5 +183,8 @@ struct ExportOptions {
 /// its spheres (SRDF, URDF), or episodes as a published episode set. Warns on console.err of what
 /// an episode set cannot hold.
 [[nodiscard]] int runExport(const ExportOptions& options, const Console& console);
+/// Which options the file's format cannot heed, and what to do; empty: none, or nothing names a
+/// format, which runExport() tells.
+[[nodiscard]] std::string exportFault(const ExportOptions& options);
 
 }  // namespace galactic::pack_tool
