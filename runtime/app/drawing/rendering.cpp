@@ -1,6 +1,7 @@
 #include "drawing/rendering.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <utility>
 
@@ -21,6 +22,16 @@ double bytesPerImage(const RenderOptions& options) {
   return static_cast<double>(per_pixel) * options.width * options.height;
 }
 
+/// OpenGL's software driver frees and takes its lists anew for every flush: with glibc's thresholds
+/// that costs a third of its time in page faults. They are the program's to set, not the library's.
+void keepFreedMemory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 2'000'000'000);
+  mallopt(M_TOP_PAD, 64 << 20);
+#endif
+}
+
 }  // namespace
 
 ImageNoise noiseFor(const ImageNoise& noise, const RenderOptions& images) {
@@ -36,6 +47,8 @@ Result<ImageBatch> ImageBatch::create(const RenderLibrary& library, const Render
       checkMemory(static_cast<double>(images) * bytesPerImage(options),
                   fmt::format("{} images of {} x {} pixels", images, options.width, options.height),
                   "draw fewer envs at once (--envs), or smaller images (--size)"));
+  // It is tried where it is asked for, alone.
+  if (options.device == "software") keepFreedMemory();
   ASSIGN_OR_RETURN(BatchRenderer renderer, BatchRenderer::create(library, options));
   return ImageBatch(std::move(renderer), images);
 }

@@ -1,6 +1,10 @@
 // Which device is chosen, and what is said when none will do.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <cstdlib>
+#include <memory>
 
 #include "render/device_wish.h"
 #include "render/gl/egl_context.h"
@@ -163,6 +167,27 @@ TEST(GlStart, ReportsTheDriversRendererString) {
   EXPECT_THAT(renderer->description(), testing::StartsWith("gl, "));
   EXPECT_TRUE(isSoftwareRenderer(renderer->description())) << renderer->description();
 }
+
+#ifdef __GLIBC__
+/// How many blocks of memory are mapped while there is one more that is larger than any threshold
+/// which glibc finds out for itself.
+std::size_t mappedBlocks() {
+  constexpr std::size_t kBytes = std::size_t{64} << 20U;
+  const std::unique_ptr<void, void (*)(void*)> block(std::malloc(kBytes), std::free);
+  // Nobody may leave it out.
+  *static_cast<volatile char*>(block.get()) = 1;
+  return mallinfo2().hblks;
+}
+
+TEST(GlStart, LeavesTheProgramsAllocatorAsItIs) {
+  GALACTIC_SKIP_WITHOUT_GL();
+  if (mappedBlocks() == 0) GTEST_SKIP() << "the allocator is not glibc's";
+  const Result<BatchRenderer> renderer = BatchRenderer::create(RenderLibrary(), test::glOptions());
+  ASSERT_TRUE(renderer.has_value());
+  const std::size_t without = mallinfo2().hblks;
+  EXPECT_EQ(mappedBlocks(), without + 1);
+}
+#endif
 
 TEST(GlStart, FindsNoDeviceBeyondTheLast) {
   GALACTIC_SKIP_WITHOUT_GL();

@@ -1,23 +1,12 @@
 #include "render/gl/gl_engine.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <string>
 
 namespace galactic::render::gl {
 namespace {
-
-/// The software driver frees and takes its lists anew for every flush: with glibc's thresholds that
-/// costs a third of its time in page faults.
-void keepFreedMemory() {
-#ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);
-  mallopt(M_TRIM_THRESHOLD, 2'000'000'000);
-  mallopt(M_TOP_PAD, 64 << 20);
-#endif
-}
 
 Error lostContext(const CurrentContext& current) {
   return {ErrorCode::kUnsupported, "render device",
@@ -40,7 +29,6 @@ Result<std::unique_ptr<GlEngine>> GlEngine::make(const RenderLibrary& library,
   }
   Result<EglContext> context = openContext(*wish, options.backend == RenderBackend::kGl);
   if (!context) return tl::unexpected<Error>(context.error());
-  if (isSoftwareRenderer(context->facts().renderer)) keepFreedMemory();
   const CurrentContext current(*context);
   if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
   auto renderer = GlRenderer::make(library, options, tuning);
