@@ -5,27 +5,21 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "command_line/policy_command_line.h"
+#include "command_line/command_line_visitor.h"
 #include "command_line/render_command_line.h"
 #include "galactic/error.h"
-#include "run/policy.h"
 #include "run/tracked_run.h"
-#include "support/height_text.h"
 #include "support/help_lines.h"
 #include "support/nearest_name.h"
-#include "support/number_text.h"
 #include "support/option_table.h"
 #include "support/printable.h"
-#include "support/range_text.h"
 #include "support/standard_streams.h"
 
 namespace galactic {
@@ -49,22 +43,8 @@ constexpr const char* kNoPack =
 constexpr const char* kPackOption = "PACK,--pack";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
-constexpr const char* kPlainGroup = "Options";
-constexpr const char* kRunGroup = "Simulation";
 // As the table of options calls it.
 constexpr const char* kRewardGroup = "Reward";
-
-CLI::Validator knownPolicy() {
-  return CLI::Validator(
-      [](const std::string& text) {
-        if (isGeneratedPolicy(text) || text == kScriptedPolicy) return std::string();
-        const std::string_view prefix = kReplayPrefix;
-        if (text.starts_with(prefix) && text.size() > prefix.size()) return std::string();
-        if (text.ends_with(kPolicySuffix)) return std::string();
-        return unknownPolicy(text, "random, forward, zero, scripted, FILE.pack or replay:FILE");
-      },
-      "", "policy");
-}
 
 /// PACK and --pack are one option, which has two lines in --help: only the first of them says that
 /// it is needed.
@@ -81,162 +61,11 @@ class RunHelp : public HelpLines<CLI::Formatter, CLI::Option> {
   }
 };
 
-/// What --help shows for a number: the unit with which its explanation ends.
-std::string_view placeholderOf(std::string_view help) {
-  if (help.ends_with(", meters")) return "METERS";
-  if (help.ends_with(", degrees")) return "DEGREES";
-  if (help.ends_with(", radians")) return "RADIANS";
-  return "NUMBER";
-}
-
-/// Makes an option of the command line of each option of the table. They write to the fields only
-/// when they are typed.
-class CommandLineVisitor {
- public:
-  explicit CommandLineVisitor(CLI::App& app) : app_(app) {}
-
-  void group(std::string_view heading) { heading_ = heading; }
-  void whole(std::string_view name, std::uint32_t& field, Within<std::uint32_t> within,
-             std::string_view help) {
-    add(name, field, help)
-        ->check(wholeCheck(within.least, within.most))
-        ->option_text(fmt::format("N [{}]", field));
-  }
-  void seed(std::string_view name, std::uint64_t& field, std::string_view help) {
-    add(name, field, help)
-        ->check(wholeCheck(0, std::numeric_limits<std::uint64_t>::max()))
-        ->option_text(fmt::format("N [{}]", field))
-        ->group(kPlainGroup);
-  }
-  void real(std::string_view name, float& field, Within<float> within, std::string_view help) {
-    add(name, field, help)
-        ->check(numberCheck(static_cast<double>(within.least), static_cast<double>(within.most)))
-        ->option_text(fmt::format("{} [{}]", placeholderOf(help), field));
-  }
-  void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view help) {
-    parsed(
-        name, field, help, [within](const std::string& text) { return drawnFrom(text, within); },
-        wantedDrawn(within))
-        ->option_text(fmt::format("{}|LOW-HIGH [{}]", placeholderOf(help), drawnText(field)));
-  }
-  void heights(std::string_view name, std::vector<Span>& field, const Span& within,
-               std::string_view help) {
-    parsed(
-        name, field, help, [within](const std::string& text) { return heightsFrom(text, within); },
-        wantedHeights(within))
-        ->option_text(fmt::format("H,LOW-HIGH,... [{}]", heightText(field)));
-  }
-  void flag(std::string_view name, const Switch& value, std::string_view help) {
-    // --NAME=false, too: a world may have switched it on.
-    const auto set = [value](std::int64_t times) { value.field = (times > 0) == value.when_typed; };
-    app_.add_flag_function(dashed(name), set, std::string(help))
-        ->check(switchCheck())
-        ->group(heading_)
-        ->option_text(" ");
-  }
-  template <class T, std::size_t N>
-  void choice(std::string_view name, T& field, const std::array<Named<T>, N>& names,
-              std::string_view help) {
-    std::map<std::string, T> values;
-    std::string listed;
-    std::string now;
-    for (const Named<T>& one : names) {
-      values.emplace(one.name, one.value);
-      listed += (listed.empty() ? "" : "|") + std::string(one.name);
-      if (one.value == field) now = one.name;
-    }
-    const auto set = [&field, values](const std::string& text) { field = values.at(text); };
-    app_.add_option_function<std::string>(dashed(name), set, std::string(help))
-        ->check(CLI::IsMember(values))
-        ->group(heading_)
-        ->option_text(fmt::format("{} [{}]", listed, now));
-  }
-
-  /// Options are read in the order in which they are added, so that its parts refine it.
-  template <class T>
-  void preset(std::string_view name, T& field, const Preset<T>& preset, std::string_view help) {
-    std::map<std::string, T> values;
-    std::string listed;
-    for (const Named<T>& one : preset.names) {
-      values.emplace(one.name, one.value);
-      listed += (listed.empty() ? "" : "|") + std::string(one.name);
-    }
-    const auto set = [&field, values](const std::string& text) { field = values.at(text); };
-    app_.add_option_function<std::string>(dashed(name), set, std::string(help))
-        ->check(CLI::IsMember(values))
-        ->group(heading_)
-        ->option_text(fmt::format("{} [{}]", listed, preset.names.front().name));
-  }
-
- private:
-  static std::string dashed(std::string_view name) { return "--" + std::string(name); }
-
-  template <class T>
-  CLI::Option* add(std::string_view name, T& field, std::string_view help) {
-    return app_.add_option(dashed(name), field, std::string(help))->group(heading_);
-  }
-
-  /// What `parse` makes of a text; none of what is not `wanted`.
-  template <class T, class Parse>
-  CLI::Option* parsed(std::string_view name, T& field, std::string_view help, const Parse& parse,
-                      const std::string& wanted) {
-    const auto fault_of = [parse, wanted](const std::string& text) {
-      if (parse(text)) return std::string();
-      return fmt::format("found {}, expected {}", text.empty() ? "nothing" : text, wanted);
-    };
-    const auto set = [&field, parse](const std::string& text) { field = *parse(text); };
-    return app_.add_option_function<std::string>(dashed(name), set, std::string(help))
-        ->check(fault_of)
-        ->group(heading_);
-  }
-
-  CLI::App& app_;
-  std::string heading_;
-};
-
 void addPlainOptions(CLI::App& app, RunOptions& options) {
   app.set_version_flag("--version", "galactic-run " GALACTIC_VERSION);
   app.add_option(kPackOption, options.packs, "Packs to open: one world, or packs of any kind")
       ->required()
       ->type_name("FILE");
-  app.add_flag("--trusted", options.trusted,
-               "Skip the verification of packs that this machine has verified before")
-      ->check(switchCheck());
-  app.add_flag("--bench", options.bench, "Measure queries on all grids of all packs")
-      ->check(switchCheck());
-  app.add_flag("-q,--quiet", options.is_quiet, "Only errors")->check(switchCheck());
-}
-
-void addRunOptions(CLI::App& app, RunOptions& options) {
-  app.option_defaults()->group(kRunGroup);
-  app.add_option("--steps", options.steps, "Steps of the whole batch")
-      ->check(wholeCheck(1, std::uint64_t{1} << 40U))
-      ->option_text(fmt::format("N [{}]", options.steps));
-  app.add_option("--policy", options.policy, "Where the actions come from")
-      ->check(knownPolicy())
-      ->option_text(
-          fmt::format("random|forward|zero|scripted|FILE.pack|replay:FILE [{}]", options.policy));
-  addSampling(app, options.is_deterministic);
-  app.add_option("-j,--threads", options.simulation.threads,
-                 "Threads; the results do not depend on it; 0: one per processor")
-      ->check(wholeCheck(0, kMostThreads))
-      ->option_text(fmt::format("N [{}]", options.simulation.threads));
-  app.add_flag("--body-transforms", options.simulation.body_transforms,
-               "Keep the pose of every body of the robot; rendering implies it")
-      ->check(switchCheck());
-  app.add_option("--record", options.record, "Write actions and digests, for replay:FILE")
-      ->type_name("FILE");
-  app.add_option("--report", options.report, "Write the closing table as JSON")
-      ->type_name("FILE.json");
-  app.add_option("--view", options.view, "Write a page that plays the run in a browser")
-      ->type_name("FILE.html");
-  app.add_option("--view-envs", options.view_envs, "How many envs the page shows")
-      ->check(wholeCheck(1, 1024))
-      ->option_text(fmt::format("N [{}]", options.view_envs));
-  app.add_option("--animation", options.animation,
-                 "Write the first episode of the first env as an animated scene (glTF)")
-      ->type_name("FILE.glb");
-  app.option_defaults()->group(kPlainGroup);
 }
 
 /// What no single option can see to be wrong; empty when nothing is.
@@ -367,9 +196,8 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   app.formatter(std::make_shared<RunHelp>());
   app.get_formatter()->column_width(kHelpColumn);
   addPlainOptions(app, options);
-  addRunOptions(app, options);
-  addDrawingOptions(app, options.drawing);
   CommandLineVisitor visitor(app);
+  visitRunOptions(options, visitor);
   visitBatchOptions(options.simulation, visitor);
   visitWorldTask(options.simulation, visitor);
   try {

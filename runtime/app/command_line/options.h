@@ -7,8 +7,12 @@
 
 #include "command_line/render_options.h"
 #include "galactic/simulation_options.h"
+#include "support/option_table.h"
 
 namespace galactic {
+
+/// Heading of the options that start no simulation.
+inline constexpr const char* kPlainGroup = "Options";
 
 /// What the command line asks for.
 struct RunOptions {
@@ -46,6 +50,36 @@ struct RunOptions {
   /// The policy pack, where the policy is one; empty for the other policies.
   [[nodiscard]] std::string policyFile() const;
 };
+
+/// Names each option of a run that is none of the simulation's (visitOptions), once: for the
+/// command line and for reports. Calls those of the table of simulations on `v`, `whole` with 64
+/// bits, too, those of visitDrawingOptions, and
+///   policy(name, field, help), likeliest(name, field).
+template <class Visitor>
+void visitRunOptions(RunOptions& o, Visitor& v) {
+  constexpr Within<std::uint32_t> kShown{1, 1024};
+  v.group(kPlainGroup);
+  v.flag("trusted", Switch{o.trusted, true},
+         "Skip the verification of packs that this machine has verified before");
+  v.flag("bench", Switch{o.bench, true}, "Measure queries on all grids of all packs");
+  v.flag("quiet", Switch{o.is_quiet, true}, "Only errors");
+  v.group("Simulation");
+  v.whole("steps", o.steps, Within<std::uint64_t>{1, std::uint64_t{1} << 40U},
+          "Steps of the whole batch");
+  v.policy("policy", o.policy, "Where the actions come from");
+  v.likeliest("deterministic", o.is_deterministic);
+  v.whole("threads", o.simulation.threads, Within<std::uint32_t>{0, kMostThreads},
+          "Threads; the results do not depend on it; 0: one per processor");
+  v.flag("body-transforms", Switch{o.simulation.body_transforms, true},
+         "Keep the pose of every body of the robot; rendering implies it");
+  v.text("record", o.record, Shown{"FILE"}, "Write actions and digests, for replay:FILE");
+  v.text("report", o.report, Shown{"FILE.json"}, "Write the closing table as JSON");
+  v.text("view", o.view, Shown{"FILE.html"}, "Write a page that plays the run in a browser");
+  v.whole("view-envs", o.view_envs, kShown, "How many envs the page shows");
+  v.text("animation", o.animation, Shown{"FILE.glb"},
+         "Write the first episode of the first env as an animated scene (glTF)");
+  visitDrawingOptions(o.drawing, v);
+}
 
 /// Reads the command line into `options`; what is not typed keeps its value. Prints help, version
 /// and what is wrong. Returns an exit code when there is nothing more to do.

@@ -9,9 +9,6 @@ class App;
 
 namespace galactic {
 
-/// Adds the options of drawing to the command line.
-void addDrawingOptions(CLI::App& app, DrawingOptions& drawing);
-
 /// What no single option of drawing can see to be wrong; empty when nothing is. `app` has
 /// parsed them.
 [[nodiscard]] std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app);

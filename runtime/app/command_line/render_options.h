@@ -2,9 +2,12 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "galactic/batch_renderer.h"
 #include "galactic/sensor_noise.h"
+#include "galactic/world_views.h"
+#include "support/option_table.h"
 
 namespace galactic {
 
@@ -58,5 +61,62 @@ struct DrawingOptions {
     return !frames.empty() || !contact_sheet.empty() || !video.empty();
   }
 };
+
+/// What --help shows for the value of an option.
+struct Shown {
+  const char* value;
+};
+
+inline constexpr std::array<std::string_view, 4> kImageWords{"rgb", "depth", "rgbd", "rgbds"};
+inline constexpr std::array<Named<RenderBackend>, 4> kBackendNames{
+    {{"auto", RenderBackend::kAuto},
+     {"cuda", RenderBackend::kCuda},
+     {"gl", RenderBackend::kGl},
+     {"soft", RenderBackend::kSoft}}};
+/// Heading of the options of drawing.
+inline constexpr const char* kDrawingGroup = "Rendering";
+
+/// Names each option of drawing, once: for the command line and for reports. Calls on `v` those of
+/// the table of simulations (option_table.h), and
+///   word(name, field, words, help), size(name, drawing, help), text(name, field, Shown, help),
+///   wish(name, field, Within, Shown, help), of a number that is 0 where nobody wishes one,
+///   three(name, field, most, Shown, help), sensor(SensorOption, values).
+template <class Visitor>
+void visitDrawingOptions(DrawingOptions& d, Visitor& v) {
+  constexpr Shown kCameras{"head|follow|top|LINK"};
+  v.group(kDrawingGroup);
+  v.word("render", d.images, kImageWords,
+         "Draw each step: color, depth, both, or both and semantic ids");
+  v.size("size", d, "Pixels of an image");
+  v.choice("backend", d.backend, kBackendNames, "Renderer: CUDA, OpenGL, or the processor alone");
+  v.text("device", d.device, Shown{"TEXT"},
+         "For cuda and gl: an index, cuda:N, a UUID; for gl, software");
+  v.text("camera", d.camera, kCameras,
+         "The recipe's camera, one behind the robot, one above it, or a link");
+  v.wish("fov", d.fov_degrees, Within<float>{kLeastFovDegrees, kMostFovDegrees}, Shown{"DEGREES"},
+         "Vertical field of view, from the image's lower to its upper edge");
+  v.three("camera-position", d.camera_position, kFarthestCamera, Shown{"X,Y,Z"},
+          "The camera's place there: ahead, left, up, meters");
+  v.three("camera-rpy", d.camera_rpy_degrees, 360, Shown{"R,P,Y"},
+          "How it is turned there: roll, pitch, yaw, degrees");
+  v.wish("near", d.near, Within<float>{kLeastNear, kMostNear}, Shown{"METERS"},
+         "What is nearer than this is not drawn, meters");
+  for (const auto& option : kImageNoiseOptions) v.sensor(option, d.noise);
+  for (const auto& option : kCameraJitterOptions) v.sensor(option, d.jitter);
+  v.text("frames", d.frames, Shown{"FOLDER"}, "Write PNG files of the first envs");
+  v.text("contact-sheet", d.contact_sheet, Shown{"FILE.png"},
+         "Write a sheet of envs (columns) at several moments (rows)");
+  v.text("video", d.video, Shown{"FILE"}, "Write a video with ffmpeg");
+  v.whole("frame-every", d.frame_every, Within<std::uint32_t>{1, 1U << 30U},
+          "Steps from picture to picture");
+  v.whole("frame-envs", d.frame_envs, Within<std::uint32_t>{1, 1024},
+          "How many envs the pictures show");
+  v.flag("debug-view", Switch{d.debug_view, true},
+         "Show column grid, spheres and boxes beside the camera's image");
+  v.text("debug-camera", d.debug_camera, kCameras,
+         "Camera of the debug view, chosen as with --camera");
+  v.real("debug-radius", d.debug_radius, Within<float>{0, 10},
+         "Radius whose column grid is shown, meters; 0: the smallest");
+}
 
 }  // namespace galactic

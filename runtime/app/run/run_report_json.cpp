@@ -1,38 +1,92 @@
 #include <fmt/format.h>
 
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <span>
+#include <string>
 #include <string_view>
 
+#include "command_line/options.h"
+#include "command_line/render_options.h"
 #include "drawing/frame_images.h"
 #include "galactic/option_text.h"
+#include "galactic/sensor_noise.h"
 #include "run/run_report.h"
+#include "support/option_table.h"
 #include "view/json_writer.h"
 
 namespace galactic {
 namespace {
 
+/// Writes the options of a run as one types them: null where nothing is typed by default.
+class OptionWriter {
+ public:
+  explicit OptionWriter(JsonWriter& json) : json_(json) {}
+
+  void group(std::string_view) {}
+  void whole(std::string_view name, std::integral auto value, const auto&, std::string_view) {
+    json_.number(name, value);
+  }
+  void real(std::string_view name, float value, Within<float>, std::string_view) {
+    json_.number(name, value);
+  }
+  void wish(std::string_view name, float value, Within<float>, Shown, std::string_view) {
+    value == 0 ? json_.raw(name, kNone) : json_.number(name, value);
+  }
+  void three(std::string_view name, const std::array<float, 3>& value, float, Shown,
+             std::string_view) {
+    json_.text(name, fmt::format("{}", fmt::join(value, ",")));
+  }
+  void flag(std::string_view name, const Switch& value, std::string_view) {
+    json_.truth(name, value.field == value.when_typed);
+  }
+  void text(std::string_view name, std::string_view value, Shown, std::string_view) {
+    value.empty() ? json_.raw(name, kNone) : json_.text(name, value);
+  }
+  void word(std::string_view name, std::string_view value, std::span<const std::string_view>,
+            std::string_view help) {
+    text(name, value, {}, help);
+  }
+  template <class T, std::size_t N>
+  void choice(std::string_view name, T value, const std::array<Named<T>, N>& names,
+              std::string_view) {
+    for (const Named<T>& one : names) {
+      if (one.value == value) json_.text(name, one.name);
+    }
+  }
+  void size(std::string_view name, const DrawingOptions& drawing, std::string_view) {
+    json_.text(name, fmt::format("{}x{}", drawing.width, drawing.height));
+  }
+  void policy(std::string_view name, std::string_view value, std::string_view) {
+    json_.text(name, value);
+  }
+  void likeliest(std::string_view name, bool value) { json_.truth(name, value); }
+  template <class Options>
+  void sensor(const SensorOption<Options>& option, const Options& options) {
+    json_.number(option.name, options.*option.value);
+  }
+
+ private:
+  static constexpr const char* kNone = "null";
+
+  JsonWriter& json_;
+};
+
 void writeOptions(JsonWriter& json, const RunReport& report) {
-  const RunOptions& options = report.options;
+  RunOptions options = report.options;
   json.begin("packs", '[');
   for (const std::string& pack : options.packs) json.text("", pack);
   json.end(']');
   json.text("policy", options.policy);
   json.number("threads", report.threads);
   json.begin("options", '{');
+  OptionWriter writer(json);
+  visitRunOptions(options, writer);
   for (const OptionText& option : listOptions(options.simulation)) {
     json.raw(option.name, option.is_word ? jsonString(option.value) : option.value);
   }
   json.end('}');
-  if (options.drawing.isNoisy()) {
-    json.begin("sensor_noise", '{');
-    const auto write = [&json](const auto& all, const auto& values) {
-      for (const auto& option : all) {
-        if (values.*option.value > 0) json.number(option.name, values.*option.value);
-      }
-    };
-    write(kImageNoiseOptions, options.drawing.noise);
-    write(kCameraJitterOptions, options.drawing.jitter);
-    json.end('}');
-  }
   json.begin("from_world", '[');
   for (const OptionText& option : report.world_task) {
     if (isInForce(option, options)) json.text("", option.name);
@@ -73,13 +127,8 @@ void writeTimes(JsonWriter& json, const RunReport& report) {
 
 void writeRendering(JsonWriter& json, const RunReport& report) {
   if (!report.rendering) return;
-  const DrawingOptions& drawing = report.options.drawing;
   const RenderReport& drawn = *report.rendering;
   json.begin("rendering", '{');
-  json.text("images", drawing.images);
-  json.number("width", drawing.width);
-  json.number("height", drawing.height);
-  json.text("camera", drawing.camera);
   json.text("backend", drawn.backend);
   json.text("description", drawn.description);
   json.number("image_count", drawn.images);
