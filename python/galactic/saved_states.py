@@ -148,12 +148,20 @@ def _pieces_of(found: Mapping[str, Array]) -> tuple[list[Piece], dict[str, Array
     ]
     of_pieces = ("envs", "simulator_", "places_")
     own = {name: array for name, array in found.items() if not name.startswith(of_pieces)}
-    count = int(found["envs"]) if found["envs"].ndim == 0 else -1
     places = [place for piece in pieces for place in piece.places]
-    is_whole = sorted(map(str, places)) == sorted(map(str, range(count)))
-    if count < 0 or not is_whole or any(array.shape[:1] != (count,) for array in own.values()):
+    count = len(places)
+    if (
+        not _is_number(found["envs"], count)
+        # Of as many, so that what a state says takes no more than what it holds.
+        or set(map(str, places)) != set(map(str, range(count)))
+        or any(array.shape[:1] != (count,) for array in own.values())
+    ):
         raise _refused("does not have as many envs as it says; give what save_state() returned")
     return pieces, own
+
+
+def _is_number(array: Array, number: int) -> bool:
+    return array.ndim == 0 and array.dtype.kind in "iu" and int(array) == number
 
 
 def _put_back(halves: Sequence[HalfBatch], before: Sequence[dict[str, Array] | None]) -> None:

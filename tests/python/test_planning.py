@@ -112,6 +112,12 @@ def test_states_that_do_not_fit_are_refused_and_change_nothing(world):
         (changed(some, returns=np.zeros(2)), [0, 1, 2], "does not have as many envs as it says"),
         (changed(some, envs=np.array(4)), [0, 1, 2], "does not have as many envs as it says"),
         (changed(some, envs=np.zeros(3)), [0, 1, 2], "does not have as many envs as it says"),
+        (
+            changed(some, envs=np.array(10**12)),
+            [0, 1, 2],
+            "does not have as many envs as it says",
+        ),
+        (changed(some, envs=np.array("three")), [0, 1, 2], "does not have as many envs as it says"),
         (changed(some, places_1=np.zeros(1)), [0, 1, 2], "does not have as many envs as it says"),
         (changed(some, simulator_0=None), [0, 1, 2], "does not have as many envs as it says"),
         (changed(some, lengths=np.zeros(3)), [0, 1, 2], r"lengths: found float64 \(3,\), expected"),
