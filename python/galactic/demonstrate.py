@@ -46,8 +46,8 @@ from galactic.learning.settings import (
     option_name,
     typed,
 )
-from galactic.learning.streams import put
 from galactic.learning.trainer import threads_of
+from galactic.streams import put
 
 SCRIPTED = "scripted"
 

@@ -20,8 +20,8 @@ from galactic.learning.homes import Homes, sizes_of
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
 from galactic.learning.settings import Settings, SettingsError
-from galactic.learning.streams import put
 from galactic.learning.trainer import threads_of
+from galactic.streams import put
 
 
 def make_parser() -> argparse.ArgumentParser:

@@ -10,7 +10,7 @@ import re
 import sys
 from typing import Optional
 
-from galactic.learning.streams import put
+from galactic.streams import put
 
 UNSUPPORTED = 5
 """The exit code where something is not there that a program needs."""

@@ -57,8 +57,8 @@ from galactic.learning.settings import (
     option_name,
     resumed,
 )
-from galactic.learning.streams import put
 from galactic.learning.trainer import Trainer, Validation, threads_of
+from galactic.streams import put
 
 
 def make_parser() -> argparse.ArgumentParser:

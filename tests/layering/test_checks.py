@@ -8,6 +8,7 @@ import sys
 import tempfile
 import unittest
 
+import check_imports
 import check_includes
 import check_needed
 import check_schema
@@ -152,6 +153,28 @@ class IncludesTest(PlantedTree):
         offences = self.offences("schema/helper.h", "// fine\n")
         self.assertEqual([offence for offence in offences if "only .fbs" in offence], offences)
         self.assertEqual(len(offences), 1)
+
+
+class ImportsTest(PlantedTree):
+    def offences(self, path: str, text: str) -> list[str]:
+        self.plant(path, text)
+        return check_imports.check_tree(self.root)[0]
+
+    def test_accepts_torch_in_the_trainer_and_its_programs(self):
+        self.assertEqual(self.offences("python/galactic/learning/a.py", "import torch\n"), [])
+        self.assertEqual(self.offences("python/galactic/train.py", "from galactic.learning import a\n"), [])
+        self.assertEqual(self.offences("python/galactic/a.py", "import numpy\nfrom galactic import files\n"), [])
+        self.assertEqual(self.offences("tests/python/a.py", "import torch\n"), [])
+
+    def test_refuses_torch_and_the_trainer_elsewhere(self):
+        for text in ("import torch\n", "from torch import nn\n", "import torch.nn as nn\n",
+                     "def late():\n    import torch\n"):
+            self.assertEqual(self.offences("python/galactic/a.py", text),
+                             ["python/galactic/a.py: imports torch: only galactic.learning and the programs may"])
+        for text in ("import galactic.learning\n", "from galactic import learning\n",
+                     "from galactic.learning.settings import Settings\n", "from . import learning\n",
+                     "from .learning import settings\n"):
+            self.assertEqual(len(self.offences("python/galactic/a.py", text)), 1, text)
 
 
 class NeededTest(unittest.TestCase):

@@ -14,8 +14,8 @@ from galactic.interrupts import INTERRUPTED
 from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.distributed import RankLost
 from galactic.learning.settings import SettingsError, did_you_mean
-from galactic.learning.streams import put
 from galactic.programs import UNSUPPORTED
+from galactic.streams import put
 
 # Those of all tools of the project.
 OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL = 0, 1, 2, 3, 4

@@ -7,7 +7,7 @@ import sys
 import time
 from typing import Optional, TextIO
 
-from galactic.learning.streams import put
+from galactic.streams import put
 
 
 def duration(seconds: float) -> str:
