@@ -387,19 +387,20 @@ class CheckpointFolder:
 
     def begin(self, steps: int) -> pathlib.Path:
         """The folder to write into, for all ranks; the first one calls this before the others write."""
-        unfinished = self._unfinished(steps)
+        unfinished = self.unfinished(steps)
         shutil.rmtree(unfinished, ignore_errors=True)
         unfinished.mkdir(parents=True)
         return unfinished
 
     def unfinished(self, steps: int) -> pathlib.Path:
-        return self._unfinished(steps)
+        """Where ranks write until all are done."""
+        return self.folder / f".{steps:012d}.unfinished"
 
     def finish(self, steps: int) -> pathlib.Path:
         """Gives it its name and deletes the oldest; the first rank calls this when all have written."""
         final = self.folder / f"{steps:012d}"
         shutil.rmtree(final, ignore_errors=True)
-        os.replace(self._unfinished(steps), final)
+        os.replace(self.unfinished(steps), final)
         files.sync(self.folder)
         for old in self.complete()[: -self._keep]:
             shutil.rmtree(old, ignore_errors=True)
@@ -435,6 +436,3 @@ class CheckpointFolder:
             "no checkpoint is before it: begin another run, which can have the weights of best.pt "
             "(--start-from)"
         )
-
-    def _unfinished(self, steps: int) -> pathlib.Path:
-        return self.folder / f".{steps:012d}.unfinished"
