@@ -184,6 +184,10 @@ class Demonstrations(Sequence[Demonstration]):
         `steps` - 1 (first_rows): shape [*rows.shape, ...]. A copy. `after`: what was observed after them, which
         is of the same episode."""
         wanted = np.asarray(rows)
+        if wanted.size and wanted.dtype.kind not in "iu":
+            raise TypeError(
+                f"rows are {wanted.dtype}, expected whole numbers from 0 to {self.steps - 1}"
+            )
         flat = wanted.ravel().astype(np.int64)
         if flat.size and not 0 <= flat.min() <= flat.max() < self.steps:
             raise IndexError(f"rows are from {flat.min()} to {flat.max()}, of {self.steps} steps")

@@ -140,6 +140,9 @@ def test_rows_that_are_not_there_are_refused(folder: pathlib.Path) -> None:
     for rows in ([-1], [0, found.steps], np.array([[found.steps]])):
         with pytest.raises(IndexError, match="of 36 steps"):
             found.take("state", rows)
+    for rows in ([0.5], np.array([1.0]), [True], np.array(["1"])):
+        with pytest.raises(TypeError, match="rows are .*, expected whole numbers from 0 to 35"):
+            found.take("state", rows)
     assert found.take("depth", []).shape == (0, 4, 5)
     with pytest.raises(KeyError, match="expected one of state"):
         found.take("rgb", [0])
