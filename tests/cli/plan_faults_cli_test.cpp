@@ -321,6 +321,15 @@ TEST_F(PlanFaults, ExplainsThatItCannotMakeItsFolder) {
   EXPECT_THAT(nowhere.err, HasSubstr("/proc/none/home: cannot be made a folder"));
 }
 
+TEST_F(PlanFaults, NamesTheTemplateThatHasNoMesh) {
+  write("data/objects/crate.object_config.json", "{}");
+  addScene("f", "flat", thing("crate", 1));
+  const ProgramRun refused = bake("out", {"--scenes", "f"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("objects/crate.object_config.json: render_asset: it is "
+                                     "missing; name the mesh to place\n"));
+}
+
 TEST_F(PlanFaults, RefusesOutputsThatAreInputsOrNoPack) {
   const std::string config = content("data/home.scene_dataset_config.json");
   const std::string mesh = content("data/meshes/apartment.glb");

@@ -108,15 +108,7 @@ Result<SceneComposer::Attributes> SceneComposer::attributesOf(const DatasetTempl
 
 Result<fs::path> SceneComposer::meshOf(const DatasetTemplate& entry,
                                        const TemplateAttributes& attributes, TemplateKind kind) {
-  const std::string& stated =
-      attributes.render_asset.empty() ? attributes.collision_asset : attributes.render_asset;
-  if (stated.empty() && entry.asset.empty()) {
-    return fail(ErrorCode::kInvalidInput,
-                fmt::format("{}: render_asset",
-                            entry.config.empty() ? entry.handle : entry.config.string()),
-                "it is missing; name the mesh to place");
-  }
-  fs::path mesh = stated.empty() ? entry.asset : fileOf(entry, stated);
+  ASSIGN_OR_RETURN(auto mesh, meshFileOf(entry, attributes));
   RETURN_IF_ERROR(index_.checkReach(mesh, placeOf(entry)));
   if (isFile(mesh)) return mesh;
   noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun, entry.name,

@@ -47,9 +47,7 @@ Result<bool> SceneSurveyor::surveyMesh(TemplateKind kind, const SceneItem& item)
   ASSIGN_OR_RETURN(const auto known, lookUp(kind, item));
   if (known.entry == nullptr) return false;
   const TemplateAttributes& attributes = known.attributes;
-  const std::string& stated =
-      attributes.render_asset.empty() ? attributes.collision_asset : attributes.render_asset;
-  const fs::path mesh = stated.empty() ? known.entry->asset : fileOf(*known.entry, stated);
+  ASSIGN_OR_RETURN(const auto mesh, meshFileOf(*known.entry, attributes));
   RETURN_IF_ERROR(index_.checkReach(mesh, placeOf(*known.entry)));
   if (!hasFile(mesh)) {
     noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun,

@@ -180,6 +180,10 @@ TEST_P(SceneFaults, AreNamedWithFileAndField) {
   breakIt();
   const auto dataset = bake::SceneDataset::read(small_.config());
   ASSERT_TRUE(dataset) << dataset.error().message;
+  // What a list of jobs is made from finds them before a bake does.
+  const auto survey = dataset->survey("a_home");
+  ASSERT_FALSE(survey);
+  expectError(survey.error());
   bake::MeshLibrary meshes(bake::datasetMeshOptions());
   const auto scene = dataset->compose("a_home", meshes);
   ASSERT_FALSE(scene);

@@ -162,6 +162,15 @@ fs::path fileOf(const DatasetTemplate& entry, const std::string& stated) {
   return (entry.folder / stated).lexically_normal();
 }
 
+Result<fs::path> meshFileOf(const DatasetTemplate& entry, const TemplateAttributes& attributes) {
+  const std::string& stated =
+      attributes.render_asset.empty() ? attributes.collision_asset : attributes.render_asset;
+  if (!stated.empty()) return fileOf(entry, stated);
+  if (!entry.asset.empty()) return entry.asset;
+  return fail(ErrorCode::kInvalidInput, placeOf(entry) + ": render_asset",
+              "it is missing; name the mesh to place");
+}
+
 fs::path urdfOf(const DatasetTemplate& entry, const TemplateAttributes& attributes) {
   if (!attributes.urdf.empty()) return fileOf(entry, attributes.urdf);
   return entry.asset.empty() ? entry.folder / (entry.name + ".urdf") : entry.asset;

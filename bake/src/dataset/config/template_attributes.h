@@ -49,6 +49,11 @@ struct TemplateAttributes {
 /// The file that `stated` means, absolute.
 [[nodiscard]] std::filesystem::path fileOf(const DatasetTemplate& entry, const std::string& stated);
 
+/// The mesh of a stage or object, absolute: that which is drawn, else that which collides, else the
+/// file that the template itself is. Fails with kInvalidInput where there is none of them.
+[[nodiscard]] Result<std::filesystem::path> meshFileOf(const DatasetTemplate& entry,
+                                                       const TemplateAttributes& attributes);
+
 /// The URDF of an articulated object, absolute: as stated, as found, else beside its attributes.
 [[nodiscard]] std::filesystem::path urdfOf(const DatasetTemplate& entry,
                                            const TemplateAttributes& attributes);
