@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -105,7 +107,7 @@ std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, const Ob
   std::mutex progress;
   std::size_t done = 0;
   parallelFor(alone ? 1 : jobs, inputs.size(), [&](std::size_t n) {
-    if (stop) return;
+    if (stop || context.stops()) return;
     work[n].done = finishOne(inputs[n], task, work[n].finished);
     if (!*work[n].done && !context.keep_going) stop = true;
     const std::lock_guard lock(progress);
@@ -114,6 +116,12 @@ std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, const Ob
                  static_cast<double>(done) / static_cast<double>(inputs.size()));
   });
   return work;
+}
+
+/// Of a set that was told to stop: what is done stays in its journal.
+Error interrupted(std::size_t done, std::size_t all) {
+  return {ErrorCode::kInterrupted, "objects",
+          fmt::format("interrupted after {} of {} objects", done, all)};
 }
 
 /// The collection of the job, if there is one; it joins the sources.
@@ -188,6 +196,10 @@ Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
   collect(inputs, bakeAll(inputs, {job, collection, journal}, context), context.log, outcome,
           sources);
   const bool goes_on = outcome.failures.empty() || context.keep_going;
+  const std::size_t ended = outcome.objects.size() + outcome.failures.size();
+  if (goes_on && ended < inputs.size()) {
+    return tl::unexpected(interrupted(ended, inputs.size()));
+  }
   Made made{.outcome = {}, .output = context.output};
   if (goes_on && !outcome.objects.empty()) {
     ASSIGN_OR_RETURN(const auto bytes, writePack(outcome, std::move(sources), job, context));

@@ -99,6 +99,28 @@ TEST_F(AnObjectJournal, LetsASetGoOnWhereItEnded) {
   EXPECT_TRUE(content("out.pack") == content("whole.pack"));
 }
 
+TEST_F(AnObjectJournal, KeepsWhatIsDoneWhenASetIsToldToStop) {
+  mend();
+  // Asked before each object: the first is baked, the second is not begun.
+  int questions = 0;
+  bake::ReadLog log;
+  bake::BakeContext context{
+      .output = file("out.pack"), .log = log, .stops = [&] { return questions++ > 0; }};
+  const auto stopped = bakeObjectFiles(job_, context);
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().code, ErrorCode::kInterrupted);
+  EXPECT_EQ(stopped.error().message, "interrupted after 1 of 3 objects");
+  EXPECT_FALSE(fs::exists(file("out.pack")));
+  EXPECT_THAT(content("out.pack.partial"), testing::HasSubstr("cereal_box"));
+  (void)baked("out.pack");
+  EXPECT_FALSE(fs::exists(file("out.pack.partial")));
+  (void)baked("whole.pack");
+  EXPECT_TRUE(content("out.pack") == content("whole.pack"));
+  // What was asked after the last object has nothing to stop.
+  questions = -3;
+  EXPECT_TRUE(bakeObjectFiles(job_, context).has_value());
+}
+
 TEST_F(AnObjectJournal, ForgetsWhatIsOfOtherFilesOrOptions) {
   const std::vector<double> before = timesOf(baked("out.pack"));
   mend();
