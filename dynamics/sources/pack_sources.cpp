@@ -8,6 +8,7 @@
 
 #include "galactic/object_set.h"
 #include "galactic/schema/pack_generated.h"
+#include "support/content_hash.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
@@ -40,9 +41,7 @@ std::string_view nounOf(PackKind kind) {
   return kind == PackKind::kRobot ? "robot" : "scene";
 }
 
-std::string hexOf(const SourceFile& file) {
-  return fmt::format("{:016x}{:016x}", file.hash_high, file.hash_low);
-}
+std::string hexOf(const SourceFile& file) { return detail::hexOf({file.hash_low, file.hash_high}); }
 
 }  // namespace
 

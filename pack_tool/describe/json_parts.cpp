@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "support/content_hash.h"
+
 namespace galactic::pack_tool {
 
 namespace {
@@ -107,7 +109,7 @@ std::string contentHash(std::span<const std::byte> bytes) {
 
 Json describeHash(const schema::Hash128* hash) {
   if (hash == nullptr) return nullptr;
-  return fmt::format("{:016x}{:016x}", hash->high(), hash->low());
+  return detail::hexOf({hash->low(), hash->high()});
 }
 
 Json describeTexts(const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>& texts) {

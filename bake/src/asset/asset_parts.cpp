@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <climits>
-#include <system_error>
 #include <utility>
 
 #include "galactic/bake/packs.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/pack.h"
+#include "support/content_hash.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -37,7 +38,7 @@ bool isThere(const fs::path& pack) {
 }
 
 std::string hashText(const SourceFile& file) {
-  return fmt::format("{:016x}{:016x}", file.hash_high, file.hash_low);
+  return detail::hexOf({file.hash_low, file.hash_high});
 }
 
 }  // namespace
@@ -98,11 +99,7 @@ Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options
   if (folder.empty()) return {};
   materials.shared = true;
   if (dry_run) return {};
-  std::error_code problem;
-  fs::create_directories(folder, problem);
-  if (problem) {
-    return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
-  }
+  RETURN_IF_ERROR(makeFolders(folder));
   // What a texture looks like says nothing of the asset that it was met in.
   Provenance provenance = provenanceOf(SceneJob{}, {}, {});
   provenance.options.clear();

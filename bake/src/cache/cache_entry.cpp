@@ -1,13 +1,12 @@
 #include "cache/cache_entry.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
 #include "json/figure_json.h"
+#include "support/content_hash.h"
 #include "support/mapped_file.h"
 
 namespace galactic::bake {
@@ -55,9 +54,7 @@ std::optional<CacheEntry> decode(const Json& json) {
 
 }  // namespace
 
-std::string hexOf(const SourceFile& file) {
-  return fmt::format("{:016x}{:016x}", file.hash_high, file.hash_low);
-}
+std::string hexOf(const SourceFile& file) { return detail::hexOf({file.hash_low, file.hash_high}); }
 
 std::string encodeCacheEntry(const CacheEntry& entry) {
   Json files = Json::array();

@@ -1,11 +1,10 @@
 #include "json/figure_json.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "json/figure_fields.h"
+#include "support/content_hash.h"
 
 namespace galactic::bake {
 namespace {
@@ -217,7 +216,7 @@ OrderedJson jsonOf(const LinkedPack& pack) {
   return {{"path", pack.path},
           {"kind", packKindName(pack.kind)},
           {"bytes", pack.bytes},
-          {"xxh3_128", fmt::format("{:016x}{:016x}", pack.hash_high, pack.hash_low)}};
+          {"xxh3_128", detail::hexOf({pack.hash_low, pack.hash_high})}};
 }
 
 OrderedJson jsonOf(const PackFigures& figures) {

@@ -1,14 +1,13 @@
-#include <fmt/format.h>
-
 #include <span>
 
 #include "galactic/bake/packs.h"
+#include "support/content_hash.h"
 #include "write/pack_payload.h"
 
 namespace galactic::bake {
 
 std::string textureHash(const BakedTexture& texture) {
-  return fmt::format("{:016x}{:016x}", texture.hash_high, texture.hash_low);
+  return detail::hexOf({texture.hash_low, texture.hash_high});
 }
 
 std::vector<std::byte> encodeTexturePack(const BakedMaterials& materials,

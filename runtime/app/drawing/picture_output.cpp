@@ -11,7 +11,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "drawing/contact_sheet.h"
@@ -130,11 +129,7 @@ bool isFrameName(std::string_view name) {
 
 Result<void> makeFrameFolder(const std::filesystem::path& folder) {
   RETURN_IF_ERROR(checkNotDash(folder));
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + error.message());
-  }
+  RETURN_IF_ERROR(makeFolders(folder));
   return tryFile(folder / frameName(0, 0, "rgb.png"));
 }
 

@@ -1,7 +1,6 @@
-#include <fmt/format.h>
-
 #include "galactic/render_library.h"
 #include "pack/schema_values.h"
+#include "support/content_hash.h"
 
 namespace galactic {
 
@@ -28,7 +27,7 @@ const RenderTexture* SharedTextures::find(std::uint64_t hash_low, std::uint64_t 
 std::filesystem::path texturePackBeside(const PackFile& pack, const MissingTexture& texture) {
   const std::filesystem::path folder = std::filesystem::path(pack.where()).parent_path();
   return folder / ".." / "textures" /
-         fmt::format("{:016x}{:016x}.pack", texture.hash_high, texture.hash_low);
+         (detail::hexOf({texture.hash_low, texture.hash_high}) + ".pack");
 }
 
 }  // namespace galactic

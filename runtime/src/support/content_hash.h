@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace galactic::detail {
 
@@ -12,6 +13,9 @@ struct ContentHash {
 
   friend bool operator==(const ContentHash&, const ContentHash&) = default;
 };
+
+/// 32 hexadecimal digits, the high half first.
+[[nodiscard]] std::string hexOf(const ContentHash& hash);
 
 [[nodiscard]] ContentHash contentHash(std::span<const std::byte> bytes);
 

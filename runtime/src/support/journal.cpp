@@ -23,7 +23,7 @@ constexpr std::string_view kMagic = "galactic journal\n";
 /// Before each record: its size in decimal and its hash.
 std::string headOf(std::string_view record) {
   const detail::ContentHash hash = detail::contentHash(std::as_bytes(std::span(record)));
-  return fmt::format("{} {:016x}{:016x}\n", record.size(), hash.high, hash.low);
+  return fmt::format("{} {}\n", record.size(), detail::hexOf(hash));
 }
 
 /// The record with which `text` begins, behind its head and before the line break that ends it;

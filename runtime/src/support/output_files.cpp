@@ -66,6 +66,13 @@ Result<void> checkExtension(const fs::path& output, const FileKind& kind) {
               fmt::format("{}; end the name with {}", kind.sentence, kind.extension));
 }
 
+Result<void> makeFolders(const fs::path& folder) {
+  std::error_code problem;
+  if (!folder.empty()) fs::create_directories(folder, problem);
+  if (!problem) return {};
+  return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
+}
+
 Result<void> tryFile(const fs::path& path) {
   RETURN_IF_ERROR(checkNotDash(path));
   RETURN_IF_ERROR(AtomicFile::create(path));

@@ -49,6 +49,10 @@ inline constexpr FileKind kPictureFile{".png", "pictures are PNG files"};
 /// that name would surprise.
 [[nodiscard]] Result<void> checkNotDash(const std::filesystem::path& output);
 
+/// Makes the folder and those above it that are not there; nothing where it is empty. Fails with
+/// kIo.
+[[nodiscard]] Result<void> makeFolders(const std::filesystem::path& folder);
+
 /// Fails with kIo when no file can be written under this name, and for "-"; leaves nothing behind
 /// and a file of the name as it is. Long work that ends with a file begins with this.
 [[nodiscard]] Result<void> tryFile(const std::filesystem::path& path);
