@@ -5,8 +5,8 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
-#include <system_error>
 
 #include "command.h"
 #include "followers.h"
@@ -77,21 +77,28 @@ Result<void> checkOutputs(const BakeCommand& command, const JobList& list) {
   return {};
 }
 
-Result<void> makeFolder(const fs::path& folder) {
-  std::error_code problem;
-  if (!folder.empty()) fs::create_directories(folder, problem);
-  if (!problem) return {};
-  return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
+/// Where bakes that were done before are; none where nothing is remembered.
+std::optional<fs::path> cacheOf(const BakeCommand& command, const JobList& list) {
+  if (!list.world || command.many.no_cache) return std::nullopt;
+  return command.many.cache.empty() ? list.folder / ".cache" : command.many.cache;
+}
+
+Result<void> tryCache(const fs::path& folder) {
+  auto tried = makeFolders(folder);
+  if (tried) tried = tryFile(folder / "entry");
+  if (!tried) tried.error().message += "; give another `cache`";
+  return tried;
 }
 
 /// A bake may take hours: files that cannot be written are found out before it. Makes the folders
-/// of the packs.
+/// of the packs and of the cache.
 Result<void> tryOutputs(const BakeCommand& command, const JobList& list) {
   if (!command.run.dry_run) {
     for (const fs::path& pack : packsOfOut(list)) {
-      RETURN_IF_ERROR(makeFolder(list.world ? list.folder : pack.parent_path()));
+      RETURN_IF_ERROR(makeFolders(list.world ? list.folder : pack.parent_path()));
       RETURN_IF_ERROR(tryFile(pack));
     }
+    if (const auto cache = cacheOf(command, list)) RETURN_IF_ERROR(tryCache(*cache));
   }
   return command.run.report.empty() ? Result<void>() : tryFile(command.run.report);
 }
@@ -115,7 +122,7 @@ BuildOptions buildOptions(const BakeCommand& command, const JobList& list) {
   options.mode = command.run.dry_run ? BuildMode::kList : BuildMode::kBake;
   options.shard = many.shard;
   options.memory = many.memory > 0 ? many.memory : mostOfMemory();
-  if (!many.no_cache) options.cache = many.cache.empty() ? list.folder / ".cache" : many.cache;
+  options.cache = cacheOf(command, list);
   return options;
 }
 

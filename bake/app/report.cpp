@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <span>
 #include <string>
@@ -97,7 +99,9 @@ Json jobsOf(const JobList& list) {
 
 /// How this run came to it.
 Json progressOf(const PackOutcome& pack) {
-  return {{"pack", pack.name}, {"state", nameOf(pack.state)}, {"seconds", pack.seconds}};
+  Json json{{"pack", pack.name}, {"state", nameOf(pack.state)}, {"seconds", pack.seconds}};
+  if (!pack.warnings.empty()) json["warnings"] = withFlags(pack.warnings);
+  return json;
 }
 
 Json scenesOf(const std::vector<LeftOut>& scenes) {
@@ -129,10 +133,9 @@ using Sentences = std::map<std::string, std::vector<std::string>>;
 Sentences warningsOf(const BuildOutcome& outcome) {
   Sentences warnings;
   for (const PackOutcome& pack : outcome.packs) {
-    if (!pack.figures) continue;
-    for (const std::string& warning : warningsOf(*pack.figures)) {
-      warnings[warning].push_back(pack.name);
-    }
+    std::vector<std::string> all = pack.warnings;
+    if (pack.figures) std::ranges::copy(warningsOf(*pack.figures), std::back_inserter(all));
+    for (const std::string& warning : all) warnings[warning].push_back(pack.name);
   }
   return warnings;
 }

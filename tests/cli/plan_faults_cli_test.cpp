@@ -321,6 +321,35 @@ TEST_F(PlanFaults, ExplainsThatItCannotMakeItsFolder) {
   EXPECT_THAT(nowhere.err, HasSubstr("/proc/none/home: cannot be made a folder"));
 }
 
+TEST_F(PlanFaults, TriesItsCacheBeforeItBakes) {
+  write("out/home/.cache", "no folder");
+  const ProgramRun beside = bake("out", {"--scenes", "c"});
+  EXPECT_EQ(beside.exit_code, 2);
+  EXPECT_THAT(beside.err, HasSubstr("out/home/.cache: cannot be made a folder"));
+  EXPECT_THAT(beside.err, HasSubstr("; give another --cache\n"));
+  const ProgramRun elsewhere = bake("out", {"--scenes", "c", "--cache", "/proc/none"});
+  EXPECT_EQ(elsewhere.exit_code, 2);
+  EXPECT_THAT(elsewhere.err, HasSubstr("/proc/none: cannot be made a folder"));
+  EXPECT_FALSE(has("out/home/scenes"));
+  EXPECT_EQ(bake("out", {"--scenes", "c", "--dry-run"}).exit_code, 0) << "it writes nothing";
+}
+
+TEST_F(PlanFaults, MakesItsWorldWhereTheCacheCannotKeepIt) {
+  ASSERT_EQ(bake("whole", {"--scenes", "c", "--no-cache"}).exit_code, 0);
+  // What scenes share is kept there.
+  write("cache/textures", "no folder");
+  const ProgramRun baked = bake("out", {"--scenes", "c", "--cache", "cache"});
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  const std::string warning =
+      "is not in the cache and will be baked again: cache/textures: cannot be made a folder: ";
+  EXPECT_THAT(baked.out, HasSubstr("scenes/c.pack: " + warning));
+  EXPECT_THAT(content("report.json"), HasSubstr(warning));
+  EXPECT_THAT(packsThatAre("baked"), Contains("scenes/c.pack"));
+  expectSamePacks(packsIn("out"), packsIn("whole"));
+  ASSERT_EQ(bake("out", {"--scenes", "c", "--cache", "cache"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), Contains("scenes/c.pack"));
+}
+
 TEST_F(PlanFaults, NamesTheTemplateThatHasNoMesh) {
   write("data/objects/crate.object_config.json", "{}");
   addScene("f", "flat", thing("crate", 1));

@@ -7,7 +7,9 @@
 #include <system_error>
 #include <utility>
 
+#include "cache/cache_entry.h"
 #include "galactic/bake/source_asset.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -18,7 +20,7 @@ namespace fs = std::filesystem;
 /// This program's own content: another build may bake other bytes.
 Result<std::string> programDigest(FileDigests& digests) {
   ASSIGN_OR_RETURN(const auto program, digests.of("/proc/self/exe"));
-  return fmt::format("{:016x}{:016x}", program.hash_high, program.hash_low);
+  return hexOf(program);
 }
 
 std::string relativeName(const fs::path& file, const fs::path& folder) {
@@ -48,13 +50,6 @@ Result<BakeInputs> inputsOf(const ReadLog& log, const PackJob& pack, FileDigests
   return inputs;
 }
 
-Result<void> makeFolder(const fs::path& folder) {
-  std::error_code problem;
-  if (!folder.empty()) fs::create_directories(folder, problem);
-  if (!problem) return {};
-  return fail(ErrorCode::kIo, folder.string(), "cannot be made a folder: " + problem.message());
-}
-
 /// Where a texture pack that scenes share is kept.
 struct TexturePlaces {
   fs::path used;
@@ -75,7 +70,7 @@ TexturePlaces placesOf(const std::string& hash, const PackJob& pack, const Build
 bool hasTextures(const PackJob& pack, const PackFigures& figures, const BuildTools& tools) {
   const std::vector<std::string> textures = sharedTexturesOf(figures);
   if (textures.empty()) return true;
-  if (!makeFolder(texturesOf(pack))) return false;
+  if (!makeFolders(texturesOf(pack))) return false;
   return std::ranges::all_of(textures, [&](const std::string& hash) {
     const auto [used, kept] = placesOf(hash, pack, tools);
     if (tools.textures.isWhole(used)) return true;
@@ -88,9 +83,9 @@ Result<void> keepTextures(const PackJob& pack, const PackFigures& figures,
                           const BuildTools& tools) {
   for (const std::string& hash : sharedTexturesOf(figures)) {
     const auto [used, kept] = placesOf(hash, pack, tools);
-    if (auto made = makeFolder(kept.parent_path()); !made) return made;
+    RETURN_IF_ERROR(makeFolders(kept.parent_path()));
     if (tools.textures.isWhole(kept)) continue;
-    if (auto linked = linkOrCopy(used, kept); !linked) return linked;
+    RETURN_IF_ERROR(linkOrCopy(used, kept));
   }
   return {};
 }
@@ -107,7 +102,7 @@ class Making {
       // A single pack is written where its folder is.
       const bool is_planned = !pack_.folder.empty();
       if (is_planned) {
-        if (auto made = makeFolder(pack_.output.parent_path()); !made) return made;
+        RETURN_IF_ERROR(makeFolders(pack_.output.parent_path()));
       }
     }
     if (tools_.cache == nullptr) return bakeAnew(jobs);
@@ -158,15 +153,20 @@ class Making {
     }
     outcome_.state = PackState::kBaked;
     outcome_.figures = figuresOf(made);
-    return keep();
+    const bool is_kept = outcome_.failures.empty() && outcome_.log.isSettled();
+    if (tools_.cache == nullptr || !is_kept) return {};
+    // The pack is there all the same.
+    if (const auto kept = keep(); !kept) {
+      outcome_.warnings.push_back("is not in the cache and will be baked again: " +
+                                  kept.error().text());
+    }
+    return {};
   }
 
   Result<void> keep() {
-    const bool is_kept = outcome_.failures.empty() && outcome_.log.isSettled();
-    if (tools_.cache == nullptr || !is_kept) return {};
     ASSIGN_OR_RETURN(auto inputs, inputsOf(outcome_.log, pack_, tools_.digests));
     inputs.key = key_;
-    if (auto kept = keepTextures(pack_, *outcome_.figures, tools_); !kept) return kept;
+    RETURN_IF_ERROR(keepTextures(pack_, *outcome_.figures, tools_));
     return tools_.cache->store(inputs, pack_.output, *outcome_.figures);
   }
 

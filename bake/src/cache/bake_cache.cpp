@@ -1,7 +1,5 @@
 #include "cache/bake_cache.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <span>
 #include <system_error>
@@ -10,6 +8,7 @@
 #include "cache/cache_entry.h"
 #include "galactic/bake/source_asset.h"
 #include "support/atomic_file.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -65,14 +64,6 @@ bool isIntact(const fs::path& pack, const SourceFile& digest) {
   return found && sameContent(*found, digest);
 }
 
-Result<void> makeFolder(const fs::path& folder) {
-  std::error_code problem;
-  fs::create_directories(folder, problem);
-  if (!problem) return {};
-  return fail(ErrorCode::kIo, folder.string(),
-              fmt::format("cannot be made a folder: {}; give another `cache`", problem.message()));
-}
-
 void removeOldEntries(const fs::path& folder) {
   const std::vector<fs::path> entries = entriesIn(folder);
   std::error_code ignored;
@@ -102,7 +93,7 @@ Result<void> BakeCache::store(const BakeInputs& inputs, const fs::path& pack,
   // One name for one set of inputs, whatever the report says of times and places.
   const std::string name = hexOf(encodeCacheEntry({inputs, {}, {}}));
   const fs::path folder = folder_ / hexOf(inputs.key);
-  if (auto made = makeFolder(folder); !made) return made;
+  RETURN_IF_ERROR(makeFolders(folder));
   const fs::path entry = folder / (name + std::string(kEntrySuffix));
   // The pack first: an entry without its pack is none.
   if (auto kept = linkOrCopy(pack, packBeside(entry)); !kept) return kept;

@@ -255,7 +255,7 @@ TEST_F(Cache, ExplainsThatItCannotStore) {
   const auto kept = blocked.store(inputs(), at("out/room.pack"), figuresNamed("home"));
   ASSERT_FALSE(kept.has_value());
   EXPECT_EQ(kept.error().code, ErrorCode::kIo);
-  EXPECT_THAT(kept.error().message, testing::HasSubstr("give another `cache`"));
+  EXPECT_THAT(kept.error().message, testing::HasSubstr("cannot be made a folder"));
   const auto no_pack = cache_.store(inputs(), at("out/none.pack"), figuresNamed("home"));
   ASSERT_FALSE(no_pack.has_value());
   EXPECT_EQ(no_pack.error().code, ErrorCode::kIo);

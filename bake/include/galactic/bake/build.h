@@ -104,6 +104,8 @@ struct PackOutcome {
   std::optional<PackFigures> figures{};
   /// With BuildOptions::keep_going a set of objects may be made and have failures.
   std::vector<BakeFailure> failures{};
+  /// Of this run; those of the pack are in its figures.
+  std::vector<std::string> warnings{};
   /// What was read now.
   ReadLog log{};
   double seconds = 0;
