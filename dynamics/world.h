@@ -23,7 +23,7 @@ class SceneShape;
 
 /// A movable object: convex pieces with mass.
 struct ObjectSource {
-  /// In the object's frame, metres; at least one piece of at least four points.
+  /// In the object's frame, meters; at least one piece of at least four points.
   std::vector<HullPoints> hulls;
   /// Kilograms, of even density.
   double mass = 0.5;
@@ -82,7 +82,7 @@ struct RobotSetup {
   std::span<const float> positions;
 };
 
-/// The world frame, metres.
+/// The world frame, meters.
 struct PlacedObject {
   std::shared_ptr<const ObjectShape> shape;
   Pose world_from_object;
@@ -133,14 +133,14 @@ class DynamicsWorld {
   /// Lets an object that is not held rest as it is until something comes near it.
   void sleep(std::size_t object);
 
-  /// How deep the base's hulls would be in the scene with the root there, metres, and the way out
+  /// How deep the base's hulls would be in the scene with the root there, meters, and the way out
   /// along the ground. The ground under `ground_height` does not count.
   struct BaseContact {
     float depth = 0;
     Vec3 away;
   };
   [[nodiscard]] BaseContact baseContact(const Pose& world_from_root, float ground_height) const;
-  /// Height of the scene under `from`, at most `depth` metres below it.
+  /// Height of the scene under `from`, at most `depth` meters below it.
   [[nodiscard]] std::optional<float> floorBelow(const Vec3& from, float depth) const;
 
  private:
@@ -153,7 +153,7 @@ struct RobotContact {
   std::uint32_t link = 0;
   /// Index of an object; -1 for the scene.
   std::int32_t object = -1;
-  /// Metres, > 0 where they overlap.
+  /// Meters, > 0 where they overlap.
   float depth = 0;
   /// World frame.
   Vec3 point;

@@ -12,7 +12,7 @@ struct QueryContact {
   const btCollisionObject* other = nullptr;
   /// Of the queried object's compound.
   int child = 0;
-  /// Metres, > 0 where they overlap.
+  /// Meters, > 0 where they overlap.
   btScalar depth = 0;
   btVector3 point;
   /// Out of the other.

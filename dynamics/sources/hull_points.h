@@ -10,7 +10,7 @@
 
 namespace galactic::dynamics {
 
-/// Points of which a convex piece is the hull, metres.
+/// Points of which a convex piece is the hull, meters.
 using HullPoints = std::vector<Vec3>;
 
 /// The corners of an asset's triangles, all meshes together, in its world frame; each vertex once

@@ -20,7 +20,7 @@ namespace galactic::dynamics {
 struct Inertia {
   /// Kilograms.
   double mass = 0;
-  /// In the frame of the link or body, metres.
+  /// In the frame of the link or body, meters.
   std::array<double, 3> center{};
   /// xx, yy, zz, xy, xz, yz about the center, along the axes of that frame; kg m^2.
   std::array<double, 6> moments{};
@@ -48,7 +48,7 @@ struct RobotDefaults {
   /// Of a link with a shape and without a mass, spread over the box around its shape; kg/m^3.
   double density = 300;
   /// The least that it gets; also the mass of a body whose links have neither mass nor shape, which
-  /// is then a cube of `least_size` metres. Kilograms.
+  /// is then a cube of `least_size` meters. Kilograms.
   double least_mass = 0.1;
   double least_size = 0.05;
 };
@@ -88,7 +88,7 @@ struct RobotBody {
 };
 
 /// The bodies of a robot whose unmoved joints are held in `positions` (one per position of the
-/// robot, radians or metres). Base first, parents before children.
+/// robot, radians or meters). Base first, parents before children.
 [[nodiscard]] std::vector<RobotBody> bodiesOf(const RobotParts& parts, const Robot& robot,
                                               std::span<const float> positions);
 

@@ -20,7 +20,7 @@ class DeviceArray {
   /// What a consumer may ask for, by the array API standard.
   struct Wish {
     /// Where it will use the memory: None and 1 for the legacy default stream, 2 for that of the
-    /// thread, -1 for no synchronisation, else a cudaStream_t. 0 is forbidden.
+    /// thread, -1 for no synchronization, else a cudaStream_t. 0 is forbidden.
     py::object stream;
     /// Another device than this one, and a copy, are not given; None asks for neither.
     py::object device;

@@ -41,7 +41,7 @@ struct SampledColumn {
   std::vector<NearTriangle> near;
 };
 
-/// A scrambled number (the finaliser of SplitMix64): a spread that no pattern in the scene matches.
+/// A scrambled number (the finalizer of SplitMix64): a spread that no pattern in the scene matches.
 std::uint64_t scramble(std::uint64_t value) {
   value += 0x9e3779b97f4a7c15U;
   value = (value ^ (value >> 30U)) * 0xbf58476d1ce4e5b9U;

@@ -3,7 +3,7 @@
 
 namespace galactic {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): every bit of the input decides every bit
+/// The finalizer of SplitMix64 (Steele, Lea, Flood 2014): every bit of the input decides every bit
 /// of the output.
 [[nodiscard]] constexpr std::uint64_t mix(std::uint64_t z) {
   z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9ULL;
