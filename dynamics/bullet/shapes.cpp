@@ -11,11 +11,6 @@
 namespace galactic::dynamics {
 namespace {
 
-/// Bullet's quantized tree keeps a triangle's index in 21 bits: bigger meshes go in as several
-/// parts.
-constexpr std::size_t kTrianglesPerPart = std::size_t{1} << 20U;
-static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(bake::Triangle) == 3 * sizeof(int));
-
 /// Volume, center and second moments of the tetrahedra between the origin and the triangles of a
 /// hull (Eberly, Polyhedral Mass Properties, 2002).
 class SolidSum {
@@ -168,25 +163,6 @@ std::vector<int> cornersThatMatter(const btConvexHullComputer& hull) {
 }
 
 }  // namespace
-
-SceneShape::SceneShape(const bake::TriangleMesh& mesh)
-    : vertices_(mesh.vertices), triangles_(mesh.triangles) {
-  for (std::size_t first = 0; first < triangles_.size(); first += kTrianglesPerPart) {
-    btIndexedMesh part;
-    part.m_numTriangles = static_cast<int>(std::min(kTrianglesPerPart, triangles_.size() - first));
-    part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(triangles_.data() + first);
-    part.m_triangleIndexStride = sizeof(bake::Triangle);
-    part.m_numVertices = static_cast<int>(vertices_.size());
-    part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices_.data());
-    part.m_vertexStride = sizeof(Vec3);
-    part.m_vertexType = PHY_FLOAT;
-    arrays_.addIndexedMesh(part, PHY_INTEGER);
-  }
-  constexpr bool kQuantized = true;
-  shape_ = std::make_unique<btBvhTriangleMeshShape>(&arrays_, kQuantized);
-  // Bullet's default of 4 cm would grow every surface.
-  shape_->setMargin(0);
-}
 
 std::unique_ptr<btConvexHullShape> makeHull(const HullPoints& points) {
   const btConvexHullComputer corners = hullOf(points);

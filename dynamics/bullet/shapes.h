@@ -1,14 +1,13 @@
 #pragma once
 // For the files that name Bullet alone.
-#include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "bullet_mesh.h"
 #include "dynamics/world.h"
 #include "galactic/pose.h"
 
@@ -25,17 +24,10 @@ inline Pose fromBullet(const btTransform& transform) {
   return {fromBullet(transform.getOrigin()), {q.x(), q.y(), q.z(), q.w()}};
 }
 
-class SceneShape {
+/// Immutable once built.
+class SceneShape : public bake::BulletMesh {
  public:
-  explicit SceneShape(const bake::TriangleMesh& mesh);
-  /// Bullet takes shapes as mutable even where it only reads them.
-  [[nodiscard]] btBvhTriangleMeshShape* get() const { return shape_.get(); }
-
- private:
-  std::vector<Vec3> vertices_;
-  std::vector<bake::Triangle> triangles_;
-  btTriangleIndexVertexArray arrays_;
-  std::unique_ptr<btBvhTriangleMeshShape> shape_;
+  using BulletMesh::BulletMesh;
 };
 
 /// The hull of `points`, without margin and without corners that make half a millimeter or less.

@@ -109,9 +109,9 @@ RULES = (
     Rule("bake/app", ("runtime/include", "bake/include", "bake/app", "bake/src/json"), LEAN | {"CLI", "nlohmann"}, shared=True),
     Rule("dynamics/app", ("runtime/include", "bake/include", "runtime/app", "dynamics", "."),
          LEAN | {"CLI", "nlohmann"}, shared=True),
-    # Of galactic-run what reads recordings, plays policies and draws, of the bake what reads untrusted JSON: one place
-    # knows each.
-    Rule("dynamics", ("runtime/include", "bake/include", "runtime/app", "runtime", ".", "bake/src/json"),
+    # Of galactic-run what reads recordings, plays policies and draws, of the bake what reads untrusted JSON and what
+    # makes a mesh Bullet's: one place knows each.
+    Rule("dynamics", ("runtime/include", "bake/include", "runtime/app", "runtime", ".", "bake/src/json", "bake/src/engines"),
          LEAN | {"nlohmann"}, shared=True),
 )
 # Whose files a folder must not reach, even by a relative path.
