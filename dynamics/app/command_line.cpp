@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <limits>
 #include <map>
 #include <memory>
@@ -33,21 +34,59 @@ std::vector<std::string> longNamesOf(const CLI::App& app) {
   return names;
 }
 
-/// An option that takes one of some words.
-template <class T, std::size_t N>
-void addChoice(CLI::App& app, const char* name, T& field,
-               const std::array<std::string_view, N>& names, const char* help) {
-  std::map<std::string, T> values;
-  std::string listed;
-  for (std::size_t n = 0; n < N; ++n) {
-    values.emplace(names[n], static_cast<T>(n));
-    listed += (n == 0 ? "" : "|") + std::string(names[n]);
+/// Makes options of the parser of those that visitOptions() names; the fields must outlive it.
+class Registrar {
+ public:
+  explicit Registrar(CLI::App& app) : app_(app) {}
+
+  /// One of some words.
+  template <class T, std::size_t N>
+  void choice(const char* name, T& field, const std::array<std::string_view, N>& names,
+              const char* help) {
+    std::map<std::string, T> values;
+    std::string listed;
+    for (std::size_t n = 0; n < N; ++n) {
+      values.emplace(names[n], static_cast<T>(n));
+      listed += (n == 0 ? "" : "|") + std::string(names[n]);
+    }
+    const auto set = [&field, values](const std::string& text) { field = values.at(text); };
+    app_.add_option_function<std::string>(dashed(name), set, help)
+        ->check(CLI::IsMember(values))
+        ->option_text(fmt::format("{} [{}]", listed, names[static_cast<std::size_t>(field)]));
   }
-  const auto set = [&field, values](const std::string& text) { field = values.at(text); };
-  app.add_option_function<std::string>(name, set, help)
-      ->check(CLI::IsMember(values))
-      ->option_text(fmt::format("{} [{}]", listed, names[static_cast<std::size_t>(field)]));
-}
+  void real(const char* name, double& field, Within<double> range, const char* help) {
+    app_.add_option(dashed(name), field, help)
+        ->check(numberCheck(range.least, range.most))
+        ->option_text(fmt::format("X [{}]", field));
+  }
+  void whole(const char* name, std::uint64_t& field, Within<std::uint64_t> range,
+             const char* help) {
+    app_.add_option(dashed(name), field, help)
+        ->check(wholeCheck(range.least, range.most))
+        ->option_text(fmt::format("N [{}]", field));
+  }
+  void sampling(bool& is_deterministic) { addSampling(app_, is_deterministic); }
+  void task(const char* name, std::vector<OptionText>& field, const char* help) {
+    const auto set = [&field](const std::vector<std::string>& texts) {
+      for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        field.push_back({text.substr(0, equals), text.substr(equals + 1)});
+      }
+    };
+    app_.add_option_function<std::vector<std::string>>(dashed(name), set, help)
+        ->check([](const std::string& text) {
+          const bool is_pair = text.find('=') != std::string::npos;
+          return is_pair ? std::string() : "expected NAME=VALUE, found " + text;
+        })
+        ->allow_extra_args(false)
+        ->option_text("NAME=VALUE");
+  }
+
+ private:
+  static std::string dashed(const char* name) { return fmt::format("--{}", name); }
+
+  CLI::App& app_;
+};
 
 CLI::Validator knownPolicy() {
   return CLI::Validator(
@@ -77,37 +116,11 @@ void addActions(CLI::App& app, Command& command) {
                  "Close the loop: this policy acts on what it observes in the dynamics")
       ->check(knownPolicy())
       ->option_text("scripted|FILE.pack");
-  addSampling(app, command.is_deterministic);
-  app.add_option("--seed", command.seed, "Of what is random in a closed loop")
-      ->check(wholeCheck(0, std::numeric_limits<std::uint64_t>::max()))
-      ->option_text(fmt::format("N [{}]", command.seed));
-  const auto set = [&command](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) {
-      const std::size_t equals = text.find('=');
-      command.task.push_back({text.substr(0, equals), text.substr(equals + 1)});
-    }
-  };
-  app.add_option_function<std::vector<std::string>>(
-         "--set", set, "An option of the task in a closed loop, as galactic-run has it; repeat it")
-      ->check([](const std::string& text) {
-        const bool is_pair = text.find('=') != std::string::npos;
-        return is_pair ? std::string() : "expected NAME=VALUE, found " + text;
-      })
-      ->allow_extra_args(false)
-      ->option_text("NAME=VALUE");
+  Registrar registrar(app);
+  visitOptions(command.loop, registrar);
   app.add_option("--episodes", command.episodes, "How many episodes, the first ones; 0: all")
       ->check(wholeCheck(0, std::numeric_limits<std::uint32_t>::max()))
       ->option_text(fmt::format("N [{}]", command.episodes));
-}
-
-void addModel(CLI::App& app, Command& command) {
-  addChoice(app, "--arm", command.world.arm, kArmDriveNames, "What moves the arm");
-  addChoice(app, "--base", command.world.base, kBaseDriveNames,
-            "How the base goes where it is asked to: at once, or as its speeds follow");
-  app.add_option("--friction", command.world.friction,
-                 "Of surfaces that say nothing; that of a pair is the product")
-      ->check(numberCheck(0, 10))
-      ->option_text(fmt::format("X [{}]", command.world.friction));
 }
 
 void addOutputs(CLI::App& app, Command& command) {
@@ -133,7 +146,7 @@ std::string faultOf(const CLI::App& app, const Command& command) {
   if (command.recording.empty() == command.policy.empty()) {
     return "give either --recording, to replay it, or --policy, to close the loop";
   }
-  if (command.is_deterministic && command.policyFile().empty()) {
+  if (command.loop.is_deterministic && command.policyFile().empty()) {
     return "--deterministic applies to learned policies only; add --policy FILE.pack";
   }
   for (const char* option : {"--seed", "--set"}) {
@@ -164,7 +177,8 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, Command& 
   app.get_formatter()->column_width(kHelpColumn);
   addSources(app, command);
   addActions(app, command);
-  addModel(app, command);
+  Registrar registrar(app);
+  visitOptions(command.world, registrar);
   addOutputs(app, command);
   std::string fault;
   try {

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/options.h"
 #include "dynamics/report/side_by_side.h"
-#include "dynamics/world.h"
-#include "galactic/option_text.h"
 
 namespace galactic::dynamics {
 
@@ -19,11 +18,7 @@ struct Command {
   /// One of the two: what is replayed, or whose actions close the loop ("scripted" or a pack).
   std::filesystem::path recording;
   std::string policy;
-  /// Whether a policy pack takes its likeliest actions.
-  bool is_deterministic = false;
-  /// Of a closed loop: of what is random, and options of the task.
-  std::uint64_t seed = 1;
-  std::vector<OptionText> task;
+  LoopOptions loop;
   std::filesystem::path report;
   SideBySideFiles shown;
   /// 0: all.

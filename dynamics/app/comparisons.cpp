@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <thread>
 #include <utility>
@@ -15,7 +13,6 @@
 #include "galactic/bake/parallel_for.h"
 #include "galactic/option_text.h"
 #include "run/recording.h"
-#include "support/content_hash.h"
 #include "support/range_text.h"
 #include "support/standard_streams.h"
 #include "support/stop_request.h"
@@ -78,14 +75,6 @@ class LanePool {
   std::vector<std::unique_ptr<EpisodeLane>> lanes_;
 };
 
-Result<std::string> hashOf(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  const std::string bytes(std::istreambuf_iterator<char>(stream), {});
-  if (stream.bad()) return fail(ErrorCode::kIo, path.string(), "cannot be read");
-  const detail::ContentHash hash = detail::contentHash(std::as_bytes(std::span(bytes)));
-  return fmt::format("{:016x}{:016x}", hash.high, hash.low);
-}
-
 /// What moves things here is off by itself; noise of motion would be lost.
 Result<void> requireExactMotions(const SimulationOptions& options, const std::string& where,
                                  const std::string& remedy) {
@@ -122,23 +111,20 @@ Result<void> EpisodePlan::openRecording(const Command& command) {
   RETURN_IF_ERROR(requireExactMotions(options_, command.recording.string(),
                                       "record a run without, with --motion-noise 0 and "
                                       "--motion-bias 0"));
-  ASSIGN_OR_RETURN(source_, hashOf(command.recording));
   return {};
 }
 
 Result<void> EpisodePlan::openLoop(const Command& command) {
   options_ = world_.withTask({});
-  is_deterministic_ = command.is_deterministic;
-  source_ = command.policy;
+  is_deterministic_ = command.loop.is_deterministic;
   if (const std::filesystem::path file = command.policyFile(); !file.empty()) {
     RunOptions run;
     run.policy = file.string();
     ASSIGN_OR_RETURN(policy_, openPolicy(run));
     RETURN_IF_ERROR(applyNeeds(*policy_, options_));
-    ASSIGN_OR_RETURN(source_, hashOf(file));
   }
-  if (const auto fault = setOptions(command.task, OptionScope::kTask, options_)) {
-    const OptionText& option = command.task[fault->index];
+  if (const auto fault = setOptions(command.loop.task, OptionScope::kTask, options_)) {
+    const OptionText& option = command.loop.task[fault->index];
     return fail(ErrorCode::kInvalidInput, "--set",
                 fmt::format("{}={} is no option of the task, or has no such value; see the options "
                             "of galactic-run",
@@ -146,7 +132,7 @@ Result<void> EpisodePlan::openLoop(const Command& command) {
   }
   RETURN_IF_ERROR(
       requireExactMotions(options_, "the task", "add --set motion-noise=0 --set motion-bias=0"));
-  options_.seed = command.seed;
+  options_.seed = command.loop.seed;
   ASSIGN_OR_RETURN(const auto lane, makeLane());
   const std::span<const std::uint32_t> skipped = lane->simulator().skippedEpisodes();
   const auto all = static_cast<std::uint32_t>(world_.episodes().episodes().size());
@@ -171,7 +157,7 @@ Result<EpisodeTrace> EpisodePlan::trace(std::size_t n, EpisodeLane& lane) const 
 }
 
 std::string EpisodePlan::describe() const {
-  std::string text = fmt::format("{} {} {}", source_, is_deterministic_, count());
+  std::string text = fmt::format("{} episodes", count());
   for (const OptionText& option : listOptions(options_)) {
     text += fmt::format(" {}={}", option.name, option.value);
   }

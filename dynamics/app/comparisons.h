@@ -30,7 +30,7 @@ class EpisodePlan {
   [[nodiscard]] Result<std::unique_ptr<EpisodeLane>> makeLane() const;
   /// The n-th episode in the simulation, recorded or played by the lane. Fails as the policy does.
   [[nodiscard]] Result<EpisodeTrace> trace(std::size_t n, EpisodeLane& lane) const;
-  /// What decides the episodes, in one line.
+  /// What decides the episodes but the recording and the policy, in one line.
   [[nodiscard]] std::string describe() const;
 
  private:
@@ -45,8 +45,6 @@ class EpisodePlan {
   std::vector<std::uint32_t> episodes_;
   std::optional<OpenedPolicy> policy_;
   bool is_deterministic_ = false;
-  /// Hash of the recording, or of the policy.
-  std::string source_;
 };
 
 /// Compares all episodes of the plan. `journal`: keeps what is done; null: nobody does. The result

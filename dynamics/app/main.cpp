@@ -13,7 +13,6 @@
 #include "comparisons.h"
 #include "dynamics/report/journal.h"
 #include "dynamics/report/moments.h"
-#include "dynamics/report/names.h"
 #include "dynamics/report/report.h"
 #include "dynamics/report/side_by_side.h"
 #include "dynamics/sources/pack_sources.h"
@@ -72,20 +71,32 @@ Result<void> tryOutputs(const Command& command, const World& world, const bake::
   return {};
 }
 
-/// None where no report is wanted. Its subject is all that decides the comparisons: the content of
-/// what was read besides the packs, and this program, another build of which may play otherwise.
+/// Notes what the file at `path` holds, by a name that does not tell where it lies.
+Result<void> noteContent(const std::filesystem::path& path, std::string name, bake::ReadLog& read) {
+  ASSIGN_OR_RETURN(auto file, bake::describeFile(path));
+  file.name = std::move(name);
+  read.noteRead({}, {std::move(file)});
+  return {};
+}
+
+/// None where no report is wanted. What it is kept of is all that decides the comparisons: the
+/// options, the content of what was read besides the packs, and this program, another build of
+/// which may play otherwise.
 Result<std::optional<ComparisonJournal>> openJournal(const Command& command,
-                                                     const EpisodePlan& plan, bake::ReadLog read) {
+                                                     const EpisodePlan& plan,
+                                                     const ReportSubject& subject,
+                                                     bake::ReadLog read) {
   if (command.report.empty()) return std::nullopt;
-  ASSIGN_OR_RETURN(auto program, bake::describeFile("/proc/self/exe"));
-  // Its name is a link to wherever it lies.
-  program.name = "galactic-dynamics";
-  read.noteRead({}, {std::move(program)});
-  const WorldOptions& world = command.world;
-  const std::string subject = fmt::format(
-      "galactic-dynamics " GALACTIC_VERSION " {} {} {} {} {} {}", command.recipe.string(),
-      nameOf(world.arm), nameOf(world.base), world.friction, plan.describe(), digestOf(read));
-  return ComparisonJournal::open(journalFile(command), subject);
+  RETURN_IF_ERROR(noteContent("/proc/self/exe", "galactic-dynamics", read));
+  const std::filesystem::path played =
+      command.isClosedLoop() ? command.policyFile() : command.recording;
+  if (!played.empty()) RETURN_IF_ERROR(noteContent(played, "played", read));
+  std::string text = "galactic-dynamics " GALACTIC_VERSION " " + command.recipe.string();
+  for (const OptionText& option : optionsOf(subject)) {
+    text += fmt::format(" {}={}", option.name, option.value);
+  }
+  text += fmt::format(" {} {}", plan.describe(), digestOf(read));
+  return ComparisonJournal::open(journalFile(command), text);
 }
 
 Result<void> showBoth(const Command& command, const EpisodePlan& plan,
@@ -131,7 +142,12 @@ Result<int> run(const Command& command) {
     if (command.is_quiet) break;
     printToStderr(fmt::format("galactic-dynamics: warning: {}\n", printable(warning)));
   }
-  ASSIGN_OR_RETURN(auto journal, openJournal(command, *plan, sources.log));
+  const ReportSubject subject{.recording = command.recording.filename().string(),
+                              .policy = std::filesystem::path(command.policy).filename().string(),
+                              .world = command.world,
+                              .loop = command.loop,
+                              .warnings = sources.warnings};
+  ASSIGN_OR_RETURN(auto journal, openJournal(command, *plan, subject, sources.log));
   const ComparisonWorlds worlds{world, plan->options(), sources, command.world};
   Comparisons comparisons;
   ASSIGN_OR_RETURN(comparisons.episodes,
@@ -141,10 +157,6 @@ Result<int> run(const Command& command) {
   }
   constexpr std::size_t kWorst = 10;
   comparisons.worst = worstMoments(comparisons.episodes, kWorst, !plan->isClosedLoop());
-  const ReportSubject subject{.recording = command.recording.filename().string(),
-                              .policy = std::filesystem::path(command.policy).filename().string(),
-                              .options = command.world,
-                              .warnings = sources.warnings};
   if (!command.is_quiet) fmt::print("{}", reportTable(comparisons, world, subject));
   RETURN_IF_ERROR(showBoth(command, *plan, comparisons, worlds, subject));
   if (command.report.empty()) return kExitOk;

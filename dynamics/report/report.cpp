@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -22,6 +23,17 @@ Json jsonOf(const Share& share) {
           {"of", share.of},
           {"share", share.share},
           {"interval", {share.low, share.high}}};
+}
+
+/// Numbers and truth values as such; what a user gives the task is not sorted into them otherwise.
+Json jsonOf(const std::vector<OptionText>& options) {
+  Json json = Json::object();
+  for (const auto& [name, text, is_word] : options) {
+    const Json value = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+    const bool is_plain = !is_word && (value.is_number() || value.is_boolean());
+    json[name] = is_plain ? value : Json(text);
+  }
+  return json;
 }
 
 Json successOf(const Sums& sums) {
@@ -216,6 +228,13 @@ Share wilson(std::uint32_t count, std::uint32_t of) {
   return {count, of, share, std::max(0.0, middle - half), std::min(1.0, middle + half)};
 }
 
+std::vector<OptionText> optionsOf(const ReportSubject& subject) {
+  std::vector<OptionText> options = listOptions(subject.world);
+  if (!subject.isReplay())
+    std::ranges::move(listOptions(subject.loop), std::back_inserter(options));
+  return options;
+}
+
 std::string reportJson(const Comparisons& comparisons, const World& world,
                        const ReportSubject& subject) {
   const Sums sums = sumsOf(comparisons, subject);
@@ -225,8 +244,7 @@ std::string reportJson(const Comparisons& comparisons, const World& world,
   const Json report{
       {"mode", is_closed ? "closed loop" : "replay"},
       {is_closed ? "policy" : "recording", is_closed ? subject.policy : subject.recording},
-      {"arm", nameOf(subject.options.arm)},
-      {"base", nameOf(subject.options.base)},
+      {"options", jsonOf(optionsOf(subject))},
       {"episodes", sums.episodes},
       {"steps", sums.steps},
       {"steps_in_dynamics", sums.steps_there},

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dynamics/episodes/comparison.h"
+#include "dynamics/options.h"
 #include "dynamics/report/moments.h"
 #include "galactic/world.h"
 
@@ -25,11 +26,16 @@ struct ReportSubject {
   std::string recording;
   /// Name of the policy of a closed loop; empty for a replay.
   std::string policy;
-  WorldOptions options;
+  WorldOptions world;
+  /// Of a closed loop.
+  LoopOptions loop;
   std::vector<std::string> warnings;
 
   [[nodiscard]] bool isReplay() const { return policy.empty(); }
 };
+
+/// The options that decide what the report says: those of a closed loop where it is one.
+[[nodiscard]] std::vector<OptionText> optionsOf(const ReportSubject& subject);
 
 /// All that a report is made of.
 struct Comparisons {

@@ -97,8 +97,8 @@ std::string factsOf(const ReportSubject& subject) {
   json.begin('{');
   json.text("policy", subject.isReplay() ? "replay" : subject.policy);
   if (subject.isReplay()) json.text("recording", subject.recording);
-  json.text("arm", nameOf(subject.options.arm));
-  json.text("base", nameOf(subject.options.base));
+  json.text("arm", nameOf(subject.world.arm));
+  json.text("base", nameOf(subject.world.base));
   json.end('}');
   return json.take();
 }

@@ -205,7 +205,8 @@ TEST(AReport, IsTheSameEachTime) {
     all.episodes.push_back(run.first(sources, ArmDrive::kMotors));
     all.worst = worstMoments(all.episodes, 10, true);
     return dynamics::reportJson(
-        all, run.world(), {.recording = "run.rec", .policy = {}, .options = {}, .warnings = {}});
+        all, run.world(),
+        {.recording = "run.rec", .policy = {}, .world = {}, .loop = {}, .warnings = {}});
   };
   EXPECT_EQ(report(), report());
 }

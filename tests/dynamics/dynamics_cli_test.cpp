@@ -130,7 +130,8 @@ TEST_F(DynamicsCli, ReplaysARecording) {
   const json found = report("replay.json");
   EXPECT_EQ(found["mode"], "replay");
   EXPECT_EQ(found["recording"], "home.rec");
-  EXPECT_EQ(found["arm"], "kinematic");
+  EXPECT_EQ(found["options"],
+            json({{"arm", "kinematic"}, {"base", "kinematic"}, {"friction", 0.8}}));
   EXPECT_GT(found["episodes"], 2);
   EXPECT_EQ(found["each"].size(), found["episodes"]);
   EXPECT_FALSE(std::filesystem::exists(path("replay.json.partial")));
@@ -149,6 +150,8 @@ TEST_F(DynamicsCli, ClosesTheLoopAndSaysTheSameForAnyNumberOfThreads) {
   const json found = report("one.json");
   EXPECT_EQ(found["mode"], "closed loop");
   EXPECT_EQ(found["policy"], "scripted");
+  EXPECT_EQ(found["options"]["seed"], 1);
+  EXPECT_EQ(found["options"]["episode-steps"], 400);
   EXPECT_EQ(found["episodes"], 6);
   EXPECT_GE(found["success"]["simulation"]["count"], 4);
   EXPECT_THAT(one.out, Not(HasSubstr("apart after")));
@@ -158,11 +161,6 @@ TEST_F(DynamicsCli, GoesOnWhereItWasInterrupted) {
   const std::vector<std::string> words{"--policy", "scripted", "--report", "again.json"};
   ASSERT_EQ(run(words).exit_code, 0);
   const std::string whole = fileContent(path("again.json"));
-  const auto few = [&](const std::string& more) {
-    std::vector<std::string> all = words;
-    all.insert(all.end(), {"--arm", more});
-    return run(all);
-  };
   ASSERT_EQ(interrupted("again.json").exit_code, kExitInterrupted);
   changeFirstRecord(path("again.json.partial"), markRecord);
   ASSERT_EQ(run(words).exit_code, 0);
@@ -170,9 +168,23 @@ TEST_F(DynamicsCli, GoesOnWhereItWasInterrupted) {
   const json after = report("again.json");
   EXPECT_GE(after["disturbed_objects"], kMark);
   EXPECT_EQ(after["success"], before["success"]);
-  // Another arm has nothing to do with it.
-  EXPECT_EQ(few("kinematic").exit_code, 0);
-  EXPECT_LT(report("again.json")["disturbed_objects"], kMark);
+}
+
+TEST_F(DynamicsCli, BeginsAgainWhereItsOptionsAreOthers) {
+  for (const auto& [option, value] :
+       std::vector<std::pair<std::string, std::string>>{{"--arm", "kinematic"},
+                                                        {"--base", "velocity"},
+                                                        {"--friction", "0.7"},
+                                                        {"--seed", "2"},
+                                                        {"--set", "episode-steps=390"}}) {
+    ASSERT_EQ(interrupted("other.json").exit_code, kExitInterrupted);
+    changeFirstRecord(path("other.json.partial"), markRecord);
+    const ProgramRun done = run({"--policy", "scripted", "--report", "other.json", option, value});
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const json found = report("other.json");
+    EXPECT_LT(found["disturbed_objects"], kMark) << option;
+    EXPECT_THAT(found["options"].dump(), HasSubstr(value.substr(value.find('=') + 1))) << option;
+  }
 }
 
 TEST_F(DynamicsCli, BeginsAgainWhereItsSourcesAreOthers) {

@@ -253,6 +253,36 @@ TEST(AReport, HasItsValuesBelowEachOther) {
   }
 }
 
+TEST(AReport, NamesTheOptionsThatDecideWhatItSays) {
+  const ScratchFolder folder;
+  const World world = smallHome(folder);
+  const dynamics::Comparisons comparisons{.episodes = {made(0)}, .worst = {}};
+  dynamics::ReportSubject subject;
+  subject.world = {.arm = dynamics::ArmDrive::kKinematic, .friction = 0.5};
+  subject.loop = {.is_deterministic = true,
+                  .seed = 18446744073709551615U,
+                  .task = {{"episode-steps", "400"}, {"task", "pick"}}};
+  EXPECT_THAT(dynamics::reportJson(comparisons, world, subject), HasSubstr(R"(
+  "options": {
+    "arm": "kinematic",
+    "base": "kinematic",
+    "friction": 0.5
+  },
+)")) << "a recording has its own seed and task";
+  subject.policy = "picker.pack";
+  EXPECT_THAT(dynamics::reportJson(comparisons, world, subject), HasSubstr(R"(
+  "options": {
+    "arm": "kinematic",
+    "base": "kinematic",
+    "friction": 0.5,
+    "deterministic": true,
+    "seed": 18446744073709551615,
+    "episode-steps": 400,
+    "task": "pick"
+  },
+)"));
+}
+
 TEST(AReport, TellsNoFiguresOfWhatWasNotLetGo) {
   const ScratchFolder folder;
   const World world = smallHome(folder);
