@@ -83,7 +83,7 @@ Result<void> noteContent(const std::filesystem::path& path, std::string name, ba
 /// options, the content of what was read besides the packs, and this program, another build of
 /// which may play otherwise.
 Result<std::optional<ComparisonJournal>> openJournal(const Command& command,
-                                                     const EpisodePlan& plan,
+                                                     const EpisodePlan& plan, const World& world,
                                                      const ReportSubject& subject,
                                                      bake::ReadLog read) {
   if (command.report.empty()) return std::nullopt;
@@ -96,7 +96,7 @@ Result<std::optional<ComparisonJournal>> openJournal(const Command& command,
     text += fmt::format(" {}={}", option.name, option.value);
   }
   text += fmt::format(" {} {}", plan.describe(), digestOf(read));
-  return ComparisonJournal::open(journalFile(command), text);
+  return ComparisonJournal::open(journalFile(command), text, world.robot().links().size());
 }
 
 Result<void> showBoth(const Command& command, const EpisodePlan& plan,
@@ -147,7 +147,7 @@ Result<int> run(const Command& command) {
                               .world = command.world,
                               .loop = command.loop,
                               .warnings = sources.warnings};
-  ASSIGN_OR_RETURN(auto journal, openJournal(command, *plan, subject, sources.log));
+  ASSIGN_OR_RETURN(auto journal, openJournal(command, *plan, world, subject, sources.log));
   const ComparisonWorlds worlds{world, plan->options(), sources, command.world};
   Comparisons comparisons;
   ASSIGN_OR_RETURN(comparisons.episodes,

@@ -1,9 +1,11 @@
 #include "dynamics/report/journal.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "support/try.h"
@@ -129,11 +131,22 @@ EpisodeComparison comparisonOf(const Json& json) {
   return c;
 }
 
-/// What a record says; nothing where it is of another kind.
-std::optional<std::pair<std::size_t, EpisodeComparison>> readRecord(std::string_view record) {
+/// Whether everything that it refers to is there: links of the robot and steps of its own.
+bool isSound(const EpisodeComparison& c, std::size_t links) {
+  const auto has_link = [links](const auto& missed) { return std::get<0>(missed.first) < links; };
+  return !c.base_gap.empty() && c.grip_gap.size() == c.base_gap.size() &&
+         c.parted.value_or(0) < c.grip_gap.size() && std::ranges::all_of(c.missed, has_link) &&
+         (!c.deepest || (std::get<0>(c.deepest->key) < links && c.deepest->step < c.steps)) &&
+         std::ranges::all_of(c.rests, [&c](const Rest& rest) { return rest.step < c.steps; });
+}
+
+/// What a record says; nothing where it is of another kind, or not sound.
+std::optional<std::pair<std::size_t, EpisodeComparison>> readRecord(std::string_view record,
+                                                                    std::size_t links) {
   try {
     const Json json = Json::parse(record);
-    return std::pair(json.at("number").get<std::size_t>(), comparisonOf(json.at("episode")));
+    std::pair one(json.at("number").get<std::size_t>(), comparisonOf(json.at("episode")));
+    return isSound(one.second, links) ? std::optional(std::move(one)) : std::nullopt;
   } catch (const Json::exception&) {
     return std::nullopt;
   } catch (const std::out_of_range&) {
@@ -143,17 +156,17 @@ std::optional<std::pair<std::size_t, EpisodeComparison>> readRecord(std::string_
 
 }  // namespace
 
-ComparisonJournal::ComparisonJournal(std::unique_ptr<Journal> journal)
+ComparisonJournal::ComparisonJournal(std::unique_ptr<Journal> journal, std::size_t links)
     : journal_(std::move(journal)) {
   for (const std::string_view record : journal_->records()) {
-    if (auto one = readRecord(record)) done_.insert(std::move(*one));
+    if (auto one = readRecord(record, links)) done_.insert(std::move(*one));
   }
 }
 
 Result<ComparisonJournal> ComparisonJournal::open(const std::filesystem::path& path,
-                                                  std::string_view subject) {
+                                                  std::string_view subject, std::size_t links) {
   ASSIGN_OR_RETURN(auto journal, Journal::open(path, subject));
-  return ComparisonJournal(std::move(journal));
+  return ComparisonJournal(std::move(journal), links);
 }
 
 Result<void> ComparisonJournal::add(std::size_t number, const EpisodeComparison& comparison) {

@@ -15,9 +15,10 @@ namespace galactic::dynamics {
 /// numbers read back exactly: see Journal. Threads may add at the same time.
 class ComparisonJournal {
  public:
-  /// Fails as Journal::open.
+  /// `links`: how many the robot has. Records that are of no comparison with it do not count. Fails
+  /// as Journal::open.
   [[nodiscard]] static Result<ComparisonJournal> open(const std::filesystem::path& path,
-                                                      std::string_view subject);
+                                                      std::string_view subject, std::size_t links);
 
   /// Those that were done before, by their numbers in the run.
   [[nodiscard]] const std::map<std::size_t, EpisodeComparison>& done() const { return done_; }
@@ -27,7 +28,7 @@ class ComparisonJournal {
   void remove() { journal_->remove(); }
 
  private:
-  explicit ComparisonJournal(std::unique_ptr<Journal> journal);
+  ComparisonJournal(std::unique_ptr<Journal> journal, std::size_t links);
 
   std::unique_ptr<Journal> journal_;
   std::map<std::size_t, EpisodeComparison> done_;

@@ -8,6 +8,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "dynamics/report/journal.h"
@@ -84,8 +85,11 @@ void expectSame(const EpisodeComparison& found, const EpisodeComparison& wanted)
   EXPECT_EQ(found.rests[0].world_from_object, wanted.rests[0].world_from_object);
 }
 
+/// made() has contacts of link 4.
+constexpr std::size_t kLinks = 5;
+
 ComparisonJournal openJournal(const std::filesystem::path& file) {
-  auto opened = ComparisonJournal::open(file, "these");
+  auto opened = ComparisonJournal::open(file, "these", kLinks);
   EXPECT_TRUE(opened);
   return *std::move(opened);
 }
@@ -119,6 +123,34 @@ TEST(AJournalOfComparisons, TakesNoOtherRecords) {
   ASSERT_TRUE(other->add("{}"));
   ASSERT_TRUE(other->add("no JSON"));
   EXPECT_TRUE(openJournal(file).done().empty());
+}
+
+TEST(AJournalOfComparisons, TakesNoRecordsOfWhatIsNotThere) {
+  using Change = void (*)(EpisodeComparison&);
+  const std::vector<Change> changes{
+      [](EpisodeComparison&) {},
+      [](EpisodeComparison& one) {
+        one.missed[{5, Thing::kScene, MissCause::kColumnCell}] = 1;
+      },
+      [](EpisodeComparison& one) { std::get<0>(one.deepest->key) = 5; },
+      [](EpisodeComparison& one) { one.deepest->step = 4; },
+      [](EpisodeComparison& one) { one.rests[0].step = 4; },
+      [](EpisodeComparison& one) { one.parted = 3; },
+      [](EpisodeComparison& one) { one.grip_gap.pop_back(); },
+      [](EpisodeComparison& one) {
+        one.parted.reset();
+        one.base_gap.clear();
+        one.grip_gap.clear();
+      },
+  };
+  for (std::size_t n = 0; n < changes.size(); ++n) {
+    const ScratchFolder folder;
+    const std::filesystem::path file = folder.path() / "r.json.partial";
+    EpisodeComparison one = made(1);
+    changes[n](one);
+    ASSERT_TRUE(openJournal(file).add(0, one));
+    EXPECT_EQ(openJournal(file).done().size(), n == 0 ? 1U : 0U) << n;
+  }
 }
 
 TEST(TheWorstMoments, AreOfEachKindInTurn) {
