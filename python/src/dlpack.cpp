@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -98,8 +99,14 @@ void awaitImagesFor(const py::object& stream) {
   }
   if (number == kLegacyDefault || number == kThreadDefault || number == kNoWait) return;
   const auto synchronize = driverFunction<int (*)(void*)>("cuStreamSynchronize");
-  const py::gil_scoped_release unlocked;
-  synchronize(nullptr);
+  const int code = [&] {
+    const py::gil_scoped_release unlocked;
+    return synchronize(nullptr);
+  }();
+  if (code == 0) return;
+  throw ErrorException{{ErrorCode::kInternal, "device images",
+                        "did not become complete: cuStreamSynchronize failed with CUDA's error " +
+                            std::to_string(code) + "; what ran on the device before has failed"}};
 }
 
 }  // namespace
