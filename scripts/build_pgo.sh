@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# build_pgo.sh [WORLD.pack [TARGET...]]: the run side and the Python package in build/pgo, or only these targets of them,
-# optimized by what they do when they step, draw and sense the sample world, or WORLD. Works from any folder. With Clang
+# build_pgo.sh [WORLD.pack [TARGET...]]: the run side and the Python package in build/pgo, or only galactic-run and
+# these targets of them, optimized by what they do when they step, draw and sense the sample world, or WORLD. Works from any folder. With Clang
 # 19, whose packages it installs.
 #
 # Builds twice, one and two minutes on two cores: programs that record, which play the world, then those to use.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
 world=$(realpath -m -- "${1:-$galactic_root/build/release/sample/world.pack}")
-targets=("${@:2}")
+targets=(galactic-run "${@:2}")
 [ $# -gt 1 ] || targets=(all)
 cd "$galactic_root"
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import dataclasses
 
 import numpy as np
 from numpy.typing import NDArray
 
 
-class CastHits(NamedTuple):
+@dataclasses.dataclass(frozen=True, eq=False)
+class CastHits:
     """Of n rays or spheres, in their order."""
 
     distance: NDArray[np.float32]
