@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# build_pgo.sh [WORLD.pack [TARGET...]]: the run side and the Python package in build/pgo, or only galactic-run and
-# these targets of them, optimized by what they do when they step, draw and sense the sample world, or WORLD. Works from any folder. With Clang
-# 19, whose packages it installs.
+# build_pgo.sh [WORLD.pack [TARGET...]]: the run side and the Python package in build/pgo, or only galactic-run and these
+# targets of them, optimized by what they do when they step, draw and sense the sample world, or WORLD. Works from any
+# folder. With Clang 19, whose packages it installs.
 #
 # Builds twice, one and two minutes on two cores: programs that record, which play the world, then those to use.
 set -euo pipefail
