@@ -19,27 +19,31 @@ from torch import fx, nn
 from torch.nn import functional
 
 from galactic import _core, files
-from galactic.learning import checkpoint, own_code
+from galactic.learning import checkpoint, own_code, pack_layers
 from galactic.learning.command import EXIT_CODES, OK, Parser, named_path, told
 from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
 from galactic.learning.encoders import (
     Encoder,
     Eyes,
+    Inputs,
     ResidualBlock,
     ResNet,
     SimpleCNN,
     SpaceToDepth,
     StateEncoder,
+    Tanh,
 )
 from galactic.learning.homes import camera_options, simulation_keywords
 from galactic.learning.networks import (
     ActorHead,
     EncoderPolicy,
     FeedForwardPolicy,
+    HeadLinear,
     Policy,
     RecurrentPolicy,
 )
 from galactic.learning.normalization import MOST
+from galactic.learning.own_networks import seen_by, some_inputs
 from galactic.learning.privileges import of_own_tasks, options_of_actor, parts_of_actor
 from galactic.learning.settings import Settings, typed
 from galactic.learning.sight import FARTHEST
@@ -80,6 +84,43 @@ def _is_plain(columns: Any) -> bool:
     )
 
 
+_WORK = ("forward", "_conv_forward", "__call__", "__iter__")
+"""What of a module of torch or of ours computes."""
+
+
+def _is(module: nn.Module, *kinds: type[nn.Module]) -> bool:
+    """Whether it computes what one of these does: a class that inherits from it may be made in another way, and do
+    nothing else."""
+    made = type(module)
+    return any(
+        isinstance(module, kind)
+        and all(getattr(made, name, None) is getattr(kind, name, None) for name in _WORK)
+        for kind in kinds
+    )
+
+
+def _require_no_hooks(encoder: nn.Module) -> None:
+    """Raises ExportError where something runs around a forward(), which no layer tells."""
+    for name, module in encoder.named_modules():
+        where = f"{name or 'the network'} ({type(module).__name__})"
+        if module._forward_hooks or module._forward_pre_hooks:
+            raise ExportError(
+                f"{where} has hooks around its forward(), as torch.nn.utils.weight_norm() adds them: train one "
+                "without"
+            )
+        if "forward" in vars(module):
+            raise ExportError(f"{where} was given another forward() than its class has")
+
+
+def _require_unshared(node: fx.Node, given: fx.Node, in_place: Any) -> None:
+    """Raises ExportError where an operation may change in place what others read: layers never do."""
+    if in_place and (len(given.users) > 1 or given.target in (getattr, operator.getitem)):
+        raise ExportError(
+            f"{node.target} in forward() works in place on what is read elsewhere ({node.format_node()}): leave "
+            "inplace=True out"
+        )
+
+
 class Layers:
     """The layers of a pack, in order. Every method adds some and returns the number of the last."""
 
@@ -91,31 +132,31 @@ class Layers:
         self.list.append({"kind": kind, "inputs": list(inputs), **fields})
         return len(self.list) - 1
 
-    def module(self, module: nn.Module, x: int) -> int:
+    def module(self, module: Any, x: int) -> int:
         """What a module of torch makes of value `x`."""
-        if isinstance(module, nn.Sequential):
+        if _is(module, nn.Sequential):
             for part in module:
                 x = self.module(part, x)
             return x
-        if isinstance(module, nn.Linear):
+        if _is(module, nn.Linear, HeadLinear):
             weight, bias = _numbers(module.weight), _numbers(module.bias)
             return self.add("linear", x, outputs=module.out_features, weight=weight, bias=bias)
-        if isinstance(module, nn.Conv2d):
+        if _is(module, nn.Conv2d):
             return self._convolution(module, x)
-        if isinstance(module, nn.AvgPool2d):
+        if _is(module, nn.AvgPool2d):
             return self._average_pool(module, x)
-        if isinstance(module, (nn.GroupNorm, nn.LayerNorm)):
+        if _is(module, nn.GroupNorm, nn.LayerNorm):
             return self._norm(module, x)
-        if isinstance(module, nn.ReLU):
+        if _is(module, nn.ReLU):
             return self.add("relu", x)
-        if isinstance(module, nn.Tanh):
+        if _is(module, nn.Tanh, Tanh):
             return self.add("tanh", x)
-        if isinstance(module, SpaceToDepth):
+        if _is(module, SpaceToDepth):
             return self.add("space_to_depth", x, block=module.block)
-        if isinstance(module, ResidualBlock):
+        if _is(module, ResidualBlock):
             both = self.add("sum", self.module(module.layers, x), self.module(module.around, x))
             return self.add("relu", both)
-        if isinstance(module, nn.Flatten):
+        if _is(module, nn.Flatten):
             return x  # linear layers read images as vectors, in the same order
         raise ExportError(f"a policy pack has no layer for {module}")
 
@@ -161,13 +202,15 @@ class Layers:
             limit=float(np.finfo(np.float32).max),
         )
 
-    def encoder(self, encoder: Encoder, seen: int) -> int:
-        if isinstance(encoder, StateEncoder):
+    def encoder(self, encoder: Any, seen: int) -> int:
+        """What an encoder makes of the state and what it sees."""
+        _require_no_hooks(encoder)
+        if _is(encoder, StateEncoder):
             return self.module(encoder.layers, seen)
-        if isinstance(encoder, SimpleCNN):
+        if _is(encoder, SimpleCNN):
             image = self.module(encoder.visual, self.add("image"))
             return self.add("concatenate", image, seen)
-        if isinstance(encoder, ResNet):
+        if _is(encoder, ResNet):
             image = self.module(encoder.visual, self.add("image"))
             felt = self.module(encoder.state, seen)
             before = self.module(encoder.previous, self.add("previous_action"))
@@ -205,6 +248,7 @@ class Layers:
                 return self.module(module.layers, self.add("image"))
             (made,) = node.all_input_nodes if len(node.all_input_nodes) == 1 else (node,)
             if made in values:
+                _require_unshared(node, made, getattr(module, "inplace", False))
                 return self.module(module, values[made])
         if node.target is getattr and node.args[1] == "state":
             return seen
@@ -212,7 +256,9 @@ class Layers:
             return self.add("previous_action")
         given = node.args[0] if node.args else None
         if isinstance(given, fx.Node) and given in values:
-            if node.target in (*_RELU, *_TANH):
+            if node.target in (*_RELU, *_TANH) and {*node.kwargs} <= {"inplace"}:
+                in_place = node.kwargs.get("inplace", False) or len(node.args) > 1
+                _require_unshared(node, given, in_place)
                 return self.add("relu" if node.target in _RELU else "tanh", values[given])
             other = node.args[1] if len(node.args) > 1 else None
             if node.target in _SUM and isinstance(other, fx.Node) and not node.kwargs:
@@ -285,10 +331,13 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
     seen = layers.seen(policy, layers.add("observation"), columns)
     if isinstance(policy, FeedForwardPolicy):
         features = layers.module(policy.encoder, seen)
-    elif isinstance(policy, RecurrentPolicy):
-        features = layers.gru(policy.rnn, layers.encoder(policy.encoder, seen))
-    elif isinstance(policy, EncoderPolicy):
+    elif isinstance(policy, (RecurrentPolicy, EncoderPolicy)):
         features = layers.encoder(policy.encoder, seen)
+        if saved.network is not None:
+            sizes = seen_by(saved.settings, saved.shape, saved.parts)
+            _require_same(policy.encoder, some_inputs(policy.encoder, sizes, 4, 8), layers, seen)
+        if isinstance(policy, RecurrentPolicy):
+            features = layers.gru(policy.rnn, features)
     else:
         raise ExportError(f"the policy {type(policy).__name__} is unknown")
     actions = _actions(layers, policy.action, features)
@@ -303,6 +352,26 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
         "layers": layers.list,
         **actions,
     }
+
+
+SAME = 1e-3
+"""Between features of a network and of its layers, as a share of the largest: sums in another order differ by
+less, another network by more."""
+
+
+def _require_same(encoder: Encoder, inputs: Inputs, layers: Layers, seen: int) -> None:
+    """Raises ExportError where the layers behind value `seen` are not what the network computes."""
+    # Rows of a state have both signs.
+    inputs = inputs._replace(state=4.0 * inputs.state - 2.0)
+    with torch.no_grad():
+        found = pack_layers.value(layers.list, seen, inputs)
+        wanted = encoder(inputs).flatten(0, 1)
+    apart = float((found - wanted).abs().max()) if found.shape == wanted.shape else math.inf
+    if not apart <= SAME * max(1.0, float(wanted.abs().max())):
+        raise ExportError(
+            f"the layers that were found in forward() make other features than it ({apart:.3g} apart on made-up "
+            "inputs): write it of plain layers, none of which changes what another one reads"
+        )
 
 
 def _actions(layers: Layers, head: ActorHead, features: int) -> dict[str, Any]:

@@ -119,7 +119,7 @@ class OwnNetwork(NamedTuple):
     def _result(self, encoder: Encoder, seen: Seen, memory: float) -> tuple[Tensor, Tensor]:
         """Features and memory after two steps of three envs, whose episodes begin in the first."""
         steps, envs = 2, 3
-        inputs = _some_inputs(encoder, seen, steps, envs)
+        inputs = some_inputs(encoder, seen, steps, envs)
         starts = torch.zeros(steps, envs, dtype=torch.bool)
         starts[0] = True
         with torch.no_grad(), goes_on(self.code, "in forward(); raise an exception instead"):
@@ -192,7 +192,7 @@ def network_of(code: CodeName, siblings: Optional[pathlib.Path] = None) -> OwnNe
     return OwnNetwork(code, found, {}, digest)
 
 
-def _some_inputs(encoder: Encoder, seen: Seen, steps: int, envs: int) -> Inputs:
+def some_inputs(encoder: Encoder, seen: Seen, steps: int, envs: int) -> Inputs:
     """Made up, the same each time, and other numbers everywhere."""
     random = torch.Generator().manual_seed(1)
 

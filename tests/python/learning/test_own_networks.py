@@ -26,7 +26,7 @@ EXAMPLE = pathlib.Path(__file__).parents[3] / "python" / "examples" / "own_netwo
 WRONG = """
 import torch
 from torch import nn
-from galactic.learning.encoders import Encoder, Eyes
+from galactic.learning.encoders import Encoder, Eyes, StateEncoder
 from galactic.learning.sequences import run_gru
 
 class Net(Encoder):
@@ -124,9 +124,101 @@ class Sums(Net):
         x = self.layer(inputs.state)
         return torch.cat([torch.relu(x) + torch.tanh(x), x[..., 2:6]], -1)
 
+class Doubled(nn.Conv2d):
+    def forward(self, x):
+        return 2.0 * super().forward(x)
+
+class Weighted(nn.Conv2d):
+    def _conv_forward(self, x, weight, bias):
+        return super()._conv_forward(x, 2.0 * weight, bias)
+
+class Backwards(nn.Sequential):
+    def forward(self, x):
+        return -super().forward(x)
+
+class Patch(nn.Sequential):
+    def __init__(self, first):
+        super().__init__(first, nn.ReLU(inplace=True), nn.Flatten(), nn.Linear(4 * 4 * 4, 8))
+
+class LooksTwice(Looks):
+    def __init__(self, seen, doubled=True):
+        super().__init__(seen)
+        first = (Doubled if doubled else Weighted)(seen.channels, 4, 8, 8)
+        self.eyes = Eyes(Patch(first))
+
+class LooksBack(Looks):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.eyes = Eyes(Backwards(*self.eyes.layers))
+
+class LooksPlainly(Looks):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.eyes = Eyes(Patch(nn.Conv2d(seen.channels, 4, 8, 8)))
+
+class Halved(StateEncoder):
+    def __init__(self, seen, width=8):
+        super().__init__(seen.state, width, 1, "tanh")
+
+    def forward(self, inputs):
+        return torch.cat([super().forward(inputs)[..., 0:4], inputs.state[..., 0:4]], -1)
+
+class Perceptron(StateEncoder):
+    def __init__(self, seen):
+        super().__init__(seen.state, 8, 1, "tanh")
+
+class InPlace(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.relu = nn.ReLU(inplace=True)
+
+    def forward(self, inputs):
+        x = self.layer(inputs.state)
+        return self.relu(x) + x
+
+class InPlaceToo(Net):
+    def forward(self, inputs):
+        x = self.layer(inputs.state)
+        return nn.functional.relu(x, inplace=True) + x
+
+class OfASlice(Net):
+    features = 6
+
+    def forward(self, inputs):
+        x = self.layer(inputs.state)
+        nn.functional.relu(x[..., 0:6], True)
+        return x[..., 0:6]
+
+class BehindAView(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.flat = nn.Flatten(2)
+        self.relu = nn.ReLU(inplace=True)
+
+    def forward(self, inputs):
+        x = self.layer(inputs.state)
+        return self.relu(self.flat(x)) + x
+
+class WeightNormed(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.layer = nn.utils.weight_norm(self.layer)
+
+class Parametrized(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.layer = nn.utils.parametrizations.orthogonal(self.layer)
+
+class Replaced(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        forward = self.layer.forward
+        self.layer.forward = lambda x: 2.0 * forward(x)
+
 def no_class(seen):
     pass
 """
+EYES = {"sees": "rgb", "image_size": 36}
 SEEN = Seen(6, {"way": slice(0, 3)}, {}, 4)
 
 
@@ -270,33 +362,57 @@ def saved_policy(own: OwnNetwork, **settings: Any) -> checkpoint.SavedPolicy:
     return checkpoint.SavedPolicy(policy.eval(), made, shape, parts, 1, None, {}, own)
 
 
-@pytest.mark.parametrize("name, recurrent", [("Sums", False), ("Sums", True), ("Net", False)])
+@pytest.mark.parametrize(
+    "name, settings",
+    [
+        ("Sums", {}),
+        ("Sums", {"recurrent": True}),
+        ("Net", {}),
+        ("Perceptron", {}),
+        ("Halved", {}),
+        ("Parametrized", {}),
+        ("LooksPlainly", EYES),
+    ],
+)
 def test_a_pack_of_known_layers_does_what_the_network_does(
-    tmp_path: pathlib.Path, lab: pathlib.Path, name: str, recurrent: bool
+    tmp_path: pathlib.Path, lab: pathlib.Path, name: str, settings: dict[str, Any]
 ) -> None:
-    saved, pack = saved_policy(named(lab, name), recurrent=recurrent), tmp_path / "own.pack"
+    saved, pack = saved_policy(named(lab, name), **settings), tmp_path / "own.pack"
     checkpoint.save_policy(saved, tmp_path / "own.pt")
     export.write(tmp_path / "own.pt", pack, network=f"{lab}:{name}")
-    seen = np.random.default_rng(1).normal(size=(5, 6)).astype(np.float32)
+    draws = np.random.default_rng(1)
+    seen = draws.normal(size=(5, 6)).astype(np.float32)
+    rgb = draws.integers(0, 256, (5, 36, 36, 3)).astype(np.uint8) if settings is EYES else None
     with torch.inference_mode():
         hidden = saved.policy.initial_hidden(5, torch.device("cpu"))
         starts = torch.ones(1, 5, dtype=torch.bool)
-        said = saved.policy.act(Inputs(torch.from_numpy(seen)[None]), hidden, starts)
-    played = galactic.LearnedPolicy(pack, 5, deterministic=True).act(seen)
+        colors = torch.from_numpy(rgb)[None] if rgb is not None else None
+        said = saved.policy.act(Inputs(torch.from_numpy(seen)[None], colors), hidden, starts)
+    played = galactic.LearnedPolicy(pack, 5, deterministic=True).act(seen, rgb=rgb)
     np.testing.assert_allclose(played, said.actions.mode()[0].numpy(), atol=1e-4)
 
 
 @pytest.mark.parametrize(
-    "name, message",
+    "name, settings, message",
     [
-        ("Sines", r"a policy pack has no layer for sin in forward\(\)"),
-        ("Branches", r"forward\(\) cannot be followed \(TraceError"),
+        ("Sines", {}, r"a policy pack has no layer for sin in forward\(\)"),
+        ("Branches", {}, r"forward\(\) cannot be followed \(TraceError"),
+        ("LooksTwice", {**EYES, "network_options": "doubled=True"}, "has no layer for Doubled"),
+        ("LooksTwice", {**EYES, "network_options": "doubled=False"}, "has no layer for Weighted"),
+        ("LooksBack", EYES, "has no layer for Backwards"),
+        ("InPlace", {}, r"relu in forward\(\) works in place on what is read elsewhere \(%relu"),
+        ("InPlaceToo", {}, "works in place on what is read elsewhere .*: leave inplace=True out"),
+        ("OfASlice", {}, "works in place on what is read elsewhere"),
+        ("BehindAView", {}, r"make other features than it \([0-9.]+ apart on made-up inputs\): write"),
+        ("WeightNormed", {}, r"layer \(Linear\) has hooks around its forward\(\), as torch.nn.utils.wei"),
+        ("Replaced", {}, r"layer \(Linear\) was given another forward\(\) than its class has"),
     ],
-)
+)  # fmt: skip
 def test_what_a_pack_does_not_know_is_refused(
-    tmp_path: pathlib.Path, lab: pathlib.Path, name: str, message: str
+    tmp_path: pathlib.Path, lab: pathlib.Path, name: str, settings: dict[str, Any], message: str
 ) -> None:
-    checkpoint.save_policy(saved_policy(named(lab, name)), tmp_path / "own.pt")
+    own = own_networks.with_options(named(lab, name), settings.get("network_options", ""))
+    checkpoint.save_policy(saved_policy(own, **settings), tmp_path / "own.pt")
     with pytest.raises(CheckpointError, match=message):
         export.write(tmp_path / "own.pt", tmp_path / "own.pack", network=f"{lab}:{name}")
     assert not (tmp_path / "own.pack").exists()
