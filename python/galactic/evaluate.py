@@ -184,6 +184,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     if options.video:
         pictures.require_video(options.video)
     saved = checkpoint.load_with(options.network, options.policy)
+    pack = dynamics.packed(options.policy, options.network) if options.dynamics else b""
     task = _task(options, saved.settings)
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
@@ -224,7 +225,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     is_told = put(sys.stdout, _text(summary))
     there = None
     if options.dynamics:
-        there = _play_there(options)
+        there = _play_there(options, pack)
         is_told &= put(sys.stdout, _text(dict(dynamics.told(there))))
     if options.report:
         contents = {
@@ -330,10 +331,11 @@ def _tell_what_is_left_out(homes: Homes) -> None:
         put(sys.stderr, f"galactic.evaluate: --dynamics: {message}\n")
 
 
-def _play_there(options: argparse.Namespace) -> dict[str, object]:
+def _play_there(options: argparse.Namespace, pack: bytes) -> dict[str, object]:
     return dynamics.play(
         dynamics.DynamicsRun(
             policy=options.policy,
+            pack=pack,
             world=options.world,
             recipe=options.dynamics,
             data=options.dynamics_data,

@@ -23,11 +23,12 @@ itself."""
 
 @dataclass(frozen=True)
 class DynamicsRun:
-    """What galactic-dynamics is asked for. `recipe`: what the world was baked from; `data`: where files of
+    """What galactic-dynamics is asked for. `pack`: what packed() made of the policy; `recipe`: what the world was baked from; `data`: where files of
     the recipe are that are not beside it; `episodes`: the first so many, 0 for all; `threads`: 0 for one
     per processor."""
 
     policy: pathlib.Path
+    pack: bytes
     world: pathlib.Path
     recipe: pathlib.Path
     data: Optional[pathlib.Path] = None
@@ -50,6 +51,14 @@ def require_tool() -> str:
     return found
 
 
+def packed(policy: pathlib.Path, network: Optional[str]) -> bytes:
+    """The policy pack that the tool plays. Raises what export.write() does, before anything is played."""
+    with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
+        pack = pathlib.Path(folder) / f"{policy.stem}.pack"
+        export.write(policy, pack, network=network)
+        return pack.read_bytes()
+
+
 def play(run: DynamicsRun) -> dict[str, Any]:
     """Plays each episode in both worlds; the report of galactic-dynamics. What the tool says goes to where
     this process says things. Raises galactic.Error where it fails, KeyboardInterrupt where it was
@@ -58,7 +67,7 @@ def play(run: DynamicsRun) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
         pack = pathlib.Path(folder) / f"{run.policy.stem}.pack"
         report = pathlib.Path(folder) / "report.json"
-        export.write(run.policy, pack)
+        pack.write_bytes(run.pack)
         command = [tool, str(run.recipe), str(run.world), "--policy", str(pack), "--arm", run.arm,
                    "--seed", str(run.seed), "--episodes", str(run.episodes),
                    "--threads", str(run.threads), "--report", str(report)]  # fmt: skip

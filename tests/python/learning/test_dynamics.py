@@ -42,13 +42,15 @@ def _tool(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Pa
     (folder / "galactic-dynamics.code").write_text("0", encoding="utf-8")
     monkeypatch.setenv("PATH", str(folder))
     monkeypatch.setattr(
-        dynamics.export, "write", lambda _, pack: pathlib.Path(pack).write_bytes(b"a pack")
+        dynamics.export,
+        "write",
+        lambda _, pack, network=None: pathlib.Path(pack).write_bytes(b"a pack"),
     )
     return tool
 
 
 def run_of(**changes: object) -> dynamics.DynamicsRun:
-    words: dict[str, object] = {"policy": pathlib.Path("best.pt"), "world": pathlib.Path("w.pack"),
+    words: dict[str, object] = {"policy": pathlib.Path("best.pt"), "pack": b"a pack", "world": pathlib.Path("w.pack"),
                                 "recipe": pathlib.Path("w.toml"), **changes}  # fmt: skip
     return dynamics.DynamicsRun(**words)  # type: ignore[arg-type]
 

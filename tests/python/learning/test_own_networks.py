@@ -12,7 +12,7 @@ import pytest
 import torch
 
 import galactic
-from galactic import export
+from galactic import evaluate, export
 from galactic.learning import checkpoint, own_code, own_networks
 from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.encoders import Inputs
@@ -422,6 +422,25 @@ def test_a_pack_has_no_memory_of_ones_own(tmp_path: pathlib.Path) -> None:
     checkpoint.save_policy(saved_policy(named(EXAMPLE, "Remembering")), tmp_path / "own.pt")
     with pytest.raises(CheckpointError, match="has a memory of its own, and .* with --recurrent"):
         export.write(tmp_path / "own.pt", tmp_path / "a.pack", network=f"{EXAMPLE}:Remembering")
+
+
+@pytest.mark.parametrize(
+    "name, code, message",
+    [
+        ("Sines", 3, "a policy pack has no layer for sin in forward()"),
+        ("Net", 2, "none.pack"),
+    ],
+)
+def test_what_dynamics_cannot_play_is_refused_before_a_world_is_opened(
+    tmp_path: pathlib.Path, lab: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: Any,
+    name: str, code: int, message: str
+) -> None:  # fmt: skip
+    """And the network that was named is the one that is exported."""
+    monkeypatch.setattr(evaluate.dynamics, "require_tool", lambda: "galactic-dynamics")
+    checkpoint.save_policy(saved_policy(named(lab, name)), tmp_path / "own.pt")
+    words = [str(tmp_path / "own.pt"), str(tmp_path / "none.pack"), "--dynamics", "none.toml"]
+    found, said = evaluate.main([*words, "--network", f"{lab}:{name}"]), capsys.readouterr().err
+    assert message in said and found == code, said
 
 
 @needs_worlds
