@@ -113,7 +113,8 @@ def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
         "shape": saved.shape._asdict(),
         "parts": [list(part) for part in saved.parts],
         "meanings": dict(saved.meanings),
-        "network_digest": saved.network.digest if saved.network else "",
+        # A module's versions are its own affair.
+        "network_digest": saved.network.digest if saved.network and saved.network.code.file else "",
         "steps": saved.steps,
         "success": saved.success,
     }
@@ -162,9 +163,9 @@ def _same_network(file: pathlib.Path, settings: Settings, digest: str,
         raise NetworkError(f"{learned}; {without or trusted}")
     if network.code.name != settings.network.rpartition(":")[2]:
         raise NetworkError(f"{learned}, found --network {network.code}; {without or trusted}")
-    if digest and network.digest and network.digest != digest:
+    if digest and network.digest != digest:
         raise NetworkError(
-            f"{learned}, and {network.code.file} is another file than it was then; put it back, or name the copy "
+            f"{learned}, and {network.code.place} is another file than it was then; put it back, or name the copy "
             "that a run keeps, network.py"
         )
     return with_options(network, settings.network_options)

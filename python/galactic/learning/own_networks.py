@@ -4,6 +4,7 @@ anything is learned."""
 from __future__ import annotations
 
 import hashlib
+import inspect
 import pathlib
 import traceback
 from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence
@@ -65,7 +66,7 @@ def seen_by(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, i
 
 class OwnNetwork(NamedTuple):
     """The class of a network, and what it is made with. `digest`: SHA-256 of its file, by which another one is
-    told apart; nothing for a module, whose versions are its own affair."""
+    told apart."""
 
     code: CodeName
     make_encoder: Callable[..., Encoder]
@@ -188,8 +189,16 @@ def network_of(code: CodeName, siblings: Optional[pathlib.Path] = None) -> OwnNe
     found = class_of(code, Encoder, BASE, siblings)
     if found.forward is Encoder.forward:
         raise NetworkError(f"--network: {code} has no forward(); write one, which returns features")
-    digest = hashlib.sha256(code.file.read_bytes()).hexdigest() if code.file else ""
-    return OwnNetwork(code, found, {}, digest)
+    return OwnNetwork(code, found, {}, _digest(code, found))
+
+
+def _digest(code: CodeName, found: type[Encoder]) -> str:
+    """SHA-256 of the file that was named, or that a module's class is from; nothing where no source is there."""
+    try:
+        file = code.file or pathlib.Path(inspect.getsourcefile(found) or "")
+        return hashlib.sha256(file.read_bytes()).hexdigest()
+    except (OSError, TypeError):
+        return ""
 
 
 def some_inputs(encoder: Encoder, seen: Seen, steps: int, envs: int) -> Inputs:

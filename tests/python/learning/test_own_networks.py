@@ -443,6 +443,19 @@ def test_what_dynamics_cannot_play_is_refused_before_a_world_is_opened(
     assert message in said and found == code, said
 
 
+def test_a_module_is_another_file_than_the_one_that_a_policy_learned_with(
+    tmp_path: pathlib.Path, lab: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checkpoint.save_policy(saved_policy(named(lab, "Net")), tmp_path / "own.pt")
+    (tmp_path / "own_module_a.py").write_text(WRONG, encoding="utf-8")
+    (tmp_path / "own_module_b.py").write_text(WRONG + "# changed\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    load = checkpoint.load_with
+    assert load("own_module_a:Net", tmp_path / "own.pt").network is not None
+    with pytest.raises(NetworkError, match="own_module_b is another file than it was then; put it"):
+        load("own_module_b:Net", tmp_path / "own.pt")
+
+
 @needs_worlds
 def test_programs_take_a_network_of_ones_own(tmp_path: pathlib.Path, lab: pathlib.Path) -> None:
     """It sees colors alone; it is trained, resumed, judged, exported, and shows others what to do."""
