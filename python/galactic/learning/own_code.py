@@ -139,7 +139,7 @@ def keywords_of(options: str, option: str) -> dict[str, Any]:
             raise SettingsError(f'{option}: found "{word}", expected NAME=VALUE')
         try:
             keywords[name] = ast.literal_eval(_WORDS.get(value.lower(), value))
-        except (ValueError, SyntaxError):
+        except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
             keywords[name] = value
     return keywords
 

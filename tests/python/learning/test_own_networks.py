@@ -456,6 +456,11 @@ def test_a_module_is_another_file_than_the_one_that_a_policy_learned_with(
         load("own_module_b:Net", tmp_path / "own.pt")
 
 
+@pytest.mark.parametrize("value", ["{[1]:2}", "(" * 300, "-" * 100_000 + "1"])
+def test_options_that_are_no_literal_are_text(value: str) -> None:
+    assert own_code.keywords_of(f"a={value}", "--network-options") == {"a": value}
+
+
 @needs_worlds
 def test_programs_take_a_network_of_ones_own(tmp_path: pathlib.Path, lab: pathlib.Path) -> None:
     """It sees colors alone; it is trained, resumed, judged, exported, and shows others what to do."""
