@@ -117,7 +117,9 @@ class Trainer:
         self._started = time.perf_counter()
         self._logged = (0.0, 0)
         self._interrupted = False
+        # What a signal has put off: a validation, and the end that a callback asked for behind it.
         self._must_validate = False
+        self._must_end = False
         # What the callback has said since the latest row.
         self._added: dict[str, float] = {}
 
@@ -177,12 +179,18 @@ class Trainer:
         end = settings.steps if pause_at is None else min(pause_at, settings.steps)
         with interrupts.handled(self._interrupt):
             if self._must_validate:
-                self._validate()
+                late = self._validate()
+                if self._calls_stop(VALIDATED, lambda: late) or self._must_end:
+                    end = self.steps
+                self._must_end = False
                 self._write_curves(is_last=True)
+                if self.steps >= end:
+                    self.save()
             while self.steps < end:
                 before = self.steps
                 losses, stop = self._iterate()
-                if self._calls_stop(UPDATE, lambda: self._values(losses)):
+                is_stopped = self._calls_stop(UPDATE, lambda: self._values(losses))
+                if is_stopped:
                     end = self.steps
                 if self._validates and self._is_due(settings.validate_every, before, end):
                     self._must_validate = True
@@ -191,6 +199,7 @@ class Trainer:
                     if self._calls_stop(VALIDATED, lambda: row):
                         end = self.steps
                 is_last = stop or self.steps >= end
+                self._must_end = self._must_validate and is_stopped
                 if is_last or self.seconds - self._logged[0] >= settings.log_every:
                     self._log(losses, is_last=is_last)
                 if stop or self._is_due(settings.checkpoint_every, before, end):
@@ -395,6 +404,7 @@ class Trainer:
             # paced rate, of processor time, of what a task says or of what a signal has put off.
             before: dict[str, Any] = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0}
             before |= {"measures": [], "logs": [], "must_validate": False, "added_columns": []}
+            before |= {"must_end": False}
             counters = {**before, **counters}
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
@@ -429,6 +439,7 @@ class Trainer:
         self.updates, self.best = counters["updates"], counters["best"]
         self.learner.rate.share = counters["rate_share"]
         self._must_validate = counters["must_validate"] and self._validates
+        self._must_end = counters["must_end"] and counters["must_validate"]
         # Checkpoints of before lack the columns that were added since.
         for row in counters["rows"]:
             if isinstance(row, list) and len(row) == _COLUMNS_OF_BEFORE:
@@ -469,6 +480,7 @@ class Trainer:
             "best": self.best,
             "rate_share": self.learner.rate.share,
             "must_validate": self._must_validate,
+            "must_end": self._must_end,
             "rows": self.curves.rows,
             "added_columns": self.curves.added,
             "waiting": self._waiting,
@@ -523,6 +535,7 @@ _COUNTERS = {
     "best": (float, int, type(None)),
     "rate_share": (float, int),
     "must_validate": bool,
+    "must_end": bool,
     "rows": list,
     "added_columns": list,
     "waiting": int,

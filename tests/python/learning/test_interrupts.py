@@ -12,6 +12,7 @@ from typing import Any, Callable
 import pytest
 import torch
 
+from galactic.learning.callbacks import Moment
 from galactic.learning.checkpoint import load_policy
 from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.networks import Policy
@@ -109,6 +110,38 @@ def test_a_validation_that_an_interrupt_puts_off_comes_first(
     report = json.loads((tmp_path / "cut" / "report.json").read_text(encoding="utf-8"))
     assert not report["must_validate"] and report["validation"]["success"] == 0.25 * len(whole)
     assert load_policy(tmp_path / "cut" / "best.pt").steps == steps
+
+
+def test_a_stop_that_an_interrupt_puts_off_comes_behind_its_validation(
+    tmp_path: pathlib.Path,
+) -> None:
+    """Of which the callback hears, too; the next part of the run goes on."""
+    settings = dataclasses.replace(SETTINGS, validate_every=4 * UPDATE)
+    done: list[torch.Tensor] = []
+    moments: list[tuple[str, float]] = []
+
+    def look(moment: Moment) -> None:
+        moments.append((moment.kind, moment.row["steps"] / UPDATE))
+        if moments[-1] == ("update", 2):
+            moment.stop("enough")
+
+    def part() -> Trainer:
+        trainer = make_trainer(tmp_path, settings, validation=validating(done))
+        trainer.callback = look
+        return trainer
+
+    cut = part()
+    signaled_in_the_second_update(cut, signal.SIGTERM)
+    cut.begin()
+    assert not cut.train() and done == [] and moments[-1] == ("end", 2)
+    moments.clear()
+    again = part()
+    again.resume()
+    assert again.train() and again.updates == 2 and len(done) == 1
+    assert moments == [("validation", 2), ("end", 2)]
+    third = part()
+    third.resume()
+    assert third.train() and third.steps == settings.steps
 
 
 def test_a_checkpoint_of_before_owes_no_validation(tmp_path: pathlib.Path) -> None:
