@@ -16,7 +16,7 @@ from galactic import interrupts
 from galactic.demonstrations import Demonstrations
 from galactic.errors import Error
 from galactic.learning import checkpoint
-from galactic.learning.callbacks import END, UPDATE, Callback, Moment
+from galactic.learning.callbacks import CALLBACK, END, UPDATE, Callback, Moment
 from galactic.learning.callbacks import VALIDATION as VALIDATED
 from galactic.learning.checkpoint import (
     CheckpointError,
@@ -116,6 +116,7 @@ class Trainer:
         self._processor_seconds_before = 0.0
         self._started = time.perf_counter()
         self._logged = (0.0, 0)
+        self._speed = 0.0
         self._interrupted = False
         # What a signal has put off: a validation, and the end that a callback asked for behind it.
         self._must_validate = False
@@ -207,6 +208,9 @@ class Trainer:
                 if stop:
                     break
             self._calls_stop(END, lambda: self._values({}))
+            if self._added:
+                self._add_row(self._values({}))
+                self._write_curves(is_last=True)
             self.progress.close()
             # Here, too, a signal that comes again is not to end it. It may have been cut off behind its last
             # checkpoint the time before.
@@ -298,11 +302,13 @@ class Trainer:
     def _values(self, losses: dict[str, float]) -> dict[str, float]:
         """A row of the curves."""
         seconds, steps = self._logged
+        if self.steps > steps:
+            self._speed = (self.steps - steps) / max(self.seconds - seconds, 1e-9)
         return {
             "steps": self.steps,
             "seconds": self.seconds,
             "updates": self.updates,
-            "sps": (self.steps - steps) / max(self.seconds - seconds, 1e-9),
+            "sps": self._speed,
             "episodes": self.recent().episodes,
             "learning_rate": self.learner.optimizer.learning_rate,
             **losses,
@@ -404,7 +410,7 @@ class Trainer:
             # paced rate, of processor time, of what a task says or of what a signal has put off.
             before: dict[str, Any] = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0}
             before |= {"measures": [], "logs": [], "must_validate": False, "added_columns": []}
-            before |= {"must_end": False}
+            before |= {"must_end": False, "added": {}}
             counters = {**before, **counters}
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
@@ -448,6 +454,10 @@ class Trainer:
         columns = (*columns_of(names), *map(str, counters["added_columns"]))
         rows = _rows(counters, "rows", len(columns), (float, int, type(None)))
         self.curves.take_up(rows, columns)
+        require_types(counters["added"], dict.fromkeys(counters["added"], (float, int)))
+        self._added = {
+            name: value for name, value in counters["added"].items() if name.startswith(CALLBACK)
+        }
         width = len(EpisodeSums().numbers(names))
         self._window.clear()
         for numbers in _rows(counters, "window", width, (float, int)):
@@ -483,6 +493,7 @@ class Trainer:
             "must_end": self._must_end,
             "rows": self.curves.rows,
             "added_columns": self.curves.added,
+            "added": self._added,
             "waiting": self._waiting,
             **self.names._asdict(),
             "window": [sums.numbers(self.names) for sums in self._window],
@@ -538,6 +549,7 @@ _COUNTERS = {
     "must_end": bool,
     "rows": list,
     "added_columns": list,
+    "added": dict,
     "waiting": int,
     "measures": list,
     "logs": list,

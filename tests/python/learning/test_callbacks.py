@@ -11,6 +11,7 @@ import pytest
 from galactic.learning import callbacks
 from galactic.learning.callbacks import Moment
 from galactic.learning.episode_sums import EpisodeSums
+from galactic.learning.reports.curves import read_curves
 from galactic.learning.settings import SettingsError
 from programs import SMALL, UPDATE as PROGRAM_UPDATE, WORLD, call, curve, needs_worlds
 from trainers import SETTINGS, UPDATE, make_trainer
@@ -79,6 +80,35 @@ def test_a_callback_adds_to_the_curves_and_ends_the_run(tmp_path: pathlib.Path) 
     assert found == [None, 1.0, None, 1.5, *[None] * (len(rows) - 4)] and len(rows) > 8
 
 
+def test_what_is_logged_at_the_end_has_a_row(tmp_path: pathlib.Path) -> None:
+    trainer = make_trainer(tmp_path, dataclasses.replace(SETTINGS, steps=2 * UPDATE))
+    trainer.callback = lambda moment: moment.kind == "end" and moment.log("last", 7.0)
+    trainer.begin()
+    assert trainer.train()
+    rows = read_curves(tmp_path / "curves.csv")
+    assert [row["callback_last"] for row in rows] == [None, None, 7.0]
+    assert rows[-1]["sps"] == rows[-2]["sps"] and rows[-1]["steps"] == 2 * UPDATE
+
+
+def test_what_no_row_has_yet_is_kept_in_a_checkpoint(tmp_path: pathlib.Path) -> None:
+    settings = dataclasses.replace(SETTINGS, log_every=1e9, checkpoint_every=UPDATE)
+    cut = make_trainer(tmp_path, settings)
+
+    def look(moment: Moment) -> None:
+        if moment.row["updates"] == 2:
+            raise KeyboardInterrupt
+        moment.log("first", 3.0)
+
+    cut.callback = look
+    cut.begin()
+    with pytest.raises(KeyboardInterrupt):
+        cut.train()
+    again = make_trainer(tmp_path, settings)
+    again.resume()
+    again.train()
+    assert [row["callback_first"] for row in curve_of(tmp_path)] == [3.0]
+
+
 def test_what_is_logged_is_a_number_with_a_name() -> None:
     moment = Moment("update", {}, None)  # type: ignore[arg-type]
     for name, value, message in (
@@ -117,4 +147,4 @@ def test_the_program_calls_back(tmp_path: pathlib.Path, lab: pathlib.Path) -> No
     done = call("train", WORLD, "-o", run, *options)
     assert done.returncode == 0 and "--callback: twice is enough" in done.stderr
     assert f"saved after {2 * PROGRAM_UPDATE} steps; go on" in done.stderr
-    assert [row["callback_count"] for row in curve(run)] == [1.0, 2.0]
+    assert [row["callback_count"] for row in curve(run)] == [1.0, 2.0, 2.0]  # the last at the end
