@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/bake_folder.h"
+#include "support/build_paths.h"
 #include "support/mesh_files.h"
 
 namespace galactic::bake_cli_test {
@@ -136,8 +137,8 @@ TEST_F(BakeCli, RefusesAConfigFileThatIsNone) {
 }
 
 TEST_F(BakeCli, TellsAFullDiskBehindItsOutput) {
-  const ProgramRun ended =
-      test::runProgram(GALACTIC_BAKE, path(""), {"room.obj", "--radii", "0.12"}, "/dev/full");
+  const ProgramRun ended = test::runProgram(test::builtProgram("galactic-bake"), path(""),
+                                            {"room.obj", "--radii", "0.12"}, "/dev/full");
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_THAT(ended.err, HasSubstr("galactic-bake: standard output: cannot be written"));
   EXPECT_TRUE(has("room.pack"));
@@ -145,16 +146,22 @@ TEST_F(BakeCli, TellsAFullDiskBehindItsOutput) {
 
 TEST_F(BakeCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
   for (const char* unheard : {"2>&-", "2>/dev/full"}) {
-    EXPECT_EQ(test::runRedirected(GALACTIC_BAKE, path(""), {"none.obj"}, unheard).exit_code, 2);
-    EXPECT_EQ(test::runRedirected(GALACTIC_BAKE, path(""), {"--nonsense"}, unheard).exit_code, 1);
+    EXPECT_EQ(
+        test::runRedirected(test::builtProgram("galactic-bake"), path(""), {"none.obj"}, unheard)
+            .exit_code,
+        2);
+    EXPECT_EQ(
+        test::runRedirected(test::builtProgram("galactic-bake"), path(""), {"--nonsense"}, unheard)
+            .exit_code,
+        1);
   }
 }
 
 TEST_F(BakeCli, BakesTheSameWithAllStandardStreamsClosed) {
   ASSERT_EQ(run({"room.obj", "--radii", "0.12", "-q", "-o", "heard.pack"}).exit_code, 0);
   const ProgramRun unheard = test::runRedirected(
-      GALACTIC_BAKE, path(""), {"room.obj", "--radii", "0.12", "-q", "-o", "unheard.pack"},
-      "<&- >&- 2>&-");
+      test::builtProgram("galactic-bake"), path(""),
+      {"room.obj", "--radii", "0.12", "-q", "-o", "unheard.pack"}, "<&- >&- 2>&-");
   EXPECT_EQ(unheard.exit_code, 0);
   EXPECT_EQ(test::fileContent(path("unheard.pack")), test::fileContent(path("heard.pack")));
 }

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/build_paths.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
@@ -18,7 +19,7 @@ class BakeFolder : public testing::Test {
     ASSERT_EQ(fileContent(folder_.write(name, content)), content);
   }
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
-    return runProgram(GALACTIC_BAKE, folder_.path(), std::move(arguments));
+    return runProgram(builtProgram("galactic-bake"), folder_.path(), std::move(arguments));
   }
   [[nodiscard]] bool has(const std::string& name) const {
     return std::filesystem::exists(folder_.path() / name);

@@ -16,8 +16,8 @@
 #include "galactic/episode_set.h"
 #include "galactic/pack.h"
 #include "galactic/world.h"
+#include "support/build_paths.h"
 #include "support/journal.h"
-#include "support/source_folder.h"
 
 namespace galactic::generation_cli_test {
 namespace {
@@ -72,7 +72,7 @@ class GenerationCli : public test::BakeFolder {
     return {(*copy)->records().begin(), (*copy)->records().end()};
   }
   [[nodiscard]] test::StartedProgram startDrawing(const std::vector<std::string>& more) const {
-    return {GALACTIC_BAKE, path(""), drawing(more)};
+    return {test::builtProgram("galactic-bake"), path(""), drawing(more)};
   }
 };
 
@@ -111,7 +111,7 @@ TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   // Under another name they are the same episodes.
   ASSERT_EQ(draw({"--seed", "7", "-o", "tidy.pack"}).exit_code, 0);
   EXPECT_FALSE(content("episodes.pack") == content("tidy.pack"));
-  EXPECT_EQ(test::runProgram(GALACTIC_PACK, path(""),
+  EXPECT_EQ(test::runProgram(test::builtProgram("galactic-pack"), path(""),
                              {"diff", "episodes.pack", "tidy.pack", "--content-only"})
                 .exit_code,
             0);

@@ -12,9 +12,9 @@
 #include "galactic/pack.h"
 #include "galactic/robot.h"
 #include "galactic/scene.h"
+#include "support/build_paths.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
-#include "support/source_folder.h"
 
 namespace galactic::golden_packs_test {
 namespace {
@@ -32,7 +32,8 @@ std::string bakeAgain(const std::vector<std::string>& inputs, std::vector<std::s
   }
   arguments.insert(arguments.begin(), inputs.front());
   arguments.insert(arguments.end(), {"-o", "again.pack"});
-  const test::ProgramRun run = test::runProgram(GALACTIC_BAKE, folder.path(), arguments);
+  const test::ProgramRun run =
+      test::runProgram(test::builtProgram("galactic-bake"), folder.path(), arguments);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   return test::fileContent(folder.path() / "again.pack");
 }

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "pack_tool/asset_packs.h"
+#include "support/build_paths.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/episode_pack_builder.h"
 #include "support/program_run.h"
@@ -40,7 +41,8 @@ class PackCli : public testing::Test {
   }
 
   ProgramRun run(std::vector<std::string> arguments) {
-    return test::runProgram(GALACTIC_PACK, folder_.path(), std::move(arguments));
+    return test::runProgram(test::builtProgram("galactic-pack"), folder_.path(),
+                            std::move(arguments));
   }
 
   void write(const std::string& name, std::string_view content) {
@@ -383,8 +385,8 @@ TEST_F(PackCli, InfoChecksAndComparesObjectsAndRobots) {
 TEST_F(PackCli, ReportsAFullDiskBehindStandardOutput) {
   const std::filesystem::path full = "/dev/full";
   if (!std::filesystem::exists(full)) GTEST_SKIP() << "this system has no /dev/full";
-  const ProgramRun result =
-      test::runProgram(GALACTIC_PACK, folder_.path(), {"info", "good.pack"}, full);
+  const ProgramRun result = test::runProgram(test::builtProgram("galactic-pack"), folder_.path(),
+                                             {"info", "good.pack"}, full);
   EXPECT_EQ(result.exit_code, kIo);
   EXPECT_THAT(result.err, HasSubstr("galactic-pack: standard output: cannot be written"));
 }

@@ -3,4 +3,3 @@ galactic_test(pack_cli_tests
   SOURCES pack_cli_test.cpp ${PROJECT_SOURCE_DIR}/tests/pack_tool/asset_packs.cpp
   LIBRARIES galactic_pack_verbs)
 add_dependencies(pack_cli_tests galactic-pack)
-target_compile_definitions(pack_cli_tests PRIVATE GALACTIC_PACK="$<TARGET_FILE:galactic-pack>")

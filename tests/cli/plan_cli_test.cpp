@@ -5,6 +5,7 @@
 #include "cli/plan_folder.h"
 #include "galactic/pack_reference.h"
 #include "galactic/world.h"
+#include "support/build_paths.h"
 #include "support/habitat_text.h"
 #include "support/recipe_text.h"
 
@@ -344,8 +345,8 @@ TEST_F(PlanCli, WritesNoPacksIntoTheFolderOfTheirInputs) {
   };
   const std::string scans = ", which is the folder of scans scans or inside it";
   // A folder that is not there yet, as its user names it who stands among the scans.
-  const ProgramRun inside =
-      test::runProgram(GALACTIC_BAKE, path("store"), {".", "--as", "dataset", "-o", "w.pack"});
+  const ProgramRun inside = test::runProgram(test::builtProgram("galactic-bake"), path("store"),
+                                             {".", "--as", "dataset", "-o", "w.pack"});
   EXPECT_EQ(inside.exit_code, 3);
   EXPECT_THAT(inside.err, HasSubstr("into w, which is the folder of scans . or inside it"));
   expectRefused({"scans", "--as", "dataset"},
@@ -370,7 +371,8 @@ TEST_F(PlanCli, WritesNoPacksIntoTheFolderOfTheirInputs) {
 
 TEST_F(PlanCli, ReportsTheSameOfPacksThatWereMadeBeforeAndNow) {
   const auto compared = [this] {
-    return test::runProgram(GALACTIC_PACK, path(""), {"diff", "golden.json", "report.json"});
+    return test::runProgram(test::builtProgram("galactic-pack"), path(""),
+                            {"diff", "golden.json", "report.json"});
   };
   ASSERT_EQ(bake("out").exit_code, 0);
   std::filesystem::rename(path("report.json"), path("golden.json"));
@@ -426,7 +428,7 @@ TEST_F(PlanCli, BakesTheWorldOfARecipe) {
   EXPECT_FALSE(with_task->withTask().task.drop_fails);
   const auto stepped = [this](std::vector<std::string> more) {
     more.insert(more.begin(), {"flat.pack", "--envs", "2", "--steps", "3", "--report", "run.json"});
-    const ProgramRun stepping = runProgram(GALACTIC_RUN, path(""), more);
+    const ProgramRun stepping = runProgram(test::builtProgram("galactic-run"), path(""), more);
     EXPECT_EQ(stepping.exit_code, 0) << stepping.err;
     return nlohmann::json::parse(content("run.json"), nullptr, false);
   };

@@ -11,6 +11,7 @@
 #include "cli/plan_folder.h"
 #include "galactic/error.h"
 #include "galactic/world.h"
+#include "support/build_paths.h"
 #include "support/recipe_text.h"
 
 namespace galactic::test::plan_episodes_cli_test {
@@ -149,7 +150,7 @@ TEST_F(PlanEpisodes, StopBetweenBatchesAndGoOnLater) {
                                     "1",  "--report", "report.json"};
   };
   ASSERT_EQ(run(words("whole.toml")).exit_code, 0);
-  const StartedProgram program{GALACTIC_BAKE, path(""), words("some.toml")};
+  const StartedProgram program{builtProgram("galactic-bake"), path(""), words("some.toml")};
   const auto has_drawn = [&] {
     std::error_code none;
     constexpr std::uintmax_t kBatch = 4000;

@@ -12,6 +12,7 @@
 
 #include "cli/plan_folder.h"
 #include "galactic/error.h"
+#include "support/build_paths.h"
 #include "support/mesh_files.h"
 #include "support/part_files.h"
 #include "support/recipe_text.h"
@@ -32,7 +33,7 @@ class PlanFaults : public PlanFolder {
  protected:
   [[nodiscard]] StartedProgram start(const std::string& out,
                                      const std::vector<std::string>& more) const {
-    return {GALACTIC_BAKE, path(""), datasetArguments(out, more)};
+    return {builtProgram("galactic-bake"), path(""), datasetArguments(out, more)};
   }
   [[nodiscard]] ProgramRun shell(const std::string& script) const {
     return runProgram("/bin/sh", path(""), {"-c", script});
@@ -125,7 +126,7 @@ TEST_F(PlanFaults, WhereFilesMayNotGrowSaysSoAndLeavesOldPacksAsTheyWere) {
   ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
   const PackContents before = packsIn("out");
   addScene("c", "flat", thing("mug", 3));
-  std::string line = "ulimit -f 4; exec \"" GALACTIC_BAKE "\"";
+  std::string line = "ulimit -f 4; exec \"" + builtProgram("galactic-bake") + "\"";
   for (const std::string& word : datasetArguments("out", {"--scenes", "c"})) line += " " + word;
   const ProgramRun limited = shell(line);
   EXPECT_EQ(limited.exit_code, 2) << limited.err;
@@ -135,7 +136,8 @@ TEST_F(PlanFaults, WhereFilesMayNotGrowSaysSoAndLeavesOldPacksAsTheyWere) {
   EXPECT_THAT(partsBelow(path("out")), IsEmpty());
   // One pack alone, too.
   const std::string mesh = path("data/meshes/apartment.glb").string();
-  const std::string alone = "\"" GALACTIC_BAKE "\" --check-columns 0 " + mesh + " -o one.pack";
+  const std::string alone =
+      "\"" + builtProgram("galactic-bake") + "\" --check-columns 0 " + mesh + " -o one.pack";
   ASSERT_EQ(shell("exec " + alone + " --radii 0.05").exit_code, 0);
   const std::string one = content("one.pack");
   const ProgramRun refused = shell("ulimit -f 4; exec " + alone + " --radii 0.12");
@@ -245,7 +247,8 @@ TEST_F(PlanFaults, FinishesWhatAReaderIsAtWhenItsWholeGroupIsToldToEnd) {
 
   WithheldFile materials(path("data/meshes/crate.mtl"));
   if (!materials.isHeld()) GTEST_SKIP() << "the file system has no leases";
-  const StartedProgram program(GALACTIC_BAKE, path(""), arguments("out"), {}, ProgramGroup::kOwn);
+  const StartedProgram program(builtProgram("galactic-bake"), path(""), arguments("out"), {},
+                               ProgramGroup::kOwn);
   waitFor([&] { return materials.isWaitedFor(); });
   const std::vector<pid_t> readers = childrenOf(program.id());
   program.signalGroup(SIGINT);
@@ -290,7 +293,7 @@ exit $code
 TEST_F(PlanFaults, OnAFullDiskSaysSoAndLeavesOldPacksAsTheyWere) {
   addScene("changed", "flat", thing("mug", 3));
   fs::rename(path("data/scenes/changed.scene_instance.json"), path("changed.json"));
-  std::string bake = "BAKE=\"" GALACTIC_BAKE;
+  std::string bake = "BAKE=\"" + builtProgram("galactic-bake");
   std::vector<std::string> words = datasetArguments("full", {"--scenes", "c", "-o"});
   words.erase(words.begin() + 1, words.begin() + 3);
   for (const std::string& word : words) bake += " " + word;
@@ -561,7 +564,7 @@ TEST_F(PlanFaults, SaysWhichSharedTexturesAPictureLacks) {
       {"export", scene, "-o", "c.glb"},
       {"report", "out/home.pack", scene, "-o", "r.html"}};
   const auto drawn = [this](const std::vector<std::string>& arguments) {
-    const ProgramRun result = runProgram(GALACTIC_PACK, path(""), arguments);
+    const ProgramRun result = runProgram(builtProgram("galactic-pack"), path(""), arguments);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_TRUE(has(arguments.back()));
     return result.err;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli/bake_folder.h"
-#include "support/source_folder.h"
+#include "support/build_paths.h"
 
 namespace galactic::test {
 

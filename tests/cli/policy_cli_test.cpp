@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/build_paths.h"
 #include "support/homes/policy_networks.h"
 #include "support/homes/small_home_models.h"
 #include "support/program_run.h"
@@ -65,7 +66,8 @@ class PolicyCli : public testing::Test {
     ASSERT_TRUE(written.has_value()) << written.error().text();
   }
   [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
-    return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+    return test::runProgram(test::builtProgram("galactic-run"), folder_.path(),
+                            std::move(arguments));
   }
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
     const std::vector<std::string> first{"world.pack", "--envs", "5", "--steps", "20"};

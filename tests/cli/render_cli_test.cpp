@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "galactic/error.h"
+#include "support/build_paths.h"
 #include "support/homes/small_home_models.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
@@ -42,7 +43,8 @@ class RenderCli : public testing::Test {
   }
 
   [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
-    return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+    return test::runProgram(test::builtProgram("galactic-run"), folder_.path(),
+                            std::move(arguments));
   }
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
     const std::vector<std::string> first{"world.pack", "--backend", "soft", "--envs",
@@ -402,7 +404,7 @@ TEST_F(RenderCli, ARunThatIsStoppedFinishesItsPictures) {
                                               "-s",
                                               "INT",
                                               "2",
-                                              GALACTIC_RUN,
+                                              test::builtProgram("galactic-run"),
                                               "world.pack",
                                               "--backend",
                                               "soft",
@@ -435,7 +437,7 @@ TEST_F(RenderCli, ASecondSignalEndsARunAtOnceThatHasMuchToFinish) {
   const std::string before = std::getenv("PATH");
   ::setenv("PATH", ((folder_.path() / "bin").string() + ":" + before).c_str(), 1);
   const test::StartedProgram started(
-      GALACTIC_RUN, folder_.path(),
+      test::builtProgram("galactic-run"), folder_.path(),
       {"world.pack", "--backend", "soft", "--envs", "1", "--steps", "1000000000", "--render", "rgb",
        "--size", "16", "--video", "run.mp4", "--record", "run.rec"});
   ::setenv("PATH", before.c_str(), 1);

@@ -8,6 +8,7 @@
 
 #include "cli/bake_folder.h"
 #include "galactic/error.h"
+#include "support/build_paths.h"
 #include "support/episode_set_text.h"
 
 namespace galactic::report_diff_cli_test {
@@ -33,7 +34,7 @@ class ReportDiff : public test::BakeFolder {
 
   [[nodiscard]] ProgramRun diff(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "diff");
-    return test::runProgram(GALACTIC_PACK, path(""), std::move(arguments));
+    return test::runProgram(test::builtProgram("galactic-pack"), path(""), std::move(arguments));
   }
 
   /// Compares the report with a golden one that is it after a change.

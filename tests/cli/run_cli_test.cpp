@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/build_paths.h"
 #include "support/packs/scene_pack_builder.h"
 #include "support/packs/texture_pack_builder.h"
 #include "support/packs/world_pack_builder.h"
@@ -38,7 +39,8 @@ class RunCli : public testing::Test {
     ASSERT_EQ(test::fileContent(folder_.write(name, content)), content);
   }
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
-    return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+    return test::runProgram(test::builtProgram("galactic-run"), folder_.path(),
+                            std::move(arguments));
   }
 
   test::ScratchFolder folder_;
@@ -77,7 +79,9 @@ TEST_F(RunCli, NamesTheNearestOptionWhereThePackWasForgottenToo) {
 TEST_F(RunCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
   for (const char* unheard : {"2>&-", "2>/dev/full"}) {
     const auto exit_code = [&](const char* argument) {
-      return test::runRedirected(GALACTIC_RUN, folder_.path(), {argument}, unheard).exit_code;
+      return test::runRedirected(test::builtProgram("galactic-run"), folder_.path(), {argument},
+                                 unheard)
+          .exit_code;
     };
     EXPECT_EQ(exit_code("text.pack"), 3) << unheard;
     EXPECT_EQ(exit_code("--nonsense"), 1) << unheard;

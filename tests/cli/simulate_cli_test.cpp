@@ -15,6 +15,7 @@
 
 #include "galactic/error.h"
 #include "run/recording.h"
+#include "support/build_paths.h"
 #include "support/homes/small_home.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
@@ -38,7 +39,8 @@ class SimulateCli : public testing::Test {
     ASSERT_TRUE(std::filesystem::exists(test::writeWorld(folder_, world)));
   }
   [[nodiscard]] ProgramRun runBare(std::vector<std::string> arguments) const {
-    return test::runProgram(GALACTIC_RUN, folder_.path(), std::move(arguments));
+    return test::runProgram(test::builtProgram("galactic-run"), folder_.path(),
+                            std::move(arguments));
   }
   /// Until a run that was started has tried its files, which are empty then, and records.
   void waitForRecording() const {
@@ -563,7 +565,7 @@ TEST_F(SimulateCli, KeepsTheRecordingWhereAnotherFileCannotBeWritten) {
   const std::filesystem::path pages = folder_.path() / "pages";
   std::filesystem::create_directory(pages);
   const test::StartedProgram started(
-      GALACTIC_RUN, folder_.path(),
+      test::builtProgram("galactic-run"), folder_.path(),
       {"world.pack", "--envs", "1", "--steps", "1000000", "--threads", "1", "--record", "run.rec",
        "--view", "pages/run.html", "--view-envs", "1"});
   waitForRecording();
@@ -579,9 +581,9 @@ TEST_F(SimulateCli, KeepsTheRestOfARunWhoseRecordingFillsTheDisk) {
   // A limit of 256 blocks of 512 bytes for each file, which only the recording reaches.
   const ProgramRun result = test::runProgram(
       "/bin/sh", folder_.path(),
-      {"-c", "trap '' XFSZ; ulimit -f 256; exec \"$0\" \"$@\"", GALACTIC_RUN, "world.pack",
-       "--envs", "8", "--steps", "100000", "--threads", "1", "--record", "run.rec", "--report",
-       "report.json", "--animation", "run.glb"});
+      {"-c", "trap '' XFSZ; ulimit -f 256; exec \"$0\" \"$@\"", test::builtProgram("galactic-run"),
+       "world.pack", "--envs", "8", "--steps", "100000", "--threads", "1", "--record", "run.rec",
+       "--report", "report.json", "--animation", "run.glb"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err,
             "galactic-run: run.rec: cannot write the file: File too large; an existing "
@@ -599,10 +601,11 @@ TEST_F(SimulateCli, KeepsTheRestOfARunWhoseRecordingFillsTheDisk) {
 
 TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
   // timeout sends what Ctrl-C does; the run itself would take days.
-  const ProgramRun result = test::runProgram(
-      "/usr/bin/timeout", folder_.path(),
-      {"--foreground", "--preserve-status", "--signal=INT", "2", GALACTIC_RUN, "world.pack",
-       "--envs", "8", "--steps", "100000000000", "--threads", "2", "--record", "run.rec"});
+  const ProgramRun result =
+      test::runProgram("/usr/bin/timeout", folder_.path(),
+                       {"--foreground", "--preserve-status", "--signal=INT", "2",
+                        test::builtProgram("galactic-run"), "world.pack", "--envs", "8", "--steps",
+                        "100000000000", "--threads", "2", "--record", "run.rec"});
   EXPECT_EQ(result.exit_code, kExitInterrupted) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("8 envs, "), HasSubstr("(stopped; 100000000000 steps"),
                                 HasSubstr("\n  stepping ")));

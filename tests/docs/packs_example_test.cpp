@@ -9,7 +9,7 @@
 
 #include "galactic/bake/columns.h"
 #include "layout/column_cell.h"
-#include "support/source_folder.h"
+#include "support/build_paths.h"
 
 namespace galactic::bake::packs_example_test {
 namespace {

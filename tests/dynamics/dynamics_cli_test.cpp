@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "galactic/error.h"
+#include "support/build_paths.h"
 #include "support/journal.h"
 #include "support/mesh_files.h"
 #include "support/program_run.h"
 #include "support/recipe_text.h"
 #include "support/scratch_folder.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::dynamics_cli_test {
 namespace {
@@ -42,9 +42,9 @@ class DynamicsCli : public testing::Test {
     ASSERT_TRUE(std::filesystem::exists(folder_->write("home.toml", recipe)));
     const std::string data = (sourceFolder() / "packs/sample").string();
     const ProgramRun baked =
-        runProgram(GALACTIC_BAKE, folder_->path(), {"home.toml", "--data", data});
+        runProgram(builtProgram("galactic-bake"), folder_->path(), {"home.toml", "--data", data});
     ASSERT_EQ(baked.exit_code, 0) << baked.err;
-    const ProgramRun ran = runProgram(GALACTIC_RUN, folder_->path(),
+    const ProgramRun ran = runProgram(builtProgram("galactic-run"), folder_->path(),
                                       {"home.pack", "--policy", "scripted", "--order", "partition",
                                        "--envs", "6", "--steps", "400", "--record", "home.rec"});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
@@ -58,9 +58,9 @@ class DynamicsCli : public testing::Test {
     std::filesystem::copy(sample(), path(name), std::filesystem::copy_options::recursive);
     return name;
   }
-  [[nodiscard]] static ProgramRun run(std::vector<std::string> more,
-                                      const std::string& data = sample(),
-                                      const std::string& program = GALACTIC_DYNAMICS) {
+  [[nodiscard]] static ProgramRun run(
+      std::vector<std::string> more, const std::string& data = sample(),
+      const std::string& program = builtProgram("galactic-dynamics")) {
     std::vector<std::string> arguments{"home.toml", "home.pack", "--data", data};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(program, folder_->path(), arguments);
@@ -72,10 +72,10 @@ class DynamicsCli : public testing::Test {
         "\"$@\" & tool=$!\n"
         "until grep -q number $report.partial 2> /dev/null; do :; done\n"
         "kill -TERM $tool; wait $tool";
-    return runProgram(
-        "/usr/bin/env", folder_->path(),
-        {"report=" + report, "sh", "-c", script, "sh", GALACTIC_DYNAMICS, "home.toml", "home.pack",
-         "--data", data, "--policy", "scripted", "--report", report, "-j", "1"});
+    return runProgram("/usr/bin/env", folder_->path(),
+                      {"report=" + report, "sh", "-c", script, "sh",
+                       builtProgram("galactic-dynamics"), "home.toml", "home.pack", "--data", data,
+                       "--policy", "scripted", "--report", report, "-j", "1"});
   }
   [[nodiscard]] static std::filesystem::path path(const std::string& name) {
     return folder_->path() / name;
@@ -193,7 +193,7 @@ TEST_F(DynamicsCli, BeginsAgainWhereItsSourcesAreOthers) {
     EXPECT_EQ(interrupted("changed.json", data).exit_code, kExitInterrupted);
     changeFirstRecord(path("changed.json.partial"), markRecord);
   };
-  const auto isMarked = [&](const std::string& program = GALACTIC_DYNAMICS) {
+  const auto isMarked = [&](const std::string& program = builtProgram("galactic-dynamics")) {
     const ProgramRun done =
         run({"--policy", "scripted", "--report", "changed.json"}, data, program);
     EXPECT_EQ(done.exit_code, 0) << done.err;
@@ -221,7 +221,7 @@ TEST_F(DynamicsCli, BeginsAgainWhereItsSourcesAreOthers) {
   // What follows a program in its file changes nothing but its content.
   interrupt();
   const std::string program = path("another-build").string();
-  std::filesystem::copy_file(GALACTIC_DYNAMICS, program);
+  std::filesystem::copy_file(builtProgram("galactic-dynamics"), program);
   append(program, "changed");
   EXPECT_FALSE(isMarked(program)) << "the program is another";
 }
@@ -369,13 +369,14 @@ TEST_F(DynamicsCli, PlaysAWorldWhoseNoiseOfMotionIsSwitchedOff) {
   std::ofstream(path("noisy.toml"))
       << fileContent(path("home.toml")) << "[task]\nmotion-noise = 0.1\nmotion-bias = 0.05\n";
   const std::filesystem::path folder = path("").parent_path();
-  const ProgramRun baked = runProgram(GALACTIC_BAKE, folder, {"noisy.toml", "--data", sample()});
+  const ProgramRun baked =
+      runProgram(builtProgram("galactic-bake"), folder, {"noisy.toml", "--data", sample()});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   const auto play = [&](const std::string& name, const std::vector<std::string>& more) {
     std::vector<std::string> words{name + ".toml", name + ".pack", "--data",     sample(),
                                    "--policy",     "scripted",     "--episodes", "1"};
     words.insert(words.end(), more.begin(), more.end());
-    return runProgram(GALACTIC_DYNAMICS, folder, words);
+    return runProgram(builtProgram("galactic-dynamics"), folder, words);
   };
   EXPECT_EQ(play("noisy", {}).exit_code, 5);
   EXPECT_EQ(play("noisy", {"--set", "motion-noise=0"}).exit_code, 5);
@@ -411,7 +412,8 @@ TEST_F(DynamicsCli, ReplacesNothingThatIsReadOrWritten) {
     std::vector<std::string> arguments{"home.toml", "home.pack", "--data", "sources",
                                        "--policy",  "scripted",  "-q"};
     arguments.insert(arguments.end(), words.begin(), words.end());
-    const ProgramRun done = runProgram(GALACTIC_DYNAMICS, path("").parent_path(), arguments);
+    const ProgramRun done =
+        runProgram(builtProgram("galactic-dynamics"), path("").parent_path(), arguments);
     EXPECT_EQ(done.exit_code, kInvalid) << words.back();
     EXPECT_THAT(done.err, HasSubstr(message)) << words.back();
   }
@@ -423,8 +425,8 @@ TEST_F(DynamicsCli, ReplacesNothingThatIsReadOrWritten) {
 
 TEST_F(DynamicsCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
   for (const char* unheard : {"2>&-", "2>/dev/full"}) {
-    const ProgramRun done =
-        runRedirected(GALACTIC_DYNAMICS, path("").parent_path(), {"--nonsense"}, unheard);
+    const ProgramRun done = runRedirected(builtProgram("galactic-dynamics"), path("").parent_path(),
+                                          {"--nonsense"}, unheard);
     EXPECT_EQ(done.exit_code, kUsage) << unheard;
   }
 }
@@ -473,7 +475,7 @@ TEST_F(DynamicsCli, GroupsWarningsAndReportsAllOfThem) {
 }
 
 TEST_F(DynamicsCli, NamesTheOptionThatTellsWhereFilesAre) {
-  const ProgramRun done = runProgram(GALACTIC_DYNAMICS, path("").parent_path(),
+  const ProgramRun done = runProgram(builtProgram("galactic-dynamics"), path("").parent_path(),
                                      {"home.toml", "home.pack", "--policy", "scripted"});
   EXPECT_EQ(done.exit_code, 2);
   EXPECT_THAT(done.err, HasSubstr("or tell with --data where the files are"));

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "support/build_paths.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::ci_job_test {
 namespace {
@@ -24,7 +24,7 @@ class CiJob : public testing::Test {
   /// Runs the script with what env(1) takes before it.
   [[nodiscard]] ProgramRun run(std::vector<std::string> arguments) const {
     const fs::path script = test::sourceFolder() / "examples/ci/check_packs.sh";
-    std::vector<std::string> line{std::string("GALACTIC_BIN=") + GALACTIC_BIN,
+    std::vector<std::string> line{"GALACTIC_BIN=" + programFolder().string(),
                                   "GOLDEN=" + golden_.string(), "bash", script.string()};
     line.insert(line.end(), arguments.begin(), arguments.end());
     return runProgram("/usr/bin/env", folder_.path(), std::move(line));

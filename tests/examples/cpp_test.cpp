@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "support/build_paths.h"
 #include "support/homes/policy_networks.h"
 #include "support/homes/small_home_models.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::cpp_test {
 namespace {
@@ -37,7 +37,7 @@ class CppExamples : public testing::Test {
   void SetUp() override { world_ = writeWorld(folder_, smallHomeWorldWithModels()); }
 
   [[nodiscard]] ProgramRun run(const std::string& name, std::vector<std::string> arguments) const {
-    return runProgram(std::string(GALACTIC_BIN) + "/" + name, folder_.path(), std::move(arguments));
+    return runProgram(builtProgram(name), folder_.path(), std::move(arguments));
   }
   /// What a program says that ends well.
   [[nodiscard]] std::string said(const std::string& name,

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "support/source_folder.h"
+#include "support/build_paths.h"
 
 namespace galactic::test {
 

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "galactic/bake/assets.h"
+#include "support/build_paths.h"
 #include "support/journal.h"
 #include "support/mesh_files.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::object_journal_test {
 namespace {

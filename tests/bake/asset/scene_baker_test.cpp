@@ -12,9 +12,9 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "support/asset_mesh.h"
+#include "support/build_paths.h"
 #include "support/scene_meshes.h"
 #include "support/source_asset.h"
-#include "support/source_folder.h"
 
 namespace galactic::bake::scene_baker_test {
 namespace {

@@ -15,7 +15,7 @@
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/urdf_import.h"
 #include "support/assets.h"
-#include "support/source_folder.h"
+#include "support/build_paths.h"
 
 namespace galactic::test::recipe_draft_test {
 namespace {

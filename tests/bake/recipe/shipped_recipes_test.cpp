@@ -8,7 +8,7 @@
 #include "galactic/bake/urdf_import.h"
 #include "recipe/collection_import.h"
 #include "support/asset_mesh.h"
-#include "support/source_folder.h"
+#include "support/build_paths.h"
 
 namespace galactic::test::shipped_recipes_test {
 namespace {

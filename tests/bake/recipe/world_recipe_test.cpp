@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/build_paths.h"
 #include "support/scratch_folder.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::world_recipe_test {
 namespace {

@@ -11,8 +11,8 @@
 #include "engines/triangle_rays.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "support/build_paths.h"
 #include "support/homes/sample_world.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::camera_sight_test {
 namespace {

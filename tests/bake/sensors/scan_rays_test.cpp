@@ -13,8 +13,8 @@
 #include "galactic/ray_caster.h"
 #include "sensors/scan_kernels.h"
 #include "sensors/scan_plane.h"
+#include "support/build_paths.h"
 #include "support/homes/sample_world.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::scan_rays_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "penetration_run.h"
 #include "support/asset_mesh.h"
-#include "support/source_folder.h"
+#include "support/build_paths.h"
 
 namespace galactic::test::bullet_penetration_test {
 namespace {

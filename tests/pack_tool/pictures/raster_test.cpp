@@ -22,7 +22,7 @@
 #include "pack_tool/pictures/mesh_raster.h"
 #include "pictures/drawing.h"
 #include "pictures/palette.h"
-#include "support/source_folder.h"
+#include "support/build_paths.h"
 
 namespace galactic::pictures::raster_test {
 namespace {

@@ -13,10 +13,10 @@
 #include "pack_tool/describe/pack_description.h"
 #include "pack_tool/support/xml_text.h"
 #include "pack_tool/verbs/verbs.h"
+#include "support/build_paths.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/world_pack_builder.h"
 #include "support/program_run.h"
-#include "support/source_folder.h"
 
 namespace galactic::pack_tool::check_test {
 namespace {

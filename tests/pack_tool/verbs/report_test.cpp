@@ -10,10 +10,10 @@
 
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/verbs/verbs.h"
+#include "support/build_paths.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/texture_pack_builder.h"
 #include "support/packs/world_pack_builder.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::report_test {
 namespace {

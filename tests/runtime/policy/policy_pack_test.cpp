@@ -9,10 +9,10 @@
 
 #include "galactic/schema/pack_generated.h"
 #include "galactic/world.h"
+#include "support/build_paths.h"
 #include "support/packs/policy_pack_builder.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::policy_pack_test {
 namespace {

@@ -16,9 +16,9 @@
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "support/aligned_bytes.h"
+#include "support/build_paths.h"
 #include "support/packs/pack_parts.h"
 #include "support/packs/scene_pack_builder.h"
-#include "support/source_folder.h"
 
 namespace galactic::test {
 

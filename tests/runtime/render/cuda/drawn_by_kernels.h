@@ -9,6 +9,7 @@
 #include "render/cuda/cuda_engine.h"
 #include "render/cuda/kernel_image.h"
 #include "standin.h"
+#include "support/build_paths.h"
 #include "support/render_images.h"
 
 namespace galactic::test {
@@ -19,7 +20,7 @@ inline bool hasKernels() { return render::cuda::kernelImage() != nullptr; }
 /// The stand-in's state, reset.
 inline Standin& resetStandin() {
   using Get = Standin* (*)();
-  void* const library = dlopen(GALACTIC_CUDA_STANDIN, RTLD_NOW);
+  void* const library = dlopen(cudaStandIn().c_str(), RTLD_NOW);
   if (library == nullptr) throw std::runtime_error(dlerror());
   const auto get = reinterpret_cast<Get>(dlsym(library, "galactic_standin"));
   Standin& standin = *get();
@@ -37,8 +38,8 @@ inline Standin& resetStandin() {
 inline Result<std::unique_ptr<render::cuda::CudaEngine>> makeEngine(
     const RenderLibrary& library, const RenderOptions& options,
     std::size_t slice_bytes = 1U << 30U) {
-  return render::cuda::CudaEngine::make(
-      library, options, {.library = GALACTIC_CUDA_STANDIN, .slice_bytes = slice_bytes});
+  return render::cuda::CudaEngine::make(library, options,
+                                        {.library = cudaStandIn(), .slice_bytes = slice_bytes});
 }
 
 /// What the kernels draw, run on the processor.

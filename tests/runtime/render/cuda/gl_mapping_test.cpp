@@ -10,6 +10,7 @@
 
 #include "drawn_by_kernels.h"
 #include "runtime/render/gl_scene.h"
+#include "support/build_paths.h"
 
 namespace galactic::test::gl_mapping_test {
 namespace {
@@ -24,7 +25,7 @@ class GlMapping : public testing::Test {
   void SetUp() override {
     GALACTIC_SKIP_WITHOUT_GL();
     standin_ = &resetStandin();
-    auto driver = Driver::open(GALACTIC_CUDA_STANDIN);
+    auto driver = Driver::open(cudaStandIn());
     ASSERT_TRUE(driver) << driver.error().message;
     driver_ = std::move(*driver);
     auto device = Device::choose(*driver_, "");

@@ -14,11 +14,11 @@
 #include <string>
 
 #include "motion_batch.h"
+#include "support/build_paths.h"
 #include "support/homes/box_world.h"
 #include "support/homes/random_robot.h"
 #include "support/processor.h"
 #include "support/sanitized.h"
-#include "support/source_folder.h"
 
 namespace galactic::test::motion_bodies_test {
 namespace {
