@@ -1,5 +1,6 @@
-# Precompiled headers are for speed alone: every file includes what it uses, which the preset `clang`
-# checks by building without them.
+# Precompiled headers are for speed alone: every file includes what it uses, which presets with Clang check by building
+# without them. There, they save little, and they hold the folder of the checkout, so that others find nothing that was
+# compiled with them in the compiler's cache.
 option(GALACTIC_PRECOMPILE "Precompile the third-party headers that most files include" ON)
 
 # galactic_precompile(TARGET HEADERS...): TARGET reads HEADERS precompiled. Not for files compiled for

@@ -1,9 +1,9 @@
 # Profile-guided optimization, with Clang (scripts/build_pgo.sh goes through the steps): programs of a build with
-# GALACTIC_PGO=record count which code runs how often, and the next build lays its code out by what was merged of
-# these counts. Code that was built for the record and did not run counts as cold: a record is to do all that has
-# to be fast.
+# GALACTIC_PGO=record count which code runs how often, into the files that LLVM_PROFILE_FILE names, and the next build lays
+# its code out by what was merged of these counts. Code that was built for the record and did not run counts as cold: a
+# record is to do all that has to be fast.
 set(GALACTIC_PGO "" CACHE STRING
-  "record (have programs count what they run, in FOLDER/profile), or the merged profile to optimize by (.profdata)")
+  "record (have programs count what they run), or the merged profile to optimize by (.profdata)")
 if(NOT GALACTIC_PGO)
   return()
 endif()
@@ -13,8 +13,8 @@ if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
 endif()
 
 if(GALACTIC_PGO STREQUAL "record")
-  add_compile_options(-fprofile-generate=${PROJECT_BINARY_DIR}/profile)
-  add_link_options(-fprofile-generate=${PROJECT_BINARY_DIR}/profile)
+  add_compile_options(-fprofile-generate)
+  add_link_options(-fprofile-generate)
 else()
   get_filename_component(profile ${GALACTIC_PGO} ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
   if(NOT EXISTS ${profile} OR IS_DIRECTORY ${profile})
@@ -30,8 +30,13 @@ else()
     file(REMOVE ${earlier})
   endif()
   file(COPY_FILE ${profile} ${PROJECT_BINARY_DIR}/${hash}.profdata ONLY_IF_DIFFERENT)
+  # Ninja compiles in the build's folder: by a name alone, checkouts share what they compile.
+  set(copy ${PROJECT_BINARY_DIR}/${hash}.profdata)
+  if(CMAKE_GENERATOR STREQUAL "Ninja")
+    set(copy ${hash}.profdata)
+  endif()
   # Sources that changed since the record are compiled without it.
-  add_compile_options(-fprofile-use=${PROJECT_BINARY_DIR}/${hash}.profdata
+  add_compile_options(-fprofile-use=${copy}
     -Wno-profile-instr-unprofiled -Wno-profile-instr-out-of-date -Wno-backend-plugin)
   # Programs share what the linker compiles of the library.
   if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)

@@ -3,7 +3,9 @@
 # targets of them, optimized by what they do when they step, draw and sense the sample world, or WORLD. Works from any
 # folder. With Clang 19, whose packages it installs.
 #
-# Builds twice, one and two minutes on two cores: programs that record, which play the world, then those to use.
+# Builds twice, one and two minutes on two cores: programs that record, which play the world, then those to use. What the
+# same programs recorded in the same world is taken from the user's cache: another record would count a little otherwise,
+# and everything would be compiled anew by it.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/phases.sh"
 world=$(realpath -m -- "${1:-$galactic_root/build/release/sample/world.pack}")
@@ -14,6 +16,9 @@ cd "$galactic_root"
 recorder=build/pgo-record
 bin=$recorder/bin
 counts=$recorder/profile
+# Where programs that record leave what they counted: all runs of one in one file.
+export LLVM_PROFILE_FILE=$galactic_root/$counts/%m.profraw
+records=${XDG_CACHE_HOME:-$HOME/.cache}/galactic/profiles
 
 # What learning senses beside the robot's own state.
 sensors=(--bump --target-goal --target-up --observe-current --near-objects 4 --geodesic --geodesic-weight 1)
@@ -36,6 +41,18 @@ record() {
     if_possible "${run[@]}" 1 --policy random --steps 8 --render depth --size 64 --backend soft &&
     "$bin/learned_policy" --benchmark_min_time=0.05 &&
     llvm-profdata-19 merge -o "$recorder/galactic.profdata" "$counts"/*.profraw
+}
+
+# The record of these programs, this script, this world and this kind of processor: made, where there is none.
+recorded() {
+  local key
+  key=$({ cat "$bin/galactic-run" "$bin/learned_policy" scripts/build_pgo.sh "$world"; grep -m 1 flags /proc/cpuinfo; } | sha256sum)
+  local kept=$records/${key%% *}.profdata
+  if [ -f "$kept" ]; then
+    cp "$kept" "$recorder/galactic.profdata"
+    return
+  fi
+  record && mkdir -p "$records" && cp "$recorder/galactic.profdata" "$kept.$$" && mv "$kept.$$" "$kept"
 }
 
 # A robot may have no place for a laser, packs no meshes to draw: what cannot be played in this world (exit codes 3 and
@@ -77,7 +94,7 @@ phase pgo-setup "Installing packages" scripts/setup.sh clang-19 libclang-rt-19-d
 phase pgo-record-configure "Configuring (preset pgo-record)" cmake --preset pgo-record
 phase pgo-record-build "Building programs that record" \
   cmake --build --preset pgo-record --target galactic-run learned_policy
-phase pgo-record "Stepping, drawing and sensing $world" record
+phase pgo-record "Stepping, drawing and sensing $world" recorded
 phase pgo-configure "Configuring (preset pgo)" cmake --preset pgo
 phase pgo-build "Building by that record" cmake --build --preset pgo --target "${targets[@]}"
 phase pgo-compare "Comparing results" compare
