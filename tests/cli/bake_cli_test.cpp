@@ -6,6 +6,7 @@
 
 #include "cli/bake_folder.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/mesh_files.h"
 
 namespace galactic::bake_cli_test {

@@ -7,6 +7,7 @@
 #include "cli/bake_folder.h"
 #include "galactic/pack.h"
 #include "galactic/render_meshes.h"
+#include "support/file_content.h"
 #include "support/mesh_files.h"
 
 namespace galactic::bake_render_cli_test {

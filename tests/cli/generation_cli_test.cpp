@@ -17,6 +17,7 @@
 #include "galactic/pack.h"
 #include "galactic/world.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/journal.h"
 
 namespace galactic::generation_cli_test {

@@ -13,6 +13,7 @@
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

@@ -6,6 +6,7 @@
 
 #include "pack_tool/asset_packs.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/episode_pack_builder.h"
 #include "support/program_run.h"

@@ -6,6 +6,7 @@
 #include "galactic/pack_reference.h"
 #include "galactic/world.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/habitat_text.h"
 #include "support/recipe_text.h"
 

@@ -13,6 +13,7 @@
 #include "cli/plan_folder.h"
 #include "galactic/error.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/mesh_files.h"
 #include "support/part_files.h"
 #include "support/recipe_text.h"

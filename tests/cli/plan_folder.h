@@ -10,6 +10,7 @@
 
 #include "cli/bake_folder.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 
 namespace galactic::test {
 

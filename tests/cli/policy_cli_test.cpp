@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/homes/policy_networks.h"
 #include "support/homes/small_home_models.h"
 #include "support/program_run.h"

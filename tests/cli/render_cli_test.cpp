@@ -18,6 +18,7 @@
 
 #include "galactic/error.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/homes/small_home_models.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/packs/scene_pack_builder.h"
 #include "support/packs/texture_pack_builder.h"
 #include "support/packs/world_pack_builder.h"

@@ -16,6 +16,7 @@
 #include "galactic/error.h"
 #include "run/recording.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/homes/small_home.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

@@ -6,11 +6,11 @@
 
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "support/file_content.h"
 
 namespace galactic::test {
 
@@ -21,12 +21,6 @@ struct ProgramRun {
   std::string out;
   std::string err;
 };
-
-/// All bytes of a file; empty when there is none.
-inline std::string fileContent(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Which group of processes a program belongs to: a terminal's Ctrl-C goes to all of a group.
 enum class ProgramGroup { kOfTest, kOwn };

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <thread>
 
+#include "support/file_content.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

@@ -3,8 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
 #include "layout/column_cell.h"
+#include "support/file_content.h"
 #include "support/oracles/encoded_grid_view.h"
 #include "support/scene_meshes.h"
 #include "support/scratch_folder.h"
@@ -48,11 +47,6 @@ Provenance provenance() {
           .options = {{"radii", "0.015,0.05,0.12"}, {"spacing", "0.03"}},
           .sources = test::sourceAssetOf(roomWithBalcony(2)).files,
           .warnings = {"the texture is missing"}};
-}
-
-std::vector<char> bytesOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// The answers of two grids at random places in and around them, bit for bit.
@@ -156,12 +150,12 @@ TEST(ScenePack, BeginsTilesAtACacheLineWhateverComesBeforeThem) {
 TEST(ScenePack, HasTheSameBytesForAnyNumberOfJobsAndOnEveryRun) {
   const test::ScratchFolder folder;
   const TriangleMesh mesh = test::furnishedRoom(kSeed + 1);
-  std::vector<char> first;
+  std::string first;
   for (const unsigned jobs : {1U, 2U, 5U, 1U}) {
     const std::filesystem::path path = folder.path() / "room.pack";
     ASSERT_TRUE(
         writeScenePack(path, bake(mesh, {.check_columns = 16, .jobs = jobs}), provenance()));
-    const std::vector<char> bytes = bytesOf(path);
+    const std::string bytes = test::fileContent(path);
     if (first.empty()) first = bytes;
     EXPECT_TRUE(bytes == first) << jobs << " jobs";
   }

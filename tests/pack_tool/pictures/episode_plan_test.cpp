@@ -15,6 +15,7 @@
 #include "pack_tool/figure/episode_plans.h"
 #include "pack_tool/pictures/figure_view.h"
 #include "pack_tool/verbs/verbs.h"
+#include "support/file_content.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/world_pack_builder.h"
 #include "support/program_run.h"

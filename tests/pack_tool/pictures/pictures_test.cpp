@@ -9,6 +9,7 @@
 #include "pictures/font.h"
 #include "pictures/palette.h"
 #include "pictures/png_file.h"
+#include "support/file_content.h"
 #include "support/pack_tool_fixture.h"
 #include "support/program_run.h"
 

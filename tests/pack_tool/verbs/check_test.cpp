@@ -14,6 +14,7 @@
 #include "pack_tool/support/xml_text.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/world_pack_builder.h"
 #include "support/program_run.h"

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/texture_pack_builder.h"
 #include "support/packs/world_pack_builder.h"
@@ -35,11 +34,6 @@ Ran run(const ReportOptions& options) {
   return {exit_code, err.str()};
 }
 
-std::string contentOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 std::size_t countOf(const std::string& text, const std::string& part) {
   std::size_t count = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
@@ -55,7 +49,7 @@ TEST(Report, ShowsEveryGridAndEverythingThatIsDrawn) {
       run({.packs = {kGolden / "room-column.pack", kGolden / "crate.pack", kGolden / "arm.pack"},
            .output = page});
   ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
-  const std::string html = contentOf(page);
+  const std::string html = fileContent(page);
   EXPECT_EQ(countOf(html, "<section "), 3U);
   EXPECT_EQ(countOf(html, "free height, radius 0.12 m</figcaption>"), 1U);
   EXPECT_EQ(countOf(html, "as it is drawn</figcaption>"), 3U);
@@ -76,7 +70,7 @@ TEST(Report, HasSeveralSheetsOfManyObjects) {
   const fs::path page = folder.path() / "page.html";
   const Ran ran = run({.packs = {pack}, .output = page});
   ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
-  const std::string html = contentOf(page);
+  const std::string html = fileContent(page);
   EXPECT_EQ(countOf(html, "as it is drawn, 1 to 240 of 241</figcaption>"), 1U);
   EXPECT_EQ(countOf(html, "as it is drawn, 241 to 241 of 241</figcaption>"), 1U);
 }
@@ -87,7 +81,7 @@ TEST(Report, ShowsEpisodesOnTheirScenes) {
   const fs::path page = folder.path() / "page.html";
   const Ran ran = run({.packs = {world}, .output = page});
   ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
-  EXPECT_EQ(countOf(contentOf(page), "starts, targets and goals</figcaption>"), 1U);
+  EXPECT_EQ(countOf(fileContent(page), "starts, targets and goals</figcaption>"), 1U);
 }
 
 TEST(Report, NamesPacksWithoutTheFoldersOfThisMachine) {
@@ -96,7 +90,7 @@ TEST(Report, NamesPacksWithoutTheFoldersOfThisMachine) {
   const fs::path page = folder.path() / "page.html";
   const Ran ran = run({.packs = {pack, kGolden / "arm.pack"}, .output = page});
   ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
-  const std::string html = contentOf(page);
+  const std::string html = fileContent(page);
   EXPECT_EQ(countOf(html, "<h2>kitchen.pack</h2>"), 1U);
   EXPECT_EQ(countOf(html, "<h2>arm.pack</h2>"), 1U);
   EXPECT_EQ(countOf(html, folder.path().string()), 0U);
@@ -109,7 +103,7 @@ TEST(Report, IsTheSameEachTime) {
     const Ran ran = run({.packs = {kGolden / "room-column.pack"}, .output = folder.path() / name});
     ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
   }
-  EXPECT_EQ(contentOf(folder.path() / "a.html"), contentOf(folder.path() / "b.html"));
+  EXPECT_EQ(fileContent(folder.path() / "a.html"), fileContent(folder.path() / "b.html"));
 }
 
 TEST(Report, EscapesWhatPacksSay) {
@@ -120,7 +114,7 @@ TEST(Report, EscapesWhatPacksSay) {
   const fs::path page = folder.path() / "page.html";
   const Ran ran = run({.packs = {pack}, .output = page});
   ASSERT_EQ(ran.exit_code, kExitOk) << ran.err;
-  const std::string html = contentOf(page);
+  const std::string html = fileContent(page);
   EXPECT_EQ(countOf(html, "<script>"), 0U);
   EXPECT_GE(countOf(html, "&lt;script&gt;kitchen"), 1U);
 }
@@ -128,10 +122,10 @@ TEST(Report, EscapesWhatPacksSay) {
 TEST(Report, IsNotWrittenOverAPack) {
   const ScratchFolder folder;
   const fs::path pack = writePack(folder, "kitchen.html", kitchenScene());
-  const std::string before = contentOf(pack);
+  const std::string before = fileContent(pack);
   const Ran ran = run({.packs = {pack}, .output = pack});
   EXPECT_EQ(ran.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
-  EXPECT_EQ(contentOf(pack), before);
+  EXPECT_EQ(fileContent(pack), before);
 }
 
 TEST(Report, IsNotWrittenOverATextureThatAWorldLists) {
@@ -140,11 +134,11 @@ TEST(Report, IsNotWrittenOverATextureThatAWorldLists) {
   world.packs.push_back(writeListed(folder, "wood.html", buildPack(TexturePackFields{})));
   const fs::path pack = folder.write("world.pack", textOf(buildPack(world)));
   const fs::path texture = folder.path() / "wood.html";
-  const std::string before = contentOf(texture);
+  const std::string before = fileContent(texture);
   const Ran ran = run({.packs = {pack}, .output = texture});
   EXPECT_EQ(ran.exit_code, static_cast<int>(ErrorCode::kInvalidInput));
   EXPECT_NE(ran.err.find("wood.html: is also an input"), std::string::npos) << ran.err;
-  EXPECT_EQ(contentOf(texture), before);
+  EXPECT_EQ(fileContent(texture), before);
   EXPECT_EQ(run({.packs = {pack}, .output = folder.path() / "page.html"}).exit_code, kExitOk);
 }
 

@@ -10,6 +10,7 @@
 #include "galactic/schema/pack_generated.h"
 #include "galactic/world.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/packs/policy_pack_builder.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/file_content.h"
 #include "support/output_files.h"
 #include "support/scratch_folder.h"
 
@@ -23,11 +24,6 @@ namespace {
 
 std::span<const std::byte> bytesOf(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
-}
-
-std::string contentOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 std::vector<std::string> namesIn(const std::filesystem::path& folder) {
@@ -67,7 +63,7 @@ TEST(AtomicFile, HoldsItsPartsOneAfterTheOther) {
   const test::ScratchFolder folder;
   const std::filesystem::path path = folder.path() / "scene.pack";
   ASSERT_TRUE(writeFileAtomically(path, {bytesOf("head"), bytesOf(""), bytesOf("payload")}));
-  EXPECT_EQ(contentOf(path), "headpayload");
+  EXPECT_EQ(test::fileContent(path), "headpayload");
   EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"scene.pack"});
 }
 
@@ -80,7 +76,7 @@ TEST(AtomicFile, FollowsLinksToWhatIsNotThereYet) {
   EXPECT_EQ(followLinks(folder.path() / "first"), scratch / "run.rec");
   EXPECT_TRUE(isSameFile(folder.path() / "first", scratch / "run.rec"));
   ASSERT_TRUE(writeFileAtomically(folder.path() / "first", {bytesOf("recorded")}));
-  EXPECT_EQ(contentOf(scratch / "run.rec"), "recorded");
+  EXPECT_EQ(test::fileContent(scratch / "run.rec"), "recorded");
   EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "first"));
   EXPECT_TRUE(std::filesystem::is_symlink(scratch / "second"));
 }
@@ -100,7 +96,7 @@ TEST(AtomicFile, MayBeEmpty) {
   const test::ScratchFolder folder;
   const std::filesystem::path path = folder.path() / "empty";
   ASSERT_TRUE(writeFileAtomically(path, {}));
-  EXPECT_EQ(contentOf(path), "");
+  EXPECT_EQ(test::fileContent(path), "");
   EXPECT_TRUE(std::filesystem::exists(path));
 }
 
@@ -109,7 +105,7 @@ TEST(AtomicFile, ReplacesAnOldFileWhichItsReadersKeep) {
   const std::filesystem::path path = folder.write("scene.pack", "old");
   std::ifstream reader(path);
   ASSERT_TRUE(writeFileAtomically(path, {bytesOf("new and longer")}));
-  EXPECT_EQ(contentOf(path), "new and longer");
+  EXPECT_EQ(test::fileContent(path), "new and longer");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(reader), {}), "old");
   EXPECT_EQ(namesIn(folder.path()).size(), 1U);
 }
@@ -121,7 +117,7 @@ TEST(AtomicFile, IsWrittenBesideARelativePathWithoutAFolder) {
   const auto written = writeFileAtomically("scene.pack", {bytesOf("content")});
   std::filesystem::current_path(before);
   ASSERT_TRUE(written);
-  EXPECT_EQ(contentOf(folder.path() / "scene.pack"), "content");
+  EXPECT_EQ(test::fileContent(folder.path() / "scene.pack"), "content");
 }
 
 TEST(AtomicFile, LeavesTheOldOneAndNoOtherWhenTheDiskIsFull) {
@@ -137,7 +133,7 @@ TEST(AtomicFile, LeavesTheOldOneAndNoOtherWhenTheDiskIsFull) {
     EXPECT_EQ(written.error().message,
               "cannot write the file: File too large; an existing file is left as it was");
   }
-  EXPECT_EQ(contentOf(path), "old");
+  EXPECT_EQ(test::fileContent(path), "old");
   EXPECT_EQ(namesIn(folder.path()), std::vector<std::string>{"scene.pack"});
 }
 
@@ -161,7 +157,7 @@ TEST(AtomicFile, IsRefusedWithTheReasonWhereNoFileCanBe) {
                                            "; an existing file is left as it was");
   }
   EXPECT_EQ(namesIn(folder.path()).size(), 2U);
-  EXPECT_EQ(contentOf(file), "content");
+  EXPECT_EQ(test::fileContent(file), "content");
 }
 
 /// A descriptor of a file or a pipe, closed at the end.
@@ -199,7 +195,7 @@ TEST(AtomicFile, IsNotWhatAProcessHasOpen) {
     EXPECT_EQ(written.error().message,
               "cannot write the file: a device or pipe of this name is there; give another name");
   }
-  EXPECT_EQ(contentOf(file), "kept");
+  EXPECT_EQ(test::fileContent(file), "kept");
   EXPECT_TRUE(isSameFile(link, file));
 }
 

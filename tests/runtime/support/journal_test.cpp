@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "support/file_content.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/atomic_file.h"
+#include "support/file_content.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

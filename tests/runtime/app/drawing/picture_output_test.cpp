@@ -15,6 +15,7 @@
 #include "drawing/rendering.h"
 #include "picture_folder.h"
 #include "pictures/drawing.h"
+#include "support/file_content.h"
 #include "support/homes/small_home.h"
 #include "support/homes/small_home_models.h"
 #include "support/part_files.h"

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "picture_folder.h"
+#include "support/file_content.h"
 #include "support/part_files.h"
 #include "support/program_run.h"
 

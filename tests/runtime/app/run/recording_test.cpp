@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "support/file_content.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

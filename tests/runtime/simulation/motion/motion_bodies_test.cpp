@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <random>
@@ -15,6 +13,7 @@
 
 #include "motion_batch.h"
 #include "support/build_paths.h"
+#include "support/file_content.h"
 #include "support/homes/box_world.h"
 #include "support/homes/random_robot.h"
 #include "support/processor.h"
@@ -32,8 +31,7 @@ constexpr float kLengthTolerance = 2e-5F;
 constexpr float kAxisTolerance = 3e-5F;
 
 AlignedBytes readFile(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  const std::vector<char> content{std::istreambuf_iterator<char>(stream), {}};
+  const std::string content = fileContent(path);
   return AlignedBytes(std::as_bytes(std::span(content)));
 }
 
