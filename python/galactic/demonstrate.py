@@ -34,18 +34,14 @@ from galactic.learning.command import (
 from galactic.learning.evaluation import MOST_ENVS, Actor, Evaluator
 from galactic.learning.experts import Expert, LearnedExpert, Recorder, RolledIn, ScriptedExpert
 from galactic.learning.fitting import Observed, columns_of
-from galactic.learning.homes import Homes, exact_camera, simulation_keywords
+from galactic.learning.homes import Homes, exact_camera
 from galactic.learning.presets import PRESETS, preset
+from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.progress import ProgressLine, duration
+from galactic.learning.setting_fields import option_name, typed
 from galactic.learning.setting_options import add_options, given_options
-from galactic.learning.settings import (
-    CAMERA,
-    CAMERA_NOISE,
-    Settings,
-    SettingsError,
-    option_name,
-    typed,
-)
+from galactic.learning.settings import CAMERA, CAMERA_NOISE, Settings
+from galactic.learning.simulation_words import simulation_keywords
 from galactic.learning.trainer import threads_of
 from galactic.streams import put
 

@@ -17,9 +17,10 @@ from galactic.learning import checkpoint, dynamics, evaluation, own_code, own_ta
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
 from galactic.learning.fitting import other_meaning_of
 from galactic.learning.homes import Homes, sizes_of
+from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.settings import Settings
 from galactic.learning.trainer import threads_of
 from galactic.streams import put
 

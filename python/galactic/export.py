@@ -26,14 +26,14 @@ from galactic.learning.encoders import (
     Encoder,
     Eyes,
     Inputs,
-    ResidualBlock,
     ResNet,
+    ResidualBlock,
     SimpleCNN,
     SpaceToDepth,
     StateEncoder,
     Tanh,
 )
-from galactic.learning.homes import camera_options, simulation_keywords
+from galactic.learning.homes import camera_options
 from galactic.learning.networks import (
     ActorHead,
     EncoderPolicy,
@@ -45,8 +45,10 @@ from galactic.learning.networks import (
 from galactic.learning.normalization import MOST
 from galactic.learning.own_networks import seen_by, some_inputs
 from galactic.learning.privileges import of_own_tasks, options_of_actor, parts_of_actor
-from galactic.learning.settings import Settings, typed
+from galactic.learning.setting_fields import typed
+from galactic.learning.settings import Settings
 from galactic.learning.sight import FARTHEST
+from galactic.learning.simulation_words import simulation_keywords
 
 
 class ExportError(checkpoint.CheckpointError):

@@ -35,6 +35,7 @@ from galactic.learning.launch import follow_launcher, launch
 from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, TAUGHT, preset
 from galactic.learning.privileges import other_meaning, parts_of_actor
+from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import log
 from galactic.learning.run_folder import (
     TEACHER,
@@ -45,18 +46,15 @@ from galactic.learning.run_folder import (
     require_no_run,
     take_folder,
 )
+from galactic.learning.setting_fields import option_name
 from galactic.learning.setting_options import (
     add_options,
     given_options,
     option_lines,
     positive_integer,
-)
-from galactic.learning.settings import (
-    Settings,
-    SettingsError,
-    option_name,
     resumed,
 )
+from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer, Validation, threads_of
 from galactic.streams import put
 

@@ -9,7 +9,7 @@ from typing import Any, Callable, Mapping
 
 from galactic.learning import own_code
 from galactic.learning.networks import Policy
-from galactic.learning.settings import SettingsError
+from galactic.learning.refusals import SettingsError
 
 CALLBACK = "callback_"
 """What names of columns begin with that a callback adds: no other one does."""

@@ -54,7 +54,8 @@ from galactic.learning.own_networks import (
     with_options,
 )
 from galactic.learning.privileges import critic_columns, names_of
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.refusals import SettingsError
+from galactic.learning.settings import Settings
 from galactic.learning.sight import OF_THE_PAPER
 
 FORMAT = 1

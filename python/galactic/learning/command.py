@@ -13,7 +13,7 @@ from galactic import interrupts
 from galactic.interrupts import INTERRUPTED
 from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.distributed import RankLost
-from galactic.learning.settings import SettingsError, did_you_mean
+from galactic.learning.refusals import SettingsError, did_you_mean
 from galactic.programs import UNSUPPORTED
 from galactic.streams import put
 

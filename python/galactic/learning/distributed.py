@@ -16,7 +16,7 @@ from torch import Tensor
 from torch.distributed.rendezvous import rendezvous
 
 from galactic import interrupts
-from galactic.learning.settings import SettingsError
+from galactic.learning.refusals import SettingsError
 
 
 class RankLost(Exception):

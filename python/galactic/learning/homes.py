@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import Any, Mapping, Optional, Sequence
 
 import numpy as np
@@ -12,43 +11,15 @@ import galactic
 from galactic import task_runner
 from galactic.learning.environments import Observation, Step, Timeouts
 from galactic.learning.own_tasks import MakeTask
-from galactic.learning.settings import (
-    CAMERA,
-    CAMERA_NOISE,
-    Settings,
-    SettingsError,
-    option_name,
-    simulation_keyword,
-)
+from galactic.learning.refusals import SettingsError
+from galactic.learning.setting_fields import option_name
+from galactic.learning.settings import CAMERA, CAMERA_NOISE, Settings
+from galactic.learning.simulation_words import simulation_keywords
 from galactic.sensors import meaning_of
 
 SUCCESS = int(galactic.EpisodeEnd.SUCCESS)
 # Cameras, where there are two.
 _EYE, _ONLOOKER = "eye", "onlooker"
-# What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
-_CHOSEN_BY_TRAINER = {
-    *set(inspect.signature(galactic.VectorEnv).parameters) - {"task"},
-    "envs",
-    "auto_reset",
-    "body_transforms",
-}
-
-
-def simulation_keywords(text: str) -> dict[str, Any]:
-    """Settings.simulation as keywords of galactic.Simulator: "task=pick no-distractors" is
-    {"task": "pick", "no_distractors": True}."""
-    keywords: dict[str, Any] = {}
-    for word in text.split():
-        _, equals, value = word.partition("=")
-        keyword = simulation_keyword(word)
-        if not keyword:
-            raise SettingsError(f'--simulation: found "{word}", expected NAME=VALUE or NAME')
-        if keyword in _CHOSEN_BY_TRAINER:
-            raise SettingsError(
-                f"{keyword} is not for --simulation; the trainer chooses it (see --envs, --seed)"
-            )
-        keywords[keyword] = value if equals else True
-    return keywords
 
 
 def camera_options(settings: Settings) -> dict[str, Any]:

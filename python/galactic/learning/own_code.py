@@ -15,7 +15,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple, Optional
 
-from galactic.learning.settings import SettingsError, did_you_mean
+from galactic.learning.refusals import SettingsError, did_you_mean
 
 RUN = "settings.json"
 """What a run is, in its folder."""

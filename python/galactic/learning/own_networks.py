@@ -24,7 +24,8 @@ from galactic.learning.own_code import (
     siblings_of,
 )
 from galactic.learning.privileges import parts_of_actor
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.refusals import SettingsError
+from galactic.learning.settings import Settings
 
 BASE = "galactic.learning.encoders.Encoder"
 

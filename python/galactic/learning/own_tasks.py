@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Callable, Optional
 
 from galactic.learning.own_code import CodeName, class_of, goes_on, keywords_of, mismatch
-from galactic.learning.settings import SettingsError, latest_words, simulation_keyword
+from galactic.learning.refusals import SettingsError
+from galactic.learning.simulation_words import latest_words, simulation_keyword, word_of
 from galactic.task import Task
 from galactic.task_runner import require_options
 
@@ -48,18 +49,5 @@ def simulation_below(task: Task, preset: str, given: str) -> str:
             raise SettingsError(
                 f"--simulation: found {word} beside --task; the class says which one is below (base)"
             )
-    of_task = " ".join(_word(name, value) for name, value in task.options.items())
+    of_task = " ".join(word_of(name, value) for name, value in task.options.items())
     return latest_words(f"{preset} {of_task} {given} task={task.base}")
-
-
-def _word(name: str, value: Any) -> str:
-    """An option of the simulation as one types it."""
-    name = name.replace("_", "-")
-    if isinstance(value, bool):
-        return name if value else f"{name}=false"
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        parts = [
-            "-".join(map(str, part)) if isinstance(part, Sequence) else str(part) for part in value
-        ]
-        return f"{name}={','.join(parts)}"
-    return f"{name}={value}"

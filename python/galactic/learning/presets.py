@@ -5,7 +5,9 @@ from __future__ import annotations
 import dataclasses
 from typing import Any, Mapping
 
-from galactic.learning.settings import Settings, SettingsError, did_you_mean, overriding
+from galactic.learning.refusals import SettingsError, did_you_mean
+from galactic.learning.setting_options import overriding
+from galactic.learning.settings import Settings
 
 _BUMP = "bump bump-penalty=0.03"
 _QUICK = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any, Collection, Iterable, Mapping, NamedTuple, Optional, Sequence
 
-from galactic.learning.settings import SettingsError, did_you_mean
+from galactic.learning.refusals import SettingsError, did_you_mean
 from galactic.sensors import ALWAYS, SENSORS, meaning_of
 
 

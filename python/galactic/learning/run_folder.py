@@ -12,8 +12,9 @@ import galactic
 from galactic import files
 from galactic.learning import checkpoint, own_code
 from galactic.learning.checkpoint import SavedPolicy
+from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.curves import write_json
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.settings import Settings
 
 TEACHER = "teacher.pt"
 """The copy of the teacher in the folder of a run."""

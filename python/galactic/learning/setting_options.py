@@ -7,9 +7,12 @@ import dataclasses
 import math
 import re
 import shlex
-from typing import Any, Collection, Optional
+from typing import Any, Collection, Mapping, Optional
 
-from galactic.learning.settings import MOST_WHOLE, Settings, option_name, typed
+from galactic.learning.refusals import SettingsError
+from galactic.learning.setting_fields import MOST_WHOLE, option_name, typed
+from galactic.learning.settings import Settings
+from galactic.learning.simulation_words import latest_words
 
 
 def add_options(parser: argparse.ArgumentParser, names: Optional[Collection[str]] = None) -> None:
@@ -43,6 +46,34 @@ def given_options(arguments: argparse.Namespace) -> dict[str, Any]:
         for name, value in vars(arguments).items()
         if name.startswith(prefix)
     }
+
+
+def overriding(before: Settings, given: Mapping[str, Any]) -> dict[str, Any]:
+    """What `given` sets over the settings `before`. Of the options of the simulation, too, it changes
+    those that it names."""
+    if "simulation" not in given:
+        return dict(given)
+    return {**given, "simulation": latest_words(f"{before.simulation} {given['simulation']}")}
+
+
+def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
+    """The settings of a resumed run. Rejects those that would make it another run."""
+    given = overriding(before, given)
+    fields = {field.name: field for field in dataclasses.fields(Settings)}
+    for name, value in given.items():
+        old = getattr(before, name)
+        if value != old and not fields[name].metadata["may_change"]:
+            raise SettingsError(
+                f"the run began with {option_name(name)} {_shown(old)}, and cannot continue with "
+                f"{typed(value)}; "
+                "begin a new one"
+            )
+    return dataclasses.replace(before, **given)
+
+
+def _shown(value: Any) -> Any:
+    """As typed(), for a sentence."""
+    return "(nothing)" if value == "" else typed(value)
 
 
 def option_lines(settings: Settings) -> str:

@@ -4,49 +4,13 @@ the tables of docs/learning.md come."""
 from __future__ import annotations
 
 import dataclasses
-import difflib
-import numbers
-import re
 from dataclasses import dataclass
-from typing import Any, Iterable, Mapping, Optional, Sequence
+from typing import Any, Mapping
 
+from galactic.learning.refusals import SettingsError
+from galactic.learning.setting_fields import require_valid, setting
 from galactic.learning.sight import IMAGE_SIZE, OF_THE_PAPER, OWN_SIGHT, SIGHT, SMALLEST_IMAGE
-
-
-class SettingsError(ValueError):
-    """An invalid setting: says which, what was found and what was expected."""
-
-
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """The end of a sentence that refuses `word`: the nearest of what is known, if one is near."""
-    near = difflib.get_close_matches(word, known, 1)
-    return f"; did you mean {near[0]}?" if near else ""
-
-
-# Of a setting without a limit of its own.
-MOST_WHOLE = 2**53
-MOST_NUMBER = 1e9
-
-
-def _setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
-             high: Optional[float] = None, choices: Sequence[str] = (),
-             may_change: bool = False, may_be_own: bool = False) -> Any:  # fmt: skip
-    """A field of Settings. `may_change`: a resumed run may have another value. `may_be_own`: beside the
-    choices it can be the name of code of one's own (own_code.named())."""
-    if high is None and isinstance(default, (int, float)) and not isinstance(default, bool):
-        high = MOST_WHOLE if isinstance(default, int) else MOST_NUMBER
-    return dataclasses.field(
-        default=default,
-        metadata={
-            "group": group,
-            "text": text,
-            "low": low,
-            "high": high,
-            "choices": tuple(choices),
-            "may_change": may_change,
-            "may_be_own": may_be_own,
-        },
-    )
+from galactic.learning.simulation_words import is_robot_noise, latest_words
 
 
 # Settings that change colors, and all that make the images of training unlike those that policies are
@@ -59,8 +23,6 @@ CAMERA_NOISE = (
     "camera_jitter",
     "camera_jitter_degrees",
 )
-# Options of the simulation that make robots unlike those that policies are judged by.
-ROBOT_NOISE = ("motion_noise", "motion_bias", "localization_noise")
 # Options of galactic.Renderer, and the settings that they are taken from.
 CAMERA = {
     "camera": "camera",
@@ -80,34 +42,34 @@ class Settings:
     Habitat's DD-PPO where the table is silent."""
 
     # What the robot does, and for how long.
-    steps: int = _setting(
+    steps: int = setting(
         200_000_000, "Run", "total steps of all envs of all ranks", low=1, may_change=True
     )
-    seed: int = _setting(1, "Run", "seed of everything random", low=0)
-    envs: int = _setting(128, "Run", "environments per rank", low=1, high=1 << 20)
-    halves: int = _setting(
+    seed: int = setting(1, "Run", "seed of everything random", low=0)
+    envs: int = setting(128, "Run", "environments per rank", low=1, high=1 << 20)
+    halves: int = setting(
         2,
         "Run",
         "groups of envs: with 2, one simulates while the network acts on the other",
         low=1,
         high=2,
     )
-    simulation: str = _setting(
+    simulation: str = setting(
         "",
         "Run",
         "options of the simulation, as NAME=VALUE separated by spaces (those of galactic-run); each "
         "overrides the preset's of its name",
     )
-    task: str = _setting(
+    task: str = setting(
         "",
         "Run",
         "a task of your own, which says what pays and what ends an episode: `FILE.py:CLASS` or "
         "`MODULE:CLASS`",
     )
-    task_options: str = _setting(
+    task_options: str = setting(
         "", "Run", "what its class is made with, as NAME=VALUE separated by spaces"
     )
-    terminate: str = _setting(
+    terminate: str = setting(
         "auto",
         "Run",
         "who decides to terminate: the policy (`learned`), nobody (`never`), or the policy if the "
@@ -115,7 +77,7 @@ class Settings:
         choices=("auto", "learned", "never"),
     )
 
-    network: str = _setting(
+    network: str = setting(
         "resnet18",
         "Network",
         "`state` sees no images, `depth` depth alone, with few channels; the others are the paper's "
@@ -123,24 +85,24 @@ class Settings:
         choices=tuple(SIGHT),
         may_be_own=True,
     )
-    network_options: str = _setting(
+    network_options: str = setting(
         "", "Network", "what its class is made with, as NAME=VALUE separated by spaces"
     )
-    sees: str = _setting(
+    sees: str = setting(
         "none",
         "Network",
         "which images a network of your own sees; `rgbd` are `rgb` and `depth`",
         choices=tuple(OWN_SIGHT),
     )
-    camera: str = _setting(
+    camera: str = setting(
         "head",
         "Network",
         "what the network sees: the recipe's camera (`head`), `follow`, `top`, or a link",
     )
-    fov: float = _setting(
+    fov: float = setting(
         0.0, "Network", "vertical field of view, degrees; 0: the camera's", low=0.0, high=175.0
     )
-    camera_position: tuple[float, float, float] = _setting(
+    camera_position: tuple[float, float, float] = setting(
         (0.0, 0.0, 0.0),
         "Network",
         "where the camera is, seen from where that camera or link has it: meters ahead, to the left "
@@ -148,91 +110,91 @@ class Settings:
         low=-100.0,
         high=100.0,
     )
-    camera_rpy: tuple[float, float, float] = _setting(
+    camera_rpy: tuple[float, float, float] = setting(
         (0.0, 0.0, 0.0),
         "Network",
         "how it is turned there, degrees: roll, pitch (down is positive), yaw",
         low=-360.0,
         high=360.0,
     )
-    near: float = _setting(
+    near: float = setting(
         0.0,
         "Network",
         "meters along the camera's axis below which nothing is drawn, 0.01 at least; 0: the camera's",
         low=0.0,
         high=100.0,
     )
-    image_size: int = _setting(
+    image_size: int = setting(
         IMAGE_SIZE,
         "Network",
         f"height and width of the images, pixels; the paper's networks are made for {IMAGE_SIZE}",
         low=SMALLEST_IMAGE,
         high=512,
     )
-    depth_noise: float = _setting(
+    depth_noise: float = setting(
         0.0,
         "Network",
         "standard deviation of the depth that the network sees, at 1 m, meters; it grows with depth squared",
         low=0.0,
         high=1.0,
     )
-    depth_dropout: float = _setting(
+    depth_dropout: float = setting(
         0.0, "Network", "share of the pixels without depth", low=0.0, high=1.0
     )
-    color_noise: float = _setting(
+    color_noise: float = setting(
         0.0,
         "Network",
         "standard deviation of each channel of color, levels of 255",
         low=0.0,
         high=255.0,
     )
-    light_jitter: float = _setting(
+    light_jitter: float = setting(
         0.0,
         "Network",
         "colors of an episode are multiplied by a number from 1 - this to 1 + this",
         low=0.0,
         high=1.0,
     )
-    camera_jitter: float = _setting(
+    camera_jitter: float = setting(
         0.0,
         "Network",
         "how far the camera may be from its place in an episode, along each of its axes, meters",
         low=0.0,
         high=1.0,
     )
-    camera_jitter_degrees: float = _setting(
+    camera_jitter_degrees: float = setting(
         0.0, "Network", "the same of its roll, pitch and yaw, degrees", low=0.0, high=180.0
     )
-    recurrent: bool = _setting(
+    recurrent: bool = setting(
         False,
         "Network",
         "put a GRU into the network `state` or `depth`, or behind one of your own; the paper's always have one",
     )
-    width: int = _setting(
+    width: int = setting(
         128,
         "Network",
         "units per layer of `state` and `depth`, and of the GRU behind one of your own",
         low=1,
         high=65536,
     )
-    layers: int = _setting(2, "Network", "hidden layers of `state` and `depth`", low=1, high=64)
-    activation: str = _setting(
+    layers: int = setting(2, "Network", "hidden layers of `state` and `depth`", low=1, high=64)
+    activation: str = setting(
         "tanh",
         "Network",
         "activation between the layers of `state` and `depth`",
         choices=("tanh", "relu"),
     )
-    log_std: str = _setting(
+    log_std: str = setting(
         "output",
         "Network",
         "standard deviations of `state`, `depth` and networks of your own: an `output` of the network, clamped to "
         "exp(-5)..exp(2), or a `parameter`, the same everywhere",
         choices=("output", "parameter"),
     )
-    initial_log_std: float = _setting(
+    initial_log_std: float = setting(
         -0.5, "Network", "initial value of the parameters of `log_std`", low=-5.0, high=2.0
     )
-    final_log_std: float = _setting(
+    final_log_std: float = setting(
         2.0,
         "Network",
         "upper limit of these parameters at the end of the run; the limit falls from "
@@ -240,41 +202,41 @@ class Settings:
         low=-5.0,
         high=2.0,
     )
-    odds_limit: float = _setting(
+    odds_limit: float = setting(
         0.0,
         "Network",
         "what the log-odds of a decision stay below, so that none is so certain that the other is "
         "never tried: with 4 it is in one step of 56; 0: no limit",
         low=0.0,
     )
-    normalize: bool = _setting(
+    normalize: bool = setting(
         False, "Network", "normalize observations by their running mean and variance, clamped to 10"
     )
-    closeup: float = _setting(
+    closeup: float = setting(
         0.0,
         "Network",
         "also show the network tanh(x / this) of each number x of the observation, so that "
         "centimeters near zero count beside meters; 0: off",
         low=0.0,
     )
-    second_closeup: float = _setting(
+    second_closeup: float = setting(
         0.0,
         "Network",
         "the same with another divisor, beside the first or alone; 0: off",
         low=0.0,
     )
-    critic_only: str = _setting(
+    critic_only: str = setting(
         "",
         "Network",
         "sensors that the critic alone sees, such as `geodesic`, with commas between: they teach the "
         "policy, which acts without them",
     )
 
-    learning_rate: float = _setting(3.5e-4, "PPO", "Adam's learning rate at the start", low=0.0)
-    learning_rate_end: float = _setting(
+    learning_rate: float = setting(3.5e-4, "PPO", "Adam's learning rate at the start", low=0.0)
+    learning_rate_end: float = setting(
         0.0, "PPO", "learning rate at the end; linear in between", low=0.0
     )
-    target_kl: float = _setting(
+    target_kl: float = setting(
         0.0,
         "PPO",
         "how much the policy should change in an update, nats: the mean over the mini-batches of an update "
@@ -282,51 +244,51 @@ class Settings:
         "again to the schedule's where it is smaller; 0: always the schedule's",
         low=0.0,
     )
-    adam_epsilon: float = _setting(1e-5, "PPO", "Adam's epsilon", low=0.0)
-    horizon: int = _setting(64, "PPO", "steps per env in a rollout", low=1, high=1 << 20)
-    epochs: int = _setting(1, "PPO", "how many times a rollout is used", low=1, high=1000)
-    mini_batches: int = _setting(2, "PPO", "parts of a rollout, by env; divides `envs`", low=1)
-    clip: float = _setting(0.2, "PPO", "clipping range of the probability ratio", low=0.0)
-    value_coefficient: float = _setting(
+    adam_epsilon: float = setting(1e-5, "PPO", "Adam's epsilon", low=0.0)
+    horizon: int = setting(64, "PPO", "steps per env in a rollout", low=1, high=1 << 20)
+    epochs: int = setting(1, "PPO", "how many times a rollout is used", low=1, high=1000)
+    mini_batches: int = setting(2, "PPO", "parts of a rollout, by env; divides `envs`", low=1)
+    clip: float = setting(0.2, "PPO", "clipping range of the probability ratio", low=0.0)
+    value_coefficient: float = setting(
         0.5, "PPO", "weight of the value loss, which is half the squared error", low=0.0
     )
-    value_clip: float = _setting(
+    value_clip: float = setting(
         0.0,
         "PPO",
         "how far an update may move a value before its loss is flat; 0: any distance",
         low=0.0,
     )
-    entropy: float = _setting(
+    entropy: float = setting(
         1e-3, "PPO", "coefficient of the entropy, a plain sum over motions and decisions", low=0.0
     )
-    entropy_end: float = _setting(
+    entropy_end: float = setting(
         -1.0, "PPO", "its value at the end of the run, linear in between; -1: no change", low=-1.0
     )
-    max_grad_norm: float = _setting(
+    max_grad_norm: float = setting(
         2.0, "PPO", "largest norm of the gradient; longer ones are scaled down", low=0.0
     )
-    gamma: float = _setting(0.99, "PPO", "discount factor", low=0.0, high=1.0)
-    gae_lambda: float = _setting(
+    gamma: float = setting(0.99, "PPO", "discount factor", low=0.0, high=1.0)
+    gae_lambda: float = setting(
         0.95, "PPO", "lambda of generalized advantage estimates", low=0.0, high=1.0
     )
-    timeouts: str = _setting(
+    timeouts: str = setting(
         "observed",
         "PPO",
         "what an episode that time cuts off is worth from there on: what its last observation is valued at "
         "(`observed`), the same as if it had no limit of time (`endless`), or nothing (`ends`)",
         choices=("endless", "ends", "observed"),
     )
-    normalize_advantages: bool = _setting(
+    normalize_advantages: bool = setting(
         True, "PPO", "normalize advantages to mean 0, variance 1 over all ranks"
     )
 
-    teacher_weight: float = _setting(
+    teacher_weight: float = setting(
         1.0,
         "PPO",
         "weight of the divergence from what the `--teacher` would do, at the start of the run",
         low=0.0,
     )
-    teacher_share: float = _setting(
+    teacher_share: float = setting(
         0.5,
         "PPO",
         "share of the run over which that weight goes down to 0; the rest is learned by reward alone",
@@ -334,7 +296,7 @@ class Settings:
         high=1.0,
     )
 
-    ranks: int = _setting(
+    ranks: int = setting(
         1,
         "Ranks",
         "processes that train together on this machine; ignored under torchrun, which starts them "
@@ -342,14 +304,14 @@ class Settings:
         low=1,
         high=1024,
     )
-    sync_fraction: float = _setting(
+    sync_fraction: float = setting(
         0.6,
         "Ranks",
         "once this share of the ranks has finished a rollout, the others stop theirs; 1: all wait",
         low=0.0,
         high=1.0,
     )
-    shortest_rollout: float = _setting(
+    shortest_rollout: float = setting(
         0.25,
         "Ranks",
         "no rank is stopped before this share of its rollout, nor before its first step",
@@ -357,7 +319,7 @@ class Settings:
         high=1.0,
     )
 
-    simulation_threads: int = _setting(
+    simulation_threads: int = setting(
         0,
         "Machine",
         "threads per rank; 0: its share of the processors",
@@ -365,7 +327,7 @@ class Settings:
         high=4096,
         may_change=True,
     )
-    torch_threads: int = _setting(
+    torch_threads: int = setting(
         0,
         "Machine",
         "threads per rank; 0: its share of the processors with images, 1 for `state`, whose layers are "
@@ -374,54 +336,54 @@ class Settings:
         high=4096,
         may_change=True,
     )
-    precision: str = _setting(
+    precision: str = setting(
         "bf16",
         "Machine",
         "precision of networks on a GPU; on processors always fp32",
         choices=("fp32", "tf32", "bf16"),
     )
-    cuda_graphs: bool = _setting(
+    cuda_graphs: bool = setting(
         False,
         "Machine",
         "on a GPU, launch what the policy computes in a rollout's step as one graph",
     )
 
-    validate_every: int = _setting(
+    validate_every: int = setting(
         10_000_000,
         "Reports",
         "steps between validations, if there is a world for them; 0: none",
         low=0,
     )
-    validation_episodes: int = _setting(
+    validation_episodes: int = setting(
         200,
         "Reports",
         "how many episodes of the validation world to play, from the first on; 0: all",
         low=0,
     )
-    checkpoint_every: int = _setting(
+    checkpoint_every: int = setting(
         1_000_000,
         "Reports",
         "steps between checkpoints; 0: only at the end",
         low=0,
         may_change=True,
     )
-    keep: int = _setting(
+    keep: int = setting(
         3,
         "Reports",
         "how many of the latest checkpoints to keep, besides the best",
         low=1,
         may_change=True,
     )
-    window: int = _setting(
+    window: int = setting(
         1000, "Reports", "number of episodes over which the training curves are averaged", low=1
     )
-    log_every: float = _setting(
+    log_every: float = setting(
         2.0, "Reports", "seconds between points of the curves", low=0.0, may_change=True
     )
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
-            _check(field, getattr(self, field.name))
+            require_valid(field, getattr(self, field.name))
         if self.envs % self.mini_batches:
             raise SettingsError(
                 f"{self.envs} envs cannot be split into {self.mini_batches} mini-batches; take a "
@@ -506,7 +468,7 @@ class Settings:
         """The same with robots that do what they are asked to and know where they are, unless the world
         says otherwise."""
         words = latest_words(self.simulation).split()
-        kept = [word for word in words if not _is_robot_noise(word)]
+        kept = [word for word in words if not is_robot_noise(word)]
         return (
             self
             if len(kept) == len(words)
@@ -536,105 +498,5 @@ class Settings:
 _BEFORE: Mapping[str, Any] = {"timeouts": "observed"}
 
 
-_KINDS = {
-    bool: "true or false",
-    int: "a whole number",
-    float: "a number",
-    str: "text",
-    tuple: "three numbers",
-}
-
-
-def _is_a(value: Any, kind: type) -> bool:
-    """Whether a value, which may come from a file, is of a setting's type; a whole number is a number."""
-    if isinstance(value, bool) or kind in (bool, str):
-        return isinstance(value, kind)
-    if kind is tuple:
-        return isinstance(value, tuple) and len(value) == 3 and all(_is_a(v, float) for v in value)
-    return isinstance(value, numbers.Integral if kind is int else numbers.Real)
-
-
-def _check(field: "dataclasses.Field[Any]", value: Any) -> None:
-    low, high = field.metadata["low"], field.metadata["high"]
-    choices = field.metadata["choices"]
-    kind = type(field.default)
-    if not _is_a(value, kind):
-        raise SettingsError(f"{field.name}: found {value!r}, expected {_KINDS[kind]}")
-    may_be_own = field.metadata["may_be_own"]
-    if choices and value not in choices and not (may_be_own and ":" in value):
-        own = ", or FILE.py:CLASS or MODULE:CLASS" if may_be_own else ""
-        raise SettingsError(f'{field.name} is "{value}"; it can be {", ".join(choices)}{own}')
-    if low is None or high is None:
-        return
-    for number in value if kind is tuple else (value,):
-        # A comparison with NaN is false.
-        if not low <= number <= high:
-            is_whole = isinstance(field.default, int)
-            wanted = f"from {low} to {high}" if is_whole else f"from {low:g} to {high:g}"
-            raise SettingsError(f"{field.name}: found {number}, expected a number {wanted}")
-
-
 def _between(start: float, end: float, progress: float) -> float:
     return start + (end - start) * min(max(progress, 0.0), 1.0)
-
-
-def option_name(name: str) -> str:
-    """The command line's name of a setting."""
-    return "--" + name.replace("_", "-")
-
-
-def typed(value: Any) -> Any:
-    """The value of a setting as one types it: three numbers with commas between, others as they are."""
-    return ",".join(f"{number:.9g}" for number in value) if isinstance(value, tuple) else value
-
-
-def simulation_keyword(word: str) -> str:
-    """The keyword of galactic.Simulator that a word of Settings.simulation names: no_terminate of
-    "no-terminate" and of "no-terminate=false"."""
-    return word.partition("=")[0].lstrip("-").replace("-", "_")
-
-
-def _is_robot_noise(word: str) -> bool:
-    """Whether a word of Settings.simulation adds such noise; one that switches that of a world off does
-    not."""
-    if simulation_keyword(word) not in ROBOT_NOISE:
-        return False
-    # Of a number, or of both ends of a range: a "-" behind a digit or point stands between them.
-    ends = re.split(r"(?<=[0-9.])-", word.partition("=")[2])
-    try:
-        return any(float(end) != 0.0 for end in ends)
-    except ValueError:  # no number, which the simulation refuses
-        return False
-
-
-def latest_words(words: str) -> str:
-    """Words of Settings.simulation, of each name the last one, where the first one stood."""
-    return " ".join({simulation_keyword(word): word for word in words.split()}.values())
-
-
-def overriding(before: Settings, given: Mapping[str, Any]) -> dict[str, Any]:
-    """What `given` sets over the settings `before`. Of the options of the simulation, too, it changes
-    those that it names."""
-    if "simulation" not in given:
-        return dict(given)
-    return {**given, "simulation": latest_words(f"{before.simulation} {given['simulation']}")}
-
-
-def resumed(before: Settings, given: Mapping[str, Any]) -> Settings:
-    """The settings of a resumed run. Rejects those that would make it another run."""
-    given = overriding(before, given)
-    fields = {field.name: field for field in dataclasses.fields(Settings)}
-    for name, value in given.items():
-        old = getattr(before, name)
-        if value != old and not fields[name].metadata["may_change"]:
-            raise SettingsError(
-                f"the run began with {option_name(name)} {_shown(old)}, and cannot continue with "
-                f"{typed(value)}; "
-                "begin a new one"
-            )
-    return dataclasses.replace(before, **given)
-
-
-def _shown(value: Any) -> Any:
-    """As typed(), for a sentence."""
-    return "(nothing)" if value == "" else typed(value)

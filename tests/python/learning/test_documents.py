@@ -11,15 +11,12 @@ import re
 
 import pytest
 
-from galactic.learning.homes import simulation_keywords
 from galactic.learning.presets import PRESETS, preset
-from galactic.learning.setting_options import add_options, given_options, markdown_tables
-from galactic.learning.settings import (
-    Settings,
-    SettingsError,
-    resumed,
-    typed,
-)
+from galactic.learning.refusals import SettingsError
+from galactic.learning.setting_fields import typed
+from galactic.learning.setting_options import add_options, given_options, markdown_tables, resumed
+from galactic.learning.settings import Settings
+from galactic.learning.simulation_words import simulation_keywords
 
 MANUAL = pathlib.Path(__file__).parents[3] / "docs" / "learning.md"
 

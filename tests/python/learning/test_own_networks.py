@@ -17,7 +17,8 @@ from galactic.learning import checkpoint, own_code, own_networks
 from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.encoders import Inputs
 from galactic.learning.own_networks import NetworkError, OwnNetwork, Seen
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.refusals import SettingsError
+from galactic.learning.settings import Settings
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
 from toys import Remember
 from trainers import SETTINGS, UPDATE as TOY_UPDATE, make_trainer, parameters

@@ -19,8 +19,9 @@ from galactic import export
 from galactic.learning import checkpoint, own_code, own_tasks
 from galactic.learning.evaluation import Actor, Evaluator
 from galactic.learning.homes import Homes
+from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import pictures
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.settings import Settings
 from policies import untrained
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
 

@@ -8,14 +8,15 @@ import torch
 
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
-from galactic.learning.networks import Outputs, Policy, PolicyShape, make_policy
-from galactic.learning.noise import action_noise, mini_batch_envs
 from galactic.learning.distributions import ActionDistribution
 from galactic.learning.learner import PacedRate
+from galactic.learning.networks import Outputs, Policy, PolicyShape, make_policy
+from galactic.learning.noise import action_noise, mini_batch_envs
 from galactic.learning.ppo import Batch, PpoLearner, ppo_loss
 from galactic.learning.precision import Precision
+from galactic.learning.refusals import SettingsError
 from galactic.learning.rollout import advantages
-from galactic.learning.settings import Settings, SettingsError
+from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
 from toys import Look, ReachAndGrasp, Remember
 

@@ -7,7 +7,8 @@ import pathlib
 
 import galactic
 from galactic.learning import checkpoint
-from galactic.learning.settings import ROBOT_NOISE, Settings
+from galactic.learning.settings import Settings
+from galactic.learning.simulation_words import ROBOT_NOISE
 from policies import untrained
 from programs import HELD_OUT, WORLD, call, curve, needs_worlds
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Mapping, Optional, Sequence
 
 from galactic.learning.episode_sums import LOG, MEASURE
-from galactic.learning.settings import typed
+from galactic.learning.setting_fields import typed
 
 
 @dataclass(frozen=True)

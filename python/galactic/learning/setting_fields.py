@@ -1,0 +1,83 @@
+"""What a setting is: its default, its range and its text, the values that it can have, and how they are typed."""
+
+from __future__ import annotations
+
+import dataclasses
+import numbers
+from typing import Any, Optional, Sequence
+
+from galactic.learning.refusals import SettingsError
+
+# Of a setting without a limit of its own.
+MOST_WHOLE = 2**53
+MOST_NUMBER = 1e9
+
+
+def setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
+            high: Optional[float] = None, choices: Sequence[str] = (),
+            may_change: bool = False, may_be_own: bool = False) -> Any:  # fmt: skip
+    """A field of Settings. `may_change`: a resumed run may have another value. `may_be_own`: beside the
+    choices it can be the name of code of one's own (own_code.named())."""
+    if high is None and isinstance(default, (int, float)) and not isinstance(default, bool):
+        high = MOST_WHOLE if isinstance(default, int) else MOST_NUMBER
+    return dataclasses.field(
+        default=default,
+        metadata={
+            "group": group,
+            "text": text,
+            "low": low,
+            "high": high,
+            "choices": tuple(choices),
+            "may_change": may_change,
+            "may_be_own": may_be_own,
+        },
+    )
+
+
+_KINDS = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    str: "text",
+    tuple: "three numbers",
+}
+
+
+def _is_a(value: Any, kind: type) -> bool:
+    """Whether a value, which may come from a file, is of a setting's type; a whole number is a number."""
+    if isinstance(value, bool) or kind in (bool, str):
+        return isinstance(value, kind)
+    if kind is tuple:
+        return isinstance(value, tuple) and len(value) == 3 and all(_is_a(v, float) for v in value)
+    return isinstance(value, numbers.Integral if kind is int else numbers.Real)
+
+
+def require_valid(field: "dataclasses.Field[Any]", value: Any) -> None:
+    """Raises SettingsError for a value that a setting cannot have."""
+    low, high = field.metadata["low"], field.metadata["high"]
+    choices = field.metadata["choices"]
+    kind = type(field.default)
+    if not _is_a(value, kind):
+        raise SettingsError(f"{field.name}: found {value!r}, expected {_KINDS[kind]}")
+    may_be_own = field.metadata["may_be_own"]
+    if choices and value not in choices and not (may_be_own and ":" in value):
+        own = ", or FILE.py:CLASS or MODULE:CLASS" if may_be_own else ""
+        raise SettingsError(f'{field.name} is "{value}"; it can be {", ".join(choices)}{own}')
+    if low is None or high is None:
+        return
+    for number in value if kind is tuple else (value,):
+        # A comparison with NaN is false.
+        if not low <= number <= high:
+            is_whole = isinstance(field.default, int)
+            wanted = f"from {low} to {high}" if is_whole else f"from {low:g} to {high:g}"
+            raise SettingsError(f"{field.name}: found {number}, expected a number {wanted}")
+
+
+def option_name(name: str) -> str:
+    """The command line's name of a setting."""
+    return "--" + name.replace("_", "-")
+
+
+def typed(value: Any) -> Any:
+    """The value of a setting as one types it: three numbers with commas between, others as they are."""
+    return ",".join(f"{number:.9g}" for number in value) if isinstance(value, tuple) else value

@@ -1,0 +1,75 @@
+"""Options of the simulation as the words of Settings.simulation: "task=pick no-distractors"."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import galactic
+from galactic.learning.refusals import SettingsError
+
+# Options of the simulation that make robots unlike those that policies are judged by.
+ROBOT_NOISE = ("motion_noise", "motion_bias", "localization_noise")
+# What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
+_CHOSEN_BY_TRAINER = {
+    *set(inspect.signature(galactic.VectorEnv).parameters) - {"task"},
+    "envs",
+    "auto_reset",
+    "body_transforms",
+}
+
+
+def simulation_keyword(word: str) -> str:
+    """The keyword of galactic.Simulator that a word of Settings.simulation names: no_terminate of
+    "no-terminate" and of "no-terminate=false"."""
+    return word.partition("=")[0].lstrip("-").replace("-", "_")
+
+
+def simulation_keywords(text: str) -> dict[str, Any]:
+    """Settings.simulation as keywords of galactic.Simulator: "task=pick no-distractors" is
+    {"task": "pick", "no_distractors": True}."""
+    keywords: dict[str, Any] = {}
+    for word in text.split():
+        _, equals, value = word.partition("=")
+        keyword = simulation_keyword(word)
+        if not keyword:
+            raise SettingsError(f'--simulation: found "{word}", expected NAME=VALUE or NAME')
+        if keyword in _CHOSEN_BY_TRAINER:
+            raise SettingsError(
+                f"{keyword} is not for --simulation; the trainer chooses it (see --envs, --seed)"
+            )
+        keywords[keyword] = value if equals else True
+    return keywords
+
+
+def word_of(name: str, value: Any) -> str:
+    """An option of the simulation as one types it."""
+    name = name.replace("_", "-")
+    if isinstance(value, bool):
+        return name if value else f"{name}=false"
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        parts = [
+            "-".join(map(str, part)) if isinstance(part, Sequence) else str(part) for part in value
+        ]
+        return f"{name}={','.join(parts)}"
+    return f"{name}={value}"
+
+
+def latest_words(words: str) -> str:
+    """Words of Settings.simulation, of each name the last one, where the first one stood."""
+    return " ".join({simulation_keyword(word): word for word in words.split()}.values())
+
+
+def is_robot_noise(word: str) -> bool:
+    """Whether a word of Settings.simulation adds such noise; one that switches that of a world off does
+    not."""
+    if simulation_keyword(word) not in ROBOT_NOISE:
+        return False
+    # Of a number, or of both ends of a range: a "-" behind a digit or point stands between them.
+    ends = re.split(r"(?<=[0-9.])-", word.partition("=")[2])
+    try:
+        return any(float(end) != 0.0 for end in ends)
+    except ValueError:  # no number, which the simulation refuses
+        return False
