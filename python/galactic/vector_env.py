@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from enum import Enum
 from typing import Any, Literal, NoReturn, Union
 
@@ -18,6 +16,7 @@ from galactic.env_states import EnvStates, joined
 from galactic.half_batch import HalfBatch, Observations, StepResult
 from galactic.task import Task
 from galactic.task_runner import made_by
+from galactic.turns import Row, Turns, batch_of, part_of, step_of_batch
 from galactic.vector_env_arguments import (
     Actions,
     cameras_of,
@@ -49,8 +48,6 @@ except ImportError:
 
 
 Paths = Union[str, os.PathLike, Sequence[Union[str, os.PathLike]]]
-#: Places for the results of one step: see VectorEnv.step.
-Row = Mapping[str, NDArray[Any]]
 
 
 class VectorEnv(_Base):
@@ -187,10 +184,7 @@ class VectorEnv(_Base):
             )
             for half in range(halves)
         ]
-        self._threads = [ThreadPoolExecutor(1, f"galactic-half-{n}") for n in range(halves)]
-        self._pending: list[Future[StepResult] | None] = [None] * halves
-        self._beginning = threading.Lock()
-        self._process = os.getpid()
+        self._turns = Turns(self._halves)
         self._onlookers: list[Renderer] = []
         first = self._halves[0]
         self.single_observation_space = first.observation_space
@@ -271,7 +265,7 @@ class VectorEnv(_Base):
     @property
     def halves(self) -> int:
         """1, or 2 when they take turns."""
-        return len(self._pending)
+        return len(self._turns)
 
     @property
     def unwrapped(self) -> VectorEnv:
@@ -289,7 +283,7 @@ class VectorEnv(_Base):
         """The noise that the episode of each env has drawn where options give ranges, float32 (num_envs,) of
         each: Simulator.episode_noise(). For critics that may know it, and for logs."""
         self._require_idle()
-        return _joined([simulator.episode_noise() for simulator in self.simulators])
+        return batch_of([simulator.episode_noise() for simulator in self.simulators])
 
     def set_states(self, states: EnvStates, envs: Iterable[int] | None = None) -> NDArray[np.bool_]:
         """Has all envs, or those with the numbers `envs`, in that order, go on from states of one's own, as if an episode had begun there: Simulator.set_states(). observe() shows what they see.
@@ -376,9 +370,9 @@ class VectorEnv(_Base):
         """What all envs see now, in `out` as in step()."""
         self._require_idle()
         self._check_out(out, self.num_envs)
-        parts = [_part(out, self.rows(number)) for number in range(self.halves)]
+        parts = [part_of(out, self.rows(number)) for number in range(self.halves)]
         seen = [half.observe(part) for half, part in zip(self._halves, parts)]
-        return _joined(seen)
+        return batch_of(seen)
 
     def step(self, actions: Any, out: Row | None = None) -> StepResult:
         """One step of all envs.
@@ -403,25 +397,11 @@ class VectorEnv(_Base):
         self._check_out(out, self.num_envs)
         if self.halves == 1:
             return self._halves[0].step(rows, out)
-        under_way = [
-            self._begin(half, rows[self.rows(half)], _part(out, self.rows(half)))
-            for half in range(self.halves)
-        ]
-        # All have to be done, whatever one of them raises: else the others would stay under way.
-        wait(under_way)
-        try:
-            results = [step.result() for step in under_way]
-        except BaseException:
-            # No half goes on alone.
-            if any(half.is_cut_off for half in self._halves):
-                for half in self._halves:
-                    half.is_cut_off = True
-            raise
-        finally:
-            self._pending = [None] * self.halves
-        *arrays, infos = zip(*results)
-        observations, rewards, terminations, truncations = (_joined(list(each)) for each in arrays)
-        return observations, rewards, terminations, truncations, self._joined_infos(infos)
+        parts = [self.rows(half) for half in range(self.halves)]
+        results = self._turns.step(
+            [rows[part] for part in parts], [part_of(out, part) for part in parts]
+        )
+        return step_of_batch(self._halves, results)
 
     def send(self, actions: Any, half: int = 0, out: Row | None = None) -> None:
         """Begins a step of one half, and returns at once.
@@ -438,18 +418,13 @@ class VectorEnv(_Base):
         envs = self.num_envs // self.halves
         rows = self._actions.rows(actions, envs)
         self._check_out(out, envs)
-        self._begin(half, rows, out)
+        self._turns.begin(half, rows, out)
 
     def recv(self, half: int = 0) -> StepResult:
         """Waits for the step that send() began, and returns its results for the half's envs. Where Ctrl-C
         ends the wait, the step stays under way, and the next call returns its results."""
         self._require_half(half)
-        wait([self._under_way(half)])
-        # A second thread may have waited for the same.
-        with self._beginning:
-            step = self._under_way(half)
-            self._pending[half] = None
-        return step.result()
+        return self._turns.end(half)
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """A picture of each env, uint8 (240, 320, 3), from behind the robot; None without a
@@ -490,8 +465,7 @@ class VectorEnv(_Base):
         the world, unless someone else has them. What was returned stays valid; all else raises
         RuntimeError from now on."""
         if not self.closed:
-            for thread in self._threads:
-                thread.shutdown()
+            self._turns.close()
             self._halves, self._onlookers = [], []
             del self._world
         self.closed = True
@@ -502,39 +476,10 @@ class VectorEnv(_Base):
             "what save_state() returned"
         )
 
-    def _begin(self, half: int, rows: NDArray[np.float32], out: Row | None) -> Future[StepResult]:
-        if os.getpid() != self._process:
-            raise RuntimeError("the threads of this env are in another process; make one in each")
-        # A second thread may have come as far as here.
-        with self._beginning:
-            self._require_idle(half)
-            step = self._threads[half].submit(self._halves[half].step, rows, out)
-            self._pending[half] = step
-        return step
-
-    def _under_way(self, half: int) -> Future[StepResult]:
-        step = self._pending[half]
-        if step is None:
-            raise RuntimeError(f"half {half} has nothing under way; call send() first")
-        return step
-
-    def _joined_infos(self, infos: Sequence[dict[str, Any]]) -> dict[str, Any]:
-        """Of the batch: a half in which nothing ended says so with masks that are false everywhere."""
-        have_ended = ["final_info" in info for info in infos]
-        if any(have_ended):
-            infos = [
-                info if has_ended else {**info, **half.blank_infos()}
-                for info, has_ended, half in zip(infos, have_ended, self._halves)
-            ]
-        return _joined(list(infos))
-
     def _require_idle(self, *halves: int) -> None:
         """Raises RuntimeError where these halves, or all, cannot begin anything."""
         self._require_open()
-        asked = halves or range(self.halves)
-        busy = [half for half in asked if self._pending[half] is not None]
-        if busy:
-            raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
+        self._turns.require_idle(*halves)
 
     def _require_open(self) -> None:
         if self.closed:
@@ -547,16 +492,3 @@ class VectorEnv(_Base):
     def _check_out(self, out: Row | None, envs: int) -> None:
         if out is not None:
             check_places(out, self._halves[0].landing_shapes(), envs)
-
-
-def _part(out: Row | None, rows: slice) -> Row | None:
-    return None if out is None else {name: array[rows] for name, array in out.items()}
-
-
-def _joined(parts: list[Any]) -> Any:
-    """Results of the halves as results of the batch."""
-    if len(parts) == 1:
-        return parts[0]
-    if isinstance(parts[0], dict):
-        return {name: _joined([part[name] for part in parts]) for name in parts[0]}
-    return np.concatenate(parts)

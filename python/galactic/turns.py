@@ -1,0 +1,121 @@
+"""The halves of a VectorEnv, each of which steps on a thread of its own: all at once, or in turns."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galactic.half_batch import HalfBatch, StepResult
+
+#: Places for the results of one step: see VectorEnv.step.
+Row = Mapping[str, NDArray[Any]]
+
+
+class Turns:
+    """Which of the `halves` are under way."""
+
+    def __init__(self, halves: Sequence[HalfBatch]) -> None:
+        self._halves = list(halves)
+        self._threads = [ThreadPoolExecutor(1, f"galactic-half-{n}") for n in range(len(halves))]
+        self._pending: list[Future[StepResult] | None] = [None] * len(halves)
+        self._beginning = threading.Lock()
+        self._process = os.getpid()
+
+    def __len__(self) -> int:
+        return len(self._pending)
+
+    def begin(self, half: int, actions: NDArray[np.float32], out: Row | None) -> Future[StepResult]:
+        """Begins a step of one half."""
+        if os.getpid() != self._process:
+            raise RuntimeError("the threads of this env are in another process; make one in each")
+        # A second thread may have come as far as here.
+        with self._beginning:
+            if not self._halves:
+                raise RuntimeError("this env is closed; make another one")
+            self.require_idle(half)
+            step = self._threads[half].submit(self._halves[half].step, actions, out)
+            self._pending[half] = step
+        return step
+
+    def end(self, half: int) -> StepResult:
+        """Waits for the step that begin() began. Where Ctrl-C ends the wait, it stays under way."""
+        wait([self._under_way(half)])
+        # A second thread may have waited for the same.
+        with self._beginning:
+            step = self._under_way(half)
+            self._pending[half] = None
+        return step.result()
+
+    def step(
+        self, actions: Sequence[NDArray[np.float32]], out: Sequence[Row | None]
+    ) -> list[StepResult]:
+        """One step of each half, at the same time."""
+        under_way = [
+            self.begin(half, rows, places) for half, (rows, places) in enumerate(zip(actions, out))
+        ]
+        # All have to be done, whatever one of them raises: else the others would stay under way.
+        wait(under_way)
+        try:
+            return [step.result() for step in under_way]
+        except BaseException:
+            # No half goes on alone.
+            if any(half.is_cut_off for half in self._halves):
+                for half in self._halves:
+                    half.is_cut_off = True
+            raise
+        finally:
+            self._pending = [None] * len(self)
+
+    def require_idle(self, *halves: int) -> None:
+        """Raises RuntimeError where one of these halves, or of all, is under way."""
+        asked = halves or range(len(self))
+        busy = [half for half in asked if self._pending[half] is not None]
+        if busy:
+            raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
+
+    def close(self) -> None:
+        """Waits for what is under way, which end() still returns, and lets go of the halves."""
+        for thread in self._threads:
+            thread.shutdown()
+        self._halves = []
+
+    def _under_way(self, half: int) -> Future[StepResult]:
+        step = self._pending[half]
+        if step is None:
+            raise RuntimeError(f"half {half} has nothing under way; call send() first")
+        return step
+
+
+def part_of(out: Row | None, rows: slice) -> Row | None:
+    """Places for the results of some envs of the batch."""
+    return None if out is None else {name: array[rows] for name, array in out.items()}
+
+
+def batch_of(parts: Sequence[Any]) -> Any:
+    """Results of the halves, arrays or dictionaries of them, as results of the batch."""
+    first = parts[0]
+    if len(parts) == 1:
+        return first
+    if isinstance(first, dict):
+        return {name: batch_of([part[name] for part in parts]) for name in first}
+    return np.concatenate(parts)
+
+
+def step_of_batch(halves: Sequence[HalfBatch], results: Sequence[StepResult]) -> StepResult:
+    """What a step of each of the halves came to, as a step of the batch."""
+    *arrays, infos = zip(*results)
+    observations, rewards, terminations, truncations = (batch_of(each) for each in arrays)
+    have_ended = ["final_info" in info for info in infos]
+    if any(have_ended):
+        # A half in which nothing ended says so with masks that are false everywhere.
+        infos = tuple(
+            info if has_ended else {**info, **half.blank_infos()}
+            for info, has_ended, half in zip(infos, have_ended, halves)
+        )
+    return observations, rewards, terminations, truncations, batch_of(infos)
