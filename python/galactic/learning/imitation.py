@@ -22,6 +22,7 @@ from galactic.learning.homes import exact_camera
 from galactic.learning.learner import Learner
 from galactic.learning.networks import Policy
 from galactic.learning.rollout import Rollout
+from galactic.learning.schedules import learning_rate_at
 from galactic.learning.settings import Settings
 from galactic.learning.stopwatch import Stopwatch
 
@@ -229,7 +230,7 @@ class ImitationLearner(Learner):
     def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
         assert isinstance(rollout, Shown)
         settings = self.settings
-        self.optimizer.learning_rate = settings.learning_rate_at(progress)
+        self.optimizer.learning_rate = learning_rate_at(settings, progress)
         shown = rollout.by_expert[: rollout.steps]
         kept = rollout.returns[: rollout.steps][shown]
         kept = kept.double()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import torch
@@ -14,30 +13,8 @@ from galactic.learning.networks import Outputs, Policy
 from galactic.learning.noise import mini_batch_envs
 from galactic.learning.precision import Precision
 from galactic.learning.rollout import Rollout
+from galactic.learning.schedules import PacedRate
 from galactic.learning.settings import Settings
-
-
-class PacedRate:
-    """The share of the scheduled learning rate that keeps the divergence of an update, which grows with
-    the square of the rate, at `target_kl`: PPO's adaptive penalty (Schulman et al. 2017, section 4)
-    with the rate in the penalty's place. Precise policies need it most: the less noise they act with,
-    the further a step of the same length leads away. The divergence of an update is the mean over its
-    mini-batches of what it was before each one's step: 0 before the first."""
-
-    FIRST = 0.01
-    """Adam's first steps are the longest it makes, and may lead a trained policy far away."""
-    LEAST = 1e-3
-
-    def __init__(self, target_kl: float):
-        self.target_kl = target_kl
-        self.share = 1.0 if target_kl == 0.0 else self.FIRST
-
-    def follow(self, kl: float) -> None:
-        """After an update of divergence `kl`. Falls at once, rises slowly."""
-        if self.target_kl == 0.0 or not math.isfinite(kl):
-            return
-        wanted = math.sqrt(self.target_kl / max(kl, 1e-12))
-        self.share = min(max(self.share * min(max(wanted, 0.5), 1.2), self.LEAST), 1.0)
 
 
 class Learner:

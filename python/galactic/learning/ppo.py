@@ -13,6 +13,12 @@ from galactic.learning.distributions import ActionDistribution
 from galactic.learning.learner import Learner
 from galactic.learning.networks import Outputs, Policy
 from galactic.learning.rollout import Rollout, advantages
+from galactic.learning.schedules import (
+    entropy_at,
+    learning_rate_at,
+    log_std_limit_at,
+    teacher_weight_at,
+)
 from galactic.learning.settings import Settings
 from galactic.learning.teacher import Teacher
 
@@ -84,8 +90,8 @@ class PpoLearner(Learner):
 
     def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
         settings, steps = self.settings, rollout.steps
-        self.optimizer.learning_rate = self.rate.share * settings.learning_rate_at(progress)
-        entropy_coefficient = settings.entropy_at(progress)
+        self.optimizer.learning_rate = self.rate.share * learning_rate_at(settings, progress)
+        entropy_coefficient = entropy_at(settings, progress)
         raw = advantages(
             rollout.rewards[:steps],
             rollout.values[: steps + 1],
@@ -118,7 +124,7 @@ class PpoLearner(Learner):
         return report
 
     def _lesson(self, rollout: Rollout, progress: float) -> Optional[Lesson]:
-        weight = self.settings.teacher_weight_at(progress)
+        weight = teacher_weight_at(self.settings, progress)
         if self.teacher is None or weight == 0.0:
             return None
         return Lesson(self.teacher.actions(rollout), weight)
@@ -150,7 +156,7 @@ class PpoLearner(Learner):
     def _limit_exploration(self, progress: float) -> None:
         """Noise that a policy may lean on to the end is missing when it acts by its means: less and
         less of it lets the means learn what the noise did."""
-        self.policy.action.limit_log_std(self.settings.log_std_limit_at(progress))
+        self.policy.action.limit_log_std(log_std_limit_at(self.settings, progress))
 
     def _report(self, totals: Tensor, raw: Tensor, returns: Tensor) -> dict[str, float]:
         """Means over all ranks, mini-batches and epochs."""

@@ -441,25 +441,6 @@ class Settings:
                 "either, or leave --target-kl out"
             )
 
-    def learning_rate_at(self, progress: float) -> float:
-        """`progress`: share of the run that is done, 0 to 1."""
-        return _between(self.learning_rate, self.learning_rate_end, progress)
-
-    def entropy_at(self, progress: float) -> float:
-        end = self.entropy if self.entropy_end < 0.0 else self.entropy_end
-        return _between(self.entropy, end, progress)
-
-    def teacher_weight_at(self, progress: float) -> float:
-        if progress >= self.teacher_share:
-            return 0.0
-        return _between(self.teacher_weight, 0.0, progress / self.teacher_share)
-
-    def log_std_limit_at(self, progress: float) -> float:
-        """The most that a parameter of `log_std` may be."""
-        if self.final_log_std >= 2.0:
-            return 2.0
-        return _between(self.initial_log_std, self.final_log_std, (progress - 0.2) / 0.8)
-
     def without_camera_noise(self) -> "Settings":
         """The same with images as they are."""
         return dataclasses.replace(self, **{name: 0.0 for name in CAMERA_NOISE})
@@ -496,7 +477,3 @@ class Settings:
 
 # What runs did before there were these settings: resumed, they go on so, whatever the defaults are.
 _BEFORE: Mapping[str, Any] = {"timeouts": "observed"}
-
-
-def _between(start: float, end: float, progress: float) -> float:
-    return start + (end - start) * min(max(progress, 0.0), 1.0)

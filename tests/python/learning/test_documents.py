@@ -15,6 +15,7 @@ from galactic.learning.presets import PRESETS, preset
 from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_fields import typed
 from galactic.learning.setting_options import add_options, given_options, markdown_tables, resumed
+from galactic.learning.schedules import learning_rate_at
 from galactic.learning.settings import Settings
 from galactic.learning.simulation_words import simulation_keywords
 
@@ -32,7 +33,7 @@ def test_the_manual_has_the_tables_of_the_settings() -> None:
 def test_the_defaults_are_table_3_of_the_paper() -> None:
     paper = preset("paper")
     assert (paper.learning_rate, paper.learning_rate_end) == (3.5e-4, 0.0)
-    assert paper.learning_rate_at(0.5) == pytest.approx(1.75e-4)
+    assert learning_rate_at(paper, 0.5) == pytest.approx(1.75e-4)
     assert (paper.entropy, paper.max_grad_norm, paper.horizon) == (1e-3, 2.0, 64)
     assert (paper.epochs, paper.mini_batches, paper.network) == (1, 2, "resnet18")
     assert (paper.clip, paper.value_coefficient, paper.gamma) == (0.2, 0.5, 0.99)

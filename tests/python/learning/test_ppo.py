@@ -9,13 +9,13 @@ import torch
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.distributions import ActionDistribution
-from galactic.learning.learner import PacedRate
 from galactic.learning.networks import Outputs, Policy, PolicyShape, make_policy
 from galactic.learning.noise import action_noise, mini_batch_envs
 from galactic.learning.ppo import Batch, PpoLearner, ppo_loss
 from galactic.learning.precision import Precision
 from galactic.learning.refusals import SettingsError
 from galactic.learning.rollout import advantages
+from galactic.learning.schedules import PacedRate, log_std_limit_at
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
 from toys import Look, ReachAndGrasp, Remember
@@ -219,9 +219,9 @@ def test_memory_is_learned_by_a_gru_and_by_nothing_else() -> None:
 
 def test_exploration_is_limited_along_the_schedule() -> None:
     settings = Settings(network="state", log_std="parameter", final_log_std=-2.0)
-    limits = [settings.log_std_limit_at(progress) for progress in (0.0, 0.2, 0.6, 1.0)]
+    limits = [log_std_limit_at(settings, progress) for progress in (0.0, 0.2, 0.6, 1.0)]
     assert limits == pytest.approx([-0.5, -0.5, -1.25, -2.0])
-    assert Settings().log_std_limit_at(1.0) == 2.0
+    assert log_std_limit_at(Settings(), 1.0) == 2.0
     policy = make_policy("state", PolicyShape(state=4, motions=2), initial_log_std=-0.5)
     learner = PpoLearner(policy, settings, Group.alone())
     learner._limit_exploration(0.6)
