@@ -36,7 +36,7 @@ from galactic.learning.experts import Expert, LearnedExpert, Recorder, RolledIn,
 from galactic.learning.fitting import Observed, columns_of
 from galactic.learning.homes import Homes, exact_camera
 from galactic.learning.presets import PRESETS, preset
-from galactic.learning.refusals import SettingsError
+from galactic.learning.refusals import SettingsError, CheckpointError
 from galactic.learning.reports.progress import ProgressLine, duration
 from galactic.learning.setting_fields import option_name, typed
 from galactic.learning.setting_options import add_options, given_options
@@ -278,14 +278,14 @@ def _require_sight(saved: SavedPolicy, file: pathlib.Path, settings: Settings) -
     needed = saved.settings.sight
     if set(needed) - set(settings.sight):
         seeing = f" --sees {saved.settings.sees}" if saved.settings.has_own_network else ""
-        raise checkpoint.CheckpointError(
+        raise CheckpointError(
             f"{file} sees images ({', '.join(needed)}), which the network {settings.network} does not; give "
             f"--network {saved.settings.network}{seeing}, or take another policy"
         )
     for name in dict.fromkeys(CAMERA.values()) if needed else ():
         found, wanted = getattr(settings, name), getattr(saved.settings, name)
         if found != wanted and name not in CAMERA_NOISE:
-            raise checkpoint.CheckpointError(
+            raise CheckpointError(
                 f"{file} learned with {option_name(name)} {typed(wanted)}, found {typed(found)} here; give both "
                 "the same, or take another policy"
             )

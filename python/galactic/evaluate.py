@@ -17,7 +17,7 @@ from galactic.learning import checkpoint, dynamics, evaluation, own_code, own_ta
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
 from galactic.learning.fitting import other_meaning_of
 from galactic.learning.homes import Homes, sizes_of
-from galactic.learning.refusals import SettingsError
+from galactic.learning.refusals import SettingsError, CheckpointError
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
 from galactic.learning.settings import Settings
@@ -199,20 +199,20 @@ def _evaluate(options: argparse.Namespace) -> int:
     )
     homes = _homes(options, world, settings, threads, task)
     if homes.parts != saved.parts:
-        raise checkpoint.CheckpointError(
+        raise CheckpointError(
             f"{options.policy} was trained on observations of {sizes_of(saved.parts)}, and "
             f"{options.world} gives {sizes_of(homes.parts)}; evaluate it on worlds with the same robot"
             + (", by a task that observes the same" if options.task else "")
         )
     other = other_meaning_of(saved, homes.meanings)
     if other:
-        raise checkpoint.CheckpointError(
+        raise CheckpointError(
             f"{options.policy} learned with {other.option}={other.learned}, found {other.found} in "
             f"{options.world}, where the same numbers mean something else; evaluate it on worlds whose task "
             "has the same"
         )
     if not homes.are_limited:
-        raise checkpoint.CheckpointError(
+        raise CheckpointError(
             f"{options.policy} was trained in episodes without a limit (episode-steps=0), of which an "
             "evaluation may never end; export it, and play it with galactic-run --episode-steps N"
         )
@@ -315,7 +315,7 @@ def _homes(
     except SettingsError as error:
         if task is not None:
             raise
-        raise checkpoint.CheckpointError(
+        raise CheckpointError(
             f"{options.policy} was trained with options that this version does not have: {error}; "
             "take another policy, or train one"
         ) from error

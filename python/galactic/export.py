@@ -45,13 +45,14 @@ from galactic.learning.networks import (
 from galactic.learning.normalization import MOST
 from galactic.learning.own_networks import seen_by, some_inputs
 from galactic.learning.privileges import of_own_tasks, options_of_actor, parts_of_actor
+from galactic.learning.refusals import CheckpointError, refusing
 from galactic.learning.setting_fields import typed
 from galactic.learning.settings import Settings
 from galactic.learning.sight import FARTHEST
 from galactic.learning.simulation_words import simulation_keywords
 
 
-class ExportError(checkpoint.CheckpointError):
+class ExportError(CheckpointError):
     """A module that no layer of a policy pack can express: names it and says what was expected."""
 
 
@@ -447,7 +448,7 @@ def write(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str =
     }
     trained_with["trained-steps"] = saved.steps
     trained_with["success"] = saved.success
-    with checkpoint.refusing(f"{file} cannot become a policy pack", "take another policy"):
+    with refusing(f"{file} cannot become a policy pack", "take another policy"):
         content = content_of(saved, name or output.stem, robot)
         _core.write_policy_pack(output, content, trained_with, file.name, file.read_bytes())
 

@@ -200,10 +200,7 @@ class HalfBatch:
 
     def restore_state(self, saved: Mapping[str, Array]) -> None:
         """Goes on from there. Raises Error for a state that does not fit, and changes nothing."""
-        # States of earlier versions do not tell whether a reset() came before them; mostly one did. Nor do
-        # they tell of progress.
-        before = {"is_new": np.array(False), "progress": np.array(self.progress)}
-        saved = {"simulator": np.empty(0, np.uint8), **before, **saved}
+        saved = {"simulator": np.empty(0, np.uint8), **saved}
         with self._alone():
             for name, mine in self._own_state(blank=True).items():
                 _check_saved(name, saved.get(name), mine)

@@ -78,10 +78,16 @@ def _restore_all(halves: Sequence[HalfBatch], found: Mapping[str, Array]) -> Non
     before = [None if half.is_cut_off else half.save_state() for half in halves]
     try:
         for half, saved in zip(halves, arrays):
-            half.restore_state(saved)
+            half.restore_state(_of_today(saved, half))
     except BaseException:
         _put_back(halves, before)
         raise
+
+
+def _of_today(saved: Mapping[str, Array], half: HalfBatch) -> dict[str, Array]:
+    """States of earlier versions do not tell whether a reset() came before them; mostly one did. Nor do they tell
+    of progress."""
+    return {"is_new": np.array(False), "progress": np.array(half.progress), **saved}
 
 
 def _restore_some(

@@ -17,7 +17,15 @@ import torch
 import galactic
 from galactic import files
 from galactic.demonstrations import Demonstrations
-from galactic.learning import callbacks, checkpoint, evaluation, own_code, own_networks, own_tasks
+from galactic.learning import (
+    callbacks,
+    checkpoint,
+    evaluation,
+    older,
+    own_code,
+    own_networks,
+    own_tasks,
+)
 from galactic.learning.checkpoint import CheckpointFolder
 from galactic.learning.command import (
     EXIT_CODES,
@@ -424,8 +432,8 @@ def _is_complete(run: Run, folder: pathlib.Path) -> bool:
     done = CheckpointFolder(folder, run.settings.keep).steps
     try:
         report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-        # Reports of before do not know of what was put off.
-        reported, is_whole = report["steps"], not report.get("must_validate", False)
+        report = older.report_values(report)
+        reported, is_whole = report["steps"], not report["must_validate"]
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return False
     return done >= run.settings.steps and reported == done and is_whole

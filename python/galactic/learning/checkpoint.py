@@ -20,15 +20,14 @@ and under "values" a JSON text with all else (torch 1.13 reads no plain floats t
                 settings  Settings.to_dict()
                 shape     PolicyShape._asdict()
                 parts     names and sizes of the parts of an observation, in order: [[name, size], ...]
-                meanings  what their numbers mean: sensors.meaning_of(); not in older files
-                network_digest  SHA-256 of the file of a network of one's own; not in older files
+                meanings  what their numbers mean: sensors.meaning_of()
+                network_digest  SHA-256 of the file of a network of one's own
                 steps     steps of training
                 success   success rate by which it was judged, or null
 """
 
 from __future__ import annotations
 
-import contextlib
 import io
 import json
 import os
@@ -36,7 +35,7 @@ import pathlib
 import shlex
 import shutil
 from dataclasses import dataclass, field
-from typing import Any, Iterator, Mapping, Optional, Sequence
+from typing import Any, Mapping, Optional, Sequence
 
 import torch
 from torch import Tensor
@@ -44,17 +43,18 @@ from torch import Tensor
 from galactic import files
 from galactic._core import ErrorCode
 from galactic.errors import Error
+from galactic.learning import older
 from galactic.learning.networks import Policy, PolicyShape, make_policy
 from galactic.learning.own_code import place_beside
-from galactic.learning.own_networks import (
-    NetworkError,
-    OwnNetwork,
-    own_network,
-    seen_by,
-    with_options,
-)
+from galactic.learning.own_networks import OwnNetwork, own_network, seen_by, with_options
 from galactic.learning.privileges import critic_columns, names_of
-from galactic.learning.refusals import SettingsError
+from galactic.learning.refusals import (
+    CheckpointError,
+    NetworkError,
+    SettingsError,
+    refusing,
+    require_types,
+)
 from galactic.learning.settings import Settings
 from galactic.learning.sight import OF_THE_PAPER
 
@@ -62,10 +62,6 @@ FORMAT = 1
 # What every pack begins with: docs/packs.md.
 _PACK = b"GALAPACK"
 _ANOTHER_POLICY = "take best.pt or a policy.pt of a run"
-
-
-class CheckpointError(Exception):
-    """A file that is not a checkpoint of this version: says which, what was found, what to do."""
 
 
 @dataclass
@@ -132,7 +128,7 @@ def load_policy(file: pathlib.Path, remedy: str = "", network: Optional[OwnNetwo
     if values.get("format") != FORMAT or "policy" not in tensors:
         raise CheckpointError(f"{file} is not a policy of format {FORMAT}; {remedy}")
     with refusing(f"{file} is not a policy of this version", remedy):
-        values = {"meanings": {}, "network_digest": "", **values}
+        values = older.policy_values(values)
         require_types(values, _POLICY)
         settings = Settings.from_dict(values["settings"])
         if not settings.has_own_network:
@@ -195,7 +191,7 @@ _SHAPE = {
 
 def _policy_of(values: dict[str, Any], state: dict[str, Any], settings: Settings,
                network: Optional[OwnNetwork]) -> SavedPolicy:  # fmt: skip
-    sizes = {**PolicyShape._field_defaults, **values["shape"]}
+    sizes = dict(values["shape"])
     require_types(sizes, _SHAPE)
     sizes["critic_only"] = tuple(sizes["critic_only"])
     shape = PolicyShape(**sizes)
@@ -217,35 +213,6 @@ def _require_columns(settings: Settings, shape: PolicyShape, parts: list[tuple[s
     if count != len(found) or critic_columns(settings.critic_only, parts) != found:
         wanted = ", ".join(names) or "nothing"
         raise ValueError(f"critic_only: found columns {found}, expected those of {wanted}")
-
-
-@contextlib.contextmanager
-def refusing(fault: str, remedy: str) -> Iterator[None]:
-    """Around taking over what a file holds: whatever is raised, and torch raises whatever its readers
-    do, becomes a CheckpointError "FAULT: what was found; REMEDY", unless it is a galactic.Error of a disk.
-    """
-    try:
-        yield
-    except (CheckpointError, NetworkError):
-        raise
-    except Exception as error:
-        if isinstance(error, Error) and error.code == ErrorCode.IO:
-            raise  # of a disk, which has nothing to do with what the file holds
-        # Of layers that do not fit, torch has a line each; the first of them tells enough.
-        found = " ".join(line.strip() for line in str(error).splitlines()[:2])
-        if isinstance(error, Error) and error.code == ErrorCode.UNSUPPORTED:
-            # Of another version: those before it are no better.
-            raise CheckpointError(f"{fault}: {found}") from error
-        raise CheckpointError(f"{fault}: {found}; {remedy}") from error
-
-
-def require_types(values: dict[str, Any], types: dict[str, Any]) -> None:
-    """Raises ValueError where `values` lacks a name of `types`, or has something of another type."""
-    for name, wanted in types.items():
-        if name not in values or not isinstance(values[name], wanted):
-            found = repr(values[name]) if name in values else "nothing"
-            names = [one.__name__ for one in (wanted if isinstance(wanted, tuple) else (wanted,))]
-            raise ValueError(f"{name}: found {found}, expected {' or '.join(names)}")
 
 
 def require_tensors(found: Any, wanted: Mapping[str, Tensor]) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from galactic.learning.checkpoint import require_tensors, require_types
+from galactic.learning.checkpoint import require_tensors
 from galactic.learning.encoders import Inputs
 from galactic.learning.environments import Environments, Step, Timeouts
 from galactic.learning.episode_sums import EpisodeSums
@@ -17,6 +17,7 @@ from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
 from galactic.learning.networks import Policy
 from galactic.learning.noise import action_noise
 from galactic.learning.precision import Precision
+from galactic.learning.refusals import require_types
 from galactic.learning.rollout import Rollout
 from galactic.learning.stopwatch import Stopwatch
 
@@ -136,8 +137,6 @@ class Collector:
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
         """Raises ValueError where it is not the state of as many envs with this policy, and what the
         envs raise."""
-        # Checkpoints of before do not know who waits: their first episodes are long over.
-        state = {"waits": torch.zeros(self.envs.count, dtype=torch.bool), **state}
         require_types(state, {"envs": Tensor})
         require_tensors(state, self._beside_envs())
         self.envs.restore(state["envs"].numpy().tobytes())

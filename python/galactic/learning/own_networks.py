@@ -24,15 +24,10 @@ from galactic.learning.own_code import (
     siblings_of,
 )
 from galactic.learning.privileges import parts_of_actor
-from galactic.learning.refusals import SettingsError
+from galactic.learning.refusals import NetworkError, SettingsError
 from galactic.learning.settings import Settings
 
 BASE = "galactic.learning.encoders.Encoder"
-
-
-class NetworkError(SettingsError):
-    """A class that is no network, or not the one that a policy learned with: says what was found, what was
-    expected and what to do."""
 
 
 class Seen(NamedTuple):

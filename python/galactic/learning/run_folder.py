@@ -10,9 +10,9 @@ from typing import Optional, Sequence
 
 import galactic
 from galactic import files
-from galactic.learning import checkpoint, own_code
+from galactic.learning import checkpoint, older, own_code
 from galactic.learning.checkpoint import SavedPolicy
-from galactic.learning.refusals import SettingsError
+from galactic.learning.refusals import SettingsError, refusing, require_types
 from galactic.learning.reports.curves import write_json
 from galactic.learning.settings import Settings
 
@@ -36,11 +36,12 @@ class Run:
 
 def read_run(file: pathlib.Path) -> Run:
     remedy = "begin another run, which can have the weights of best.pt (--start-from)"
-    with checkpoint.refusing(f"{file} does not say what the run is", remedy):
-        run = json.loads(file.read_text(encoding="utf-8"))
-        blank = dict.fromkeys(("start_from", "teacher", "task_file", "network_file"))
-        run, path = {**blank, "demonstrations": [], **run}, (str, type(None))
-        checkpoint.require_types(
+    with refusing(f"{file} does not say what the run is", remedy):
+        run, path = older.run_values(json.loads(file.read_text(encoding="utf-8"))), (
+            str,
+            type(None),
+        )
+        require_types(
             run,
             {
                 "world": str,

@@ -465,15 +465,11 @@ class Settings:
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "Settings":
-        """The settings of a checkpoint. Names that this version does not know are rejected; a
-        setting that the checkpoint does not have takes its default, or what _BEFORE says."""
+        """What to_dict() returned, also as JSON gives it. Names that this version does not know are rejected; a
+        setting that is missing takes its default."""
         unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})
         if unknown:
             raise SettingsError(f"the settings {', '.join(unknown)} are unknown to this version")
         # JSON knows no tuples.
         known = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
-        return cls(**{**_BEFORE, **known})
-
-
-# What runs did before there were these settings: resumed, they go on so, whatever the defaults are.
-_BEFORE: Mapping[str, Any] = {"timeouts": "observed"}
+        return cls(**known)

@@ -7,11 +7,12 @@ import pathlib
 
 import torch
 
-from galactic.learning.checkpoint import CheckpointError, SavedPolicy
+from galactic.learning.checkpoint import SavedPolicy
 from galactic.learning.distributed import Group
 from galactic.learning.distributions import ActionDistribution
 from galactic.learning.encoders import Inputs
 from galactic.learning.fitting import Observed, columns_of
+from galactic.learning.refusals import CheckpointError
 from galactic.learning.rollout import Rollout
 
 

@@ -15,17 +15,10 @@ import torch
 from galactic import interrupts
 from galactic.demonstrations import Demonstrations
 from galactic.errors import Error
-from galactic.learning import checkpoint
+from galactic.learning import checkpoint, older
 from galactic.learning.callbacks import CALLBACK, END, UPDATE, Callback, Moment
 from galactic.learning.callbacks import VALIDATION as VALIDATED
-from galactic.learning.checkpoint import (
-    CheckpointError,
-    CheckpointFolder,
-    SavedPolicy,
-    new_policy,
-    refusing,
-    require_types,
-)
+from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy, new_policy
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
@@ -37,7 +30,8 @@ from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.own_networks import OwnNetwork
 from galactic.learning.ppo import PpoLearner
 from galactic.learning.privileges import columns_among, critic_columns, other_meaning
-from galactic.learning.reports.curves import COLUMNS, VALIDATION, Curves, columns_of, write_json
+from galactic.learning.refusals import CheckpointError, refusing, require_types
+from galactic.learning.reports.curves import VALIDATION, Curves, columns_of, write_json
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.settings import Settings
@@ -406,12 +400,7 @@ class Trainer:
         file = folder / "trainer.pt"
         counters, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
-            # Checkpoints of before do not know who waits, as in Collector.load_state_dict(), nor of a
-            # paced rate, of processor time, of what a task says or of what a signal has put off.
-            before: dict[str, Any] = {"waiting": 0, "rate_share": 1.0, "processor_seconds": 0.0}
-            before |= {"measures": [], "logs": [], "must_validate": False, "added_columns": []}
-            before |= {"must_end": False, "added": {}}
-            counters = {**before, **counters}
+            counters = older.trainer_values(counters)
             require_types(counters, _COUNTERS)
             if counters["ranks"] != self.group.size:
                 raise CheckpointError(
@@ -436,7 +425,7 @@ class Trainer:
         file = folder / f"rank-{self.group.rank}.pt"
         _, state = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
-            self.source.load_state_dict(state)
+            self.source.load_state_dict(older.rank_tensors(state))
         self.steps = saved.steps
         self._started = time.perf_counter()
         self._logged = (self.seconds, self.steps)
@@ -446,10 +435,6 @@ class Trainer:
         self.learner.rate.share = counters["rate_share"]
         self._must_validate = counters["must_validate"] and self._validates
         self._must_end = counters["must_end"] and counters["must_validate"]
-        # Checkpoints of before lack the columns that were added since.
-        for row in counters["rows"]:
-            if isinstance(row, list) and len(row) == _COLUMNS_OF_BEFORE:
-                row += [None] * (len(COLUMNS) - len(row))
         names = OwnNames(tuple(counters["measures"]), tuple(counters["logs"]))
         columns = (*columns_of(names), *map(str, counters["added_columns"]))
         rows = _rows(counters, "rows", len(columns), (float, int, type(None)))
@@ -536,8 +521,6 @@ class Trainer:
             self._interrupted = True
             self.progress.say("stopping after this update; Ctrl-C now stops without saving")
 
-
-_COLUMNS_OF_BEFORE = COLUMNS.index("teacher_kl")
 
 # Of a trainer.pt: types that JSON gives its values.
 _COUNTERS = {

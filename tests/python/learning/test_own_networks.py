@@ -14,10 +14,9 @@ import torch
 import galactic
 from galactic import evaluate, export
 from galactic.learning import checkpoint, own_code, own_networks
-from galactic.learning.checkpoint import CheckpointError
 from galactic.learning.encoders import Inputs
-from galactic.learning.own_networks import NetworkError, OwnNetwork, Seen
-from galactic.learning.refusals import SettingsError
+from galactic.learning.own_networks import OwnNetwork, Seen
+from galactic.learning.refusals import CheckpointError, NetworkError, SettingsError
 from galactic.learning.settings import Settings
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
 from toys import Remember

@@ -19,7 +19,7 @@ from galactic import export
 from galactic.learning import checkpoint, own_code, own_tasks
 from galactic.learning.evaluation import Actor, Evaluator
 from galactic.learning.homes import Homes
-from galactic.learning.refusals import SettingsError
+from galactic.learning.refusals import SettingsError, CheckpointError
 from galactic.learning.reports import pictures
 from galactic.learning.settings import Settings
 from policies import untrained
@@ -237,9 +237,7 @@ def test_a_pack_has_what_the_simulation_gives(
         done = call("train", WORLD, "-o", tmp_path / name, *options, *private)
         assert done.returncode == 0, done.stderr
     pack = tmp_path / "policy.pack"
-    with pytest.raises(
-        checkpoint.CheckpointError, match="observes way, which its task approach.py:App"
-    ):
+    with pytest.raises(CheckpointError, match="observes way, which its task approach.py:App"):
         export.write(tmp_path / "seen" / "best.pt", pack)
     assert not pack.exists()
     export.write(tmp_path / "unseen" / "best.pt", pack)

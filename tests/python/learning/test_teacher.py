@@ -11,17 +11,18 @@ from typing import Any, Optional
 import pytest
 import torch
 
-from galactic.learning.checkpoint import CheckpointError, SavedPolicy, new_policy
+from galactic.learning.checkpoint import SavedPolicy, new_policy
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.distributions import ActionDistribution
 from galactic.learning.encoders import Inputs
+from galactic.learning.fitting import Observed
 from galactic.learning.networks import PolicyShape
 from galactic.learning.ppo import PpoLearner
+from galactic.learning.refusals import CheckpointError
 from galactic.learning.rollout import Rollout
 from galactic.learning.schedules import teacher_weight_at
 from galactic.learning.settings import Settings
-from galactic.learning.fitting import Observed
 from galactic.learning.teacher import Teacher
 from toys import ReachAndGrasp
 

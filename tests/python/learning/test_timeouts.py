@@ -12,6 +12,7 @@ from torch import Tensor
 
 from galactic.learning.encoders import Inputs
 from galactic.learning.environments import Step
+from galactic.learning import older
 from galactic.learning.rollout import Rollout
 from galactic.learning.settings import Settings
 from toys import ReachAndGrasp
@@ -101,5 +102,7 @@ def test_nothing_else_of_a_rollout_is_another() -> None:
 
 def test_runs_of_before_there_was_a_choice_go_on_as_they_were() -> None:
     before = {name: value for name, value in SETTINGS.to_dict().items() if name != "timeouts"}
-    assert Settings.from_dict(before).timeouts == "observed"
-    assert Settings.from_dict({**before, "timeouts": "ends"}).timeouts == "ends"
+    assert Settings.from_dict(older.settings_values(before)).timeouts == "observed"
+    assert (
+        Settings.from_dict(older.settings_values({**before, "timeouts": "ends"})).timeouts == "ends"
+    )

@@ -16,14 +16,10 @@ import torch
 import galactic
 from galactic import files
 from galactic.learning import checkpoint
-from galactic.learning.checkpoint import (
-    CheckpointError,
-    CheckpointFolder,
-    load_policy,
-    new_policy,
-)
+from galactic.learning.checkpoint import CheckpointFolder, load_policy, new_policy
 from galactic.learning.distributed import Stragglers
 from galactic.learning.networks import PolicyShape
+from galactic.learning.refusals import CheckpointError
 from toys import Measured, ReachAndGrasp, Remember, Uneven
 from trainers import SETTINGS, UPDATE, curve, make_trainer, parameters, saved_run
 

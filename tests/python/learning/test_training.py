@@ -20,6 +20,7 @@ from galactic import export, train
 from galactic.learning import checkpoint
 from galactic.learning.distributed import device_of
 from galactic.learning.homes import Homes
+from galactic.learning.refusals import CheckpointError
 from galactic.learning.reports.curves import read_curves
 from programs import (
     HELD_OUT,
@@ -491,11 +492,11 @@ def test_what_the_critic_alone_saw_is_no_part_of_the_pack(tmp_path: pathlib.Path
     values["shape"]["critic_only"] = [1, 2]
     checkpoint.save(file, values, tensors)
     fault = "critic_only: found columns .1, 2., expected those of geodesic"
-    with pytest.raises(checkpoint.CheckpointError, match=fault):
+    with pytest.raises(CheckpointError, match=fault):
         checkpoint.load_policy(file)
     values["parts"] = [["geodesic", 10**15]]
     checkpoint.save(file, values, tensors)
-    with pytest.raises(checkpoint.CheckpointError, match=fault):
+    with pytest.raises(CheckpointError, match=fault):
         checkpoint.load_policy(file)
 
 

@@ -1,0 +1,82 @@
+"""What older versions wrote, in today's form: called where files are read, so that nobody else knows of it. What is
+no such thing passes as it is, for its reader to refuse."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping
+
+import torch
+from torch import Tensor
+
+from galactic.learning.networks import PolicyShape
+from galactic.learning.reports.curves import COLUMNS
+
+
+def settings_values(values: Any) -> Any:
+    """Settings.to_dict(). What runs did before there were these settings they go on with, whatever the defaults
+    are; of all others they take the defaults."""
+    return _filled({"timeouts": "observed"}, values)
+
+
+def policy_values(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a policy.pt."""
+    values = {"meanings": {}, "network_digest": "", **values}
+    if "settings" in values:
+        values["settings"] = settings_values(values["settings"])
+    if "shape" in values:
+        values["shape"] = _filled(PolicyShape._field_defaults, values["shape"])
+    return values
+
+
+def trainer_values(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a trainer.pt, which once did not know who waits for an episode's end, nor of a paced rate, of
+    processor time, of what a task or a callback says, or of what a signal has put off."""
+    values = {
+        "waiting": 0,
+        "rate_share": 1.0,
+        "processor_seconds": 0.0,
+        "measures": [],
+        "logs": [],
+        "must_validate": False,
+        "must_end": False,
+        "added_columns": [],
+        "added": {},
+        **values,
+    }
+    if isinstance(values.get("rows"), list):
+        values["rows"] = [_row_with_teacher(row) for row in values["rows"]]
+    return values
+
+
+def _row_with_teacher(row: Any) -> Any:
+    """Rows once ended before the teacher's column."""
+    is_without = isinstance(row, list) and len(row) == COLUMNS.index("teacher_kl")
+    return [*row, *[None] * (len(COLUMNS) - len(row))] if is_without else row
+
+
+def rank_tensors(tensors: Mapping[str, Any]) -> dict[str, Any]:
+    """The tensors of a rank-N.pt, which once did not know which envs wait for an episode's end: their first
+    episodes are long over."""
+    starts = tensors.get("starts")
+    if "waits" in tensors or not isinstance(starts, Tensor):
+        return dict(tensors)
+    return {"waits": torch.zeros_like(starts, dtype=torch.bool), **tensors}
+
+
+def run_values(values: Any) -> Any:
+    """A run's settings.json."""
+    blank = dict.fromkeys(("start_from", "teacher", "task_file", "network_file"))
+    values = _filled({**blank, "demonstrations": []}, values)
+    if isinstance(values, dict) and "settings" in values:
+        values["settings"] = settings_values(values["settings"])
+    return values
+
+
+def report_values(values: Any) -> Any:
+    """A run's report.json, which once did not know of what a signal has put off."""
+    return _filled({"must_validate": False}, values)
+
+
+def _filled(before: Mapping[str, Any], values: Any) -> Any:
+    """What is missing is as it was `before`."""
+    return {**before, **values} if isinstance(values, dict) else values
