@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Mapping, Optional
 
 import galactic
-from galactic import export
+from galactic.learning.packs.content import export_policy
 from galactic.learning.command import INTERRUPTED
 
 TOOL = "galactic-dynamics"
@@ -52,10 +52,10 @@ def require_tool() -> str:
 
 
 def packed(policy: pathlib.Path, network: Optional[str]) -> bytes:
-    """The policy pack that the tool plays. Raises what export.write() does, before anything is played."""
+    """The policy pack that the tool plays. Raises what export_policy() does, before anything is played."""
     with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
         pack = pathlib.Path(folder) / f"{policy.stem}.pack"
-        export.write(policy, pack, network=network)
+        export_policy(policy, pack, network=network)
         return pack.read_bytes()
 
 

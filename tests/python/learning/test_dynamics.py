@@ -42,8 +42,8 @@ def _tool(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Pa
     (folder / "galactic-dynamics.code").write_text("0", encoding="utf-8")
     monkeypatch.setenv("PATH", str(folder))
     monkeypatch.setattr(
-        dynamics.export,
-        "write",
+        dynamics,
+        "export_policy",
         lambda _, pack, network=None: pathlib.Path(pack).write_bytes(b"a pack"),
     )
     return tool

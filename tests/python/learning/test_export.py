@@ -16,6 +16,8 @@ _core = pytest.importorskip("galactic._core", reason="the compiled module is not
 
 import galactic  # noqa: E402
 from galactic import export  # noqa: E402
+from galactic.learning.packs.content import content_of  # noqa: E402
+from galactic.learning.packs.layers import ExportError, Layers  # noqa: E402
 from galactic.learning import checkpoint  # noqa: E402
 from galactic.learning.encoders import Inputs  # noqa: E402
 from galactic.learning.homes import Homes  # noqa: E402
@@ -180,7 +182,7 @@ def test_a_pack_acts_as_torch_does(name: str, tmp_path: pathlib.Path) -> None:
     saved = saved_policy(**NETWORKS[name])
     network, edge = saved.settings.network, saved.settings.image_size
     seen = Recorded(2 if SIGHT[network] else 7, 20, network, edge)
-    pack = write(export.content_of(saved, name), tmp_path / "policy.pack")
+    pack = write(content_of(saved, name), tmp_path / "policy.pack")
     wanted = np.stack([actions.mode()[0].numpy() for actions in by_torch(saved, seen)])
     played = by_pack(pack, observed(saved, seen))
     assert played.shape == wanted.shape
@@ -195,7 +197,7 @@ def test_a_pack_acts_as_torch_does(name: str, tmp_path: pathlib.Path) -> None:
 def test_deviations_and_odds_are_those_of_torch(name: str, tmp_path: pathlib.Path) -> None:
     saved = saved_policy(**NETWORKS[name])
     seen = Recorded(3, 5, saved.settings.network)
-    content = export.content_of(saved, name)
+    content = content_of(saved, name)
     # A policy whose actions are all that the network says.
     heads = [content["continuous"]["mean"], content["continuous"]["log_deviation"]]
     heads += [action["logits"] for action in content["discrete"]]
@@ -214,7 +216,7 @@ def test_deviations_and_odds_are_those_of_torch(name: str, tmp_path: pathlib.Pat
 def test_nobody_terminates_where_the_task_does_not_ask(tmp_path: pathlib.Path) -> None:
     saved = saved_policy(terminate=False, network="state")
     seen = Recorded(20, 3)
-    played = by_pack(write(export.content_of(saved, "p"), tmp_path / "p.pack"), seen)
+    played = by_pack(write(content_of(saved, "p"), tmp_path / "p.pack"), seen)
     assert 0.1 < played[..., 9].mean() < 0.9
     assert not played[..., 10].any()
 
@@ -300,7 +302,7 @@ def test_a_policy_of_other_options_is_named(
 
 
 def test_modules_that_no_layer_can_say_are_refused() -> None:
-    layers = export.Layers()
+    layers = Layers()
     for module in (
         torch.nn.Conv2d(4, 8, 3, groups=2),
         torch.nn.Conv2d(4, 8, (3, 5)),
@@ -309,14 +311,14 @@ def test_modules_that_no_layer_can_say_are_refused() -> None:
         torch.nn.GroupNorm(2, 4, affine=False),
         torch.nn.Sigmoid(),
     ):
-        with pytest.raises(export.ExportError):
+        with pytest.raises(ExportError):
             layers.module(module, 0)
-    with pytest.raises(export.ExportError):
+    with pytest.raises(ExportError):
         layers.gru(torch.nn.GRU(4, 4, num_layers=2), 0)
 
 
 def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
-    pack = write(export.content_of(saved_policy(network="simple_cnn"), "p"), tmp_path / "p.pack")
+    pack = write(content_of(saved_policy(network="simple_cnn"), "p"), tmp_path / "p.pack")
     player = _core.LearnedPolicy(pack, 2)
     images = {"width": 128, "height": 128, "color": "rgb", "depth": True}
     camera = {"camera": "head", "fov_degrees": 0, "near": 0}
@@ -347,7 +349,7 @@ def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
 def test_two_threads_cannot_use_one_played_policy_at_once(
     tmp_path: pathlib.Path, refused_at_once: Callable[..., list[str]]
 ) -> None:
-    pack = write(export.content_of(saved_policy(network="state"), "p"), tmp_path / "p.pack")
+    pack = write(content_of(saved_policy(network="state"), "p"), tmp_path / "p.pack")
     player = _core.LearnedPolicy(pack, 1024, deterministic=True, threads=1)
     state = np.random.default_rng(1).normal(size=(1024, STATE)).astype(np.float32)
     wanted = player.act(state)
@@ -420,7 +422,7 @@ def test_a_policy_says_where_its_camera_is(tmp_path: pathlib.Path, capsys: Any) 
 @pytest.mark.parametrize("fov", [1, 33.3, 60, 175])
 def test_a_policy_says_with_which_camera_it_was_trained(tmp_path: pathlib.Path, fov: float) -> None:
     saved = saved_policy(network="simple_cnn", camera="top", fov=fov)
-    pack = write(export.content_of(saved, "p"), tmp_path / "p.pack")
+    pack = write(content_of(saved, "p"), tmp_path / "p.pack")
     images = _core.LearnedPolicy(pack, 2).images
     assert images is not None
     assert (images["camera"], images["fov_degrees"]) == ("top", np.float32(fov))
@@ -440,7 +442,7 @@ def test_a_policy_says_with_which_camera_it_was_trained(tmp_path: pathlib.Path, 
 def test_a_played_policy_checks_its_options(
     tmp_path: pathlib.Path, options: dict[str, Any], message: str
 ) -> None:
-    pack = write(export.content_of(saved_policy(network="state"), "p"), tmp_path / "p.pack")
+    pack = write(content_of(saved_policy(network="state"), "p"), tmp_path / "p.pack")
     with pytest.raises(galactic.Error) as caught:
         galactic.LearnedPolicy(pack, **{"envs": 2, **options})
     assert message in str(caught.value)

@@ -12,10 +12,11 @@ import pytest
 import torch
 
 import galactic
-from galactic import evaluate, export
+from galactic import evaluate
 from galactic.learning import checkpoint, own_code, own_networks
 from galactic.learning.encoders import Inputs
 from galactic.learning.own_networks import OwnNetwork, Seen
+from galactic.learning.packs.content import export_policy
 from galactic.learning.refusals import CheckpointError, NetworkError, SettingsError
 from galactic.learning.settings import Settings
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
@@ -379,7 +380,7 @@ def test_a_pack_of_known_layers_does_what_the_network_does(
 ) -> None:
     saved, pack = saved_policy(named(lab, name), **settings), tmp_path / "own.pack"
     checkpoint.save_policy(saved, tmp_path / "own.pt")
-    export.write(tmp_path / "own.pt", pack, network=f"{lab}:{name}")
+    export_policy(tmp_path / "own.pt", pack, network=f"{lab}:{name}")
     draws = np.random.default_rng(1)
     seen = draws.normal(size=(5, 6)).astype(np.float32)
     rgb = draws.integers(0, 256, (5, 36, 36, 3)).astype(np.uint8) if settings is EYES else None
@@ -414,14 +415,14 @@ def test_what_a_pack_does_not_know_is_refused(
     own = own_networks.with_options(named(lab, name), settings.get("network_options", ""))
     checkpoint.save_policy(saved_policy(own, **settings), tmp_path / "own.pt")
     with pytest.raises(CheckpointError, match=message):
-        export.write(tmp_path / "own.pt", tmp_path / "own.pack", network=f"{lab}:{name}")
+        export_policy(tmp_path / "own.pt", tmp_path / "own.pack", network=f"{lab}:{name}")
     assert not (tmp_path / "own.pack").exists()
 
 
 def test_a_pack_has_no_memory_of_ones_own(tmp_path: pathlib.Path) -> None:
     checkpoint.save_policy(saved_policy(named(EXAMPLE, "Remembering")), tmp_path / "own.pt")
     with pytest.raises(CheckpointError, match="has a memory of its own, and .* with --recurrent"):
-        export.write(tmp_path / "own.pt", tmp_path / "a.pack", network=f"{EXAMPLE}:Remembering")
+        export_policy(tmp_path / "own.pt", tmp_path / "a.pack", network=f"{EXAMPLE}:Remembering")
 
 
 @pytest.mark.parametrize(

@@ -15,10 +15,10 @@ import pytest
 import torch
 
 import galactic
-from galactic import export
 from galactic.learning import checkpoint, own_code, own_tasks
 from galactic.learning.evaluation import Actor, Evaluator
 from galactic.learning.homes import Homes
+from galactic.learning.packs.content import export_policy
 from galactic.learning.refusals import SettingsError, CheckpointError
 from galactic.learning.reports import pictures
 from galactic.learning.settings import Settings
@@ -238,9 +238,9 @@ def test_a_pack_has_what_the_simulation_gives(
         assert done.returncode == 0, done.stderr
     pack = tmp_path / "policy.pack"
     with pytest.raises(CheckpointError, match="observes way, which its task approach.py:App"):
-        export.write(tmp_path / "seen" / "best.pt", pack)
+        export_policy(tmp_path / "seen" / "best.pt", pack)
     assert not pack.exists()
-    export.write(tmp_path / "unseen" / "best.pt", pack)
+    export_policy(tmp_path / "unseen" / "best.pt", pack)
     played = galactic.LearnedPolicy(pack, 4)
     assert played.options["task"] == "none" and played.options["episode_steps"] == 40
 

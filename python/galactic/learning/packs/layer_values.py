@@ -12,7 +12,7 @@ from galactic.learning.encoders import Inputs, SpaceToDepth, images
 
 
 def value(layers: Sequence[dict[str, Any]], seen: int, inputs: Inputs) -> Tensor:
-    """Rows [T n, F] of the last of `layers` (export.Layers.list). Value `seen` is the state of the inputs; what is
+    """Rows [T n, F] of the last of `layers` (Layers.list). Value `seen` is the state of the inputs; what is
     before it is not computed. Raises ValueError for a layer that no encoder has."""
     values: dict[int, Tensor] = {seen: inputs.state.flatten(0, 1)}
     for number, layer in enumerate(layers[seen + 1 :], start=seen + 1):

@@ -1,0 +1,126 @@
+"""What the policy pack of a trained policy contains: docs/policies.md."""
+
+from __future__ import annotations
+
+import math
+import pathlib
+from typing import Any, Optional
+
+import numpy as np
+
+from galactic import _core, files
+from galactic.learning import checkpoint, own_code
+from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
+from galactic.learning.homes import camera_options
+from galactic.learning.networks import ActorHead, EncoderPolicy, FeedForwardPolicy, RecurrentPolicy
+from galactic.learning.own_networks import seen_by, some_inputs
+from galactic.learning.packs.encoder_layers import encoded, require_same
+from galactic.learning.packs.layers import ExportError, Layers, numbers_of
+from galactic.learning.privileges import of_own_tasks, options_of_actor, parts_of_actor
+from galactic.learning.refusals import refusing
+from galactic.learning.setting_fields import typed
+from galactic.learning.settings import Settings
+from galactic.learning.sight import FARTHEST
+from galactic.learning.simulation_words import simulation_keywords
+
+
+def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "",
+                  network: Optional[str] = None) -> None:  # fmt: skip
+    """Reads the checkpoint `file` and writes the policy pack `output`. `network`: what --network names."""
+    code = own_code.named(network, "--network").file if network is not None else None
+    files.require_apart({"--out": output}, [file, *([code] if code else [])])
+    saved = checkpoint.load_with(network, file)
+    trained_with = {
+        field.replace("_", "-"): typed(value) for field, value in saved.settings.to_dict().items()
+    }
+    trained_with["trained-steps"] = saved.steps
+    trained_with["success"] = saved.success
+    with refusing(f"{file} cannot become a policy pack", "take another policy"):
+        content = content_of(saved, name or output.stem, robot)
+        _core.write_policy_pack(output, content, trained_with, file.name, file.read_bytes())
+
+
+def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dict[str, Any]:
+    """A saved policy as _core.write_policy_pack() wants it. The critic is left out, with all that it alone
+    sees."""
+    policy, privileges = saved.policy, saved.settings.critic_only
+    observation = parts_of_actor(privileges, saved.parts)
+    own = of_own_tasks(observation)
+    if own:
+        raise ExportError(
+            f"the policy observes {', '.join(own)}, which its task {saved.settings.task} gives in Python "
+            "alone; train one that keeps it for the critic (--critic-only), or play this one in Python"
+        )
+    layers = Layers()
+    columns = [n for n in range(saved.shape.state) if n not in saved.shape.critic_only]
+    seen = layers.seen(policy, layers.add("observation"), columns)
+    if isinstance(policy, FeedForwardPolicy):
+        features = layers.module(policy.encoder, seen)
+    elif isinstance(policy, (RecurrentPolicy, EncoderPolicy)):
+        features = encoded(layers, policy.encoder, seen)
+        if saved.network is not None:
+            sizes = seen_by(saved.settings, saved.shape, saved.parts)
+            require_same(policy.encoder, some_inputs(policy.encoder, sizes, 4, 8), layers, seen)
+        if isinstance(policy, RecurrentPolicy):
+            features = layers.gru(policy.rnn, features)
+    else:
+        raise ExportError(f"the policy {type(policy).__name__} is unknown")
+    actions = _actions(layers, policy.action, features)
+    return {
+        "name": name,
+        "robot": robot,
+        "options": options_of_actor(
+            privileges, simulation_keywords(saved.settings.without_robot_noise().simulation)
+        ),
+        "observation": observation,
+        "image": _image(saved.settings) if saved.settings.sight else None,
+        "layers": layers.list,
+        **actions,
+    }
+
+
+def _actions(layers: Layers, head: ActorHead, features: int) -> dict[str, Any]:
+    motions = head.motions
+    rows = layers.module(head.linear, features)
+    mean = layers.add("tanh", layers.add("slice", rows, first=0, size=motions))
+    if head.log_std is None:
+        given = layers.add("slice", rows, first=motions, size=motions)
+    else:
+        given = layers.add("constant", values=numbers_of(head.log_std))
+    log_std = layers.add("clamp", given, lower=LOWEST_LOG_STD, upper=HIGHEST_LOG_STD)
+    first = head.linear.out_features - 2 * DECISIONS
+    discrete = []
+    for decision in range(DECISIONS):
+        logits = layers.add("slice", rows, first=first + 2 * decision, size=2)
+        if head.odds_limit > 0.0:
+            logits = _limited(layers, head.odds_limit, logits)
+        # Where the task does not ask for it, nobody terminates.
+        is_decided = decision + 1 < DECISIONS or head.decides_terminate
+        discrete.append({"logits": logits, "values": [0.0, 1.0] if is_decided else [0.0, 0.0]})
+    continuous = {"count": motions, "mean": mean, "log_deviation": log_std}
+    return {"continuous": continuous, "discrete": discrete}
+
+
+def _limited(layers: Layers, limit: float, logits: int) -> int:
+    """The logits of no and yes whose odds stay within a limit: half of the difference each, with signs."""
+    half = np.array([[0.5, -0.5], [-0.5, 0.5]], np.float32)
+    apart = layers.add("linear", logits, outputs=2, weight=half, bias=None)
+    return layers.times(0.5 * limit, layers.closeup(0.5 * limit, apart, 2), 2)
+
+
+def _image(settings: Settings) -> dict[str, Any]:
+    seen = camera_options(settings)
+    return {
+        "width": seen["width"],
+        "height": seen["height"],
+        "color": seen["color"] is not None,
+        "color_scale": 1.0 / 255.0,
+        "depth": "depth" in settings.sight,
+        "depth_limit": FARTHEST,
+        "depth_scale": 1.0 / FARTHEST,
+        "camera": seen["camera"],
+        "vertical_fov": math.radians(seen["fov_degrees"]),
+        "position": seen["position"],
+        "rpy_degrees": seen["rpy_degrees"],
+        "near": seen["near"],
+    }
