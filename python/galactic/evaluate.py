@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import json
-import shlex
 import sys
 from typing import Optional, Sequence
 
 import torch
 
-import galactic
 from galactic import files
-from galactic.learning import checkpoint, dynamics, evaluation, own_code, own_tasks
+from galactic.learning import checkpoint, dynamics, evaluation, own_code
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
-from galactic.learning.fitting import other_meaning_of
-from galactic.learning.homes import Homes, sizes_of
-from galactic.learning.refusals import SettingsError, CheckpointError
+from galactic.learning.homes import Homes
+from galactic.learning.judging import Terms, judging
+from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
-from galactic.learning.settings import Settings
 from galactic.learning.trainer import threads_of
 from galactic.streams import put
 
@@ -142,9 +138,8 @@ SHOWN = 8
 
 def _require_uses(options: argparse.Namespace) -> None:
     """Raises SettingsError for an option that nothing would come of."""
-    draws = options.contact_sheet or options.video
     for option, value, user, what, remedy in (
-        ("--shown", options.shown, draws, "pictures", "--contact-sheet or --video"),
+        ("--shown", options.shown, _draws(options), "pictures", "--contact-sheet or --video"),
         ("--arm", options.arm, options.dynamics, "dynamics", "--dynamics"),
         ("--task-options", options.task_options, options.task, "a task of your own", "--task"),
         ("--dynamics-data", options.dynamics_data, options.dynamics, "dynamics", "--dynamics"),
@@ -161,12 +156,51 @@ def _require_uses(options: argparse.Namespace) -> None:
 
 def _evaluate(options: argparse.Namespace) -> int:
     _require_uses(options)
-    draws = options.contact_sheet or options.video
-    if draws:
+    # Playing may take long.
+    _require_outputs(options)
+    saved = checkpoint.load_with(options.network, options.policy)
+    pack = dynamics.packed(options.policy, options.network) if options.dynamics else b""
+    threads = threads_of(options.threads, 1)
+    torch.set_num_threads(threads)
+    judged = judging(saved, _terms(options, threads))
+    homes = judged.homes
+    if options.dynamics:
+        _tell_what_is_left_out(homes)
+    episodes = homes.playable_episodes()[: options.episodes or None]
+    actor = evaluation.Actor(saved.policy, deterministic=options.deterministic, seed=options.seed)
+    results = evaluation.Evaluator(homes, actor).play(episodes)
+    homes.close()
+    summary = evaluation.summary(results, judged.world)
+    is_told = put(sys.stdout, _text(summary))
+    there = None
+    if options.dynamics:
+        there = _play_there(options, pack)
+        is_told &= put(sys.stdout, _text(dict(dynamics.told(there))))
+    if options.report:
+        report = {**_about(options, saved.steps), **summary}
+        write_json(options.report, {**report, **({"dynamics": there} if there else {})})
+    if _draws(options) and results:
+        chosen = pictures.choose(results, options.shown or SHOWN)
+        films = pictures.film(judged.world, judged.settings, actor, chosen, threads, judged.task)
+        if options.contact_sheet:
+            pictures.write_contact_sheet(films, options.contact_sheet)
+        if options.video:
+            pictures.write_video(films, options.video)
+    if not is_told:
+        raise lost_output()
+    return OK
+
+
+def _draws(options: argparse.Namespace) -> bool:
+    return bool(options.contact_sheet or options.video)
+
+
+def _require_outputs(options: argparse.Namespace) -> None:
+    """Raises Error where what is asked for cannot be made, or not be written."""
+    if _draws(options):
         pictures.require_tools(video=bool(options.video))
     if options.dynamics:
         dynamics.require_tool()
-    # Playing may take long.
     outputs = {
         "--report": options.report,
         "--contact-sheet": options.contact_sheet,
@@ -184,144 +218,36 @@ def _evaluate(options: argparse.Namespace) -> int:
         pictures.require_png(options.contact_sheet)
     if options.video:
         pictures.require_video(options.video)
-    saved = checkpoint.load_with(options.network, options.policy)
-    pack = dynamics.packed(options.policy, options.network) if options.dynamics else b""
-    task = _task(options, saved.settings)
-    threads = threads_of(options.threads, 1)
-    torch.set_num_threads(threads)
-    world = galactic.World(options.world)
-    settings = dataclasses.replace(
-        _judged_with(options, saved.settings),
-        envs=max(1, min(evaluation.MOST_ENVS, options.episodes or world.episodes)),
-        halves=1,
-        mini_batches=1,
+
+
+def _terms(options: argparse.Namespace, threads: int) -> Terms:
+    return Terms(
+        policy=options.policy,
+        world=options.world,
         seed=options.seed,
-    )
-    homes = _homes(options, world, settings, threads, task)
-    if homes.parts != saved.parts:
-        raise CheckpointError(
-            f"{options.policy} was trained on observations of {sizes_of(saved.parts)}, and "
-            f"{options.world} gives {sizes_of(homes.parts)}; evaluate it on worlds with the same robot"
-            + (", by a task that observes the same" if options.task else "")
-        )
-    other = other_meaning_of(saved, homes.meanings)
-    if other:
-        raise CheckpointError(
-            f"{options.policy} learned with {other.option}={other.learned}, found {other.found} in "
-            f"{options.world}, where the same numbers mean something else; evaluate it on worlds whose task "
-            "has the same"
-        )
-    if not homes.are_limited:
-        raise CheckpointError(
-            f"{options.policy} was trained in episodes without a limit (episode-steps=0), of which an "
-            "evaluation may never end; export it, and play it with galactic-run --episode-steps N"
-        )
-    if options.dynamics:
-        _tell_what_is_left_out(homes)
-    episodes = homes.playable_episodes()[: options.episodes or None]
-    actor = evaluation.Actor(saved.policy, deterministic=options.deterministic, seed=options.seed)
-    results = evaluation.Evaluator(homes, actor).play(episodes)
-    homes.close()
-    summary = evaluation.summary(results, world)
-    is_told = put(sys.stdout, _text(summary))
-    there = None
-    if options.dynamics:
-        there = _play_there(options, pack)
-        is_told &= put(sys.stdout, _text(dict(dynamics.told(there))))
-    if options.report:
-        contents = {
-            "policy": str(options.policy),
-            "world": str(options.world),
-            "trained_steps": saved.steps,
-            "deterministic": options.deterministic,
-            "seed": options.seed,
-            "camera_noise": options.camera_noise,
-            "robot_noise": options.robot_noise,
-            **(
-                {"task": options.task, "task_options": options.task_options} if options.task else {}
-            ),
-            **({"network": options.network} if options.network else {}),
-            **summary,
-            **({"dynamics": there} if there else {}),
-        }
-        write_json(options.report, contents)
-    if draws and results:
-        chosen = pictures.choose(results, options.shown or SHOWN)
-        films = pictures.film(world, settings, actor, chosen, threads, task)
-        if options.contact_sheet:
-            pictures.write_contact_sheet(films, options.contact_sheet)
-        if options.video:
-            pictures.write_video(films, options.video)
-    if not is_told:
-        raise lost_output()
-    return OK
-
-
-def _judged_with(options: argparse.Namespace, settings: Settings) -> Settings:
-    """With the noise of the training that was asked for, and without the other."""
-    judged = settings
-    for option, is_asked, plain, its_own in (
-        (
-            "--camera-noise",
-            options.camera_noise,
-            Settings.without_camera_noise,
-            "--depth-noise and the like",
-        ),
-        (
-            "--robot-noise",
-            options.robot_noise,
-            Settings.without_robot_noise,
-            "--motion-noise and the like",
-        ),
-    ):
-        if is_asked and plain(settings) == settings:
-            raise SettingsError(
-                f"{option}: {options.policy} was trained without such noise; leave it out, or play the "
-                f"policy's pack with galactic-run {its_own}"
-            )
-        if not is_asked:
-            judged = plain(judged)
-    return judged
-
-
-def _task(options: argparse.Namespace, settings: Settings) -> Optional[own_tasks.MakeTask]:
-    """What makes the task that was asked for; None for the simulation's."""
-    if options.task:
-        name = own_code.named(options.task, "--task")
-        given = options.task_options
-        # Those of the training are for its class.
-        if given is None and str(name).rpartition(":")[2] == settings.task.rpartition(":")[2]:
-            given = settings.task_options
-        return own_tasks.maker(name, given or "", own_code.siblings_of(name))
-    if not settings.task:
-        return None
-    place = own_code.place_beside(options.policy, "--task", settings.task)
-    raise SettingsError(
-        f"{options.policy} was trained with a task of its own; if you trust it, add --task "
-        f"{shlex.quote(place)}"
+        episodes=options.episodes,
+        threads=threads,
+        camera_noise=options.camera_noise,
+        robot_noise=options.robot_noise,
+        task=options.task,
+        task_options=options.task_options,
     )
 
 
-def _homes(
-    options: argparse.Namespace,
-    world: galactic.World,
-    settings: Settings,
-    threads: int,
-    task: Optional[own_tasks.MakeTask],
-) -> Homes:
-    """The homes of the policy's training. Nobody has typed their options here."""
-    try:
-        return Homes(world, settings, threads, task=task, is_evaluation=True)
-    except SettingsError as error:
-        if task is not None:
-            raise
-        raise CheckpointError(
-            f"{options.policy} was trained with options that this version does not have: {error}; "
-            "take another policy, or train one"
-        ) from error
-    except galactic.Error as error:
-        where = f"{options.policy} in {options.world}: {error.where}"
-        raise galactic.Error(error.code, where, error.message) from error
+def _about(options: argparse.Namespace, trained_steps: int) -> dict[str, object]:
+    """What a report is about."""
+    task = {"task": options.task, "task_options": options.task_options} if options.task else {}
+    return {
+        "policy": str(options.policy),
+        "world": str(options.world),
+        "trained_steps": trained_steps,
+        "deterministic": options.deterministic,
+        "seed": options.seed,
+        "camera_noise": options.camera_noise,
+        "robot_noise": options.robot_noise,
+        **task,
+        **({"network": options.network} if options.network else {}),
+    }
 
 
 def _tell_what_is_left_out(homes: Homes) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import galactic
 from galactic import evaluate
-from galactic.learning import checkpoint, command, dynamics
+from galactic.learning import checkpoint, command, dynamics, judging
 from galactic.learning.homes import Homes
 from galactic.learning.settings import Settings
 from policies import untrained
@@ -86,12 +86,12 @@ def test_a_world_with_noise_of_motion_is_played_without_it(
     plain = capfd.readouterr()
     assert plain.err == "" and "success_there 0.5\n" in plain.out
 
-    def homes_of(_: object, world: galactic.World, settings: Settings, *rest: object) -> Homes:
+    def homes_of(world: galactic.World, settings: Settings, *rest: object, **more: object) -> Homes:
         """Those of a world whose own task has noise."""
         simulation = f"{settings.simulation} motion-bias=0.25"
         return Homes(world, dataclasses.replace(settings, simulation=simulation), 1)
 
-    monkeypatch.setattr(evaluate, "_homes", homes_of)
+    monkeypatch.setattr(judging, "Homes", homes_of)
     assert evaluate.main(words) == 0
     noisy = capfd.readouterr()
     assert noisy.err == (
