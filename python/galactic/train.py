@@ -250,12 +250,12 @@ def _train(
         undisturbed = _carry_out(trainer, run, options)
     envs.close()
     if trainer.steps < settings.steps or not undisturbed:
-        trainer.progress.say(
+        trainer.reports.progress.say(
             f"{'paused' if undisturbed else 'stopped'} and saved after {trainer.steps:,} steps; go on "
             f"with python3 -m galactic.train -o {folder} --resume"
         )
         return OK if undisturbed else INTERRUPTED
-    trainer.progress.say(f"{folder}: curves.html, curves.csv, report.json, best.pt")
+    trainer.reports.progress.say(f"{folder}: curves.html, curves.csv, report.json, best.pt")
     return OK
 
 
@@ -267,8 +267,8 @@ def _begin_log(
         take = make(folder, trainer.settings.to_dict())
     except SettingsError as error:
         return error
-    trainer.log = log.Log(take, trainer.progress.say)
-    held.callback(trainer.log.close)
+    trainer.reports.log = log.Log(take, trainer.reports.progress.say)
+    held.callback(trainer.reports.log.close)
     return None
 
 
@@ -289,10 +289,10 @@ def _begin_callback(
 def _carry_out(trainer: Trainer, run: Run, options: argparse.Namespace) -> bool:
     """Trains as far as it is asked for. Returns whether no signal has left something to do."""
     if options.resume:
-        trainer.progress.say(f"going on after {trainer.steps:,} steps")
+        trainer.reports.progress.say(f"going on after {trainer.steps:,} steps")
     else:
         if options.preset in TAUGHT and run.teacher is None and not run.demonstrations:
-            trainer.progress.say(
+            trainer.reports.progress.say(
                 f"the preset {options.preset} is made for a --teacher; without one, give it more --steps"
             )
         trainer.begin()

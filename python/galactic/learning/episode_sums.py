@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 import math
 from dataclasses import dataclass, field
 from typing import Iterable, NamedTuple, Sequence
@@ -72,3 +73,45 @@ class EpisodeSums:
         means = {name: total / self.episodes for name, total in sums.items()}
         means |= {LOG + name: total / max(self.steps, 1.0) for name, total in self.logs.items()}
         return {name: mean for name, mean in means.items() if not math.isnan(mean)}
+
+
+class RecentEpisodes:
+    """The latest episodes of training, `window` or a few more: those of as few rollouts as cover it. `waiting`: envs
+    of all ranks that have not finished an episode yet."""
+
+    def __init__(self, names: OwnNames, window: int, waiting: int):
+        self.waiting = waiting
+        self._names = names
+        self._window = window
+        self._rollouts: collections.deque[EpisodeSums] = collections.deque()
+
+    def add(self, sums: EpisodeSums, waiting: int) -> None:
+        """Takes in what a rollout came to."""
+        self.waiting = waiting
+        self._rollouts.append(sums)
+        kept = sum(one.episodes for one in self._rollouts)
+        while kept - self._rollouts[0].episodes >= self._window:
+            kept -= self._rollouts.popleft().episodes
+
+    def total(self) -> EpisodeSums:
+        return EpisodeSums.total(self._rollouts, self._names)
+
+    def figures(self) -> dict[str, float]:
+        """Success, return, length and what the task measures, means over total(); none before every env
+        has finished an episode: those that are over first are the short ones, successes most of all.
+        """
+        return {} if self.waiting else self.total().means()
+
+    def numbers(self) -> list[list[float]]:
+        """Rows that take_up() takes."""
+        return [sums.numbers(self._names) for sums in self._rollouts]
+
+    def take_up(self, rows: Iterable[Sequence[float]], names: OwnNames, waiting: int) -> None:
+        """Goes on from rows of what `names` name, which may be less than is named now: the rest is not known."""
+        self.waiting = waiting
+        self._rollouts.clear()
+        for numbers in rows:
+            sums = EpisodeSums.of(numbers, names)
+            sums.measures = {**dict.fromkeys(self._names.measures, math.nan), **sums.measures}
+            sums.logs = {**dict.fromkeys(self._names.logs, math.nan), **sums.logs}
+            self._rollouts.append(sums)

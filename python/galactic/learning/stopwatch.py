@@ -1,4 +1,4 @@
-"""Where the time goes (paper, tables 5 and 6)."""
+"""How long a run takes, and where the time goes (paper, tables 5 and 6)."""
 
 from __future__ import annotations
 
@@ -43,3 +43,32 @@ class Stopwatch:
                 "update agent": per_update.get("update", 0.0),
             },
         }
+
+
+class RunClock:
+    """Time since a run began, over all its parts."""
+
+    def __init__(self) -> None:
+        self._seconds_before = 0.0
+        self._processor_seconds_before = 0.0
+        self.start()
+
+    def start(self) -> None:
+        """The clock on the wall: this part begins now."""
+        self._started = time.perf_counter()
+
+    def take_up(self, seconds: float, processor_seconds: float) -> None:
+        """Adds the parts before this one."""
+        self._seconds_before = seconds
+        # This process has used some before it took up the run.
+        self._processor_seconds_before = processor_seconds - time.process_time()
+
+    @property
+    def seconds(self) -> float:
+        """On the wall."""
+        return self._seconds_before + time.perf_counter() - self._started
+
+    @property
+    def processor_seconds(self) -> float:
+        """Of this rank's processors."""
+        return self._processor_seconds_before + time.process_time()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import collections
-import math
 import os
 import pathlib
 import signal
@@ -16,13 +14,13 @@ from galactic import interrupts
 from galactic.demonstrations import Demonstrations
 from galactic.errors import Error
 from galactic.learning import checkpoint, older
-from galactic.learning.callbacks import CALLBACK, END, UPDATE, Callback, Moment
+from galactic.learning.callbacks import END, UPDATE, Callback, Moment
 from galactic.learning.callbacks import VALIDATION as VALIDATED
 from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy, new_policy
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
-from galactic.learning.episode_sums import MEASURE, EpisodeSums, OwnNames
+from galactic.learning.episode_sums import EpisodeSums, OwnNames, RecentEpisodes
 from galactic.learning.fitting import Observed
 from galactic.learning.imitation import ImitationLearner, Streams, require_same
 from galactic.learning.learner import Learner
@@ -30,12 +28,13 @@ from galactic.learning.networks import Policy, PolicyShape
 from galactic.learning.own_networks import OwnNetwork
 from galactic.learning.ppo import PpoLearner
 from galactic.learning.privileges import columns_among, critic_columns, other_meaning
-from galactic.learning.refusals import CheckpointError, refusing, require_types
-from galactic.learning.reports.curves import VALIDATION, Curves, columns_of, write_json
-from galactic.learning.reports.log import Log
-from galactic.learning.reports.progress import ProgressLine, amount, duration
+from galactic.learning.refusals import CheckpointError, refusing
+from galactic.learning.reports.curves import write_json
+from galactic.learning.reports.run_reports import RunReports
 from galactic.learning.settings import Settings
+from galactic.learning.stopwatch import RunClock
 from galactic.learning.teacher import Teacher
+from galactic.learning.trainer_state import TrainerState, state_of
 
 Validation = Callable[[Policy], EpisodeSums]
 """Runs the episodes for validation that are this rank's, and returns their sums."""
@@ -50,7 +49,8 @@ class Trainer:
 
     `folder` None writes nothing. `parts` are names and sizes of the parts of an observation, for those
     who use the policy. `teacher`: see Teacher, with the file it comes from. `demonstrations`: what it learns
-    from, instead of what it does in `envs`. `network` makes that of the settings, if it is one of the user's. Every rank makes one, and calls the same methods.
+    from, instead of what it does in `envs`. `network` makes that of the settings, if it is one of the user's. Every
+    rank makes one, and calls the same methods.
     """
 
     def __init__(self, settings: Settings, envs: Environments, group: Group,
@@ -93,30 +93,27 @@ class Trainer:
             self.source = self._collector()
         self.stragglers = group.stragglers(settings.sync_fraction, settings.shortest_rollout)
         self.stopwatch = self.source.stopwatch
+        self.clock = RunClock()
         self.checkpoints = CheckpointFolder(folder, settings.keep) if folder else None
-        self.curves = Curves(folder if group.rank == 0 else None, title, self.names)
-        self.progress = ProgressLine(quiet=group.rank > 0)
-        self.log: Optional[Log] = None
-        """Who else takes rows of the curves."""
+        self.reports = RunReports(
+            settings,
+            folder,
+            title,
+            self.names,
+            self.clock,
+            self.stopwatch,
+            is_heard=group.rank == 0,
+        )
         self.callback: Optional[Callback] = None
         """What looks on: the same on all ranks, of which the first one calls it."""
         self.steps = 0
         self.updates = 0
         self.best: Optional[float] = None
-        self._window: collections.deque[EpisodeSums] = collections.deque()
-        # Envs of all ranks that have not finished an episode yet.
-        self._waiting = settings.envs * group.size
-        self._seconds_before = 0.0
-        self._processor_seconds_before = 0.0
-        self._started = time.perf_counter()
-        self._logged = (0.0, 0)
-        self._speed = 0.0
+        self.recent = RecentEpisodes(self.names, settings.window, settings.envs * group.size)
         self._interrupted = False
         # What a signal has put off: a validation, and the end that a callback asked for behind it.
         self._must_validate = False
         self._must_end = False
-        # What the callback has said since the latest row.
-        self._added: dict[str, float] = {}
 
     def _taught_by(self, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]) -> Optional[Teacher]:
         if teacher is None:
@@ -137,16 +134,6 @@ class Trainer:
         precision = self.learner.precision
         return Collector(self.envs, self.policy, options, precision, self.group.device)
 
-    @property
-    def seconds(self) -> float:
-        """Wall clock since the run began, over all its parts."""
-        return self._seconds_before + time.perf_counter() - self._started
-
-    @property
-    def processor_seconds(self) -> float:
-        """The same of this rank's processor time."""
-        return self._processor_seconds_before + time.process_time()
-
     def start_from(self, file: pathlib.Path) -> None:
         """Gives the policy the weights of another run's: see checkpoint.begin_with(). Before begin()."""
         saved = checkpoint.begin_with(
@@ -154,7 +141,7 @@ class Trainer:
         )
         other = other_meaning(dict(saved.parts), saved.meanings, self.meanings)
         if other:
-            self.progress.say(
+            self.reports.progress.say(
                 f"{file} learned with {other.option}={other.learned}, and this run has {other.found}: the same "
                 "numbers mean something else, which it has to learn anew"
             )
@@ -164,7 +151,7 @@ class Trainer:
     def begin(self) -> None:
         """Starts at the first step."""
         self.source.reset()
-        self._started = time.perf_counter()
+        self.clock.start()
 
     def train(self, pause_at: Optional[int] = None) -> bool:
         """Trains until `settings.steps` are done, or `pause_at` of them, or the callback or a signal asks to
@@ -178,13 +165,13 @@ class Trainer:
                 if self._calls_stop(VALIDATED, lambda: late) or self._must_end:
                     end = self.steps
                 self._must_end = False
-                self._write_curves(is_last=True)
+                self.reports.write(is_last=True)
                 if self.steps >= end:
                     self.save()
             while self.steps < end:
                 before = self.steps
                 losses, stop = self._iterate()
-                is_stopped = self._calls_stop(UPDATE, lambda: self._values(losses))
+                is_stopped = self._calls_stop(UPDATE, lambda: self._row(losses))
                 if is_stopped:
                     end = self.steps
                 if self._validates and self._is_due(settings.validate_every, before, end):
@@ -195,17 +182,17 @@ class Trainer:
                         end = self.steps
                 is_last = stop or self.steps >= end
                 self._must_end = self._must_validate and is_stopped
-                if is_last or self.seconds - self._logged[0] >= settings.log_every:
+                if is_last or self.reports.are_due:
                     self._log(losses, is_last=is_last)
                 if stop or self._is_due(settings.checkpoint_every, before, end):
                     self.save()
                 if stop:
                     break
-            self._calls_stop(END, lambda: self._values({}))
-            if self._added:
-                self._add_row(self._values({}))
-                self._write_curves(is_last=True)
-            self.progress.close()
+            self._calls_stop(END, lambda: self._row({}))
+            if self.reports.added:
+                self.reports.add_row(self._row({}))
+                self.reports.write(is_last=True)
+            self.reports.progress.close()
             # Here, too, a signal that comes again is not to end it. It may have been cut off behind its last
             # checkpoint the time before.
             self._write_report()
@@ -220,9 +207,9 @@ class Trainer:
             moment = Moment(kind, row(), self.policy)
             with self.stopwatch.time("reports"):
                 self.callback(moment)
-            self._added |= moment.added
+            self.reports.added |= moment.added
             if moment.reason and kind != END:
-                self.progress.say(f"--callback: {moment.reason}")
+                self.reports.progress.say(f"--callback: {moment.reason}")
                 stop += 1.0
         return bool(self.group.sum(stop) > 0.0)
 
@@ -255,8 +242,7 @@ class Trainer:
         self.stragglers.forget(update)
         self.steps += int(steps)
         self.updates += 1
-        self._waiting = int(waiting)
-        self._remember(EpisodeSums.of(episodes, self.names))
+        self.recent.add(EpisodeSums.of(episodes, self.names), int(waiting))
         if not all(abs(value) < float("inf") for value in losses.values()):
             raise TrainingError(
                 f"update {self.updates} gave a loss that is not a number ({losses}); a lower "
@@ -268,70 +254,26 @@ class Trainer:
         """What comes every so many steps, and at the end, after those that followed `before`."""
         return self.steps >= end or (every > 0 and self.steps // every > before // every)
 
-    def _remember(self, sums: EpisodeSums) -> None:
-        """Keeps the episodes of as few rollouts as cover the window."""
-        self._window.append(sums)
-        kept = sum(one.episodes for one in self._window)
-        while kept - self._window[0].episodes >= self.settings.window:
-            kept -= self._window.popleft().episodes
-
-    def recent(self) -> EpisodeSums:
-        """The latest episodes of training, `window` or a few more."""
-        return EpisodeSums.total(self._window, self.names)
-
-    def figures(self) -> dict[str, float]:
-        """Success, return, length and what the task measures, means over recent(); none before every env
-        has finished an episode: those that are over first are the short ones, successes most of all.
-        """
-        return {} if self._waiting else self.recent().means()
-
-    def _add_row(self, values: dict[str, float]) -> None:
-        values = {**values, **self._added}
-        self._added.clear()
-        self.curves.add(values)
-        if self.log is not None:
-            with self.stopwatch.time("reports"):
-                self.log.add(values)
-
-    def _values(self, losses: dict[str, float]) -> dict[str, float]:
-        """A row of the curves."""
-        seconds, steps = self._logged
-        if self.steps > steps:
-            self._speed = (self.steps - steps) / max(self.seconds - seconds, 1e-9)
+    def _row(self, losses: dict[str, float]) -> dict[str, float]:
+        """What a row of the curves has."""
         return {
             "steps": self.steps,
-            "seconds": self.seconds,
+            "seconds": self.clock.seconds,
             "updates": self.updates,
-            "sps": self._speed,
-            "episodes": self.recent().episodes,
+            "sps": self.reports.speed(self.steps),
+            "episodes": self.recent.total().episodes,
             "learning_rate": self.learner.optimizer.learning_rate,
             **losses,
-            **self.figures(),
+            **self.recent.figures(),
         }
 
     def _log(self, losses: dict[str, float], is_last: bool = False) -> None:
-        values, figures = self._values(losses), self.figures()
-        self._logged = (self.seconds, self.steps)
-        speed = values["sps"]
-        self._add_row(values)
-        left = (self.settings.steps - self.steps) / max(speed, 1e-9)
-        if isinstance(self.source, Streams):
-            goes = f"loss {losses['policy_loss']:.2f}"
-        elif figures:
-            goes = f"success {100.0 * figures['success']:.1f} %  return {figures['return']:.2f}"
-        else:
-            goes = "success -  return -"
-        self.progress.show(
-            f"{amount(self.steps)} of {amount(self.settings.steps)} steps  "
-            f"{amount(speed)} steps/s  {goes}  {duration(left)} left"
-            + "".join(f"  {one}" for one in _measured(figures))
+        self.reports.tell_update(
+            self._row(losses),
+            self.recent.figures(),
+            imitates=isinstance(self.source, Streams),
+            is_last=is_last,
         )
-        self._write_curves(is_last=is_last)
-
-    def _write_curves(self, *, is_last: bool) -> None:
-        with self.stopwatch.time("reports"):
-            shares = self.stopwatch.shares(self.seconds)
-            self.curves.write(self.settings.to_dict(), shares, is_last=is_last)
 
     def _validate(self) -> dict[str, float]:
         """Returns the row of the curves."""
@@ -343,16 +285,8 @@ class Trainer:
                 device=self.group.device,
             )
             found = EpisodeSums.of(self.group.sum(sums).tolist(), self.names)
-        means = found.means()
-        named = {VALIDATION + name: value for name, value in means.items()}
-        row = {"steps": self.steps, "seconds": self.seconds, **named}
-        self._add_row(row)
-        self.progress.say(
-            f"validation after {amount(self.steps)} steps: success "
-            f"{100.0 * means['success']:.1f} % of {found.episodes:.0f} episodes, return "
-            f"{means['return']:.2f}" + "".join(f", {one}" for one in _measured(means))
-        )
-        self._keep_if_best(means["success"])
+        row = self.reports.tell_validation(self.steps, found)
+        self._keep_if_best(found.means()["success"])
         self._must_validate = False
         return row
 
@@ -367,7 +301,7 @@ class Trainer:
     def save(self) -> None:
         """Writes a checkpoint; all ranks call it after the same update."""
         if self.validation is None:
-            self._keep_if_best(self.figures().get("success"))
+            self._keep_if_best(self.recent.figures().get("success"))
         if self.checkpoints is None:
             return
         with self.stopwatch.time("reports"):
@@ -379,7 +313,7 @@ class Trainer:
             if self.group.rank == 0:
                 checkpoint.save_policy(self._saved_policy(None), folder / "policy.pt")
                 optimizer = {"optimizer": self.learner.optimizer.state_dict()}
-                checkpoint.save(folder / "trainer.pt", self._counters(), optimizer)
+                checkpoint.save(folder / "trainer.pt", self._state().to_values(), optimizer)
             self.group.wait_for_all()
             if self.group.rank == 0:
                 self.checkpoints.finish(self.steps)
@@ -398,25 +332,9 @@ class Trainer:
 
     def _take_up(self, folder: pathlib.Path, remedy: str) -> None:
         file = folder / "trainer.pt"
-        counters, tensors = checkpoint.load(file, remedy)
+        values, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
-            counters = older.trainer_values(counters)
-            require_types(counters, _COUNTERS)
-            if counters["ranks"] != self.group.size:
-                raise CheckpointError(
-                    f"{folder} is of {counters['ranks']} ranks, not {self.group.size}; start as many"
-                )
-            for said, known, found in (
-                ("measured", self.names.measures, counters["measures"]),
-                ("logged", self.names.logs, counters["logs"]),
-            ):
-                lost = [name for name in found if name not in known]
-                if lost:
-                    raise CheckpointError(
-                        f"{folder} is of a task that {said} {lost[0]}, and the task does so no longer; put "
-                        "its class back as it was, or begin another run"
-                    )
-            self._take_counters(counters)
+            self._take_up_state(state_of(values, self.group.size, self.names, folder))
             self.learner.optimizer.load_state_dict(tensors.get("optimizer", {}))
         file = folder / "policy.pt"
         saved = checkpoint.load_policy(file, remedy, self.network)
@@ -427,34 +345,18 @@ class Trainer:
         with _fitting(file, remedy):
             self.source.load_state_dict(older.rank_tensors(state))
         self.steps = saved.steps
-        self._started = time.perf_counter()
-        self._logged = (self.seconds, self.steps)
+        self.clock.start()
+        self.reports.begin_at(self.steps)
 
-    def _take_counters(self, counters: dict[str, Any]) -> None:
-        self.updates, self.best = counters["updates"], counters["best"]
-        self.learner.rate.share = counters["rate_share"]
-        self._must_validate = counters["must_validate"] and self._validates
-        self._must_end = counters["must_end"] and counters["must_validate"]
-        names = OwnNames(tuple(counters["measures"]), tuple(counters["logs"]))
-        columns = (*columns_of(names), *map(str, counters["added_columns"]))
-        rows = _rows(counters, "rows", len(columns), (float, int, type(None)))
-        self.curves.take_up(rows, columns)
-        require_types(counters["added"], dict.fromkeys(counters["added"], (float, int)))
-        self._added = {
-            name: value for name, value in counters["added"].items() if name.startswith(CALLBACK)
-        }
-        width = len(EpisodeSums().numbers(names))
-        self._window.clear()
-        for numbers in _rows(counters, "window", width, (float, int)):
-            sums = EpisodeSums.of(numbers, names)
-            sums.measures = {**dict.fromkeys(self.names.measures, math.nan), **sums.measures}
-            sums.logs = {**dict.fromkeys(self.names.logs, math.nan), **sums.logs}
-            self._window.append(sums)
-        require_types(counters["stopwatch"], dict.fromkeys(counters["stopwatch"], (float, int)))
-        self.stopwatch.seconds = dict(counters["stopwatch"])
-        self._waiting, self._seconds_before = counters["waiting"], counters["seconds"]
-        # This process has used some before it took up the run.
-        self._processor_seconds_before = counters["processor_seconds"] - time.process_time()
+    def _take_up_state(self, state: TrainerState) -> None:
+        self.updates, self.best = state.updates, state.best
+        self.learner.rate.share = state.rate_share
+        self._must_validate = state.must_validate and self._validates
+        self._must_end = state.must_end and state.must_validate
+        self.reports.take_up(state.rows, state.columns, state.added)
+        self.recent.take_up(state.window, state.names, state.waiting)
+        self.stopwatch.seconds = dict(state.stopwatch)
+        self.clock.take_up(state.seconds, state.processor_seconds)
 
     def _saved_policy(self, success: Optional[float]) -> SavedPolicy:
         return SavedPolicy(
@@ -468,24 +370,25 @@ class Trainer:
             self.network,
         )
 
-    def _counters(self) -> dict[str, Any]:
-        return {
-            "ranks": self.group.size,
-            "updates": self.updates,
-            "best": self.best,
-            "rate_share": self.learner.rate.share,
-            "must_validate": self._must_validate,
-            "must_end": self._must_end,
-            "rows": self.curves.rows,
-            "added_columns": self.curves.added,
-            "added": self._added,
-            "waiting": self._waiting,
-            **self.names._asdict(),
-            "window": [sums.numbers(self.names) for sums in self._window],
-            "seconds": self.seconds,
-            "processor_seconds": self.processor_seconds,
-            "stopwatch": self.stopwatch.seconds,
-        }
+    def _state(self) -> TrainerState:
+        return TrainerState(
+            ranks=self.group.size,
+            updates=self.updates,
+            best=self.best,
+            rate_share=self.learner.rate.share,
+            must_validate=self._must_validate,
+            must_end=self._must_end,
+            rows=self.reports.curves.rows,
+            added_columns=self.reports.curves.added,
+            added=self.reports.added,
+            waiting=self.recent.waiting,
+            measures=list(self.names.measures),
+            logs=list(self.names.logs),
+            window=self.recent.numbers(),
+            seconds=self.clock.seconds,
+            processor_seconds=self.clock.processor_seconds,
+            stopwatch=self.stopwatch.seconds,
+        )
 
     def _write_report(self) -> None:
         if not self.folder or self.group.rank > 0:
@@ -500,12 +403,12 @@ class Trainer:
                 "steps": self.steps,
                 "must_validate": self._must_validate,
                 "updates": self.updates,
-                "seconds": self.seconds,
-                "processor_seconds": self.processor_seconds,
-                "steps_per_second": self.steps / max(self.seconds, 1e-9),
+                "seconds": self.clock.seconds,
+                "processor_seconds": self.clock.processor_seconds,
+                "steps_per_second": self.steps / max(self.clock.seconds, 1e-9),
                 "best_success": self.best,
-                "training": self.figures(),
-                "validation": self.curves.latest_validation(),
+                "training": self.recent.figures(),
+                "validation": self.reports.curves.latest_validation(),
                 "timing": self.stopwatch.tables(
                     self.updates, self.settings.horizon, self.source.PHASES
                 ),
@@ -519,51 +422,12 @@ class Trainer:
             raise KeyboardInterrupt
         if not self._interrupted:
             self._interrupted = True
-            self.progress.say("stopping after this update; Ctrl-C now stops without saving")
-
-
-# Of a trainer.pt: types that JSON gives its values.
-_COUNTERS = {
-    "ranks": int,
-    "updates": int,
-    "best": (float, int, type(None)),
-    "rate_share": (float, int),
-    "must_validate": bool,
-    "must_end": bool,
-    "rows": list,
-    "added_columns": list,
-    "added": dict,
-    "waiting": int,
-    "measures": list,
-    "logs": list,
-    "window": list,
-    "seconds": (float, int),
-    "processor_seconds": (float, int),
-    "stopwatch": dict,
-}
-
-
-def _rows(values: dict[str, Any], name: str, width: int, kinds: Any) -> list[list[Any]]:
-    """The table of that name; ValueError where a row has another width or kind of numbers."""
-    for number, row in enumerate(values[name]):
-        are_numbers = isinstance(row, list) and all(isinstance(one, kinds) for one in row)
-        if not are_numbers or len(row) != width:
-            raise ValueError(f"{name}[{number}]: found {row!r}, expected {width} numbers")
-    return list(values[name])
+            self.reports.progress.say("stopping after this update; Ctrl-C now stops without saving")
 
 
 def _fitting(file: pathlib.Path, remedy: str) -> ContextManager[None]:
     """Around taking over what `file` holds."""
     return refusing(f"{file} does not fit this run", remedy)
-
-
-def _measured(means: dict[str, float]) -> list[str]:
-    """What a task of one's own measures, for a line."""
-    return [
-        f"{name.removeprefix(MEASURE)} {value:.3g}"
-        for name, value in means.items()
-        if name.startswith(MEASURE)
-    ]
 
 
 def threads_of(wanted: int, local_ranks: int) -> int:

@@ -79,7 +79,7 @@ def wait(group: Group, folder: pathlib.Path) -> None:
     has_figures = []
     for _ in range(5):
         trainer._iterate()
-        has_figures.append(bool(trainer.figures()))
+        has_figures.append(bool(trainer.recent.figures()))
     torch.save(has_figures, folder / f"figures-{group.rank}.pt")
 
 

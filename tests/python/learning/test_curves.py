@@ -51,7 +51,7 @@ def test_the_curves_have_what_a_task_measures(tmp_path: pathlib.Path, capsys: An
 
     settings = dataclasses.replace(SETTINGS, validate_every=4 * UPDATE)
     trainer = make_trainer(tmp_path, settings, Measured, validation=validate)
-    trainer.progress._live = True
+    trainer.reports.progress._live = True
     trainer.begin()
     trainer.train()
     rows = curve(tmp_path)
@@ -78,7 +78,7 @@ def test_the_curves_have_what_a_task_measures(tmp_path: pathlib.Path, capsys: An
     assert "75.0 % of 4 episodes, return 5.00, kl 0.25, validation_success -0.5, steps 0\n" in said
     assert f" left  kl {trained[-1]['measure_kl']:.3g}  validation_success " in said
     report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
-    assert report["training"] == trainer.figures() and "measure_kl" in report["training"]
+    assert report["training"] == trainer.recent.figures() and "measure_kl" in report["training"]
     assert report["validation"] == {
         "success": 0.75,
         "return": 5.0,
@@ -188,7 +188,7 @@ def test_a_torn_row_of_the_curves_is_ignored_and_mended(tmp_path: pathlib.Path) 
         assert len(read_curves(table)) == rows
         resumed = make_trainer(tmp_path, resumed.settings)
         resumed.resume()
-        resumed.curves.write({}, [])
+        resumed.reports.curves.write({}, [])
         assert table.read_bytes() == whole
 
 

@@ -306,7 +306,7 @@ def test_it_learns_what_only_a_memory_of_its_own_knows() -> None:
     trainer = make_trainer(None, settings, Remember, network=own)
     trainer.begin()
     trainer.train()
-    assert trainer.figures()["success"] > 0.8  # without a memory, 0.5
+    assert trainer.recent.figures()["success"] > 0.8  # without a memory, 0.5
 
 
 def test_a_resumed_run_is_the_run_that_would_have_been(

@@ -303,7 +303,7 @@ def test_a_checkpoint_of_before_there_were_teachers_is_taken_up(tmp_path: pathli
     values["rows"] = [row[:-1] for row in values["rows"]]
     checkpoint.save(file, values, tensors)
     resumed.resume()
-    assert values["rows"] and [len(row) for row in resumed.curves.rows] == [width] * 2
+    assert values["rows"] and [len(row) for row in resumed.reports.curves.rows] == [width] * 2
     values["rows"] = [row[:-1] for row in values["rows"]]
     checkpoint.save(file, values, tensors)
     with pytest.raises(CheckpointError, match="rows.0.: found"):
@@ -349,7 +349,7 @@ def test_a_task_that_measures_something_else_is_another_run(tmp_path: pathlib.Pa
 
     more = make_trainer(tmp_path, toy=MeasuresMore)
     more.resume()
-    row = dict(zip(more.curves.columns, more.curves.rows[0]))
+    row = dict(zip(more.reports.curves.columns, more.reports.curves.rows[0]))
     assert row["measure_steps"] == row["length"] and row["measure_more"] is None
 
 

@@ -1,0 +1,112 @@
+"""What a run tells while it goes on: rows of the curves, for their files and for who else takes them, and lines."""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Mapping, Optional, Sequence
+
+from galactic.learning.callbacks import CALLBACK
+from galactic.learning.episode_sums import MEASURE, EpisodeSums, OwnNames
+from galactic.learning.reports.curves import VALIDATION, Curves
+from galactic.learning.reports.log import Log
+from galactic.learning.reports.progress import ProgressLine, amount, duration
+from galactic.learning.settings import Settings
+from galactic.learning.stopwatch import RunClock, Stopwatch
+
+
+class RunReports:
+    """Of the rank that tells; of the others, nothing is heard. `folder` None writes no files."""
+
+    def __init__(self, settings: Settings, folder: Optional[pathlib.Path], title: str, names: OwnNames,
+                 clock: RunClock, stopwatch: Stopwatch, *, is_heard: bool):  # fmt: skip
+        self.curves = Curves(folder if is_heard else None, title, names)
+        self.progress = ProgressLine(quiet=not is_heard)
+        self.log: Optional[Log] = None
+        """Who else takes rows of the curves."""
+        self.added: dict[str, float] = {}
+        """What a callback has said since the latest row."""
+        self._settings = settings
+        self._clock = clock
+        self._stopwatch = stopwatch
+        # Seconds and steps when an update was told last.
+        self._told = (0.0, 0)
+        self._speed = 0.0
+
+    @property
+    def are_due(self) -> bool:
+        """Whether the latest update was told long enough ago."""
+        return self._clock.seconds - self._told[0] >= self._settings.log_every
+
+    def speed(self, steps: int) -> float:
+        """Steps per second since an update was told last, when `steps` are done."""
+        seconds, before = self._told
+        if steps > before:
+            self._speed = (steps - before) / max(self._clock.seconds - seconds, 1e-9)
+        return self._speed
+
+    def add_row(self, values: Mapping[str, float]) -> None:
+        """With what a callback has said."""
+        row = {**values, **self.added}
+        self.added.clear()
+        self.curves.add(row)
+        if self.log is not None:
+            with self._stopwatch.time("reports"):
+                self.log.add(row)
+
+    def tell_update(self, row: Mapping[str, float], figures: Mapping[str, float], *,
+                    imitates: bool, is_last: bool) -> None:  # fmt: skip
+        """`figures` are those of recent episodes; who `imitates` has none, and a loss."""
+        steps = int(row["steps"])
+        self._told = (self._clock.seconds, steps)
+        self.add_row(row)
+        left = (self._settings.steps - steps) / max(row["sps"], 1e-9)
+        if imitates:
+            goes = f"loss {row['policy_loss']:.2f}"
+        elif figures:
+            goes = f"success {100.0 * figures['success']:.1f} %  return {figures['return']:.2f}"
+        else:
+            goes = "success -  return -"
+        self.progress.show(
+            f"{amount(steps)} of {amount(self._settings.steps)} steps  "
+            f"{amount(row['sps'])} steps/s  {goes}  {duration(left)} left"
+            + "".join(f"  {one}" for one in _measured(figures))
+        )
+        self.write(is_last=is_last)
+
+    def tell_validation(self, steps: int, found: EpisodeSums) -> dict[str, float]:
+        """Returns the row of the curves."""
+        means = found.means()
+        named = {VALIDATION + name: value for name, value in means.items()}
+        row = {"steps": steps, "seconds": self._clock.seconds, **named}
+        self.add_row(row)
+        self.progress.say(
+            f"validation after {amount(steps)} steps: success "
+            f"{100.0 * means['success']:.1f} % of {found.episodes:.0f} episodes, return "
+            f"{means['return']:.2f}" + "".join(f", {one}" for one in _measured(means))
+        )
+        return row
+
+    def write(self, *, is_last: bool) -> None:
+        """Brings the files of the curves up to date."""
+        with self._stopwatch.time("reports"):
+            shares = self._stopwatch.shares(self._clock.seconds)
+            self.curves.write(self._settings.to_dict(), shares, is_last=is_last)
+
+    def take_up(self, rows: Sequence[Sequence[Optional[float]]], columns: Sequence[str],
+                added: Mapping[str, float]) -> None:  # fmt: skip
+        """Goes on behind these rows, and with what a callback said after them."""
+        self.curves.take_up(rows, columns)
+        self.added = {name: value for name, value in added.items() if name.startswith(CALLBACK)}
+
+    def begin_at(self, steps: int) -> None:
+        """Measures speed from here on."""
+        self._told = (self._clock.seconds, steps)
+
+
+def _measured(means: Mapping[str, float]) -> list[str]:
+    """What a task of one's own measures, for a line."""
+    return [
+        f"{name.removeprefix(MEASURE)} {value:.3g}"
+        for name, value in means.items()
+        if name.startswith(MEASURE)
+    ]

@@ -1,0 +1,103 @@
+"""What a trainer.pt says beside the optimizer: how far a run is, and what it has told until then."""
+
+from __future__ import annotations
+
+import pathlib
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from galactic.learning import older
+from galactic.learning.episode_sums import EpisodeSums, OwnNames
+from galactic.learning.refusals import CheckpointError, require_types
+from galactic.learning.reports.curves import columns_of
+
+
+@dataclass
+class TrainerState:
+    """Where a Trainer is. `rows`, `added_columns`: those of the curves, and which of them a callback has added.
+    `added`: what it has said since the latest row. `measures`, `logs`: names of what the task says.
+    `window`: EpisodeSums.numbers() of recent rollouts. `stopwatch`: its seconds."""
+
+    ranks: int
+    updates: int
+    best: Optional[float]
+    rate_share: float
+    must_validate: bool
+    must_end: bool
+    rows: list[list[Optional[float]]]
+    added_columns: list[str]
+    added: dict[str, float]
+    waiting: int
+    measures: list[str]
+    logs: list[str]
+    window: list[list[float]]
+    seconds: float
+    processor_seconds: float
+    stopwatch: dict[str, float]
+
+    @property
+    def names(self) -> OwnNames:
+        return OwnNames(tuple(self.measures), tuple(self.logs))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Of the rows."""
+        return (*columns_of(self.names), *map(str, self.added_columns))
+
+    def to_values(self) -> dict[str, Any]:
+        return dict(vars(self))
+
+
+def state_of(values: dict[str, Any], ranks: int, names: OwnNames, folder: pathlib.Path) -> TrainerState:  # fmt: skip
+    """The state that the values of a trainer.pt in `folder` are, for a run of so many ranks whose task says what
+    `names` name. Raises CheckpointError where they are of another run, ValueError where they are none.
+    """
+    values = older.trainer_values(values)
+    require_types(values, _TYPES)
+    state = TrainerState(**{name: values[name] for name in _TYPES})
+    if state.ranks != ranks:
+        raise CheckpointError(f"{folder} is of {state.ranks} ranks, not {ranks}; start as many")
+    for said, known, found in (
+        ("measured", names.measures, state.measures),
+        ("logged", names.logs, state.logs),
+    ):
+        lost = [name for name in found if name not in known]
+        if lost:
+            raise CheckpointError(
+                f"{folder} is of a task that {said} {lost[0]}, and the task does so no longer; put "
+                "its class back as it was, or begin another run"
+            )
+    _require_rows("rows", state.rows, len(state.columns), (float, int, type(None)))
+    _require_rows("window", state.window, len(EpisodeSums().numbers(state.names)), (float, int))
+    for numbers in (state.added, state.stopwatch):
+        require_types(numbers, dict.fromkeys(numbers, (float, int)))
+    return state
+
+
+# Types that JSON gives what a TrainerState has.
+_TYPES = {
+    "ranks": int,
+    "updates": int,
+    "best": (float, int, type(None)),
+    "rate_share": (float, int),
+    "must_validate": bool,
+    "must_end": bool,
+    "rows": list,
+    "added_columns": list,
+    "added": dict,
+    "waiting": int,
+    "measures": list,
+    "logs": list,
+    "window": list,
+    "seconds": (float, int),
+    "processor_seconds": (float, int),
+    "stopwatch": dict,
+}
+
+
+def _require_rows(name: str, rows: list[Any], width: int, kinds: Any) -> None:
+    """Raises ValueError where a row of the table has another width or kind of numbers."""
+    for number, row in enumerate(rows):
+        are_numbers = isinstance(row, list) and all(isinstance(one, kinds) for one in row)
+        if not are_numbers or len(row) != width:
+            raise ValueError(f"{name}[{number}]: found {row!r}, expected {width} numbers")
