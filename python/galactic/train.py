@@ -6,7 +6,6 @@ import argparse
 import contextlib
 import dataclasses
 import functools
-import json
 import os
 import pathlib
 import sys
@@ -17,16 +16,7 @@ import torch
 import galactic
 from galactic import files
 from galactic.demonstrations import Demonstrations
-from galactic.learning import (
-    callbacks,
-    checkpoint,
-    evaluation,
-    older,
-    own_code,
-    own_networks,
-    own_tasks,
-)
-from galactic.learning.checkpoint import CheckpointFolder
+from galactic.learning import callbacks, checkpoint, own_tasks
 from galactic.learning.command import (
     EXIT_CODES,
     INTERRUPTED,
@@ -37,23 +27,20 @@ from galactic.learning.command import (
     told,
 )
 from galactic.learning.distributed import Group, device_of, local_ranks
-from galactic.learning.episode_sums import EpisodeSums
-from galactic.learning.homes import Homes, sizes_of
+from galactic.learning.homes import Homes
 from galactic.learning.launch import follow_launcher, launch
-from galactic.learning.networks import Policy
 from galactic.learning.presets import PRESETS, TAUGHT, preset
-from galactic.learning.privileges import other_meaning, parts_of_actor
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import log
 from galactic.learning.run_folder import (
     TEACHER,
-    Run,
+    CheckpointFolder,
     begin_folder,
-    kept_code,
-    read_run,
+    is_complete,
     require_no_run,
     take_folder,
 )
+from galactic.learning.runs import Run, network_of, read_run, task_of, with_network, with_task
 from galactic.learning.setting_fields import option_name
 from galactic.learning.setting_options import (
     add_options,
@@ -63,7 +50,8 @@ from galactic.learning.setting_options import (
     resumed,
 )
 from galactic.learning.settings import Settings
-from galactic.learning.trainer import Trainer, Validation, threads_of
+from galactic.learning.trainer import Trainer, threads_of
+from galactic.learning.validation import validation_of
 from galactic.streams import put
 
 
@@ -164,7 +152,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
         make_log = _log_maker(options)
         make_callback = None if options.callback is None else callbacks.maker(options.callback)
         run = _resumed_run(options) if options.resume else _new_run(options)
-        if options.resume and _is_complete(run, options.out):
+        if options.resume and is_complete(run, options.out):
             if os.environ.get("RANK", "0") == "0":
                 put(sys.stderr, f"{options.out} is complete; give it more --steps to go on\n")
             return OK
@@ -202,7 +190,7 @@ def _train(
     sharing = 1 if settings.network == "state" else 0
     torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
     kept = folder if options.resume else None
-    task, network = _task_of(run, kept), _network_of(run, kept)
+    task, network = task_of(run, kept), network_of(run, kept)
     shown = Demonstrations(*run.demonstrations) if run.demonstrations else None
     # Of those in which nobody acts, one is enough.
     played = (
@@ -211,7 +199,7 @@ def _train(
     envs = Homes(
         galactic.World(run.world), played, threads, rank=group.rank, ranks=group.size, task=task
     )
-    validation = _validation(run, envs, threads, group, task)
+    validation = validation_of(run, envs, threads, group, task)
     teacher = None
     if run.teacher:
         # A run keeps a copy, with which it can be resumed.
@@ -338,8 +326,8 @@ def _run_of(options: argparse.Namespace, world: pathlib.Path) -> Run:
         _absolute(options.teacher),
         demonstrations=[folder.resolve() for folder in options.demonstrations],
     )
-    run = _with_task(run, given.get("simulation", "")) if settings.task else run
-    return _with_network(run) if settings.has_own_network else run
+    run = with_task(run, given.get("simulation", "")) if settings.task else run
+    return with_network(run) if settings.has_own_network else run
 
 
 def _require_imitation(options: argparse.Namespace, settings: Settings) -> None:
@@ -352,57 +340,6 @@ def _require_imitation(options: argparse.Namespace, settings: Settings) -> None:
             raise SettingsError(
                 f"{option} is for a run that acts, and not for one with --demonstrations; leave one of them out"
             )
-
-
-def _with_task(run: Run, simulation: str) -> Run:
-    """The run with the task of one's own that its settings name, in the simulation that this task wants.
-    `simulation`: the options of it that were given, beside the preset's. Makes the task, which alone knows
-    its options: in the process that launches ranks, too, so that it tells once what is wrong with it.
-    """
-    name = own_code.named(run.settings.task, "--task")
-    task = own_tasks.maker(name, run.settings.task_options)()
-    settings = dataclasses.replace(
-        run.settings,
-        task=str(name),
-        simulation=own_tasks.simulation_below(task, run.settings.simulation, simulation),
-    )
-    return dataclasses.replace(run, settings=settings, task_file=_absolute(name.file))
-
-
-def _task_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_tasks.MakeTask]:
-    """What makes the run's task, if that is one's own; of the copy in `folder` if it is given."""
-    if not run.settings.task:
-        return None
-    name, siblings = _code_of(run.settings.task, "--task", run.task_file, folder)
-    return own_tasks.maker(name, run.settings.task_options, siblings)
-
-
-def _with_network(run: Run) -> Run:
-    """The run with the network of one's own that its settings name. Looks for its class, as _with_task() does."""
-    name = own_code.named(run.settings.network, "--network")
-    own_networks.with_options(own_networks.network_of(name), run.settings.network_options)
-    settings = dataclasses.replace(run.settings, network=str(name))
-    return dataclasses.replace(run, settings=settings, network_file=_absolute(name.file))
-
-
-def _network_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_networks.OwnNetwork]:
-    """What makes the run's network, if that is one's own; of the copy in `folder` if it is given."""
-    if not run.settings.has_own_network:
-        return None
-    name, siblings = _code_of(run.settings.network, "--network", run.network_file, folder)
-    found = own_networks.network_of(name, siblings)
-    return own_networks.with_options(found, run.settings.network_options)
-
-
-def _code_of(
-    text: str, option: str, file: Optional[pathlib.Path], folder: Optional[pathlib.Path]
-) -> tuple[own_code.CodeName, Optional[pathlib.Path]]:
-    """What the settings of a run call code that is in a module or a `file`, and where the modules are that this
-    imports."""
-    name = own_code.named(text, option)
-    if file is None:
-        return name, None
-    return name._replace(place=str(kept_code(file, option, folder))), file.parent
 
 
 def _resumed_run(options: argparse.Namespace) -> Run:
@@ -426,71 +363,8 @@ def _resumed_run(options: argparse.Namespace) -> Run:
     return dataclasses.replace(run, settings=settings)
 
 
-def _is_complete(run: Run, folder: pathlib.Path) -> bool:
-    """Whether nothing is left to do: all steps are done, and the report was written after them and after
-    what a signal may have put off. Of a report that is none, the run writes another."""
-    done = CheckpointFolder(folder, run.settings.keep).steps
-    try:
-        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
-        report = older.report_values(report)
-        reported, is_whole = report["steps"], not report["must_validate"]
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return False
-    return done >= run.settings.steps and reported == done and is_whole
-
-
 def _behind(option: str, found: int, done: int) -> str:
     return f"{option}: found {found:,}, and the run has done {done:,} steps; take more, or "
-
-
-def _validation(
-    run: Run, trained: Homes, threads: int, group: Group, task: Optional[own_tasks.MakeTask]
-) -> Optional[Validation]:
-    """Plays the episodes held out, this rank's share of them, with sampled actions as in training, which
-    is in the homes `trained`. Raises galactic.Error where a policy of these could not play there.
-    """
-    settings = run.settings
-    if run.validation is None or not settings.validate_every:
-        return None
-    envs = min(settings.envs, evaluation.MOST_ENVS)
-    held_out = dataclasses.replace(settings.without_noise(), envs=envs, halves=1, mini_batches=1)
-    homes = Homes(galactic.World(run.validation), held_out, threads, task=task, is_evaluation=True)
-    if homes.parts != trained.parts:
-        raise galactic.Error(
-            galactic.ErrorCode.INVALID_INPUT,
-            str(run.validation),
-            f"gives observations of {sizes_of(homes.parts)}, and {run.world} of "
-            f"{sizes_of(trained.parts)}; validate in a world with the same robot",
-        )
-    seen = dict(parts_of_actor(settings.critic_only, trained.parts))
-    other = other_meaning(seen, trained.meanings, homes.meanings)
-    if other:
-        message = (
-            f"found {other.option}={other.found}, expected {other.learned} as in {run.world}: the same "
-            "numbers mean something else; validate in a world whose task has the same"
-        )
-        raise galactic.Error(galactic.ErrorCode.INVALID_INPUT, str(run.validation), message)
-    if not homes.are_limited:
-        raise SettingsError(
-            "--simulation: episode-steps is 0, and a validation of episodes without a limit may never "
-            "end; limit them, or leave out --validation"
-        )
-    playable = homes.playable_episodes()
-    if not playable:
-        message = "has no episode in which the robot can start; validate in another world"
-        raise galactic.Error(galactic.ErrorCode.INVALID_INPUT, str(run.validation), message)
-    episodes = playable[: settings.validation_episodes or None][group.rank :: group.size]
-
-    def validate(policy: Policy) -> EpisodeSums:
-        # Else noise would go on where the validation before has ended, of which a resumed run knows nothing.
-        homes.restart(settings.seed)
-        actor = evaluation.Actor(
-            policy, deterministic=False, seed=settings.seed, device=group.device
-        )
-        player = evaluation.Evaluator(homes, actor)
-        return evaluation.sums_of(player.play(episodes, details=False))
-
-    return validate
 
 
 def _absolute(path: Optional[pathlib.Path]) -> Optional[pathlib.Path]:

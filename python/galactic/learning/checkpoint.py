@@ -1,16 +1,4 @@
-"""Checkpoints: files that appear whole or not at all.
-
-A run's folder holds
-
-    settings.json                    what the run is
-    checkpoints/000001048576/        after so many steps: the latest few
-        policy.pt                    networks and settings: see load_policy()
-        trainer.pt                   optimizer, counters, curves
-        rank-0.pt, rank-1.pt ...     envs, memories and episodes of each rank
-    best.pt                          the policy.pt that did best
-    teacher.pt                       the policy.pt of the teacher, if there is one
-    curves.csv, curves.html          written while it runs
-    .lock                            held by who writes here: see files.alone_in()
+"""Files that hold policies and the state of a run, which appear whole or not at all.
 
 A .pt file is a dictionary that `torch.load(..., weights_only=True)` reads: tensors under their names,
 and under "values" a JSON text with all else (torch 1.13 reads no plain floats that way). In policy.pt:
@@ -33,7 +21,6 @@ import json
 import os
 import pathlib
 import shlex
-import shutil
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Optional, Sequence
 
@@ -344,64 +331,3 @@ def save(file: pathlib.Path, values: dict[str, Any], tensors: dict[str, Any]) ->
     contents = io.BytesIO()
     torch.save({"values": json.dumps(values), **tensors}, contents)
     files.write_atomically(file, lambda handle: handle.write(contents.getbuffer()))
-
-
-class CheckpointFolder:
-    """The checkpoints of a run. Ranks write into a folder that has its name only when all are done."""
-
-    def __init__(self, run: pathlib.Path, keep: int):
-        self.run = run
-        self.folder = run / "checkpoints"
-        self._keep = keep
-
-    def begin(self, steps: int) -> pathlib.Path:
-        """The folder to write into, for all ranks; the first one calls this before the others write."""
-        unfinished = self.unfinished(steps)
-        shutil.rmtree(unfinished, ignore_errors=True)
-        unfinished.mkdir(parents=True)
-        return unfinished
-
-    def unfinished(self, steps: int) -> pathlib.Path:
-        """Where ranks write until all are done."""
-        return self.folder / f".{steps:012d}.unfinished"
-
-    def finish(self, steps: int) -> pathlib.Path:
-        """Gives it its name and deletes the oldest; the first rank calls this when all have written."""
-        final = self.folder / f"{steps:012d}"
-        shutil.rmtree(final, ignore_errors=True)
-        os.replace(self.unfinished(steps), final)
-        files.sync(self.folder)
-        for old in self.complete()[: -self._keep]:
-            shutil.rmtree(old, ignore_errors=True)
-        return final
-
-    def complete(self) -> list[pathlib.Path]:
-        """All that are whole, the oldest first."""
-        if not self.folder.is_dir():
-            return []
-        return sorted(path for path in self.folder.iterdir() if path.name.isdigit())
-
-    def latest(self) -> pathlib.Path:
-        complete = self.complete()
-        if not complete:
-            message = "holds no checkpoint to go on from; begin another run, in a folder of its own"
-            raise Error(ErrorCode.IO, str(self.folder), message)
-        return complete[-1]
-
-    @property
-    def steps(self) -> int:
-        """After how many steps the latest was saved; 0 where there is none."""
-        return max((int(path.name) for path in self.complete()), default=0)
-
-    @property
-    def without_latest(self) -> str:
-        """What to do where the latest cannot be taken up: its files are of no use apart."""
-        *earlier, latest = self.complete()
-        if earlier:
-            return (
-                f"remove the folder {latest} to resume from {earlier[-1].name}, which is before it"
-            )
-        return (
-            "no checkpoint is before it: begin another run, which can have the weights of best.pt "
-            "(--start-from)"
-        )

@@ -1,69 +1,35 @@
-"""What a run is, and its folder."""
+"""The folder of a run, and the checkpoints in it. It holds
+
+    settings.json                    what the run is
+    checkpoints/000001048576/        after so many steps: the latest few
+        policy.pt                    networks and settings: see checkpoint.load_policy()
+        trainer.pt                   optimizer, counters, curves
+        rank-0.pt, rank-1.pt ...     envs, memories and episodes of each rank
+    best.pt                          the policy.pt that did best
+    teacher.pt                       the policy.pt of the teacher, if there is one
+    curves.csv, curves.html          written while it runs
+    .lock                            held by who writes here: see files.alone_in()
+"""
 
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import json
+import os
 import pathlib
-from typing import Optional, Sequence
+import shutil
+from typing import Optional
 
-import galactic
 from galactic import files
+from galactic._core import ErrorCode
+from galactic.errors import Error
 from galactic.learning import checkpoint, older, own_code
 from galactic.learning.checkpoint import SavedPolicy
-from galactic.learning.refusals import SettingsError, refusing, require_types
-from galactic.learning.reports.curves import write_json
-from galactic.learning.settings import Settings
+from galactic.learning.refusals import SettingsError
+from galactic.learning.runs import Run, write_run
 
 TEACHER = "teacher.pt"
 """The copy of the teacher in the folder of a run."""
-
-
-@dataclasses.dataclass
-class Run:
-    """What a run is about: kept in its settings.json."""
-
-    world: pathlib.Path
-    validation: Optional[pathlib.Path]
-    settings: Settings
-    start_from: Optional[pathlib.Path] = None
-    teacher: Optional[pathlib.Path] = None
-    task_file: Optional[pathlib.Path] = None
-    network_file: Optional[pathlib.Path] = None
-    demonstrations: Sequence[pathlib.Path] = ()
-
-
-def read_run(file: pathlib.Path) -> Run:
-    remedy = "begin another run, which can have the weights of best.pt (--start-from)"
-    with refusing(f"{file} does not say what the run is", remedy):
-        run, path = older.run_values(json.loads(file.read_text(encoding="utf-8"))), (
-            str,
-            type(None),
-        )
-        require_types(
-            run,
-            {
-                "world": str,
-                "validation": path,
-                "start_from": path,
-                "teacher": path,
-                "task_file": path,
-                "network_file": path,
-                "demonstrations": list,
-                "settings": dict,
-            },
-        )
-        return Run(
-            pathlib.Path(run["world"]),
-            pathlib.Path(run["validation"]) if run["validation"] else None,
-            Settings.from_dict(run["settings"]),
-            pathlib.Path(run["start_from"]) if run["start_from"] else None,
-            pathlib.Path(run["teacher"]) if run["teacher"] else None,
-            pathlib.Path(run["task_file"]) if run["task_file"] else None,
-            pathlib.Path(run["network_file"]) if run["network_file"] else None,
-            [pathlib.Path(folder) for folder in run["demonstrations"]],
-        )
 
 
 def require_no_run(folder: pathlib.Path) -> None:
@@ -85,7 +51,7 @@ def take_folder(
         if not resumes:
             # Another one may have come and gone since.
             require_no_run(folder)
-    except (galactic.Error, OSError, SettingsError) as error:
+    except (Error, OSError, SettingsError) as error:
         return error
     return None
 
@@ -105,20 +71,10 @@ def begin_folder(
             # A run that is resumed has the copy, with which it goes on.
             if file is not None and not resumes:
                 _keep_code(file, folder / own_code.COPIES[option])
-        _write_run(run, folder)
-    except (galactic.Error, OSError) as error:
+        write_run(run, folder)
+    except (Error, OSError) as error:
         return error
     return None
-
-
-def kept_code(file: pathlib.Path, option: str, folder: Optional[pathlib.Path]) -> pathlib.Path:
-    """Where the code is that `option` named: `file`, or the copy of it in the `folder` of a run that is resumed.
-    Raises Error where that copy is missing."""
-    copy = file if folder is None else folder / own_code.COPIES[option]
-    if folder is not None and not copy.is_file():
-        message = f"is missing, the copy of {file} with which the run began; put it back, or begin another run"
-        raise galactic.Error(galactic.ErrorCode.IO, str(copy), message)
-    return copy
 
 
 def _keep_code(file: pathlib.Path, copy: pathlib.Path) -> None:
@@ -126,21 +82,79 @@ def _keep_code(file: pathlib.Path, copy: pathlib.Path) -> None:
     code = file.read_bytes()
     if copy.exists() and copy.read_bytes() != code:
         message = f"is there already, and is not {file}; move it, or choose another folder"
-        raise galactic.Error(galactic.ErrorCode.IO, str(copy), message)
+        raise Error(ErrorCode.IO, str(copy), message)
     files.write_atomically(copy, lambda handle: handle.write(code))
 
 
-def _write_run(run: Run, folder: pathlib.Path) -> None:
-    write_json(
-        folder / "settings.json",
-        {
-            "world": str(run.world),
-            "validation": str(run.validation) if run.validation else None,
-            "start_from": str(run.start_from) if run.start_from else None,
-            "teacher": str(run.teacher) if run.teacher else None,
-            "task_file": str(run.task_file) if run.task_file else None,
-            "network_file": str(run.network_file) if run.network_file else None,
-            "demonstrations": [str(folder) for folder in run.demonstrations],
-            "settings": run.settings.to_dict(),
-        },
-    )
+def is_complete(run: Run, folder: pathlib.Path) -> bool:
+    """Whether nothing is left to do: all steps are done, and the report was written after them and after
+    what a signal may have put off. Of a report that is none, the run writes another."""
+    done = CheckpointFolder(folder, run.settings.keep).steps
+    try:
+        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+        report = older.report_values(report)
+        reported, is_whole = report["steps"], not report["must_validate"]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return False
+    return done >= run.settings.steps and reported == done and is_whole
+
+
+class CheckpointFolder:
+    """The checkpoints of a run. Ranks write into a folder that has its name only when all are done."""
+
+    def __init__(self, run: pathlib.Path, keep: int):
+        self.run = run
+        self.folder = run / "checkpoints"
+        self._keep = keep
+
+    def begin(self, steps: int) -> pathlib.Path:
+        """The folder to write into, for all ranks; the first one calls this before the others write."""
+        unfinished = self.unfinished(steps)
+        shutil.rmtree(unfinished, ignore_errors=True)
+        unfinished.mkdir(parents=True)
+        return unfinished
+
+    def unfinished(self, steps: int) -> pathlib.Path:
+        """Where ranks write until all are done."""
+        return self.folder / f".{steps:012d}.unfinished"
+
+    def finish(self, steps: int) -> pathlib.Path:
+        """Gives it its name and deletes the oldest; the first rank calls this when all have written."""
+        final = self.folder / f"{steps:012d}"
+        shutil.rmtree(final, ignore_errors=True)
+        os.replace(self.unfinished(steps), final)
+        files.sync(self.folder)
+        for old in self.complete()[: -self._keep]:
+            shutil.rmtree(old, ignore_errors=True)
+        return final
+
+    def complete(self) -> list[pathlib.Path]:
+        """All that are whole, the oldest first."""
+        if not self.folder.is_dir():
+            return []
+        return sorted(path for path in self.folder.iterdir() if path.name.isdigit())
+
+    def latest(self) -> pathlib.Path:
+        complete = self.complete()
+        if not complete:
+            message = "holds no checkpoint to go on from; begin another run, in a folder of its own"
+            raise Error(ErrorCode.IO, str(self.folder), message)
+        return complete[-1]
+
+    @property
+    def steps(self) -> int:
+        """After how many steps the latest was saved; 0 where there is none."""
+        return max((int(path.name) for path in self.complete()), default=0)
+
+    @property
+    def without_latest(self) -> str:
+        """What to do where the latest cannot be taken up: its files are of no use apart."""
+        *earlier, latest = self.complete()
+        if earlier:
+            return (
+                f"remove the folder {latest} to resume from {earlier[-1].name}, which is before it"
+            )
+        return (
+            "no checkpoint is before it: begin another run, which can have the weights of best.pt "
+            "(--start-from)"
+        )

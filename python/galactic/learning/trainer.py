@@ -16,7 +16,7 @@ from galactic.errors import Error
 from galactic.learning import checkpoint, older
 from galactic.learning.callbacks import END, UPDATE, Callback, Moment
 from galactic.learning.callbacks import VALIDATION as VALIDATED
-from galactic.learning.checkpoint import CheckpointFolder, SavedPolicy, new_policy
+from galactic.learning.checkpoint import SavedPolicy, new_policy
 from galactic.learning.collector import Collector, CollectorOptions
 from galactic.learning.distributed import Group
 from galactic.learning.environments import Environments
@@ -31,6 +31,7 @@ from galactic.learning.privileges import columns_among, critic_columns, other_me
 from galactic.learning.refusals import CheckpointError, refusing
 from galactic.learning.reports.curves import write_json
 from galactic.learning.reports.run_reports import RunReports
+from galactic.learning.run_folder import CheckpointFolder
 from galactic.learning.settings import Settings
 from galactic.learning.stopwatch import RunClock
 from galactic.learning.teacher import Teacher

@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 import galactic
-from galactic import train
-from galactic.learning import checkpoint
+from galactic.learning import checkpoint, validation
 from galactic.learning.homes import Homes
 from galactic.learning.presets import preset
 from galactic.learning.privileges import OtherMeaning, other_meaning
@@ -54,16 +53,13 @@ def test_a_validation_refuses_a_world_that_means_something_else(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     class Other(Homes):
-        """Those for validation observe where the target is now."""
-
-        made = 0
+        """They observe where the target is now."""
 
         def __init__(self, *arguments: Any, **options: Any):
             super().__init__(*arguments, **options)
-            Other.made += 1
-            self.meanings["observe_current"] = Other.made > 1
+            self.meanings["observe_current"] = True
 
-    monkeypatch.setattr(train, "Homes", Other)
+    monkeypatch.setattr(validation, "Homes", Other)
     options = [*SMALL, "--steps", UPDATE, "--validation", HELD_OUT]
     refused = call("train", WORLD, "-o", tmp_path / "run", *options)
     assert refused.returncode == 3 and refused.stderr == (

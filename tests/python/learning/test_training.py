@@ -17,7 +17,7 @@ import torch
 
 import galactic
 from galactic import export, train
-from galactic.learning import checkpoint
+from galactic.learning import checkpoint, validation
 from galactic.learning.distributed import device_of
 from galactic.learning.homes import Homes
 from galactic.learning.refusals import CheckpointError
@@ -266,7 +266,7 @@ def test_a_world_in_which_nothing_can_be_validated_is_refused_before_training(
             setattr(homes, name, value)
         return homes
 
-    monkeypatch.setattr(train, "Homes", make)
+    monkeypatch.setattr(validation, "Homes", make)
     done = call("train", "-o", tmp_path / "run", WORLD, *SMALL, "--validation", HELD_OUT)
     assert done.returncode == 3
     assert done.stderr.startswith(f"galactic.train: {HELD_OUT}: {message}")

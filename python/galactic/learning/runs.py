@@ -1,0 +1,141 @@
+"""What a run is about: its worlds, settings, policies and code, as its settings.json has it."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import pathlib
+from typing import Optional, Sequence
+
+import galactic
+from galactic.learning import older, own_code, own_networks, own_tasks
+from galactic.learning.refusals import refusing, require_types
+from galactic.learning.reports.curves import write_json
+from galactic.learning.settings import Settings
+
+
+@dataclasses.dataclass
+class Run:
+    """What a run is about: kept in its settings.json."""
+
+    world: pathlib.Path
+    validation: Optional[pathlib.Path]
+    settings: Settings
+    start_from: Optional[pathlib.Path] = None
+    teacher: Optional[pathlib.Path] = None
+    task_file: Optional[pathlib.Path] = None
+    network_file: Optional[pathlib.Path] = None
+    demonstrations: Sequence[pathlib.Path] = ()
+
+
+def read_run(file: pathlib.Path) -> Run:
+    remedy = "begin another run, which can have the weights of best.pt (--start-from)"
+    with refusing(f"{file} does not say what the run is", remedy):
+        run, path = older.run_values(json.loads(file.read_text(encoding="utf-8"))), (
+            str,
+            type(None),
+        )
+        require_types(
+            run,
+            {
+                "world": str,
+                "validation": path,
+                "start_from": path,
+                "teacher": path,
+                "task_file": path,
+                "network_file": path,
+                "demonstrations": list,
+                "settings": dict,
+            },
+        )
+        return Run(
+            pathlib.Path(run["world"]),
+            pathlib.Path(run["validation"]) if run["validation"] else None,
+            Settings.from_dict(run["settings"]),
+            pathlib.Path(run["start_from"]) if run["start_from"] else None,
+            pathlib.Path(run["teacher"]) if run["teacher"] else None,
+            pathlib.Path(run["task_file"]) if run["task_file"] else None,
+            pathlib.Path(run["network_file"]) if run["network_file"] else None,
+            [pathlib.Path(folder) for folder in run["demonstrations"]],
+        )
+
+
+def write_run(run: Run, folder: pathlib.Path) -> None:
+    write_json(
+        folder / "settings.json",
+        {
+            "world": str(run.world),
+            "validation": str(run.validation) if run.validation else None,
+            "start_from": str(run.start_from) if run.start_from else None,
+            "teacher": str(run.teacher) if run.teacher else None,
+            "task_file": str(run.task_file) if run.task_file else None,
+            "network_file": str(run.network_file) if run.network_file else None,
+            "demonstrations": [str(folder) for folder in run.demonstrations],
+            "settings": run.settings.to_dict(),
+        },
+    )
+
+
+def with_task(run: Run, simulation: str) -> Run:
+    """The run with the task of one's own that its settings name, in the simulation that this task wants.
+    `simulation`: the options of it that were given, beside the preset's. Makes the task, which alone knows
+    its options: in the process that launches ranks, too, so that it tells once what is wrong with it.
+    """
+    name = own_code.named(run.settings.task, "--task")
+    task = own_tasks.maker(name, run.settings.task_options)()
+    settings = dataclasses.replace(
+        run.settings,
+        task=str(name),
+        simulation=own_tasks.simulation_below(task, run.settings.simulation, simulation),
+    )
+    return dataclasses.replace(
+        run, settings=settings, task_file=name.file.resolve() if name.file else None
+    )
+
+
+def task_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_tasks.MakeTask]:
+    """What makes the run's task, if that is one's own; of the copy in `folder` if it is given."""
+    if not run.settings.task:
+        return None
+    name, siblings = _code_of(run.settings.task, "--task", run.task_file, folder)
+    return own_tasks.maker(name, run.settings.task_options, siblings)
+
+
+def with_network(run: Run) -> Run:
+    """The run with the network of one's own that its settings name. Looks for its class, as with_task() does."""
+    name = own_code.named(run.settings.network, "--network")
+    own_networks.with_options(own_networks.network_of(name), run.settings.network_options)
+    settings = dataclasses.replace(run.settings, network=str(name))
+    return dataclasses.replace(
+        run, settings=settings, network_file=name.file.resolve() if name.file else None
+    )
+
+
+def network_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_networks.OwnNetwork]:
+    """What makes the run's network, if that is one's own; of the copy in `folder` if it is given."""
+    if not run.settings.has_own_network:
+        return None
+    name, siblings = _code_of(run.settings.network, "--network", run.network_file, folder)
+    found = own_networks.network_of(name, siblings)
+    return own_networks.with_options(found, run.settings.network_options)
+
+
+def _code_of(
+    text: str, option: str, file: Optional[pathlib.Path], folder: Optional[pathlib.Path]
+) -> tuple[own_code.CodeName, Optional[pathlib.Path]]:
+    """What the settings of a run call code that is in a module or a `file`, and where the modules are that this
+    imports."""
+    name = own_code.named(text, option)
+    if file is None:
+        return name, None
+    return name._replace(place=str(kept_code(file, option, folder))), file.parent
+
+
+def kept_code(file: pathlib.Path, option: str, folder: Optional[pathlib.Path]) -> pathlib.Path:
+    """Where the code is that `option` named: `file`, or the copy of it in the `folder` of a run that is resumed.
+    Raises Error where that copy is missing."""
+    copy = file if folder is None else folder / own_code.COPIES[option]
+    if folder is not None and not copy.is_file():
+        message = f"is missing, the copy of {file} with which the run began; put it back, or begin another run"
+        raise galactic.Error(galactic.ErrorCode.IO, str(copy), message)
+    return copy
