@@ -5,22 +5,17 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import hashlib
-import os
 import pathlib
 import sys
-import time
 from typing import Optional, Sequence
 
-import numpy as np
 import torch
 
 import galactic
-from galactic import demonstrations, files
-from galactic.demonstration_writer import EPISODES_OF_PART, EPISODES_WITH_IMAGES, write_part
+from galactic import files
+from galactic.demonstration_writer import EPISODES_OF_PART, EPISODES_WITH_IMAGES
 from galactic.demonstrations import About, Demonstrations
-from galactic.hashing import hashed
-from galactic.learning import checkpoint, own_code, own_networks, own_tasks
-from galactic.learning.checkpoint import SavedPolicy
+from galactic.learning import own_code, own_tasks
 from galactic.learning.command import (
     EXIT_CODES,
     INTERRUPTED,
@@ -31,16 +26,15 @@ from galactic.learning.command import (
     told,
     whole,
 )
-from galactic.learning.evaluation import MOST_ENVS, Actor, Evaluator
-from galactic.learning.experts import Expert, LearnedExpert, Recorder, RolledIn, ScriptedExpert
-from galactic.learning.fitting import Observed, columns_of
+from galactic.learning.demonstrating import acting, begin, make_parts
+from galactic.learning.evaluation import MOST_ENVS
+from galactic.learning.experts import Expert, LearnedExpert, RolledIn, ScriptedExpert
 from galactic.learning.homes import Homes, exact_camera
 from galactic.learning.presets import PRESETS, preset
-from galactic.learning.refusals import SettingsError, CheckpointError
-from galactic.learning.reports.progress import ProgressLine, duration
-from galactic.learning.setting_fields import option_name, typed
+from galactic.learning.refusals import SettingsError
+from galactic.learning.reports.progress import ProgressLine
 from galactic.learning.setting_options import add_options, given_options
-from galactic.learning.settings import CAMERA, CAMERA_NOISE, Settings
+from galactic.learning.settings import CAMERA, Settings
 from galactic.learning.simulation_words import simulation_keywords
 from galactic.learning.trainer import threads_of
 from galactic.streams import put
@@ -144,12 +138,12 @@ def _demonstrate(options: argparse.Namespace) -> int:
     files.require_folder(folder)
     folder.mkdir(parents=True, exist_ok=True)
     with files.alone_in(folder):
-        _begin(folder, about)
+        begin(folder, about)
         size = _episodes_of_part(settings)
         parts = [episodes[first : first + size] for first in range(0, len(episodes), size)]
         progress = ProgressLine()
         try:
-            _make(folder, parts, homes, expert, settings.seed, progress)
+            make_parts(folder, parts, homes, expert, settings.seed, progress)
         except KeyboardInterrupt:
             progress.say("interrupted; the same command makes what is missing")
             return INTERRUPTED
@@ -193,11 +187,11 @@ def _expert(options: argparse.Namespace, homes: Homes, settings: Settings) -> Ex
         expert = ScriptedExpert(homes)
     else:
         expert = LearnedExpert(
-            _actor(pathlib.Path(options.expert), homes, settings, options.deterministic)
+            acting(pathlib.Path(options.expert), homes, settings, options.deterministic)
         )
     if options.learner is None:
         return expert
-    learner = _actor(options.learner, homes, settings, deterministic=False)
+    learner = acting(options.learner, homes, settings, deterministic=False)
     return RolledIn(learner, expert, _learner_steps(options, homes), settings.seed)
 
 
@@ -260,97 +254,6 @@ def _require_limit(homes: Homes) -> None:
     if not homes.are_limited:
         raise SettingsError(
             "--simulation: found episode-steps=0, which lets episodes go on without end; give them a limit"
-        )
-
-
-def _actor(file: pathlib.Path, homes: Homes, settings: Settings, deterministic: bool) -> Actor:
-    """The policy of a file, that plays in these homes."""
-    own = own_networks.own_network(settings.network) if settings.has_own_network else None
-    saved = checkpoint.load_policy(file, network=own)
-    _require_sight(saved, file, settings)
-    observed = Observed(homes.parts, homes.meanings, homes.motions)
-    columns = columns_of(saved, file, observed, "take another policy")
-    return Actor(saved.policy, deterministic=deterministic, seed=settings.seed, columns=columns)
-
-
-def _require_sight(saved: SavedPolicy, file: pathlib.Path, settings: Settings) -> None:
-    """Raises CheckpointError where a policy that sees images would see others here."""
-    needed = saved.settings.sight
-    if set(needed) - set(settings.sight):
-        seeing = f" --sees {saved.settings.sees}" if saved.settings.has_own_network else ""
-        raise CheckpointError(
-            f"{file} sees images ({', '.join(needed)}), which the network {settings.network} does not; give "
-            f"--network {saved.settings.network}{seeing}, or take another policy"
-        )
-    for name in dict.fromkeys(CAMERA.values()) if needed else ():
-        found, wanted = getattr(settings, name), getattr(saved.settings, name)
-        if found != wanted and name not in CAMERA_NOISE:
-            raise CheckpointError(
-                f"{file} learned with {option_name(name)} {typed(wanted)}, found {typed(found)} here; give both "
-                "the same, or take another policy"
-            )
-
-
-def _begin(folder: pathlib.Path, about: About) -> None:
-    """Says what the demonstrations are, if nobody has yet, and that they are these if somebody has."""
-    file = folder / demonstrations.INDEX
-    if not file.exists():
-        if demonstrations.parts_in(folder):
-            raise SettingsError(
-                f"{folder} holds parts of demonstrations, but no {demonstrations.INDEX} that says which; "
-                "choose another folder"
-            )
-        text = demonstrations.text_of(about)
-        files.write_atomically(file, lambda handle: handle.write(text), "w")
-        return
-    found = demonstrations.read_about(folder)
-    wanted = demonstrations.about_of(demonstrations.text_of(about), file)
-    if found != wanted:
-        raise SettingsError(
-            f"{folder} holds other demonstrations ({_difference(found, wanted)}); choose another folder, or "
-            "give the same options to go on"
-        )
-
-
-def _difference(found: About, wanted: About) -> str:
-    """The first thing that they do not have in common."""
-    ones, others = dataclasses.asdict(found), dataclasses.asdict(wanted)
-    for made in (ones, others):
-        # Those of the settings say more.
-        del made["options"], made["camera"]
-        made.update(made.pop("made_with"))
-        made.update(made.pop("settings", {}))
-        made.update({f"sha256 of the {name}": sum for name, sum in made.pop("sha256", {}).items()})
-    for name, value in others.items():
-        if ones.get(name) != value:
-            return f"{name}: found {ones.get(name)}, expected {value}"
-    return "made with something more"
-
-
-def _make(folder: pathlib.Path, parts: list[list[int]], homes: Homes, expert: Expert, seed: int,
-          progress: ProgressLine) -> None:  # fmt: skip
-    """Has the parts played that are missing."""
-    begun, evaluator = time.monotonic(), Evaluator(homes, expert)
-    missing = [
-        (number, episodes)
-        for number, episodes in enumerate(parts)
-        if not os.path.lexists(demonstrations.part_folder(folder, number))
-    ]
-    endings = Demonstrations(folder).endings
-    solved, played = int((endings == galactic.EpisodeEnd.SUCCESS).sum()), len(endings)
-    for count, (number, episodes) in enumerate(missing):
-        # Its noise does not depend on which parts were made before it.
-        homes.restart(int(hashed(seed, np.array(number), np.array(0), 1)[0] >> np.uint64(32)))
-        recorder = Recorder(expert, homes)
-        results = evaluator.play(episodes, details=False, witness=recorder)
-        write_part(demonstrations.part_folder(folder, number), recorder.demonstrations(results))
-        played += len(results)
-        solved += sum(result.success for result in results)
-        spent = time.monotonic() - begun
-        left = spent / (count + 1) * (len(missing) - count - 1)
-        progress.show(
-            f"{len(parts) - len(missing) + count + 1} of {len(parts)} parts  "
-            f"{100.0 * solved / played:.1f} % solved  {duration(left)} left"
         )
 
 

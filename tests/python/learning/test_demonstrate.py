@@ -15,7 +15,7 @@ import torch
 
 import galactic
 from galactic import Demonstrations, demonstrate
-from galactic.learning import checkpoint
+from galactic.learning import checkpoint, demonstrating
 from galactic.learning.evaluation import NO_EPISODE
 from galactic.learning.experts import RolledIn
 from galactic.learning.homes import Homes
@@ -104,7 +104,7 @@ def test_they_are_the_same_bytes_whoever_makes_them(
     monkeypatch.setattr(demonstrate, "EPISODES_OF_PART", 8)
     monkeypatch.setattr(demonstrate, "MOST_ENVS", 5)
     options = [WORLD, "-o", tmp_path / "demos", *QUICK, "--episodes", 24, "--threads", 1]
-    write = demonstrate.write_part
+    write = demonstrating.write_part
 
     def interrupt(part: pathlib.Path, episodes: object) -> None:
         if part.name == "part-000001":
@@ -112,7 +112,7 @@ def test_they_are_the_same_bytes_whoever_makes_them(
         write(part, episodes)  # type: ignore[arg-type]
 
     with monkeypatch.context() as patch:
-        patch.setattr(demonstrate, "write_part", interrupt)
+        patch.setattr(demonstrating, "write_part", interrupt)
         done = call("demonstrate", *options)
         assert done.returncode == 130 and "the same command makes what is missing" in done.stderr
     assert len(Demonstrations(tmp_path / "demos")) == 8
