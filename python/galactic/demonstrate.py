@@ -15,7 +15,6 @@ import galactic
 from galactic import files
 from galactic.demonstration_writer import EPISODES_OF_PART, EPISODES_WITH_IMAGES
 from galactic.demonstrations import About, Demonstrations
-from galactic.learning import own_code, own_tasks
 from galactic.learning.command import (
     EXIT_CODES,
     INTERRUPTED,
@@ -26,10 +25,10 @@ from galactic.learning.command import (
     told,
     whole,
 )
-from galactic.learning.demonstrating import acting, begin, make_parts
-from galactic.learning.evaluation import MOST_ENVS
-from galactic.learning.experts import Expert, LearnedExpert, RolledIn, ScriptedExpert
 from galactic.learning.homes import Homes, exact_camera
+from galactic.learning.playing.demonstrating import acting, begin, make_parts
+from galactic.learning.playing.evaluation import MOST_ENVS
+from galactic.learning.playing.experts import Expert, LearnedExpert, RolledIn, ScriptedExpert
 from galactic.learning.presets import PRESETS, preset
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.progress import ProgressLine
@@ -37,6 +36,7 @@ from galactic.learning.setting_options import add_options, given_options
 from galactic.learning.settings import CAMERA, Settings
 from galactic.learning.simulation_words import simulation_keywords
 from galactic.learning.trainer import threads_of
+from galactic.learning.user_code import own_code, own_tasks
 from galactic.streams import put
 
 SCRIPTED = "scripted"

@@ -16,7 +16,6 @@ import torch
 import galactic
 from galactic import files
 from galactic.demonstrations import Demonstrations
-from galactic.learning import callbacks, checkpoint, own_tasks
 from galactic.learning.command import (
     EXIT_CODES,
     INTERRUPTED,
@@ -26,13 +25,15 @@ from galactic.learning.command import (
     named_path,
     told,
 )
-from galactic.learning.distributed import Group, device_of, local_ranks
 from galactic.learning.homes import Homes
-from galactic.learning.launch import follow_launcher, launch
+from galactic.learning.playing.validation import validation_of
 from galactic.learning.presets import PRESETS, TAUGHT, preset
+from galactic.learning.ranks.distributed import Group, device_of, local_ranks
+from galactic.learning.ranks.launch import follow_launcher, launch
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import log
-from galactic.learning.run_folder import (
+from galactic.learning.saving import checkpoint
+from galactic.learning.saving.run_folder import (
     TEACHER,
     CheckpointFolder,
     begin_folder,
@@ -40,7 +41,14 @@ from galactic.learning.run_folder import (
     require_no_run,
     take_folder,
 )
-from galactic.learning.runs import Run, network_of, read_run, task_of, with_network, with_task
+from galactic.learning.saving.runs import (
+    Run,
+    network_of,
+    read_run,
+    task_of,
+    with_network,
+    with_task,
+)
 from galactic.learning.setting_fields import option_name
 from galactic.learning.setting_options import (
     add_options,
@@ -51,7 +59,7 @@ from galactic.learning.setting_options import (
 )
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer, threads_of
-from galactic.learning.validation import validation_of
+from galactic.learning.user_code import callbacks, own_tasks
 from galactic.streams import put
 
 

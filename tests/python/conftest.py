@@ -5,7 +5,7 @@ import pathlib
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
-# As galactic.learning.launch has it in ranks, with whose runs those of this process are compared bit for bit. To be
+# As galactic.learning.ranks.launch has it in ranks, with whose runs those of this process are compared bit for bit. To be
 # said before OpenBLAS is read, which comes with numpy.
 _PROCESSOR = pathlib.Path("/proc/cpuinfo")
 if _PROCESSOR.is_file() and " avx512vl " in _PROCESSOR.read_text(

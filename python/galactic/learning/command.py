@@ -11,7 +11,7 @@ from typing import Any, Callable, NoReturn, Optional
 import galactic
 from galactic import interrupts
 from galactic.interrupts import INTERRUPTED
-from galactic.learning.distributed import RankLost
+from galactic.learning.ranks.distributed import RankLost
 from galactic.learning.refusals import CheckpointError, SettingsError, did_you_mean
 from galactic.programs import UNSUPPORTED
 from galactic.streams import put

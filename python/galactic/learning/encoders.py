@@ -9,7 +9,7 @@ from typing import NamedTuple, Optional
 import torch
 from torch import Tensor, nn
 
-from galactic.learning.sight import FARTHEST
+from galactic.learning.policies.sight import FARTHEST
 
 FEATURES = 512
 """Width of the paper's networks."""

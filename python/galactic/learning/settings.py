@@ -7,9 +7,15 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any, Mapping
 
+from galactic.learning.policies.sight import (
+    IMAGE_SIZE,
+    OF_THE_PAPER,
+    OWN_SIGHT,
+    SIGHT,
+    SMALLEST_IMAGE,
+)
 from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_fields import require_valid, setting
-from galactic.learning.sight import IMAGE_SIZE, OF_THE_PAPER, OWN_SIGHT, SIGHT, SMALLEST_IMAGE
 from galactic.learning.simulation_words import is_robot_noise, latest_words
 
 

@@ -13,29 +13,29 @@ import torch
 from galactic import interrupts
 from galactic.demonstrations import Demonstrations
 from galactic.errors import Error
-from galactic.learning import checkpoint, older
-from galactic.learning.callbacks import END, UPDATE, Callback, Moment
-from galactic.learning.callbacks import VALIDATION as VALIDATED
-from galactic.learning.checkpoint import SavedPolicy, new_policy
-from galactic.learning.collector import Collector, CollectorOptions
-from galactic.learning.distributed import Group
-from galactic.learning.environments import Environments
-from galactic.learning.episode_sums import EpisodeSums, OwnNames, RecentEpisodes
-from galactic.learning.fitting import Observed
-from galactic.learning.imitation import ImitationLearner, Streams, require_same
-from galactic.learning.learner import Learner
-from galactic.learning.networks import Policy, PolicyShape
-from galactic.learning.own_networks import OwnNetwork
-from galactic.learning.ppo import PpoLearner
-from galactic.learning.privileges import columns_among, critic_columns, other_meaning
+from galactic.learning.policies.fitting import Observed
+from galactic.learning.policies.networks import Policy, PolicyShape
+from galactic.learning.policies.privileges import columns_among, critic_columns, other_meaning
+from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import CheckpointError, refusing
 from galactic.learning.reports.curves import write_json
 from galactic.learning.reports.run_reports import RunReports
-from galactic.learning.run_folder import CheckpointFolder
+from galactic.learning.rollouts.collector import Collector, CollectorOptions
+from galactic.learning.rollouts.environments import Environments
+from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames, RecentEpisodes
+from galactic.learning.rollouts.stopwatch import RunClock
+from galactic.learning.saving import checkpoint, older
+from galactic.learning.saving.checkpoint import SavedPolicy, new_policy
+from galactic.learning.saving.run_folder import CheckpointFolder
+from galactic.learning.saving.trainer_state import TrainerState, state_of
 from galactic.learning.settings import Settings
-from galactic.learning.stopwatch import RunClock
-from galactic.learning.teacher import Teacher
-from galactic.learning.trainer_state import TrainerState, state_of
+from galactic.learning.updates.imitation import ImitationLearner, Streams, require_same
+from galactic.learning.updates.learner import Learner
+from galactic.learning.updates.ppo import PpoLearner
+from galactic.learning.updates.teacher import Teacher
+from galactic.learning.user_code.callbacks import END, UPDATE, Callback, Moment
+from galactic.learning.user_code.callbacks import VALIDATION as VALIDATED
+from galactic.learning.user_code.own_networks import OwnNetwork
 
 Validation = Callable[[Policy], EpisodeSums]
 """Runs the episodes for validation that are this rank's, and returns their sums."""

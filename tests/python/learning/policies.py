@@ -7,9 +7,9 @@ from typing import Optional
 import torch
 
 import galactic
-from galactic.learning.checkpoint import SavedPolicy, new_policy
 from galactic.learning.homes import Homes
-from galactic.learning.networks import PolicyShape
+from galactic.learning.policies.networks import PolicyShape
+from galactic.learning.saving.checkpoint import SavedPolicy, new_policy
 from galactic.learning.settings import Settings
 from programs import WORLD
 

@@ -12,8 +12,8 @@ import torch
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 
-from galactic.learning.distributed import Group  # noqa: E402
-from galactic.learning.environments import Step  # noqa: E402
+from galactic.learning.ranks.distributed import Group  # noqa: E402
+from galactic.learning.rollouts.environments import Step  # noqa: E402
 from galactic.learning.trainer import Trainer  # noqa: E402
 from trainers import SETTINGS  # noqa: E402
 from toys import Measured, ReachAndGrasp, Uneven  # noqa: E402

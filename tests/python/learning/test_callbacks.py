@@ -8,11 +8,11 @@ import sys
 
 import pytest
 
-from galactic.learning import callbacks
-from galactic.learning.callbacks import Moment
-from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.curves import read_curves
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.user_code import callbacks
+from galactic.learning.user_code.callbacks import Moment
 from programs import SMALL, UPDATE as PROGRAM_UPDATE, WORLD, call, curve, needs_worlds
 from trainers import SETTINGS, UPDATE, make_trainer
 from trainers import curve as curve_of

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import galactic
-from galactic.learning import checkpoint
 from galactic.learning.homes import Homes
 from galactic.learning.presets import preset
 from galactic.learning.refusals import SettingsError
+from galactic.learning.saving import checkpoint
 from galactic.learning.settings import CAMERA_NOISE, Settings
 from policies import untrained
 from programs import HELD_OUT, WORLD, call, curve, needs_worlds

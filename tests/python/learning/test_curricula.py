@@ -8,11 +8,11 @@ import pathlib
 import pytest
 
 import galactic
-from galactic.learning import own_code, own_tasks
-from galactic.learning.evaluation import Actor
 from galactic.learning.homes import Homes
+from galactic.learning.playing.evaluation import Actor
 from galactic.learning.reports import pictures
 from galactic.learning.settings import Settings
+from galactic.learning.user_code import own_code, own_tasks
 from policies import untrained
 from programs import (
     HELD_OUT,

@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 
-from galactic.learning.checkpoint import load_policy
-from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.reports import curves as curves_module
 from galactic.learning.reports.curves import Curves, read_curves
 from galactic.learning.reports.progress import ProgressLine, amount
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.saving.checkpoint import load_policy
 from toys import Measured, ReachAndGrasp, Uneven
 from trainers import SETTINGS, UPDATE, curve, make_trainer, saved_run
 

@@ -15,10 +15,11 @@ import torch
 
 import galactic
 from galactic import Demonstrations, demonstrate
-from galactic.learning import checkpoint, demonstrating
-from galactic.learning.evaluation import NO_EPISODE
-from galactic.learning.experts import RolledIn
 from galactic.learning.homes import Homes
+from galactic.learning.playing import demonstrating
+from galactic.learning.playing.evaluation import NO_EPISODE
+from galactic.learning.playing.experts import RolledIn
+from galactic.learning.saving import checkpoint
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds, run
 
 pytestmark = needs_worlds

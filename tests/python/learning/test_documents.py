@@ -15,9 +15,9 @@ from galactic.learning.presets import PRESETS, preset
 from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_fields import typed
 from galactic.learning.setting_options import add_options, given_options, markdown_tables, resumed
-from galactic.learning.schedules import learning_rate_at
 from galactic.learning.settings import Settings
 from galactic.learning.simulation_words import simulation_keywords
+from galactic.learning.updates.schedules import learning_rate_at
 
 MANUAL = pathlib.Path(__file__).parents[3] / "docs" / "learning.md"
 

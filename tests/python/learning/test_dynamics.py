@@ -12,8 +12,10 @@ import pytest
 
 import galactic
 from galactic import evaluate
-from galactic.learning import checkpoint, command, dynamics, judging
+from galactic.learning import command, dynamics
 from galactic.learning.homes import Homes
+from galactic.learning.playing import judging
+from galactic.learning.saving import checkpoint
 from galactic.learning.settings import Settings
 from policies import untrained
 from programs import HELD_OUT, needs_worlds

@@ -17,7 +17,7 @@ import pytest
 
 import galactic
 from galactic import files, train
-from galactic.learning.launch import LAUNCHER, launch
+from galactic.learning.ranks.launch import LAUNCHER, launch
 
 WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
 WORLD = WORLDS / "world.pack"
@@ -235,7 +235,9 @@ def test_a_hangup_is_passed_on_unless_it_is_to_be_ignored(is_ignored: bool, ends
 
 
 def test_a_rank_whose_launcher_was_over_before_it_asked_ends(tmp_path: pathlib.Path) -> None:
-    work = "from galactic.learning.launch import follow_launcher\nfollow_launcher()\nprint('on')"
+    work = (
+        "from galactic.learning.ranks.launch import follow_launcher\nfollow_launcher()\nprint('on')"
+    )
     # Its parent is this process, which is not the first of the system.
     for launcher, code in (({LAUNCHER: "1"}, -signal.SIGKILL), ({}, 0)):
         done = subprocess.run(

@@ -16,15 +16,15 @@ _core = pytest.importorskip("galactic._core", reason="the compiled module is not
 
 import galactic  # noqa: E402
 from galactic import export  # noqa: E402
-from galactic.learning.packs.content import content_of  # noqa: E402
-from galactic.learning.packs.layers import ExportError, Layers  # noqa: E402
-from galactic.learning import checkpoint  # noqa: E402
 from galactic.learning.encoders import Inputs  # noqa: E402
 from galactic.learning.homes import Homes  # noqa: E402
-from galactic.learning.networks import PolicyShape  # noqa: E402
-from galactic.learning.privileges import critic_columns  # noqa: E402
+from galactic.learning.packs.content import content_of  # noqa: E402
+from galactic.learning.packs.layers import ExportError, Layers  # noqa: E402
+from galactic.learning.policies.networks import PolicyShape  # noqa: E402
+from galactic.learning.policies.privileges import critic_columns  # noqa: E402
+from galactic.learning.policies.sight import SIGHT  # noqa: E402
+from galactic.learning.saving import checkpoint  # noqa: E402
 from galactic.learning.settings import Settings  # noqa: E402
-from galactic.learning.sight import SIGHT  # noqa: E402
 from policies import untrained  # noqa: E402
 
 WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"

@@ -8,10 +8,10 @@ import pytest
 import torch
 from torch import Tensor
 
-from galactic.learning.collector import Collector, CollectorOptions
-from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
-from galactic.learning.networks import PolicyShape, make_policy
-from galactic.learning.precision import Precision
+from galactic.learning.policies.networks import PolicyShape, make_policy
+from galactic.learning.rollouts.collector import Collector, CollectorOptions
+from galactic.learning.rollouts.graphs import Function, Replayed, Tensors, record_cuda
+from galactic.learning.updates.precision import Precision
 from toys import ReachAndGrasp
 
 

@@ -15,14 +15,14 @@ import torch
 import galactic
 from galactic import demonstrations
 from galactic.demonstrations import About, Demonstration, Demonstrations
-from galactic.learning.checkpoint import new_policy
-from galactic.learning.distributed import Group
 from galactic.learning.encoders import Inputs
-from galactic.learning.fitting import Observed
-from galactic.learning.imitation import ImitationLearner, Streams, require_same
-from galactic.learning.networks import Policy, PolicyShape
+from galactic.learning.policies.fitting import Observed
+from galactic.learning.policies.networks import Policy, PolicyShape
+from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import CheckpointError
+from galactic.learning.saving.checkpoint import new_policy
 from galactic.learning.settings import Settings
+from galactic.learning.updates.imitation import ImitationLearner, Streams, require_same
 
 MOTIONS = 2
 SETTINGS = Settings(

@@ -12,11 +12,11 @@ from typing import Any, Callable
 import pytest
 import torch
 
-from galactic.learning.callbacks import Moment
-from galactic.learning.checkpoint import load_policy
-from galactic.learning.episode_sums import EpisodeSums
-from galactic.learning.networks import Policy
+from galactic.learning.policies.networks import Policy
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.saving.checkpoint import load_policy
 from galactic.learning.trainer import Trainer
+from galactic.learning.user_code.callbacks import Moment
 from programs import HELD_OUT, SMALL, WORLD, call, needs_worlds
 from programs import UPDATE as UPDATE_IN_HOMES
 from trainers import SETTINGS, UPDATE, curve, make_trainer, parameters
@@ -145,7 +145,7 @@ def test_a_stop_that_an_interrupt_puts_off_comes_behind_its_validation(
 
 
 def test_a_checkpoint_of_before_owes_no_validation(tmp_path: pathlib.Path) -> None:
-    from galactic.learning import checkpoint
+    from galactic.learning.saving import checkpoint
 
     settings = dataclasses.replace(SETTINGS, steps=4 * UPDATE, validate_every=2 * UPDATE)
     done: list[torch.Tensor] = []

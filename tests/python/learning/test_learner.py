@@ -7,13 +7,13 @@ import dataclasses
 import pytest
 import torch
 
-from galactic.learning.collector import Collector, CollectorOptions
-from galactic.learning.distributed import Group
 from galactic.learning.encoders import Inputs
-from galactic.learning.episode_sums import EpisodeSums
-from galactic.learning.learner import Learner
-from galactic.learning.networks import Policy, PolicyShape, make_policy
-from galactic.learning.ppo import PpoLearner
+from galactic.learning.policies.networks import Policy, PolicyShape, make_policy
+from galactic.learning.ranks.distributed import Group
+from galactic.learning.rollouts.collector import Collector, CollectorOptions
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.updates.learner import Learner
+from galactic.learning.updates.ppo import PpoLearner
 from toys import Look
 from trainers import SETTINGS, UPDATE, make_trainer
 

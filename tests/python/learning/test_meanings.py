@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 
 import galactic
-from galactic.learning import checkpoint, validation
 from galactic.learning.homes import Homes
+from galactic.learning.playing import validation
+from galactic.learning.policies.privileges import OtherMeaning, other_meaning
 from galactic.learning.presets import preset
-from galactic.learning.privileges import OtherMeaning, other_meaning
+from galactic.learning.saving import checkpoint
 from policies import untrained
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, needs_worlds
 

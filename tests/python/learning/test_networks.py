@@ -6,12 +6,12 @@ import pytest
 import torch
 from torch.nn import functional
 
-from galactic.learning.distributions import ActionDistribution
 from galactic.learning.encoders import Inputs, Tanh
-from galactic.learning.networks import PolicyShape, make_policy
-from galactic.learning.normalization import Normalizer
+from galactic.learning.policies.distributions import ActionDistribution
+from galactic.learning.policies.networks import PolicyShape, make_policy
+from galactic.learning.policies.normalization import Normalizer
+from galactic.learning.policies.sight import SIGHT
 from galactic.learning.sequences import run_gru
-from galactic.learning.sight import SIGHT
 
 ARM_OF_SEVEN = PolicyShape(state=26, motions=9)
 

@@ -13,12 +13,13 @@ import torch
 
 import galactic
 from galactic import evaluate
-from galactic.learning import checkpoint, own_code, own_networks
 from galactic.learning.encoders import Inputs
-from galactic.learning.own_networks import OwnNetwork, Seen
 from galactic.learning.packs.content import export_policy
 from galactic.learning.refusals import CheckpointError, NetworkError, SettingsError
+from galactic.learning.saving import checkpoint
 from galactic.learning.settings import Settings
+from galactic.learning.user_code import own_code, own_networks
+from galactic.learning.user_code.own_networks import OwnNetwork, Seen
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
 from toys import Remember
 from trainers import SETTINGS, UPDATE as TOY_UPDATE, make_trainer, parameters

@@ -15,13 +15,14 @@ import pytest
 import torch
 
 import galactic
-from galactic.learning import checkpoint, own_code, own_tasks
-from galactic.learning.evaluation import Actor, Evaluator
 from galactic.learning.homes import Homes
 from galactic.learning.packs.content import export_policy
-from galactic.learning.refusals import SettingsError, CheckpointError
+from galactic.learning.playing.evaluation import Actor, Evaluator
+from galactic.learning.refusals import CheckpointError, SettingsError
 from galactic.learning.reports import pictures
+from galactic.learning.saving import checkpoint
 from galactic.learning.settings import Settings
+from galactic.learning.user_code import own_code, own_tasks
 from policies import untrained
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
 

@@ -14,10 +14,10 @@ import pytest
 
 import galactic
 from galactic import evaluate
-from galactic.learning import checkpoint
-from galactic.learning.evaluation import Actor, EpisodeResult, Evaluator
 from galactic.learning.homes import Homes
+from galactic.learning.playing.evaluation import Actor, EpisodeResult, Evaluator
 from galactic.learning.reports import pictures
+from galactic.learning.saving import checkpoint
 from galactic.learning.settings import Settings
 from policies import untrained
 

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 import torch
 
-from galactic.learning.collector import Collector, CollectorOptions
-from galactic.learning.distributed import Group
-from galactic.learning.distributions import ActionDistribution
-from galactic.learning.networks import Outputs, Policy, PolicyShape, make_policy
-from galactic.learning.noise import action_noise, mini_batch_envs
-from galactic.learning.ppo import Batch, PpoLearner, ppo_loss
-from galactic.learning.precision import Precision
+from galactic.learning.policies.distributions import ActionDistribution
+from galactic.learning.policies.networks import Outputs, Policy, PolicyShape, make_policy
+from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import SettingsError
-from galactic.learning.rollout import advantages
-from galactic.learning.schedules import PacedRate, log_std_limit_at
+from galactic.learning.rollouts.collector import Collector, CollectorOptions
+from galactic.learning.rollouts.noise import action_noise, mini_batch_envs
+from galactic.learning.rollouts.rollout import advantages
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
+from galactic.learning.updates.ppo import Batch, PpoLearner, ppo_loss
+from galactic.learning.updates.precision import Precision
+from galactic.learning.updates.schedules import PacedRate, log_std_limit_at
 from toys import Look, ReachAndGrasp, Remember
 
 CPU = torch.device("cpu")
@@ -95,7 +95,7 @@ def test_a_rollout_is_what_the_policy_did_and_saw(recurrent: bool) -> None:
     collector = collector_of(ReachAndGrasp(6, halves=2, limit=2), policy, horizon=7)
     by_hand = ReachAndGrasp(6, limit=2)
     state = torch.zeros(6, 4)
-    from galactic.learning.environments import Observation
+    from galactic.learning.rollouts.environments import Observation
     from galactic.learning.encoders import Inputs
 
     by_hand.reset(Observation(state))

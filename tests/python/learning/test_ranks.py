@@ -14,11 +14,11 @@ import torch
 from torch.distributed import HashStore
 
 import galactic
-import galactic.learning.launch as launching
-from galactic.learning import checkpoint
-from galactic.learning.distributed import Group, RankLost, Stragglers
-from galactic.learning.launch import launch
+import galactic.learning.ranks.launch as launching
+from galactic.learning.ranks.distributed import Group, RankLost, Stragglers
+from galactic.learning.ranks.launch import launch
 from galactic.learning.reports.curves import read_curves
+from galactic.learning.saving import checkpoint
 from trainers import SETTINGS, UPDATE, make_trainer
 
 HERE = pathlib.Path(__file__).parent

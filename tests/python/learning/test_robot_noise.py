@@ -6,7 +6,7 @@ import json
 import pathlib
 
 import galactic
-from galactic.learning import checkpoint
+from galactic.learning.saving import checkpoint
 from galactic.learning.settings import Settings
 from galactic.learning.simulation_words import ROBOT_NOISE
 from policies import untrained

@@ -11,19 +11,19 @@ from typing import Any, Optional
 import pytest
 import torch
 
-from galactic.learning.checkpoint import SavedPolicy, new_policy
-from galactic.learning.collector import Collector, CollectorOptions
-from galactic.learning.distributed import Group
-from galactic.learning.distributions import ActionDistribution
 from galactic.learning.encoders import Inputs
-from galactic.learning.fitting import Observed
-from galactic.learning.networks import PolicyShape
-from galactic.learning.ppo import PpoLearner
+from galactic.learning.policies.distributions import ActionDistribution
+from galactic.learning.policies.fitting import Observed
+from galactic.learning.policies.networks import PolicyShape
+from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import CheckpointError
-from galactic.learning.rollout import Rollout
-from galactic.learning.schedules import teacher_weight_at
+from galactic.learning.rollouts.collector import Collector, CollectorOptions
+from galactic.learning.rollouts.rollout import Rollout
+from galactic.learning.saving.checkpoint import SavedPolicy, new_policy
 from galactic.learning.settings import Settings
-from galactic.learning.teacher import Teacher
+from galactic.learning.updates.ppo import PpoLearner
+from galactic.learning.updates.schedules import teacher_weight_at
+from galactic.learning.updates.teacher import Teacher
 from toys import ReachAndGrasp
 
 CPU = torch.device("cpu")

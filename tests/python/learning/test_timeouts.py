@@ -11,9 +11,9 @@ import torch
 from torch import Tensor
 
 from galactic.learning.encoders import Inputs
-from galactic.learning.environments import Step
-from galactic.learning import older
-from galactic.learning.rollout import Rollout
+from galactic.learning.rollouts.environments import Step
+from galactic.learning.rollouts.rollout import Rollout
+from galactic.learning.saving import older
 from galactic.learning.settings import Settings
 from toys import ReachAndGrasp
 from trainers import SETTINGS, make_trainer

@@ -15,12 +15,12 @@ import torch
 
 import galactic
 from galactic import files
-from galactic.learning import checkpoint
-from galactic.learning.checkpoint import load_policy, new_policy
-from galactic.learning.distributed import Stragglers
-from galactic.learning.networks import PolicyShape
+from galactic.learning.policies.networks import PolicyShape
+from galactic.learning.ranks.distributed import Stragglers
 from galactic.learning.refusals import CheckpointError
-from galactic.learning.run_folder import CheckpointFolder
+from galactic.learning.saving import checkpoint
+from galactic.learning.saving.checkpoint import load_policy, new_policy
+from galactic.learning.saving.run_folder import CheckpointFolder
 from toys import Measured, ReachAndGrasp, Remember, Uneven
 from trainers import SETTINGS, UPDATE, curve, make_trainer, parameters, saved_run
 

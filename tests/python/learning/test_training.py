@@ -17,11 +17,12 @@ import torch
 
 import galactic
 from galactic import export, train
-from galactic.learning import checkpoint, validation
-from galactic.learning.distributed import device_of
 from galactic.learning.homes import Homes
+from galactic.learning.playing import validation
+from galactic.learning.ranks.distributed import device_of
 from galactic.learning.refusals import CheckpointError
 from galactic.learning.reports.curves import read_curves
+from galactic.learning.saving import checkpoint
 from programs import (
     HELD_OUT,
     SMALL,

@@ -7,7 +7,7 @@ from typing import Mapping, Sequence
 
 import numpy as np
 
-from galactic.learning.environments import Observation, Step, Timeouts
+from galactic.learning.rollouts.environments import Observation, Step, Timeouts
 
 
 class ReachAndGrasp:

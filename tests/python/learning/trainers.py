@@ -8,7 +8,7 @@ from typing import Any
 
 import torch
 
-from galactic.learning.distributed import Group
+from galactic.learning.ranks.distributed import Group
 from galactic.learning.reports.curves import read_curves
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer

@@ -9,19 +9,25 @@ from typing import Any, Optional
 import numpy as np
 
 from galactic import _core, files
-from galactic.learning import checkpoint, own_code
-from galactic.learning.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
 from galactic.learning.homes import camera_options
-from galactic.learning.networks import ActorHead, EncoderPolicy, FeedForwardPolicy, RecurrentPolicy
-from galactic.learning.own_networks import seen_by, some_inputs
 from galactic.learning.packs.encoder_layers import encoded, require_same
 from galactic.learning.packs.layers import ExportError, Layers, numbers_of
-from galactic.learning.privileges import of_own_tasks, options_of_actor, parts_of_actor
+from galactic.learning.policies.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
+from galactic.learning.policies.networks import (
+    ActorHead,
+    EncoderPolicy,
+    FeedForwardPolicy,
+    RecurrentPolicy,
+)
+from galactic.learning.policies.privileges import of_own_tasks, options_of_actor, parts_of_actor
+from galactic.learning.policies.sight import FARTHEST
 from galactic.learning.refusals import refusing
+from galactic.learning.saving import checkpoint
 from galactic.learning.setting_fields import typed
 from galactic.learning.settings import Settings
-from galactic.learning.sight import FARTHEST
 from galactic.learning.simulation_words import simulation_keywords
+from galactic.learning.user_code import own_code
+from galactic.learning.user_code.own_networks import seen_by, some_inputs
 
 
 def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "",

@@ -9,8 +9,8 @@ import torch
 from torch import nn
 
 from galactic.learning.encoders import ResidualBlock, SpaceToDepth, Tanh
-from galactic.learning.networks import HeadLinear, Policy
-from galactic.learning.normalization import MOST
+from galactic.learning.policies.networks import HeadLinear, Policy
+from galactic.learning.policies.normalization import MOST
 from galactic.learning.refusals import CheckpointError
 
 

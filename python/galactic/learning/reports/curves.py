@@ -12,9 +12,9 @@ from typing import Any, Iterable, Mapping, Optional, Sequence
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.files import write_atomically
-from galactic.learning.callbacks import CALLBACK
-from galactic.learning.episode_sums import OwnNames
 from galactic.learning.reports.page import curves_page
+from galactic.learning.rollouts.episode_sums import OwnNames
+from galactic.learning.user_code.callbacks import CALLBACK
 
 COLUMNS = (
     "steps",

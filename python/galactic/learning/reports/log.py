@@ -5,7 +5,7 @@ from __future__ import annotations
 import pathlib
 from typing import Any, Callable, Mapping
 
-from galactic.learning import own_code
+from galactic.learning.user_code import own_code
 
 TakeRow = Callable[[Mapping[str, float]], object]
 """Takes a row: what is known of the columns of reports.curves, by name."""

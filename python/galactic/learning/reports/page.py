@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Mapping, Optional, Sequence
 
-from galactic.learning.episode_sums import LOG, MEASURE
+from galactic.learning.rollouts.episode_sums import LOG, MEASURE
 from galactic.learning.setting_fields import typed
 
 

@@ -18,10 +18,10 @@ import numpy as np
 
 import galactic
 from galactic.files import replacing, write_atomically
-from galactic.learning.evaluation import Actor, EpisodeResult, rows_of
 from galactic.learning.homes import SUCCESS, Homes
-from galactic.learning.own_tasks import MakeTask
+from galactic.learning.playing.evaluation import Actor, EpisodeResult, rows_of
 from galactic.learning.settings import Settings
+from galactic.learning.user_code.own_tasks import MakeTask
 
 WIDTH, HEIGHT = 256, 192
 MOMENTS = 6

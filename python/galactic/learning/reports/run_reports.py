@@ -5,13 +5,13 @@ from __future__ import annotations
 import pathlib
 from typing import Mapping, Optional, Sequence
 
-from galactic.learning.callbacks import CALLBACK
-from galactic.learning.episode_sums import MEASURE, EpisodeSums, OwnNames
 from galactic.learning.reports.curves import VALIDATION, Curves
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
+from galactic.learning.rollouts.episode_sums import MEASURE, EpisodeSums, OwnNames
+from galactic.learning.rollouts.stopwatch import RunClock, Stopwatch
 from galactic.learning.settings import Settings
-from galactic.learning.stopwatch import RunClock, Stopwatch
+from galactic.learning.user_code.callbacks import CALLBACK
 
 
 class RunReports:

@@ -8,10 +8,11 @@ import pathlib
 from typing import Optional, Sequence
 
 import galactic
-from galactic.learning import older, own_code, own_networks, own_tasks
 from galactic.learning.refusals import refusing, require_types
 from galactic.learning.reports.curves import write_json
+from galactic.learning.saving import older
 from galactic.learning.settings import Settings
+from galactic.learning.user_code import own_code, own_networks, own_tasks
 
 
 @dataclasses.dataclass

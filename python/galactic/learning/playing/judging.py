@@ -9,14 +9,14 @@ import shlex
 from typing import NamedTuple, Optional
 
 import galactic
-from galactic.learning import own_code
-from galactic.learning.checkpoint import SavedPolicy
-from galactic.learning.evaluation import MOST_ENVS
-from galactic.learning.fitting import other_meaning_of
 from galactic.learning.homes import Homes, sizes_of
-from galactic.learning.own_tasks import MakeTask, maker
+from galactic.learning.playing.evaluation import MOST_ENVS
+from galactic.learning.policies.fitting import other_meaning_of
 from galactic.learning.refusals import CheckpointError, SettingsError
+from galactic.learning.saving.checkpoint import SavedPolicy
 from galactic.learning.settings import Settings
+from galactic.learning.user_code import own_code
+from galactic.learning.user_code.own_tasks import MakeTask, maker
 
 
 @dataclasses.dataclass(frozen=True)

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 import torch
 from torch import Tensor
 
-from galactic.learning.distributed import Group
-from galactic.learning.flat_adam import FlatAdam
-from galactic.learning.networks import Outputs, Policy
-from galactic.learning.noise import mini_batch_envs
-from galactic.learning.precision import Precision
-from galactic.learning.rollout import Rollout
-from galactic.learning.schedules import PacedRate
+from galactic.learning.policies.networks import Outputs, Policy
+from galactic.learning.ranks.distributed import Group
+from galactic.learning.rollouts.noise import mini_batch_envs
+from galactic.learning.rollouts.rollout import Rollout
 from galactic.learning.settings import Settings
+from galactic.learning.updates.flat_adam import FlatAdam
+from galactic.learning.updates.precision import Precision
+from galactic.learning.updates.schedules import PacedRate
 
 
 class Learner:

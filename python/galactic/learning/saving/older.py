@@ -8,7 +8,7 @@ from typing import Any, Mapping
 import torch
 from torch import Tensor
 
-from galactic.learning.networks import PolicyShape
+from galactic.learning.policies.networks import PolicyShape
 from galactic.learning.reports.curves import COLUMNS
 
 

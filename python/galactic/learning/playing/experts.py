@@ -10,9 +10,9 @@ import galactic
 from galactic.demonstration_writer import EpisodeRecorder
 from galactic.demonstrations import Demonstration
 from galactic.hashing import hashed
-from galactic.learning.environments import Observation, Step
-from galactic.learning.evaluation import NO_EPISODE, Actor, EpisodeResult, Player
 from galactic.learning.homes import Homes
+from galactic.learning.playing.evaluation import NO_EPISODE, Actor, EpisodeResult, Player
+from galactic.learning.rollouts.environments import Observation, Step
 
 
 class Expert(Player, Protocol):

@@ -13,8 +13,11 @@ import torch
 from torch import Tensor
 
 from galactic.learning.encoders import Encoder, Inputs
-from galactic.learning.networks import PolicyShape
-from galactic.learning.own_code import (
+from galactic.learning.policies.networks import PolicyShape
+from galactic.learning.policies.privileges import parts_of_actor
+from galactic.learning.refusals import NetworkError, SettingsError
+from galactic.learning.settings import Settings
+from galactic.learning.user_code.own_code import (
     CodeName,
     class_of,
     goes_on,
@@ -23,9 +26,6 @@ from galactic.learning.own_code import (
     named,
     siblings_of,
 )
-from galactic.learning.privileges import parts_of_actor
-from galactic.learning.refusals import NetworkError, SettingsError
-from galactic.learning.settings import Settings
 
 BASE = "galactic.learning.encoders.Encoder"
 

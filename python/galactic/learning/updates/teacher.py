@@ -7,13 +7,13 @@ import pathlib
 
 import torch
 
-from galactic.learning.checkpoint import SavedPolicy
-from galactic.learning.distributed import Group
-from galactic.learning.distributions import ActionDistribution
 from galactic.learning.encoders import Inputs
-from galactic.learning.fitting import Observed, columns_of
+from galactic.learning.policies.distributions import ActionDistribution
+from galactic.learning.policies.fitting import Observed, columns_of
+from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import CheckpointError
-from galactic.learning.rollout import Rollout
+from galactic.learning.rollouts.rollout import Rollout
+from galactic.learning.saving.checkpoint import SavedPolicy
 
 
 class Teacher:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from galactic.learning.checkpoint import require_tensors
+from galactic.learning.saving.checkpoint import require_tensors
 
 
 class FlatAdam:

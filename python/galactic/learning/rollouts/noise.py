@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from galactic.hashing import hashed
-from galactic.learning.distributions import DECISIONS
+from galactic.learning.policies.distributions import DECISIONS
 
 
 def noise_of(seed: int, keys: np.ndarray, steps: np.ndarray, motions: int) -> np.ndarray:

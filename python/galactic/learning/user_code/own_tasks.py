@@ -6,9 +6,9 @@ import pathlib
 from collections.abc import Mapping
 from typing import Any, Callable, Optional
 
-from galactic.learning.own_code import CodeName, class_of, goes_on, keywords_of, mismatch
 from galactic.learning.refusals import SettingsError
 from galactic.learning.simulation_words import latest_words, simulation_keyword, word_of
+from galactic.learning.user_code.own_code import CodeName, class_of, goes_on, keywords_of, mismatch
 from galactic.task import Task
 from galactic.task_runner import require_options
 

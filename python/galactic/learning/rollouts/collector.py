@@ -9,17 +9,17 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from galactic.learning.checkpoint import require_tensors
 from galactic.learning.encoders import Inputs
-from galactic.learning.environments import Environments, Step, Timeouts
-from galactic.learning.episode_sums import EpisodeSums
-from galactic.learning.graphs import Function, Replayed, Tensors, record_cuda
-from galactic.learning.networks import Policy
-from galactic.learning.noise import action_noise
-from galactic.learning.precision import Precision
+from galactic.learning.policies.networks import Policy
 from galactic.learning.refusals import require_types
-from galactic.learning.rollout import Rollout
-from galactic.learning.stopwatch import Stopwatch
+from galactic.learning.rollouts.environments import Environments, Step, Timeouts
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.rollouts.graphs import Function, Replayed, Tensors, record_cuda
+from galactic.learning.rollouts.noise import action_noise
+from galactic.learning.rollouts.rollout import Rollout
+from galactic.learning.rollouts.stopwatch import Stopwatch
+from galactic.learning.saving.checkpoint import require_tensors
+from galactic.learning.updates.precision import Precision
 
 
 @dataclass(frozen=True)

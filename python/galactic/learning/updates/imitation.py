@@ -14,18 +14,18 @@ from torch import Tensor
 from galactic._core import EpisodeEnd
 from galactic.demonstrations import Demonstrations, require_alike
 from galactic.hashing import hashed
-from galactic.learning.checkpoint import require_tensors
-from galactic.learning.distributed import Group
-from galactic.learning.episode_sums import EpisodeSums
-from galactic.learning.fitting import Observed
 from galactic.learning.homes import exact_camera
-from galactic.learning.learner import Learner
-from galactic.learning.networks import Policy
+from galactic.learning.policies.fitting import Observed
+from galactic.learning.policies.networks import Policy
+from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import CheckpointError
-from galactic.learning.rollout import Rollout
-from galactic.learning.schedules import learning_rate_at
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.rollouts.rollout import Rollout
+from galactic.learning.rollouts.stopwatch import Stopwatch
+from galactic.learning.saving.checkpoint import require_tensors
 from galactic.learning.settings import Settings
-from galactic.learning.stopwatch import Stopwatch
+from galactic.learning.updates.learner import Learner
+from galactic.learning.updates.schedules import learning_rate_at
 
 
 @dataclasses.dataclass

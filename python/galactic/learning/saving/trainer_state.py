@@ -6,10 +6,10 @@ import pathlib
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from galactic.learning import older
-from galactic.learning.episode_sums import EpisodeSums, OwnNames
 from galactic.learning.refusals import CheckpointError, require_types
 from galactic.learning.reports.curves import columns_of
+from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames
+from galactic.learning.saving import older
 
 
 @dataclass

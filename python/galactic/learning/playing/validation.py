@@ -6,16 +6,16 @@ import dataclasses
 from typing import Optional
 
 import galactic
-from galactic.learning import evaluation
-from galactic.learning.distributed import Group
-from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.homes import Homes, sizes_of
-from galactic.learning.networks import Policy
-from galactic.learning.own_tasks import MakeTask
-from galactic.learning.privileges import other_meaning, parts_of_actor
+from galactic.learning.playing import evaluation
+from galactic.learning.policies.networks import Policy
+from galactic.learning.policies.privileges import other_meaning, parts_of_actor
+from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import SettingsError
-from galactic.learning.runs import Run
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.saving.runs import Run
 from galactic.learning.trainer import Validation
+from galactic.learning.user_code.own_tasks import MakeTask
 
 
 def validation_of(

@@ -30,11 +30,9 @@ from torch import Tensor
 from galactic import files
 from galactic._core import ErrorCode
 from galactic.errors import Error
-from galactic.learning import older
-from galactic.learning.networks import Policy, PolicyShape, make_policy
-from galactic.learning.own_code import place_beside
-from galactic.learning.own_networks import OwnNetwork, own_network, seen_by, with_options
-from galactic.learning.privileges import critic_columns, names_of
+from galactic.learning.policies.networks import Policy, PolicyShape, make_policy
+from galactic.learning.policies.privileges import critic_columns, names_of
+from galactic.learning.policies.sight import OF_THE_PAPER
 from galactic.learning.refusals import (
     CheckpointError,
     NetworkError,
@@ -42,8 +40,10 @@ from galactic.learning.refusals import (
     refusing,
     require_types,
 )
+from galactic.learning.saving import older
 from galactic.learning.settings import Settings
-from galactic.learning.sight import OF_THE_PAPER
+from galactic.learning.user_code.own_code import place_beside
+from galactic.learning.user_code.own_networks import OwnNetwork, own_network, seen_by, with_options
 
 FORMAT = 1
 # What every pack begins with: docs/packs.md.

@@ -23,10 +23,11 @@ from typing import Optional
 from galactic import files
 from galactic._core import ErrorCode
 from galactic.errors import Error
-from galactic.learning import checkpoint, older, own_code
-from galactic.learning.checkpoint import SavedPolicy
 from galactic.learning.refusals import SettingsError
-from galactic.learning.runs import Run, write_run
+from galactic.learning.saving import checkpoint, older
+from galactic.learning.saving.checkpoint import SavedPolicy
+from galactic.learning.saving.runs import Run, write_run
+from galactic.learning.user_code import own_code
 
 TEACHER = "teacher.pt"
 """The copy of the teacher in the folder of a run."""

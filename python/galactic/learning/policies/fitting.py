@@ -5,9 +5,14 @@ from __future__ import annotations
 import pathlib
 from typing import Any, Mapping, NamedTuple, Optional, Sequence
 
-from galactic.learning.checkpoint import SavedPolicy
-from galactic.learning.privileges import OtherMeaning, of_own_tasks, other_meaning, parts_of_actor
+from galactic.learning.policies.privileges import (
+    OtherMeaning,
+    of_own_tasks,
+    other_meaning,
+    parts_of_actor,
+)
 from galactic.learning.refusals import CheckpointError
+from galactic.learning.saving.checkpoint import SavedPolicy
 
 
 class Observed(NamedTuple):

@@ -10,12 +10,12 @@ import torch
 
 import galactic
 from galactic.learning.encoders import Inputs
-from galactic.learning.environments import Observation, Step
-from galactic.learning.episode_sums import EpisodeSums
 from galactic.learning.homes import Homes
-from galactic.learning.networks import Policy
-from galactic.learning.noise import noise_of
-from galactic.learning.rollout import Rollout
+from galactic.learning.policies.networks import Policy
+from galactic.learning.rollouts.environments import Observation, Step
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.rollouts.noise import noise_of
+from galactic.learning.rollouts.rollout import Rollout
 
 MOST_ENVS = 256
 

@@ -8,19 +8,19 @@ from typing import Optional
 import torch
 from torch import Tensor
 
-from galactic.learning.distributed import Group
-from galactic.learning.distributions import ActionDistribution
-from galactic.learning.learner import Learner
-from galactic.learning.networks import Outputs, Policy
-from galactic.learning.rollout import Rollout, advantages
-from galactic.learning.schedules import (
+from galactic.learning.policies.distributions import ActionDistribution
+from galactic.learning.policies.networks import Outputs, Policy
+from galactic.learning.ranks.distributed import Group
+from galactic.learning.rollouts.rollout import Rollout, advantages
+from galactic.learning.settings import Settings
+from galactic.learning.updates.learner import Learner
+from galactic.learning.updates.schedules import (
     entropy_at,
     learning_rate_at,
     log_std_limit_at,
     teacher_weight_at,
 )
-from galactic.learning.settings import Settings
-from galactic.learning.teacher import Teacher
+from galactic.learning.updates.teacher import Teacher
 
 
 @dataclass

@@ -7,9 +7,9 @@ import numbers
 import pathlib
 from typing import Any, Callable, Mapping
 
-from galactic.learning import own_code
-from galactic.learning.networks import Policy
+from galactic.learning.policies.networks import Policy
 from galactic.learning.refusals import SettingsError
+from galactic.learning.user_code import own_code
 
 CALLBACK = "callback_"
 """What names of columns begin with that a callback adds: no other one does."""

@@ -14,16 +14,17 @@ from galactic import demonstrations, files
 from galactic.demonstration_writer import write_part
 from galactic.demonstrations import About, Demonstrations
 from galactic.hashing import hashed
-from galactic.learning import checkpoint, own_networks
-from galactic.learning.checkpoint import SavedPolicy
-from galactic.learning.evaluation import Actor, Evaluator
-from galactic.learning.experts import Expert, Recorder
-from galactic.learning.fitting import Observed, columns_of
 from galactic.learning.homes import Homes
+from galactic.learning.playing.evaluation import Actor, Evaluator
+from galactic.learning.playing.experts import Expert, Recorder
+from galactic.learning.policies.fitting import Observed, columns_of
 from galactic.learning.refusals import CheckpointError, SettingsError
 from galactic.learning.reports.progress import ProgressLine, duration
+from galactic.learning.saving import checkpoint
+from galactic.learning.saving.checkpoint import SavedPolicy
 from galactic.learning.setting_fields import option_name, typed
 from galactic.learning.settings import CAMERA, CAMERA_NOISE, Settings
+from galactic.learning.user_code import own_networks
 
 
 def begin(folder: pathlib.Path, about: About) -> None:

@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 
 from galactic.learning.encoders import Inputs
-from galactic.learning.environments import Observation
+from galactic.learning.rollouts.environments import Observation
 
 
 @dataclass

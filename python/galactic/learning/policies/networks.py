@@ -28,12 +28,6 @@ from typing import NamedTuple, Optional
 import torch
 from torch import Tensor, nn
 
-from galactic.learning.distributions import (
-    DECISIONS,
-    HIGHEST_LOG_STD,
-    LOWEST_LOG_STD,
-    ActionDistribution,
-)
 from galactic.learning.encoders import (
     FEATURES,
     DepthCNN,
@@ -45,9 +39,15 @@ from galactic.learning.encoders import (
     orthogonal,
     perceptron,
 )
-from galactic.learning.normalization import Closeup, Normalizer
+from galactic.learning.policies.distributions import (
+    DECISIONS,
+    HIGHEST_LOG_STD,
+    LOWEST_LOG_STD,
+    ActionDistribution,
+)
+from galactic.learning.policies.normalization import Closeup, Normalizer
+from galactic.learning.policies.sight import IMAGE_SIZE, SIGHT
 from galactic.learning.sequences import run_gru
-from galactic.learning.sight import IMAGE_SIZE, SIGHT
 
 
 class Outputs(NamedTuple):

@@ -1,0 +1,1 @@
+"""Policies act, environments step, a rollout fills. Start reading at `collector.py`."""
