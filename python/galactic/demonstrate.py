@@ -30,12 +30,12 @@ from galactic.learning.playing.demonstrating import acting, begin, make_parts
 from galactic.learning.playing.evaluation import MOST_ENVS
 from galactic.learning.playing.experts import Expert, LearnedExpert, RolledIn, ScriptedExpert
 from galactic.learning.presets import PRESETS, preset
+from galactic.learning.ranks.distributed import threads_of
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.progress import ProgressLine
 from galactic.learning.setting_options import add_options, given_options
 from galactic.learning.settings import CAMERA, Settings
 from galactic.learning.simulation_words import simulation_keywords
-from galactic.learning.trainer import threads_of
 from galactic.learning.user_code import own_code, own_tasks
 from galactic.streams import put
 

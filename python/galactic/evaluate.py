@@ -15,11 +15,11 @@ from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named
 from galactic.learning.homes import Homes
 from galactic.learning.playing import evaluation
 from galactic.learning.playing.judging import Terms, judging
+from galactic.learning.ranks.distributed import threads_of
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
 from galactic.learning.saving import checkpoint
-from galactic.learning.trainer import threads_of
 from galactic.learning.user_code import own_code
 from galactic.streams import put
 

@@ -28,7 +28,7 @@ from galactic.learning.command import (
 from galactic.learning.homes import Homes
 from galactic.learning.playing.validation import validation_of
 from galactic.learning.presets import PRESETS, TAUGHT, preset
-from galactic.learning.ranks.distributed import Group, device_of, local_ranks
+from galactic.learning.ranks.distributed import Group, device_of, local_ranks, threads_of
 from galactic.learning.ranks.launch import follow_launcher, launch
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import log
@@ -58,8 +58,8 @@ from galactic.learning.setting_options import (
     resumed,
 )
 from galactic.learning.settings import Settings
-from galactic.learning.trainer import Trainer, threads_of
-from galactic.learning.user_code import callbacks, own_tasks
+from galactic.learning.trainer import Trainer
+from galactic.learning.user_code import callbacks, own_code, own_tasks
 from galactic.streams import put
 
 
@@ -356,7 +356,7 @@ def _resumed_run(options: argparse.Namespace) -> Run:
         raise SettingsError(
             "a resumed run keeps its world, its preset, its weights, its teacher and its demonstrations; leave them out"
         )
-    file = options.out / "settings.json"
+    file = options.out / own_code.RUN
     if not file.is_file():
         raise galactic.Error(
             galactic.ErrorCode.IO, str(file), f"does not exist: {options.out} holds no run"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import pathlib
 import signal
 import time
@@ -429,8 +428,3 @@ class Trainer:
 def _fitting(file: pathlib.Path, remedy: str) -> ContextManager[None]:
     """Around taking over what `file` holds."""
     return refusing(f"{file} does not fit this run", remedy)
-
-
-def threads_of(wanted: int, local_ranks: int) -> int:
-    """Of one rank; 0: its share of the processors that this process may use."""
-    return wanted or max(1, len(os.sched_getaffinity(0)) // local_ranks)

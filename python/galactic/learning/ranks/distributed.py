@@ -45,6 +45,11 @@ def local_ranks() -> int:
     return int(os.environ.get("LOCAL_WORLD_SIZE", "1"))
 
 
+def threads_of(wanted: int, local_ranks: int) -> int:
+    """Of one rank; 0: its share of the processors that this process may use."""
+    return wanted or max(1, len(os.sched_getaffinity(0)) // local_ranks)
+
+
 class Group:
     """All ranks of a run; of one process alone, every sum is what it was.
 

@@ -48,7 +48,8 @@ VALIDATION = "validation_"
 
 
 def columns_of(names: OwnNames) -> tuple[str, ...]:
-    """COLUMNS, and behind them, before those of a callback, means of what a task of one's own says, of training and validations."""
+    """COLUMNS, and behind them, before those of a callback, means of what a task of one's own says, of training and
+    validations."""
     means = names.of_means
     return (*COLUMNS, *means, *(VALIDATION + name for name in means))
 

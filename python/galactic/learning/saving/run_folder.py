@@ -34,7 +34,7 @@ TEACHER = "teacher.pt"
 
 
 def require_no_run(folder: pathlib.Path) -> None:
-    if (folder / "settings.json").exists():
+    if (folder / own_code.RUN).exists():
         raise SettingsError(
             f"{folder} already holds a run; continue it with --resume, or choose another folder"
         )

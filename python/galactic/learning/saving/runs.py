@@ -63,7 +63,7 @@ def read_run(file: pathlib.Path) -> Run:
 
 def write_run(run: Run, folder: pathlib.Path) -> None:
     write_json(
-        folder / "settings.json",
+        folder / own_code.RUN,
         {
             "world": str(run.world),
             "validation": str(run.validation) if run.validation else None,
