@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pathlib
 import signal
-import time
 from typing import Any, Callable, ContextManager, Optional, Union
 
 import torch
