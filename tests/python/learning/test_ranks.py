@@ -19,23 +19,24 @@ from galactic.learning.ranks.distributed import Group, RankLost, Stragglers
 from galactic.learning.ranks.launch import launch
 from galactic.learning.reports.curves import read_curves
 from galactic.learning.saving import checkpoint
+import ranks
 from trainers import SETTINGS, UPDATE, make_trainer
 
 HERE = pathlib.Path(__file__).parent
 
 
 def test_ranks_tell_once_what_went_wrong() -> None:
-    def ranks() -> list[Group]:
+    def two_groups() -> list[Group]:
         both, store = [Group(rank, 2, torch.device("cpu")) for rank in (0, 1)], HashStore()
         for group in both:
             group._store = store
         return both
 
-    first, second = ranks()
+    first, second = two_groups()
     assert first.may_tell(OSError("disk full")) and not second.may_tell(OSError("disk full"))
     assert second.may_tell(OSError("no memory")) and not second.may_tell(RankLost("of the first"))
     # One that ended without a word is missed, once.
-    first, second = ranks()
+    first, second = two_groups()
     assert first.may_tell(RankLost("peer at 1")) and not second.may_tell(RankLost("peer at 2"))
 
 
@@ -85,8 +86,8 @@ def test_a_rank_keeps_the_memory_that_tensors_leave_unless_told_otherwise(
     # Pages that the system gave for tensors of 64 MiB, when a few of them have made room.
     work = """
 import resource, sys, torch
-for n in range(30):
-    if n == 20:
+for n in range(15):
+    if n == 10:
         before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
     torch.full((1 << 24,), 1.0)
 few = resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before < 100
@@ -99,43 +100,40 @@ def test_a_rank_that_is_asked_to_end_was_interrupted() -> None:
     assert launch(1, [sys.executable, "-c", "import os; os.kill(os.getpid(), 15)"]) == 130
 
 
-def run_ranks(ranks: int, *arguments: str) -> None:
-    """Runs ranks.py in as many processes."""
-    assert launch(ranks, [sys.executable, "-B", str(HERE / "ranks.py"), *arguments]) == 0
+@pytest.fixture(scope="module")
+def two(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """What two ranks have left that did all that ranks.py has for them. Each is to start from another policy."""
+    folder = tmp_path_factory.mktemp("two")
+    for rank in range(2):
+        trainer = make_trainer(None, dataclasses.replace(SETTINGS, seed=1 + rank))
+        trainer.begin()
+        trainer.train(UPDATE)
+        checkpoint.save_policy(trainer._saved_policy(None), folder / f"before-{rank}.pt")
+    assert launch(2, [sys.executable, "-B", str(HERE / "ranks.py"), str(folder)]) == 0
+    return folder
 
 
-def test_two_ranks_are_one_of_twice_the_envs(tmp_path: pathlib.Path) -> None:
-    for name in ("one", "two"):
-        (tmp_path / name).mkdir()
-    run_ranks(1, "train", str(tmp_path / "one"), "32")
-    run_ranks(2, "train", str(tmp_path / "two"), "16")
-    first = torch.load(tmp_path / "two" / "parameters-0.pt")
-    second = torch.load(tmp_path / "two" / "parameters-1.pt")
-    whole = torch.load(tmp_path / "one" / "parameters-0.pt")
+def test_two_ranks_are_one_of_twice_the_envs(tmp_path: pathlib.Path, two: pathlib.Path) -> None:
+    ranks.train(Group.alone(), tmp_path, 32)
+    first = torch.load(two / "parameters-0.pt")
+    second = torch.load(two / "parameters-1.pt")
+    whole = torch.load(tmp_path / "parameters-0.pt")
     assert torch.equal(first, second)
-    start = torch.load(tmp_path / "one" / "start.pt")
+    start = torch.load(tmp_path / "start.pt")
     moved = (whole - start).abs().max()
     # Sums in another order, carried through eight updates.
     assert moved > 0.01 and (first - whole).abs().max() < 1e-3 * moved
-    one, two = (read_curves(tmp_path / name / "curves.csv") for name in ("one", "two"))
-    assert len(one) == len(two) == 8
-    for row, other in zip(one, two):
+    one, both = (read_curves(folder / "curves.csv") for folder in (tmp_path, two))
+    assert len(one) == len(both) == 8
+    for row, other in zip(one, both):
         # Measured ones differ.
         for name in row.keys() - {"seconds", "sps"}:
             assert row[name] == pytest.approx(other[name], rel=1e-3, abs=1e-4), name
     assert one[-1]["measure_steps"] == one[-1]["length"] > 1.0
 
 
-def test_ranks_start_from_one_policy_whatever_becomes_of_its_file(tmp_path: pathlib.Path) -> None:
-    for rank in range(2):
-        trainer = make_trainer(None, dataclasses.replace(SETTINGS, seed=1 + rank))
-        trainer.begin()
-        trainer.train(UPDATE)
-        checkpoint.save_policy(trainer._saved_policy(None), tmp_path / f"before-{rank}.pt")
-    run_ranks(2, "start", str(tmp_path))
-    before, *after = (
-        torch.load(tmp_path / f"{name}.pt") for name in ("before-0", "after-0", "after-1")
-    )
+def test_ranks_start_from_one_policy_whatever_becomes_of_its_file(two: pathlib.Path) -> None:
+    before, *after = (torch.load(two / f"{name}.pt") for name in ("before-0", "after-0", "after-1"))
     wanted = before["policy"]
     assert "normalize.center" in wanted
     for found in after:
@@ -143,9 +141,8 @@ def test_ranks_start_from_one_policy_whatever_becomes_of_its_file(tmp_path: path
         assert all(torch.equal(found[name], value) for name, value in wanted.items())
 
 
-def test_stragglers_are_stopped_and_their_steps_counted(tmp_path: pathlib.Path) -> None:
-    run_ranks(2, "straggle", str(tmp_path))
-    steps = [torch.load(tmp_path / f"steps-{rank}.pt") for rank in range(2)]
+def test_stragglers_are_stopped_and_their_steps_counted(two: pathlib.Path) -> None:
+    steps = [torch.load(two / f"steps-{rank}.pt") for rank in range(2)]
     assert steps[0]["rollouts"] == [16, 16, 16]
     # Not before a quarter of the rollout, nor as late as its end.
     assert all(4 <= length < 16 for length in steps[1]["rollouts"]), steps
@@ -178,8 +175,7 @@ def test_as_many_ranks_are_waited_for_as_the_fraction_says(
         rank.finished(0)
 
 
-def test_the_curves_of_ranks_wait_for_the_envs_of_all(tmp_path: pathlib.Path) -> None:
-    run_ranks(2, "wait", str(tmp_path))
+def test_the_curves_of_ranks_wait_for_the_envs_of_all(two: pathlib.Path) -> None:
     for rank in range(2):
-        updates = torch.load(tmp_path / f"figures-{rank}.pt")
+        updates = torch.load(two / f"figures-{rank}.pt")
         assert updates == [False, False, False, False, True]
