@@ -133,7 +133,7 @@ def agreement(policy: Policy, act: Act) -> tuple[float, float]:
 @pytest.mark.parametrize("shown", [None, lambda step: step >= 2])
 def test_the_expert_is_imitated_where_it_acted_and_succeeded(tmp_path: pathlib.Path, shown) -> None:
     made = make(tmp_path / "shown", shown=shown, count=120)
-    policy, losses = learn(made, SETTINGS, 500)
+    policy, losses = learn(made, SETTINGS, 200)
     error, right = agreement(policy, from_state)
     assert error < 0.12 and right > 0.93
     assert np.mean(losses[-20:]) < np.mean(losses[:20]) - 2.0
@@ -142,11 +142,11 @@ def test_the_expert_is_imitated_where_it_acted_and_succeeded(tmp_path: pathlib.P
 def test_what_was_seen_before_the_stretch_is_remembered(tmp_path: pathlib.Path) -> None:
     made = make(tmp_path / "shown", from_memory, count=300)
     settings = dataclasses.replace(SETTINGS, recurrent=True, envs=32)
-    error, right = agreement(learn(made, settings, 500)[0], from_memory)
+    error, right = agreement(learn(made, settings, 200)[0], from_memory)
     assert error < 0.25 and right > 0.85
     # Without a memory, it cannot be learned.
     error, right = agreement(
-        learn(made, dataclasses.replace(SETTINGS, envs=32), 500)[0], from_memory
+        learn(made, dataclasses.replace(SETTINGS, envs=32), 200)[0], from_memory
     )
     assert error > 0.35 and right < 0.8
 

@@ -100,7 +100,7 @@ def test_a_run_goes_on_with_the_task_that_it_began_with(
         "--halves",
         "2",
         "--steps",
-        30 * UPDATE,
+        12 * UPDATE,
         "--task",
         f"{task_file}:Approach",
     ]
@@ -109,7 +109,7 @@ def test_a_run_goes_on_with_the_task_that_it_began_with(
     whole, paused = tmp_path / "whole", tmp_path / "paused"
     done = call("train", "-o", whole, *options)
     assert done.returncode == 0, done.stderr
-    assert call("train", "-o", paused, *options, "--pause-at", 17 * UPDATE).returncode == 0
+    assert call("train", "-o", paused, *options, "--pause-at", 7 * UPDATE).returncode == 0
     assert (paused / "task.py").read_text(encoding="utf-8") == TASK
     task_file.write_text(TASK.replace("self.bonus *", "9 *"), encoding="utf-8")
     resumed = call("train", "-o", paused, "--resume")
@@ -118,7 +118,7 @@ def test_a_run_goes_on_with_the_task_that_it_began_with(
     assert [row for row in curve(paused) if row["kl"] is not None] == [
         row for row in curve(whole) if row["kl"] is not None
     ]
-    final = f"checkpoints/{30 * UPDATE:012d}/policy.pt"
+    final = f"checkpoints/{12 * UPDATE:012d}/policy.pt"
     one, two = (checkpoint.load_policy(folder / final) for folder in (whole, paused))
     weights = two.policy.state_dict()
     assert all(torch.equal(value, weights[name]) for name, value in one.policy.state_dict().items())

@@ -202,7 +202,7 @@ def test_what_only_an_image_shows_is_learned_by_eyes_and_by_nothing_else() -> No
         settings = Settings(
             envs=64, mini_batches=4, epochs=4, horizon=20, learning_rate=2e-3, **chosen
         )
-        rates[network] = train(Look(64, halves=2), settings, updates=60)
+        rates[network] = train(Look(64, halves=2), settings, updates=35)
     assert np.mean(rates["depth"][-5:]) > 0.85, rates
     assert np.mean(rates["state"][-5:]) < 0.3, rates
 

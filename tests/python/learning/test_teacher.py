@@ -213,7 +213,7 @@ def learned(
 
 
 def test_a_policy_learns_what_its_teacher_would_do_where_no_reward_tells() -> None:
-    policy, _, rates = learned(None, ReachAndGrasp(64, halves=2), SETTINGS, 50)
+    policy, _, rates = learned(None, ReachAndGrasp(64, halves=2), SETTINGS, 35)
     assert sum(rates[-5:]) > 4.5
     shape = PolicyShape(4, 2, False, SETTINGS.normalize)
     made = SavedPolicy(policy, SETTINGS, shape, PARTS, 0, None)
