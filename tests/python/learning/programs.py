@@ -6,8 +6,10 @@ import contextlib
 import io
 import os
 import pathlib
+import resource
 import subprocess
 import sys
+from typing import Iterator
 
 import pytest
 
@@ -49,6 +51,17 @@ def call(program: str, *arguments: object) -> "subprocess.CompletedProcess[str]"
         except SystemExit as stop:
             code = stop.code
     return subprocess.CompletedProcess(words, code, stderr=said.getvalue())
+
+
+@contextlib.contextmanager
+def files_of_at_most(size: int) -> Iterator[None]:
+    """As on a full disk: files of this process cannot grow beyond so many bytes."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 def curve(folder: pathlib.Path) -> list[dict[str, float | None]]:

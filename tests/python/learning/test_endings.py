@@ -16,20 +16,18 @@ from typing import Any, Callable, Iterator
 import pytest
 
 import galactic
-from galactic import files, train
+from galactic import files
 from galactic.learning.ranks.launch import LAUNCHER, launch
-
-WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
-WORLD = WORLDS / "world.pack"
-UPDATE = 16 * 8
-SMALL = ["--preset", "quick", "--envs", "16", "--horizon", "8", "--log-every", "0"]
-needs_world = pytest.mark.skipif(
-    not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"
+from programs import (
+    SMALL,
+    SMALL_OF_ANY_RANKS,
+    UPDATE,
+    WORLD,
+    call,
+    command,
+    files_of_at_most,
+    needs_worlds,
 )
-
-
-def command(*arguments: object) -> list[str]:
-    return [sys.executable, "-B", "-m", "galactic.train", *map(str, arguments)]
 
 
 def wait_for(holds: Callable[[], Any], process: "subprocess.Popen[str] | None" = None) -> None:
@@ -106,7 +104,7 @@ def test_ctrl_c_while_ranks_load_ends_them_in_silence(
     endless_torch: pathlib.Path, capfd: Any
 ) -> None:
     with interrupted_when(lambda: loading(endless_torch) == 2):
-        assert launch(2, command()) == 130
+        assert launch(2, command("train")) == 130
     assert capfd.readouterr().err == ""
 
 
@@ -122,7 +120,7 @@ def test_ctrl_c_before_all_ranks_have_started_reaches_all_of_them(
         return started[-1]
 
     monkeypatch.setattr(subprocess, "Popen", start_one)
-    assert launch(2, command()) == 130
+    assert launch(2, command("train")) == 130
     assert [process.returncode for process in started] == [130, 130]
     assert capfd.readouterr().err == ""
 
@@ -145,7 +143,9 @@ def ranks_of(process: "subprocess.Popen[str]") -> list[int]:
 def run_of_two_ranks(folder: pathlib.Path) -> Iterator["subprocess.Popen[str]"]:
     """A long one, which has come to learn."""
     process = subprocess.Popen(
-        command(WORLD, "-o", folder, *SMALL, "--ranks", 2), stderr=subprocess.PIPE, text=True
+        command("train", WORLD, "-o", folder, *SMALL_OF_ANY_RANKS, "--ranks", 2),
+        stderr=subprocess.PIPE,
+        text=True,
     )
     try:
         wait_for((folder / "curves.csv").is_file, process)
@@ -163,33 +163,24 @@ def is_free(folder: pathlib.Path) -> bool:
         return False
 
 
-def call(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int:
-    """Trains as the only rank, in this process."""
-    with monkeypatch.context() as patch:
-        patch.setenv("RANK", "0")
-        patch.setenv("WORLD_SIZE", "1")
-        return train.main(list(map(str, arguments)))
-
-
-@needs_world
+@needs_worlds
 def test_a_folder_has_one_run_at_a_time_and_ranks_end_with_their_launcher(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capfd: Any
+    tmp_path: pathlib.Path,
 ) -> None:
     folder = tmp_path / "run"
     with run_of_two_ranks(folder) as process:
-        capfd.readouterr()
         before = (folder / "settings.json").read_bytes()
-        code = call(monkeypatch, "-o", folder, "--resume", "--steps", 10**9)
-        said = capfd.readouterr().err
-        assert code == 2
-        assert said == (
+        done = call("train", "-o", folder, "--resume", "--steps", 10**9)
+        assert done.returncode == 2
+        assert done.stderr == (
             f"galactic.train: {folder}: a run is under way in this folder; wait for its end, "
             "interrupt it, or give another -o\n"
         )
         # As where two have been started at once, and neither has seen the other's settings.
         (folder / "settings.json").unlink()
-        assert call(monkeypatch, WORLD, "-o", folder, *SMALL) == 2
-        assert capfd.readouterr().err == said and not (folder / "settings.json").exists()
+        again = call("train", WORLD, "-o", folder, *SMALL_OF_ANY_RANKS)
+        assert again.returncode == 2 and again.stderr == done.stderr
+        assert not (folder / "settings.json").exists()
         (folder / "settings.json").write_bytes(before)
         ranks = ranks_of(process)
         assert len(ranks) == 2 and not any(map(has_ended, ranks))
@@ -201,7 +192,7 @@ def test_a_folder_has_one_run_at_a_time_and_ranks_end_with_their_launcher(
         wait_for(lambda: is_free(folder))
 
 
-@needs_world
+@needs_worlds
 def test_a_terminal_that_closes_ends_a_run_that_saves(tmp_path: pathlib.Path) -> None:
     """The system says so, and then the shell once more."""
     with run_of_two_ranks(tmp_path / "run") as process:
@@ -213,7 +204,7 @@ def test_a_terminal_that_closes_ends_a_run_that_saves(tmp_path: pathlib.Path) ->
     assert list((tmp_path / "run").glob("checkpoints/[0-9]*/rank-1.pt"))
 
 
-@needs_world
+@needs_worlds
 def test_a_signal_to_all_processes_of_a_job_ends_a_run_that_saves(tmp_path: pathlib.Path) -> None:
     """As systemd and Slurm send it: ranks get it twice, from there and from who has launched them."""
     with run_of_two_ranks(tmp_path / "run") as process:
@@ -246,37 +237,22 @@ def test_a_rank_whose_launcher_was_over_before_it_asked_ends(tmp_path: pathlib.P
         assert done.returncode == code
 
 
-@needs_world
+@needs_worlds
 def test_a_full_disk_is_one_sentence_and_leaves_what_was_saved(tmp_path: pathlib.Path) -> None:
     folder = tmp_path / "run"
-    work = (
-        "import resource, sys\nfrom galactic import train\n"
-        "most = int(sys.argv.pop(1))\n"
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))\n"
-        "sys.exit(train.main(sys.argv[1:]))"
-    )
-
-    def run(most: int, *arguments: object) -> "subprocess.CompletedProcess[str]":
-        return subprocess.run(
-            [sys.executable, "-B", "-c", work, str(most), *map(str, arguments)],
-            env={**os.environ, "RANK": "0", "WORLD_SIZE": "1"},
-            capture_output=True,
-            text=True,
-            timeout=300,
-        )
-
-    small = [*SMALL, "--ranks", 1, "--steps", 9 * UPDATE, "--checkpoint-every", UPDATE]
-    done = run(1 << 30, WORLD, "-o", folder, *small, "--pause-at", UPDATE)
+    small = [*SMALL, "--steps", 9 * UPDATE, "--checkpoint-every", UPDATE]
+    done = call("train", WORLD, "-o", folder, *small, "--pause-at", UPDATE)
     assert done.returncode == 0, done.stderr
     saved = {file: file.read_bytes() for file in folder.rglob("*.pt")}
     # Room for reports, and none for networks.
-    full = run(100_000, "-o", folder, "--resume")
+    with files_of_at_most(100_000):
+        full = call("train", "-o", folder, "--resume")
     assert full.returncode == 2, full.stderr
     (told,) = [line for line in full.stderr.splitlines() if "cannot write" in line]
     assert told.startswith("galactic.train: ") and ".pt: cannot write the file: File too" in told
     assert full.stderr.splitlines()[-1] == told and "frame" not in full.stderr
     assert {file: file.read_bytes() for file in folder.rglob("*.pt") if file in saved} == saved
-    again = run(1 << 30, "-o", folder, "--resume", "--pause-at", 2 * UPDATE)
+    again = call("train", "-o", folder, "--resume", "--pause-at", 2 * UPDATE)
     assert again.returncode == 0 and f"going on after {UPDATE} steps" in again.stderr
 
 

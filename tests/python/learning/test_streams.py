@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pathlib
 import subprocess
 import sys
-from typing import Any, Sequence
+from typing import Any, Iterator, Sequence
 
 import pytest
 
 pytest.importorskip("torch", reason="torch is missing: the programs do not start")
 
+from galactic import evaluate, export, train  # noqa: E402
 from galactic.learning.command import told  # noqa: E402
 
 WORLD = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none")) / "held_out.pack"
@@ -35,19 +37,36 @@ def run(program: str, words: Sequence[str], lost: str, kind: str) -> Any:
         return subprocess.run(command, text=True, timeout=300, check=False, **streams)
 
 
-@pytest.mark.parametrize("kind", ["closed", "full"])
-@pytest.mark.parametrize("program", ["train", "evaluate", "export"])
-def test_help_that_nobody_can_read_ends_with_a_line_about_it(program: str, kind: str) -> None:
-    done = run(program, ["--help"], "stdout", kind)
-    assert (done.returncode, done.stderr) == (2, f"galactic.{program}: {LOST}")
+@contextlib.contextmanager
+def losing(stream: str, kind: str) -> Iterator[None]:
+    """This process with a standard stream as such a program has it."""
+    with open("/dev/full", "w", encoding="utf-8") as full, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, stream, full if kind == "full" else None)
+        yield
 
 
 @pytest.mark.parametrize("kind", ["closed", "full"])
-def test_a_message_that_nobody_can_read_changes_nothing(kind: str) -> None:
-    done = run("export", ["--no-such-option"], "stderr", kind)
-    assert (done.returncode, done.stdout) == (1, "")
+def test_help_that_nobody_can_read_ends_with_a_line_about_it(kind: str) -> None:
+    done = run("export", ["--help"], "stdout", kind)
+    assert (done.returncode, done.stderr) == (2, f"galactic.export: {LOST}")
+
+
+@pytest.mark.parametrize("kind", ["closed", "full"])
+@pytest.mark.parametrize("program", [train, evaluate])
+def test_help_of_the_others_does_so_too(program: Any, kind: str, capsys: Any) -> None:
+    """In this process: how Python comes out of what is closed is tested above."""
+    with losing("stdout", kind), pytest.raises(SystemExit) as ended:
+        program.main(["--help"])
+    assert (ended.value.code, capsys.readouterr().err) == (2, f"{program.__name__}: {LOST}")
+
+
+@pytest.mark.parametrize("kind", ["closed", "full"])
+def test_a_message_that_nobody_can_read_changes_nothing(kind: str, capsys: Any) -> None:
     done = run("export", ["none.pt", "-o", "none.pack"], "stderr", kind)
     assert (done.returncode, done.stdout) == (2, "")
+    with losing("stderr", kind), pytest.raises(SystemExit) as ended:
+        export.main(["--no-such-option"])
+    assert (ended.value.code, capsys.readouterr().out) == (1, "")
 
 
 @pytest.mark.parametrize(
@@ -84,7 +103,7 @@ def test_faults_of_the_program_are_not_told_as_such() -> None:
 
 @needs_world
 @pytest.mark.parametrize("kind", ["closed", "full"])
-def test_work_is_done_whoever_reads_of_it(kind: str, tmp_path: pathlib.Path) -> None:
+def test_work_is_done_whoever_reads_of_it(kind: str, tmp_path: pathlib.Path, capsys: Any) -> None:
     out = str(tmp_path / "run")
     words = [str(WORLD), "-o", out, "--preset", "quick", "--envs", "8", "--mini-batches", "1",
              "--steps", "64", "--horizon", "4", "--width", "8", "--ranks", "1"]  # fmt: skip
@@ -92,6 +111,7 @@ def test_work_is_done_whoever_reads_of_it(kind: str, tmp_path: pathlib.Path) -> 
     assert (done.returncode, done.stdout) == (0, "")
     best, report = tmp_path / "run" / "best.pt", tmp_path / "report.json"
     words = [str(best), str(WORLD), "--episodes", "2", "--report", str(report)]
-    done = run("evaluate", words, "stdout", kind)
-    assert (done.returncode, done.stderr) == (2, f"galactic.evaluate: {LOST}")
+    with losing("stdout", kind):
+        code = evaluate.main(words)
+    assert (code, capsys.readouterr().err) == (2, f"galactic.evaluate: {LOST}")
     assert report.is_file()

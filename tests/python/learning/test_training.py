@@ -52,12 +52,12 @@ def test_a_policy_learns_what_chance_does_not(tmp_path: pathlib.Path) -> None:
     common = ["--preset", "quick", "--seed", "5", "--validation", HELD_OUT, "--envs", "128"]
     common += ["--simulation", BLIND, "--final-log-std", "2"]
     assert call("train", WORLD, "-o", tmp_path / "raw", *common, "--steps", "1").returncode == 0
-    done = run("train", WORLD, "-o", tmp_path / "run", *common, "--steps", "800_000")
+    done = run("train", WORLD, "-o", tmp_path / "run", *common, "--steps", "400_000")
     assert done.returncode == 0, done.stderr
     rates = {}
     for name in ("raw", "run"):
         report = tmp_path / f"{name}.json"
-        found = run("evaluate", tmp_path / name / "best.pt", HELD_OUT, "--report", report)
+        found = call("evaluate", tmp_path / name / "best.pt", HELD_OUT, "--report", report)
         assert found.returncode == 0, found.stderr
         rates[name] = json.loads(report.read_text(encoding="utf-8"))
         # Each episode exactly once.
@@ -72,7 +72,7 @@ def test_a_policy_learns_what_chance_does_not(tmp_path: pathlib.Path) -> None:
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     """A run with all sensors that goes through to its end."""
     folder = tmp_path_factory.mktemp("undisturbed") / "run"
-    done = run("train", WORLD, "-o", folder, *TO_BE_CUT)
+    done = call("train", WORLD, "-o", folder, *TO_BE_CUT)
     assert done.returncode == 0, done.stderr
     return folder
 
@@ -93,7 +93,7 @@ def test_a_run_that_was_cut_goes_on_as_if_it_had_not_been(
         time.sleep(0.01)
     cut.send_signal(sign)
     assert cut.wait(timeout=120) == code, "it was over before it was cut"
-    resumed = run("train", "-o", tmp_path / "cut", "--resume")
+    resumed = call("train", "-o", tmp_path / "cut", "--resume")
     assert resumed.returncode == 0, resumed.stderr
     assert "going on after" in resumed.stderr
     assert curve(tmp_path / "cut") == curve(undisturbed)
@@ -358,13 +358,19 @@ def test_a_damaged_checkpoint_is_one_sentence_on_any_number_of_ranks(
 
     file.write_bytes(whole[:100])
     refuse(3, f"{file} cannot be read as a checkpoint: found 100 bytes of something else")
-    values, tensors = checkpoint.load(folder / "best.pt")
-    checkpoint.save(file, values, tensors)
-    refuse(3, f"{file} does not fit this run: envs: found nothing")
     file.unlink()
     refuse(2, f"{file}: cannot open the file: No such file or directory; no checkpoint is before")
-    (folder / "settings.json").write_text("[]", encoding="utf-8")
-    refuse(3, f"{folder / 'settings.json'} does not say what the run is: ")
+
+
+def test_a_folder_that_does_not_say_what_the_run_is_is_refused_before_ranks_start(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    monkeypatch.setattr(train, "launch", lambda *_: pytest.fail("ranks have started"))
+    (tmp_path / "settings.json").write_text("[]", encoding="utf-8")
+    assert train.main(["-o", str(tmp_path), "--resume"]) == 3
+    said = capsys.readouterr().err
+    told = f"galactic.train: {tmp_path / 'settings.json'} does not say what the run is: "
+    assert said.startswith(told) and said.count("\n") == 1
 
 
 def test_a_run_starts_from_what_another_learned(tmp_path: pathlib.Path) -> None:
@@ -519,14 +525,14 @@ def test_a_policy_that_sees_pictures_trains_goes_on_and_is_evaluated(
     tmp_path: pathlib.Path, network: str, edge: int
 ) -> None:
     """Two updates of the paper's preset, small."""
-    small = [WORLD, "--network", network, "--image-size", edge, "--envs", 4, "--horizon", 8,
-             "--steps", 2 * 4 * 8, "--log-every", 0, "--validation", HELD_OUT,
+    small = [WORLD, "--network", network, "--image-size", edge, "--envs", 4, "--horizon", 4,
+             "--steps", 2 * 4 * 4, "--log-every", 0, "--validation", HELD_OUT,
              "--validation-episodes", 3, "--simulation", "task=pick episode-steps=6"]  # fmt: skip
     done = call("train", "-o", tmp_path / "run", *small)
     assert done.returncode == 0, done.stderr
-    assert call("train", "-o", tmp_path / "paused", *small, "--pause-at", 32).returncode == 0
+    assert call("train", "-o", tmp_path / "paused", *small, "--pause-at", 16).returncode == 0
     assert call("train", "-o", tmp_path / "paused", "--resume").returncode == 0
-    final = f"checkpoints/{64:012d}/policy.pt"
+    final = f"checkpoints/{32:012d}/policy.pt"
     found, wanted = (
         checkpoint.load_policy(tmp_path / name / final).policy.state_dict()
         for name in ("paused", "run")
@@ -539,7 +545,7 @@ def test_a_policy_that_sees_pictures_trains_goes_on_and_is_evaluated(
     assert call("train", *begin).returncode == 0
     rows = read_curves(tmp_path / "run" / "curves.csv")
     updates = [row for row in rows if row["policy_loss"] is not None]
-    assert len(updates) == 2 and "validation after 64 steps" in done.stderr
+    assert len(updates) == 2 and "validation after 32 steps" in done.stderr
     for row in updates:
         for name in ("policy_loss", "value_loss", "entropy", "grad_norm"):
             assert row[name] is not None and math.isfinite(row[name]), row
