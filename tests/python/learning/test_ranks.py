@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -25,13 +26,35 @@ from trainers import SETTINGS, UPDATE, make_trainer
 HERE = pathlib.Path(__file__).parent
 
 
-def test_ranks_tell_once_what_went_wrong() -> None:
-    def two_groups() -> list[Group]:
-        both, store = [Group(rank, 2, torch.device("cpu")) for rank in (0, 1)], HashStore()
-        for group in both:
-            group._store = store
-        return both
+def two_groups() -> list[Group]:
+    """Two ranks that know of each other by what they keep in one place, and by nothing else."""
+    both, store = [Group(rank, 2, torch.device("cpu")) for rank in (0, 1)], HashStore()
+    for group in both:
+        group._store = store
+    return both
 
+
+def test_a_rank_that_ends_over_an_error_before_the_others_met_it_leaves_it_to_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def is_gone() -> None:
+        raise RankLost("connection closed by peer")
+
+    first, second = two_groups()
+    monkeypatch.setattr(first, "wait_for_all", lambda: None)
+    monkeypatch.setattr(second, "wait_for_all", is_gone)
+    second._store.set("error/1", pickle.dumps(None).hex())
+    with pytest.raises(OSError, match="disk full"):
+        first.raise_on_all(OSError("disk full"))
+    with pytest.raises(OSError, match="disk full"):
+        second.raise_on_all(None)
+    # Who said nothing before it was gone is missed.
+    first.raise_on_all(None)
+    with pytest.raises(RankLost, match="by peer"):
+        second.raise_on_all(None)
+
+
+def test_ranks_tell_once_what_went_wrong() -> None:
     first, second = two_groups()
     assert first.may_tell(OSError("disk full")) and not second.may_tell(OSError("disk full"))
     assert second.may_tell(OSError("no memory")) and not second.may_tell(RankLost("of the first"))

@@ -116,15 +116,24 @@ class Group:
     def raise_on_all(self, error: Optional[Exception]) -> None:
         """Raises on every rank the `error` of the first that has one; nothing where none has. It is then
         one sentence and one exit code, and nobody waits for a rank that has ended."""
-        errors = [error]
+        errors: "list[Optional[Exception]]" = [error]
         if self._store is not None:
-            self._store.set(f"error/{self.rank}", pickle.dumps(error).hex())
-            self.wait_for_all()
-            found = (self._store.get(f"error/{rank}") for rank in range(self.size))
-            errors = [pickle.loads(bytes.fromhex(one.decode())) for one in found]
-        for one in errors:
-            if one is not None:
-                raise one
+            keys = [f"error/{rank}" for rank in range(self.size)]
+            self._store.set(keys[self.rank], pickle.dumps(error).hex())
+            lost = None
+            try:
+                self.wait_for_all()
+            except RankLost as one:
+                # One that knows of an error ends at once, perhaps before the others have met it.
+                lost = one
+                with _others():
+                    self._store.wait(keys, datetime.timedelta(seconds=5))
+            errors = [
+                pickle.loads(bytes.fromhex(self._store.get(key).decode())) for key in keys
+            ] + [lost]
+        for known in errors:
+            if known is not None:
+                raise known
 
     def may_tell(self, error: BaseException) -> bool:
         """Whether this rank tells its user of `error`: what all of them find out is told once, and that
