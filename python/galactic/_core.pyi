@@ -14,6 +14,9 @@ from galactic.episode_table import EpisodeTable
 
 __version__: str
 
+# A number, or a range from which each episode draws: a pair, or text such as "0.1-0.3".
+_Drawn = float | tuple[float, float] | str
+
 class ErrorCode(IntEnum):
     IO = 2
     INVALID_INPUT = 3
@@ -330,12 +333,12 @@ class Renderer:
         position: ArrayLike = (0, 0, 0),
         rpy_degrees: ArrayLike = (0, 0, 0),
         near: float = 0,
-        depth_noise: float = 0,
-        depth_dropout: float = 0,
-        color_noise: float = 0,
-        light_jitter: float = 0,
-        camera_jitter: float = 0,
-        camera_jitter_degrees: float = 0,
+        depth_noise: _Drawn = 0,
+        depth_dropout: _Drawn = 0,
+        color_noise: _Drawn = 0,
+        light_jitter: _Drawn = 0,
+        camera_jitter: _Drawn = 0,
+        camera_jitter_degrees: _Drawn = 0,
         backend: Literal["auto", "soft", "gl", "cuda"] = "auto",
         device: str | int = "",
         threads: int = 0,
@@ -348,6 +351,7 @@ class Renderer:
     ) -> None: ...
     def end_render(self) -> dict[str, NDArray[Any]]: ...
     def render_to_device(self, stream: int = 0) -> dict[str, DeviceArray]: ...
+    def episode_noise(self) -> dict[str, NDArray[np.float32]]: ...  # (num_envs,) each
     @property
     def shapes(self) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]: ...
     @property

@@ -196,6 +196,26 @@ std::uint32_t threadsOf(const py::handle& value) {
   refuseValue("threads", value, fmt::format("0 to {}; 0 takes one per processor", kMostThreads));
 }
 
+DrawnNumber drawnOf(const char* name, const py::handle& value, const Span& within) {
+  const auto number = [name](const py::handle& one) {
+    return static_cast<float>(numberOf(name, one));
+  };
+  std::optional<DrawnNumber> found;
+  if (py::isinstance<py::str>(value)) {
+    found = drawnFrom(value.cast<std::string>(), within);
+  } else if (isList(value) && py::len(value) == 2) {
+    const auto ends = value.cast<py::sequence>();
+    // Of their own: rows of an array are made when they are asked for.
+    const py::object least = ends[0];
+    const py::object most = ends[1];
+    found = DrawnNumber(number(least), number(most));
+  } else {
+    found = number(value);
+  }
+  if (found && isDrawnWithin(*found, within)) return *found;
+  refuseValue(name, value, wantedDrawn(within));
+}
+
 SimulationOptions optionsOf(const World& world, const py::dict& keywords) {
   SimulationOptions options = world.withTask();
   (void)setKeywords(keywords, options);

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "galactic/drawn_number.h"
 #include "galactic/option_text.h"
+#include "galactic/pose.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
 
@@ -23,6 +25,8 @@ namespace py = pybind11;
 [[nodiscard]] std::string wordOf(const char* name, const py::handle& value, const char* wanted);
 /// The same of `threads`.
 [[nodiscard]] std::uint32_t threadsOf(const py::handle& value);
+/// The same of a number that episodes may draw: a number, a pair of them, or text.
+[[nodiscard]] DrawnNumber drawnOf(const char* name, const py::handle& value, const Span& within);
 
 /// Whether it is a truth value, of Python or of numpy: those pass for whole numbers.
 [[nodiscard]] bool isTruth(const py::handle& value);

@@ -9,6 +9,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "dlpack.h"
+#include "filled.h"
 #include "galactic/error.h"
 
 namespace galactic::python {
@@ -198,6 +199,23 @@ py::array_t<float> Renderer::worldFromCameras() {
     to += 16;
   }
   return matrices;
+}
+
+py::dict Renderer::episodeNoise() {
+  const Confinement::Use use = confinement_.enter();
+  const std::span<const RenderView> views = views_->views();
+  const Shape each{static_cast<py::ssize_t>(views.size())};
+  Filled<float> depth(each), dropout(each), color(each), light(each);
+  for (const RenderView& view : views) {
+    const ImageNoise noise = episodeImageNoise(renderer_->options().noise, view.noise);
+    depth.put(noise.depth_noise.most);
+    dropout.put(noise.depth_dropout.most);
+    color.put(noise.color_noise.most);
+    light.put(noise.light_jitter.most);
+  }
+  using namespace py::literals;
+  return py::dict("depth_noise"_a = depth.array(), "depth_dropout"_a = dropout.array(),
+                  "color_noise"_a = color.array(), "light_jitter"_a = light.array());
 }
 
 py::dict Renderer::shapes() const {

@@ -56,6 +56,8 @@ class Renderer {
   /// float32 (envs, 4, 4): where the cameras were when images were drawn last, with the axes of
   /// images: X to the right, Y down, Z ahead.
   [[nodiscard]] py::array_t<float> worldFromCameras();
+  /// By name, float32 (envs,): the noise that the episodes had drawn when images were drawn last.
+  [[nodiscard]] py::dict episodeNoise();
   /// Of the images of one env, by name: shape and type.
   [[nodiscard]] py::dict shapes() const;
 

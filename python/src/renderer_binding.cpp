@@ -111,13 +111,8 @@ bool takeSensorOption(const std::array<SensorOption<Options>, count>& table,
                       const std::string& keyword, const py::handle& value, Options& options) {
   for (const SensorOption<Options>& option : table) {
     if (keywordOf(option) != keyword) continue;
-    const double found = numberOf(keyword.c_str(), value);
-    if (isWithin(option, found)) {
-      options.*option.value = static_cast<float>(found);
-      return true;
-    }
-    throw ErrorException{{ErrorCode::kInvalidInput, keyword,
-                          fmt::format("is {}, expected 0 to {}", found, option.most)}};
+    options.*option.value = drawnOf(keyword.c_str(), value, {0, option.most});
+    return true;
   }
   return false;
 }
@@ -201,7 +196,8 @@ void bindRenderer(py::module_& module) {
       "which it is turned there, as in the [camera] of a robot's recipe; near, meters: what is\n"
       "nearer is not drawn, 0.01 to 100, or 0 for the camera's own; backend='auto', 'soft',\n"
       "'gl' or 'cuda'; device='', or an index; threads=0.\n\n"
-      "For images like those of real cameras, all 0 by default: depth_noise, the standard\n"
+      "For images like those of real cameras, all 0 by default, each a number, or a pair from\n"
+      "which each episode draws its own: depth_noise, the standard\n"
       "deviation of depth at 1 m, meters, which grows with depth squared; depth_dropout, the\n"
       "share of pixels without depth; color_noise, the standard deviation of each channel,\n"
       "levels of 255; light_jitter, by which share an episode may be brighter or darker;\n"
@@ -235,6 +231,11 @@ void bindRenderer(py::module_& module) {
       "has it in cuda_stream; 0 is the default stream. What it was told to do with earlier\n"
       "images is done before they change.\n\n"
       "Error (UNSUPPORTED) with the soft backend, without CUDA, and with noise.");
+  type.def(
+      "episode_noise", &Renderer::episodeNoise,
+      "The noise that the episode of each env had drawn where options give ranges, when images\n"
+      "were drawn last: depth_noise, depth_dropout, color_noise and light_jitter, float32\n"
+      "(num_envs,), copies.");
   type.def_property_readonly("shapes", &Renderer::shapes,
                              "Of one env's images, by name: shape and dtype.");
   type.def_property_readonly(

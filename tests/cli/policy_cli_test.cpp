@@ -155,6 +155,7 @@ TEST_F(PolicyCli, SeesNoiseAndJitterWhereTheyAreAskedFor) {
                                   seen({"--camera-jitter", "0.2"})};
   EXPECT_EQ(all.size(), 5U);
   EXPECT_TRUE(seen({"--depth-noise", "0"}) == plain);
+  EXPECT_FALSE(all.contains(seen({"--depth-noise", "0.05-0.2"})));
   // Also beside images for people of another kind.
   EXPECT_TRUE(all.contains(seen({"--color-noise", "40", "--render", "depth", "--size", "16"})));
 }

@@ -209,9 +209,9 @@ TEST_F(RenderCli, DrawingDoesNotChangeTheRun) {
 }
 
 TEST_F(RenderCli, AddsNoiseThatDependsOnSeedEnvEpisodeAndStepAlone) {
-  const std::vector<std::string> noise{"--depth-noise",   "0.02", "--depth-dropout",         "0.05",
-                                       "--color-noise",   "8",    "--light-jitter",          "0.4",
-                                       "--camera-jitter", "0.02", "--camera-jitter-degrees", "3"};
+  const std::vector<std::string> noise{
+      "--depth-noise",  "0.02", "--depth-dropout", "0.02-0.3", "--color-noise",           "8",
+      "--light-jitter", "0.4",  "--camera-jitter", "0.02",     "--camera-jitter-degrees", "3"};
   const auto drawn = [&](const std::string& folder, const std::vector<std::string>& batch,
                          bool is_noisy) {
     std::vector<std::string> all{
@@ -238,6 +238,7 @@ TEST_F(RenderCli, AddsNoiseThatDependsOnSeedEnvEpisodeAndStepAlone) {
   EXPECT_EQ(json::parse(content("plain.json"))["options"]["depth-noise"], 0);
   const json told = json::parse(content("noisy.json"))["options"];
   EXPECT_EQ(told["depth-noise"], 0.02);
+  EXPECT_EQ(told["depth-dropout"], "0.02-0.3");
   EXPECT_EQ(told["camera-jitter-degrees"], 3);
 }
 
@@ -255,7 +256,9 @@ TEST_F(RenderCli, RefusesNoiseThatNobodyWouldSee) {
        "out"},
       {{"--depth-dropout", "0.1"}, "--depth-dropout applies to rendering only; add --render"},
       {{"--render", "rgb", "--color-noise", "300"},
-       "--color-noise: found 300, expected a number from 0 to 255"}};
+       "--color-noise: found 300, expected 0 to 255, or a range from 0 to 255 such as 0.1-0.3"},
+      {{"--render", "rgb", "--color-noise", "30-20"},
+       "--color-noise: found 30-20, expected 0 to 255, or a range from 0 to 255 such as 0.1-0.3"}};
   for (const Refusal& refusal : refusals) {
     std::vector<std::string> all{"world.pack"};
     all.insert(all.end(), refusal.arguments.begin(), refusal.arguments.end());

@@ -30,6 +30,7 @@ NO_WHOLE_NUMBER = (*NO_NUMBER, "-1", "1.5", HUGE, "-" + HUGE)
 NO_CHOICE = ("", "nan", "-1", "0", "1", "2", "nonsense", HUGE)
 ODD_TEXT = ("nan", "-1", "0", HUGE, "nonsense", "/", "a" * 5000)
 NO_LIST = ("", ",", "nan", "inf", "1,nan", "1,,2", "1,", "nonsense", "1x", "1 2", "1;2")
+NO_RANGE = ("3-1", "0.3-0.1", "1-", "1-2-3", "1..2", "0-nan", "0-1e300", "0 -1")
 NO_PART = ("", "0/0", "0/2", "3/2", "-1/2", "1/-2", "1", "1/", "/2", "nan/nan", f"1/{HUGE}", "nonsense")
 WHOLE = {"N", "PIXELS"}
 NUMBER = {"NUMBER", "METERS", "DEGREES", "RADIANS", "SHARE", "GIB", "X"}
@@ -55,6 +56,8 @@ class Option:
             return NO_WHOLE_NUMBER
         if self.value in NUMBER:
             return NO_NUMBER + (() if BELOW_ZERO.match(self.name) else ("-1",))
+        if self.value.endswith("|LOW-HIGH"):
+            return (*(NO_WHOLE_NUMBER if self.value.startswith("N|") else NO_NUMBER), *NO_RANGE)
         if self.value in LIST:
             return NO_LIST
         if self.value == "I/N":

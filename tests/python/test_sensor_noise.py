@@ -203,6 +203,60 @@ def test_world_from_camera_is_where_the_camera_is_with_jitter(world, draw_action
     assert (np.abs(plain.render()["depth"][0] - wanted) < 1e-3).mean() < 0.9
 
 
+RANGES = {
+    "depth_noise": (0.001, 0.05),
+    "depth_dropout": "0.05-0.4",
+    "color_noise": [1, 20],
+    "light_jitter": np.array([0.1, 0.5]),
+    "camera_jitter": (0.01, 0.05),
+    "camera_jitter_degrees": "1-4",
+}
+
+
+def test_episodes_draw_their_noise_from_ranges(world, draw_actions):
+    actions = [draw_actions(ENVS, 8) for _ in range(20)]
+    images = {**CAMERA, **RANGES}
+    options = {"images": images, "episode_steps": 7, "threads": 1}
+    env = VectorEnv(world, ENVS, **options)
+    env.reset()
+    first = env.renderers[0].episode_noise()
+    assert list(first) == list(NOISE)
+    for name, (least, most) in {"depth_noise": (0.001, 0.05), "depth_dropout": (0.05, 0.4)}.items():
+        assert len(set(first[name])) == ENVS
+        assert (first[name] >= np.float32(least)).all() and (first[name] <= np.float32(most)).all()
+    # What one env sees is what it would see with the numbers that its episode has drawn.
+    (simulator,), jitter = env.simulators, {name: RANGES[name] for name in JITTER}
+    seen = env.renderers[0].render()
+    for number in range(ENVS):
+        own = {name: drawn[number] for name, drawn in first.items()}
+        alone = Renderer(simulator, **CAMERA, **own, **jitter).render(envs=[number])
+        assert_same({name: rows[[number]] for name, rows in seen.items()}, alone)
+    env.step(actions[0])
+    np.testing.assert_array_equal(
+        env.renderers[0].episode_noise()["color_noise"], first["color_noise"]
+    )
+    # Nothing else plays a part: threads, halves, other envs.
+    env = VectorEnv(world, ENVS, **options)
+    whole = played(env, actions)
+    assert (env.renderers[0].episode_noise()["depth_noise"] != first["depth_noise"]).all()
+    threads = {"images": {**images, "threads": 3}, "episode_steps": 7, "threads": 2}
+    for one, other in zip(whole, played(VectorEnv(world, ENVS, halves=2, **threads), actions)):
+        assert_same(one, other)
+    part = VectorEnv(world, 3, rank=1, ranks=2, **options)
+    for one, other in zip(whole, played(part, [action[3:] for action in actions])):
+        assert_same({name: rows[3:] for name, rows in one.items()}, other)
+
+
+def test_a_range_of_noise_has_to_be_one(simulator):
+    wanted = "expected 0 to 1, or a range from 0 to 1 such as 0.1-0.3"
+    for value in ((0.3, 0.1), (-0.1, 0.1), (0.1, 1.5), (np.nan, 0.1), "0.3-0.1", "0.1-", "", "a-b"):
+        with pytest.raises(Error, match=f"depth_noise: is .*{wanted}"):
+            Renderer(simulator, **CAMERA, depth_noise=value)
+    for value in ((0.1, 0.2, 0.3), (0.1,), [], ("a", 0.1), None, {}):
+        with pytest.raises(Error, match="depth_noise: is .*, expected a number"):
+            Renderer(simulator, **CAMERA, depth_noise=value)
+
+
 def test_cameras_in_different_places_have_noise_of_their_own(world):
     eyes = {
         "left": {**CAMERA, "camera": "hand", **NOISE, **JITTER},
@@ -225,7 +279,7 @@ def test_cameras_in_different_places_have_noise_of_their_own(world):
         ({"depth_noise": np.nan}, "depth_noise: is nan, expected 0 to 1"),
         ({"depth_dropout": 1.5}, "depth_dropout: is 1.5, expected 0 to 1"),
         ({"color_noise": 256}, "color_noise: is 256, expected 0 to 255"),
-        ({"light_jitter": "much"}, "light_jitter: is 'much', expected a number"),
+        ({"light_jitter": "much"}, "light_jitter: is 'much', expected 0 to 1, or a range"),
         ({"camera_jitter": 2}, "camera_jitter: is 2, expected 0 to 1"),
         ({"camera_jitter_degrees": 200}, "camera_jitter_degrees: is 200, expected 0 to 180"),
         ({"depth": False, "depth_noise": 0.1}, "found noise or dropout of depth, and no depth"),

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import numbers
-from typing import Any, Optional, Sequence
+import re
+from typing import Any, Optional, Sequence, Union
 
 from galactic.learning.refusals import SettingsError
+
+# A number, or a range from which each episode draws its own.
+Drawn = Union[float, tuple[float, float]]
 
 # Of a setting without a limit of its own.
 MOST_WHOLE = 2**53
@@ -15,9 +19,11 @@ MOST_NUMBER = 1e9
 
 def setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
             high: Optional[float] = None, choices: Sequence[str] = (),
-            may_change: bool = False, may_be_own: bool = False) -> Any:  # fmt: skip
+            may_change: bool = False, may_be_own: bool = False,
+            may_be_range: bool = False) -> Any:  # fmt: skip
     """A field of Settings. `may_change`: a resumed run may have another value. `may_be_own`: beside the
-    choices it can be the name of code of one's own (own_code.named())."""
+    choices it can be the name of code of one's own (own_code.named()). `may_be_range`: it is Drawn.
+    """
     if high is None and isinstance(default, (int, float)) and not isinstance(default, bool):
         high = MOST_WHOLE if isinstance(default, int) else MOST_NUMBER
     return dataclasses.field(
@@ -30,6 +36,7 @@ def setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
             "choices": tuple(choices),
             "may_change": may_change,
             "may_be_own": may_be_own,
+            "may_be_range": may_be_range,
         },
     )
 
@@ -57,6 +64,9 @@ def require_valid(field: "dataclasses.Field[Any]", value: Any) -> None:
     low, high = field.metadata["low"], field.metadata["high"]
     choices = field.metadata["choices"]
     kind = type(field.default)
+    if field.metadata["may_be_range"] and isinstance(value, tuple):
+        _require_range(field.name, value, low, high)
+        return
     if not _is_a(value, kind):
         raise SettingsError(f"{field.name}: found {value!r}, expected {_KINDS[kind]}")
     may_be_own = field.metadata["may_be_own"]
@@ -73,11 +83,30 @@ def require_valid(field: "dataclasses.Field[Any]", value: Any) -> None:
             raise SettingsError(f"{field.name}: found {number}, expected a number {wanted}")
 
 
+def _require_range(name: str, value: tuple[Any, ...], low: float, high: float) -> None:
+    are_numbers = len(value) == 2 and all(_is_a(end, float) for end in value)
+    # A comparison with NaN is false.
+    if not are_numbers or not low <= value[0] <= value[1] <= high:
+        raise SettingsError(
+            f"{name}: found {value!r}, expected a number from {low:g} to {high:g}, or a range within, its "
+            "lower end first"
+        )
+
+
 def option_name(name: str) -> str:
     """The command line's name of a setting."""
     return "--" + name.replace("_", "-")
 
 
 def typed(value: Any) -> Any:
-    """The value of a setting as one types it: three numbers with commas between, others as they are."""
-    return ",".join(f"{number:.9g}" for number in value) if isinstance(value, tuple) else value
+    """The value of a setting as one types it: three numbers with commas between, a range with a "-", others
+    as they are."""
+    if not isinstance(value, tuple):
+        return value
+    return ("-" if len(value) == 2 else ",").join(f"{number:.9g}" for number in value)
+
+
+def ends_of(text: str) -> list[str]:
+    """Of a range as one types it, both ends; of anything else, the text: a "-" behind a digit or point
+    stands between them."""
+    return re.split(r"(?<=[0-9.])-", text)

@@ -10,7 +10,7 @@ import shlex
 from typing import Any, Collection, Mapping, Optional
 
 from galactic.learning.refusals import SettingsError
-from galactic.learning.setting_fields import MOST_WHOLE, option_name, typed
+from galactic.learning.setting_fields import MOST_WHOLE, Drawn, ends_of, option_name, typed
 from galactic.learning.settings import Settings
 from galactic.learning.simulation_words import latest_words
 
@@ -31,8 +31,10 @@ def add_options(parser: argparse.ArgumentParser, names: Optional[Collection[str]
             keywords["action"] = argparse.BooleanOptionalAction
         else:
             readers = {int: _integer, float: _real, str: str, tuple: _three}
-            keywords["type"] = readers[type(field.default)]
-            name = "N,N,N" if isinstance(field.default, tuple) else field.name.upper()
+            is_drawn = field.metadata["may_be_range"]
+            keywords["type"] = _drawn if is_drawn else readers[type(field.default)]
+            plain = "N,N,N" if isinstance(field.default, tuple) else field.name.upper()
+            name = "N|LOW-HIGH" if is_drawn else plain
             own = ("FILE.py:CLASS", "MODULE:CLASS") if field.metadata["may_be_own"] else ()
             keywords["metavar"] = "|".join((*field.metadata["choices"], *own)) or name
         group.add_argument(option_name(field.name), **keywords)
@@ -138,6 +140,15 @@ def _three(text: str) -> tuple[float, ...]:
     if len(parts) != 3:
         raise argparse.ArgumentTypeError(f'found "{text}", expected {wanted}')
     return tuple(_real(part, wanted) for part in parts)
+
+
+def _drawn(text: str) -> Drawn:
+    """A number, or a range: its ends."""
+    wanted = "a number, or a range such as 0.1-0.3"
+    ends = [_real(end, wanted) for end in ends_of(text)]
+    if len(ends) > 2:
+        raise argparse.ArgumentTypeError(f'found "{text}", expected {wanted}')
+    return ends[0] if len(ends) == 1 else (ends[0], ends[1])
 
 
 def markdown_tables() -> str:

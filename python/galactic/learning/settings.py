@@ -15,7 +15,7 @@ from galactic.learning.policies.sight import (
     SMALLEST_IMAGE,
 )
 from galactic.learning.refusals import SettingsError
-from galactic.learning.setting_fields import require_valid, setting
+from galactic.learning.setting_fields import Drawn, require_valid, setting
 from galactic.learning.simulation_words import is_robot_noise, latest_words
 
 
@@ -137,39 +137,48 @@ class Settings:
         low=SMALLEST_IMAGE,
         high=512,
     )
-    depth_noise: float = setting(
+    depth_noise: Drawn = setting(
         0.0,
         "Network",
         "standard deviation of the depth that the network sees, at 1 m, meters; it grows with depth squared",
         low=0.0,
         high=1.0,
+        may_be_range=True,
     )
-    depth_dropout: float = setting(
-        0.0, "Network", "share of the pixels without depth", low=0.0, high=1.0
+    depth_dropout: Drawn = setting(
+        0.0, "Network", "share of the pixels without depth", low=0.0, high=1.0, may_be_range=True
     )
-    color_noise: float = setting(
+    color_noise: Drawn = setting(
         0.0,
         "Network",
         "standard deviation of each channel of color, levels of 255",
         low=0.0,
         high=255.0,
+        may_be_range=True,
     )
-    light_jitter: float = setting(
+    light_jitter: Drawn = setting(
         0.0,
         "Network",
         "colors of an episode are multiplied by a number from 1 - this to 1 + this",
         low=0.0,
         high=1.0,
+        may_be_range=True,
     )
-    camera_jitter: float = setting(
+    camera_jitter: Drawn = setting(
         0.0,
         "Network",
         "how far the camera may be from its place in an episode, along each of its axes, meters",
         low=0.0,
         high=1.0,
+        may_be_range=True,
     )
-    camera_jitter_degrees: float = setting(
-        0.0, "Network", "the same of its roll, pitch and yaw, degrees", low=0.0, high=180.0
+    camera_jitter_degrees: Drawn = setting(
+        0.0,
+        "Network",
+        "the same of its roll, pitch and yaw, degrees",
+        low=0.0,
+        high=180.0,
+        may_be_range=True,
     )
     recurrent: bool = setting(
         False,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import inspect
-import re
 from collections.abc import Sequence
 from typing import Any
 
 import galactic
 from galactic.learning.refusals import SettingsError
+from galactic.learning.setting_fields import ends_of
 
 # Options of the simulation that make robots unlike those that policies are judged by.
 ROBOT_NOISE = ("motion_noise", "motion_bias", "localization_noise")
@@ -67,9 +67,7 @@ def is_robot_noise(word: str) -> bool:
     not."""
     if simulation_keyword(word) not in ROBOT_NOISE:
         return False
-    # Of a number, or of both ends of a range: a "-" behind a digit or point stands between them.
-    ends = re.split(r"(?<=[0-9.])-", word.partition("=")[2])
     try:
-        return any(float(end) != 0.0 for end in ends)
+        return any(float(end) != 0.0 for end in ends_of(word.partition("=")[2]))
     except ValueError:  # no number, which the simulation refuses
         return False

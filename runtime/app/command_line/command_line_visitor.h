@@ -51,9 +51,8 @@ class CommandLineVisitor {
   void likeliest(std::string_view name, bool& field);
   template <class Options>
   void sensor(const SensorOption<Options>& option, Options& options) {
-    add(option.name, options.*option.value, option.text)
-        ->check(numberCheck(0, static_cast<double>(option.most)))
-        ->option_text(fmt::format("{} [0]", option.unit));
+    addDrawn(option.name, options.*option.value, {0, option.most}, option.text)
+        ->option_text(fmt::format("{}|LOW-HIGH [0]", option.unit));
   }
   template <class T, std::size_t N>
   void choice(std::string_view name, T& field, const std::array<Named<T>, N>& names,
@@ -85,6 +84,8 @@ class CommandLineVisitor {
     return app_.add_option_function<std::string>(dashed(name), set, std::string(help))
         ->group(heading_);
   }
+  CLI::Option* addDrawn(std::string_view name, DrawnNumber& field, const Span& within,
+                        std::string_view help);
   /// An option that is what `parse` makes of its text; a text of which that makes nothing is not
   /// `wanted`.
   template <class T, class Parse>

@@ -23,11 +23,11 @@ bool isForPolicies(std::string_view name) {
 std::string noiseFault(const DrawingOptions& drawing) {
   constexpr const char* kFault = "{} applies to {} only; draw it with --render {}, or leave {} out";
   if (drawing.noise.changesDepth() && !drawing.hasDepth()) {
-    const char* name = drawing.noise.depth_noise > 0 ? "--depth-noise" : "--depth-dropout";
+    const char* name = drawing.noise.depth_noise.most > 0 ? "--depth-noise" : "--depth-dropout";
     return fmt::format(kFault, name, "depth", "rgbd", name);
   }
   if (drawing.noise.changesColor() && !drawing.hasColor()) {
-    const char* name = drawing.noise.color_noise > 0 ? "--color-noise" : "--light-jitter";
+    const char* name = drawing.noise.color_noise.most > 0 ? "--color-noise" : "--light-jitter";
     return fmt::format(kFault, name, "color", "rgbd", name);
   }
   return {};

@@ -10,6 +10,7 @@
 #include "command_line/options.h"
 #include "command_line/render_options.h"
 #include "drawing/frame_images.h"
+#include "galactic/drawn_number.h"
 #include "galactic/option_text.h"
 #include "galactic/sensor_noise.h"
 #include "run/run_report.h"
@@ -64,7 +65,9 @@ class OptionWriter {
   void likeliest(std::string_view name, bool value) { json_.truth(name, value); }
   template <class Options>
   void sensor(const SensorOption<Options>& option, const Options& options) {
-    json_.number(option.name, options.*option.value);
+    const DrawnNumber& value = options.*option.value;
+    value.isRange() ? json_.text(option.name, drawnText(value))
+                    : json_.number(option.name, value.least);
   }
 
  private:

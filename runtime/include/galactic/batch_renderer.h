@@ -109,6 +109,11 @@ struct NoiseSource {
   std::uint64_t camera = 0;
 };
 
+/// What the episode of an image has drawn of noise, which may have ranges: numbers. That of light
+/// is the same for all cameras.
+[[nodiscard]] ImageNoise episodeImageNoise(const ImageNoise& noise,
+                                           const NoiseSource& source) noexcept;
+
 /// One image: a camera and what it sees. A camera whose numbers are not finite, or whose field of
 /// view is not within its range, sees nothing. Where a model is in one place twice, the first one
 /// shows: instances come before posed models, and those before attached ones. Which of two other

@@ -1,5 +1,10 @@
 #pragma once
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "galactic/pose.h"
 
 namespace galactic {
 
@@ -23,5 +28,18 @@ struct DrawnNumber {
 
   friend constexpr bool operator==(const DrawnNumber&, const DrawnNumber&) = default;
 };
+
+/// As options have it: "0.1", or of a range "0.1-0.5". Numbers read back exactly.
+[[nodiscard]] std::string drawnText(const DrawnNumber& number);
+
+/// None for what is no such text, or not allowed (isDrawnWithin).
+[[nodiscard]] std::optional<DrawnNumber> drawnFrom(std::string_view text, const Span& within);
+
+/// Whether it is a number, or the ends of a range, `within`. Numbers below 0 stand for something
+/// else: no range has any.
+[[nodiscard]] bool isDrawnWithin(const DrawnNumber& number, const Span& within);
+
+/// What a text should be, for messages that refuse one.
+[[nodiscard]] std::string wantedDrawn(const Span& within);
 
 }  // namespace galactic

@@ -2,6 +2,8 @@
 #include <array>
 #include <cstdint>
 
+#include "galactic/drawn_number.h"
+
 namespace galactic {
 
 /// What the random numbers of an env's noise follow from: the same moment, the same numbers,
@@ -18,36 +20,40 @@ struct EnvMoment {
 };
 
 /// What real cameras do to images, for policies that are to see through real ones. All off by
-/// default.
+/// default. Each number may be a range from which episodes draw.
 struct ImageNoise {
   /// Standard deviation of depth at 1 m, meters. It grows with the square of depth, as with sensors
   /// that triangulate (Khoshelham and Elberink 2012).
-  float depth_noise = 0;
+  DrawnNumber depth_noise = 0;
   /// Share of the pixels without depth.
-  float depth_dropout = 0;
+  DrawnNumber depth_dropout = 0;
   /// Standard deviation of each channel of color, levels of 255.
-  float color_noise = 0;
+  DrawnNumber color_noise = 0;
   /// Colors of an episode are multiplied by a number from 1 - this to 1 + this, each as likely.
-  float light_jitter = 0;
+  DrawnNumber light_jitter = 0;
 
-  [[nodiscard]] constexpr bool changesDepth() const { return depth_noise > 0 || depth_dropout > 0; }
-  [[nodiscard]] constexpr bool changesColor() const { return color_noise > 0 || light_jitter > 0; }
-};
-
-/// How far a camera may be from where it should be mounted, elsewhere in each episode. Off by
-/// default.
-struct CameraJitter {
-  /// Either way along each of the camera's axes, meters.
-  float camera_jitter = 0;
-  /// Either way in roll, pitch and yaw, degrees.
-  float camera_jitter_degrees = 0;
-
-  [[nodiscard]] constexpr bool isOn() const {
-    return camera_jitter > 0 || camera_jitter_degrees > 0;
+  [[nodiscard]] constexpr bool changesDepth() const {
+    return depth_noise.most > 0 || depth_dropout.most > 0;
+  }
+  [[nodiscard]] constexpr bool changesColor() const {
+    return color_noise.most > 0 || light_jitter.most > 0;
   }
 };
 
-/// A number among `Options` as users know it: 0, its default, to `most`.
+/// How far a camera may be from where it should be mounted, elsewhere in each episode. Off by
+/// default. Each number may be a range from which episodes draw how far that is.
+struct CameraJitter {
+  /// Either way along each of the camera's axes, meters.
+  DrawnNumber camera_jitter = 0;
+  /// Either way in roll, pitch and yaw, degrees.
+  DrawnNumber camera_jitter_degrees = 0;
+
+  [[nodiscard]] constexpr bool isOn() const {
+    return camera_jitter.most > 0 || camera_jitter_degrees.most > 0;
+  }
+};
+
+/// A number among `Options` as users know it: 0, its default, to `most`, or a range within.
 template <class Options>
 struct SensorOption {
   /// On command lines behind two dashes, in Python with '_' for '-'.
@@ -55,7 +61,7 @@ struct SensorOption {
   const char* unit;
   const char* text;
   float most;
-  float Options::*value;
+  DrawnNumber Options::*value;
 };
 
 inline constexpr std::array<SensorOption<ImageNoise>, 4> kImageNoiseOptions{{
@@ -76,13 +82,7 @@ inline constexpr std::array<SensorOption<CameraJitter>, 2> kCameraJitterOptions{
 }};
 
 // No field without an option.
-static_assert(sizeof(ImageNoise) == sizeof(float) * kImageNoiseOptions.size());
-static_assert(sizeof(CameraJitter) == sizeof(float) * kCameraJitterOptions.size());
-
-/// Whether an option may have that value: not so what is no number.
-template <class Options>
-[[nodiscard]] constexpr bool isWithin(const SensorOption<Options>& option, double value) {
-  return value >= 0 && value <= static_cast<double>(option.most);
-}
+static_assert(sizeof(ImageNoise) == sizeof(DrawnNumber) * kImageNoiseOptions.size());
+static_assert(sizeof(CameraJitter) == sizeof(DrawnNumber) * kCameraJitterOptions.size());
 
 }  // namespace galactic

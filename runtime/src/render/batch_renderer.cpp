@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "galactic/drawn_number.h"
 #include "render/noise/noise_pass.h"
 #include "render/render_engine.h"
 #include "support/call_check.h"
@@ -34,9 +35,11 @@ Result<void> checkOptions(const RenderOptions& options) {
     return refuse("found no image to make; expected color, depth or semantics");
   }
   for (const SensorOption<ImageNoise>& option : kImageNoiseOptions) {
-    const float value = options.noise.*option.value;
-    if (isWithin(option, static_cast<double>(value))) continue;
-    return refuse(fmt::format("found {} of {}, expected 0 to {}", option.name, value, option.most));
+    const DrawnNumber& value = options.noise.*option.value;
+    const Span within{0, option.most};
+    if (isDrawnWithin(value, within)) continue;
+    return refuse(fmt::format("found {} of {}, expected {}", option.name, drawnText(value),
+                              wantedDrawn(within)));
   }
   if (options.noise.changesDepth() && !options.depth) {
     return refuse(

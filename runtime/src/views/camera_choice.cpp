@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "galactic/drawn_number.h"
 #include "galactic/world_views.h"
 #include "support/random_stream.h"
 #include "views/camera_offset.h"
@@ -128,12 +129,13 @@ Result<void> checkNumbers(const CameraWish& wish) {
                                                 -kMostCameraTurn, kMostCameraTurn));
   }
   for (const SensorOption<CameraJitter>& option : kCameraJitterOptions) {
-    const float value = wish.jitter.*option.value;
-    if (isWithin(option, static_cast<double>(value))) continue;
+    const DrawnNumber& value = wish.jitter.*option.value;
+    const Span within{0, option.most};
+    if (isDrawnWithin(value, within)) continue;
     const bool is_place = option.value == &CameraJitter::camera_jitter;
     return refuse(is_place ? wish.options.jitter : wish.options.jitter_degrees,
-                  fmt::format("found {} {}, expected 0 to {}", value, is_place ? "m" : "degrees",
-                              option.most));
+                  fmt::format("found {} {}, expected {}", drawnText(value),
+                              is_place ? "m" : "degrees", wantedDrawn(within)));
   }
   return {};
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "support/drawn_in.h"
 #include "support/random_stream.h"
 
 namespace galactic {
@@ -22,16 +23,20 @@ Pose cameraOffset(const std::array<float, 3>& position,
 
 Pose drawOffset(const CameraJitter& jitter, std::uint64_t camera,
                 const EnvMoment& moment) noexcept {
-  // Apart from the numbers of other sensors.
+  // Apart from each other, and from the numbers of other sensors.
   constexpr std::uint64_t kJitterSalt = 0x4A69747465722D31ULL;
+  constexpr std::uint64_t kPlaceDraw = 0x4A69747465724431ULL;
+  constexpr std::uint64_t kTurnDraw = 0x4A69747465724432ULL;
   RandomStream random(moment.seed ^ kJitterSalt ^ camera, moment.env, moment.episode, 0);
   const auto draw = [&](float most) {
     std::array<float, 3> three;
     for (float& one : three) one = most * (2 * random.unit() - 1);
     return three;
   };
-  const std::array<float, 3> position = draw(jitter.camera_jitter);
-  return cameraOffset(position, draw(jitter.camera_jitter_degrees));
+  const std::array<float, 3> position =
+      draw(drawnIn(moment, jitter.camera_jitter, kPlaceDraw ^ camera));
+  return cameraOffset(position,
+                      draw(drawnIn(moment, jitter.camera_jitter_degrees, kTurnDraw ^ camera)));
 }
 
 }  // namespace galactic

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import pathlib
 from typing import Any
@@ -14,6 +15,7 @@ from galactic.learning.homes import Homes
 from galactic.learning.presets import preset
 from galactic.learning.refusals import SettingsError
 from galactic.learning.saving import checkpoint
+from galactic.learning.setting_options import add_options, given_options, option_lines
 from galactic.learning.settings import CAMERA_NOISE, Settings
 from policies import untrained
 from programs import HELD_OUT, WORLD, call, curve, needs_worlds
@@ -42,11 +44,40 @@ def test_noise_is_a_setting_of_networks_that_see_what_it_changes() -> None:
         assert noisy.without_noise() == preset("quick", network="simple_cnn")
         with pytest.raises(SettingsError, match=f"{name}: found -0.1, expected a number from 0"):
             preset("quick", network="simple_cnn", **{name: -0.1})
+        drawn = preset("quick", network="simple_cnn", **{name: (0.1, 0.3)})
+        assert drawn.without_noise() == preset("quick", network="simple_cnn")
+        assert Settings.from_dict(json.loads(json.dumps(drawn.to_dict()))) == drawn
+        assert f"--{name.replace('_', '-')} 0.1-0.3  # default: 0.0\n" in option_lines(drawn)
+        for wrong in (
+            (0.3, 0.1),
+            (-0.1, 0.1),
+            (0.1, 0.2, 0.3),
+            (0.1,),
+            ("0.1", 0.2),
+            (0.1, np.nan),
+        ):
+            with pytest.raises(SettingsError, match=f"{name}: found .*, expected a number from 0"):
+                preset("quick", network="simple_cnn", **{name: wrong})
     for name in ("color_noise", "light_jitter"):
         with pytest.raises(
             SettingsError, match=f"^{name} applies only to networks that see colors"
         ):
             of_depth(**{name: 0.1})
+
+
+def test_a_range_of_noise_is_typed_with_a_dash() -> None:
+    parser = argparse.ArgumentParser()
+    add_options(parser, CAMERA_NOISE)
+
+    def given(*words: str) -> Any:
+        return given_options(parser.parse_args(words))
+
+    assert given("--depth-noise", "0.001-0.02") == {"depth_noise": (0.001, 0.02)}
+    assert given("--depth-noise", "1e-3-2e-2") == {"depth_noise": (0.001, 0.02)}
+    assert given("--color-noise", "3") == {"color_noise": 3.0}
+    for wrong in ("0.1-", "0.1-0.2-0.3", "much", "0.1..0.2", "", "nan-1"):
+        with pytest.raises(SystemExit):
+            given("--depth-noise", wrong)
 
 
 @needs_worlds
@@ -101,7 +132,7 @@ def test_a_run_with_noise_goes_on_as_if_it_had_not_been_paused(tmp_path: pathlib
     words += ["--envs", 8, "--horizon", 8, "--log-every", 0, "--steps", 4 * 64]
     words += ["--simulation", "task=pick episode-steps=6", "--validation", HELD_OUT]
     words += ["--validation-episodes", 4, "--validate-every", 2 * 64]
-    noise = ["--depth-noise", 0.05, "--depth-dropout", 0.2, "--camera-jitter-degrees", 3]
+    noise = ["--depth-noise", "0.02-0.08", "--depth-dropout", 0.2, "--camera-jitter-degrees", 3]
     whole, paused, plain = (tmp_path / name for name in ("whole", "paused", "plain"))
     run("train", "-o", whole, *words, *noise)
     run("train", "-o", paused, *words, *noise, "--pause-at", 2 * 64)

@@ -18,6 +18,8 @@ NO_NUMBER = ("", "nan", "-nan", "inf", "-inf", "1e300", "-1e300", "nonsense", "1
 NO_WHOLE_NUMBER = (*NO_NUMBER, "-1", "1.5", "9" * 20)
 NO_CHOICE = ("", "nan", "-1", "0", "nonsense")
 NO_THREE = ("", "1", "1,2", "1,2,3,4", "1,,2", "nan,0,0", "0,0,inf", "0,0,1000", "a,b,c", "1, 2,3")
+# Neither a number of 0 or more, nor a range of such.
+NO_DRAWN = (*NO_NUMBER, "-1", "-0.1-0.2", "0.1-", "0.3-0.1", "0.1-0.2-0.3", "0.1..0.2", "0-nan")
 # Numbers that may be below 0: logarithms, and where it says "no change".
 BELOW_ZERO = ("--initial-log-std", "--final-log-std", "--entropy-end")
 PROGRAMS: dict[str, tuple[Any, list[str]]] = {
@@ -61,6 +63,8 @@ def bad_values(action: argparse.Action) -> tuple[str, ...]:
     option = action.option_strings[-1]
     if action.nargs == 0:
         return ()
+    if getattr(action.type, "__name__", "") == "_drawn":
+        return NO_DRAWN
     if action.choices or (isinstance(action.metavar, str) and "|" in action.metavar):
         return NO_CHOICE
     if action.type is None or action.type is str:

@@ -309,7 +309,7 @@ TEST_F(NoisyImages, ChangeInDepthAndColorButNotInWhatIsThere) {
     ++seen;
     dropped += noisy.depth[n] == 0 ? 1U : 0U;
     if (noisy.depth[n] != 0) {
-      const float most = 3.5F * kAll.depth_noise * plain.depth[n] * plain.depth[n];
+      const float most = 3.5F * kAll.depth_noise.most * plain.depth[n] * plain.depth[n];
       ASSERT_NEAR(noisy.depth[n], plain.depth[n], most);
     }
   }
@@ -371,6 +371,71 @@ TEST_F(NoisyImages, FollowFromSeedEnvEpisodeStepAndCamera) {
                           first_lit.color.begin() + 4 * kPixels));
 }
 
+TEST_F(NoisyImages, OfARangeAreThoseOfTheNumbersThatEpisodesHaveDrawn) {
+  constexpr ImageNoise kRanges{.depth_noise = {0.001F, 0.05F},
+                               .depth_dropout = {0.05F, 0.5F},
+                               .color_noise = {1, 30},
+                               .light_jitter = {0.1F, 0.6F}};
+  const RenderImages images = draw(kRanges);
+  for (std::size_t n = 0; n < kViews; ++n) {
+    const RenderImages numbers = draw(episodeImageNoise(kRanges, views_.at(n).noise));
+    const auto same = [&](const auto& one, const auto& other, std::size_t size) {
+      const auto begin = static_cast<std::ptrdiff_t>(n * size);
+      return std::equal(one.begin() + begin,
+                        one.begin() + begin + static_cast<std::ptrdiff_t>(size),
+                        other.begin() + begin);
+    };
+    EXPECT_TRUE(same(images.depth, numbers.depth, kPixels)) << n;
+    EXPECT_TRUE(same(images.color, numbers.color, 4 * kPixels)) << n;
+    // Others have drawn other numbers.
+    const std::size_t next = (n + 1) % kViews;
+    EXPECT_NE(images, draw(episodeImageNoise(kRanges, views_.at(next).noise)));
+  }
+}
+
+TEST(EpisodeImageNoise, IsDrawnFromTheWholeRangeByEnvEpisodeSeedAndCamera) {
+  constexpr ImageNoise kRanges{.depth_noise = {0.25F, 0.75F},
+                               .depth_dropout = {0.25F, 0.75F},
+                               .color_noise = {0.25F, 0.75F},
+                               .light_jitter = {0.25F, 0.75F}};
+  constexpr std::size_t kDraws = 4000;
+  std::array<std::vector<double>, 4> drawn;
+  for (std::uint32_t n = 0; n < kDraws; ++n) {
+    NoiseSource source{.moment = {.seed = 7, .env = n % 50, .step = 3, .episode = n / 50},
+                       .camera = 12};
+    const ImageNoise noise = episodeImageNoise(kRanges, source);
+    const std::array<DrawnNumber, 4> numbers{noise.depth_noise, noise.depth_dropout,
+                                             noise.color_noise, noise.light_jitter};
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      ASSERT_FALSE(numbers.at(k).isRange());
+      ASSERT_GE(numbers.at(k).least, 0.25F);
+      ASSERT_LE(numbers.at(k).least, 0.75F);
+      drawn.at(k).push_back(static_cast<double>(numbers.at(k).least) - 0.5);
+    }
+    // All of an episode, and light in all its cameras.
+    source.moment.step = 400;
+    ASSERT_EQ(episodeImageNoise(kRanges, source).depth_noise, noise.depth_noise);
+    source.camera = 13;
+    const ImageNoise of_another = episodeImageNoise(kRanges, source);
+    ASSERT_NE(of_another.depth_noise, noise.depth_noise);
+    ASSERT_NE(of_another.color_noise, noise.color_noise);
+    ASSERT_EQ(of_another.light_jitter, noise.light_jitter);
+    source.moment.seed = 8;
+    ASSERT_NE(episodeImageNoise(kRanges, source).light_jitter, noise.light_jitter);
+  }
+  for (std::size_t k = 0; k < drawn.size(); ++k) {
+    const Moments moments = momentsOf(drawn.at(k));
+    EXPECT_NEAR(moments.mean, 0, kChance * 0.5 / std::sqrt(12.0 * kDraws)) << k;
+    EXPECT_NEAR(moments.deviation, 0.5 / std::sqrt(12.0), 0.01) << k;
+    for (std::size_t other = 0; other < k; ++other) {
+      const double covariance = correlation(drawn.at(k), drawn.at(other), 0);
+      EXPECT_NEAR(covariance, 0, kChance / 48 / std::sqrt(static_cast<double>(kDraws)));
+    }
+  }
+  // A number is no draw.
+  EXPECT_EQ(episodeImageNoise({.color_noise = 4}, {}).color_noise, DrawnNumber(4));
+}
+
 TEST_F(NoisyImages, OfConsecutiveStepsEnvsEpisodesAndSeedsHaveNothingInCommon) {
   const RenderImages plain = draw({});
   const auto drawn = [&] {
@@ -406,17 +471,29 @@ TEST_F(NoisyImages, AreRefusedWhereTheyCannotBe) {
     EXPECT_EQ(made.error().code, ErrorCode::kInvalidInput);
     return made.error().text();
   };
+  const auto or_range = [](const std::string& most) {
+    return ", or a range from 0 to " + most + " such as 0.1-0.3";
+  };
   EXPECT_EQ(refusal([](RenderOptions& o) { o.noise = {1, 1, 255, 1}; }), "");
+  EXPECT_EQ(refusal([](RenderOptions& o) { o.noise.color_noise = {0, 255}; }), "");
   EXPECT_EQ(refusal([](RenderOptions& o) { o.noise.depth_noise = 1.5F; }),
-            "render options: found depth-noise of 1.5, expected 0 to 1");
+            "render options: found depth-noise of 1.5, expected 0 to 1" + or_range("1"));
+  EXPECT_EQ(refusal([](RenderOptions& o) {
+              o.noise.depth_noise = {0.2F, 0.1F};
+            }),
+            "render options: found depth-noise of 0.2-0.1, expected 0 to 1" + or_range("1"));
+  EXPECT_EQ(refusal([](RenderOptions& o) {
+              o.noise.depth_noise = {-0.25F, 0.5F};
+            }),
+            "render options: found depth-noise of -0.25-0.5, expected 0 to 1" + or_range("1"));
   EXPECT_EQ(refusal([](RenderOptions& o) { o.noise.depth_dropout = -0.25F; }),
-            "render options: found depth-dropout of -0.25, expected 0 to 1");
+            "render options: found depth-dropout of -0.25, expected 0 to 1" + or_range("1"));
   EXPECT_EQ(refusal([](RenderOptions& o) { o.noise.color_noise = 256; }),
-            "render options: found color-noise of 256, expected 0 to 255");
+            "render options: found color-noise of 256, expected 0 to 255" + or_range("255"));
   EXPECT_EQ(refusal([](RenderOptions& o) {
               o.noise.light_jitter = std::numeric_limits<float>::quiet_NaN();
             }),
-            "render options: found light-jitter of nan, expected 0 to 1");
+            "render options: found light-jitter of nan-nan, expected 0 to 1" + or_range("1"));
   EXPECT_EQ(refusal([](RenderOptions& o) {
               o.depth = false;
               o.noise.depth_dropout = 0.1F;

@@ -134,12 +134,19 @@ TEST(CameraChoice, RefusesJitterOutOfRange) {
     const auto none = chooseCamera(home.world().robot(), {.name = "hand", .jitter = jitter});
     return none ? "" : none.error().text();
   };
+  const auto or_range = [](const std::string& most) {
+    return ", or a range from 0 to " + most + " such as 0.1-0.3";
+  };
   EXPECT_EQ(refusal({.camera_jitter = 1, .camera_jitter_degrees = 180}), "");
-  EXPECT_EQ(refusal({.camera_jitter = -0.5F}), "--camera-jitter: found -0.5 m, expected 0 to 1");
+  EXPECT_EQ(refusal({.camera_jitter = -0.5F}),
+            "--camera-jitter: found -0.5 m, expected 0 to 1" + or_range("1"));
   EXPECT_EQ(refusal({.camera_jitter_degrees = 181}),
-            "--camera-jitter-degrees: found 181 degrees, expected 0 to 180");
+            "--camera-jitter-degrees: found 181 degrees, expected 0 to 180" + or_range("180"));
   EXPECT_EQ(refusal({.camera_jitter_degrees = std::nanf("")}),
-            "--camera-jitter-degrees: found nan degrees, expected 0 to 180");
+            "--camera-jitter-degrees: found nan-nan degrees, expected 0 to 180" + or_range("180"));
+  EXPECT_EQ(refusal({.camera_jitter = {0.1F, 0.3F}}), "");
+  EXPECT_EQ(refusal({.camera_jitter = {0.3F, 0.1F}}),
+            "--camera-jitter: found 0.3-0.1 m, expected 0 to 1" + or_range("1"));
 }
 
 TEST(CameraChoice, RefusesFieldsOfViewThatShowNothing) {

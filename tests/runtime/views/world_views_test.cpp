@@ -360,6 +360,37 @@ TEST_F(WorldViewsOfAHome, WithJitterTheCameraIsElsewhereInEachEpisodeWithinLimit
   EXPECT_EQ(difference(offset(jittered, 0), first), 0);
 }
 
+TEST_F(WorldViewsOfAHome, EachEpisodeDrawsItsOwnLimitOfTheJitterFromARange) {
+  constexpr float kLeast = 0.02F;
+  constexpr float kMost = 0.1F;
+  CameraMount mount{.frame = CameraFrame::kLink, .link = 4, .frame_from_camera = {}};
+  WorldViews plain(*world_, *models_, *simulator_, mount);
+  mount.jitter = {.camera_jitter = {kLeast, kMost}, .camera_jitter_degrees = {}};
+  WorldViews jittered(*world_, *models_, *simulator_, mount);
+  mount.jitter.camera_jitter = kMost;
+  WorldViews widest(*world_, *models_, *simulator_, mount);
+  float sum = 0;
+  constexpr std::uint64_t kSeeds = 200;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    simulator_->restart(seed);
+    for (WorldViews* views : {&plain, &jittered, &widest}) views->update(*simulator_);
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const RigidTransform place = inverse(plain.views()[env].camera.world_from_camera);
+      const Vec3 moved = (place * jittered.views()[env].camera.world_from_camera).origin;
+      const Vec3 most = (place * widest.views()[env].camera.world_from_camera).origin;
+      // The same way, not as far: a share of the widest that the episode has drawn.
+      const float share = std::sqrt(dot(moved, moved) / dot(most, most));
+      ASSERT_GE(share, kLeast / kMost - 1e-3F);
+      ASSERT_LE(share, 1 + 1e-3F);
+      ASSERT_LT(std::sqrt(dot(moved - most * share, moved - most * share)), 1e-5F);
+      sum += share;
+    }
+  }
+  // Four standard deviations of the mean of so many uniform numbers.
+  const float spread = (1 - kLeast / kMost) * std::sqrt(1.0F / 12 / (kSeeds * kEnvs));
+  EXPECT_NEAR(sum / (kSeeds * kEnvs), (1 + kLeast / kMost) / 2, 4 * spread);
+}
+
 TEST_F(WorldViewsOfAHome, AViewHoldsTheSceneItsObjectsAndTheLinksThatShowSomething) {
   WorldViews views(*world_, *models_, *simulator_, robotCamera(world_->robot()).value());
   std::size_t with_held = 0;

@@ -1,6 +1,7 @@
 #include "render/noise/noise_pass.h"
 
 #include "render/noise/noise_kernels.h"
+#include "support/drawn_in.h"
 #include "support/processor.h"
 #include "support/random_stream.h"
 
@@ -11,6 +12,12 @@ namespace {
 constexpr std::uint64_t kDepthSalt = 0x44657074682D3031ULL;
 constexpr std::uint64_t kColorSalt = 0x436F6C6F722D3031ULL;
 constexpr std::uint64_t kLightSalt = 0x4C696768742D3031ULL;
+
+// Salts of what episodes draw of options that are ranges.
+constexpr std::uint64_t kDepthDraw = 0x44657074682D4431ULL;
+constexpr std::uint64_t kDropoutDraw = 0x44726F702D2D4431ULL;
+constexpr std::uint64_t kColorDraw = 0x436F6C6F722D4431ULL;
+constexpr std::uint64_t kLightDraw = 0x4C696768742D4431ULL;
 
 PixelKey keyOf(std::uint64_t salt, const NoiseSource& source) {
   const EnvMoment& moment = source.moment;
@@ -49,13 +56,13 @@ void NoisePass::addToImages() noexcept {
 }
 
 void NoisePass::addTo(std::size_t image) const noexcept {
-  const ImageNoise& noise = options_.noise;
   const NoiseSource& source = views_[image].noise;
+  const ImageNoise noise = episodeImageNoise(options_.noise, source);
   const std::size_t pixels = std::size_t{options_.width} * options_.height;
   if (noise.changesDepth()) {
     const DepthNoise depth{.key = keyOf(kDepthSalt, source),
-                           .deviation = noise.depth_noise,
-                           .dropped = static_cast<std::int32_t>(noise.depth_dropout * 0x1p24F),
+                           .deviation = noise.depth_noise.most,
+                           .dropped = static_cast<std::int32_t>(noise.depth_dropout.most * 0x1p24F),
                            .near = options_.near};
     const auto add = has_avx2_ ? addDepthNoiseAvx2 : addDepthNoisePortable;
     add(depth, targets_.depth.data() + image * pixels, pixels);
@@ -63,11 +70,25 @@ void NoisePass::addTo(std::size_t image) const noexcept {
   if (noise.changesColor()) {
     const auto channels = static_cast<std::uint32_t>(options_.color);
     const ColorNoise color{.key = keyOf(kColorSalt, source),
-                           .deviation = noise.color_noise,
-                           .gain = gainOf(noise.light_jitter, source.moment)};
+                           .deviation = noise.color_noise.most,
+                           .gain = gainOf(noise.light_jitter.most, source.moment)};
     const auto add = has_avx2_ ? addColorNoiseAvx2 : addColorNoisePortable;
     add(color, targets_.color.data() + image * pixels * channels, channels, pixels);
   }
 }
 
 }  // namespace galactic::render
+
+namespace galactic {
+
+ImageNoise episodeImageNoise(const ImageNoise& noise, const NoiseSource& source) noexcept {
+  const auto drawn = [&](const DrawnNumber& number, std::uint64_t salt) {
+    return drawnIn(source.moment, number, salt);
+  };
+  return {.depth_noise = drawn(noise.depth_noise, render::kDepthDraw ^ source.camera),
+          .depth_dropout = drawn(noise.depth_dropout, render::kDropoutDraw ^ source.camera),
+          .color_noise = drawn(noise.color_noise, render::kColorDraw ^ source.camera),
+          .light_jitter = drawn(noise.light_jitter, render::kLightDraw)};
+}
+
+}  // namespace galactic

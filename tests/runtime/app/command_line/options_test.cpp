@@ -296,6 +296,12 @@ TEST(RunCommandLine, DrawsWhenTold) {
   EXPECT_EQ(color.height, 64U);
   EXPECT_EQ(color.noise.color_noise, 5);
   EXPECT_EQ(color.noise.light_jitter, 0.3F);
+  const DrawingOptions drawn =
+      parsed({"--render", "rgbd", "--depth-noise", "0.01-0.03", "--camera-jitter", "0-0.05"})
+          .drawing;
+  EXPECT_EQ(drawn.noise.depth_noise, DrawnNumber(0.01F, 0.03F));
+  EXPECT_EQ(drawn.jitter.camera_jitter, DrawnNumber(0, 0.05F));
+  EXPECT_TRUE(drawn.isNoisy());
   EXPECT_FALSE(plain.drawing.isNoisy());
   // What a policy sees may be noisy where nothing else is drawn.
   EXPECT_TRUE(parsed({"--policy", "eyes.pack", "--depth-noise", "0.1", "--camera-jitter", "0.1"})
@@ -320,12 +326,17 @@ TEST(RunCommandLine, RefusesWhatMakesNoSense) {
       {"--render", "depth", "--depth-noise", "1.1"},
       {"--render", "depth", "--depth-noise", "nan"},
       {"--render", "depth", "--depth-dropout", "-0.1"},
+      {"--render", "depth", "--depth-noise", "0.3-0.1"},
+      {"--render", "depth", "--depth-noise", "0.3-1.1"},
+      {"--render", "depth", "--depth-noise", "0.1-"},
+      {"--render", "depth", "--depth-noise", "0.1-0.2-0.3"},
       {"--render", "rgb", "--color-noise", "256"},
       {"--render", "rgb", "--light-jitter", "2"},
       {"--render", "rgb", "--camera-jitter", "1.1"},
       {"--render", "rgb", "--camera-jitter-degrees", "181"},
       {"--render", "rgb", "--depth-noise", "0.1"},
       {"--render", "rgb", "--depth-dropout", "0.1"},
+      {"--render", "rgb", "--depth-dropout", "0-0.1"},
       {"--render", "depth", "--color-noise", "3"},
       {"--render", "depth", "--light-jitter", "0.1"},
       {"--depth-noise", "0.1"},
