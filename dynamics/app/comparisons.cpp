@@ -75,15 +75,17 @@ class LanePool {
   std::vector<std::unique_ptr<EpisodeLane>> lanes_;
 };
 
-/// What moves things here is off by itself; noise of motion would be lost.
+/// What moves things here is off by itself; noise of motion would be lost, and delay.
 Result<void> requireExactMotions(const SimulationOptions& options, const std::string& where,
                                  const std::string& remedy) {
-  if (!options.noise.changesMotion()) return {};
+  const RobotNoise& noise = options.noise;
+  if (!noise.changesMotion() && !noise.delaysActions()) return {};
   return fail(
       ErrorCode::kUnsupported, where,
-      fmt::format("has motion-noise {} and motion-bias {}, which things with mass do not "
-                  "have; {}",
-                  drawnText(options.noise.motion), drawnText(options.noise.motion_bias), remedy));
+      fmt::format("has motion-noise {}, motion-bias {} and action-delay {}, which things with mass "
+                  "do not have; {}",
+                  drawnText(noise.motion), drawnText(noise.motion_bias),
+                  drawnText(noise.action_delay), remedy));
 }
 
 }  // namespace
@@ -109,8 +111,8 @@ Result<void> EpisodePlan::openRecording(const Command& command) {
   }
   options_ = recording.subject().options;
   RETURN_IF_ERROR(requireExactMotions(options_, command.recording.string(),
-                                      "record a run without, with --motion-noise 0 and "
-                                      "--motion-bias 0"));
+                                      "record a run without, with --motion-noise 0, "
+                                      "--motion-bias 0 and --action-delay 0"));
   return {};
 }
 
@@ -130,8 +132,8 @@ Result<void> EpisodePlan::openLoop(const Command& command) {
                             "of galactic-run",
                             option.name, option.value));
   }
-  RETURN_IF_ERROR(
-      requireExactMotions(options_, "the task", "add --set motion-noise=0 --set motion-bias=0"));
+  RETURN_IF_ERROR(requireExactMotions(
+      options_, "the task", "add --set motion-noise=0 --set motion-bias=0 --set action-delay=0"));
   options_.seed = command.loop.seed;
   ASSIGN_OR_RETURN(const auto lane, makeLane());
   const std::span<const std::uint32_t> skipped = lane->simulator().skippedEpisodes();

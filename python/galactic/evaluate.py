@@ -66,7 +66,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--robot-noise",
         action="store_true",
-        help="let robots move and know their place with the noise of its training, not exactly",
+        help="let robots move and know their place with the noise and delay of its training, not exactly",
     )
     parser.add_argument(
         "--report", type=named_path, metavar="FILE.json", help="write the report to this file"
@@ -154,7 +154,7 @@ def _require_uses(options: argparse.Namespace) -> None:
     if options.task and options.dynamics:
         raise SettingsError("--dynamics knows no task of your own; leave one of them out")
     if options.robot_noise and options.dynamics:
-        raise SettingsError("--dynamics knows no noise of robots; leave one of them out")
+        raise SettingsError("--dynamics knows no noise nor delay of robots; leave one of them out")
 
 
 def _evaluate(options: argparse.Namespace) -> int:

@@ -280,8 +280,9 @@ class VectorEnv(_Base):
         return joined([simulator.env_states() for simulator in self.simulators])
 
     def episode_noise(self) -> dict[str, NDArray[np.float32]]:
-        """The noise that the episode of each env has drawn where options give ranges, float32 (num_envs,) of
-        each: Simulator.episode_noise(). For critics that may know it, and for logs."""
+        """The noise and delay that the episode of each env has drawn where options give ranges, float32
+        (num_envs,) of each: Simulator.episode_noise(). For critics that may know it, and for logs. That of images:
+        Renderer.episode_noise() of `renderers`."""
         self._require_idle()
         return batch_of([simulator.episode_noise() for simulator in self.simulators])
 

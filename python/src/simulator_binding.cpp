@@ -101,17 +101,19 @@ py::dict episodeNoise(Simulator& simulator, const py::object& envs) {
   const Confinement::Use use = simulator.readState();
   const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
   const Shape each{static_cast<py::ssize_t>(chosen.size())};
-  Filled<float> motion(each), motion_bias(each), localization(each), laser(each);
+  Filled<float> motion(each), motion_bias(each), localization(each), delay(each), laser(each);
   for (const std::uint32_t env : chosen) {
     const EpisodeNoise noise = simulator.batch().episodeNoise(env);
     motion.put(noise.motion);
     motion_bias.put(noise.motion_bias);
     localization.put(noise.localization);
+    delay.put(static_cast<float>(noise.action_delay));
     laser.put(noise.laser);
   }
   using namespace py::literals;
   return py::dict("motion_noise"_a = motion.array(), "motion_bias"_a = motion_bias.array(),
-                  "localization_noise"_a = localization.array(), "laser_noise"_a = laser.array());
+                  "localization_noise"_a = localization.array(), "action_delay"_a = delay.array(),
+                  "laser_noise"_a = laser.array());
 }
 
 py::dict phaseTimes(Simulator& simulator) {
@@ -272,8 +274,8 @@ void bindQueries(py::class_<Simulator>& type) {
            "changes from one step to the next is what happened in it.");
   type.def("episode_noise", &episodeNoise, py::arg("envs") = py::none(),
            "The noise that the episode of each env, or of each of the numbers `envs`, has drawn\n"
-           "where options give ranges: motion_noise, motion_bias, localization_noise and\n"
-           "laser_noise, float32 (n,), copies.");
+           "where options give ranges: motion_noise, motion_bias, localization_noise,\n"
+           "action_delay and laser_noise, float32 (n,), copies.");
   type.def(
       "sample_phases",
       [](Simulator& one, const py::object& every) {

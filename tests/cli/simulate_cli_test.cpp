@@ -286,13 +286,14 @@ TEST_F(SimulateCli, ReplaysARecordingBitForBit) {
 }
 
 TEST_F(SimulateCli, ReplaysTheNoiseOfARecording) {
-  const std::vector<std::string> noise{"--motion-noise",       "0.2", "--motion-bias", "0.1",
-                                       "--localization-noise", "0.1"};
+  const std::vector<std::string> noise{"--motion-noise",       "0.2", "--motion-bias",  "0.1",
+                                       "--localization-noise", "0.1", "--action-delay", "2"};
   const std::vector<std::string> plain{"--envs", "5", "--steps", "60", "--seed", "9"};
   std::vector<std::string> noisy = plain;
   noisy.insert(noisy.end(), noise.begin(), noise.end());
   const json report = reportOf(noisy);
   EXPECT_EQ(report["options"]["motion-noise"], 0.2);
+  EXPECT_EQ(report["options"]["action-delay"], 2);
   EXPECT_NE(report["reward"], reportOf(plain)["reward"]);
   noisy.insert(noisy.end(), {"--record", "noisy.rec"});
   ASSERT_EQ(run(noisy).exit_code, 0);
@@ -320,10 +321,11 @@ TEST_F(SimulateCli, ReplaysTheNoiseOfARecording) {
 TEST_F(SimulateCli, ReplaysTheNoiseThatEpisodesHaveDrawn) {
   const std::vector<std::string> plain{"--envs", "5", "--steps", "60", "--seed", "9"};
   std::vector<std::string> drawn = plain;
-  drawn.insert(drawn.end(), {"--motion-noise", "0.1-0.6", "--laser-beams", "8", "--laser-noise",
-                             "0.01-0.05", "--record", "drawn.rec"});
+  drawn.insert(drawn.end(), {"--motion-noise", "0.1-0.6", "--action-delay", "0-3", "--laser-beams",
+                             "8", "--laser-noise", "0.01-0.05", "--record", "drawn.rec"});
   const json report = reportOf(drawn);
   EXPECT_EQ(report["options"]["motion-noise"], "0.1-0.6");
+  EXPECT_EQ(report["options"]["action-delay"], "0-3");
   EXPECT_EQ(report["options"]["laser-noise"], "0.01-0.05");
   EXPECT_NE(report["reward"], reportOf(plain)["reward"]);
   for (const char* threads : {"1", "2"}) {

@@ -352,6 +352,7 @@ TEST_F(DynamicsCli, RefusesWhatItCannotDo) {
       {{"--policy", "scripted", "--report", ""}, kUsage, "--report has an empty value"},
       {{"--policy", "scripted", "--set", "gravity=1"}, kInvalid, "gravity=1 is no option"},
       {{"--policy", "scripted", "--set", "motion-noise=0.1"}, 5, "--set motion-noise=0"},
+      {{"--policy", "scripted", "--set", "action-delay=0-2"}, 5, "--set action-delay=0"},
       {{"--policy", "home.pack"}, kInvalid, "home.pack"},
       {{"--recording", "home.rec", "--report", "home.rec"}, kInvalid, "is also an input"},
       {{"--policy", "scripted", "--report", "home/episodes.pack"}, kInvalid, "is also an input"},

@@ -123,7 +123,13 @@ def test_each_episode_draws_noise_from_a_range(world) -> None:
     simulator = Simulator(world, envs=400, threads=1, laser_beams=4, task="none", **DRAWN)
     assert simulator.options["motion_noise"] == "0.1-0.6"
     first = simulator.episode_noise()
-    assert list(first) == ["motion_noise", "motion_bias", "localization_noise", "laser_noise"]
+    assert list(first) == [
+        "motion_noise",
+        "motion_bias",
+        "localization_noise",
+        "action_delay",
+        "laser_noise",
+    ]
     for name, (least, most) in (("motion_noise", (0.1, 0.6)), ("laser_noise", (0.01, 0.05))):
         values = first[name]
         assert (values.dtype, values.shape) == (np.float32, (400,))
@@ -155,6 +161,49 @@ def test_a_number_is_the_noise_of_all_episodes(world) -> None:
     noise = Simulator(world, envs=3, threads=1, **NOISE).episode_noise()
     for name, value in NOISE.items():
         np.testing.assert_array_equal(noise[name], np.full(3, value, np.float32))
+
+
+def test_actions_arrive_as_late_as_each_episode_has_drawn(world, draw_actions) -> None:
+    options = {"task": "none", "episode_steps": 25, "seed": 4}
+    late = VectorEnv(world, 24, action_delay=(0, 3), threads=2, halves=2, **options)
+    prompt = VectorEnv(world, 24, threads=1, **options)
+    assert late.simulators[0].options["action_delay"] == "0-3"
+    np.testing.assert_array_equal(late.reset()[0], prompt.reset()[0])
+    delays = np.zeros(24, int)
+    asked: list[np.ndarray] = []
+    for step in range(60):
+        if step % 25 == 0:
+            delays = late.episode_noise()["action_delay"].astype(int)
+            assert set(delays) == {0, 1, 2, 3}
+            asked = []
+        asked.append(draw_actions(24, 8))
+        arrived = np.zeros((24, 8), np.float32)
+        for env, delay in enumerate(delays):
+            if delay < len(asked):
+                arrived[env] = asked[-1 - delay][env]
+        seen = late.step(asked[-1])[0]
+        np.testing.assert_array_equal(seen, prompt.step(arrived)[0])
+        if step == 30:
+            state, after = late.save_state(), []
+        elif step > 30:
+            after.append((asked[-1], seen.copy()))
+    # What is under way belongs to the state.
+    other = VectorEnv(world, 24, action_delay="0-3", threads=1, halves=2, **options)
+    for again in (late, other):
+        again.restore_state(state)
+        for actions, seen in after:
+            np.testing.assert_array_equal(again.step(actions)[0], seen)
+
+
+@pytest.mark.parametrize(
+    "value", [-1, 101, 0.5, (3, 1), (0, 101), (0, 0.5), "0-", "1-2-3", "one", 10**12]
+)
+def test_what_is_no_delay_is_refused(world, value) -> None:
+    wanted = (
+        "action_delay: is .*expected a whole number from 0 to 100, or a range of them such as 0-2"
+    )
+    with pytest.raises(galactic.Error, match=wanted):
+        Simulator(world, envs=1, action_delay=value)
 
 
 @pytest.mark.parametrize("name", NOISE)

@@ -71,6 +71,23 @@ class TaskReader {
       refuse(name, *value, wantedDrawn(within));
     }
   }
+  /// A whole number, or a range in quotes.
+  void drawn(std::string_view name, DrawnCount& field, std::uint32_t most, std::string_view) {
+    const TomlValue* value = take(name);
+    if (value == nullptr) return;
+    const auto* text = std::get_if<std::string>(&value->value);
+    const auto* number = std::get_if<std::int64_t>(&value->value);
+    std::optional<DrawnCount> read;
+    if (text != nullptr) read = drawnFrom(*text, most);
+    if (number != nullptr && *number >= 0 && *number <= most) {
+      read = static_cast<std::uint32_t>(*number);
+    }
+    if (read) {
+      field = *read;
+    } else {
+      refuse(name, *value, wantedDrawn(most));
+    }
+  }
   void heights(std::string_view name, std::vector<Span>& field, const Span& within,
                std::string_view) {
     const TomlValue* value = take(name);

@@ -16,7 +16,7 @@ from galactic.learning.packs.content import export_policy
 from galactic.learning.command import INTERRUPTED
 
 TOOL = "galactic-dynamics"
-EXACT = {"motion_noise": 0, "motion_bias": 0}
+EXACT = {"motion_noise": 0, "motion_bias": 0, "action_delay": 0}
 """Options of the simulation, without which the tool refuses a world: what moves things there is off by
 itself."""
 

@@ -11,7 +11,7 @@ from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_fields import ends_of
 
 # Options of the simulation that make robots unlike those that policies are judged by.
-ROBOT_NOISE = ("motion_noise", "motion_bias", "localization_noise")
+ROBOT_NOISE = ("motion_noise", "motion_bias", "localization_noise", "action_delay")
 # What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
 _CHOSEN_BY_TRAINER = {
     *set(inspect.signature(galactic.VectorEnv).parameters) - {"task"},

@@ -105,16 +105,15 @@ void CommandLineVisitor::three(std::string_view name, std::array<float, 3>& fiel
       ->option_text(fmt::format("{} [{}]", shown.value, fmt::join(field, ",")));
 }
 
-CLI::Option* CommandLineVisitor::addDrawn(std::string_view name, DrawnNumber& field,
-                                          const Span& within, std::string_view help) {
-  const auto parse = [within](const std::string& text) { return drawnFrom(text, within); };
-  return addParsed(name, field, parse, wantedDrawn(within), help);
-}
-
 void CommandLineVisitor::drawn(std::string_view name, DrawnNumber& field, const Span& within,
                                std::string_view help) {
   addDrawn(name, field, within, help)
       ->option_text(fmt::format("{}|LOW-HIGH [{}]", placeholderOf(help), drawnText(field)));
+}
+
+void CommandLineVisitor::drawn(std::string_view name, DrawnCount& field, std::uint32_t most,
+                               std::string_view help) {
+  addDrawn(name, field, most, help)->option_text(fmt::format("N|LOW-HIGH [{}]", drawnText(field)));
 }
 
 void CommandLineVisitor::heights(std::string_view name, std::vector<Span>& field,

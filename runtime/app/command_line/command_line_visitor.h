@@ -39,6 +39,7 @@ class CommandLineVisitor {
   void three(std::string_view name, std::array<float, 3>& field, float most, Shown shown,
              std::string_view help);
   void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view help);
+  void drawn(std::string_view name, DrawnCount& field, std::uint32_t most, std::string_view help);
   void heights(std::string_view name, std::vector<Span>& field, const Span& within,
                std::string_view help);
   void flag(std::string_view name, const Switch& value, std::string_view help);
@@ -51,7 +52,7 @@ class CommandLineVisitor {
   void likeliest(std::string_view name, bool& field);
   template <class Options>
   void sensor(const SensorOption<Options>& option, Options& options) {
-    addDrawn(option.name, options.*option.value, {0, option.most}, option.text)
+    addDrawn(option.name, options.*option.value, Span{0, option.most}, option.text)
         ->option_text(fmt::format("{}|LOW-HIGH [0]", option.unit));
   }
   template <class T, std::size_t N>
@@ -84,8 +85,12 @@ class CommandLineVisitor {
     return app_.add_option_function<std::string>(dashed(name), set, std::string(help))
         ->group(heading_);
   }
-  CLI::Option* addDrawn(std::string_view name, DrawnNumber& field, const Span& within,
-                        std::string_view help);
+  template <class T, class Limits>
+  CLI::Option* addDrawn(std::string_view name, T& field, const Limits& within,
+                        std::string_view help) {
+    const auto parse = [within](const std::string& text) { return drawnFrom(text, within); };
+    return addParsed(name, field, parse, wantedDrawn(within), help);
+  }
   /// An option that is what `parse` makes of its text; a text of which that makes nothing is not
   /// `wanted`.
   template <class T, class Parse>

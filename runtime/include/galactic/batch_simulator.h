@@ -135,12 +135,13 @@ struct PhaseTime {
   double seconds = 0;
 };
 
-/// What the options say of noise, as an episode has drawn it: standard deviations. See RobotNoise
-/// and LaserOptions.
+/// What the options say of noise, as an episode has drawn it: standard deviations, and steps of
+/// delay. See RobotNoise and LaserOptions.
 struct EpisodeNoise {
   float motion = 0;
   float motion_bias = 0;
   float localization = 0;
+  std::uint32_t action_delay = 0;
   /// Meters; 0 without a laser.
   float laser = 0;
 };

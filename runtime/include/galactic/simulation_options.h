@@ -163,10 +163,13 @@ struct SensorOptions {
   std::uint32_t geodesic_megabytes = 1024;
 };
 
+/// The most steps by which actions may be late.
+inline constexpr std::uint32_t kMostActionDelay = 100;
+
 /// How far real robots are from doing what they are asked to, and from knowing where they are: for
-/// policies that are to work on them. All off by default; see docs/simulation.md. Numbers are
-/// standard deviations, as shares of the motion, so that a robot that is asked to stand still
-/// stands still. Each may be a range from which episodes draw.
+/// policies that are to work on them. All off by default; see docs/simulation.md. But for the
+/// delay, numbers are standard deviations, as shares of the motion, so that a robot that is asked
+/// to stand still stands still. Each may be a range from which episodes draw.
 struct RobotNoise {
   /// Of each motion in each step: base and joints. Driving a whole step also turns the base by such
   /// a share of a whole turn.
@@ -175,10 +178,14 @@ struct RobotNoise {
   DrawnNumber motion_bias = 0;
   /// Of what odometry adds up to where the robot takes itself to be.
   DrawnNumber localization = 0;
+  /// Steps that go by until the robot does what it was asked to, kMostActionDelay at most. It holds
+  /// still until the first action of an episode arrives.
+  DrawnCount action_delay = 0;
 
   [[nodiscard]] constexpr bool changesMotion() const {
     return motion.most > 0 || motion_bias.most > 0;
   }
+  [[nodiscard]] constexpr bool delaysActions() const { return action_delay.most > 0; }
 };
 
 /// In which order an env takes the episodes of a world.

@@ -16,4 +16,11 @@ namespace galactic {
   return number.at(luck.unit());
 }
 
+[[nodiscard]] inline std::uint32_t drawnIn(const EnvMoment& moment, const DrawnCount& count,
+                                           std::uint64_t salt) {
+  if (!count.isRange()) return count.least;
+  RandomStream luck(moment.seed ^ salt, moment.env, moment.episode, 0);
+  return count.at(luck.unit());
+}
+
 }  // namespace galactic

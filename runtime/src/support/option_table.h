@@ -73,9 +73,9 @@ struct Switch {
 /// command line of galactic-run, recordings, reports, world packs and the recipes of worlds. Calls
 /// on `v`
 ///   group(heading), whole(name, field, Within, help), real(name, field, Within, help),
-///   drawn(name, field, within, help), heights(name, field, within, help), choice(name, field,
-///   names, help), flag(name, Switch, help), seed(name, field, help), preset(name, field, Preset,
-///   help), before its parts.
+///   drawn(name, field, within, help), of whole numbers with the most of them for `within`,
+///   heights(name, field, within, help), choice(name, field, names, help), flag(name, Switch,
+///   help), seed(name, field, help), preset(name, field, Preset, help), before its parts.
 template <class Visitor>
 void visitBatchOptions(SimulationOptions& o, Visitor& v) {
   v.group("Simulation");
@@ -166,10 +166,12 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
 template <class Visitor>
 void visitNoiseOptions(RobotNoise& n, Visitor& v) {
   constexpr Span kShare{0, 1};
-  v.group("Noise of motion and localization (standard deviations, as shares of motions)");
+  v.group("Noise of motion and localization (standard deviations, as shares of motions), delay");
   v.drawn("motion-noise", n.motion, kShare, "Of what the robot does in a step");
   v.drawn("motion-bias", n.motion_bias, kShare, "Of what it does in all steps of an episode");
   v.drawn("localization-noise", n.localization, kShare, "Of odometry, which tells it where it is");
+  v.drawn("action-delay", n.action_delay, kMostActionDelay,
+          "Steps until the robot does what it was asked to");
 }
 
 /// The same, of what the robot senses.

@@ -67,7 +67,8 @@ class DrawnNamer {
  public:
   explicit DrawnNamer(std::vector<std::string>& names) : names_(names) {}
 
-  void drawn(std::string_view name, const DrawnNumber&, const Span&, std::string_view) {
+  template <class... Rest>
+  void drawn(std::string_view name, const Rest&...) {
     names_.emplace_back(name);
   }
   void group(std::string_view) {}
@@ -105,7 +106,7 @@ class Lister {
   void real(std::string_view name, float value, Within<float>, std::string_view) {
     add(name, fmt::format("{}", value), false);
   }
-  void drawn(std::string_view name, const DrawnNumber& value, const Span&, std::string_view) {
+  void drawn(std::string_view name, const auto& value, const auto&, std::string_view) {
     add(name, drawnText(value), value.isRange());
   }
   void heights(std::string_view name, std::span<const Span> value, const Span&, std::string_view) {
@@ -150,10 +151,11 @@ class Setter {
   void real(std::string_view name, float& field, Within<float> within, std::string_view) {
     number(name, field, within);
   }
-  void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view) {
+  template <class T>
+  void drawn(std::string_view name, T& field, const auto& within, std::string_view) {
     const std::string* text = take(name);
     if (text == nullptr) return;
-    const std::optional<DrawnNumber> number = drawnFrom(*text, within);
+    const std::optional<T> number = drawnFrom(*text, within);
     require(number.has_value(), wantedDrawn(within));
     if (number) field = *number;
   }
@@ -246,8 +248,7 @@ class Checker {
   void real(std::string_view name, float value, Within<float> within, std::string_view) {
     number(name, value, within);
   }
-  void drawn(std::string_view name, const DrawnNumber& value, const Span& within,
-             std::string_view) {
+  void drawn(std::string_view name, const auto& value, const auto& within, std::string_view) {
     if (!isDrawnWithin(value, within)) refuse(name, drawnText(value), wantedDrawn(within));
   }
   void heights(std::string_view name, std::span<const Span> value, const Span& within,

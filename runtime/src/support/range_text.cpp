@@ -10,8 +10,9 @@ namespace galactic {
 namespace {
 
 /// Takes a number from the beginning of `text`.
-std::optional<float> takeNumber(std::string_view& text) {
-  float value = 0;
+template <class T = float>
+std::optional<T> takeNumber(std::string_view& text) {
+  T value{};
   const char* end = text.data() + text.size();
   const auto [stop, problem] = std::from_chars(text.data(), end, value);
   if (problem != std::errc()) return std::nullopt;
@@ -53,6 +54,31 @@ bool isDrawnWithin(const DrawnNumber& number, const Span& within) {
 std::string wantedDrawn(const Span& within) {
   return fmt::format("{} to {}, or a range from {} to {} such as 0.1-0.3", within.lo, within.hi,
                      std::max(within.lo, 0.0F), within.hi);
+}
+
+std::string drawnText(const DrawnCount& count) {
+  return count.isRange() ? fmt::format("{}-{}", count.least, count.most)
+                         : fmt::format("{}", count.least);
+}
+
+std::optional<DrawnCount> drawnFrom(std::string_view text, std::uint32_t most) {
+  const std::optional<std::uint32_t> lowest = takeNumber<std::uint32_t>(text);
+  std::optional<std::uint32_t> highest = lowest;
+  if (lowest && text.starts_with('-')) {
+    text.remove_prefix(1);
+    highest = takeNumber<std::uint32_t>(text);
+  }
+  if (!lowest || !highest || !text.empty()) return std::nullopt;
+  const DrawnCount count{*lowest, *highest};
+  return isDrawnWithin(count, most) ? std::optional(count) : std::nullopt;
+}
+
+bool isDrawnWithin(const DrawnCount& count, std::uint32_t most) {
+  return count.least <= count.most && count.most <= most;
+}
+
+std::string wantedDrawn(std::uint32_t most) {
+  return fmt::format("a whole number from 0 to {}, or a range of them such as 0-2", most);
 }
 
 }  // namespace galactic

@@ -67,6 +67,8 @@ TEST_F(RecipeTask, GivesThePartsOfAPresetWhichRefineIt) {
 TEST_F(RecipeTask, TakesRangesThatEpisodesDrawFrom) {
   EXPECT_THAT(taskOf("motion-noise = \"0.2-0.8\"\nmotion-bias = 0.1\nlaser-noise = 1\n"),
               ElementsAre("motion-noise=0.2-0.8", "motion-bias=0.1", "laser-noise=1"));
+  EXPECT_THAT(taskOf("action-delay = 2\n"), ElementsAre("action-delay=2"));
+  EXPECT_THAT(taskOf("action-delay = \"0-3\"\n"), ElementsAre("action-delay=0-3"));
 }
 
 TEST_F(RecipeTask, KnowsEveryOptionOfTheTask) {
@@ -120,6 +122,11 @@ TEST_F(RecipeTask, RefusesEachMistakeWithItsLine) {
        "the key task.episode-step is unknown; did you mean 'episode-steps' or 'slide-step'?"},
       {"safe_drop = true", "the key task.safe_drop is unknown; did you mean 'safe-drop'?"},
       {"wings = 2", "the key task.wings is unknown; "},
+      {"action-delay = -1",
+       "task.action-delay: found -1, expected a whole number from 0 to 100, or"},
+      {"action-delay = 1.5", "task.action-delay: found 1.5, expected a whole number from 0 to 100"},
+      {"action-delay = 4294967298", "task.action-delay: found 4294967298, expected a whole number"},
+      {"action-delay = \"3-1\"", "task.action-delay: found \"3-1\", expected a whole number from"},
       {"motion-noise = 1.5", "task.motion-noise: found 1.5, expected 0 to 1, or a range from 0 to"},
       {"motion-noise = nan", "task.motion-noise: found nan, expected 0 to 1, or a range from 0 to"},
       {"motion-noise = \"0.8-0.2\"", "task.motion-noise: found \"0.8-0.2\", expected 0 to 1, or a"},

@@ -67,7 +67,7 @@ def test_the_tool_is_asked_for_what_was_asked_for(tool: pathlib.Path) -> None:
         assert wanted in said, (tool, said)
     assert dynamics.told(report) == {"success_there": 0.5, "after_2_s": 0.25, "picked_there": 0.75}
     # It has no noise of motion, and refuses a world that has some.
-    assert said.endswith("--set motion-noise=0 --set motion-bias=0")
+    assert said.endswith("--set motion-noise=0 --set motion-bias=0 --set action-delay=0")
     plain = " ".join(dynamics.play(run_of())["words"])
     assert "--arm motors" in plain and "--data" not in plain and "--deterministic" not in plain
 

@@ -13,7 +13,7 @@ from policies import untrained
 from programs import HELD_OUT, WORLD, call, curve, needs_worlds
 
 PLAIN = "task=pick episode-steps=30"
-NOISY = f"{PLAIN} motion-noise=0.4 --motion_bias=0.3 localization-noise=0.2"
+NOISY = f"{PLAIN} motion-noise=0.4 --motion_bias=0.3 localization-noise=0.2 action-delay=0-2"
 
 
 def of_state(simulation: str) -> Settings:
@@ -27,10 +27,18 @@ def test_what_a_training_adds_is_left_out_and_nothing_else() -> None:
     assert of_state(NOISY).without_camera_noise() == of_state(NOISY)
     twice = of_state("task=pick motion-noise=0 motion-noise=0.1")
     assert twice.without_robot_noise().simulation == "task=pick"
-    drawn = of_state("motion-noise=0-0.5 task=pick motion-bias=1e-3-2e-3 localization-noise=.1-.2")
+    drawn = of_state(
+        "motion-noise=0-0.5 task=pick motion-bias=1e-3-2e-3 localization-noise=.1-.2 action-delay=0-2"
+    )
     assert drawn.without_robot_noise().simulation == "task=pick"
     # As it was typed, and the noise of a world that it switches off stays off.
-    for words in ("task=pick  bump", "motion-noise=0 task=pick motion-bias=0.0", "motion-noise=x"):
+    assert of_state("action-delay=3 task=pick").without_robot_noise().simulation == "task=pick"
+    for words in (
+        "task=pick  bump",
+        "action-delay=0",
+        "motion-noise=0 task=pick motion-bias=0.0",
+        "motion-noise=x",
+    ):
         assert of_state(words).without_robot_noise().simulation == words
 
 

@@ -12,7 +12,9 @@ namespace {
 TEST(BatchMemory, IsNotAllocatedInAStep) {
   const BoxWorld world = furnishedWorld();
   for (const std::uint32_t threads : {1U, 3U}) {
-    auto simulator = BatchSimulator::create(world.world(), optionsFor(64, threads)).value();
+    SimulationOptions options = optionsFor(64, threads);
+    options.noise.action_delay = {0, 1};
+    auto simulator = BatchSimulator::create(world.world(), options).value();
     std::vector<std::vector<float>> actions;
     actions.reserve(300);
     for (std::uint32_t step = 0; step < 300; ++step) {
@@ -45,8 +47,10 @@ TEST(BatchMemory, IsWhatTheBatchSaysForEachEnv) {
     std::uint64_t taken = 0;
   };
   const auto measure = [&](std::uint32_t envs) {
+    SimulationOptions options = optionsFor(envs);
+    options.noise.action_delay = 20;
     const std::uint64_t before = allocatedBytes();
-    const auto simulator = BatchSimulator::create(world.world(), optionsFor(envs)).value();
+    const auto simulator = BatchSimulator::create(world.world(), options).value();
     return Measured{simulator.memoryBytes(), allocatedBytes() - before};
   };
   const Measured small = measure(256);

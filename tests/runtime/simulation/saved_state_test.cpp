@@ -37,7 +37,8 @@ SimulationOptions homeOptions(std::uint32_t envs, std::uint32_t threads = 1) {
   options.task.geodesic_weight = 0.5F;
   options.sensors.laser.beams = 8;
   options.sensors.laser.noise = {0.01F, 0.02F};
-  options.noise = {.motion = 0.1F, .motion_bias = 0.1F, .localization = 0.1F};
+  options.noise = {
+      .motion = 0.1F, .motion_bias = 0.1F, .localization = 0.1F, .action_delay = {0, 2}};
   return options;
 }
 
@@ -288,6 +289,44 @@ TEST_F(DamagedState, IsRefusedWithWhatIsWrong) {
   expectRefused(other, "is of another world");
   const Bytes two = simulator_.saveState(std::vector<std::uint32_t>{0, 1});
   expectRefused(two, "has 2 envs, expected 3");
+}
+
+/// The same without the line of an option, as a version saved it that did not have it.
+Bytes without(const Bytes& state, const std::string& line) {
+  constexpr std::size_t kOptionBytesAt = 16;
+  Bytes older = state;
+  const auto* text = reinterpret_cast<const std::byte*>(line.data());
+  const auto found = std::search(older.begin(), older.end(), text, text + line.size());
+  EXPECT_NE(found, older.end()) << line;
+  older.erase(found, found + static_cast<std::ptrdiff_t>(line.size()));
+  std::uint32_t option_bytes = 0;
+  std::memcpy(&option_bytes, older.data() + kOptionBytesAt, sizeof(option_bytes));
+  option_bytes -= static_cast<std::uint32_t>(line.size());
+  std::memcpy(older.data() + kOptionBytesAt, &option_bytes, sizeof(option_bytes));
+  sign(older);
+  return older;
+}
+
+TEST(SavedState, OfAVersionThatHadFewerOptionsIsTakenWhereTheyAreOff) {
+  const SmallHome home;
+  SimulationOptions options = homeOptions(3);
+  options.noise.action_delay = 0;
+  BatchSimulator simulator = simulatorOf(home.world(), options);
+  WildRun run(3);
+  for (int step = 0; step < 40; ++step) simulator.step(run.act(simulator));
+  const Bytes state = simulator.saveState();
+  const std::vector<std::uint64_t> trace = traceOf(simulator);
+  const Bytes older = without(state, "action-delay=0\n");
+  for (int step = 0; step < 5; ++step) simulator.step(run.act(simulator));
+  EXPECT_EQ(refusalOf(simulator, older), "");
+  EXPECT_EQ(traceOf(simulator), trace);
+  EXPECT_EQ(simulator.saveState(), state);
+  // Not where it is on, nor where the state lacks one that the simulator has changed.
+  options.noise.action_delay = 2;
+  BatchSimulator late = simulatorOf(home.world(), options);
+  EXPECT_THAT(refusalOf(late, older), HasSubstr("expected action-delay=2, found bump=true"));
+  EXPECT_THAT(refusalOf(simulator, without(state, "motion-noise=0.1\n")),
+              HasSubstr("expected motion-noise=0.1, found motion-bias=0.1"));
 }
 
 TEST_F(DamagedState, OfOtherOptionsIsRefusedByTheirNames) {

@@ -76,8 +76,9 @@ TEST(OptionTexts, ThatSomebodyTypesMayBePresetsWhichTheirPartsRefine) {
 }
 
 TEST(OptionTexts, TellWhatEpisodesMayDraw) {
-  EXPECT_EQ(drawnOptionNames(), (std::vector<std::string>{"motion-noise", "motion-bias",
-                                                          "localization-noise", "laser-noise"}));
+  EXPECT_EQ(drawnOptionNames(),
+            (std::vector<std::string>{"motion-noise", "motion-bias", "localization-noise",
+                                      "action-delay", "laser-noise"}));
   SimulationOptions options;
   const std::vector<OptionText> texts{{"motion-noise", "0.2-0.8"}, {"motion-bias", "0.1"}};
   EXPECT_FALSE(setOptions(texts, OptionScope::kTask, options));
@@ -145,6 +146,17 @@ class RangeProbe {
     for (const std::string& wrong :
          {most + ".5", "0-" + most + ".5", "-" + most + "-0.5", std::string("0.5-0.25"),
           std::string("0-nan"), std::string("nan"), std::string("0.1-0.2-0.3")}) {
+      probe(name, wrong, false);
+    }
+  }
+  void drawn(std::string_view name, DrawnCount&, std::uint32_t most, std::string_view) {
+    for (const std::string& good : {std::string("0"), fmt::format("{}", most), std::string("1-3"),
+                                    fmt::format("0-{}", most)}) {
+      probe(name, good, true);
+    }
+    for (const std::string& wrong :
+         {fmt::format("{}", most + 1), fmt::format("0-{}", most + 1), std::string("-1"),
+          std::string("3-1"), std::string("0.5"), std::string("0-1-2")}) {
       probe(name, wrong, false);
     }
   }
@@ -218,6 +230,12 @@ class FieldProbe {
          {DrawnNumber(within.lo - 1), DrawnNumber(within.hi + 1), DrawnNumber(std::nanf("")),
           DrawnNumber(0, within.hi + 1), DrawnNumber(-0.5F, within.hi),
           DrawnNumber(within.hi, within.lo), DrawnNumber(0, std::nanf(""))}) {
+      probe(name, field, wrong);
+    }
+  }
+  void drawn(std::string_view name, DrawnCount& field, std::uint32_t most, std::string_view) {
+    for (const DrawnCount& wrong :
+         {DrawnCount(most + 1), DrawnCount(0, most + 1), DrawnCount(most, 0)}) {
       probe(name, field, wrong);
     }
   }

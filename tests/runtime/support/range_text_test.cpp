@@ -27,8 +27,8 @@ TEST(RangeText, ReadsBackWhatItWrote) {
                                     DrawnNumber(0), DrawnNumber(0.5F, 1)}) {
     EXPECT_EQ(drawnFrom(drawnText(number), kShare), number);
   }
-  EXPECT_EQ(drawnText({0.25F, 0.5F}), "0.25-0.5");
-  EXPECT_EQ(drawnText(-1), "-1");
+  EXPECT_EQ(drawnText(DrawnNumber{0.25F, 0.5F}), "0.25-0.5");
+  EXPECT_EQ(drawnText(DrawnNumber(-1)), "-1");
 }
 
 TEST(RangeText, RefusesEverythingElse) {
@@ -47,6 +47,35 @@ TEST(RangeText, RefusesEverythingElse) {
   EXPECT_FALSE(isDrawnWithin({0, kNan}, kShare));
   EXPECT_FALSE(isDrawnWithin(kNan, kShare));
   EXPECT_EQ(wantedDrawn(kOrElse), "-1 to 10, or a range from 0 to 10 such as 0.1-0.3");
+}
+
+TEST(RangeText, TakesWholeNumbersAndRangesOfThem) {
+  constexpr std::uint32_t kMost = 100;
+  EXPECT_EQ(drawnFrom("0", kMost), DrawnCount(0));
+  EXPECT_EQ(drawnFrom("7", kMost), DrawnCount(7));
+  EXPECT_EQ(drawnFrom("0-2", kMost), DrawnCount(0, 2));
+  EXPECT_EQ(drawnFrom("100-100", kMost), DrawnCount(100));
+  for (const DrawnCount& count : {DrawnCount(3), DrawnCount(0, 100)}) {
+    EXPECT_EQ(drawnFrom(drawnText(count), kMost), count);
+  }
+  for (const char* text :
+       {"",      "-",   "-1",  "0-",    "2-0", "0--2",       "0-1-2",        "101",
+        "0-101", "0.5", "1.0", "0-1.5", "1e1", "4294967296", "0-4294967298", "nan",
+        " 1",    "1 ",  "+1",  "one"}) {
+    EXPECT_FALSE(drawnFrom(text, kMost)) << text;
+  }
+}
+
+TEST(DrawnCount, DrawsEachNumberOfItsRangeAsOften) {
+  constexpr DrawnCount kRange{2, 4};
+  EXPECT_TRUE(kRange.isRange());
+  EXPECT_EQ(kRange.at(0), 2U);
+  EXPECT_EQ(kRange.at(0.33F), 2U);
+  EXPECT_EQ(kRange.at(0.34F), 3U);
+  EXPECT_EQ(kRange.at(0.67F), 4U);
+  EXPECT_EQ(kRange.at(1), 4U);
+  EXPECT_FALSE(DrawnCount(3).isRange());
+  EXPECT_EQ(DrawnCount(3).at(0.9F), 3U);
 }
 
 TEST(DrawnNumber, LiesInItsRange) {

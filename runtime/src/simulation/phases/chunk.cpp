@@ -37,6 +37,7 @@ Chunk::Chunk(const Model& model)
       wants_bodies_(model.bodyCount() != 0),
       ranges_(model.motion.ranges),
       actions_(model.actionCount()),
+      arrived_(model.options.noise.delaysActions() ? model.actionCount() : 0),
       motions_(model.options.noise.changesMotion() ? model.motion.controlled.size() + 2 : 0),
       given_actions_(kChunk * model.actionCount()),
       rows_(kBaseRows + model.variableCount() + kGripNumbers),

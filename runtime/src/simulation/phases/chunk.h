@@ -55,6 +55,8 @@ class Chunk {
   /// Actions of the chunk's envs, each in [-1, 1]. Shape: actions.
   [[nodiscard]] std::span<EnvRow> actions() { return actions_; }
   [[nodiscard]] float& action(std::size_t n, std::size_t env) { return actions_[n].values[env]; }
+  /// Room for those that have arrived by now. Empty where none is late.
+  [[nodiscard]] std::span<EnvRow> arrived() { return arrived_; }
   /// Room for what the robots do of the actions that move them: joints, forward, turn. Empty where
   /// they do just these.
   [[nodiscard]] std::span<EnvRow> motions() { return motions_; }
@@ -147,6 +149,7 @@ class Chunk {
   bool wants_bodies_ = false;
   std::span<const RadiusRange> ranges_;
   std::vector<EnvRow> actions_;
+  std::vector<EnvRow> arrived_;
   std::vector<EnvRow> motions_;
   std::vector<float> given_actions_;
   /// As those of a BatchState begin.

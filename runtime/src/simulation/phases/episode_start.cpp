@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "simulation/phases/action_delay.h"
 #include "simulation/phases/observe.h"
 #include "simulation/phases/robot_noise.h"
 #include "simulation/phases/task.h"
@@ -28,6 +29,7 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
                     state.bodyTransforms(n).begin());
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) state.setLastAction(j, n, 0);
   beginOdometry(state, n);
+  beginDelay(state, n);
 }
 
 void placeObjects(const Model& model, BatchState& state, std::size_t n, std::uint32_t start) {

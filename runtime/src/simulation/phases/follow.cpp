@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/phases/action_delay.h"
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/hand.h"
 #include "simulation/phases/move.h"
@@ -59,7 +60,7 @@ void followHand(const ChunkStep& step, std::size_t e, const FollowedState& state
   Env& env = step.state.env(n);
   const std::size_t terminate = step.model.actionCount() - 1;
   env.events = {.terminates =
-                    step.chunk.action(terminate, e) >= step.model.options.action.terminate};
+                    arrivedOf(step)[terminate].values[e] >= step.model.options.action.terminate};
   if (env.held >= 0 && env.held != state.held) {
     layDown(step, e, state.objects[static_cast<std::size_t>(env.held)]);
     ++step.state.counters(n).drops;
@@ -85,6 +86,7 @@ void takePose(const ChunkStep& step, std::size_t e, const FollowedState& state) 
 void followChunk(const ChunkStep& step, std::span<const float> actions,
                  std::span<const FollowedState> states) noexcept {
   readActions(step, actions);
+  delayActions(step);
   const auto is_followed = [&](std::size_t e) {
     const std::size_t n = step.first + e;
     return n < states.size() && step.state.idle()[n] == 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "simulation/collision/grasp_query.h"
+#include "simulation/phases/action_delay.h"
 #include "simulation/phases/contacts.h"
 #include "simulation/phases/object_placement.h"
 #include "simulation/state/env_moment.h"
@@ -109,8 +110,8 @@ void layDown(const ChunkStep& step, std::size_t e, const Pose& world_from_object
 void useHands(const ChunkStep& step) noexcept {
   const ActionOptions& options = step.model.options.action;
   const std::size_t hand_action = step.model.motion.controlled.size() + 2;
-  const EnvRow& values = step.chunk.actions()[hand_action];
-  const EnvRow& terminates = step.chunk.actions()[hand_action + 1];
+  const EnvRow& values = arrivedOf(step)[hand_action];
+  const EnvRow& terminates = arrivedOf(step)[hand_action + 1];
   const std::uint8_t* idle = step.state.idle().data() + step.first;
   // Nobody can guess what a hand does next, so no branch depends on it but those of the few that do
   // something.

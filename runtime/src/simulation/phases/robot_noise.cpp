@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/phases/action_delay.h"
 #include "simulation/state/env_moment.h"
 #include "simulation/state/episode_draws.h"
 #include "support/random_stream.h"
@@ -43,14 +44,15 @@ void disturb(const ChunkStep& step, std::size_t e) {
   const EnvMoment moment = momentOf(step.model, step.state, step.first + e);
   Errors fleeting(drawnIn(moment, noise.motion, kMotionDraw), luckOf(moment, kMotionSalt));
   Errors lasting(drawnIn(moment, noise.motion_bias, kBiasDraw), lastingLuckOf(moment, kBiasSalt));
+  const std::span<const EnvRow> asked = arrivedOf(step);
   const std::span<EnvRow> motions = step.chunk.motions();
   for (std::size_t m = 0; m < motions.size(); ++m) {
-    motions[m].values[e] = step.chunk.action(m, e) * (1 + fleeting.next() + lasting.next());
+    motions[m].values[e] = asked[m].values[e] * (1 + fleeting.next() + lasting.next());
   }
   // Wheels that differ turn a base that drives.
   const float drift = fleeting.next() + lasting.next();
   const std::size_t forward = motions.size() - 2;
-  motions[forward + 1].values[e] += step.chunk.action(forward, e) * drift;
+  motions[forward + 1].values[e] += asked[forward].values[e] * drift;
 }
 
 /// A way along the floor, turned.
@@ -65,7 +67,7 @@ float wrapped(float angle) { return std::remainder(angle, 2 * std::numbers::pi_v
 }  // namespace
 
 std::span<const EnvRow> motionsOf(const ChunkStep& step) noexcept {
-  if (!step.model.options.noise.changesMotion()) return step.chunk.actions();
+  if (!step.model.options.noise.changesMotion()) return arrivedOf(step);
   for (std::size_t e = 0; e < kChunk; ++e) disturb(step, e);
   return step.chunk.motions();
 }

@@ -6,7 +6,7 @@
 namespace galactic::simulation {
 
 /// What the robots of a chunk do of what their actions ask for, in rows: joints, forward, turn.
-/// The actions themselves, unless RobotNoise changes motions.
+/// What reaches them (arrivedOf()), unless RobotNoise changes motions.
 [[nodiscard]] std::span<const EnvRow> motionsOf(const ChunkStep& step) noexcept;
 
 /// The robot of an env knows where it is: its episode begins.

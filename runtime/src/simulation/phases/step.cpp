@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "simulation/phases/action_delay.h"
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/hand.h"
 #include "simulation/phases/move.h"
@@ -45,6 +46,7 @@ template <class Lap>
 void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) noexcept {
   step.state.prefetchBounds(step.first);
   readActions(step, input.actions);
+  delayActions(step);
   lap(Phase::kActions);
   proposePoses(step);
   lap(Phase::kPropose);

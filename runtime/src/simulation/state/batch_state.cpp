@@ -22,7 +22,8 @@ std::size_t rowCount(const Model& model) {
 std::size_t envBytes(const Model& model) {
   // What the alignment of an env's own vectors may cost.
   constexpr std::size_t kPadding = 96;
-  const std::size_t floats = rowCount(model) + 2 * model.observation_size + 1;
+  const std::size_t kept = model.options.noise.action_delay.most * model.actionCount();
+  const std::size_t floats = rowCount(model) + kept + 2 * model.observation_size + 1;
   return kPadding + sizeof(Env) + sizeof(EnvCounters) + sizeof(MoveCounters) + sizeof(Held) +
          sizeof(RestingObjects) + model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
          (model.heldWords() + model.most_objects * model.bodyWords()) * sizeof(std::uint64_t) +
@@ -101,6 +102,8 @@ BatchState::BatchState(const Model& model, std::size_t envs)
       variable_count_(model.variableCount()),
       row_count_(rowCount(model)),
       has_odometry_(odometryRows(model) != 0),
+      action_count_(model.actionCount()),
+      kept_steps_(model.options.noise.action_delay.most),
       observation_size_(model.observation_size),
       body_count_(model.bodyCount()) {
   const std::size_t padded = paddedToChunks(env_count_);
@@ -118,6 +121,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   ignored_.resize(padded * held_words_);
   leaving_.resize(padded * most_objects_ * body_words_);
   rows_.resize(padded / kChunk * row_count_);
+  kept_actions_.resize(padded / kChunk * kept_steps_ * action_count_);
   observations_.resize(padded * observation_size_);
   final_observations_.resize(padded * observation_size_);
   bodies_.resize(padded * body_count_);
@@ -168,8 +172,9 @@ void BatchState::prefetchBounds(std::size_t first) const noexcept {
 std::size_t BatchState::bytes() const {
   std::size_t bytes = bytesOf(envs_) + bytesOf(counters_) + bytesOf(moves_) + bytesOf(held_) +
                       bytesOf(resting_) + bytesOf(objects_) + bytesOf(ignored_) +
-                      bytesOf(leaving_) + bytesOf(rows_) + 2 * bytesOf(observations_) +
-                      bytesOf(bodies_) + bytesOf(rewards_) + 4 * bytesOf(dones_);
+                      bytesOf(leaving_) + bytesOf(rows_) + bytesOf(kept_actions_) +
+                      2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
+                      4 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

@@ -255,6 +255,18 @@ class BatchState {
       }
     }
   }
+  /// Of how many steps, the last ones, actions are kept, because they may arrive late: 0 where none
+  /// do, and then nobody may ask for any.
+  [[nodiscard]] std::size_t keptSteps() const { return kept_steps_; }
+  /// What the envs of a chunk from `first` on were asked to do in one of these steps. A step of an
+  /// env's episode counts modulo keptSteps(): the last one is so many before the next. Shape:
+  /// actions.
+  [[nodiscard]] std::span<EnvRow> keptActions(std::size_t first, std::size_t step) {
+    return std::span(kept_actions_).subspan(keptRow(first, step), action_count_);
+  }
+  [[nodiscard]] std::span<const EnvRow> keptActions(std::size_t first, std::size_t step) const {
+    return std::span(kept_actions_).subspan(keptRow(first, step), action_count_);
+  }
   /// Base and variables of the envs of a chunk from `first` on.
   [[nodiscard]] PoseArrays poses(std::size_t first) { return posesAt(number(0, first)); }
   [[nodiscard]] float variable(std::size_t v, std::size_t n) const {
@@ -349,6 +361,9 @@ class BatchState {
   [[nodiscard]] std::size_t targetStartRow() const { return targetRow() + 3; }
   [[nodiscard]] std::size_t lastActionRow() const { return targetStartRow() + 3; }
 
+  [[nodiscard]] std::size_t keptRow(std::size_t first, std::size_t step) const {
+    return (first / kChunk * kept_steps_ + step % kept_steps_) * action_count_;
+  }
   [[nodiscard]] const float* number(std::size_t row, std::size_t n) const {
     return rows_.data()[n / kChunk * row_count_ + row].values + n % kChunk;
   }
@@ -379,6 +394,8 @@ class BatchState {
   /// Of a chunk.
   std::size_t row_count_ = 0;
   bool has_odometry_ = false;
+  std::size_t action_count_ = 0;
+  std::size_t kept_steps_ = 0;
   /// Whether steps ask the memory ahead: where there is much to read.
   bool asks_ahead_ = false;
   std::size_t observation_size_ = 0;
@@ -395,6 +412,8 @@ class BatchState {
   /// of its envs, then goals, targets, where targets were at the start, and last actions; at the
   /// end odometry, where there is any.
   std::pmr::vector<EnvRow> rows_{&memory_};
+  /// Shape: chunks x kept steps x actions.
+  std::pmr::vector<EnvRow> kept_actions_{&memory_};
   std::pmr::vector<float> observations_{&memory_};
   std::pmr::vector<float> final_observations_{&memory_};
   std::pmr::vector<RigidTransform> bodies_{&memory_};

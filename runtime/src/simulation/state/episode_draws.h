@@ -11,6 +11,7 @@ namespace galactic::simulation {
 inline constexpr std::uint64_t kMotionDraw = 0x4D6F74696F6E4431ULL;
 inline constexpr std::uint64_t kBiasDraw = 0x426961732D2D4431ULL;
 inline constexpr std::uint64_t kLocalizationDraw = 0x506C6163652D4431ULL;
+inline constexpr std::uint64_t kDelayDraw = 0x44656C61792D4431ULL;
 inline constexpr std::uint64_t kLaserDraw = 0x4C617365722D4431ULL;
 
 /// What the episode of a moment has drawn.
@@ -19,6 +20,7 @@ inline constexpr std::uint64_t kLaserDraw = 0x4C617365722D4431ULL;
   return {.motion = drawnIn(moment, noise.motion, kMotionDraw),
           .motion_bias = drawnIn(moment, noise.motion_bias, kBiasDraw),
           .localization = drawnIn(moment, noise.localization, kLocalizationDraw),
+          .action_delay = drawnIn(moment, noise.action_delay, kDelayDraw),
           .laser = drawnIn(moment, model.laser.noise(), kLaserDraw)};
 }
 

@@ -44,6 +44,9 @@ struct EpisodeStart {
   std::size_t objects = 0;
 };
 
+/// Actions behind those that move the robot, the last ones: hand and terminate.
+inline constexpr std::size_t kSwitches = 2;
+
 /// What never changes in a run: computed once, shared by all threads.
 struct Model {
   std::optional<World> world;

@@ -201,6 +201,11 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
   for (std::size_t v = 0; v < model.variableCount(); ++v) out.add(state.variable(v, n));
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) out.add(state.lastAction(j, n));
   if (state.hasOdometry()) out.add(state.odometry(n).believed);
+  for (std::size_t k = 0; k < state.keptSteps(); ++k) {
+    for (const EnvRow& action : state.keptActions(n, env.step + k)) {
+      out.add(action.values[n % kChunk]);
+    }
+  }
   out.add(state.ignored(n));
   out.add(state.leaving(n).first(env.objects * model.bodyWords()));
   out.add(state.objects(n).first(env.objects));
@@ -282,6 +287,16 @@ bool leavesAsSaid(const Model& model, const SavedEnv& saved) {
   return left == saved.env.left;
 }
 
+/// Whether they can be those of some steps: from -1 to 1, and hands and terminations also no
+/// numbers, of steps in which nothing was asked for.
+bool areActions(std::span<const float> actions, std::size_t of_step) {
+  for (std::size_t n = 0; n < actions.size(); ++n) {
+    const bool may_be_none = n % of_step + kSwitches >= of_step && std::isnan(actions[n]);
+    if (!may_be_none && !(std::abs(actions[n]) <= 1)) return false;
+  }
+  return true;
+}
+
 tl::unexpected<Error> refused(std::string message) {
   return fail(ErrorCode::kInvalidInput, kWhere, std::move(message));
 }
@@ -297,6 +312,8 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
   saved.variables = in.takeMany<float>(model.variableCount());
   saved.last_actions = in.takeMany<float>(model.motion.controlled.size());
   if (model.options.noise.localization.most > 0) in.take(saved.believed);
+  const std::size_t kept_steps = model.options.noise.action_delay.most;
+  saved.kept_actions = in.takeMany<float>(kept_steps * model.actionCount());
   saved.ignored = in.takeMany<std::uint64_t>(model.heldWords());
   saved.leaving = in.takeMany<std::uint64_t>(saved.env.objects * model.bodyWords());
   saved.objects = in.takeMany<Pose>(saved.env.objects);
@@ -310,7 +327,8 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
   }
   const auto plain = [](const auto& one) { return isPlain(one); };
   const PlanarPose& believed = saved.believed;
-  if (!arePlain(saved.variables) || !arePlain(saved.last_actions) || !isPlain(believed.x) ||
+  if (!arePlain(saved.variables) || !arePlain(saved.last_actions) ||
+      !areActions(saved.kept_actions, model.actionCount()) || !isPlain(believed.x) ||
       !isPlain(believed.z) || !isPlain(believed.yaw) ||
       !std::ranges::all_of(saved.objects, plain) || !std::ranges::all_of(saved.bodies, plain)) {
     return refused(fmt::format("env {} has a number that no simulation leaves; it is damaged", n));
@@ -324,12 +342,17 @@ Result<void> checkSubject(const Model& model, const Header& header, std::string_
     return refused("is of another world; restore it where it was saved");
   }
   const std::vector<OptionText> options = sharedOptions(model.options);
-  for (const OptionText& option : options) {
+  const std::vector<OptionText> defaults = sharedOptions({});
+  for (std::size_t n = 0; n < options.size(); ++n) {
+    const OptionText& option = options[n];
     const std::string line = option.name + "=" + option.value + "\n";
     if (lines.starts_with(line)) {
       lines.remove_prefix(line.size());
       continue;
     }
+    // Whoever saved it before there was this option did as by default.
+    const bool is_named = lines.starts_with(option.name + "=");
+    if (!is_named && option.value == defaults[n].value) continue;
     const std::string_view found = lines.substr(0, lines.find('\n'));
     return refused(fmt::format("was saved with other options: expected {}={}, found {}",
                                option.name, option.value, found.empty() ? "nothing" : found));
@@ -418,6 +441,11 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   }
   state.setGrip(n, saved.grip);
   if (state.hasOdometry()) state.setOdometry(n, {state.planarPose(n), saved.believed});
+  const std::size_t actions = model.actionCount();
+  for (std::size_t k = 0; k < saved.kept_actions.size(); ++k) {
+    state.keptActions(n, env.step + k / actions)[k % actions].values[n % kChunk] =
+        saved.kept_actions[k];
+  }
   for (std::size_t j = 0; j < saved.last_actions.size(); ++j) {
     state.setLastAction(j, n, saved.last_actions[j]);
   }

@@ -39,6 +39,9 @@ struct SavedEnv {
   bool is_idle = false;
   std::vector<float> variables;
   std::vector<float> last_actions;
+  /// Those that may arrive late, of one step after the other: where there is delay. Empty: none is
+  /// under way.
+  std::vector<float> kept_actions;
   std::vector<std::uint64_t> ignored;
   std::vector<std::uint64_t> leaving;
   std::vector<Pose> objects;

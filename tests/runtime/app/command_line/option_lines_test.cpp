@@ -31,7 +31,10 @@ SimulationOptions unusualOptions() {
                        .direction_spread = 3.14159265F,
                        .jitter = 1e-8F};
   options.ground = {.most_rise = 0.2F, .most_drop = 0.4F};
-  options.noise = {.motion = {0.1F / 3, 0.1F}, .motion_bias = 0.03F, .localization = 0.2F};
+  options.noise = {.motion = {0.1F / 3, 0.1F},
+                   .motion_bias = 0.03F,
+                   .localization = 0.2F,
+                   .action_delay = {1, 3}};
   options.sensors = {.bump = true,
                      .target_goal = true,
                      .target_up = true,
@@ -77,6 +80,7 @@ TEST(OptionText, ReadsBackWhatItWrote) {
   EXPECT_EQ(read->placement.jitter, options.placement.jitter);
   EXPECT_EQ(read->sensors.laser.heights, options.sensors.laser.heights);
   EXPECT_EQ(read->noise.motion, options.noise.motion);
+  EXPECT_EQ(read->noise.action_delay, options.noise.action_delay);
   EXPECT_EQ(read->task.kind, TaskKind::kMobilePick);
   EXPECT_FALSE(read->task.distractors);
 }
