@@ -339,6 +339,7 @@ class Renderer:
         light_jitter: _Drawn = 0,
         camera_jitter: _Drawn = 0,
         camera_jitter_degrees: _Drawn = 0,
+        camera_jitter_fov: _Drawn = 0,
         backend: Literal["auto", "soft", "gl", "cuda"] = "auto",
         device: str | int = "",
         threads: int = 0,
@@ -355,7 +356,7 @@ class Renderer:
     @property
     def shapes(self) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]: ...
     @property
-    def intrinsics(self) -> NDArray[np.float32]: ...  # (3, 3)
+    def intrinsics(self) -> NDArray[np.float32]: ...  # (3, 3) or (num_envs, 3, 3)
     @property
     def world_from_camera(self) -> NDArray[np.float32]: ...  # (num_envs, 4, 4)
     @property

@@ -64,6 +64,7 @@ std::unique_ptr<Renderer> Renderer::create(const py::object& simulator,
       new Renderer(simulator, orThrow(WorldModels::from(shown.world()))));
   RenderOptions render = options.render;
   render.near = camera.near;
+  renderer->has_fovs_ = camera.mount.jitter.camera_jitter_fov.most > 0;
   const Confinement::Use use = shown.readState();
   const py::gil_scoped_release unlocked;
   renderer->renderer_.emplace(orThrow(BatchRenderer::create(renderer->models_.library(), render)));
@@ -180,12 +181,18 @@ py::tuple Renderer::semanticNames() const {
   return py::tuple(names);
 }
 
-py::array_t<float> Renderer::intrinsics() const {
+py::array_t<float> Renderer::intrinsics() {
+  const Confinement::Use use = confinement_.enter();
   const RenderOptions& options = renderer_->options();
-  py::array_t<float> matrix({3, 3});
-  std::ranges::copy(cameraMatrix(views_->views().front().camera, options.width, options.height),
-                    matrix.mutable_data());
-  return matrix;
+  const std::span<const RenderView> views =
+      views_->views().first(has_fovs_ ? views_->views().size() : 1);
+  Shape shape{3, 3};
+  if (has_fovs_) shape.insert(shape.begin(), static_cast<py::ssize_t>(views.size()));
+  Filled<float> matrices(shape);
+  for (const RenderView& view : views) {
+    matrices.put(cameraMatrix(view.camera, options.width, options.height));
+  }
+  return matrices.array();
 }
 
 py::array_t<float> Renderer::worldFromCameras() {

@@ -51,8 +51,9 @@ class Renderer {
   [[nodiscard]] const BatchRenderer& batch() const { return *renderer_; }
   /// What the numbers of semantic images mean.
   [[nodiscard]] py::tuple semanticNames() const;
-  /// float32 (3, 3): from directions in the frames of worldFromCameras() to pixels.
-  [[nodiscard]] py::array_t<float> intrinsics() const;
+  /// float32 (3, 3): from directions in the frames of worldFromCameras() to pixels. Where fields of
+  /// view differ, (envs, 3, 3), as when images were drawn last.
+  [[nodiscard]] py::array_t<float> intrinsics();
   /// float32 (envs, 4, 4): where the cameras were when images were drawn last, with the axes of
   /// images: X to the right, Y down, Z ahead.
   [[nodiscard]] py::array_t<float> worldFromCameras();
@@ -74,6 +75,8 @@ class Renderer {
   Confinement confinement_{"Renderer"};
   WorldModels models_;
   std::optional<WorldViews> views_;
+  /// Whether fields of view differ.
+  bool has_fovs_ = false;
   std::vector<RenderView> chosen_;
   /// Arrays by name; those of a rendering under way stay until it is done.
   py::dict images_;

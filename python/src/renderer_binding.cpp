@@ -139,7 +139,8 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
                                 .rpy = "rpy_degrees",
                                 .near = "near",
                                 .jitter = "camera_jitter",
-                                .jitter_degrees = "camera_jitter_degrees"}};
+                                .jitter_degrees = "camera_jitter_degrees",
+                                .jitter_fov = "camera_jitter_fov"}};
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     if (!takeKeyword(name, value, options)) refuseKeyword(name, keywordNames());
@@ -202,7 +203,8 @@ void bindRenderer(py::module_& module) {
       "share of pixels without depth; color_noise, the standard deviation of each channel,\n"
       "levels of 255; light_jitter, by which share an episode may be brighter or darker;\n"
       "camera_jitter, meters, and camera_jitter_degrees, how far the camera may be from its\n"
-      "place in an episode. They follow from seed, env, episode and step: an image that is drawn\n"
+      "place in an episode, and camera_jitter_fov, degrees, how far from its field of view. They "
+      "follow from seed, env, episode and step: an image that is drawn\n"
       "twice is the same.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
@@ -240,7 +242,9 @@ void bindRenderer(py::module_& module) {
                              "Of one env's images, by name: shape and dtype.");
   type.def_property_readonly(
       "intrinsics", &Renderer::intrinsics,
-      "The camera matrix of all images, float32 (3, 3), pixels: (column, row, 1) of a point is\n"
+      "The camera matrix of all images, float32 (3, 3), or with camera_jitter_fov those of all "
+      "envs\n"
+      "when images were drawn last, (num_envs, 3, 3), pixels: (column, row, 1) of a point is\n"
       "intrinsics @ (x, y, z) / z, in the axes of world_from_camera. The first pixel's middle is\n"
       "(0.5, 0.5).");
   type.def_property_readonly(

@@ -156,6 +156,7 @@ TEST_F(PolicyCli, SeesNoiseAndJitterWhereTheyAreAskedFor) {
   EXPECT_EQ(all.size(), 5U);
   EXPECT_TRUE(seen({"--depth-noise", "0"}) == plain);
   EXPECT_FALSE(all.contains(seen({"--depth-noise", "0.05-0.2"})));
+  EXPECT_FALSE(all.contains(seen({"--camera-jitter-fov", "20"})));
   // Also beside images for people of another kind.
   EXPECT_TRUE(all.contains(seen({"--color-noise", "40", "--render", "depth", "--size", "16"})));
 }

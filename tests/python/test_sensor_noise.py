@@ -203,6 +203,35 @@ def test_world_from_camera_is_where_the_camera_is_with_jitter(world, draw_action
     assert (np.abs(plain.render()["depth"][0] - wanted) < 1e-3).mean() < 0.9
 
 
+def test_with_jitter_of_its_field_of_view_each_env_has_a_camera_of_its_own(simulator):
+    options = {**CAMERA, "fov_degrees": 60, "color": None}
+    plain = Renderer(simulator, **options)
+    other = Renderer(simulator, **options, camera_jitter_fov=12)
+    assert plain.intrinsics.shape == (3, 3)
+    depth = other.render()["depth"]
+    matrices = other.intrinsics
+    assert matrices.shape == (ENVS, 3, 3)
+    fovs = np.degrees(2 * np.arctan(CAMERA["height"] / 2 / matrices[:, 1, 1]))
+    assert (np.abs(fovs - 60) <= 12 + 1e-3).all() and np.ptp(fovs) > 4
+    np.testing.assert_array_equal(other.world_from_camera, plain.world_from_camera)
+    plain_depth = plain.render()["depth"]
+    for env, fov in enumerate(fovs):
+        # A camera that is meant to be so sees the same.
+        placed = Renderer(simulator, **{**options, "fov_degrees": fov}).render(envs=[env])["depth"]
+        assert (np.abs(placed[0] - depth[env]) < 1e-3).mean() > 0.98
+        assert abs(fov - 60) < 1 or (np.abs(plain_depth[env] - depth[env]) < 1e-3).mean() < 0.9
+    simulator.step(np.zeros((ENVS, simulator.action_count), np.float32))
+    other.render()
+    np.testing.assert_array_equal(other.intrinsics, matrices)
+    simulator.reset()
+    other.render()
+    assert (other.intrinsics[:, 1, 1] != matrices[:, 1, 1]).all()
+    with pytest.raises(
+        Error, match="camera_jitter_fov: found 60 degrees about a field of view of 60"
+    ):
+        Renderer(simulator, **options, camera_jitter_fov=(0, 60))
+
+
 RANGES = {
     "depth_noise": (0.001, 0.05),
     "depth_dropout": "0.05-0.4",
@@ -281,6 +310,7 @@ def test_cameras_in_different_places_have_noise_of_their_own(world):
         ({"color_noise": 256}, "color_noise: is 256, expected 0 to 255"),
         ({"light_jitter": "much"}, "light_jitter: is 'much', expected 0 to 1, or a range"),
         ({"camera_jitter": 2}, "camera_jitter: is 2, expected 0 to 1"),
+        ({"camera_jitter_fov": 91}, "camera_jitter_fov: is 91, expected 0 to 90"),
         ({"camera_jitter_degrees": 200}, "camera_jitter_degrees: is 200, expected 0 to 180"),
         ({"depth": False, "depth_noise": 0.1}, "found noise or dropout of depth, and no depth"),
         ({"color": None, "light_jitter": 0.1}, "found noise or jitter of colors, and no color"),

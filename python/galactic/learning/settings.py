@@ -28,6 +28,7 @@ CAMERA_NOISE = (
     *COLOR_NOISE,
     "camera_jitter",
     "camera_jitter_degrees",
+    "camera_jitter_fov",
 )
 # Options of galactic.Renderer, and the settings that they are taken from.
 CAMERA = {
@@ -178,6 +179,14 @@ class Settings:
         "the same of its roll, pitch and yaw, degrees",
         low=0.0,
         high=180.0,
+        may_be_range=True,
+    )
+    camera_jitter_fov: Drawn = setting(
+        0.0,
+        "Network",
+        "the same of its vertical field of view, degrees",
+        low=0.0,
+        high=90.0,
         may_be_range=True,
     )
     recurrent: bool = setting(

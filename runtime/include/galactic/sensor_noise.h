@@ -40,16 +40,19 @@ struct ImageNoise {
   }
 };
 
-/// How far a camera may be from where it should be mounted, elsewhere in each episode. Off by
-/// default. Each number may be a range from which episodes draw how far that is.
+/// How far a camera may be from what it should be, and from where it should be mounted: another one
+/// in each episode. Off by default. Each number may be a range from which episodes draw how far
+/// that is.
 struct CameraJitter {
   /// Either way along each of the camera's axes, meters.
   DrawnNumber camera_jitter = 0;
   /// Either way in roll, pitch and yaw, degrees.
   DrawnNumber camera_jitter_degrees = 0;
+  /// Either way in its vertical field of view, degrees.
+  DrawnNumber camera_jitter_fov = 0;
 
   [[nodiscard]] constexpr bool isOn() const {
-    return camera_jitter.most > 0 || camera_jitter_degrees.most > 0;
+    return camera_jitter.most > 0 || camera_jitter_degrees.most > 0 || camera_jitter_fov.most > 0;
   }
 };
 
@@ -74,11 +77,13 @@ inline constexpr std::array<SensorOption<ImageNoise>, 4> kImageNoiseOptions{{
      &ImageNoise::light_jitter},
 }};
 
-inline constexpr std::array<SensorOption<CameraJitter>, 2> kCameraJitterOptions{{
+inline constexpr std::array<SensorOption<CameraJitter>, 3> kCameraJitterOptions{{
     {"camera-jitter", "METERS", "How far the camera may be off along each axis, by episode", 1,
      &CameraJitter::camera_jitter},
     {"camera-jitter-degrees", "DEGREES", "The same of its roll, pitch and yaw", 180,
      &CameraJitter::camera_jitter_degrees},
+    {"camera-jitter-fov", "DEGREES", "The same of its vertical field of view", 90,
+     &CameraJitter::camera_jitter_fov},
 }};
 
 // No field without an option.

@@ -36,7 +36,7 @@ struct CameraMount {
   /// For kBase: the camera turns about the robot, or comes nearer, where something of the scene
   /// stands between the two, as the column grids can tell.
   bool keeps_sight = false;
-  /// How far it may be from there.
+  /// How far it may be from all of this.
   CameraJitter jitter = {};
   /// NoiseSource::camera: cameras with the same number have the same jitter and noise.
   std::uint64_t number = 0;
@@ -136,6 +136,7 @@ struct CameraOptionNames {
   std::string near = "--near";
   std::string jitter = "--camera-jitter";
   std::string jitter_degrees = "--camera-jitter-degrees";
+  std::string jitter_fov = "--camera-jitter-fov";
 };
 
 /// A camera as a user asks for it.
@@ -156,7 +157,7 @@ struct CameraWish {
   /// Meters in front of it that are cut off, kLeastNear to kMostNear; 0: what belongs to the
   /// camera.
   float near = 0;
-  /// How far it may be from there.
+  /// How far it may be from there. Its field of view stays kLeastFovDegrees to kMostFovDegrees.
   CameraJitter jitter = {};
   CameraOptionNames options = {};
 };

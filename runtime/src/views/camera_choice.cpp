@@ -128,16 +128,40 @@ Result<void> checkNumbers(const CameraWish& wish) {
     return refuse(wish.options.rpy, fmt::format("found {} degrees, expected {} to {}", degrees,
                                                 -kMostCameraTurn, kMostCameraTurn));
   }
-  for (const SensorOption<CameraJitter>& option : kCameraJitterOptions) {
+  return {};
+}
+
+/// Of a camera with the field of view `fov`, radians.
+Result<void> checkJitter(const CameraWish& wish, float fov) {
+  const CameraOptionNames& names = wish.options;
+  struct Named {
+    const std::string& option;
+    const char* unit;
+  };
+  // In the order of the table.
+  const std::array<Named, kCameraJitterOptions.size()> told{
+      {{names.jitter, "m"}, {names.jitter_degrees, "degrees"}, {names.jitter_fov, "degrees"}}};
+  for (std::size_t n = 0; n < told.size(); ++n) {
+    const SensorOption<CameraJitter>& option = kCameraJitterOptions.at(n);
     const DrawnNumber& value = wish.jitter.*option.value;
     const Span within{0, option.most};
     if (isDrawnWithin(value, within)) continue;
-    const bool is_place = option.value == &CameraJitter::camera_jitter;
-    return refuse(is_place ? wish.options.jitter : wish.options.jitter_degrees,
-                  fmt::format("found {} {}, expected {}", drawnText(value),
-                              is_place ? "m" : "degrees", wantedDrawn(within)));
+    return fail(ErrorCode::kInvalidInput, told.at(n).option,
+                fmt::format("found {} {}, expected {}", drawnText(value), told.at(n).unit,
+                            wantedDrawn(within)));
   }
-  return {};
+  const float degrees = fov / kRadiansPerDegree;
+  const float off = wish.jitter.camera_jitter_fov.most;
+  // Rounding decides nothing.
+  constexpr float kAbout = 1e-3F;
+  if (isWithin(degrees - off, kLeastFovDegrees - kAbout, kMostFovDegrees) &&
+      isWithin(degrees + off, kLeastFovDegrees, kMostFovDegrees + kAbout)) {
+    return {};
+  }
+  return fail(ErrorCode::kInvalidInput, names.jitter_fov,
+              fmt::format("found {} degrees about a field of view of {:.4g} degrees; expected one "
+                          "that stays {} to {}",
+                          off, degrees, kLeastFovDegrees, kMostFovDegrees));
 }
 
 }  // namespace
@@ -154,6 +178,9 @@ Result<ChosenCamera> chooseCamera(const Robot& robot, const CameraWish& wish) {
   camera->mount.number = numberOf(wish);
   if (wish.fov_degrees != 0) camera->mount.vertical_fov = wish.fov_degrees * kRadiansPerDegree;
   if (wish.near != 0) camera->near = wish.near;
+  if (const Result<void> checked = checkJitter(wish, camera->mount.vertical_fov); !checked) {
+    return tl::unexpected<Error>(checked.error());
+  }
   return camera;
 }
 

@@ -39,4 +39,13 @@ Pose drawOffset(const CameraJitter& jitter, std::uint64_t camera,
                       draw(drawnIn(moment, jitter.camera_jitter_degrees, kTurnDraw ^ camera)));
 }
 
+float drawFovOffset(const CameraJitter& jitter, std::uint64_t camera,
+                    const EnvMoment& moment) noexcept {
+  constexpr std::uint64_t kFovSalt = 0x4A69747465722D32ULL;
+  constexpr std::uint64_t kFovDraw = 0x4A69747465724433ULL;
+  const float most = drawnIn(moment, jitter.camera_jitter_fov, kFovDraw ^ camera);
+  RandomStream random(moment.seed ^ kFovSalt ^ camera, moment.env, moment.episode, 0);
+  return most * (2 * random.unit() - 1) * (std::numbers::pi_v<float> / 180);
+}
+
 }  // namespace galactic

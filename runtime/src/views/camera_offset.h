@@ -17,4 +17,8 @@ namespace galactic {
 [[nodiscard]] Pose drawOffset(const CameraJitter& jitter, std::uint64_t camera,
                               const EnvMoment& moment) noexcept;
 
+/// The same of its vertical field of view: radians, more or less than it should be.
+[[nodiscard]] float drawFovOffset(const CameraJitter& jitter, std::uint64_t camera,
+                                  const EnvMoment& moment) noexcept;
+
 }  // namespace galactic

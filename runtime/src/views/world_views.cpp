@@ -45,7 +45,8 @@ RenderCamera MountedCamera::at(std::span<const RigidTransform> bodies, std::uint
                                const EnvMoment& moment) const noexcept {
   const RigidTransform mounted = withoutJitter(bodies, scene);
   if (!jitter_.isOn()) return {mounted, vertical_fov_};
-  return {mounted * rigidTransform(drawOffset(jitter_, number_, moment)), vertical_fov_};
+  return {mounted * rigidTransform(drawOffset(jitter_, number_, moment)),
+          vertical_fov_ + drawFovOffset(jitter_, number_, moment)};
 }
 
 RigidTransform MountedCamera::withoutJitter(std::span<const RigidTransform> bodies,

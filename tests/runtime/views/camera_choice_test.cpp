@@ -147,6 +147,28 @@ TEST(CameraChoice, RefusesJitterOutOfRange) {
   EXPECT_EQ(refusal({.camera_jitter = {0.1F, 0.3F}}), "");
   EXPECT_EQ(refusal({.camera_jitter = {0.3F, 0.1F}}),
             "--camera-jitter: found 0.3-0.1 m, expected 0 to 1" + or_range("1"));
+  EXPECT_EQ(refusal({.camera_jitter_fov = 91}),
+            "--camera-jitter-fov: found 91 degrees, expected 0 to 90" + or_range("90"));
+  EXPECT_EQ(refusal({.camera_jitter_fov = {-1, 2}}),
+            "--camera-jitter-fov: found -1-2 degrees, expected 0 to 90" + or_range("90"));
+}
+
+TEST(CameraChoice, RefusesFieldsOfViewThatJitterLeadsOutOfRange) {
+  const test::SmallHome home;
+  const auto refusal = [&](float fov_degrees, const DrawnNumber& jitter) {
+    CameraWish wish{.name = "hand", .fov_degrees = fov_degrees};
+    wish.jitter.camera_jitter_fov = jitter;
+    const auto none = chooseCamera(home.world().robot(), wish);
+    return none ? "" : none.error().text();
+  };
+  EXPECT_EQ(refusal(60, 59), "");
+  EXPECT_EQ(refusal(170, 5), "");
+  EXPECT_EQ(refusal(60, {0, 60}),
+            "--camera-jitter-fov: found 60 degrees about a field of view of 60 degrees; expected "
+            "one that stays 1 to 175");
+  EXPECT_EQ(refusal(170, 6),
+            "--camera-jitter-fov: found 6 degrees about a field of view of 170 degrees; expected "
+            "one that stays 1 to 175");
 }
 
 TEST(CameraChoice, RefusesFieldsOfViewThatShowNothing) {

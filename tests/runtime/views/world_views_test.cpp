@@ -360,12 +360,68 @@ TEST_F(WorldViewsOfAHome, WithJitterTheCameraIsElsewhereInEachEpisodeWithinLimit
   EXPECT_EQ(difference(offset(jittered, 0), first), 0);
 }
 
+TEST_F(WorldViewsOfAHome, WithJitterOfItsFieldOfViewTheCameraIsAnotherInEachEpisode) {
+  constexpr float kDegrees = 5;
+  constexpr float kLimit = kDegrees * 3.14159265F / 180;
+  CameraMount mount{.frame = CameraFrame::kLink,
+                    .link = 4,
+                    .frame_from_camera = {},
+                    .vertical_fov = 1,
+                    .jitter = {.camera_jitter = 0.05F}};
+  WorldViews without(*world_, *models_, *simulator_, mount);
+  mount.jitter.camera_jitter_fov = kDegrees;
+  WorldViews with(*world_, *models_, *simulator_, mount);
+  mount.jitter.camera_jitter_fov = {0, kDegrees};
+  WorldViews drawn(*world_, *models_, *simulator_, mount);
+  const auto update = [&] {
+    for (WorldViews* views : {&without, &with, &drawn}) views->update(*simulator_);
+  };
+  float sum = 0;
+  float least = 0;
+  float most = 0;
+  constexpr std::uint64_t kSeeds = 200;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    simulator_->restart(seed);
+    update();
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      const RenderCamera& camera = with.views()[env].camera;
+      ASSERT_EQ(without.views()[env].camera.vertical_fov, 1);
+      ASSERT_EQ(difference(camera.world_from_camera, without.views()[env].camera.world_from_camera),
+                0);
+      const float share = (camera.vertical_fov - 1) / kLimit;
+      least = std::min(least, share);
+      most = std::max(most, share);
+      sum += share;
+      // Of a range, the same way, and not further.
+      const float own = (drawn.views()[env].camera.vertical_fov - 1) / kLimit;
+      ASSERT_GE(own * share, 0);
+      ASSERT_LE(std::abs(own), std::abs(share) + 1e-5F);
+    }
+  }
+  constexpr float kRounding = 1e-5F;
+  EXPECT_GE(least, -1 - kRounding);
+  EXPECT_LT(least, -0.9F);
+  EXPECT_GT(most, 0.9F);
+  EXPECT_LE(most, 1 + kRounding);
+  EXPECT_NEAR(sum / (kSeeds * kEnvs), 0, 4 * std::sqrt(1.0F / 3 / (kSeeds * kEnvs)));
+  // The same in all of an episode.
+  const float first = with.views()[0].camera.vertical_fov;
+  for (int n = 0; n < 5; ++n) {
+    step();
+    update();
+    EXPECT_EQ(with.views()[0].camera.vertical_fov, first);
+  }
+  simulator_->reset(std::vector<std::int32_t>(kEnvs, BatchSimulator::kNextEpisode));
+  update();
+  EXPECT_NE(with.views()[0].camera.vertical_fov, first);
+}
+
 TEST_F(WorldViewsOfAHome, EachEpisodeDrawsItsOwnLimitOfTheJitterFromARange) {
   constexpr float kLeast = 0.02F;
   constexpr float kMost = 0.1F;
   CameraMount mount{.frame = CameraFrame::kLink, .link = 4, .frame_from_camera = {}};
   WorldViews plain(*world_, *models_, *simulator_, mount);
-  mount.jitter = {.camera_jitter = {kLeast, kMost}, .camera_jitter_degrees = {}};
+  mount.jitter = {.camera_jitter = {kLeast, kMost}};
   WorldViews jittered(*world_, *models_, *simulator_, mount);
   mount.jitter.camera_jitter = kMost;
   WorldViews widest(*world_, *models_, *simulator_, mount);

@@ -296,11 +296,12 @@ TEST(RunCommandLine, DrawsWhenTold) {
   EXPECT_EQ(color.height, 64U);
   EXPECT_EQ(color.noise.color_noise, 5);
   EXPECT_EQ(color.noise.light_jitter, 0.3F);
-  const DrawingOptions drawn =
-      parsed({"--render", "rgbd", "--depth-noise", "0.01-0.03", "--camera-jitter", "0-0.05"})
-          .drawing;
+  const DrawingOptions drawn = parsed({"--render", "rgbd", "--depth-noise", "0.01-0.03",
+                                       "--camera-jitter", "0-0.05", "--camera-jitter-fov", "3"})
+                                   .drawing;
   EXPECT_EQ(drawn.noise.depth_noise, DrawnNumber(0.01F, 0.03F));
   EXPECT_EQ(drawn.jitter.camera_jitter, DrawnNumber(0, 0.05F));
+  EXPECT_EQ(drawn.jitter.camera_jitter_fov, DrawnNumber(3));
   EXPECT_TRUE(drawn.isNoisy());
   EXPECT_FALSE(plain.drawing.isNoisy());
   // What a policy sees may be noisy where nothing else is drawn.
@@ -339,6 +340,7 @@ TEST(RunCommandLine, RefusesWhatMakesNoSense) {
       {"--render", "rgb", "--light-jitter", "2"},
       {"--render", "rgb", "--camera-jitter", "1.1"},
       {"--render", "rgb", "--camera-jitter-degrees", "181"},
+      {"--render", "rgb", "--camera-jitter-fov", "91"},
       {"--render", "rgb", "--depth-noise", "0.1"},
       {"--render", "rgb", "--depth-dropout", "0.1"},
       {"--render", "rgb", "--depth-dropout", "0-0.1"},
