@@ -52,7 +52,7 @@ def act(observations):
 homes = galactic.VectorEnv(sys.argv[2], 64, order="partition", **shown.about.options)
 observations, infos = homes.reset(seed=1)
 successes = episodes = 0
-while not homes.simulators[0].idle.all():
+while not homes.idle.all():
     observations, rewards, terminations, truncations, infos = homes.step(act(observations))
     successes += int(homes.simulators[0].successes.sum())
     episodes += int((terminations | truncations).sum())

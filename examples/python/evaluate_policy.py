@@ -25,7 +25,7 @@ def drive_to_target(observations):
 
 endings = {}
 observations, infos = homes.reset()
-while not all(simulator.idle.all() for simulator in homes.simulators):
+while not homes.idle.all():
     actions = drive_to_target(observations)
     observations, rewards, terminations, truncations, infos = homes.step(actions)
     for env in np.flatnonzero(terminations | truncations):

@@ -58,6 +58,7 @@ if __name__ == "__main__":
     random = np.random.default_rng(2)
     observations, _ = homes.reset()
     print(f"observed: {', '.join(homes.observation_parts)}")
+    returns = []
     for step in range(400):
         homes.progress = step / 400
         actions = random.uniform(-1, 1, homes.action_space.shape)
@@ -65,3 +66,6 @@ if __name__ == "__main__":
         if terminations.any():
             reached = infos["final_info"]["episode_index"][terminations]
             print(f"step {step}: reached the targets of episodes {sorted(set(reached.tolist()))}")
+        if "episode" in infos:
+            returns.extend(infos["episode"]["r"][infos["_episode"]])
+    print(f"{len(returns)} episodes, which paid {np.mean(returns):.2f} m in the mean")

@@ -74,17 +74,17 @@ class Agent(nn.Module):
 
 
 class Policy:
-    """What the agent may do next: motions [..., motions], and one decision of the hand."""
+    """What the agent may do next: motions [..., motions], and a decision of the hand."""
 
     def __init__(self, mean, deviation, hand_logits):
         self.motions = Normal(mean, deviation.expand_as(mean), validate_args=False)
         self.hand = Bernoulli(logits=hand_logits, validate_args=False)
 
-    def sample(self):
-        return rows_of(self.motions.sample(), self.hand.sample())
-
-    def likeliest(self):
-        return rows_of(self.motions.mean, (self.hand.logits > 0).float())
+    def act(self, likeliest=False):
+        """Actions as the simulator takes them: motions, hand, terminate."""
+        motions = self.motions.mean if likeliest else self.motions.sample()
+        hand = (self.hand.probs.round() if likeliest else self.hand.sample()).unsqueeze(-1)
+        return torch.cat([motions, hand, torch.zeros_like(hand)], -1)
 
     def log_prob(self, actions):
         """Of samples as they were drawn: that the simulator clamps them is a matter of the world."""
@@ -93,12 +93,6 @@ class Policy:
 
     def entropy(self):
         return self.motions.entropy().sum(-1) + self.hand.entropy()
-
-
-def rows_of(motions, hand):
-    """Actions as the simulator takes them: motions, hand, terminate."""
-    hand = hand.unsqueeze(-1)
-    return torch.cat([motions, hand, torch.zeros_like(hand)], -1)
 
 
 def perceptron(inputs, width, outputs, last_gain):
@@ -117,7 +111,9 @@ class Rollout:
         self.arrays = homes.buffers(HORIZON)
         self.actions = torch.zeros(HORIZON, ENVS, *homes.single_action_space.shape)
         self.log_probs = torch.zeros(HORIZON, ENVS)
-        self.observations = torch.from_numpy(self.arrays["state"])  # one row more: after the last step
+        self.observations = torch.from_numpy(
+            self.arrays["state"]
+        )  # one row more: after the last step
         self.rewards = torch.from_numpy(self.arrays["rewards"])
         self.successes = collections.deque(maxlen=1000)
         self.returns = collections.deque(maxlen=1000)
@@ -134,7 +130,7 @@ class Rollout:
                     self.receive(step - 1, half)
                 rows = self.homes.rows(half)
                 policy = agent.policy(agent.features(self.observations[step, rows]))
-                actions = policy.sample()
+                actions = policy.act()
                 self.actions[step, rows] = actions
                 self.log_probs[step, rows] = policy.log_prob(actions)
                 lands = {"state": self.arrays["state"][step + 1, rows]}
@@ -221,11 +217,9 @@ def train(world, steps, seed, file):
         now, done = time.perf_counter(), (number + 1) * HORIZON * ENVS
         if (now - said > 5 or number == updates - 1) and rollout.successes:
             said = now
-            print(
-                f"{done:9,} steps, {done / (now - began):,.0f} a second: {np.mean(rollout.successes):.1%} of "
-                f"the latest episodes solved, {np.mean(rollout.returns):.1f} paid",
-                flush=True,
-            )
+            success, paid = np.mean(rollout.successes), np.mean(rollout.returns)
+            text = f"{done:9,} steps, {done / (now - began):,.0f} a second: {success:.1%} solved, "
+            print(text + f"{paid:.1f} paid", flush=True)
     sizes = {"seen": seen, "motions": actions - 2}
     torch.save({"agent": agent.state_dict(), "sizes": sizes, "steps": done, "seed": seed}, file)
     return agent
@@ -237,10 +231,9 @@ def play(agent, world, *, likeliest):
     homes = galactic.VectorEnv(world, 100, order="partition", **TASK)
     observations, _ = homes.reset()
     ended = solved = 0
-    while not homes.simulators[0].idle.all():
+    while not homes.idle.all():
         policy = agent.policy(agent.features(torch.from_numpy(observations)))
-        actions = policy.likeliest() if likeliest else policy.sample()
-        observations, _, terminations, truncations, infos = homes.step(actions.numpy())
+        observations, _, _, _, infos = homes.step(policy.act(likeliest).numpy())
         if "final_info" in infos:
             ended += infos["_final_info"].sum()
             solved += infos["final_info"]["success"].sum()
@@ -258,11 +251,11 @@ if __name__ == "__main__":
     given = parser.parse_args()
     if given.play:
         kept = torch.load(given.play)
-        player = Agent(**kept["sizes"])
-        player.load_state_dict(kept["agent"])
+        agent = Agent(**kept["sizes"])
+        agent.load_state_dict(kept["agent"])
     else:
-        player = train(given.world, int(given.steps), given.seed, given.output)
-    for pack in [given.unseen or given.world]:
-        torch.manual_seed(given.seed)
-        sampled, likeliest = (play(player, pack, likeliest=chosen) for chosen in (False, True))
-        print(f"{pack}: {sampled:.1%} of its episodes solved by sampled actions, {likeliest:.1%} by the likeliest")
+        agent = train(given.world, int(given.steps), given.seed, given.output)
+    torch.manual_seed(given.seed)
+    played = given.unseen or given.world
+    sampled, likeliest = (play(agent, played, likeliest=one) for one in (False, True))
+    print(f"solved of {played}: {sampled:.1%} by sampled actions, {likeliest:.1%} by the likeliest")

@@ -73,7 +73,10 @@ scan = cast(without_robot, np.broadcast_to(eye, beams.shape), beams, LIDAR_RANGE
 points = eye + scan.distance[:, np.newaxis] * beams
 across, along = ((points[:, [0, 2]] - low) / PIXEL).astype(int).T
 inside = (across >= 0) & (across < width) & (along >= 0) & (along < height)
-for end, color in ((galactic.CastEnd.SCENE, (240, 210, 60)), (galactic.CastEnd.OBJECT, (240, 50, 50))):
+for end, color in (
+    (galactic.CastEnd.SCENE, (240, 210, 60)),
+    (galactic.CastEnd.OBJECT, (240, 50, 50)),
+):
     shown = inside & (scan.end == end)
     picture[along[shown], across[shown]] = color
 Image.fromarray(picture).save(sys.argv[2])

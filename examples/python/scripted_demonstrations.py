@@ -2,11 +2,13 @@
 
     python3 scripted_demonstrations.py homes.pack unseen.pack demos
 
-Records a thousand episodes of Mobile Pick into the folder `demos`, learns from those that were solved, and plays each
-episode of the other world once, with the script and with its clone. Prints how many episodes each of them solves.
+Records episodes of Mobile Pick into the folder `demos`, learns from those that were solved, and plays each episode of
+the other world once, with the script and with its clone. Prints how many episodes each of them solves.
 
-The expert drives along the path to the target and then moves its hand there, by what the clone sees as well:
-`galactic.ScriptedPolicy` solves more, by plans that do not follow from what a policy sees, so that its clones fail.
+The expert drives along the path to the target and then moves its hand there. It goes by what the clone sees, too;
+`galactic.ScriptedPolicy` solves more, by plans that do not follow from what a policy sees. While it is recorded, its
+arms and wheels do something else than it wants, and it shows how one gets back from there (DART: Laskey et al.
+2017). With `--noise 0` the clone solves next to nothing: where its own mistakes lead, it has never been.
 """
 
 import argparse
@@ -31,6 +33,7 @@ class Script:
         self.turn_step = actions[self.column["turn"]].step
         self.joints = [action for action in actions if action.position is not None]
         self.arm = galactic.PlanningScene(self.simulator)
+        self.rest = self.simulator.env_states().joint_positions[0]
         self.shape = homes.action_space.shape
 
     def act(self, observations):
@@ -47,8 +50,11 @@ class Script:
         # From above, over the edge of whatever the target stands on.
         ways[:, 1] += LIFT * (np.hypot(ways[:, 0], ways[:, 2]) > 0.2)
         postures = self.simulator.env_states().joint_positions
-        for env in np.flatnonzero(is_near & ~self.simulator.idle):
-            moves = self.reach(postures[env], np.clip(ways[env], -0.15, 0.15))
+        for env in np.flatnonzero(~self.simulator.idle):
+            # On the road, the arm goes back to where it was in the beginning.
+            moves = (self.rest - postures[env])[[joint.position for joint in self.joints]]
+            if is_near[env]:
+                moves = self.reach(postures[env], np.clip(ways[env], -0.15, 0.15))
             for joint, move in zip(self.joints, moves):
                 actions[env, self.column[joint.name]] = np.clip(move / joint.step, -1, 1)
         return actions
@@ -95,14 +101,20 @@ class Clone(nn.Module):
         return np.hstack([np.clip(found[:, :-1], -1, 1), hand, np.zeros_like(hand)])
 
 
-def record(world, folder, episodes):
+def record(world, folder, episodes, noise):
+    """What the script wants to do, while something else is done: noise that changes slowly, so that it leads
+    away, where that of each step by itself would cancel out."""
     homes = galactic.VectorEnv(world, ENVS, **TASK)
     script = Script(homes)
+    random = np.random.default_rng(1)
+    pushes = np.zeros(script.shape)
     observations, _ = homes.reset()
     with galactic.DemonstrationWriter(folder, homes, expert="a script", world=world) as writer:
         while len(writer) < episodes:
             actions = script.act(observations)
-            then, rewards, _, _, infos = homes.step(actions)
+            pushes = 0.8 * pushes + 0.6 * noise * random.normal(size=pushes.shape)
+            pushes[:, -2:] = 0  # decisions
+            then, rewards, _, _, infos = homes.step(np.clip(actions + pushes, -1, 1))
             writer.add(observations, actions, rewards, infos)
             observations = then
 
@@ -112,7 +124,9 @@ def learn(folder, updates):
     solved = [one for one in shown if one.is_solved]
     states = torch.from_numpy(np.concatenate([one.state[:-1] for one in solved]))
     actions = torch.from_numpy(np.concatenate([one.actions for one in solved]))
-    print(f"{len(solved)} of {len(shown)} demonstrations solved their episode, in {len(states)} steps")
+    print(
+        f"{len(solved)} of {len(shown)} demonstrations solved their episode, in {len(states)} steps"
+    )
     clone = Clone(states, actions.shape[1])
     optimizer = torch.optim.Adam(clone.parameters(), 1e-3)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimizer, updates)
@@ -136,7 +150,7 @@ def solved_by(make_policy, world):
     policy = make_policy(homes)
     observations, _ = homes.reset()
     solved = ended = 0
-    while not homes.simulators[0].idle.all():
+    while not homes.idle.all():
         observations, _, terminations, truncations, infos = homes.step(policy.act(observations))
         ended += np.count_nonzero(terminations | truncations)
         solved += np.count_nonzero(homes.simulators[0].successes)
@@ -148,11 +162,12 @@ if __name__ == "__main__":
     parser.add_argument("world", help="a world pack, where the demonstrations are recorded")
     parser.add_argument("unseen", help="another one, which script and clone are judged by")
     parser.add_argument("folder", help="for the demonstrations")
-    parser.add_argument("--episodes", type=int, default=1000)
-    parser.add_argument("--updates", type=int, default=8000)
+    parser.add_argument("--episodes", type=int, default=500, help="to record")
+    parser.add_argument("--updates", type=int, default=4000, help="of the clone")
+    parser.add_argument("--noise", type=float, default=0.5, help="in the motions, deviation")
     given = parser.parse_args()
     torch.manual_seed(1)
-    record(given.world, given.folder, given.episodes)
+    record(given.world, given.folder, given.episodes, given.noise)
     clone = learn(given.folder, given.updates)
     for name, make in (("the script", Script), ("its clone", lambda homes: clone)):
         solved, ended = solved_by(make, given.unseen)

@@ -272,6 +272,13 @@ class VectorEnv(_Base):
         """Itself, which wraps nothing."""
         return self
 
+    @property
+    def idle(self) -> NDArray[np.bool_]:
+        """bool (num_envs,), a copy: which envs have had their share of the episodes, with order="partition"; they
+        stay as they are. Where all are idle, each episode was played once."""
+        self._require_idle()
+        return np.concatenate([simulator.idle for simulator in self.simulators])
+
     def env_states(self) -> EnvStates:
         """The states of all envs in arrays, as copies: for rewards and observations of one's own.
 

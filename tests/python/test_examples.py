@@ -1,4 +1,4 @@
-"""The examples of README.md and docs/python.md run."""
+"""The examples of README.md, docs/python.md and examples/python run; learning/test_examples.py has those that learn."""
 
 import os
 import pathlib
@@ -13,19 +13,15 @@ ROOT = pathlib.Path(os.environ["GALACTIC_SOURCE_DIR"])
 
 
 def test_random_homes(world_path, tmp_path):
-    script = ROOT / "python" / "examples" / "random_homes.py"
-    done = subprocess.run(
-        [sys.executable, "-B", script, world_path], cwd=tmp_path, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    assert "(100, 23) (100, 128, 128, 3)" in done.stdout.splitlines()[-1]
+    printed = output_of("random_homes.py", world_path, folder=tmp_path)
+    assert "(100, 23) (100, 128, 128, 3)" in printed.splitlines()[-1]
     assert np.load(tmp_path / "seen.npy").shape == (128, 512, 3)
 
 
-def output_of(name, world_path, folder=None):
-    script = ROOT / "python" / "examples" / name
+def output_of(name, *arguments, folder=None):
+    script = ROOT / "examples" / "python" / name
     done = subprocess.run(
-        [sys.executable, "-B", script, world_path], cwd=folder, capture_output=True, text=True
+        [sys.executable, "-B", script, *arguments], cwd=folder, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -40,10 +36,12 @@ def test_evaluate_policy(world_path):
 
 
 def test_own_task(world_path):
-    steps = [
-        int(step) for step in re.findall(r"step (\d+): ", output_of("own_task.py", world_path))
-    ]
+    printed = output_of("own_task.py", world_path)
+    steps = [int(step) for step in re.findall(r"step (\d+): ", printed)]
     assert min(steps) < 200 <= max(steps)
+    # With 32 envs and 100 steps at most, and no more meters than the home has.
+    episodes, paid = re.search(r"(\d+) episodes, which paid (\S+) m", printed).groups()
+    assert int(episodes) >= 32 * 4 and -3 < float(paid) < 3
 
 
 def test_point_nav(world_path):
@@ -55,7 +53,7 @@ def test_point_nav(world_path):
 
 
 def test_draw_data_set(world_path, tmp_path):
-    printed = output_of("draw_data_set.py", world_path, tmp_path)
+    printed = output_of("draw_data_set.py", world_path, folder=tmp_path)
     images, with_target = map(int, re.findall(r"\d+", printed.splitlines()[0]))
     assert images == 640 and with_target > 300
     # The points of a target are within it.
@@ -71,11 +69,40 @@ def test_draw_data_set(world_path, tmp_path):
     }
 
 
+def test_cameras(world_path, tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    printed = output_of("cameras.py", world_path, tmp_path / "cameras.png")
+    assert "head_depth: float32 (64, 120, 160)\n" in printed
+    assert re.search(r"5120 images in \S+ s, steps included: \S+ a second\n", printed)
+    with image.open(tmp_path / "cameras.png") as sheet:
+        pixels = np.asarray(sheet)
+    assert f"{pixels.shape[1]} x {pixels.shape[0]} pixels" in printed
+    seen, far, behind = np.split(pixels, 3)
+    # Only depth is gray.
+    assert (far == far[..., :1]).all()
+    assert not (seen == seen[..., :1]).all() and not (behind == behind[..., :1]).all()
+
+
+def test_ray_casts(world_path, tmp_path):
+    """The home is 3 m wide, and the robot, the table and what stands on it can be seen from above."""
+    image = pytest.importorskip("PIL.Image")
+    printed = output_of("ray_casts.py", world_path, tmp_path / "rays.png")
+    from_above, lidar = re.findall(r"(\d+) rays, \S+ a second: (.*)\n", printed)
+    counts = dict(one.split() for one in from_above[1].split(", "))
+    assert {"SCENE", "OBJECT", "ROBOT"} <= set(counts)
+    assert sum(map(int, counts.values())) == int(from_above[0])
+    assert int(lidar[0]) == 32 * 720 and "ROBOT" not in lidar[1]
+    assert 0 < float(re.search(r"is (\S+) m from the lidar", printed)[1]) < 3
+    with image.open(tmp_path / "rays.png") as picture:
+        colors = {color for _, color in picture.getcolors(1 << 20)}
+    assert {(60, 140, 250), (250, 140, 40), (240, 210, 60)} <= colors
+
+
 def test_type_checkers_accept_the_examples(tmp_path):
     """What users write after them, theirs accept, too: galactic has types (py.typed)."""
     pytest.importorskip("mypy")
     (tmp_path / "readme.py").write_text("\n".join(readme_blocks()), encoding="utf-8")
-    examples = sorted((ROOT / "python" / "examples").glob("*.py"))
+    examples = sorted((ROOT / "examples" / "python").glob("*.py"))
     # Ours are what is tested: those of torch take a minute to read.
     config = tmp_path / "pyproject.toml"
     without_torch = '[[tool.mypy.overrides]]\nmodule = ["torch.*"]\nfollow_imports = "skip"\n'

@@ -400,6 +400,23 @@ def test_a_closed_env_says_so(world, draw_actions, halves):
             call()
 
 
+@pytest.mark.parametrize("halves", [1, 2])
+def test_envs_that_have_had_their_share_are_idle(world, draw_actions, halves):
+    env = VectorEnv(world, 4, halves=halves, order="partition", **OPTIONS)
+    env.reset()
+    # Of the four episodes, the robot cannot start in one: who would play it has no share.
+    assert env.idle.dtype == np.bool_ and np.count_nonzero(env.idle) == 1
+    ended = env.idle
+    while not env.idle.all():
+        _, _, terminations, truncations, _ = env.step(draw_actions(4, 8))
+        ended |= terminations | truncations
+        np.testing.assert_array_equal(env.idle, ended)
+    env.send(draw_actions(4 // halves, 8), 0)
+    with pytest.raises(RuntimeError, match="half 0 is under way"):
+        env.idle
+    env.recv(0)
+
+
 def test_halves_are_idle_after_a_step_in_which_one_failed(world, draw_actions, monkeypatch):
     env = VectorEnv(world, ENVS, halves=2, **OPTIONS)
 

@@ -441,7 +441,7 @@ def test_a_network_of_ones_own_learns_from_them(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """The example, with fewer updates: it says what it has read, learns, and plays all episodes."""
-    example = pathlib.Path(__file__).parents[3] / "python/examples/clone.py"
+    example = pathlib.Path(__file__).parents[3] / "examples/python/clone.py"
     text = example.read_text(encoding="utf-8")
     assert "range(4000)" in text and "% 1000 == 999" in text
     text = text.replace("range(4000)", "range(400)").replace("% 1000 == 999", "% 100 == 99")

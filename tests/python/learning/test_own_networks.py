@@ -24,7 +24,7 @@ from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
 from toys import Remember
 from trainers import SETTINGS, UPDATE as TOY_UPDATE, make_trainer, parameters
 
-EXAMPLE = pathlib.Path(__file__).parents[3] / "python" / "examples" / "own_network.py"
+EXAMPLE = pathlib.Path(__file__).parents[3] / "examples" / "python" / "own_network.py"
 WRONG = """
 import torch
 from torch import nn
