@@ -11,6 +11,7 @@ other world once. The second command only plays.
 import argparse
 import collections
 import time
+from typing import Any
 
 import numpy as np
 import torch
@@ -18,7 +19,7 @@ import galactic
 from torch import nn
 from torch.distributions import Bernoulli, Normal
 
-TASK = {
+TASK: dict[str, Any] = {
     "task": "pick",
     "episode_steps": 200,
     # What a robot with a map knows, and what it is paid for: how long the path along the floor still is.
@@ -37,6 +38,10 @@ FIRST_LOG_STD, LAST_LOG_STD = -0.5, -1.5
 class Agent(nn.Module):
     """Actor and critic side by side. Motions are Gaussian, the hand closes or does not; terminating does
     nothing in this task, so nobody decides it."""
+
+    mean: torch.Tensor
+    variance: torch.Tensor
+    count: torch.Tensor
 
     def __init__(self, seen, motions, width=128):
         super().__init__()
@@ -111,12 +116,10 @@ class Rollout:
         self.arrays = homes.buffers(HORIZON)
         self.actions = torch.zeros(HORIZON, ENVS, *homes.single_action_space.shape)
         self.log_probs = torch.zeros(HORIZON, ENVS)
-        self.observations = torch.from_numpy(
-            self.arrays["state"]
-        )  # one row more: after the last step
+        # One row more: what is seen after the last step.
+        self.observations = torch.from_numpy(self.arrays["state"])
         self.rewards = torch.from_numpy(self.arrays["rewards"])
-        self.successes = collections.deque(maxlen=1000)
-        self.returns = collections.deque(maxlen=1000)
+        self.ended: collections.deque[tuple[bool, float]] = collections.deque(maxlen=1000)
         homes.observe(out={"state": self.arrays["state"][HORIZON]})
 
     @torch.no_grad()
@@ -144,8 +147,7 @@ class Rollout:
         _, _, _, truncations, infos = self.homes.recv(half)
         if "final_info" in infos:
             ended, final = infos["_final_info"], infos["final_info"]
-            self.successes.extend(final["success"][ended])
-            self.returns.extend(final["episode"]["r"][ended])
+            self.ended.extend(zip(final["success"][ended], final["episode"]["r"][ended]))
             first = self.homes.rows(half).start
             for env in np.flatnonzero(truncations):
                 self.cut_off.append((step, first + env, infos["final_obs"][env]))
@@ -215,11 +217,11 @@ def train(world, steps, seed, file):
         most = FIRST_LOG_STD + (LAST_LOG_STD - FIRST_LOG_STD) * max(0, (progress - 0.2) / 0.8)
         agent.log_std.data.clamp_(max=most)
         now, done = time.perf_counter(), (number + 1) * HORIZON * ENVS
-        if (now - said > 5 or number == updates - 1) and rollout.successes:
+        if (now - said > 5 or number == updates - 1) and rollout.ended:
             said = now
-            success, paid = np.mean(rollout.successes), np.mean(rollout.returns)
-            text = f"{done:9,} steps, {done / (now - began):,.0f} a second: {success:.1%} solved, "
-            print(text + f"{paid:.1f} paid", flush=True)
+            (solved, paid), rate = np.mean(list(rollout.ended), axis=0), done / (now - began)
+            what = f"{solved:.1%} solved, {paid:.1f} paid"
+            print(f"{done:9,} steps, {rate:,.0f} a second: {what}", flush=True)
     sizes = {"seen": seen, "motions": actions - 2}
     torch.save({"agent": agent.state_dict(), "sizes": sizes, "steps": done, "seed": seed}, file)
     return agent

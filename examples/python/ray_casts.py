@@ -43,11 +43,11 @@ low = np.array(finder.origin) - MARGIN
 high = np.array(finder.origin) + MARGIN + finder.cell_size * np.array(finder.navigable.shape[::-1])
 width, height = ((high - low) / PIXEL).astype(int)
 column, row = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-origins = np.zeros((height * width, 3), np.float32)
+origins = np.zeros((height * width, 3))
 origins[:, 0] = low[0] + PIXEL * column.ravel()
 origins[:, 1] = place[1] + ABOVE
 origins[:, 2] = low[1] + PIXEL * row.ravel()
-down = np.broadcast_to(np.float32([0, -1, 0]), origins.shape)
+down = np.broadcast_to([0, -1, 0], origins.shape)
 with_robot = galactic.RayCaster.of_env(homes, 0, robot=True)
 seen = cast(with_robot, origins, down, ABOVE + 0.1)
 
@@ -65,8 +65,8 @@ up, around = np.meshgrid(
     indexing="ij",
 )
 beams = np.stack([np.cos(up) * np.cos(around), np.sin(up), np.cos(up) * np.sin(around)], axis=-1)
-beams = (beams.reshape(-1, 3) @ robot.matrix[0, :3, :3].T).astype(np.float32)
-eye = place + np.float32([0, LIDAR_HEIGHT, 0])
+beams = beams.reshape(-1, 3) @ robot.matrix[0, :3, :3].T
+eye = place + [0, LIDAR_HEIGHT, 0]
 without_robot = galactic.RayCaster.of_env(homes, 0)
 scan = cast(without_robot, np.broadcast_to(eye, beams.shape), beams, LIDAR_RANGE)
 

@@ -12,13 +12,14 @@ arms and wheels do something else than it wants, and it shows how one gets back 
 """
 
 import argparse
+from typing import Any
 
 import numpy as np
 import torch
 import galactic
 from torch import nn
 
-TASK = {"task": "pick", "episode_steps": 200, "geodesic": True}
+TASK: dict[str, Any] = {"task": "pick", "episode_steps": 200, "geodesic": True}
 ENVS, NEAR, LIFT = 100, 0.8, 0.15  # meters
 
 
