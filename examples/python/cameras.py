@@ -45,6 +45,9 @@ def gray(depth):
 
 
 rows = [seen["head_rgb"], gray(seen["head_depth"]), seen["behind_rgb"]]
-sheet = np.concatenate([np.concatenate(list(row[:SHOWN]), axis=1) for row in rows])
+framed = [
+    np.pad(row[:SHOWN], ((0, 0), (2, 2), (2, 2), (0, 0)), constant_values=255) for row in rows
+]
+sheet = np.concatenate([np.concatenate(list(row), axis=1) for row in framed])
 Image.fromarray(sheet).save(sys.argv[2])
 print(f"{sys.argv[2]}: {sheet.shape[1]} x {sheet.shape[0]} pixels")
