@@ -5,8 +5,8 @@
 
 The first command trains, in Mobile Pick as the preset `quick` of galactic.train has it. It prints, every few
 seconds, how many of the latest episodes were solved, keeps the policy in pick.pt, and plays each episode of the
-other world once, of which that policy solves 95.8 % (seed 1, 400 unseen episodes of the sample apartment, three
-minutes of one core). The second command only plays.
+other world once, of which that policy solves 95.8 % (seed 1) or 96.0 % (seed 2) in the sample apartment, after three
+minutes of one core. The second command only plays.
 """
 
 import argparse
