@@ -50,9 +50,9 @@ inline void expectEachBitFlipRefused(AlignedBytes bytes) {
   EXPECT_TRUE(PackFile::view(bytes.bytes(), "whole.pack").has_value());
 }
 
-/// Flips each bit of the payload and makes the hash fit again: what opens goes through `use`. Where a
-/// sanitizer watches, each third bit, which is each of a byte's in turn. Some, not all, have to be
-/// refused: codes may change and stay well-formed, offsets may not.
+/// Flips each bit of the payload and makes the hash fit again: what opens goes through `use`. Where
+/// a sanitizer watches, each third bit, which is each of a byte's in turn. Some, not all, have to
+/// be refused: codes may change and stay well-formed, offsets may not.
 inline void expectFlipsWithARightHashRefusedOrUsable(
     AlignedBytes bytes, PackKind kind, const std::function<void(const PackFile&)>& use) {
   const auto payload = bytes.bytes().subspan(sizeof(PackHeader));
