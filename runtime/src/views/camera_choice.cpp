@@ -150,8 +150,9 @@ Result<void> checkJitter(const CameraWish& wish, float fov) {
                 fmt::format("found {} {}, expected {}", drawnText(value), told.at(n).unit,
                             wantedDrawn(within)));
   }
-  const float degrees = fov / kRadiansPerDegree;
   const float off = wish.jitter.camera_jitter_fov.most;
+  if (off == 0) return {};
+  const float degrees = fov / kRadiansPerDegree;
   // Rounding decides nothing.
   constexpr float kAbout = 1e-3F;
   if (isWithin(degrees - off, kLeastFovDegrees - kAbout, kMostFovDegrees) &&
