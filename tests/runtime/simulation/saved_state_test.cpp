@@ -324,9 +324,11 @@ TEST(SavedState, OfAVersionThatHadFewerOptionsIsTakenWhereTheyAreOff) {
   // Not where it is on, nor where the state lacks one that the simulator has changed.
   options.noise.action_delay = 2;
   BatchSimulator late = simulatorOf(home.world(), options);
-  EXPECT_THAT(refusalOf(late, older), HasSubstr("expected action-delay=2, found bump=true"));
+  EXPECT_THAT(
+      refusalOf(late, older),
+      HasSubstr("no option action-delay: restore it where that is 0, as by default, instead of 2"));
   EXPECT_THAT(refusalOf(simulator, without(state, "motion-noise=0.1\n")),
-              HasSubstr("expected motion-noise=0.1, found motion-bias=0.1"));
+              HasSubstr("no option motion-noise: restore it where that is 0"));
 }
 
 TEST_F(DamagedState, OfOtherOptionsIsRefusedByTheirNames) {

@@ -352,10 +352,15 @@ Result<void> checkSubject(const Model& model, const Header& header, std::string_
     }
     // Whoever saved it before there was this option did as by default.
     const bool is_named = lines.starts_with(option.name + "=");
-    if (!is_named && option.value == defaults[n].value) continue;
-    const std::string_view found = lines.substr(0, lines.find('\n'));
-    return refused(fmt::format("was saved with other options: expected {}={}, found {}",
-                               option.name, option.value, found.empty() ? "nothing" : found));
+    if (is_named) {
+      return refused(fmt::format("was saved with other options: expected {}={}, found {}",
+                                 option.name, option.value, lines.substr(0, lines.find('\n'))));
+    }
+    if (option.value == defaults[n].value) continue;
+    return refused(fmt::format(
+        "was saved where there was no option {}: restore it where that is {}, as by default, "
+        "instead of {}",
+        option.name, defaults[n].value, option.value));
   }
   if (!lines.empty()) return refused("was saved with options that this version does not know");
   if (header.bodies != 0 || model.bodyCount() == 0) return {};
