@@ -1,5 +1,7 @@
 #include "scripted/scripted_policy.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -10,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "galactic/drawn_number.h"
 #include "scripted/plan_player.h"
 #include "scripted/planner.h"
 #include "support/try.h"
@@ -265,6 +268,14 @@ Result<ScriptedPolicy> ScriptedPolicy::create(const World& world,
   if (options.task.kind == TaskKind::kNone) {
     return fail(ErrorCode::kUnsupported, "scripted policy",
                 "the task is none, which has nothing to plan for; use rearrange or mobile pick");
+  }
+  if (options.noise.delaysActions()) {
+    return fail(
+        ErrorCode::kUnsupported, "scripted policy",
+        fmt::format(
+            "steers by what it sees, and can do nothing where actions arrive late: found an "
+            "action-delay of {}, expected 0; use --action-delay 0",
+            drawnText(options.noise.action_delay)));
   }
   ASSIGN_OR_RETURN(const scripted::Decisions decisions,
                    scripted::decisionsBy(options.action, options.task));

@@ -257,7 +257,7 @@ def _tell_what_is_left_out(homes: Homes) -> None:
     """Where the dynamics are exact and the world's own task is not."""
     noise = dynamics.noise_left_out(homes.env.simulators[0].options)
     if noise:
-        message = f"robots there move without the noise of the world's task ({noise})"
+        message = f"robots there move without the noise and delay of the world's task ({noise})"
         put(sys.stderr, f"galactic.evaluate: --dynamics: {message}\n")
 
 

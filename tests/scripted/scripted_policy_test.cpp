@@ -164,6 +164,16 @@ TEST_F(ScriptedPolicyInTheSampleWorld, ActsByTheThresholdsOfActions) {
   EXPECT_EQ(policy.error().code, ErrorCode::kUnsupported);
 }
 
+TEST_F(ScriptedPolicyInTheSampleWorld, RefusesActionsThatArriveLate) {
+  SimulationOptions late = options();
+  late.noise.action_delay = {0, 2};
+  const auto policy = ScriptedPolicy::create(world(), late);
+  ASSERT_FALSE(policy.has_value());
+  EXPECT_EQ(policy.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(policy.error().message.find("an action-delay of 0-2, expected 0"), std::string::npos)
+      << policy.error().message;
+}
+
 TEST_F(ScriptedPolicyInTheSampleWorld, RefusesToHaveNothingToDo) {
   SimulationOptions none = options();
   none.task.kind = TaskKind::kNone;

@@ -97,7 +97,7 @@ def test_a_world_with_noise_of_motion_is_played_without_it(
     assert evaluate.main(words) == 0
     noisy = capfd.readouterr()
     assert noisy.err == (
-        "galactic.evaluate: --dynamics: robots there move without the noise of the world's task "
+        "galactic.evaluate: --dynamics: robots there move without the noise and delay of the world's task "
         "(motion-bias=0.25)\n"
     )
     assert "success_there 0.5\n" in noisy.out and noisy.out != plain.out
