@@ -200,7 +200,7 @@ class Simulator:
     def counts(self, envs: Iterable[int] | None = None) -> dict[str, NDArray[Any]]: ...  # (n,)
     def episode_noise(
         self, envs: Iterable[int] | None = None
-    ) -> dict[str, NDArray[np.float32]]: ...  # (n,)
+    ) -> dict[str, NDArray[Any]]: ...  # (n,)
     def sample_phases(self, every: int) -> None: ...
     def phase_times(self) -> dict[str, float]: ...
 

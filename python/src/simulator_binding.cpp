@@ -101,13 +101,14 @@ py::dict episodeNoise(Simulator& simulator, const py::object& envs) {
   const Confinement::Use use = simulator.readState();
   const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
   const Shape each{static_cast<py::ssize_t>(chosen.size())};
-  Filled<float> motion(each), motion_bias(each), localization(each), delay(each), laser(each);
+  Filled<float> motion(each), motion_bias(each), localization(each), laser(each);
+  Filled<std::uint32_t> delay(each);
   for (const std::uint32_t env : chosen) {
     const EpisodeNoise noise = simulator.batch().episodeNoise(env);
     motion.put(noise.motion);
     motion_bias.put(noise.motion_bias);
     localization.put(noise.localization);
-    delay.put(static_cast<float>(noise.action_delay));
+    delay.put(noise.action_delay);
     laser.put(noise.laser);
   }
   using namespace py::literals;
@@ -275,7 +276,7 @@ void bindQueries(py::class_<Simulator>& type) {
   type.def("episode_noise", &episodeNoise, py::arg("envs") = py::none(),
            "The noise that the episode of each env, or of each of the numbers `envs`, has drawn\n"
            "where options give ranges: motion_noise, motion_bias, localization_noise,\n"
-           "action_delay and laser_noise, float32 (n,), copies.");
+           "action_delay (uint32, others float32) and laser_noise, (n,), copies.");
   type.def(
       "sample_phases",
       [](Simulator& one, const py::object& every) {

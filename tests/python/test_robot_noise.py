@@ -136,7 +136,10 @@ def test_each_episode_draws_noise_from_a_range(world) -> None:
         assert values.min() >= np.float32(least) and values.max() <= np.float32(most)
         assert len(np.unique(values)) > 390
         assert values.mean() == pytest.approx((least + most) / 2, rel=0.1)
-    assert not first["localization_noise"].any()
+    assert not first["localization_noise"].any() and not first["action_delay"].any()
+    # Whole numbers, which the option takes again.
+    assert first["action_delay"].dtype == np.uint32
+    Simulator(world, envs=1, action_delay=first["action_delay"][0])
     simulator.step(np.zeros((400, 8), np.float32))
     np.testing.assert_array_equal(simulator.episode_noise()["motion_noise"], first["motion_noise"])
     some = simulator.episode_noise(envs=[7, 3])["motion_bias"]
@@ -173,7 +176,7 @@ def test_actions_arrive_as_late_as_each_episode_has_drawn(world, draw_actions) -
     asked: list[np.ndarray] = []
     for step in range(60):
         if step % 25 == 0:
-            delays = late.episode_noise()["action_delay"].astype(int)
+            delays = late.episode_noise()["action_delay"]
             assert set(delays) == {0, 1, 2, 3}
             asked = []
         asked.append(draw_actions(24, 8))
