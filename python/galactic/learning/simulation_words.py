@@ -49,12 +49,16 @@ def word_of(name: str, value: Any) -> str:
     name = name.replace("_", "-")
     if isinstance(value, bool):
         return name if value else f"{name}=false"
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        parts = [
-            "-".join(map(str, part)) if isinstance(part, Sequence) else str(part) for part in value
-        ]
-        return f"{name}={','.join(parts)}"
-    return f"{name}={value}"
+    if not isinstance(value, Sequence) or isinstance(value, str):
+        return f"{name}={value}"
+    if name != "laser-heights":  # a range
+        return f"{name}={_dashed(value)}"
+    parts = [_dashed(part) if isinstance(part, Sequence) else str(part) for part in value]
+    return f"{name}={','.join(parts)}"
+
+
+def _dashed(ends: Sequence[Any]) -> str:
+    return "-".join(map(str, ends))
 
 
 def latest_words(words: str) -> str:

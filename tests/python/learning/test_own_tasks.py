@@ -409,6 +409,8 @@ def test_options_become_keywords() -> None:
         ({"bump": True, "geodesic": False}, "bump geodesic=false"),
         ({"laser_heights": [0.25, (0.4, 0.8)]}, "laser-heights=0.25,0.4-0.8"),
         ({"slide": "published"}, "slide=published"),
+        ({"action_delay": (0, 2)}, "action-delay=0-2"),
+        ({"motion_noise": [0.1, 0.3]}, "motion-noise=0.1-0.3"),
     ],
 )
 def test_options_of_a_class_are_typed_as_a_user_types_them(
