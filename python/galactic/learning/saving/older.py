@@ -3,19 +3,31 @@ no such thing passes as it is, for its reader to refuse."""
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any, Mapping
 
 import torch
 from torch import Tensor
 
+from galactic.demonstrations import About
 from galactic.learning.policies.networks import PolicyShape
 from galactic.learning.reports.curves import COLUMNS
+from galactic.learning.settings import CAMERA, Settings
 
 
 def settings_values(values: Any) -> Any:
     """Settings.to_dict(). What runs did before there were these settings they go on with, whatever the defaults
     are; of all others they take the defaults."""
     return _filled({"timeouts": "observed"}, values)
+
+
+def demonstrations_about(about: About) -> About:
+    """What a folder of demonstrations says of itself: of settings that there were not, it was made with the
+    defaults."""
+    known = {field.name: field.default for field in dataclasses.fields(Settings)}
+    of_camera = {name: known[name] for name in CAMERA.values()}
+    made_with = {**about.made_with, "settings": {**of_camera, **about.made_with["settings"]}}
+    return dataclasses.replace(about, made_with=made_with)
 
 
 def policy_values(values: Mapping[str, Any]) -> dict[str, Any]:
