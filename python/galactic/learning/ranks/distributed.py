@@ -116,24 +116,27 @@ class Group:
     def raise_on_all(self, error: Optional[Exception]) -> None:
         """Raises on every rank the `error` of the first that has one; nothing where none has. It is then
         one sentence and one exit code, and nobody waits for a rank that has ended."""
-        errors: "list[Optional[Exception]]" = [error]
+        known: "list[Optional[Exception]]" = [error]
         if self._store is not None:
-            keys = [f"error/{rank}" for rank in range(self.size)]
-            self._store.set(keys[self.rank], pickle.dumps(error).hex())
-            lost = None
+            self._store.set(f"error/{self.rank}", pickle.dumps(error).hex())
             try:
                 self.wait_for_all()
-            except RankLost as one:
+                known = self._said_by_all(self._store)
+            except RankLost as lost:
+                known = [error, lost]
                 # One that knows of an error ends at once, perhaps before the others have met it.
-                lost = one
-                with _others():
-                    self._store.wait(keys, datetime.timedelta(seconds=5))
-            errors = [
-                pickle.loads(bytes.fromhex(self._store.get(key).decode())) for key in keys
-            ] + [lost]
-        for known in errors:
-            if known is not None:
-                raise known
+                with contextlib.suppress(RankLost):
+                    known = [*self._said_by_all(self._store), lost]
+        for one in known:
+            if one is not None:
+                raise one
+
+    def _said_by_all(self, store: torch.distributed.Store) -> "list[Optional[Exception]]":
+        """The error of each rank, in their order. RankLost where one has said nothing and says nothing."""
+        keys = [f"error/{rank}" for rank in range(self.size)]
+        with _others():
+            store.wait(keys, datetime.timedelta(seconds=5))
+            return [pickle.loads(bytes.fromhex(store.get(key).decode())) for key in keys]
 
     def may_tell(self, error: BaseException) -> bool:
         """Whether this rank tells its user of `error`: what all of them find out is told once, and that
