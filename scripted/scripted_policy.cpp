@@ -1,7 +1,5 @@
 #include "scripted/scripted_policy.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -270,12 +268,10 @@ Result<ScriptedPolicy> ScriptedPolicy::create(const World& world,
                 "the task is none, which has nothing to plan for; use rearrange or mobile pick");
   }
   if (options.noise.delaysActions()) {
-    return fail(
-        ErrorCode::kUnsupported, "scripted policy",
-        fmt::format(
-            "steers by what it sees, and can do nothing where actions arrive late: found an "
-            "action-delay of {}, expected 0; use --action-delay 0",
-            drawnText(options.noise.action_delay)));
+    return fail(ErrorCode::kUnsupported, "scripted policy",
+                "steers by what it sees, and can do nothing where actions arrive late: found an "
+                "action-delay of " +
+                    drawnText(options.noise.action_delay) + ", expected 0; use --action-delay 0");
   }
   ASSIGN_OR_RETURN(const scripted::Decisions decisions,
                    scripted::decisionsBy(options.action, options.task));
