@@ -13,7 +13,8 @@ if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
 endif()
 
 if(GALACTIC_PGO STREQUAL "record")
-  add_compile_options(-fprofile-generate)
+  # What -fprofile-generate has the compiler do, for which the compiler's cache would tell build folders apart.
+  add_compile_options("SHELL:-Xclang -fprofile-instrument=llvm -Xclang -fprofile-instrument-path=default_%m.profraw")
   add_link_options(-fprofile-generate)
 else()
   get_filename_component(profile ${GALACTIC_PGO} ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
