@@ -31,6 +31,7 @@ SENSORS: Mapping[str, tuple[str, ...]] = {
         "laser_noise",
     ),
     "geodesic": ("geodesic",),
+    "last_actions": ("last_actions",),
 }
 """Those that options add, and these options. All other parts are of tasks of one's own."""
 

@@ -37,7 +37,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .target_up = true,
       .near_objects = 2,
       .laser = {.beams = 8, .heights = {{0.25F, 0.25F}, {0.4F, 0.6F}}, .noise = {0.01F, 0.05F}},
-      .geodesic = true};
+      .geodesic = true,
+      .last_actions = 2};
   const auto outcome = world.use(kSteps, all_sensors);
   if (!outcome.finding.empty()) galactic::test::reportFinding(outcome.finding);
   for (std::size_t n = count; n-- > 0;) {

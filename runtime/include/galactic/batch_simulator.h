@@ -197,7 +197,8 @@ class BatchSimulator {
   /// (3 for each): from the grasp point to the nearest points of the nearest other objects, along
   /// these axes, meters, (0, 1, 0) in place of those further away than 1 m; laser (beams, for each
   /// of its planes): distances as shares of the range; geodesic (6): length, cosine and sine of the
-  /// way along the floor to the target, and to the goal. See docs/simulation.md.
+  /// way along the floor to the target, and to the goal; last_actions (an action for each): what
+  /// was asked for in the last steps, the latest first. See docs/simulation.md.
   [[nodiscard]] const std::vector<ObservationPart>& observationParts() const;
 
   /// One step of all envs. `actions`: envCount() * actionCount(), env after env.

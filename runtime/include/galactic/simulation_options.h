@@ -145,6 +145,9 @@ struct LaserOptions {
 /// The most objects near the hand that an observation can tell of.
 inline constexpr std::uint32_t kMostNearObjects = 16;
 
+/// The most steps of which an observation can tell what was asked for.
+inline constexpr std::uint32_t kMostLastActions = 100;
+
 /// What the robot senses beside its own state; all off by default.
 struct SensorOptions {
   /// Whether an obstacle kept the robot where it was in the last step.
@@ -161,6 +164,9 @@ struct SensorOptions {
   bool geodesic = false;
   /// Most memory that these ways may take, megabytes; also for TaskOptions::geodesic_weight.
   std::uint32_t geodesic_megabytes = 1024;
+  /// Steps of whose actions observations tell: the last ones of the episode; 0 for none,
+  /// kMostLastActions at most. For robots that do late what they are asked to.
+  std::uint32_t last_actions = 0;
 };
 
 /// The most steps by which actions may be late.

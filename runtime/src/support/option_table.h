@@ -201,6 +201,8 @@ void visitSensorOptions(SensorOptions& s, Visitor& v) {
          "Observe the paths along the floor to target and goal");
   v.whole("geodesic-megabytes", s.geodesic_megabytes, Within<std::uint32_t>{1, 1U << 20U},
           "Most memory for these paths, MB");
+  v.whole("last-actions", s.last_actions, Within<std::uint32_t>{0, kMostLastActions},
+          "Steps whose actions to observe, the last ones; 0: none");
 }
 
 /// What a world may say of its task, its reward and what the robot does and senses: all but the

@@ -23,6 +23,7 @@ SimulationOptions optionsOf(std::uint32_t envs) {
   options.sensors.target_goal = true;
   options.sensors.target_up = true;
   options.sensors.near_objects = 2;
+  options.sensors.last_actions = 3;
   options.noise = {
       .motion = 0.1F, .motion_bias = 0.1F, .localization = 0.05F, .action_delay = {0, 2}};
   options.auto_reset = false;

@@ -33,6 +33,7 @@ SimulationOptions homeOptions(std::uint32_t envs, std::uint32_t threads = 1) {
   options.sensors.target_goal = true;
   options.sensors.target_up = true;
   options.sensors.near_objects = 2;
+  options.sensors.last_actions = 3;
   options.sensors.geodesic = true;
   options.task.geodesic_weight = 0.5F;
   options.sensors.laser.beams = 8;

@@ -6,6 +6,33 @@
 #include "simulation/state/episode_draws.h"
 
 namespace galactic::simulation {
+namespace {
+
+void letArrive(const ChunkStep& step) {
+  const std::span<const EnvRow> asked = step.chunk.actions();
+  const std::span<EnvRow> arrived = step.chunk.arrived();
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    const EnvMoment moment = momentOf(step.model, step.state, step.first + e);
+    const std::size_t delay = drawnIn(moment, step.model.options.noise.action_delay, kDelayDraw);
+    const std::size_t asked_in = moment.step + step.state.keptSteps() - delay;
+    const std::span<const EnvRow> due =
+        delay == 0 ? asked : step.state.keptActions(step.first, asked_in);
+    for (std::size_t a = 0; a < asked.size(); ++a) arrived[a].values[e] = due[a].values[e];
+  }
+}
+
+void keep(const ChunkStep& step) {
+  const std::span<const EnvRow> asked = step.chunk.actions();
+  for (std::size_t e = 0; e < kChunk; ++e) {
+    const std::size_t n = step.first + e;
+    // Whatever an idle env is asked to do, it is in none of its steps.
+    if (step.state.idle()[n] != 0) continue;
+    const std::span<EnvRow> kept = step.state.keptActions(n, step.state.env(n).step);
+    for (std::size_t a = 0; a < asked.size(); ++a) kept[a].values[e] = asked[a].values[e];
+  }
+}
+
+}  // namespace
 
 void beginDelay(BatchState& state, std::size_t n) noexcept {
   // A hand holds still at a number that depends on what it holds, and at none in any case.
@@ -18,27 +45,15 @@ void beginDelay(BatchState& state, std::size_t n) noexcept {
   }
 }
 
-void delayActions(const ChunkStep& step) noexcept {
-  const std::size_t kept_steps = step.state.keptSteps();
-  if (kept_steps == 0) return;
-  const std::span<const EnvRow> asked = step.chunk.actions();
-  const std::span<EnvRow> arrived = step.chunk.arrived();
-  for (std::size_t e = 0; e < kChunk; ++e) {
-    const EnvMoment moment = momentOf(step.model, step.state, step.first + e);
-    const std::size_t delay = drawnIn(moment, step.model.options.noise.action_delay, kDelayDraw);
-    const std::span<EnvRow> kept = step.state.keptActions(step.first, moment.step);
-    const std::span<const EnvRow> due =
-        delay == 0 ? asked : step.state.keptActions(step.first, moment.step + kept_steps - delay);
-    for (std::size_t a = 0; a < asked.size(); ++a) {
-      // With the longest delay, what is due makes room for what is asked for now.
-      arrived[a].values[e] = due[a].values[e];
-      kept[a].values[e] = asked[a].values[e];
-    }
-  }
+void keepActions(const ChunkStep& step) noexcept {
+  if (step.state.keptSteps() == 0) return;
+  // With the longest delay, what is due makes room for what is asked for now.
+  if (step.model.options.noise.delaysActions()) letArrive(step);
+  keep(step);
 }
 
 std::span<const EnvRow> arrivedOf(const ChunkStep& step) noexcept {
-  return step.state.keptSteps() == 0 ? step.chunk.actions() : step.chunk.arrived();
+  return step.model.options.noise.delaysActions() ? step.chunk.arrived() : step.chunk.actions();
 }
 
 }  // namespace galactic::simulation

@@ -9,9 +9,9 @@ namespace galactic::simulation {
 /// Nothing is under way to the robot of an env: its episode begins.
 void beginDelay(BatchState& state, std::size_t n) noexcept;
 
-/// Keeps the actions of a chunk for when they arrive, and lets those arrive that are due. Only
-/// where there is delay.
-void delayActions(const ChunkStep& step) noexcept;
+/// Lets those actions of a chunk arrive that are due, where they may be late, and keeps those that
+/// are asked for now, where they are wanted later.
+void keepActions(const ChunkStep& step) noexcept;
 
 /// What reaches the robots of a chunk: the actions themselves, unless these are late. Where none
 /// has arrived yet, motions are 0, and hand and terminate no numbers, which reach no threshold.

@@ -86,7 +86,7 @@ void takePose(const ChunkStep& step, std::size_t e, const FollowedState& state) 
 void followChunk(const ChunkStep& step, std::span<const float> actions,
                  std::span<const FollowedState> states) noexcept {
   readActions(step, actions);
-  delayActions(step);
+  keepActions(step);
   const auto is_followed = [&](std::size_t e) {
     const std::size_t n = step.first + e;
     return n < states.size() && step.state.idle()[n] == 0;

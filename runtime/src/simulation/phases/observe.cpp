@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 
 #include "simulation/phases/robot_noise.h"
 #include "simulation/phases/task.h"
@@ -110,6 +111,20 @@ void senseWays(const Model& model, const BatchState& state, std::size_t n, std::
   add(model.geodesic.toGoal(env.start, base));
 }
 
+/// What was asked for in the last steps, the latest first.
+void senseLastActions(const Model& model, const BatchState& state, std::size_t n,
+                      std::span<float> part) {
+  const std::size_t next_step = state.env(n).step + state.keptSteps();
+  Row out(part);
+  for (std::size_t ago = 1; ago <= model.options.sensors.last_actions; ++ago) {
+    for (const EnvRow& action : state.keptActions(n, next_step - ago)) {
+      const float value = action.values[n % kChunk];
+      // Hands and terminations of steps before the episode.
+      out.add(std::isnan(value) ? 0 : value);
+    }
+  }
+}
+
 /// Room for points as robots see them that know by odometry alone where they are.
 class BelievedPoints {
  public:
@@ -174,11 +189,13 @@ std::vector<ObservationPart> observationParts(std::size_t joints, const SensorSi
   if (sensors.near_objects != 0) add("near_objects", sensors.near_objects);
   if (sensors.laser != 0) add("laser", sensors.laser);
   if (sensors.geodesic != 0) add("geodesic", sensors.geodesic);
+  if (sensors.last_actions != 0) add("last_actions", sensors.last_actions);
   return parts;
 }
 
 std::size_t sensedSize(const SensorSizes& sensors) {
-  return sensors.target_up + sensors.near_objects + sensors.laser + sensors.geodesic;
+  return sensors.target_up + sensors.near_objects + sensors.laser + sensors.geodesic +
+         sensors.last_actions;
 }
 
 void observe(const Model& model, BatchState& state, std::size_t first) noexcept {
@@ -250,6 +267,9 @@ void sense(const Model& model, const BatchState& state, std::size_t env_number,
        .random = RandomStream(moment.seed ^ kLaserSalt, moment.env, moment.episode, moment.step)},
       next(model.laser.size()));
   if (sensors.geodesic) senseWays(model, state, env_number, next(sensors::kGeodesicSize));
+  if (sensors.last_actions != 0) {
+    senseLastActions(model, state, env_number, next(model.actionCount() * sensors.last_actions));
+  }
   assert(rest.empty());
 }
 

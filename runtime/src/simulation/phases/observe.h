@@ -22,6 +22,7 @@ struct SensorSizes {
   std::size_t near_objects = 0;
   std::size_t laser = 0;
   std::size_t geodesic = 0;
+  std::size_t last_actions = 0;
 };
 
 /// The parts of an observation: see BatchSimulator::observationParts.

@@ -46,7 +46,7 @@ template <class Lap>
 void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) noexcept {
   step.state.prefetchBounds(step.first);
   readActions(step, input.actions);
-  delayActions(step);
+  keepActions(step);
   lap(Phase::kActions);
   proposePoses(step);
   lap(Phase::kPropose);

@@ -22,7 +22,7 @@ std::size_t rowCount(const Model& model) {
 std::size_t envBytes(const Model& model) {
   // What the alignment of an env's own vectors may cost.
   constexpr std::size_t kPadding = 96;
-  const std::size_t kept = model.options.noise.action_delay.most * model.actionCount();
+  const std::size_t kept = model.keptSteps() * model.actionCount();
   const std::size_t floats = rowCount(model) + kept + 2 * model.observation_size + 1;
   return kPadding + sizeof(Env) + sizeof(EnvCounters) + sizeof(MoveCounters) + sizeof(Held) +
          sizeof(RestingObjects) + model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
@@ -103,7 +103,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
       row_count_(rowCount(model)),
       has_odometry_(odometryRows(model) != 0),
       action_count_(model.actionCount()),
-      kept_steps_(model.options.noise.action_delay.most),
+      kept_steps_(model.keptSteps()),
       observation_size_(model.observation_size),
       body_count_(model.bodyCount()) {
   const std::size_t padded = paddedToChunks(env_count_);

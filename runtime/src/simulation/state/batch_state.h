@@ -255,8 +255,8 @@ class BatchState {
       }
     }
   }
-  /// Of how many steps, the last ones, actions are kept, because they may arrive late: 0 where none
-  /// do, and then nobody may ask for any.
+  /// Of how many steps, the last ones, actions are kept (Model::keptSteps()): 0 where nobody wants
+  /// them, and then nobody may ask for any.
   [[nodiscard]] std::size_t keptSteps() const { return kept_steps_; }
   /// What the envs of a chunk from `first` on were asked to do in one of these steps. A step of an
   /// env's episode counts modulo keptSteps(): the last one is so many before the next. Shape:

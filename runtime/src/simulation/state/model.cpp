@@ -245,7 +245,8 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
                             .target_up = options.sensors.target_up ? kTargetUpSize : 0,
                             .near_objects = kWaySize * options.sensors.near_objects,
                             .laser = laser->size(),
-                            .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0};
+                            .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0,
+                            .last_actions = model.actionCount() * options.sensors.last_actions};
   model.observation = observationParts(model.motion.controlled.size(), sensors);
   model.observation_size = model.observation.back().first + model.observation.back().size;
   model.sensors_first = model.observation_size - sensedSize(sensors);

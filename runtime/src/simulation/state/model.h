@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -89,6 +90,10 @@ struct Model {
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] std::size_t actionCount() const { return motion.controlled.size() + 4; }
   [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }
+  /// Of how many steps, the last ones, actions are kept: they may arrive late, or be observed.
+  [[nodiscard]] std::size_t keptSteps() const {
+    return std::max(options.noise.action_delay.most, options.sensors.last_actions);
+  }
   /// Spheres of the robot, padded to lanes.
   [[nodiscard]] std::size_t sphereCount() const { return motion.spheres.size(); }
   /// Root and nodes, or none where the run does not want their poses.

@@ -312,8 +312,7 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
   saved.variables = in.takeMany<float>(model.variableCount());
   saved.last_actions = in.takeMany<float>(model.motion.controlled.size());
   if (model.options.noise.localization.most > 0) in.take(saved.believed);
-  const std::size_t kept_steps = model.options.noise.action_delay.most;
-  saved.kept_actions = in.takeMany<float>(kept_steps * model.actionCount());
+  saved.kept_actions = in.takeMany<float>(model.keptSteps() * model.actionCount());
   saved.ignored = in.takeMany<std::uint64_t>(model.heldWords());
   saved.leaving = in.takeMany<std::uint64_t>(saved.env.objects * model.bodyWords());
   saved.objects = in.takeMany<Pose>(saved.env.objects);

@@ -39,8 +39,7 @@ struct SavedEnv {
   bool is_idle = false;
   std::vector<float> variables;
   std::vector<float> last_actions;
-  /// Those that may arrive late, of one step after the other: where there is delay. Empty: none is
-  /// under way.
+  /// Of Model::keptSteps() steps, one after the other. Empty: nothing was asked for.
   std::vector<float> kept_actions;
   std::vector<std::uint64_t> ignored;
   std::vector<std::uint64_t> leaving;

@@ -46,7 +46,8 @@ SimulationOptions unusualOptions() {
                                .least_range = 0.05F,
                                .noise = 0.01F},
                      .geodesic = true,
-                     .geodesic_megabytes = 7};
+                     .geodesic_megabytes = 7,
+                     .last_actions = 5};
   options.task = {.kind = TaskKind::kMobilePick,
                   .success_reward = 1,
                   .pick_reward = -2.5F,
