@@ -126,19 +126,18 @@ class AnimationWriter {
   }
 
   Result<void> writeObjects() {
-    const auto placements = world_.episodes().placements(episode_);
-    for (std::uint32_t n = 0; n < placements.size(); ++n) {
-      if (is_target_only_ && n != episode_.target) continue;
+    const PresentObjects present = world_.episodes().present(episode_, !is_target_only_);
+    for (std::uint32_t n = 0; n < present.placements.size(); ++n) {
       std::vector<Pose> keys;
-      Pose pose = placements[n].pose;
+      Pose pose = present.placements[n].pose;
       auto move = env_.moves.begin();
       for (std::uint32_t frame = 0; frame < frames_; ++frame) {
         for (; move != env_.moves.end() && move->frame <= frame; ++move) {
-          if (move->placement == n) pose = move->world_from_object;
+          if (move->placement == present.first + n) pose = move->world_from_object;
         }
         keys.push_back(pose);
       }
-      const std::string_view name = world_.objectOf(placements[n]).name;
+      const std::string_view name = world_.objectOf(present.placements[n]).name;
       const std::size_t node =
           file_.addNode({.name = std::string(name), .parent_from_node = keys.front()});
       addMotion(node, std::move(keys));

@@ -20,16 +20,10 @@ std::uint8_t eventsOf(const SimulationStatistics& before, const SimulationStatis
   return static_cast<std::uint8_t>(events);
 }
 
-/// Without distractors the simulator has one object, the target, wherever the episode has it.
-bool isAlone(const EnvObjects& objects, const Episode& episode) {
-  return objects.placements.size() < episode.placement_count;
-}
-
 /// Among the placements of the episode; -1 for none.
-std::int32_t heldPlacement(const EnvObjects& objects, const EpisodeSet& episodes) {
-  const Episode& episode = episodes.episodes()[objects.episode];
-  const bool is_target = objects.held >= 0 && isAlone(objects, episode);
-  return is_target ? static_cast<std::int32_t>(episode.target) : objects.held;
+std::int32_t heldPlacement(const EnvObjects& objects) {
+  if (objects.held < 0) return objects.held;
+  return static_cast<std::int32_t>(objects.present.first) + objects.held;
 }
 
 }  // namespace
@@ -37,6 +31,7 @@ std::int32_t heldPlacement(const EnvObjects& objects, const EpisodeSet& episodes
 RunTrack::RunTrack(const World& world, const BatchSimulator& simulator, std::size_t envs)
     : world_(&world),
       actions_(simulator.actionCount()),
+      is_target_only_(!simulator.options().task.distractors),
       envs_(std::min(envs, simulator.envCount())),
       objects_(envs_.size()),
       statistics_(envs_.size()) {
@@ -70,7 +65,6 @@ void RunTrack::append(const RunTrack& other) {
   envs_.insert(envs_.end(), other.envs_.begin(), other.envs_.end());
   objects_.insert(objects_.end(), other.objects_.begin(), other.objects_.end());
   statistics_.insert(statistics_.end(), other.statistics_.begin(), other.statistics_.end());
-  is_target_only_ = is_target_only_ || other.is_target_only_;
 }
 
 std::size_t RunTrack::steps() const {
@@ -85,7 +79,7 @@ void RunTrack::addFrame(const BatchSimulator& simulator, std::size_t env) {
   addMoves(simulator, env);
   track.episodes.push_back(state.episode);
   track.world_from_root.push_back(state.world_from_root);
-  track.held.push_back(heldPlacement(simulator.envObjects(env), world_->episodes()));
+  track.held.push_back(heldPlacement(simulator.envObjects(env)));
   track.idle.push_back(simulator.idle()[env]);
   track.joints.insert(track.joints.end(), state.joint_positions.begin(),
                       state.joint_positions.end());
@@ -94,14 +88,11 @@ void RunTrack::addFrame(const BatchSimulator& simulator, std::size_t env) {
 void RunTrack::addMoves(const BatchSimulator& simulator, std::size_t env) {
   EnvTrack& track = envs_[env];
   const EnvObjects now = simulator.envObjects(env);
-  const Episode& episode = world_->episodes().episodes()[now.episode];
-  const bool is_alone = isAlone(now, episode);
-  is_target_only_ = is_target_only_ || is_alone;
   std::vector<Pose>& objects = objects_[env];
   const auto ended = !track.endings.empty() && track.endings.back() != EpisodeEnd::kNone;
   if (track.episodes.empty() || ended || track.episodes.back() != now.episode) {
     objects.clear();
-    for (const Placement& placement : now.placements) objects.push_back(placement.pose);
+    for (const Placement& placement : now.present.placements) objects.push_back(placement.pose);
   }
   const auto frame = static_cast<std::uint32_t>(track.episodes.size());
   for (std::size_t n = 0; n < now.objects.size(); ++n) {
@@ -109,8 +100,7 @@ void RunTrack::addMoves(const BatchSimulator& simulator, std::size_t env) {
     const Pose& pose = is_held ? now.world_from_held : now.objects[n];
     if (pose == objects[n]) continue;
     objects[n] = pose;
-    const auto placement = is_alone ? episode.target : static_cast<std::uint32_t>(n);
-    track.moves.push_back({frame, placement, pose});
+    track.moves.push_back({frame, now.present.first + static_cast<std::uint32_t>(n), pose});
   }
 }
 

@@ -88,7 +88,7 @@ class RunTrack {
 
   const World* world_;
   std::size_t actions_;
-  bool is_target_only_ = false;
+  bool is_target_only_;
   std::array<std::size_t, kTrackDistances.size()> distance_at_{};
   std::vector<EnvTrack> envs_;
   // Of the last frame, for each env.

@@ -20,14 +20,11 @@ float lengthOf(const Vec3& v) { return std::sqrt(dot(v, v)); }
 std::vector<PlacedObject> placed(const EpisodeTrace& trace, const ComparisonWorlds& worlds,
                                  const std::vector<Pose>& poses) {
   const EpisodeSet& set = worlds.world.episodes();
-  const auto placements = set.placements(set.episodes()[trace.episode]);
+  const Episode& episode = set.episodes()[trace.episode];
+  const auto placements = set.presentOf(episode, poses.size()).placements;
   std::vector<PlacedObject> objects;
   for (std::size_t n = 0; n < poses.size(); ++n) {
-    // Without distractors the target alone is there.
-    const Placement& placement = poses.size() == placements.size()
-                                     ? placements[n]
-                                     : placements[set.episodes()[trace.episode].target];
-    const auto shape = worlds.sources.objects.find(worlds.world.objectOf(placement).name);
+    const auto shape = worlds.sources.objects.find(worlds.world.objectOf(placements[n]).name);
     objects.push_back({shape->second, poses[n]});
   }
   return objects;

@@ -142,7 +142,7 @@ Still BestView::take(const BatchSimulator& simulator) {
               .bodies = {now.bodies.begin(), now.bodies.end()},
               .places = {}};
   std::size_t place = 0;
-  for (const Placement& placement : env.placements) {
+  for (const Placement& placement : env.present.placements) {
     const bool is_shown = models_.objectModel(placement.object).has_value();
     still.places.push_back(is_shown ? std::optional(place++) : std::nullopt);
   }

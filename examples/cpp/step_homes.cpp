@@ -56,7 +56,7 @@ int main(int argc, char** argv) try {
   const galactic::EnvObjects objects = simulator.envObjects(0);
   for (std::size_t n = 0; n < objects.objects.size(); ++n) {
     std::printf("%s is %.2f m high\n",
-                std::string(world.objectOf(objects.placements[n]).name).c_str(),
+                std::string(world.objectOf(objects.present.placements[n]).name).c_str(),
                 static_cast<double>(objects.objects[n].translation.y));
   }
 

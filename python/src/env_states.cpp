@@ -102,7 +102,7 @@ NamedEnvState envState(Simulator& simulator, const py::object& env) {
   const std::uint32_t number = simulator.envNumber(env);
   NamedEnvState state{simulator.batch().envState(number), {}};
   const std::vector<std::string_view>& names = simulator.world().episodes().objectNames();
-  for (const Placement& placement : simulator.batch().envObjects(number).placements) {
+  for (const Placement& placement : simulator.batch().envObjects(number).present.placements) {
     state.object_names.push_back(fileText(names[placement.object]));
   }
   return state;
@@ -127,7 +127,8 @@ py::object envStates(Simulator& simulator, const py::object& envs) {
     roots.put(state.world_from_root);
     joint_positions.put(state.joint_positions);
     grips.put(state.world_from_grip);
-    const std::span<const Placement> placements = simulator.batch().envObjects(env).placements;
+    const std::span<const Placement> placements =
+        simulator.batch().envObjects(env).present.placements;
     for (std::size_t n = 0; n < most; ++n) {
       const bool is_there = n < placements.size();
       objects.put(is_there ? state.objects[n] : kNoPose);

@@ -193,17 +193,17 @@ void Rendering::update(const BatchSimulator& simulator) {
   const World& world = parts_->world;
   for (std::size_t env = 0; env < parts_->frames.size(); ++env) {
     const EnvObjects objects = simulator.envObjects(env);
-    const Episode& episode = world.episodes().episodes()[objects.episode];
+    const std::span<const Placement> placements = objects.present.placements;
     const auto name_of = [&](const Placement& placement) {
       return world.episodes().objectNames()[placement.object];
     };
     EnvFrame& frame = parts_->frames[env];
     frame.is_idle = simulator.idle()[env] != 0;
     frame.episode = objects.episode;
-    frame.target = name_of(world.episodes().placements(episode)[episode.target]);
+    frame.target = name_of(placements[objects.present.target]);
     frame.held = {};
     if (objects.held >= 0) {
-      frame.held = name_of(objects.placements[static_cast<std::size_t>(objects.held)]);
+      frame.held = name_of(placements[static_cast<std::size_t>(objects.held)]);
     }
   }
 }

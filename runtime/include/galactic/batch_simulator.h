@@ -97,9 +97,10 @@ struct EnvObjects {
   /// Index into World::scenes(), and into the episode set's episodes.
   std::uint32_t scene = 0;
   std::uint32_t episode = 0;
-  /// The placements in use; without distractors only that of the target.
-  std::span<const Placement> placements;
-  /// World poses, one per placement; of the held object, where it rested before it was grasped.
+  /// Those that are there: without distractors the target alone.
+  PresentObjects present;
+  /// World poses, one for each that is there; of the held object, where it rested before it was
+  /// grasped.
   std::span<const Pose> objects;
   /// Index into `objects`; -1 when nothing is held.
   std::int32_t held = -1;

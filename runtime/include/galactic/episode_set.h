@@ -38,6 +38,15 @@ struct Episode {
   Pose goal;
 };
 
+/// Which objects of an episode are there: all of them, or the target alone.
+struct PresentObjects {
+  std::span<const Placement> placements;
+  /// Index into `placements`.
+  std::uint32_t target = 0;
+  /// Where `placements` begin among those of the episode.
+  std::uint32_t first = 0;
+};
+
 /// The episodes of an episode pack: views into the pack.
 class EpisodeSet {
  public:
@@ -60,6 +69,16 @@ class EpisodeSet {
   /// The objects of one episode.
   [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
     return placements_.subspan(episode.first_placement, episode.placement_count);
+  }
+  /// Those that are there with all that distracts (TaskOptions::distractors), or without.
+  [[nodiscard]] PresentObjects present(const Episode& episode, bool distractors) const {
+    const std::span<const Placement> all = placements(episode);
+    if (distractors) return {all, episode.target, 0};
+    return {all.subspan(episode.target, 1), 0, episode.target};
+  }
+  /// Those of a state of the episode with this many objects.
+  [[nodiscard]] PresentObjects presentOf(const Episode& episode, std::size_t objects) const {
+    return present(episode, objects == episode.placement_count);
   }
   /// Positions of startJoints() in episode `n`, radians or meters.
   [[nodiscard]] std::span<const float> startPositions(std::size_t n) const {

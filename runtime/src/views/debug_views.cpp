@@ -60,26 +60,22 @@ void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
   const EnvObjects state = simulator.envObjects(env);
   const std::span<const RigidTransform> bodies =
       simulator.bodyTransforms().subspan(env * body_count_, body_count_);
-  const EpisodeSet& episodes = world_.episodes();
-  const Episode& episode = episodes.episodes()[state.episode];
-  const std::span<const Placement> all = episodes.placements(episode);
-  const Placement& target = all[episode.target];
-  // Without distractors the target is the only object.
-  const std::size_t target_number = state.placements.size() == all.size() ? episode.target : 0;
+  const std::span<const Placement> placements = state.present.placements;
+  const std::uint32_t target = state.present.target;
   std::size_t count = 0;
   if (const auto scene = models_.sceneModel(state.scene)) room[count++] = {*scene, {}};
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
     if (static_cast<std::int32_t>(n) == state.held) continue;
-    const std::uint32_t object = state.placements[n].object;
-    room[count++] = {n == target_number ? models_.targetModel(object) : models_.boxModel(object),
+    const std::uint32_t object = placements[n].object;
+    room[count++] = {n == target ? models_.targetModel(object) : models_.boxModel(object),
                      rigidTransform(state.objects[n])};
   }
-  room[count++] = {models_.goalModel(target.object), rigidTransform(state.goal)};
+  room[count++] = {models_.goalModel(placements[target].object), rigidTransform(state.goal)};
   for (const PlacedSphere& sphere : spheres_) {
     room[count++] = {sphere.model, sphereAt(bodies[sphere.body] * sphere.center)};
   }
   if (state.held >= 0) {
-    const Placement& held = state.placements[static_cast<std::size_t>(state.held)];
+    const Placement& held = placements[static_cast<std::size_t>(state.held)];
     for (const SetSphere& sphere : world_.objectOf(held).spheres) {
       room[count++] = {models_.sphereModel(DebugSpheres::kHeld, sphere.radius_index),
                        sphereAt(state.world_from_held * sphere.center)};

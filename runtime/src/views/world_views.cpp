@@ -104,7 +104,7 @@ void WorldViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
   const std::size_t names = models_.library().semanticNames().size();
   std::size_t count = 0;
   for (std::size_t n = 0; n < state.objects.size(); ++n) {
-    const auto model = models_.objectModel(state.placements[n].object);
+    const auto model = models_.objectModel(state.present.placements[n].object);
     if (!model) continue;
     const bool is_held = static_cast<std::int32_t>(n) == state.held;
     if (!ids.empty()) ids[count] = static_cast<std::uint32_t>(names + n);

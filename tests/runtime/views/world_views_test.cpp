@@ -99,7 +99,7 @@ class WorldViewsOfAHome : public testing::Test {
 
   [[nodiscard]] std::uint32_t objectModel(std::size_t env, std::size_t number) const {
     const EnvObjects objects = simulator_->envObjects(env);
-    return models_->objectModel(objects.placements[number].object).value();
+    return models_->objectModel(objects.present.placements[number].object).value();
   }
 
   test::ScratchFolder folder_;

@@ -44,9 +44,9 @@ std::string faultOf(const Model& model, const EnvState& state) {
   if (state.held < -1 || state.held >= static_cast<std::int64_t>(objects)) {
     return fmt::format("holds object {} of {}", state.held, objects);
   }
-  if (state.target != model.targetOf(episode)) {
+  if (state.target != model.present(episode).target) {
     return fmt::format("has the target {}, and its episode {}", state.target,
-                       model.targetOf(episode));
+                       model.present(episode).target);
   }
   const std::uint32_t most_steps = model.options.task.most_steps;
   if (most_steps != 0 && state.step > most_steps) {

@@ -60,19 +60,19 @@ void beginEpisode(const Model& model, BatchState& state, std::size_t n, std::uin
   const Episode& episode = model.episodeOf(start);
   placeRobot(model, state, n, start);
   placeObjects(model, state, n, start);
-  const std::uint32_t target = model.targetOf(episode);
+  const PresentObjects present = model.present(episode);
   Env& env = state.env(n);
   env = {.scene = model.world->sceneIndexOf(episode),
          .clearance_map = model.starts[start].clearance_map,
          .start = start,
-         .objects = static_cast<std::uint32_t>(model.placements(episode).size()),
-         .target = target,
+         .objects = static_cast<std::uint32_t>(present.placements.size()),
+         .target = present.target,
          .events = {},
          .reward_sum = env.reward_sum};
   ++state.counters(n).begun;
   state.counters(n).is_named = choice == EpisodeChoice::kNamed;
   state.held(n) = {};
-  state.setErrand(n, target, episode.goal.translation);
+  state.setErrand(n, present.target, episode.goal.translation);
   std::ranges::fill(state.leaving(n), 0U);
   state.idle()[n] = 0;
   takeStock(model, state, n);

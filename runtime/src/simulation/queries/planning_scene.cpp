@@ -139,8 +139,8 @@ class PlanningScene::Impl {
 
 void PlanningScene::Impl::update(const EnvState& state) {
   const Episode& episode = world_.episodes().episodes()[state.episode];
-  std::span<const Placement> placements = world_.episodes().placements(episode);
-  if (!options_.task.distractors) placements = placements.subspan(episode.target, 1);
+  const std::span<const Placement> placements =
+      world_.episodes().present(episode, options_.task.distractors).placements;
   scene_ = &world_.scenes()[state.scene];
   models_.clear();
   resting_.clear();

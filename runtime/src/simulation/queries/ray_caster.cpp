@@ -107,18 +107,19 @@ void checkLines(const char* call, const CastLines& lines, std::size_t hits) {
   }
 }
 
-/// Of the objects of a state: without distractors, the target alone.
+/// Of the objects of a state.
 std::span<const Placement> placementsOf(const World& world, const EnvState& state) {
   constexpr const char* kCall = "RayCaster";
   detail::checkIndex(kCall, "scene", state.scene, world.scenes().size());
   detail::checkIndex(kCall, "episode", state.episode, world.episodes().episodes().size());
   const Episode& episode = world.episodes().episodes()[state.episode];
-  const std::span<const Placement> all = world.episodes().placements(episode);
   detail::checkLength(kCall, "joint_positions", state.joint_positions.size(),
                       world.robot().positionCount());
-  if (state.objects.size() == 1) return all.subspan(episode.target, 1);
-  detail::checkLength(kCall, "objects", state.objects.size(), all.size());
-  return all;
+  const PresentObjects present = world.episodes().presentOf(episode, state.objects.size());
+  if (state.objects.size() != present.placements.size()) {
+    detail::checkLength(kCall, "objects", state.objects.size(), episode.placement_count);
+  }
+  return present.placements;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ EnvObjects envObjectsOf(const Model& model, const BatchState& state, std::size_t
   const Env& env = state.env(n);
   EnvObjects result{.scene = env.scene,
                     .episode = model.starts[env.start].episode,
-                    .placements = model.placements(model.episodeOf(env.start)),
+                    .present = model.present(model.episodeOf(env.start)),
                     .objects = state.objects(n).first(env.objects),
                     .held = env.held,
                     .world_from_held = {},

@@ -183,7 +183,7 @@ std::vector<sensors::Errand> errandsOf(const Model& model) {
   errands.reserve(model.starts.size());
   for (std::uint32_t start = 0; start < model.starts.size(); ++start) {
     const Episode& episode = model.episodeOf(start);
-    const Placement& target = model.placements(episode)[model.targetOf(episode)];
+    const Placement& target = model.world->episodes().placements(episode)[episode.target];
     errands.push_back({.scene = model.world->sceneIndexOf(episode),
                        .base = model.starts[start].base,
                        .target = target.pose.translation,

@@ -114,13 +114,11 @@ struct Model {
   /// The index into `starts` of the episode of this index in the world; none for a number that is
   /// no episode's, and for an episode that is skipped.
   [[nodiscard]] OptionalIndex startOf(std::int64_t episode) const noexcept;
-  /// The objects of an episode that are there, and which of them is the target.
-  [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
-    const std::span<const Placement> all = world->episodes().placements(episode);
-    return options.task.distractors ? all : all.subspan(episode.target, 1);
+  [[nodiscard]] PresentObjects present(const Episode& episode) const {
+    return world->episodes().present(episode, options.task.distractors);
   }
-  [[nodiscard]] std::uint32_t targetOf(const Episode& episode) const {
-    return options.task.distractors ? episode.target : 0;
+  [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
+    return present(episode).placements;
   }
   /// The objects at a start.
   [[nodiscard]] RestingView objectsAt(std::uint32_t start) const {
