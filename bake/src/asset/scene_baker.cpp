@@ -90,9 +90,11 @@ class RegionWarnings {
     if (options_.free_space.keep == Keep::kAll) return;
     for (const Component& part : baked.components) {
       if (part.region == Region::kRoom && part.touches_border) addOpen(radius, part, room);
-      if (part.region == Region::kEnclosed && part.volume >= kWorthMentioning * volume) {
+      const bool is_large = part.volume >= kWorthMentioning * volume;
+      if (part.region == Region::kEnclosed && is_large && !part.isSlab()) {
         addClosed(radius, part, volume);
       }
+      if (part.region == Region::kOutside) addYard(radius, part, baked.components);
     }
   }
 
@@ -128,6 +130,20 @@ class RegionWarnings {
                    : "nothing narrows the way out";
   }
 
+  /// Where there is much floor outside, it may be what was wanted. Told of the smallest radius.
+  void addYard(float radius, const Component& outside, const std::vector<Component>& parts) {
+    double floor = 0;
+    for (const Component& part : parts) {
+      if (part.region == Region::kRoom) floor += part.floor;
+    }
+    if (is_yard_known_ || !(outside.yard > 0.5 * floor)) return;
+    is_yard_known_ = true;
+    closed_.push_back(
+        fmt::format("radius {} m: the outside, with {:.1f} m2 of floor under the sky, is left out "
+                    "(room: {:.1f} m2 of floor); keep it with `inside` or `keep-components`",
+                    radius, outside.yard, floor));
+  }
+
   /// Larger spheres leave less of the same part.
   void addClosed(float radius, const Component& part, double room) {
     const Bounds& bounds = part.bounds;
@@ -150,6 +166,7 @@ class RegionWarnings {
   std::vector<float> open_;
   std::string way_out_;
   std::vector<Bounds> known_;
+  bool is_yard_known_ = false;
   std::vector<std::string> closed_;
 };
 

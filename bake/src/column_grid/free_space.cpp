@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "column_grid/standing_room.h"
 #include "galactic/bake/columns.h"
 #include "support/try.h"
 
@@ -77,6 +78,9 @@ Labels labelComponents(const Columns& columns) {
   return labels;
 }
 
+/// So much floor makes a room, square meters of places where a robot could stand.
+constexpr double kLeastFloor = 4;
+
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Length of the part of a span within the scene's heights.
@@ -112,6 +116,7 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
         const Span& heights = columns.spans[span];
         component.touches_border = component.touches_border || border;
         ++component.spans;
+        component.greatest_height = std::max(component.greatest_height, heights.hi - heights.lo);
         component.volume +=
             area * (static_cast<double>(heights.hi) - static_cast<double>(heights.lo));
         const double inside = in_scene ? area * overlap(heights, scene) : 0;
@@ -127,7 +132,26 @@ std::vector<Component> measure(const Columns& columns, const Labels& labels) {
       }
     }
   }
+  const std::vector<StandingRoom> rooms = standingRoom(columns, labels.of_span, labels.count);
+  for (std::size_t n = 0; n < components.size(); ++n) {
+    Component& component = components[n];
+    // Within walls a room without a ceiling is one; else what is under the sky is the outside.
+    const bool is_walled = component.columns_at_edge == 0;
+    component.floor = rooms[n].roofed + (is_walled ? rooms[n].open : 0);
+    component.yard = is_walled ? 0 : rooms[n].open;
+  }
   return components;
+}
+
+/// Whether one component is rather the room than another.
+bool isRather(const Component& first, const Component& second) {
+  const auto floor = [](const Component& of) { return of.floor < kLeastFloor ? 0 : of.floor; };
+  if (floor(first) != floor(second)) return floor(first) > floor(second);
+  if (first.isSlab() != second.isSlab()) return second.isSlab();
+  if (first.volume_inside != second.volume_inside) {
+    return first.volume_inside > second.volume_inside;
+  }
+  return first.volume > second.volume;
 }
 
 tl::unexpected<Error> seedFailure(const Vec3& seed, const GridFrame& frame,
@@ -183,12 +207,7 @@ Result<std::vector<bool>> chooseRooms(const Columns& columns, const Labels& labe
   std::vector<std::uint32_t> order(components.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const Component& first = components[a];
-    const Component& second = components[b];
-    if (first.volume_inside != second.volume_inside) {
-      return first.volume_inside > second.volume_inside;
-    }
-    return first.volume > second.volume;
+    return isRather(components[a], components[b]);
   });
   const std::size_t rooms = std::min<std::size_t>(options.components, order.size());
   for (std::size_t rank = 0; rank < rooms; ++rank) is_room[order[rank]] = true;

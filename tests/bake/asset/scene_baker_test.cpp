@@ -231,6 +231,20 @@ TEST(SceneBaker, WarnsOfAClosedRoomThatItLeavesOut) {
                                     "with `inside` or `keep-components`"));
 }
 
+TEST(SceneBaker, WarnsOfAGardenThatItLeavesOut) {
+  test::MeshBuilder builder;
+  builder.box({0, 0.1F, 0}, {5, 2.5F, 4}).box({-8, -0.1F, -8}, {13, 0, 12});
+  const SceneBakeOptions options{.radii = {0.05F, 0.12F}, .check_columns = 0};
+  const auto scene = bake(test::sourceAssetOf(builder.build()), options);
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->warnings.size(), 1U);
+  EXPECT_THAT(
+      scene->warnings[0],
+      testing::MatchesRegex("radius 0\\.05 m: the outside, with 3[0-9][0-9]\\.[0-9] m2 of "
+                            "floor under the sky, is left out \\(room: 1[0-9]\\.[0-9] m2 of "
+                            "floor\\); keep it with `inside` or `keep-components`"));
+}
+
 TEST(SceneBaker, DoesNotWarnOfWhatItKeepsOrWhatIsSmall) {
   SceneBakeOptions options{.radii = {0.05F}, .check_columns = 0};
   options.free_space.seeds = {{1, 1, 1}, {4, 1, 1}};

@@ -147,6 +147,91 @@ TEST(FreeSpace, OfASeedIsTheRoomThatItStandsInHoweverSmall) {
   }
 }
 
+/// Parts of the free space that are the room hold these points and no others.
+void expectRoom(const TriangleMesh& mesh, const std::vector<Vec3>& in,
+                const std::vector<Vec3>& out) {
+  for (const float radius : {0.015F, 0.05F, 0.12F}) {
+    SCOPED_TRACE(testing::Message() << "radius " << radius);
+    const FreeSpace free = chooseFreeSpace(columnsOf(mesh, radius)).value();
+    const auto is_kept = [&](const Vec3& at) {
+      const GridFrame& frame = free.columns.frame;
+      const auto i = static_cast<std::uint32_t>((at.x - frame.min_x) / frame.spacing);
+      const auto k = static_cast<std::uint32_t>((at.z - frame.min_z) / frame.spacing);
+      const auto spans = free.columns.column(free.columns.index(i, k));
+      return std::ranges::any_of(
+          spans, [&](const Span& span) { return span.lo <= at.y && at.y <= span.hi; });
+    };
+    for (const Vec3& at : in) EXPECT_TRUE(is_kept(at)) << at.x << " " << at.y << " " << at.z;
+    for (const Vec3& at : out) EXPECT_FALSE(is_kept(at)) << at.x << " " << at.y << " " << at.z;
+  }
+}
+
+TEST(FreeSpace, OfAClosedHouseInAGardenIsTheHouse) {
+  MeshBuilder builder;
+  addRoom(builder, {0, 0, 0}, {5, 2.5F, 4}).box({-12, -0.3F, -13}, {17, -0.1F, 14});
+  const TriangleMesh mesh = builder.build();
+  expectRoom(mesh, {{1, 1, 1}, {4.7F, 0.3F, 3.7F}}, {{-5, 1, 3}, {10, 0.5F, 1}});
+  const FreeSpace free = chooseFreeSpace(columnsOf(mesh, 0.05F)).value();
+  const auto& house = *std::ranges::find(free.components, Region::kRoom, &Component::region);
+  // Squares of 80 cm find room for their middles; spheres stay away from walls, too.
+  EXPECT_NEAR(house.floor, 4.1 * 3.1, 0.5);
+  EXPECT_EQ(house.yard, 0);
+  const auto& garden = *std::ranges::find(free.components, Region::kOutside, &Component::region);
+  EXPECT_EQ(garden.floor, 0);
+  EXPECT_NEAR(garden.yard, 28.3 * 26.3 - 6.1 * 5.1, 4);
+}
+
+TEST(FreeSpace, OfAClosedRoomThatStandsAcrossIsItsInside) {
+  // Turned about Y, with a chimney: the scene's bounds hold more of the outside than of the room.
+  MeshBuilder builder;
+  addRoom(builder, {0, 0, 0}, {5, 2.5F, 4}).box({1, 2.6F, 1}, {1.5F, 4, 1.5F});
+  TriangleMesh mesh = builder.build();
+  const float half = std::sqrt(0.5F);
+  mesh.bounds = {{9, 9, 9}, {-9, -9, -9}};
+  for (Vec3& p : mesh.vertices) {
+    p = {half * (p.x + p.z), p.y, half * (p.z - p.x)};
+    Bounds& bounds = mesh.bounds;
+    bounds.min = {std::min(bounds.min.x, p.x), std::min(bounds.min.y, p.y),
+                  std::min(bounds.min.z, p.z)};
+    bounds.max = {std::max(bounds.max.x, p.x), std::max(bounds.max.y, p.y),
+                  std::max(bounds.max.z, p.z)};
+  }
+  expectRoom(mesh, {{half * 5, 1, -half}}, {{0.3F, 1, 2}});
+}
+
+TEST(FreeSpace, OfAHouseWithoutCeilingsIsNeitherWallsNorWardrobes) {
+  MeshBuilder builder;
+  // Walls as thick as 60 cm, hollow as all boxes are, and a large wardrobe.
+  builder.box({0, -0.2F, 0}, {8, 0, 6})
+      .box({0, 0, 0}, {8, 2.6F, 0.6F})
+      .box({0, 0, 5.4F}, {8, 2.6F, 6});
+  builder.box({0, 0, 0.6F}, {0.6F, 2.6F, 5.4F}).box({7.4F, 0, 0.6F}, {8, 2.6F, 5.4F});
+  builder.box({2, 0, 0.65F}, {6, 2.3F, 1.35F});
+  expectRoom(builder.build(), {{4, 1, 3}}, {{0.3F, 1, 3}, {4, 1, 1}});
+}
+
+TEST(FreeSpace, OfAHouseWithOpenDoorsIsMoreThanItsClosedBath) {
+  // The bath is behind a closed door, and the way out through an open one.
+  MeshBuilder open;
+  open.box({0, -0.1F, 0}, {9, 0, 6}).box({0, 2.5F, 0}, {9, 2.6F, 6});
+  open.box({-0.1F, 0, 0}, {0, 2.5F, 6}).box({9, 0, 0}, {9.1F, 2.5F, 6});
+  open.box({0, 0, 6}, {9, 2.5F, 6.1F})
+      .box({0, 0, -0.1F}, {2, 2.5F, 0})
+      .box({3, 0, -0.1F}, {9, 2.5F, 0});
+  open.box({5.5F, 0, -0.1F}, {5.6F, 2.5F, 6.1F});
+  expectRoom(open.build(), {{1, 1, 3}}, {{7, 1, 3}});
+}
+
+TEST(FreeSpace, OfAFloorAloneIsWhatIsAboveIt) {
+  MeshBuilder builder;
+  builder.box({0, 0, 0}, {5, 0.1F, 4});
+  for (const float radius : {0.015F, 0.05F}) {
+    const FreeSpace free = chooseFreeSpace(columnsOf(builder.build(), radius)).value();
+    const auto& room = *std::ranges::find(free.components, Region::kRoom, &Component::region);
+    EXPECT_TRUE(room.touches_border) << "radius " << radius;
+  }
+}
+
 /// A room, a closed cabinet in it, and a closed chest in the cabinet.
 TriangleMesh nestedBoxes() {
   MeshBuilder builder;

@@ -69,7 +69,7 @@ enum class Keep { kRoom, kAll };
 
 struct FreeSpaceOptions {
   Keep keep = Keep::kRoom;
-  /// Points (world frame) whose components are the room. Empty: the largest components by volume.
+  /// Points (world frame) whose components are the room. Empty: the largest components.
   std::vector<Vec3> seeds{};
   /// How many of the largest components are the room when there are no seeds.
   std::uint32_t components = 1;
@@ -84,14 +84,26 @@ struct Component {
   std::uint64_t spans = 0;
   /// Cubic meters of sphere centers.
   double volume = 0;
-  /// The part of it within the scene's bounds: what makes a component the room. The padding around
-  /// a small scene can hold more than the scene.
+  /// Floor on which a robot could stand, square meters: under a roof or, where walls close the
+  /// scene in on all sides, under the sky; and the same under the sky in other scenes.
+  double floor = 0;
+  double yard = 0;
+  /// Of its highest span, meters.
+  float greatest_height = 0;
+  /// The part of it within the scene's bounds. The padding around a small scene can hold more than
+  /// the scene.
   double volume_inside = 0;
   /// The shares of that in spans that end above and below these bounds.
   double volume_open_above = 0;
   double volume_open_below = 0;
   /// Bounds of its columns and spans.
   Bounds bounds;
+
+  /// Whether it is the inside of something flat, such as a floor.
+  [[nodiscard]] bool isSlab() const {
+    constexpr float kThin = 0.3F;
+    return !touches_border && greatest_height < kThin;
+  }
 };
 
 struct RegionTotals {
@@ -110,9 +122,9 @@ struct FreeSpace {
 };
 
 /// Flood fill: spans that overlap in height in neighboring columns are connected. The room is what
-/// the seeds reach, else the largest components by volume inside the scene's bounds; other
-/// components that reach the border are outside, the rest enclosed. Fails with kInvalidInput when a
-/// seed is not in free space.
+/// the seeds reach, else the component with most floor or, where none has 4 m² of it, that with
+/// most volume inside the scene's bounds, slabs last; other components that reach the border are
+/// outside, the rest enclosed. Fails with kInvalidInput when a seed is not in free space.
 [[nodiscard]] Result<FreeSpace> chooseFreeSpace(const Columns& columns,
                                                 const FreeSpaceOptions& options = {});
 
