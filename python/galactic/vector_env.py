@@ -21,6 +21,7 @@ from galactic.vector_env_arguments import (
     Actions,
     cameras_of,
     check_places,
+    distinct_envs,
     env_numbers,
     episodes_to_begin,
     own_task_of,
@@ -294,12 +295,14 @@ class VectorEnv(_Base):
         return batch_of([simulator.episode_noise() for simulator in self.simulators])
 
     def set_states(self, states: EnvStates, envs: Iterable[int] | None = None) -> NDArray[np.bool_]:
-        """Has all envs, or those with the numbers `envs`, in that order, go on from states of one's own, as if an episode had begun there: Simulator.set_states(). observe() shows what they see.
+        """Has all envs, or those with the numbers `envs`, in that order, go on from states of one's own, as if
+        an episode had begun there: Simulator.set_states() says what is taken as it is, and what is refused.
+        observe() shows what they see.
 
         Returns bool (n,): where an env has its state. Raises what Simulator.set_states() raises, and nothing
         has changed then."""
         self._require_idle()
-        chosen = np.arange(self.num_envs) if envs is None else env_numbers(envs, self.num_envs)
+        chosen = np.arange(self.num_envs) if envs is None else distinct_envs(envs, self.num_envs)
         self._halves[0].simulator.check_states(states)
         if len(chosen) != len(states.episode):
             raise ValueError(f"there are {len(states.episode)} states, expected {len(chosen)}")
@@ -465,7 +468,7 @@ class VectorEnv(_Base):
         task of one's own `steps` and `progress`, stay their own.
         """
         self._require_idle()
-        chosen = None if envs is None else env_numbers(envs, self.num_envs)
+        chosen = None if envs is None else distinct_envs(envs, self.num_envs)
         saved_states.restore(self._halves, state, chosen)
 
     def close(self, **kwargs: Any) -> None:

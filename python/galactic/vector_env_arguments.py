@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galactic import spaces
-from galactic._core import Renderer, Simulator
+from galactic._core import ErrorCode, Renderer, Simulator
+from galactic.errors import Error
 from galactic.task import Task
 
 Array = NDArray[Any]
@@ -93,6 +94,16 @@ def env_numbers(envs: Iterable[int], count: int) -> NDArray[np.int64]:
     if len(wrong):
         raise IndexError(f"there is no env {wrong[0]}, the last is {count - 1}")
     return found.astype(np.int64)
+
+
+def distinct_envs(envs: Iterable[int], count: int) -> NDArray[np.int64]:
+    """The same of envs that go on from something each. Raises Error where one is named twice."""
+    found = env_numbers(envs, count)
+    numbers, times = np.unique(found, return_counts=True)
+    if len(numbers) < len(found):
+        twice = numbers[times > 1][0]
+        raise Error(ErrorCode.INVALID_INPUT, "envs", f"has env {twice} twice, expected each once")
+    return found
 
 
 class Actions:

@@ -169,15 +169,20 @@ void bindStepping(py::class_<Simulator>& type) {
       "that order, as env_states() returns them, changed or not, also of another Simulator.\n\n"
       "Each env is in states.episode, whose objects and target are there, after states.step\n"
       "steps of it, with robot, objects and goal where the state says. The base goes to the\n"
-      "floor under it and joints into their limits. What is held is in the hand as\n"
-      "world_from_grip and its pose in objects say, and follows joints that you change. scene\n"
+      "floor, which may be floor_rise above it at most and floor_drop below (options; 0.05 m\n"
+      "each), with the yaw of the root's rotation alone, and joints into their\n"
+      "limits. What is held is in the hand as world_from_grip and its pose in objects say, and\n"
+      "follows joints that you change; EnvStates.hold() puts an object there. Objects that rest\n"
+      "are taken as they are: neither laid down, nor looked at for what they are in. scene\n"
       "and object_kinds play no part. drawn: the luck of an env (noise) is its own; False: that\n"
       "of the episode, as in reset(). What the last step returned stays, but for observations.\n\n"
       "bool (n,): where an env has its state; elsewhere it is as it was, as no floor carries the\n"
-      "base, or as the robot would penetrate the scene or an object out of the hand's reach.\n"
-      "Nothing changes if one is wrong: IndexError and ValueError for episodes as in reset(),\n"
-      "Error for numbers that are not finite, another target than the episode's or, where ways\n"
-      "along the floor are observed or rewarded (geodesic), another goal.");
+      "base, as the robot would penetrate the scene or an object out of the hand's reach, or as\n"
+      "the hand does not touch what it is to hold: the box of that is further from the grasp\n"
+      "point than the hand's sphere reaches. Nothing changes if one is wrong: IndexError and\n"
+      "ValueError for episodes as in reset(), Error for numbers that are not finite, a root that\n"
+      "is tilted by more than 0.1 rad, another target than the episode's, an env that is named\n"
+      "twice or, where ways along the floor are observed or rewarded (geodesic), another goal.");
   type.def("check_states", &checkStates, py::arg("states"),
            "Raises what set_states() would raise because of these states, and does nothing else.");
   type.def("save_state", &Simulator::saveState, py::arg("envs") = py::none(),
@@ -192,7 +197,8 @@ void bindStepping(py::class_<Simulator>& type) {
       "A state of one env goes into each of them, to try many plans; of several, each goes into "
       "the\n"
       "env that stands in its place, and nowhere where that is None.\n"
-      "Error for bytes that are no such state; nothing changes then.");
+      "Error for bytes that are no such state, and where an env is named twice; nothing changes\n"
+      "then.");
 }
 
 void bindResults(py::class_<Simulator>& type) {

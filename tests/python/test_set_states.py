@@ -83,6 +83,13 @@ def test_planners_and_simulators_agree_on_what_is_free(fresh):
     assert 0 < were_set.sum() < ENVS
 
 
+def turned(poses, x, w):
+    """The same with a rotation about X, or with none that is one."""
+    rotation = np.zeros_like(poses.rotation)
+    rotation[..., 1], rotation[..., 0] = x, w
+    return poses._replace(rotation=rotation)
+
+
 @pytest.mark.parametrize(
     "change, error, message",
     [
@@ -92,7 +99,21 @@ def test_planners_and_simulators_agree_on_what_is_free(fresh):
         (lambda s: s._replace(episode=s.episode + 99), IndexError, "there is no episode"),
         (lambda s: s._replace(held=s.held + 50), Error, "holds object 49"),
         (lambda s: s._replace(target=s.target + 50), Error, "has the target"),
-        (lambda s: s._replace(joint_positions=s.joint_positions * np.nan), Error, "not finite"),
+        (
+            lambda s: s._replace(joint_positions=s.joint_positions * np.nan),
+            Error,
+            r"state 0 has joint_positions\[0\] -?nan, expected a finite number",
+        ),
+        (
+            lambda s: s._replace(world_from_root=turned(s.world_from_root, 1, 0)),
+            Error,
+            r"state 0 has world_from_root.rotation tilted by .* rad, expected at most 0.1",
+        ),
+        (
+            lambda s: s._replace(objects=turned(s.objects, 0, 0)),
+            Error,
+            r"state 0 has objects\[0\].rotation \(0, 0, 0, 0\), expected a unit quaternion",
+        ),
         (lambda s: s._replace(goal=s.goal._replace(translation=None)), ValueError, "states.goal"),
         (
             lambda s: s._replace(objects=s.objects._replace(rotation=s.goal.rotation)),
@@ -186,7 +207,7 @@ def test_vector_envs_go_on_from_states_as_from_starts(world, played, halves):
     assert (infos["episode"]["l"][ended] == 1).all()
     with pytest.raises(ValueError, match="there are 4 states, expected 20"):
         env.set_states(chosen)
-    with pytest.raises(Error, match="not finite"):
+    with pytest.raises(Error, match="expected a finite number"):
         env.set_states(chosen._replace(joint_positions=chosen.joint_positions * np.nan), rows)
     env.step(actions)
 
@@ -255,5 +276,5 @@ def test_what_tasks_place_is_checked(world):
             states.goal.translation[:] = np.inf
             return states
 
-    with pytest.raises(Error, match="not finite"):
+    with pytest.raises(Error, match="has goal.translation .*, expected finite numbers"):
         VectorEnv(world, 4, task=Lost)

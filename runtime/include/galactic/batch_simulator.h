@@ -236,20 +236,25 @@ class BatchSimulator {
   /// Each of `envs` goes on from its state, which may be that of another env or simulator, a
   /// changed one, or one of your own: in EnvState::episode, whose scene, objects and target are
   /// there, after EnvState::step steps of it, with robot, objects and goal where the state says.
-  /// The base goes to the floor under it and joints into their limits. What is held is in the hand
-  /// as world_from_grip and its pose in `objects` say, and follows joints that you change. `scene`,
-  /// `begun`, roll and pitch of the root and the goal's rotation play no part, and positions that
-  /// neither actions nor episodes move stay as they are. Where the target rests counts as where it
-  /// began. What a state does not say begins anew: the last actions, whether something was in the
-  /// way (bump), odometry. The luck of the env is its own or, with EpisodeChoice::kNamed, the
-  /// episode's. What the last step returned stays, but for the observations of these envs.
+  /// The base goes to the floor, GroundOptions::most_rise above it or most_drop below it at most,
+  /// and joints into their limits. What is held is in the hand as world_from_grip and its
+  /// pose in `objects` say, and follows joints that you change; spheres of it that are in something
+  /// do not count until they are free, as after a grasp. Objects that rest are taken as they are,
+  /// also in the air, in furniture or in each other. `scene`, `begun` and the goal's rotation play
+  /// no part, the root has its yaw alone, and positions that neither actions nor episodes move stay
+  /// as they are. Where the target rests counts as where it began. What a state does not say begins
+  /// anew: the last actions, whether something was in the way (bump), odometry. The luck of the env
+  /// is its own or, with EpisodeChoice::kNamed, the episode's. What the last step returned stays,
+  /// but for the observations of these envs.
   ///
-  /// 1 where an env has its state now; 0 where it stays as it was, as no floor carries the base, or
-  /// as the robot would penetrate the scene, or a resting object out of the hand's reach: one
-  /// within counts as just let go of. Fails with kInvalidInput and changes nothing where a state is
-  /// of no episode that can be started, or has other counts of objects or positions, another target
-  /// than its episode, numbers that are not finite or, where ways along the floor are observed or
-  /// rewarded, another goal than its episode. Allocates.
+  /// 1 where an env has its state now; 0 where it stays as it was: where no floor carries the base,
+  /// where the robot would penetrate the scene or a resting object out of the hand's reach (one
+  /// within counts as just let go of), or where the hand does not touch what it is to hold, whose
+  /// box is then further than EndEffector::grasp_radius from the grasp point. Fails with
+  /// kInvalidInput and changes nothing where an env is named twice, or where a state is of no
+  /// episode that can be started, or has other counts of objects or positions, another target than
+  /// its episode, numbers that are not finite, a root that is tilted by more than 0.1 rad or, where
+  /// ways along the floor are observed or rewarded, another goal than its episode. Allocates.
   [[nodiscard]] Result<std::vector<std::uint8_t>> setStates(
       std::span<const std::uint32_t> envs, std::span<const EnvState> states,
       EpisodeChoice choice = EpisodeChoice::kDrawn);
@@ -269,7 +274,7 @@ class BatchSimulator {
   /// one becomes each of them; the random numbers and episodes to come are those of the env that a
   /// state is restored to. The bytes need not be trusted: fails with kInvalidInput or kUnsupported
   /// and changes nothing if they are not such a state, are of another number of envs or, with
-  /// `envs`, of another seed, or where there is no such env.
+  /// `envs`, of another seed, or where there is no such env, or one is named twice.
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state);
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state,
                                           std::span<const std::uint32_t> envs);

@@ -42,6 +42,17 @@ std::vector<std::uint32_t> allEnvs(std::size_t count) {
   return envs;
 }
 
+/// Of envs that are to go on from something each: where one is named twice, one thing is lost.
+Result<void> requireDistinct(std::span<const std::uint32_t> envs) {
+  std::vector<std::uint32_t> named(envs.begin(), envs.end());
+  std::erase(named, BatchSimulator::kNoEnv);
+  std::ranges::sort(named);
+  const auto twice = std::ranges::adjacent_find(named);
+  if (twice == named.end()) return {};
+  return fail(ErrorCode::kInvalidInput, "envs",
+              fmt::format("has env {} twice, expected each once", *twice));
+}
+
 }  // namespace
 
 /// The batch, and the threads that step it.
@@ -156,6 +167,7 @@ class BatchSimulator::Impl {
       return fail(ErrorCode::kInvalidInput, "saved state",
                   fmt::format("cannot become env {}: there are {}", env, envCount()));
     }
+    RETURN_IF_ERROR(requireDistinct(envs));
     const Result<SavedState> saved = simulation::readState(model_, bytes);
     if (!saved) return tl::unexpected<Error>(saved.error());
     if (Result<void> fits = checkCount(*saved, envs); !fits) return fits;
@@ -193,6 +205,7 @@ class BatchSimulator::Impl {
     requireIdle(kCall);
     detail::checkLength(kCall, "states", states.size(), envs.size());
     for (const std::uint32_t env : envs) detail::checkIndex(kCall, "env", env, envCount());
+    RETURN_IF_ERROR(requireDistinct(envs));
     RETURN_IF_ERROR(checkStates(states));
     if (!chooser_) chooser_ = std::make_unique<simulation::StateChooser>(model_);
     std::vector<std::uint8_t> were_set(envs.size());

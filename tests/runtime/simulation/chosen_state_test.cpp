@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -303,6 +305,103 @@ TEST(ChosenStates, HoldWhatFollowsTheHandAndIsLetGoOf) {
   EXPECT_EQ(simulator.statistics().grasps, 0U);
 }
 
+/// From the grasp point to the box of what a state holds, meters.
+double fromHand(const World& world, const EnvState& state) {
+  const auto held = static_cast<std::size_t>(state.held);
+  const Episode& episode = world.episodes().episodes()[state.episode];
+  const OrientedBox& box = world.objectOf(world.episodes().placements(episode)[held]).box;
+  const Double3 grip =
+      double3(inverse(state.objects[held] * box.pose) * state.world_from_grip.translation);
+  const Double3 half = double3(box.half_extents);
+  double squared = 0;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const double beyond = std::max(std::abs(grip[n]) - half[n], 0.0);
+    squared += beyond * beyond;
+  }
+  return std::sqrt(squared);
+}
+
+/// The small home with posts in its boxes, which a hand cannot grasp at the edges of these.
+WorldFields homeOfPosts() {
+  WorldFields fields = smallHomeWorld();
+  constexpr float kDiagonal = 0.70710678F;
+  for (ObjectFields& object : fields.objects.objects) {
+    object.hull_planes.emplace();
+    for (const float x : {-kDiagonal, kDiagonal}) {
+      for (const float z : {-kDiagonal, kDiagonal}) {
+        object.hull_planes->push_back({{x, 0, z}, 0.05F});
+      }
+    }
+  }
+  return fields;
+}
+
+/// By the wider rule of grasping, their boxes, whatever rule the simulator has.
+TEST(ChosenStates, HoldWhatTheHandTouchesAlone) {
+  const SmallHome home(homeOfPosts());
+  const EnvState state = holding(home.world(), optionsOf(1)).envState(0);
+  const auto reach = static_cast<double>(home.world().robot().endEffector()->grasp_radius);
+  BatchSimulator simulator = simulatorOf(home.world(), optionsOf(1));
+  const std::vector<std::byte> before = simulator.saveState();
+  constexpr unsigned kSeed = 20261130;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> away(-0.12F, 0.12F);
+  constexpr int kCases = 500;
+  int touched = 0;
+  int cases = 0;
+  while (cases < kCases) {
+    EnvState moved = state;
+    Pose& object = moved.objects[static_cast<std::size_t>(moved.held)];
+    object.translation = object.translation + Vec3{away(random), away(random), away(random)};
+    const float half_yaw = 10 * away(random);
+    object.rotation = object.rotation * Quat{0, std::sin(half_yaw), 0, std::cos(half_yaw)};
+    const double distance = fromHand(home.world(), moved);
+    // What a pose's way through floats may cost is allowed.
+    constexpr double kUnsure = 0.002;
+    if (std::abs(distance - reach) < kUnsure) continue;
+    ++cases;
+    ASSERT_EQ(isSet(simulator, moved), distance < reach) << distance;
+    if (distance < reach) {
+      ++touched;
+      ASSERT_TRUE(simulator.restoreState(before));
+    }
+    ASSERT_EQ(simulator.saveState(), before);
+  }
+  EXPECT_GT(touched, kCases / 10);
+  EXPECT_LT(touched, kCases * 9 / 10);
+}
+
+TEST(ChosenStates, StayInTheHandForAsLongAsTheyAreHanded) {
+  const SmallHome home;
+  SimulationOptions options = optionsOf(1);
+  options.task.kind = TaskKind::kNone;
+  options.task.most_steps = 0;
+  BatchSimulator leader = holding(home.world(), options);
+  const EnvState first = leader.envState(0);
+  BatchSimulator follower = simulatorOf(home.world(), options);
+  BatchSimulator other = simulatorOf(home.world(), options);
+  ASSERT_TRUE(isSet(follower, first));
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> drawn(-1, 1);
+  for (int step = 0; step < 300; ++step) {
+    std::vector<float> actions(kSmallHomeActions);
+    for (float& action : actions) action = drawn(random);
+    actions[kHand] = 1;
+    actions.back() = -1;
+    leader.step(actions);
+    const EnvState led = leader.envState(0);
+    const FollowedState there{.world_from_root = led.world_from_root,
+                              .joint_positions = led.joint_positions,
+                              .objects = led.objects,
+                              .held = led.held};
+    follower.follow(actions, std::span(&there, 1));
+    ASSERT_TRUE(isSet(other, follower.envState(0))) << step;
+    ASSERT_TRUE(isSet(leader, other.envState(0))) << step;
+    ASSERT_EQ(leader.envState(0).held, first.held);
+  }
+}
+
 TEST(ChosenStates, AreInTheirEpisodesAndCountAsBegun) {
   const SmallHome home;
   SimulationOptions options = optionsOf(2);
@@ -418,21 +517,65 @@ TEST(ChosenStates, ThatAreNoneOfThisWorldAreRefused) {
   for (const auto& number : {&Vec3::x, &Vec3::y, &Vec3::z}) {
     for (const float wrong : {kNan, 1e30F}) {
       EXPECT_THAT(refused([&](EnvState& s) { s.world_from_root.translation.*number = wrong; }),
-                  HasSubstr("not finite"));
+                  HasSubstr("has world_from_root.translation ("));
       EXPECT_THAT(refused([&](EnvState& s) { s.goal.translation.*number = wrong; }),
-                  HasSubstr("not finite"));
+                  HasSubstr("has goal.translation ("));
       EXPECT_THAT(refused([&](EnvState& s) { s.objects[1].translation.*number = wrong; }),
-                  HasSubstr("not finite"));
+                  HasSubstr("has objects[1].translation ("));
     }
   }
-  EXPECT_THAT(refused([](EnvState& s) { s.joint_positions[1] = kNan; }), HasSubstr("not finite"));
+  EXPECT_THAT(refused([](EnvState& s) { s.joint_positions[1] = kNan; }),
+              HasSubstr("has joint_positions[1] nan, expected a finite number of at most 1e+06"));
   EXPECT_THAT(refused([](EnvState& s) {
                 s.objects[0].rotation = {0, 0, 0, 0};
               }),
-              HasSubstr("a rotation that is none"));
+              HasSubstr("has objects[0].rotation (0, 0, 0, 0), expected a unit quaternion: w, x"));
+  EXPECT_THAT(refused([](EnvState& s) {
+                s.held = 1;
+                s.world_from_grip.translation.y = kNan;
+              }),
+              HasSubstr("has world_from_grip.translation ("));
+  // As (x, y, z, w), where (w, x, y, z) is wanted.
+  EXPECT_THAT(refused([](EnvState& s) {
+                s.world_from_root.rotation = {1, 0, 0, 0};
+              }),
+              HasSubstr("has world_from_root.rotation tilted by 3.14 rad, expected at most 0.1"));
+  EXPECT_THAT(refused([](EnvState& s) {
+                s.world_from_root.rotation = {std::sin(0.055F), 0, 0, std::cos(0.055F)};
+              }),
+              HasSubstr("tilted by 0.11 rad"));
   EXPECT_THAT([&] { static_cast<void>(simulator.setStates(std::array{7U}, std::array{state})); },
               testing::ThrowsMessage<ErrorException>(HasSubstr("found env 7")));
   EXPECT_THROW(static_cast<void>(simulator.setStates(std::array{0U}, {})), ErrorException);
+}
+
+TEST(ChosenStates, HaveTheYawOfRootsThatAreHardlyTilted) {
+  const SmallHome home;
+  BatchSimulator simulator = simulatorOf(home.world(), optionsOf(1));
+  EnvState state = simulator.envState(0);
+  const Quat upright = state.world_from_root.rotation;
+  state.world_from_root.rotation = upright * Quat{std::sin(0.045F), 0, 0, std::cos(0.045F)};
+  ASSERT_TRUE(isSet(simulator, state));
+  const Quat now = simulator.envState(0).world_from_root.rotation;
+  EXPECT_EQ(now.x, 0);
+  EXPECT_EQ(now.z, 0);
+  EXPECT_NEAR(std::abs(now.y * upright.y + now.w * upright.w), 1, 1e-3F);
+}
+
+TEST(ChosenStates, OfEnvsThatAreNamedTwiceAreRefused) {
+  const SmallHome home;
+  BatchSimulator simulator = simulatorOf(home.world(), optionsOf(3));
+  const std::vector<EnvState> states = statesOf(simulator);
+  const std::vector<std::byte> before = simulator.saveState();
+  const auto set = simulator.setStates(std::array{2U, 0U, 2U}, states);
+  ASSERT_FALSE(set);
+  EXPECT_EQ(set.error().text(), "envs: has env 2 twice, expected each once");
+  const auto restored = simulator.restoreState(before, std::array{2U, 0U, 2U});
+  ASSERT_FALSE(restored);
+  EXPECT_EQ(restored.error().text(), set.error().text());
+  EXPECT_EQ(simulator.saveState(), before);
+  constexpr std::uint32_t kNone = BatchSimulator::kNoEnv;
+  EXPECT_TRUE(simulator.restoreState(before, std::array{kNone, 0U, kNone}));
 }
 
 TEST(ChosenStates, WithOtherGoalsAreRefusedWhereWaysLeadToThoseOfEpisodes) {

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <string_view>
 
 #include "simulation/collision/grasp_query.h"
+#include "simulation/collision/resting_box.h"
 #include "simulation/phases/contacts.h"
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/move.h"
@@ -18,10 +20,64 @@ namespace galactic::simulation {
 namespace {
 
 constexpr float kTurn = 6.28318531F;
+/// Roots that are tilted further, radians, are of another frame, or of quaternions in another
+/// order.
+constexpr float kMostTilt = 0.1F;
+/// Beyond what is left of a grasp after a pose's way through other frames and files, meters.
+constexpr float kGraspSlack = 1e-3F;
 
 /// Whether ways along the floor were found before the first step, to the goals of episodes.
 bool knowsWaysToGoals(const Model& model) {
   return model.options.sensors.geodesic || model.options.task.geodesic_weight != 0;
+}
+
+std::string faultIn(std::string_view field, const Vec3& v) {
+  return fmt::format("has {} ({:g}, {:g}, {:g}), expected finite numbers of at most {:g} m", field,
+                     v.x, v.y, v.z, kLargestPlain);
+}
+
+/// Of a pose that is not plain.
+std::string faultIn(std::string_view field, const Pose& pose) {
+  if (!isPlain(pose.translation)) {
+    return faultIn(fmt::format("{}.translation", field), pose.translation);
+  }
+  const Quat& q = pose.rotation;
+  return fmt::format(
+      "has {}.rotation ({:g}, {:g}, {:g}, {:g}), expected a unit quaternion: w, x, y, z", field,
+      q.w, q.x, q.y, q.z);
+}
+
+/// How far the vertical axis is from that of the world, radians.
+float tiltOf(const Quat& rotation) {
+  return 2 * std::asin(std::min(1.0F, std::hypot(rotation.x, rotation.z)));
+}
+
+/// Of the numbers of a state with the counts of its episode and robot.
+std::string faultOfNumbers(const EnvState& state) {
+  if (!isPlain(state.world_from_root)) return faultIn("world_from_root", state.world_from_root);
+  const float tilt = tiltOf(state.world_from_root.rotation);
+  if (tilt > kMostTilt) {
+    return fmt::format(
+        "has world_from_root.rotation tilted by {:.2f} rad, expected at most {}: "
+        "robots stand upright; quaternions are w, x, y, z",
+        tilt, kMostTilt);
+  }
+  for (std::size_t n = 0; n < state.joint_positions.size(); ++n) {
+    if (isPlain(state.joint_positions[n])) continue;
+    return fmt::format("has joint_positions[{}] {:g}, expected a finite number of at most {:g}", n,
+                       state.joint_positions[n], kLargestPlain);
+  }
+  if (!isPlain(state.goal.translation)) {
+    return faultIn("goal.translation", state.goal.translation);
+  }
+  if (state.held >= 0 && !isPlain(state.world_from_grip)) {
+    return faultIn("world_from_grip", state.world_from_grip);
+  }
+  for (std::size_t n = 0; n < state.objects.size(); ++n) {
+    if (isPlain(state.objects[n])) continue;
+    return faultIn(fmt::format("objects[{}]", n), state.objects[n]);
+  }
+  return {};
 }
 
 }  // namespace
@@ -52,12 +108,7 @@ std::string faultOf(const Model& model, const EnvState& state) {
   if (most_steps != 0 && state.step > most_steps) {
     return fmt::format("is after {} steps, and an episode has {}", state.step, most_steps);
   }
-  const bool holds = state.held >= 0;
-  if (!isPlain(state.world_from_root) || !arePlain(state.joint_positions) ||
-      !isPlain(state.goal.translation) || (holds && !isPlain(state.world_from_grip)) ||
-      !std::ranges::all_of(state.objects, [](const Pose& pose) { return isPlain(pose); })) {
-    return "has a number that is not finite or of no home, or a rotation that is none";
-  }
+  if (std::string fault = faultOfNumbers(state); !fault.empty()) return fault;
   if (knowsWaysToGoals(model) && !(state.goal.translation == episode.goal.translation)) {
     return "has another goal than its episode, and ways along the floor (geodesic) are known to "
            "the goals of episodes alone";
@@ -74,6 +125,7 @@ StateChooser::StateChooser(const Model& model) : model_(model), state_(model, 1)
 std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
   // faultOf() has looked whether there is one.
   beginEpisode(model_, state_, 0, *model_.startOf(chosen.episode), EpisodeChoice::kDrawn);
+  if (chosen.held >= 0 && !touchesHeld(chosen)) return std::nullopt;
   moveObjects(chosen);
   if (!standOnFloor(chosen)) return std::nullopt;
   setVariables(chosen);
@@ -82,6 +134,15 @@ std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
   leaveWhatIsInReach();
   if (!isFree(step(), 0)) return std::nullopt;
   return taken(chosen);
+}
+
+/// By the wider of the rules by which hands grasp, so that states go from the one to the other.
+bool StateChooser::touchesHeld(const EnvState& chosen) const {
+  const auto object = static_cast<std::uint32_t>(chosen.held);
+  const RestingBox box =
+      restingBox(model_.object(state_.env(0).start, object).box, chosen.objects[object]);
+  const float reach = model_.motion.grasp_radius + kGraspSlack;
+  return squaredDistance(box, chosen.world_from_grip.translation) < reach * reach;
 }
 
 void StateChooser::moveObjects(const EnvState& chosen) {

@@ -23,12 +23,13 @@ class StateChooser {
   /// The state of an env: robot, objects, hand, step and goal as `chosen` says. The base goes to
   /// the floor under it, joints into their limits, and what is held follows the hand. Counters and
   /// what the last step returned are for the caller to fill in. None where no floor carries the
-  /// base, or where the robot penetrates the scene or a resting object that the hand could not have
-  /// let go of there. `chosen`: without fault.
+  /// base, where the robot penetrates the scene or a resting object that the hand could not have
+  /// let go of there, or where the hand does not touch what it is to hold. `chosen`: without fault.
   [[nodiscard]] std::optional<SavedEnv> choose(const EnvState& chosen);
 
  private:
   [[nodiscard]] ChunkStep step() { return {model_, state_, chunk_, 0}; }
+  [[nodiscard]] bool touchesHeld(const EnvState& chosen) const;
   void moveObjects(const EnvState& chosen);
   [[nodiscard]] bool standOnFloor(const EnvState& chosen);
   void setVariables(const EnvState& chosen);
