@@ -19,6 +19,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "episode_table.h"
+#include "filled.h"
 #include "galactic/error.h"
 #include "options.h"
 
@@ -53,6 +54,16 @@ py::tuple objectNames(const World& world) {
   py::list names;
   for (const std::string_view name : world.episodes().objectNames()) names.append(fileText(name));
   return py::tuple(names);
+}
+
+/// float32 (k, 3).
+py::array_t<float> objectCenters(const World& world) {
+  const std::size_t count = world.episodes().objectNames().size();
+  Filled<float> centers({static_cast<py::ssize_t>(count), 3});
+  for (std::uint32_t object = 0; object < count; ++object) {
+    centers.put(numbersOf(world.objectOf({.object = object, .pose = {}}).box.pose.translation));
+  }
+  return centers.array();
 }
 
 py::tuple linkNames(const World& world) {
@@ -173,6 +184,10 @@ void bindWorld(py::module_& module) {
       .def_property_readonly("scenes", &sceneNames, "Names; EnvState.scene is an index.")
       .def_property_readonly("objects", &objectNames,
                              "Names of all objects that episodes place, each once.")
+      .def_property_readonly(
+          "object_centers", &objectCenters,
+          "Where in the frame of each of them the middle of its box is: float32\n"
+          "(len(objects), 3), meters, a copy.")
       .def_property_readonly(
           "robot", [](const World& world) { return fileText(world.robot().name()); },
           "Name of the robot.")

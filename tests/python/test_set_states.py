@@ -143,6 +143,71 @@ def test_numbers_of_envs_have_to_be_there(fresh):
     fresh.end_step()
 
 
+@pytest.mark.parametrize("halves", [1, 2])
+def test_an_env_that_is_named_twice_is_refused(world, fresh, halves):
+    states = fresh.env_states().select([0, 1, 2])
+    env = VectorEnv(world, ENVS, halves=halves, seed=3, task="none")
+    env.reset()
+    for one, state in ((fresh, fresh.save_state([0, 1, 2])), (env, env.save_state([0, 1, 2]))):
+        before = one.save_state()
+        for call in (
+            lambda: one.set_states(states, [11, 4, 11]),
+            lambda: one.restore_state(state, [11, 4, 11]),
+        ):
+            with pytest.raises(Error, match="^envs: has env 11 twice, expected each once"):
+                call()
+        assert one.save_state() == before
+
+
+def test_what_is_held_has_to_be_in_the_hand(fresh, world):
+    """Any object may be put there, and stays there."""
+    states = fresh.env_states()
+    states.held[:] = states.target
+    assert not fresh.set_states(states).any()
+    states.hold(world)
+    rows = np.arange(ENVS)
+    np.testing.assert_array_equal(states.held, states.target)
+    centers = world.object_centers[states.object_kinds[rows, states.held]]
+    in_objects = np.hstack([centers, np.ones((ENVS, 1))])
+    in_world = np.einsum("nij,nj->ni", states.objects.matrix[rows, states.held], in_objects)
+    np.testing.assert_allclose(in_world[:, :3], states.world_from_grip.translation, atol=1e-5)
+    assert fresh.set_states(states).all()
+    actions = np.zeros((ENVS, fresh.action_count), np.float32)
+    actions[:, -2] = 1
+    grip_from_held = None
+    for _ in range(20):
+        fresh.step(actions)
+        actions[:, 1] = 1
+        now = fresh.env_states()
+        np.testing.assert_array_equal(now.held, states.target)
+        found = np.linalg.inv(now.world_from_grip.matrix) @ now.objects.matrix[rows, now.held]
+        if grip_from_held is not None:
+            np.testing.assert_allclose(found, grip_from_held, atol=1e-4)
+        grip_from_held = found
+
+
+def test_objects_are_put_into_some_hands(fresh, world):
+    states = fresh.env_states()
+    before = states.select(slice(None))
+    states.hold(world, 0, rows=states.episode == states.episode[2])
+    of_it = states.episode == states.episode[2]
+    np.testing.assert_array_equal(states.held, np.where(of_it, 0, -1))
+    moved = np.nan_to_num(states.objects.translation - before.objects.translation) != 0
+    np.testing.assert_array_equal(moved.any(axis=(1, 2)), of_it)
+    np.testing.assert_array_equal(states.objects.rotation, before.objects.rotation)
+    states.hold(world, [1, 0], rows=[4, 3])
+    assert states.held[4] == 1 and states.held[3] == 0
+    states.hold(world, rows=[])
+    for wrong, error, message in (
+        ([-1] * ENVS, IndexError, "state 0 has no object -1; its last is"),
+        (99, IndexError, "state 0 has no object 99; its last is"),
+        (0.5, TypeError, "objects are float64, expected whole numbers"),
+        ([0, 1], ValueError, "could not broadcast"),
+    ):
+        with pytest.raises(error, match=message):
+            states.hold(world, wrong)
+
+
 def test_luck_is_the_envs_or_the_episodes(world):
     noisy = Simulator(world, envs=2, threads=1, task="none", motion_noise=0.3)
     states = noisy.env_states().select([0, 0])
@@ -245,6 +310,37 @@ def test_tasks_place_robots_and_objects(world, halves):
     wanted.step[:] = 4
     assert env.set_states(wanted).all()
     assert (env.observe()[:, -1] == 3).all() and (env.env_states().step == 4).all()
+
+
+class Carry(Task):
+    """Bring the target, which is in the hand, to the goal."""
+
+    base = "rearrange"
+
+    def place(self, envs, which, states):
+        states.hold(envs.world)
+        return states
+
+    def step(self, envs):
+        return Outcome(envs.rewards)
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_tasks_begin_with_targets_in_hands(world, halves):
+    env = VectorEnv(world, ENVS, task=Carry, halves=halves, seed=5, episode_steps=4)
+    env.reset()
+    states = env.env_states()
+    np.testing.assert_array_equal(states.held, states.target)
+    assert env.placements.refused == 0
+    actions = np.zeros(env.action_space.shape, np.float32)
+    actions[:, -2] = 1
+    for step in range(4):
+        _, _, terminations, truncations, _ = env.step(actions)
+        assert not terminations.any() and truncations.all() == (step == 3)
+    # The next episodes, too.
+    states = env.env_states()
+    assert (states.step == 0).all()
+    np.testing.assert_array_equal(states.held, states.target)
 
 
 def test_named_episodes_are_placed_alike_in_any_env(world):
