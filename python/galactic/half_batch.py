@@ -15,7 +15,7 @@ from galactic._core import EpisodeTally, ErrorCode, Renderer, Simulator, World
 from galactic.env_states import EnvStates
 from galactic.errors import Error
 from galactic.step_events import StepEvents
-from galactic.task import Task
+from galactic.task import Placements, Task
 from galactic.task_runner import TaskRunner, options_of
 
 Array = NDArray[Any]
@@ -116,6 +116,11 @@ class HalfBatch:
         self._progress = value
         if self._task is not None:
             self._task.progress = value
+
+    @property
+    def placements(self) -> Placements:
+        """What came of the task's place()."""
+        return Placements(0, 0) if self._task is None else self._task.placements
 
     @property
     def observation_size(self) -> int:

@@ -27,6 +27,15 @@ class Outcome(NamedTuple):
     """What there is to say of the step, the Task's `logs`, each (n,), finite."""
 
 
+class Placements(NamedTuple):
+    """What came of the states that Task.place() returned."""
+
+    asked: int
+    """For how many episodes there was one."""
+    refused: int
+    """How many of these began where the world has them, as Simulator.set_states() refused the state."""
+
+
 class Draws:
     """What the random numbers of n envs follow from, beside the seed."""
 
@@ -207,8 +216,11 @@ class Task:
         self, envs: TaskEnvs, which: NDArray[np.int64], states: EnvStates
     ) -> EnvStates | None:
         """Where the episodes of the envs `which` begin. `states` are those of the world, (len(which),): copies,
-        to be changed and returned, as Simulator.set_states() takes them; None leaves all as it is. An env in
-        which the robot would stand in something begins where the world has it: begin() sees where.
+        to be changed and returned, as Simulator.set_states() takes them; None leaves all as it is.
+        `states.hold(envs.world)` puts targets into hands. Where a state is refused, as no floor is near the base,
+        the robot would stand in something, or what is held is not in the hand, the env begins where the world
+        has it: begin() sees where, and VectorEnv.placements counts them. Objects that rest are taken as they
+        are, in whatever they are.
         """
         return None
 

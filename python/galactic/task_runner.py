@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numbers
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Set
 from traceback import walk_tb
 from typing import Any
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from galactic._core import EpisodeEnd, Simulator, World
 from galactic.env_states import EnvStates
 from galactic.sensors import ALWAYS, SENSORS
-from galactic.task import Outcome, Task, TaskEnvs
+from galactic.task import Outcome, Placements, Task, TaskEnvs
 
 Array = NDArray[Any]
 
@@ -23,6 +24,8 @@ OF_EPISODES = ("episode", "ending", "success", "episode_index", "world_from_came
 
 _OF_CURVES = {"std"}
 """What cannot be in logs: curves have a log_std, which is the policy's."""
+_MANY_PLACEMENTS = 20
+"""Where so many are all refused, it is no bad luck of single ones."""
 _NO_OPTIONS = ("task", "envs", "seed", "order", "rank", "ranks", "threads", "auto_reset")
 
 
@@ -84,6 +87,8 @@ class TaskRunner:
         """What the task said of the latest step, (n,), by these names; 0 of idle envs."""
         sizes = [part.stop - part.start for part in self.parts.values()]
         self._columns = np.zeros((self._envs.num_envs, sum(sizes)), np.float32)
+        self.placements = Placements(0, 0)
+        """Of the episodes that have begun since it was made."""
         self.restart()
 
     @property
@@ -189,8 +194,25 @@ class TaskRunner:
             )
         simulator.check_states(placed)
         are_drawn = self._envs.draws.are_drawn[which]
-        for drawn, rows in ((True, are_drawn), (False, ~are_drawn)):
+        were_set = [
             simulator.set_states(placed.select(rows), which[rows], drawn=drawn)
+            for drawn, rows in ((True, are_drawn), (False, ~are_drawn))
+        ]
+        self._count(len(which), int(np.concatenate(were_set).sum()))
+
+    def _count(self, asked: int, were_set: int) -> None:
+        """Keeps account of placements. A RuntimeWarning, once, where none comes true."""
+        before = self.placements
+        self.placements = Placements(before.asked + asked, before.refused + asked - were_set)
+        now_many = before.asked < _MANY_PLACEMENTS <= self.placements.asked
+        if now_many and self.placements.refused == self.placements.asked:
+            warnings.warn(
+                f"the first {self.placements.asked} states of {self._name}.place() were all refused, so that these "
+                "episodes begin where the world has them: Simulator.set_states() says why that may be, "
+                "VectorEnv.placements counts on",
+                RuntimeWarning,
+                stacklevel=2,
+            )
 
     def _take_in(self, beginning: NDArray[np.int64]) -> None:
         self._envs.forget()

@@ -14,7 +14,7 @@ from galactic import saved_states, spaces
 from galactic._core import Renderer, Simulator, World
 from galactic.env_states import EnvStates, joined
 from galactic.half_batch import HalfBatch, Observations, StepResult
-from galactic.task import Task
+from galactic.task import Placements, Task
 from galactic.task_runner import made_by
 from galactic.turns import Row, Turns, batch_of, part_of, step_of_batch
 from galactic.vector_env_arguments import (
@@ -222,6 +222,14 @@ class VectorEnv(_Base):
         """What infos["log"] has of a task of one's own, by name."""
         self._require_open()
         return self._halves[0].logs
+
+    @property
+    def placements(self) -> Placements:
+        """How many states place() of a task of one's own has returned for episodes since this was made, and how
+        many of them were `refused`, so that the episode began where the world has it."""
+        self._require_idle()
+        counts = [half.placements for half in self._halves]
+        return Placements(*(sum(column) for column in zip(*counts)))
 
     @property
     def is_evaluation(self) -> bool:

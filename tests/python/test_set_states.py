@@ -1,5 +1,7 @@
 """States that the caller has chosen: envs go on from them."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -374,3 +376,40 @@ def test_what_tasks_place_is_checked(world):
 
     with pytest.raises(Error, match="has goal.translation .*, expected finite numbers"):
         VectorEnv(world, 4, task=Lost)
+
+
+class Refused(Near):
+    """Every other state is of a robot outside of its home."""
+
+    share = 0.5
+
+    def place(self, envs, which, states):
+        states.world_from_root.translation[envs.uniform("where")[which, 0] < self.share, 0] = 50
+        return states
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_placements_that_are_refused_are_counted(world, halves):
+    env = VectorEnv(world, ENVS, task=Refused, halves=halves, seed=5, episode_steps=6)
+    drawn = VectorEnv(world, ENVS, task=Refused, seed=5, episode_steps=6)._halves[0]._task._envs
+    outside = int((drawn.uniform("where")[:, 0] < 0.5).sum())
+    assert env.placements == (ENVS, outside) and 0 < outside < ENVS
+    env.reset()
+    assert env.placements.asked == ENVS
+    env.reset()
+    assert env.placements.asked == 2 * ENVS > env.placements.refused > outside
+    assert VectorEnv(world, 4).placements == (0, 0)
+
+
+def test_a_task_of_which_all_placements_are_refused_is_told(world):
+    class Outside(Refused):
+        share = 1.0
+
+    with pytest.warns(
+        RuntimeWarning, match=r"first 20 states of Outside.place\(\) were all refused"
+    ):
+        VectorEnv(world, ENVS, task=Outside)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        VectorEnv(world, ENVS, task=Refused)
+        VectorEnv(world, 4, task=Outside)
