@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Mapping, Sequence
+from numbers import Integral
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -151,6 +152,9 @@ class TaskEnvs:
         reset() has named, its index takes the place of the first two, so that evaluations of two policies
         draw the same. Of one name there is one draw in a step; choose() draws for the next episode.
         """
+        is_whole = isinstance(count, Integral) and not isinstance(count, bool)
+        if not is_whole or count < 0:
+            raise ValueError(f"count is {count!r}, expected how many numbers each env draws")
         salt = self.seed ^ (zlib.crc32(name.encode()) << 32)
         bits = hashed(salt & (2**64 - 1), self.draws.keys, self.draws.ages, count)
         return (bits >> np.uint64(11)).astype(np.float64) * 2.0**-53

@@ -136,6 +136,9 @@ class Actions:
         fractions = choices[~(np.isfinite(choices) & (choices == np.trunc(choices)))]
         if len(fractions):
             raise TypeError(f"discrete has {fractions[0]:g}, expected whole numbers: 0 or 1")
+        others = choices[(choices != 0) & (choices != 1)]
+        if len(others):
+            raise ValueError(f"discrete has {others[0]:g}, expected 0 or 1")
         return np.hstack([moves, choices])
 
 
@@ -150,7 +153,11 @@ def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float3
                 raise TypeError(f"{name} has {one!r}, expected numbers, such as float32")
     if rows.shape != shape:
         raise ValueError(f"{name} has the shape {rows.shape}, expected {shape}")
-    return rows.astype(np.float32, copy=False)
+    if rows.dtype == np.float32:
+        return rows
+    # What 32 bits do not hold; the simulator's own limits are narrower.
+    with np.errstate(over="ignore"):
+        return rows.astype(np.float32)
 
 
 def episodes_to_begin(
@@ -175,7 +182,9 @@ def episodes_to_begin(
         raise ValueError(f"episodes are {episodes.dtype} {episodes.shape}, expected int ({envs},)")
     if episodes.dtype == np.uint64:
         # What 64 bits with a sign do not hold must not become negative.
-        episodes = np.minimum(episodes, np.uint64(2**63 - 1))
+        too_large = episodes[mask & (episodes >= np.uint64(2**63))]
+        if len(too_large):
+            raise IndexError(f"there is no episode {too_large[0]}")
     chosen = episodes.astype(np.int64)
     return mask, np.where(mask & (chosen >= 0), chosen, Simulator.NEXT_EPISODE)
 

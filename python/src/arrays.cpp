@@ -79,10 +79,14 @@ py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumber
   }
   auto numbers = inputOf<std::int64_t>(array, name, shape);
   if (kind == 'u' && array.itemsize() == sizeof(std::int64_t)) {
-    // A sign is a bit that was lost. Converted above, so this is memory of its own.
-    std::replace_if(
-        numbers.mutable_data(), numbers.mutable_data() + numbers.size(),
-        [](std::int64_t one) { return one < 0; }, std::numeric_limits<std::int64_t>::max());
+    // A sign is a bit that was lost.
+    const std::span values(numbers.data(), static_cast<std::size_t>(numbers.size()));
+    const auto wrong = std::ranges::find_if(values, [](std::int64_t one) { return one < 0; });
+    if (wrong != values.end()) {
+      throw py::index_error(fmt::format("{} has {}, expected at most {}", name,
+                                        static_cast<std::uint64_t>(*wrong),
+                                        std::numeric_limits<std::int64_t>::max()));
+    }
   }
   return numbers;
 }

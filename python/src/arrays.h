@@ -41,8 +41,8 @@ template <class T>
 [[nodiscard]] py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(
     const py::handle& given, const char* name, const Shape& shape);
 
-/// The same for whole numbers of any type, which are not rounded: TypeError for others. What 64
-/// bits with a sign do not hold becomes the largest number.
+/// The same for whole numbers of any type, which are not rounded: TypeError for others, and
+/// IndexError for what 64 bits with a sign do not hold.
 [[nodiscard]] py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumbersOf(
     const py::handle& given, const char* name, const Shape& shape);
 

@@ -118,6 +118,11 @@ Simulator::EpisodeNumbers Simulator::episodeNumbers(const py::object& given, con
   EpisodeNumbers narrow(envs());
   std::int32_t* to = narrow.mutable_data();
   for (const std::int64_t number : std::span(numbers.data(), batch_.envCount())) {
+    if (number == BatchSimulator::kNextEpisode && number < least) {
+      throw py::index_error(fmt::format(
+          "{} has NEXT_EPISODE, which is for reset(); expected the index of an episode, or STAYS",
+          name));
+    }
     requireEpisode(number, least);
     *to++ = static_cast<std::int32_t>(number);
   }

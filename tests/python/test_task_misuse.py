@@ -283,6 +283,12 @@ def ends_odd(self, envs):
             r"Faulty.choose\(\) returned episodes int64 \(2,\), expected int \(4,\)",
         ),
         (of(choose=lambda self, envs, which: which * 0 + 99), IndexError, "99"),
+        (
+            of(begin=lambda self, envs, which: envs.uniform("a", -1)),
+            ValueError,
+            "^count is -1, expected how many numbers each env draws",
+        ),
+        (of(begin=lambda self, envs, which: envs.uniform("a", 1.5)), ValueError, "^count is 1.5"),
     ],
 )  # fmt: skip
 def test_refused_at_once(world, task, error, message):

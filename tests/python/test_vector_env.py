@@ -163,7 +163,7 @@ def test_a_reset_begins_the_sums_anew(world, draw_actions):
         (4, IndexError, "there is no episode 4; the world's last is 3"),
         (2**31, IndexError, "there is no episode 2147483648"),
         (2**33 + 3, IndexError, "there is no episode 8589934595"),
-        (2**64 - 1, IndexError, "there is no episode"),
+        (2**64 - 1, IndexError, "there is no episode 18446744073709551615"),
         (2, ValueError, "the robot cannot start in episode 2"),
     ],
 )

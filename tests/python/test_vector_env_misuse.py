@@ -5,6 +5,7 @@ import copy
 import gc
 import pickle
 import sys
+import warnings
 import weakref
 
 import numpy as np
@@ -94,6 +95,11 @@ def test_actions_that_are_no_real_numbers_are_refused(world):
         discrete = np.array([[0, 1], [1, wrong]])
         with pytest.raises(TypeError, match=f"^discrete has {wrong}, expected whole numbers: 0 or"):
             paper.step({**right, "discrete": discrete})
+    for wrong in (2, 7, -1):
+        for kind in (np.int64, np.float32, object):
+            discrete = np.array([[0, 1], [1, wrong]], kind)
+            with pytest.raises(ValueError, match=f"^discrete has {wrong}, expected 0 or 1"):
+                paper.step({**right, "discrete": discrete})
     for env in (box, paper):
         assert env.simulators[0].statistics()["steps"] == 0
     for kind in (np.float32, np.int64, np.bool_, object):
@@ -104,6 +110,16 @@ def test_actions_that_are_no_real_numbers_are_refused(world):
     for kind in (np.float64, np.int32, np.bool_, object):
         box.step(np.zeros((2, 8), kind))
     box.step([[0] * 8] * 2)
+
+
+def test_actions_that_32_bits_do_not_hold_are_as_far_as_actions_go(world):
+    far, one = (VectorEnv(world, 2, threads=1, task="none") for _ in range(2))
+    actions = np.zeros((2, 8))
+    actions[0, 0], actions[1, 1] = 1e300, -1e300
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = far.step(actions)[0]
+    np.testing.assert_array_equal(found, one.step(np.clip(actions, -1, 1))[0])
 
 
 def test_two_results_cannot_land_in_one_place(world):
