@@ -24,6 +24,9 @@ from galactic.half_batch import HalfBatch, Piece
 
 Array = NDArray[Any]
 
+#: The first file of a zip archive, and the end of its directory, 22 bytes without a comment.
+_ARCHIVE_BEGINS, _ARCHIVE_ENDS = b"PK\x03\x04", b"PK\x05\x06"
+
 
 def state_of_all(halves: Sequence[HalfBatch]) -> bytes:
     return _packed(
@@ -184,12 +187,14 @@ def _packed(arrays: Mapping[str, Array]) -> bytes:
 
 
 def _unpacked(state: bytes) -> dict[str, Array]:
-    """Raises Error for bytes that are no such archive."""
-    file = io.BytesIO(state)
+    """Raises Error for bytes that are no such archive, from the first to the last."""
+    found = bytes(memoryview(state))
+    if found[:4] != _ARCHIVE_BEGINS or found[-22:-18] != _ARCHIVE_ENDS:
+        raise _refused(
+            f"found {len(found)} bytes that do not begin and end as a state does; give what save_state() returned"
+        )
     try:
-        archive = np.load(file, allow_pickle=False)
-        if not isinstance(archive, np.lib.npyio.NpzFile):
-            raise ValueError(f"it is an array, {archive.dtype} {archive.shape}")
+        archive = np.load(io.BytesIO(found), allow_pickle=False)
         return {name: np.asarray(archive[name]) for name in archive.files}
     except Exception as problem:  # numpy and zipfile raise whatever their readers do
         message = f"cannot be read ({problem}); give what save_state() returned"

@@ -157,10 +157,18 @@ def test_other_files_are_no_states_of_environments(world, draw_actions):
     others = VectorEnv(world, 4, threads=1).save_state()
     damaged = {**arrays, "simulator_1": arrays["simulator_1"][:-1]}
     for bad, message in (
-        (array.getvalue(), r"it is an array, float64 \(3,\)"),
+        (b"", "found 0 bytes that do not begin and end as a state does; give what save_state"),
+        (
+            np.random.default_rng(3).bytes(900),
+            "found 900 bytes that do not begin and end as a state",
+        ),
+        (array.getvalue(), "bytes that do not begin and end as a state does"),
+        (state + b"x", f"found {len(state) + 1} bytes that do not begin and end as a state does"),
+        (b"x" + state, "bytes that do not begin and end as a state does"),
         (with_entry(state, 8, 1), "cannot be read .* is encrypted"),
         (with_entry(state, 10, 99), "cannot be read .*compression"),
-        (state[:-30], "cannot be read"),
+        (state[:-30], "bytes that do not begin and end as a state does"),
+        (state[:200] + state[210:], "cannot be read"),
         (text.getvalue(), r"returns: found missing, expected float64 \(2,\)"),
         (others, "halves: found 1, expected 2"),
         (packed({**arrays, "returns_1": np.zeros(3)}), r"returns: found float64 \(3,\), expected"),
@@ -176,7 +184,10 @@ def test_other_files_are_no_states_of_environments(world, draw_actions):
         assert caught.value.code == ErrorCode.INVALID_INPUT
         # Half 0 may have been restored before half 1 was found to be wrong.
         assert env.save_state() == now
-    env.restore_state(state)
+    for wrong in (None, 3, "state"):
+        with pytest.raises(TypeError):
+            env.restore_state(wrong)
+    env.restore_state(bytearray(state))
     assert env.save_state() == state
 
 
