@@ -30,6 +30,21 @@ Vec3 pointOf(const py::handle& given, const char* name) {
   return point;
 }
 
+/// Bases with a yaw behind, (4,) or (n, 4), as EpisodeTable.base has them, are points without it;
+/// all else is what it is.
+py::object withoutYaw(const py::handle& given) {
+  const py::array rows = py::array::ensure(given);
+  if (!rows) PyErr_Clear();
+  if (!rows || rows.ndim() == 0 || rows.shape(rows.ndim() - 1) != kNumbers + 1) {
+    return py::reinterpret_borrow<py::object>(given);
+  }
+  return rows[py::make_tuple(py::ellipsis(), py::slice(0, kNumbers, 1))];
+}
+
+std::vector<Vec3> basesOf(const py::handle& given) { return pointsOf(withoutYaw(given), "bases"); }
+
+Vec3 baseOf(const py::handle& given, const char* name) { return pointOf(withoutYaw(given), name); }
+
 /// float32 (n, 3).
 py::array_t<float> rowsOf(std::span<const Vec3> points) {
   py::array_t<float> rows({static_cast<py::ssize_t>(points.size()), kNumbers});
@@ -64,7 +79,7 @@ std::vector<std::size_t> goalsOf(const GeodesicFields& fields, const py::object&
 
 py::array_t<float> distances(const GeodesicFields& fields, const py::object& bases,
                              const py::object& goals) {
-  const std::vector<Vec3> from = pointsOf(bases, "bases");
+  const std::vector<Vec3> from = basesOf(bases);
   const std::vector<std::size_t> which = goalsOf(fields, goals, from.size());
   py::array_t<float> lengths(static_cast<py::ssize_t>(from.size()));
   for (std::size_t n = 0; n < from.size(); ++n) {
@@ -75,7 +90,7 @@ py::array_t<float> distances(const GeodesicFields& fields, const py::object& bas
 
 py::array_t<float> directions(const GeodesicFields& fields, const py::object& bases,
                               const py::object& goals) {
-  const std::vector<Vec3> from = pointsOf(bases, "bases");
+  const std::vector<Vec3> from = basesOf(bases);
   const std::vector<std::size_t> which = goalsOf(fields, goals, from.size());
   std::vector<Vec3> ways;
   ways.reserve(from.size());
@@ -92,7 +107,7 @@ py::array_t<float> path(const GeodesicFields& fields, const py::object& base,
   if (number >= fields.size()) {
     throw py::index_error(fmt::format("there is no goal {}, there are {}", number, fields.size()));
   }
-  return rowsOf(fields.path(number, pointOf(base, "base")));
+  return rowsOf(fields.path(number, baseOf(base, "base")));
 }
 
 std::unique_ptr<PathFinder> makeFinder(const World& world, const py::object& scene,
@@ -100,7 +115,7 @@ std::unique_ptr<PathFinder> makeFinder(const World& world, const py::object& sce
                                        const py::object& drop) {
   const std::uint64_t last = world.scenes().size() - 1;
   const auto number = static_cast<std::uint32_t>(wholeOf("scene", scene, 0, last));
-  const Vec3 place = pointOf(start, "start");
+  const Vec3 place = baseOf(start, "start");
   py::dict keywords;
   keywords["floor_rise"] = rise;
   keywords["floor_drop"] = drop;
@@ -120,7 +135,7 @@ py::array_t<bool> navigable(const PathFinder& finder) {
 }
 
 py::array_t<bool> areNavigable(const PathFinder& finder, const py::object& bases) {
-  const std::vector<Vec3> places = pointsOf(bases, "bases");
+  const std::vector<Vec3> places = basesOf(bases);
   py::array_t<bool> result(static_cast<py::ssize_t>(places.size()));
   std::ranges::transform(places, result.mutable_data(),
                          [&](const Vec3& place) { return finder.isNavigable(place); });
@@ -155,13 +170,14 @@ void bindFields(py::module_& module) {
            "How long the ways are, meters: float32 (n,), inf where there is none within 127 m.\n\n"
            "bases: (n, 3), of bases or roots, at most three cells beside the floor and half a "
            "meter\n"
-           "above it. goals: int (n,), to which goal each of them goes; None: all to the first.")
+           "above it, or (n, 4) with a yaw behind, which plays no part. goals: int (n,), to which\n"
+           "goal each of them goes; None: all to the first.")
       .def("directions", &directions, py::arg("bases"), py::arg("goals") = py::none(),
            "Unit directions in which the ways begin, world frame: float32 (n, 3), y is 0; zeros\n"
-           "without a way and at its end.")
+           "without a way and at its end. bases, goals: as in distances().")
       .def("path", &path, py::arg("base"), py::arg("goal") = 0,
            "Corners of a path along straight lines over the floor, float32 (m, 3), from the base,\n"
-           "(3,), to a goal, or to where the hand reaches it; (0, 3) where there is none.");
+           "(3,) or (4,), to a goal, or to where the hand reaches it; (0, 3) where there is none.");
   type.doc() =
       "Shortest ways along a floor to k goals, from everywhere: what PathFinder.fields() returns.";
   type.attr("__module__") = "galactic";
@@ -173,16 +189,15 @@ void bindFields(py::module_& module) {
 void bindPathFinder(py::module_& module) {
   bindFields(module);
   py::class_<PathFinder> type(module, "PathFinder");
-  type.def(
-          py::init(&makeFinder), py::arg("world"), py::arg("scene"), py::arg("start"),
-          py::kw_only(), py::arg("floor_rise") = py::none(), py::arg("floor_drop") = py::none(),
-          py::keep_alive<1, 2>(),
-          "Where the robot of a world can drive on one floor of a scene, and shortest ways "
-          "there.\n\n"
-          "The floor is that at or under `start`, (3,), where a base or a root is, in cells of\n"
-          "`cell_size`: those in which the robot's start pose is free of the static scene in some\n"
-          "heading, a step (floor_rise, floor_drop) from one to the next. Objects are not in the\n"
-          "way. scene: index into World.scenes. galactic.Error where nothing can stand there.")
+  type.def(py::init(&makeFinder), py::arg("world"), py::arg("scene"), py::arg("start"),
+           py::kw_only(), py::arg("floor_rise") = py::none(), py::arg("floor_drop") = py::none(),
+           py::keep_alive<1, 2>(),
+           "The floor is that at or under `start`, (3,) or (4,), where a base or a root is, in\n"
+           "cells of `cell_size`: those in which the robot's start pose is free of the static "
+           "scene\n"
+           "in some heading, a step (floor_rise, floor_drop) from one to the next. Objects are not "
+           "in\n"
+           "the way. scene: index into World.scenes. galactic.Error where nothing can stand there.")
       .def_property_readonly_static("cell_size",
                                     [](const py::object&) { return PathFinder::cellSize(); })
       .def_property_readonly(
@@ -203,7 +218,7 @@ void bindPathFinder(py::module_& module) {
           "places", [](const PathFinder& finder) { return rowsOf(finder.places()); },
           "float32 (m, 3): the middles of all navigable cells. Draw from them for random places.")
       .def("is_navigable", &areNavigable, py::arg("bases"),
-           "Whether bases, (n, 3), may be there: bool (n,).")
+           "Whether bases, (n, 3) or (n, 4), may be there: bool (n,).")
       .def("snap", &snapped, py::arg("points"),
            "The nearest of `places` for each of the points, (n, 3): float32 (n, 3).")
       .def("fields", &fieldsTo, py::arg("goals"), py::kw_only(),

@@ -59,6 +59,24 @@ def test_the_map(finder, episodes):
     assert galactic.PathFinder.cell_size == pytest.approx(0.1)
 
 
+def test_bases_may_have_a_yaw(world, finder, episodes):
+    """As the table of episodes has them; of the yaw, nothing depends."""
+    bases = np.hstack([finder.places, np.full((len(finder.places), 1), np.nan, np.float32)])
+    points = finder.places
+    fields = finder.fields(points[:2])
+    which = np.arange(len(points)) % 2
+    for ask in (fields.distances, fields.directions):
+        np.testing.assert_array_equal(ask(bases, which), ask(points, which))
+    np.testing.assert_array_equal(fields.path(bases[5], 1), fields.path(points[5], 1))
+    np.testing.assert_array_equal(fields.path(list(bases[5])), fields.path(points[5]))
+    assert finder.is_navigable(bases).all()
+    fields.distances(episodes.base)
+    assert len(galactic.PathFinder(world, 0, episodes.base[0]).places) == len(points)
+    for wrong in (np.zeros((2, 5)), np.zeros((2, 2)), np.zeros(4)):
+        with pytest.raises(ValueError, match="^bases has the shape .*, expected"):
+            fields.distances(wrong)
+
+
 def test_ways(finder):
     """Of a metric: nothing is shorter than the straight line, nor than a detour."""
     places = finder.places
