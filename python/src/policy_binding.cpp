@@ -1,4 +1,5 @@
 // Policy packs: written from what Python knows of a network, and played.
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -6,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
@@ -214,6 +216,7 @@ class PlayedPolicy {
     const auto envs = static_cast<py::ssize_t>(batch_.envs);
     const auto seen = inputOf<float>(observations, "observations",
                                      {envs, static_cast<py::ssize_t>(batch_.observation_size)});
+    requireFinite(seen);
     PolicyInputs inputs{.observations = spanOf<float>(seen), .dones = {}, .color = {}, .depth = {}};
     // They live until the end.
     py::object done_rows = dones;
@@ -223,7 +226,10 @@ class PlayedPolicy {
       done_rows = inputOf<std::uint8_t>(dones, "dones", {envs});
       inputs.dones = spanOf<std::uint8_t>(done_rows);
     }
-    if (const auto& image = policy_.interface().image) {
+    const auto& image = policy_.interface().image;
+    if (!image || !image->color) refuseUnseen(rgb, "rgb");
+    if (!image || !image->depth) refuseUnseen(depth, "depth");
+    if (image) {
       const auto height = static_cast<py::ssize_t>(image->height);
       const auto width = static_cast<py::ssize_t>(image->width);
       if (image->color) {
@@ -256,6 +262,23 @@ class PlayedPolicy {
   PlayedPolicy(const PackFile& pack, std::size_t envs, const LearnedPolicyOptions& options)
       : batch_(batchOf(orThrow(policyInterface(pack)), envs)),
         policy_(orThrow(LearnedPolicy::create(pack, batch_, options))) {}
+
+  static void refuseUnseen(const py::object& given, const char* name) {
+    if (given.is_none()) return;
+    throw py::value_error(
+        fmt::format("{} is a {}, and the policy does not see it: `images` says what it sees", name,
+                    typeName(given)));
+  }
+
+  static void requireFinite(const py::array_t<float>& rows) {
+    const std::span<const float> numbers(rows.data(), static_cast<std::size_t>(rows.size()));
+    const auto wrong =
+        std::ranges::find_if_not(numbers, [](float one) { return std::isfinite(one); });
+    if (wrong == numbers.end()) return;
+    const auto place = wrong - numbers.begin();
+    throw py::value_error(fmt::format("observations[{}, {}] is {}, expected finite numbers",
+                                      place / rows.shape(1), place % rows.shape(1), *wrong));
+  }
 
   template <class T>
   static std::span<const T> spanOf(const py::object& array) {
@@ -325,10 +348,10 @@ row. The same actions for any number of threads and of other envs.)");
            py::arg("rgb") = py::none(), py::arg("depth") = py::none(),
            R"(The actions [envs, actions] of the next step, float32, as Simulator.step takes them.
 
-observations  [envs, S] float32
+observations  [envs, S] float32, finite
 dones         [envs] bool or uint8: where an episode ended in the last step; None: nowhere
-rgb           [envs, height, width, 3] uint8, where the policy wants images
-depth         [envs, height, width] float32, meters)")
+rgb           [envs, height, width, 3] uint8, where the policy wants images, and else None
+depth         [envs, height, width] float32, meters, the same)")
       .def("reset", &PlayedPolicy::reset, "All envs begin anew.")
       .def_property_readonly(
           "name", [](const PlayedPolicy& p) { return p.needs().name; }, "The policy's name.")

@@ -341,6 +341,20 @@ def test_a_played_policy_checks_its_arrays(tmp_path: pathlib.Path) -> None:
     for floats in ((None, rgb / np.float32(255), depth), (np.zeros(2), rgb, depth)):
         with pytest.raises(TypeError, match="numbers, expected an array of whole numbers"):
             player.act(state, *floats)
+    for number in (np.nan, np.inf):
+        wrong = state.copy()
+        wrong[1, 5] = number
+        with pytest.raises(
+            ValueError, match=rf"^observations\[1, 5\] is {number}, expected finite"
+        ):
+            player.act(wrong, None, rgb, depth)
+    blind = _core.LearnedPolicy(
+        write(content_of(saved_policy(network="state"), "b"), tmp_path / "b.pack"), 2
+    )
+    for given, name in (({"rgb": rgb}, "rgb"), ({"depth": depth}, "depth")):
+        with pytest.raises(ValueError, match=f"^{name} is a ndarray, and the policy does not see"):
+            blind.act(state, **given)
+    assert blind.act(state).shape == (2, 11)
     with pytest.raises(galactic.Error):
         _core.LearnedPolicy(tmp_path / "no.pack", 2)
     assert repr(player) == "<galactic.LearnedPolicy p>"
