@@ -25,15 +25,20 @@ constexpr std::int32_t kNoObject = -1;
 
 void bindPose(py::module_& module) {
   py::class_<Pose> type(module, "Pose");
-  type.def_property_readonly("translation",
-                             [](const Pose& pose) { return arrayOf(numbersOf(pose.translation)); })
-      .def_property_readonly("rotation",
-                             [](const Pose& pose) { return arrayOf(numbersOf(pose.rotation)); })
-      .def_property_readonly("matrix", [](const Pose& pose) {
-        py::array_t<float> matrix({4, 4});
-        writeMatrix(rigidTransform(pose), matrix.mutable_data());
-        return matrix;
-      });
+  type.def_property_readonly(
+          "translation", [](const Pose& pose) { return arrayOf(numbersOf(pose.translation)); },
+          "float32 (3,), meters.")
+      .def_property_readonly(
+          "rotation", [](const Pose& pose) { return arrayOf(numbersOf(pose.rotation)); },
+          "float32 (4,), a unit quaternion: w, x, y, z.")
+      .def_property_readonly(
+          "matrix",
+          [](const Pose& pose) {
+            py::array_t<float> matrix({4, 4});
+            writeMatrix(rigidTransform(pose), matrix.mutable_data());
+            return matrix;
+          },
+          "float32 (4, 4); a_from_b.matrix @ b_from_c.matrix is that of a_from_c.");
   type.def("__repr__", [](const Pose& pose) {
     const auto& [t, q] = pose;
     return fmt::format(
@@ -51,10 +56,7 @@ void bindPose(py::module_& module) {
         return Pose{{t[0], t[1], t[2]}, {.x = q[1], .y = q[2], .z = q[3], .w = q[0]}};
       }));
   type.attr("__module__") = "galactic";
-  type.doc() =
-      "A rigid transform a_from_b: rotate, then translate.\n\n"
-      "translation: float32 (3,), meters. rotation: float32 (4,), unit quaternion (w, x, y, z).\n"
-      "matrix: float32 (4, 4); a_from_b.matrix @ b_from_c.matrix is that of a_from_c.";
+  type.doc() = "A rigid transform a_from_b: rotate, then translate.";
 }
 
 std::string textOf(const NamedEnvState& state) {
@@ -300,36 +302,39 @@ py::array_t<bool> setStates(Simulator& simulator, const py::object& states, cons
 void bindEnvState(py::module_& module) {
   bindPose(module);
   py::class_<NamedEnvState> type(module, "EnvState");
-  type.def_readonly("scene", &EnvState::scene)
-      .def_readonly("episode", &EnvState::episode)
-      .def_readonly("step", &EnvState::step)
-      .def_readonly("world_from_root", &EnvState::world_from_root)
+  type.def_readonly("scene", &EnvState::scene, "Index into World.scenes.")
+      .def_readonly("episode", &EnvState::episode, "Index of the world's episodes.")
+      .def_readonly("step", &EnvState::step, "Steps of the episode.")
+      .def_readonly("world_from_root", &EnvState::world_from_root, "Pose of the robot's root.")
       .def_property_readonly(
           "joint_positions",
-          [](const NamedEnvState& state) { return arrayOf(state.joint_positions); })
-      .def_readonly("world_from_grip", &EnvState::world_from_grip)
-      .def_readonly("objects", &EnvState::objects)
+          [](const NamedEnvState& state) { return arrayOf(state.joint_positions); },
+          "float32 (joints,) of the whole robot, radians or meters; World.actions says where in "
+          "it\n"
+          "the joints are that actions move.")
+      .def_readonly("world_from_grip", &EnvState::world_from_grip,
+                    "Pose of the hand: origin at the grasp point, axes of the end effector's link.")
+      .def_readonly(
+          "objects", &EnvState::objects,
+          "A Pose for each of the episode's objects, in the world; the held one is where\n"
+          "the hand has it.")
       .def_property_readonly(
           "object_names",
-          [](const NamedEnvState& state) { return py::tuple(py::cast(state.object_names)); })
-      .def_property_readonly("held",
-                             [](const NamedEnvState& state) -> py::object {
-                               if (state.held < 0) return py::none();
-                               return py::int_(state.held);
-                             })
-      .def_readonly("target", &EnvState::target)
-      .def_readonly("goal", &EnvState::goal);
+          [](const NamedEnvState& state) { return py::tuple(py::cast(state.object_names)); },
+          "What the objects are, in their order.")
+      .def_property_readonly(
+          "held",
+          [](const NamedEnvState& state) -> py::object {
+            if (state.held < 0) return py::none();
+            return py::int_(state.held);
+          },
+          "Index into objects of what is in the hand; None for nothing.")
+      .def_readonly("target", &EnvState::target, "Index into objects of what is to be moved.")
+      .def_readonly("goal", &EnvState::goal, "Pose in which the target is to be, in the world.");
   type.def("__repr__", &textOf);
   type.def(py::pickle(&pickled, &unpickled));
   type.attr("__module__") = "galactic";
-  type.doc() =
-      "The state of one env: a copy.\n\n"
-      "scene, episode: indices into the world's scenes and episodes. step: steps of the episode.\n"
-      "world_from_root, world_from_grip: Pose. joint_positions: float32, of the whole robot,\n"
-      "radians or meters; World.actions says where in it the joints are that actions move.\n"
-      "objects: the world poses of the episode's objects; object_names: what they are. target,\n"
-      "held: indices into both, held None with an empty hand. goal: the Pose for the target.\n"
-      "PlanningScene has the poses of the links.";
+  type.doc() = "The state of one env: a copy. PlanningScene has the poses of the links.";
 }
 
 }  // namespace galactic::python

@@ -230,6 +230,9 @@ void bindPathFinder(py::module_& module) {
       .def("__repr__", [](const PathFinder& finder) {
         return fmt::format("<galactic.PathFinder of {} places>", finder.places().size());
       });
+  type.doc() =
+      "Where the robot of a world can drive on one floor of a scene, and shortest ways there.\n\n"
+      "Maps have cells of `cell_size`, meters.";
   type.attr("__module__") = "galactic";
   refusePickling(type, "make one from its world");
 }

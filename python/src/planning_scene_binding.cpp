@@ -120,12 +120,14 @@ void bindPlanningScene(py::module_& module) {
   py::class_<EnvScene> type(module, "PlanningScene");
   type.def(py::init<const py::object&, const py::object&>(), py::arg("simulator"),
            py::arg("env") = 0, py::keep_alive<1, 2>(),
-           "What a planner asks about one env: is a pose of the robot free, where is the hand,\n"
-           "what would it grasp, where would an object land? By the rules of the simulation,\n"
-           "which is neither changed nor stepped.\n\n"
-           "Bases are four numbers: x, y, z of the point on the floor under the robot's root,\n"
-           "meters, and the yaw, radians. Answers are about the env and the joints that update()\n"
-           "and set_joints() took over last.");
+           "Takes over the state of an env, as update() does.");
+  type.doc() =
+      "What a planner asks about one env: is a pose of the robot free, where is the hand,\n"
+      "what would it grasp, where would an object land? By the rules of the simulation,\n"
+      "which is neither changed nor stepped.\n\n"
+      "Bases are four numbers: x, y, z of the point on the floor under the robot's root,\n"
+      "meters, and the yaw, radians. Answers are about the env and the joints that update()\n"
+      "and set_joints() took over last.";
   type.def("update", &EnvScene::update, py::arg("env"),
            "Takes over the state of an env: its objects, what it holds, its joints.")
       .def("set_joints", &EnvScene::setJoints, py::arg("joint_positions"),

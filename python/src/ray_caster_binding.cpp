@@ -96,9 +96,7 @@ void bindRayCaster(py::module_& module) {
   const py::object infinity = py::float_(std::numeric_limits<double>::infinity());
   py::class_<RayCaster> type(module, "RayCaster");
   type.def(py::init(&casterOfScene), py::arg("world"), py::arg("scene"), py::keep_alive<1, 2>(),
-           "Casts rays and sweeps spheres through a home as the simulation knows it.\n\n"
-           "This one is of the static scene alone; of_env() has objects. It never changes.\n"
-           "scene: index into World.scenes.")
+           "Of the static scene alone; of_env() has objects. scene: index into World.scenes.")
       .def_static("of_env", &casterOfEnv, py::arg("simulator"), py::arg("env") = 0, py::kw_only(),
                   py::arg("robot").noconvert() = false,
                   "Of an env as it is now: with its objects where they are and, with robot=True,\n"
@@ -116,6 +114,8 @@ void bindRayCaster(py::module_& module) {
            py::arg("threads") = 1,
            "How far spheres get before they touch something: CastHits, as of cast_rays().\n\n"
            "radius: one of World.radii. origins: where their centers begin.");
+  type.doc() =
+      "Casts rays and sweeps spheres through a home as the simulation knows it. It never changes.";
   type.attr("__module__") = "galactic";
   refusePickling(type, "make one from its world or simulator");
 }

@@ -187,7 +187,7 @@ void bindRenderer(py::module_& module) {
         return Renderer::create(simulator, optionsFrom(keywords));
       }),
       py::arg("simulator"),
-      "Draws what cameras on the robots of a simulator see, all envs together.\n\n"
+      "Mounts a camera in each env.\n\n"
       "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
       "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False,\n"
       "True or 'objects'; camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 1 to "
@@ -205,11 +205,13 @@ void bindRenderer(py::module_& module) {
       "camera_jitter, meters, and camera_jitter_degrees, how far the camera may be from its\n"
       "place in an episode, and camera_jitter_fov, degrees, how far from its field of view. They "
       "follow from seed, env, episode and step: an image that is drawn\n"
-      "twice is the same.\n\n"
+      "twice is the same.");
+  type.doc() =
+      "Draws what cameras on the robots of a simulator see, all envs together.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
       "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
-      "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.");
+      "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.";
   type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"

@@ -92,11 +92,12 @@ void bindScriptedPolicy(py::module_& module) {
   type.def(
       py::init<const py::object&, const py::object&>(), py::arg("simulator"), py::kw_only(),
       py::arg("most_plans") = ScriptedPolicy::kMostPlans, py::keep_alive<1, 2>(),
-      "Solves Rearrange and Mobile Pick by a plan, made from the whole state of each env: an\n"
-      "expert to imitate or to compare with. galactic-run's --policy scripted is the same.\n\n"
       "simulator: in whose envs it acts; Error when its task is 'none'. most_plans: how often\n"
       "it plans in an episode before it gives up. A plan takes some tens of milliseconds; as\n"
       "many threads as the simulator has make them.");
+  type.doc() =
+      "Solves Rearrange and Mobile Pick by a plan, made from the whole state of each env: an\n"
+      "expert to imitate or to compare with. galactic-run's --policy scripted is the same.";
   type.def(
       "act", &Expert::act, py::arg("mask") = py::none(),
       "The actions of the next step of all envs: float32 (num_envs, action_count), for\n"

@@ -324,14 +324,16 @@ void bindSimulator(py::module_& module) {
         return Simulator::create(world.cast<std::shared_ptr<World>>(), options);
       }),
       py::arg("world"), py::arg("envs") = py::none(),
-      "N environments of one world, stepped together.\n\n"
+      "Makes envs, each at the start of its first episode.\n\n"
       "Keywords: every option of galactic-run's simulation with '_' for '-' (envs=128, seed=1,\n"
       "order='shuffled', task='pick', no_distractors=True, ...; docs/tools.md has them),\n"
       "threads=0 (one per processor), body_transforms=False (rendering needs them) and\n"
       "auto_reset=True (False: envs whose episode ended are idle until reset()). Options of the\n"
-      "world's task apply where no keyword says otherwise.\n\n"
+      "world's task apply where no keyword says otherwise.");
+  type.doc() =
+      "N environments of one world, stepped together.\n\n"
       "Arrays that it shows are views: no copy, read-only, valid as long as they are kept\n"
-      "(they keep the simulator), with new contents after each step. One thread at a time.");
+      "(they keep the simulator), with new contents after each step. One thread at a time.";
   type.attr("STAYS") = BatchSimulator::kStays;
   type.attr("NEXT_EPISODE") = BatchSimulator::kNextEpisode;
   bindStepping(type);

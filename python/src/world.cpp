@@ -151,20 +151,21 @@ py::str actionText(const Action& action) {
 
 void bindAction(py::module_& module) {
   py::class_<Action> type(module, "Action");
-  type.def_property_readonly("name", [](const Action& action) { return fileText(action.name); })
-      .def_readonly("step", &Action::step)
-      .def_readonly("unit", &Action::unit)
-      .def_readonly("lower", &Action::lower)
-      .def_readonly("upper", &Action::upper)
-      .def_readonly("position", &Action::position);
+  type.def_property_readonly(
+          "name", [](const Action& action) { return fileText(action.name); },
+          "The joint's, or 'forward', 'turn', 'hand' or 'terminate'.")
+      .def_readonly("step", &Action::step,
+                    "How far an action of 1 moves in a step, in `unit`; None where nothing moves.")
+      .def_readonly("unit", &Action::unit, "'rad' or 'm'; None for what has none.")
+      .def_readonly("lower", &Action::lower,
+                    "The joint's lower limit, in `unit`; None for no limit.")
+      .def_readonly("upper", &Action::upper,
+                    "The joint's upper limit, in `unit`; None for no limit.")
+      .def_readonly("position", &Action::position,
+                    "The joint's index in EnvState.joint_positions; None for what is no joint.");
   type.def("__repr__", &actionText);
   type.attr("__module__") = "galactic";
-  type.doc() =
-      "What one column of the actions does: World.actions has one for each, in order.\n\n"
-      "name: the joint's, or 'forward', 'turn', 'hand' or 'terminate'. step: how far an action of\n"
-      "1 moves; unit: 'rad' or 'm'. Of a joint also lower and upper, its limits, and position, "
-      "its\n"
-      "index in EnvState.joint_positions. None for what there is not.";
+  type.doc() = "What one column of the actions does: World.actions has one for each, in order.";
 }
 
 }  // namespace
