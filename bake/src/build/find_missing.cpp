@@ -43,7 +43,8 @@ class Search {
       return lookForUnreadable(instance);
     }
     for (const std::string& missing : composed->missing) add(missing);
-    lookForTextures(composed->scene, instance.dataset->folder());
+    // These name their meshes themselves.
+    for (const std::string& missing : composed->scene.missing) add(missing);
   }
   void lookInto(const ObjectJob& job) {
     const auto found = findObjects(job.inputs);
@@ -52,7 +53,14 @@ class Search {
   }
   void lookInto(const RobotJob& job) {
     const auto robot = readRobotFile(job);
-    if (!robot) add(sentenceOf(robot.error()));
+    if (!robot) return add(sentenceOf(robot.error()));
+    const std::string urdf = job.input.string();
+    for (const std::string& mesh : robot->missing) {
+      add(fmt::format("{}: mesh '{}' is missing: it is left out", urdf, mesh));
+    }
+    for (const SourceAsset& mesh : robot->meshes) {
+      addLooks(mesh, job.input.parent_path() / mesh.files.front().name);
+    }
   }
   template <class Other>
   void lookInto(const Other& /*job*/) {}
@@ -60,7 +68,7 @@ class Search {
   void lookIntoMesh(const fs::path& mesh, const MeshImportOptions& options) {
     const auto asset = importMesh(mesh, options);
     if (!asset) return add(sentenceOf(asset.error()));
-    lookForTextures(*asset, mesh.parent_path());
+    addLooks(*asset, mesh);
   }
 
   /// What cannot be read ends the composition of a scene; behind the first there may be others.
@@ -73,12 +81,10 @@ class Search {
     }
   }
 
-  void lookForTextures(const SourceAsset& asset, const fs::path& folder) {
-    for (const SourceMaterial& material : asset.materials) {
-      const std::string& texture = material.base_color_texture;
-      const bool is_file = !texture.empty() && !texture.starts_with('*');
-      if (is_file && !isThere(folder / texture))
-        add(fmt::format("texture {} is not there", texture));
+  /// Textures and materials, without which a mesh is baked all the same.
+  void addLooks(const SourceAsset& asset, const fs::path& mesh) {
+    for (const std::string& missing : asset.missing) {
+      add(fmt::format("{}: {}", mesh.lexically_normal().string(), missing));
     }
   }
 

@@ -55,6 +55,8 @@ class SceneComposer {
   std::string nextName(const std::string& template_name);
   void noteMissing(const std::string& sentence);
   void noteAbsent(const std::filesystem::path& file);
+  /// What `asset`, read of `file`, names and lacks of its looks: it is in the scene nevertheless.
+  void noteLooks(const std::filesystem::path& file, const SourceAsset& asset);
   void warnOnce(const std::string& warning);
   /// The first few warnings about a file.
   void noteWarnings(const std::filesystem::path& file, const std::vector<std::string>& warnings);
@@ -70,6 +72,7 @@ class SceneComposer {
   /// Sentence to number of times; their order is that of result_.missing.
   std::map<std::string, unsigned> missing_;
   std::set<std::string> absent_;
+  std::set<std::string> looks_;
   std::set<std::string> warned_;
 };
 

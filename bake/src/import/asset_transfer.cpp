@@ -29,7 +29,8 @@ void transferFields(Archive& archive, Is<EmbeddedTexture> auto& texture) {
 template <class Archive>
 void transferRest(Archive& archive, auto& asset) {
   archive(asset.name, asset.format, asset.convention, asset.instances, asset.materials,
-          asset.textures, asset.files, asset.absent_files, asset.missing_materials, asset.warnings);
+          asset.textures, asset.files, asset.absent_files, asset.missing_materials, asset.missing,
+          asset.warnings);
 }
 
 namespace {

@@ -85,13 +85,18 @@ std::size_t namedTextures(const SourceAsset& asset) {
   return names.size();
 }
 
+void noteMissing(SourceAsset& asset, const std::string& sentence) {
+  asset.missing.push_back(sentence);
+  asset.warnings.push_back(sentence);
+}
+
 /// What to draw for the only texture, which is missing: the mesh's namesake. Says so in a warning.
 std::optional<fs::path> substituteFor(const std::string& reference, SourceAsset& asset,
                                       const fs::path& main_input, FileSearch& search) {
   auto namesake = namesakeOf(main_input, search);
   if (!namesake) return std::nullopt;
-  asset.warnings.push_back(fmt::format("texture '{}' is missing: '{}' is drawn instead", reference,
-                                       nameRelativeTo(main_input, *namesake)));
+  noteMissing(asset, fmt::format("texture '{}' is missing: '{}' is drawn instead", reference,
+                                 nameRelativeTo(main_input, *namesake)));
   return namesake;
 }
 
@@ -114,11 +119,13 @@ bool paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearc
     material.base_color = {1, 1, 1, material.base_color[3]};
   }
   asset.files.push_back({.name = name});
-  const std::string why =
-      asset.missing_materials.empty()
-          ? "it has no MTL that names a texture"
-          : fmt::format("its material file '{}' is missing", asset.missing_materials.front());
-  asset.warnings.push_back(fmt::format("{}: '{}' is drawn on all of it", why, name));
+  if (asset.missing_materials.empty()) {
+    asset.warnings.push_back(
+        fmt::format("it has no MTL that names a texture: '{}' is drawn on all of it", name));
+  } else {
+    noteMissing(asset, fmt::format("its material file '{}' is missing: '{}' is drawn on all of it",
+                                   asset.missing_materials.front(), name));
+  }
   return true;
 }
 
@@ -216,16 +223,16 @@ void findTextures(SourceAsset& asset, const fs::path& main_input, Reach reach) {
     } else {
       material.base_color_texture.clear();
       if (!is_new) continue;
-      asset.warnings.push_back(
-          fmt::format("texture '{}' of material '{}' is missing: its surfaces "
-                      "keep their plain color",
-                      reference, material.name));
+      noteMissing(asset, fmt::format("texture '{}' of material '{}' is missing: its surfaces "
+                                     "keep their plain color",
+                                     reference, material.name));
     }
   }
   const bool is_painted = found.empty() && paintWithNamesake(asset, main_input, search);
   for (const std::string& file : asset.missing_materials) {
     if (is_painted) break;
-    asset.warnings.push_back(
+    noteMissing(
+        asset,
         fmt::format("material file '{}' is missing: its materials get default colors", file));
   }
   for (const fs::path& file : search.absent()) {

@@ -46,8 +46,8 @@ class FileSearch {
 
 /// Looks for the textures that the materials name, relative to the folder of `main_input`: found
 /// ones join `asset.files` and their materials get the path that was found; of missing ones the
-/// materials get none, with one warning each. Every place where one is not joins
-/// `asset.absent_files`. Knows %20, backslashes, file:// and absolute paths of
+/// materials get none, with one warning each, which joins `asset.missing`, too. Every place where
+/// one is not joins `asset.absent_files`. Knows %20, backslashes, file:// and absolute paths of
 /// another machine (then the file's name beside the main input counts, as it does for files out of
 /// reach). Where the only texture that is named is missing, or an OBJ has no MTL, an image of the
 /// mesh's own name, or "texture", takes its place, with a warning.

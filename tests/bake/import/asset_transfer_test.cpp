@@ -44,6 +44,7 @@ SourceAsset exampleRest() {
   asset.files.push_back({.name = "room.glb", .bytes = 5, .hash_low = 6, .hash_high = 7});
   asset.absent_files = {"room.mtl"};
   asset.warnings = {"first", "second"};
+  asset.missing = {"second"};
   return asset;
 }
 
@@ -100,6 +101,7 @@ TEST(AssetTransfer, DeliversEveryField) {
   EXPECT_EQ(asset->absent_files, expected.absent_files);
   EXPECT_EQ(asset->warnings, expected.warnings);
 }
+  EXPECT_EQ(asset->missing, expected.missing);
 
 TEST(AssetTransfer, DeliversAnErrorInsteadOfTheMeshesSentBefore) {
   const auto bytes = sent([](const AssetSender& sender) {

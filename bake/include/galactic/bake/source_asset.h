@@ -97,6 +97,9 @@ struct SourceAsset {
   std::vector<std::string> missing_materials;
   /// One sentence each: missing textures, a doubtful unit and so on.
   std::vector<std::string> warnings;
+  /// One sentence for each texture and file of materials that is named and missing: what is drawn
+  /// instead. They are among the warnings, too.
+  std::vector<std::string> missing;
 };
 
 /// Where a pack comes from: goes into the pack, so nothing in it may depend on the machine, the
