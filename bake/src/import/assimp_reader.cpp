@@ -23,8 +23,8 @@
 #include "import/assimp_reader_wraps.h"
 #include "import/axis_convention.h"
 #include "import/checks/content_check.h"
-#include "import/gltf_texture_coordinates.h"
 #include "import/polygon_triangulation.h"
+#include "import/readable_gltf.h"
 #include "import/source_files.h"
 #include "support/mapped_file.h"
 #include "support/try.h"
@@ -141,21 +141,21 @@ class SceneReader {
 
 std::string text(const aiString& string) { return {string.C_Str()}; }
 
-/// What the reader gets in place of the file, where it would draw it otherwise.
-Result<std::optional<DrawnGltf>> drawnAs(const std::filesystem::path& path, Reach reach) {
+/// What the reader gets in place of the file, where it would take it otherwise.
+Result<std::optional<ReadableGltf>> readableAs(const std::filesystem::path& path, Reach reach) {
   const std::string extension = lowerCase(path.extension().string());
   if (extension != ".glb" && extension != ".gltf") return std::nullopt;
   ASSIGN_OR_RETURN(const auto file, MappedFile::open(path));
-  return drawnGltf(path, file.bytes(), reach);
+  return readableGltf(path, file.bytes(), reach);
 }
 
 Result<void> SceneReader::load() {
   DroppedFacesLog dropped_faces;
   Assimp::Importer importer;
   const Reach reach = options_.allow_outside ? Reach::kAnywhere : Reach::kNear;
-  ASSIGN_OR_RETURN(auto drawn, drawnAs(path_, reach));
+  ASSIGN_OR_RETURN(auto readable, readableAs(path_, reach));
   // The importer owns it.
-  importer.SetIOHandler(new RecordingFiles(asked_, path_, reach, std::move(drawn)));
+  importer.SetIOHandler(new RecordingFiles(asked_, path_, reach, std::move(readable)));
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);

@@ -21,14 +21,14 @@ Assimp::IOStream* streamOf(const std::string& content) {
 }  // namespace
 
 RecordingFiles::RecordingFiles(AskedFiles& asked, const fs::path& main_input, Reach reach,
-                               std::optional<DrawnGltf> drawn)
-    : asked_(asked), main_input_(main_input.string()), drawn_(std::move(drawn)) {
+                               std::optional<ReadableGltf> readable)
+    : asked_(asked), main_input_(main_input.string()), readable_(std::move(readable)) {
   if (reach == Reach::kNear) folder_ = fs::absolute(main_input).parent_path();
 }
 
 Assimp::IOStream* RecordingFiles::Open(const char* file, const char* mode) {
-  if (drawn_ && fs::path(file).filename() == kTextureCoordinatesFile) {
-    return streamOf(drawn_->texture_coordinates);
+  if (readable_ && fs::path(file).filename() == kGltfFloatsFile) {
+    return streamOf(readable_->floats);
   }
   // Readers hand over names as they stand in the file: "my%20scene.bin", "colors.mtl ".
   const std::string trimmed = withoutTrailingBlanks(file);
@@ -60,7 +60,7 @@ bool RecordingFiles::isPlainFile(const std::string& name) const {
 
 Assimp::IOStream* RecordingFiles::openPlain(const std::string& name, const char* mode) {
   if (!isPlainFile(name)) return nullptr;
-  if (drawn_ && name == main_input_) return streamOf(drawn_->file);
+  if (readable_ && name == main_input_) return streamOf(readable_->file);
   return DefaultIOSystem::Open(name.c_str(), mode);
 }
 

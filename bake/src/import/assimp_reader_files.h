@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "import/gltf_texture_coordinates.h"
+#include "import/readable_gltf.h"
 #include "import/source_files.h"
 
 namespace galactic::bake {
@@ -24,10 +24,10 @@ struct AskedFiles {
 /// regular files: opening a pipe would wait for its writer.
 class RecordingFiles final : public Assimp::DefaultIOSystem {
  public:
-  /// Nothing is opened outside the folder of `main_input` that `reach` does not allow; `drawn` is
-  /// what the reader gets in place of `main_input`.
+  /// Nothing is opened outside the folder of `main_input` that `reach` does not allow; `readable`
+  /// is what the reader gets in place of `main_input`.
   RecordingFiles(AskedFiles& asked, const std::filesystem::path& main_input, Reach reach,
-                 std::optional<DrawnGltf> drawn);
+                 std::optional<ReadableGltf> readable);
 
   /// The library's own opens the file to see whether it is there.
   bool Exists(const char* file) const override { return isPlainFile(file); }
@@ -42,7 +42,7 @@ class RecordingFiles final : public Assimp::DefaultIOSystem {
   std::string main_input_;
   /// Empty: anything is near.
   std::filesystem::path folder_;
-  std::optional<DrawnGltf> drawn_;
+  std::optional<ReadableGltf> readable_;
 };
 
 }  // namespace galactic::bake
