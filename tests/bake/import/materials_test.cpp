@@ -57,20 +57,38 @@ TEST(GltfMaterials, LoseImagesInOtherFormatsWithAWarning) {
         .buffer_uri = {},
         .more = fmt::format(
             R"(,"materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}],)"
-            R"("textures":[{{"extensions":{{"{0}":{{"source":0}}}}}}],)"
-            R"("images":[{{"uri":"a.image"}}],"extensionsUsed":["{0}"],"extensionsRequired":["{0}"])",
+            R"("textures":[{{"extensions":{{"{0}":{{"source":0}}}}}},)"
+            R"({{"extensions":{{"{0}":{{"source":0}}}}}}],)"
+            R"("images":[{{"uri":"a.image"}}],"extensionsUsed":["{0}"])",
             extension)};
-    std::string json = gltfFile(unevenBox(), pieces);
-    const std::string_view primitive_end = R"("indices":0)";
-    json.insert(json.find(primitive_end) + primitive_end.size(), R"(,"material":0)");
-    const auto asset = importContent("box.glb", glbContainer(json, gltfBuffer(unevenBox())));
-    ASSERT_TRUE(asset.has_value()) << asset.error().message;
-    EXPECT_EQ(asset->materials[asset->meshes[0].material].base_color_texture, "");
-    EXPECT_THAT(asset->warnings,
-                ElementsAre(fmt::format("textures in {} ({}) cannot be read: their surfaces keep "
-                                        "their plain color; export them as PNG or JPEG",
-                                        format, extension)));
+    const auto required = fmt::format(R"(,"extensionsRequired":["{}"])", extension);
+    for (const std::string& more : {std::string(), required}) {
+      GltfPieces whole = pieces;
+      whole.more += more;
+      std::string json = gltfFile(unevenBox(), whole);
+      const std::string_view primitive_end = R"("indices":0)";
+      json.insert(json.find(primitive_end) + primitive_end.size(), R"(,"material":0)");
+      const auto asset = importContent("box.glb", glbContainer(json, gltfBuffer(unevenBox())));
+      ASSERT_TRUE(asset.has_value()) << asset.error().message;
+      EXPECT_EQ(asset->materials[asset->meshes[0].material].base_color_texture, "");
+      EXPECT_THAT(asset->warnings,
+                  ElementsAre(fmt::format("textures in {} ({}) cannot be read: their surfaces keep "
+                                          "their plain color; export them as PNG or JPEG",
+                                          format, extension)));
+    }
   }
+}
+
+TEST(GltfMaterials, KeepQuietAboutImagesThatHaveAnotherInTheirPlace) {
+  const GltfPieces pieces{
+      .nodes = GltfPieces{}.nodes,
+      .buffer_uri = {},
+      .more =
+          R"(,"textures":[{"extensions":{"EXT_texture_webp":{"source":1}},"source":0}],)"
+          R"("images":[{"uri":"a.png"},{"uri":"a.webp"}],"extensionsUsed":["EXT_texture_webp"])"};
+  const auto asset = importContent("box.glb", glbFile(unevenBox(), pieces));
+  ASSERT_TRUE(asset.has_value()) << asset.error().message;
+  EXPECT_THAT(asset->warnings, ElementsAre());
 }
 
 TEST(GltfMaterials, OfSpecularGlossinessAreDiffuseColors) {

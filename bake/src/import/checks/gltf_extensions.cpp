@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -27,13 +28,20 @@ constexpr std::array kImageExtensions{ImageExtension{"KHR_texture_basisu", "KTX2
                                       ImageExtension{"EXT_texture_webp", "WebP"},
                                       ImageExtension{"MSFT_texture_dds", "DDS"}};
 
-/// Readers that do not know it draw less, and not only otherwise.
 /// What readableGltf undoes, so that every reader takes it rightly.
 constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 
+/// Readers that do not know it draw less, and not only otherwise.
 constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
 
+/// Null of any other extension.
+const ImageExtension* imageExtension(std::string_view name) {
+  const auto* image = std::ranges::find(kImageExtensions, name, &ImageExtension::name);
+  return image == kImageExtensions.end() ? nullptr : image;
+}
+
 bool isHarmless(std::string_view extension) {
+  if (extension == kQuantization) return true;
   return std::any_of(kHarmlessPrefixes.begin(), kHarmlessPrefixes.end(),
                      [&](std::string_view prefix) { return extension.starts_with(prefix); });
 }
@@ -41,7 +49,6 @@ bool isHarmless(std::string_view extension) {
 /// Streams through the JSON and keeps nothing but what matters; a document tree of a file with
 /// embedded buffers would take several times its size.
 class RequiredExtensions final : public Json::json_sax_t {
-  if (extension == kQuantization) return true;
  public:
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
@@ -59,8 +66,10 @@ class RequiredExtensions final : public Json::json_sax_t {
 
   bool key(string_t& name) override {
     if (depth_ == kNodeDepth) in_weights_ = in_nodes_ && name == "weights";
+    if (in_textures_) noteTextureKey(name);
     if (depth_ != 1) return true;
     in_nodes_ = name == "nodes";
+    in_textures_ = name == "textures";
     in_required_ = name == "extensionsRequired";
     in_used_ = name == "extensionsUsed";
     if (name == "skins") {
@@ -79,29 +88,51 @@ class RequiredExtensions final : public Json::json_sax_t {
                       kInstancing));
     }
     if (depth_ != 2 || !in_required_ || isHarmless(value)) return true;
-    const auto* image = std::find_if(kImageExtensions.begin(), kImageExtensions.end(),
-                                     [&](const auto& known) { return known.name == value; });
-    if (image == kImageExtensions.end()) {
+    const ImageExtension* image = imageExtension(value);
+    if (image == nullptr) {
       found_.unsupported = value;
       return false;
     }
-    found_.warnings.push_back(
-        fmt::format("textures in {} ({}) cannot be read: their surfaces keep their plain color; "
-                    "export them as PNG or JPEG",
-                    image->format, image->name));
+    tellOf(*image);
     return true;
   }
 
   [[nodiscard]] GltfRequirements take() { return std::move(found_); }
 
  private:
+  /// Members of a texture, and of its extensions.
+  struct Texture {
+    bool has_source = false;
+    bool in_extensions = false;
+    const ImageExtension* other = nullptr;
+  };
+
   bool enter() {
     ++depth_;
+    if (in_textures_ && depth_ == kNodeDepth) texture_ = {};
     return true;
   }
   bool leave() {
+    const bool ends_texture = in_textures_ && depth_ == kNodeDepth;
+    if (ends_texture && !texture_.has_source && texture_.other != nullptr) tellOf(*texture_.other);
     --depth_;
     return true;
+  }
+  void noteTextureKey(const string_t& name) {
+    if (depth_ == kNodeDepth) {
+      texture_.has_source = texture_.has_source || name == "source";
+      texture_.in_extensions = name == "extensions";
+    } else if (depth_ == kNodeDepth + 1 && texture_.in_extensions) {
+      if (const ImageExtension* image = imageExtension(name)) texture_.other = image;
+    }
+  }
+  /// Once for each kind: images that are required to be read, or that a texture has no other for.
+  void tellOf(const ImageExtension& image) {
+    if (!told_.insert(image.name).second) return;
+    found_.warnings.push_back(
+        fmt::format("textures in {} ({}) cannot be read: their surfaces keep their plain color; "
+                    "export them as PNG or JPEG",
+                    image.format, image.name));
   }
   /// Weights of a mesh are applied; those of a node would give the mesh another shape there.
   bool weight(bool counts) {
@@ -114,7 +145,7 @@ class RequiredExtensions final : public Json::json_sax_t {
     return true;
   }
 
-  /// Inside the document, the list of nodes, and a node.
+  /// Inside the document, a list (of nodes, of textures), and one of it.
   static constexpr std::size_t kNodeDepth = 3;
 
   std::size_t depth_ = 0;
@@ -122,6 +153,9 @@ class RequiredExtensions final : public Json::json_sax_t {
   bool in_used_ = false;
   bool in_nodes_ = false;
   bool in_weights_ = false;
+  bool in_textures_ = false;
+  Texture texture_;
+  std::set<std::string_view> told_;
   bool has_node_weights_ = false;
   GltfRequirements found_;
 };
