@@ -161,6 +161,36 @@ TEST_F(ObjectCli, AsksAboutUnits) {
                               HasSubstr("is its unit the centimeter or the millimeter?")));
 }
 
+/// Fitting spheres to it would take minutes.
+TEST_F(ObjectCli, RefusesAnObjectOfMetersUnlessItsUnitIsStated) {
+  const auto refusalOf = [&](const std::string& name, float units) {
+    test::MeshContent box = test::unevenBox();
+    for (auto& p : box.positions) {
+      for (float& coordinate : p) coordinate *= units;
+    }
+    write(name, test::objFile(box));
+    const ProgramRun refused = run({name, "--as", "object"});
+    EXPECT_EQ(refused.exit_code, 3);
+    return refused.err;
+  };
+  const std::string units =
+      "(Y up (OBJ convention), 1 m per unit (OBJ convention)), and objects are smaller than 3 m; "
+      "give meters per unit with --scale: 0.01 for centimeters, 0.001 for millimeters, 1 if it is "
+      "right in meters; ";
+  EXPECT_EQ(
+      refusalOf("crate.obj", 2),
+      "galactic-bake: crate.obj: the object is 2 x 4 x 6 m large " + units + "0.01 is likely\n");
+  EXPECT_EQ(refusalOf("screw.obj", 200),
+            "galactic-bake: screw.obj: the object is 200 x 400 x 600 m large " + units +
+                "0.001 is likely\n");
+  // Stated by the user, it is only asked about.
+  const ProgramRun stated = run({"crate.obj", "--as", "object", "--scale", "1", "--radii",
+                                 "1.5,2.5", "--eps", "1", "--tau", "1.5"});
+  EXPECT_EQ(stated.exit_code, 0) << stated.err;
+  EXPECT_THAT(stated.out, HasSubstr("object 'crate': is 6 m large; is the unit right?"));
+  EXPECT_EQ(bake({"crate.obj", "-o", "small.pack"}).exit_code, 0);
+}
+
 TEST_F(ObjectCli, UnderstandsEveryOptionOfObjects) {
   write("mug.obj", brick());
   for (const char* box : {"yaw", "min", "aabb"})

@@ -8,16 +8,16 @@
 #include "common/stage_timer.h"
 #include "fit/hull_planes.h"
 #include "fit/stable_poses.h"
+#include "import/checks/asset_check.h"
 #include "sphere_set/authored_spheres.h"
 #include "support/counted.h"
 
 namespace galactic::bake {
 namespace {
 
-/// A movable object smaller or larger than this probably has another unit, meters; much larger ones
-/// are refused by the sphere fitter with the same question.
+/// A movable object smaller than this probably has another unit, as one larger than kLargestObject
+/// has, meters; much larger ones are refused by the sphere fitter with the same question.
 constexpr float kDoubtfulSmallness = 0.002F;
-constexpr float kDoubtfulLargeness = 3;
 
 float largestExtent(const Bounds& bounds) {
   return std::max(
@@ -32,7 +32,7 @@ void warnOfSize(const Bounds& bounds, std::vector<std::string>& warnings) {
                     "per unit",
                     1000 * size));
   }
-  if (size > kDoubtfulLargeness) {
+  if (static_cast<double>(size) > kLargestObject) {
     warnings.push_back(
         fmt::format("is {:.3g} m large; is the unit right? `scale` sets meters per unit", size));
   }

@@ -15,6 +15,7 @@
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/packs.h"
 #include "galactic/bake/parallel_for.h"
+#include "import/checks/asset_check.h"
 #include "recipe/collection_shape.h"
 #include "support/output_files.h"
 #include "support/try.h"
@@ -68,6 +69,10 @@ Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedO
     return importMesh(input.path, task.job.import);
   }();
   if (!asset) return tl::unexpected(asset.error());
+  // Templates of datasets say with a transform how large their objects are.
+  if (!task.job.import.scale && !task.job.import.transform) {
+    RETURN_IF_ERROR(checkObjectSize(*asset, input.path.string()));
+  }
   finished.files = asset->files;
   finished.absent_files = asset->absent_files;
   asset->name = input.name;

@@ -248,6 +248,7 @@ Result<Affine> SceneReader::worldFromRoot() {
     return invalid("its unit is not a positive number of meters; give `scale`");
   }
   asset_.convention = describe(convention);
+  asset_.meters_per_unit = convention.meters.value;
   return compose(compose(options_.transform.value_or(kIdentityAffine), worldFromFile(convention)),
                  file_from_root);
 }

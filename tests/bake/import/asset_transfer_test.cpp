@@ -32,6 +32,7 @@ SourceAsset exampleRest() {
   asset.name = "room";
   asset.format = "glTF 2.0";
   asset.convention = "Y up";
+  asset.meters_per_unit = 0.25;
   asset.instances = {
       {.name = "n", .mesh = 1, .world_from_mesh = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}}};
   asset.materials.push_back({.name = "oak",
@@ -43,8 +44,8 @@ SourceAsset exampleRest() {
   asset.textures.push_back({.format = "png", .bytes = {1, 2, 3}});
   asset.files.push_back({.name = "room.glb", .bytes = 5, .hash_low = 6, .hash_high = 7});
   asset.absent_files = {"room.mtl"};
-  asset.warnings = {"first", "second"};
   asset.missing = {"second"};
+  asset.warnings = {"first", "second"};
   return asset;
 }
 
@@ -72,6 +73,7 @@ TEST(AssetTransfer, DeliversEveryField) {
   EXPECT_EQ(asset->name, expected.name);
   EXPECT_EQ(asset->format, expected.format);
   EXPECT_EQ(asset->convention, expected.convention);
+  EXPECT_EQ(asset->meters_per_unit, expected.meters_per_unit);
   ASSERT_EQ(asset->meshes.size(), 2U);
   EXPECT_EQ(asset->meshes[1].name, "mesh1");
   EXPECT_EQ(asset->meshes[1].positions, exampleMesh(1).positions);
@@ -99,9 +101,9 @@ TEST(AssetTransfer, DeliversEveryField) {
   EXPECT_EQ(asset->files[0].hash_low, 6U);
   EXPECT_EQ(asset->files[0].hash_high, 7U);
   EXPECT_EQ(asset->absent_files, expected.absent_files);
+  EXPECT_EQ(asset->missing, expected.missing);
   EXPECT_EQ(asset->warnings, expected.warnings);
 }
-  EXPECT_EQ(asset->missing, expected.missing);
 
 TEST(AssetTransfer, DeliversAnErrorInsteadOfTheMeshesSentBefore) {
   const auto bytes = sent([](const AssetSender& sender) {

@@ -85,6 +85,8 @@ struct SourceAsset {
   std::string format = "memory";
   /// How axes and unit were read, for the closing table: for example "Z up (file), unit 0.01 m".
   std::string convention;
+  /// The unit in which the file was read.
+  double meters_per_unit = 1;
   std::vector<SourceMesh> meshes;
   std::vector<SourceInstance> instances;
   std::vector<SourceMaterial> materials;
@@ -95,11 +97,11 @@ struct SourceAsset {
   std::vector<std::string> absent_files;
   /// Files of materials that are named and missing, likewise.
   std::vector<std::string> missing_materials;
-  /// One sentence each: missing textures, a doubtful unit and so on.
-  std::vector<std::string> warnings;
   /// One sentence for each texture and file of materials that is named and missing: what is drawn
   /// instead. They are among the warnings, too.
   std::vector<std::string> missing;
+  /// One sentence each: missing textures, a doubtful unit and so on.
+  std::vector<std::string> warnings;
 };
 
 /// Where a pack comes from: goes into the pack, so nothing in it may depend on the machine, the

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "import/affine.h"
@@ -87,6 +89,30 @@ Result<void> checkInstance(const SourceAsset& asset, const SourceInstance& insta
   return {};
 }
 
+/// What `scale` may mean, for messages.
+constexpr std::string_view kUnits =
+    "0.01 for centimeters, 0.001 for millimeters, 1 if it is right in meters";
+
+/// Of the box around all triangles, along the axes of the world.
+std::array<double, 3> extentsOf(const SourceAsset& asset) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
+  std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
+  for (const SourceInstance& instance : asset.instances) {
+    const SourceMesh& mesh = asset.meshes[instance.mesh];
+    for (const Triangle& triangle : mesh.triangles) {
+      for (const std::uint32_t vertex : triangle) {
+        const auto p = transformed(instance.world_from_mesh, mesh.positions[vertex]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min(low[axis], p[axis]);
+          high[axis] = std::max(high[axis], p[axis]);
+        }
+      }
+    }
+  }
+  return {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+}
+
 }  // namespace
 
 Result<void> checkAsset(const SourceAsset& asset, const std::string& where) {
@@ -144,23 +170,30 @@ void warnAboutSize(SourceAsset& asset, double smallest_size) {
 Result<void> checkHeight(const SourceAsset& asset, const std::string& where) {
   // A room of 2.5 m is 98 inches or 250 cm high, a house of three storeys 10 m.
   constexpr double kGreatestHeight = 60;
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const SourceInstance& instance : asset.instances) {
-    const SourceMesh& mesh = asset.meshes[instance.mesh];
-    for (const Triangle& triangle : mesh.triangles) {
-      for (const std::uint32_t vertex : triangle) {
-        const double y = transformed(instance.world_from_mesh, mesh.positions[vertex])[1];
-        low = std::min(low, y);
-        high = std::max(high, y);
-      }
-    }
-  }
-  if (high - low <= kGreatestHeight) return {};
+  const double height = extentsOf(asset)[1];
+  if (height <= kGreatestHeight) return {};
   return invalid(where, fmt::format("the scene is {:.4g} m high ({}), and homes are lower than {} "
-                                    "m; give meters per unit with `scale`: 0.01 for centimeters, "
-                                    "0.001 for millimeters, 1 if it is right in meters",
-                                    high - low, asset.convention, kGreatestHeight));
+                                    "m; give meters per unit with `scale`: {}",
+                                    height, asset.convention, kGreatestHeight, kUnits));
+}
+
+Result<void> checkObjectSize(const SourceAsset& asset, const std::string& where) {
+  const std::array<double, 3> size = extentsOf(asset);
+  const double largest = *std::ranges::max_element(size);
+  if (largest <= kLargestObject) return {};
+  std::string likely;
+  for (const double unit : {0.01, 0.001}) {
+    if (unit == asset.meters_per_unit || largest / asset.meters_per_unit * unit > kLargestObject) {
+      continue;
+    }
+    likely = fmt::format("; {} is likely", unit);
+    break;
+  }
+  return invalid(
+      where,
+      fmt::format("the object is {:.4g} x {:.4g} x {:.4g} m large ({}), and objects are "
+                  "smaller than {} m; give meters per unit with `scale`: {}{}",
+                  size[0], size[1], size[2], asset.convention, kLargestObject, kUnits, likely));
 }
 
 }  // namespace galactic::bake

@@ -20,4 +20,12 @@ void warnAboutSize(SourceAsset& asset, double smallest_size);
 /// passed checkAsset.
 [[nodiscard]] Result<void> checkHeight(const SourceAsset& asset, const std::string& where);
 
+/// A movable object that is larger than this probably has another unit, meters.
+inline constexpr double kLargestObject = 3;
+
+/// Refuses an object that is larger than kLargestObject in any direction: spheres of a few
+/// millimeters would be fitted to it for minutes. For objects whose unit nobody has stated; the
+/// message names the unit that is likely. kInvalidInput; `asset` has passed checkAsset.
+[[nodiscard]] Result<void> checkObjectSize(const SourceAsset& asset, const std::string& where);
+
 }  // namespace galactic::bake
