@@ -28,8 +28,6 @@ constexpr double kLens = 256;
 /// Vertices beyond this many units are left out: a render mesh is at most 65,535 across with this
 /// lattice. A picture is 256 wide at most.
 constexpr float kFarthest = 30000;
-/// A texture that repeats more often is a blur.
-constexpr float kMostImages = 1e5F;
 /// Cuts of an icosahedron: a sphere's outline is round to half a percent.
 constexpr int kSphereCuts = 3;
 constexpr std::uint32_t kOpaque = 0xFF000000;
@@ -114,6 +112,11 @@ std::set<SurfaceKind> kindsWithLight(std::span<const RenderSurface> surfaces) {
     if (has_light) kinds.insert(kindOf(surface));
   }
   return kinds;
+}
+
+/// A texture coordinate that can be drawn: an image that repeats more often is a blur in any case.
+float drawable(float coordinate) {
+  return std::isfinite(coordinate) ? std::clamp(coordinate, -kMostImages, kMostImages) : 0;
 }
 
 /// Whether a picture can hold it; a comparison with NaN is false.
@@ -240,10 +243,8 @@ void MeshRaster::drawRenderModel(const RenderMeshes& meshes, const RenderModel& 
     surface.two_sided = stored.two_sided;
     for (RenderVertex& vertex : stored.vertices) {
       vertex.position = world_from_model * vertex.position;
-      if (!(std::abs(vertex.u) < kMostImages && std::abs(vertex.v) < kMostImages)) {
-        vertex.u = 0;
-        vertex.v = 0;
-      }
+      vertex.u = drawable(vertex.u);
+      vertex.v = drawable(vertex.v);
     }
     if (cut_) cutThrough(*cut_, stored, section);
     for (RenderVertex& vertex : stored.vertices) vertex.position = inView(vertex.position);

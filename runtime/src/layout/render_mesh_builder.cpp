@@ -37,8 +37,6 @@ bool isNear(const Vec3& p) {
 
 /// What is wrong with a surface, as a sentence; nothing when it can be stored.
 std::optional<std::string> faultOf(const RenderSurface& surface, const RenderMeshSource& source) {
-  // A cluster then repeats its image 32,000 times at most, which a pack can hold.
-  constexpr float kLargestTexture = 16000;
   if (surface.corners.size() % 3 != 0) {
     return fmt::format("found {} corners, expected three per triangle", surface.corners.size());
   }
@@ -59,9 +57,9 @@ std::optional<std::string> faultOf(const RenderSurface& surface, const RenderMes
       return fmt::format("found a vertex {} farther than {} m from the origin, which fits no pack",
                          n, kFarthest);
     }
-    if (std::abs(vertex.u) > kLargestTexture || std::abs(vertex.v) > kLargestTexture) {
+    if (std::abs(vertex.u) > kMostImages || std::abs(vertex.v) > kMostImages) {
       return fmt::format("found texture coordinates ({}, {}) at vertex {}, expected at most {}",
-                         vertex.u, vertex.v, n, kLargestTexture);
+                         vertex.u, vertex.v, n, kMostImages);
     }
   }
   return std::nullopt;

@@ -11,6 +11,10 @@
 
 namespace galactic {
 
+/// The largest texture coordinate that buildRenderMeshes() takes, by magnitude: a cluster then
+/// repeats its image 32,000 times at most, which a pack can hold.
+inline constexpr float kMostImages = 16000;
+
 /// A corner of triangles to draw.
 struct RenderVertex {
   /// Meters, in the frame of the part.

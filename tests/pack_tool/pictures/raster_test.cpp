@@ -190,6 +190,31 @@ TEST(MeshRaster, DrawsRenderModelsWithTheirTexturesAndSides) {
   EXPECT_LT(back, 60U * 60 * 95 / 100);
 }
 
+/// Clusters begin at their least coordinates, so that a pack has twice what its source may have.
+TEST(MeshRaster, DrawsTexturesThatRepeatAsOftenAsPacksCanHold) {
+  const std::vector<std::uint8_t> green{0, 200, 0, 255};
+  RenderMeshSource source;
+  source.textures = {{"green.png", 1, TexelFormat::kRgba8, green}};
+  source.materials = {{"green", 0xFFFFFFFF, 0}};
+  source.semantics = {"wall"};
+  RenderSurface surface;
+  for (const Vec3& corner : {Vec3{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}) {
+    surface.vertices.push_back(
+        {.position = corner, .u = kMostImages * corner.x, .v = kMostImages * corner.y});
+  }
+  surface.corners = {0, 1, 2, 0, 2, 3};
+  surface.two_sided = true;
+  source.parts = {{.part = 0, .surfaces = {surface}}};
+  const auto storage = buildRenderMeshes(source);
+  ASSERT_TRUE(storage) << storage.error().text();
+  const RenderMeshes meshes = storage->view();
+  MeshRaster raster({kSideView, {0, 0, 0}, 20, kSize, kSize});
+  raster.drawRenderModel(meshes, meshes.models.front(), {});
+  const Rgb drawn = imageOf(raster).at(kSize / 2, kSize / 2);
+  EXPECT_EQ(drawn.r, 0);
+  EXPECT_GT(drawn.g, 100);
+}
+
 /// A square of a plain color that leans away from the light, and what its vertices have.
 Rgb leaningSquare(std::uint32_t color) {
   RenderMeshSource source;
