@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <string>
 
 #include "pack_tool/diff/asset_diff.h"
 #include "pack_tool/diff/diff_text.h"
@@ -93,6 +95,20 @@ const char* whollyDescribedAs(PackKind kind) {
   return kind == PackKind::kTexture ? "texture" : nullptr;
 }
 
+/// Takes the folder that has the world's own name out of the paths of a world's packs, so that one
+/// baked under another name has the same.
+void leaveOutOwnFolder(Json& description, const std::string& file) {
+  const std::string folder = std::filesystem::path(file).stem().string() + "/";
+  const auto shorten = [&folder](Json& list, const char* key) {
+    for (Json& element : list) {
+      const std::string path = element.at(key).get<std::string>();
+      if (path.starts_with(folder)) element[key] = path.substr(folder.size());
+    }
+  };
+  shorten(description.at("world").at("packs"), "path");
+  shorten(description.at("provenance").at("sources"), "name");
+}
+
 void compareDescriptions(const DescribedPair& packs, const char* asset, const DiffOptions& options,
                          PackDifference& difference) {
   if (options.scope == DiffScope::kEverything) {
@@ -127,7 +143,12 @@ Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
     return difference;
   }
   if (const char* asset = whollyDescribedAs(a.kind())) {
-    compareDescriptions({describePack(a), describePack(b)}, asset, options, difference);
+    DescribedPair descriptions{describePack(a), describePack(b)};
+    if (a.kind() == PackKind::kWorld) {
+      leaveOutOwnFolder(descriptions.a, difference.a);
+      leaveOutOwnFolder(descriptions.b, difference.b);
+    }
+    compareDescriptions(descriptions, asset, options, difference);
     return difference;
   }
   RETURN_IF_ERROR(a.kind() == PackKind::kEpisodes ? compareEpisodes(a, b, options, difference)

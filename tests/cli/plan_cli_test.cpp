@@ -357,6 +357,14 @@ TEST_F(PlanCli, BakesAFolderOfScans) {
   EXPECT_TRUE(has("homes.pack"));
   EXPECT_TRUE(has("homes/scenes/hall.pack"));
   EXPECT_FALSE(has("homes/scenes/loft.pack"));
+  // Under another name it has the same packs, in another folder.
+  ASSERT_EQ(run({"scans", "--as", "dataset", "--scenes", "h*", "--up", "y", "--radii", "0.12", "-o",
+                 "again.pack"})
+                .exit_code,
+            0);
+  const ProgramRun diff =
+      runProgram(builtProgram("galactic-pack"), path(""), {"diff", "homes.pack", "again.pack"});
+  EXPECT_EQ(diff.exit_code, 0) << diff.out;
   const ProgramRun habitat = bake("out", {"--up", "z"});
   EXPECT_EQ(habitat.exit_code, 3);
   EXPECT_THAT(

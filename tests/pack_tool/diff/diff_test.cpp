@@ -6,6 +6,7 @@
 #include "pack_tool/diff/grid_diff.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/pack_tool_fixture.h"
+#include "support/packs/world_pack_builder.h"
 
 namespace galactic::pack_tool::diff_test {
 namespace {
@@ -257,6 +258,32 @@ TEST(DiffVerb, PrintsTheMostDifferentColumnsAsTextAndJson) {
   EXPECT_EQ(json.at("grids").at(0).at("worst").at(0).at("cell"), Json::parse("[4, 2]"));
   EXPECT_EQ(json.at("grids").at(0).at("free_only_in_a"), 1.0);
   EXPECT_EQ(json.at("grids").at(1).at("differs"), false);
+}
+
+TEST(DiffVerb, PairsThePacksOfWorldsByTheirPathsBelowTheWorldsFolders) {
+  const test::ScratchFolder folder;
+  const auto worldOf = [&](const std::string& name, std::uint64_t hash) {
+    test::WorldPackFields fields;
+    fields.packs = {{.path = name + "/objects/mug.pack", .kind = "OBJS"},
+                    {.path = name + "/scenes/home.pack", .kind = "SCEN", .hash = {{hash, 2}}},
+                    {.path = "scenes/shared.pack", .kind = "SCEN"}};
+    return folder.write(name + ".pack", test::textOf(test::buildPack(fields)));
+  };
+  const auto diff = [](const std::filesystem::path& a, const std::filesystem::path& b) -> Outcome {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int exit_code = runDiff({.a = a, .b = b}, Console{out, err});
+    EXPECT_EQ(err.str(), "");
+    return {exit_code, out.str()};
+  };
+  const std::filesystem::path home = worldOf("home", 1);
+  const Outcome same = diff(home, worldOf("again", 1));
+  EXPECT_EQ(same.exit_code, kExitOk) << same.out;
+  EXPECT_THAT(same.out, HasSubstr("\nequal\n"));
+  const Outcome other = diff(home, worldOf("other", 3));
+  EXPECT_EQ(other.exit_code, kExitDiffers);
+  EXPECT_THAT(other.out, HasSubstr("packs.scenes/home.pack.xxh3_128"));
+  EXPECT_THAT(other.out, testing::Not(HasSubstr("mug.pack")));
 }
 
 }  // namespace
