@@ -305,9 +305,11 @@ TEST_F(PlanCli, ListsMissingTexturesMaterialsAndMeshesInADryRun) {
   jar.insert(jar.find(primitive_end) + primitive_end.size(), R"(,"material":0)");
   write("jar.gltf", jar);
   write("jar.bin", test::gltfBuffer(test::unevenBox()));
+  write("arm.stl", "version https://git-lfs.github.com/spec/v1\nsize 12345\n");
   write("cart.urdf", R"(<robot name="cart"><link name="base">
       <visual><geometry><mesh filename="pot.obj"/></geometry></visual>
       <visual><geometry><mesh filename="lid.dae"/></geometry></visual>
+      <visual><geometry><mesh filename="arm.stl"/></geometry></visual>
       <collision><geometry><box size="0.4 0.4 0.4"/></geometry></collision></link></robot>)");
 
   EXPECT_EQ(dryRun("").exit_code, 0);
@@ -325,6 +327,8 @@ TEST_F(PlanCli, ListsMissingTexturesMaterialsAndMeshesInADryRun) {
   EXPECT_EQ(robot.exit_code, 3);
   EXPECT_THAT(robot.missing, HasSubstr(pot));
   EXPECT_THAT(robot.missing, HasSubstr("cart.urdf: mesh 'lid.dae' is missing: it is left out"));
+  EXPECT_THAT(robot.missing,
+              HasSubstr("cart.urdf: mesh 'arm.stl' does not load: is a pointer of "));
 
   // Of what a dataset's scene is composed of, too.
   write("data/meshes/pot.obj", content("pot.obj"));

@@ -58,6 +58,7 @@ class Search {
     for (const std::string& mesh : robot->missing) {
       add(fmt::format("{}: mesh '{}' is missing: it is left out", urdf, mesh));
     }
+    for (const std::string& mesh : robot->unreadable) add(fmt::format("{}: {}", urdf, mesh));
     for (const SourceAsset& mesh : robot->meshes) {
       addLooks(mesh, job.input.parent_path() / mesh.files.front().name);
     }

@@ -55,8 +55,8 @@ void SceneComposer::noteMissing(const std::string& sentence) {
 
 void SceneComposer::noteAbsent(const fs::path& file) { absent_.insert(relative(file)); }
 
-void SceneComposer::noteLooks(const fs::path& file, const SourceAsset& asset) {
-  for (const std::string& sentence : asset.missing) {
+void SceneComposer::noteLooks(const fs::path& file, const std::vector<std::string>& missing) {
+  for (const std::string& sentence : missing) {
     std::string told = fmt::format("{}: {}", relative(file), sentence);
     if (looks_.insert(told).second) result_.scene.missing.push_back(std::move(told));
   }
@@ -131,7 +131,7 @@ Result<std::shared_ptr<const SourceAsset>> SceneComposer::load(const fs::path& m
     merger_.noteFile(mesh.parent_path() / file.name, file);
   }
   for (const std::string& file : (*asset)->absent_files) noteAbsent(mesh.parent_path() / file);
-  noteLooks(mesh, **asset);
+  noteLooks(mesh, (*asset)->missing);
   noteWarnings(mesh, (*asset)->warnings);
   return asset;
 }
@@ -276,8 +276,9 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   for (const SourceFile& file : (*furniture)->files) merger_.noteFile(folder / file.name, file);
   for (const std::string& file : (*furniture)->absent_files) noteAbsent(folder / file);
   if (!(*furniture)->is_settled) result_.is_settled = false;
+  noteLooks(urdf, (*furniture)->unreadable);
   for (const SourceAsset& mesh : (*furniture)->meshes) {
-    noteLooks(folder / mesh.files.front().name, mesh);
+    noteLooks(folder / mesh.files.front().name, mesh.missing);
   }
   noteWarnings(urdf, (*furniture)->warnings);
   for (const std::string& reference : (*furniture)->missing) {

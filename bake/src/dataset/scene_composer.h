@@ -55,8 +55,8 @@ class SceneComposer {
   std::string nextName(const std::string& template_name);
   void noteMissing(const std::string& sentence);
   void noteAbsent(const std::filesystem::path& file);
-  /// What `asset`, read of `file`, names and lacks of its looks: it is in the scene nevertheless.
-  void noteLooks(const std::filesystem::path& file, const SourceAsset& asset);
+  /// What `file` names and lacks, one sentence each, without which the scene is composed as well.
+  void noteLooks(const std::filesystem::path& file, const std::vector<std::string>& missing);
   void warnOnce(const std::string& warning);
   /// The first few warnings about a file.
   void noteWarnings(const std::filesystem::path& file, const std::vector<std::string>& warnings);

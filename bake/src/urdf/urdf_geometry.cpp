@@ -150,10 +150,11 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
     if (asset.error().code == ErrorCode::kInternal) return tl::unexpected(asset.error());
     robot_.is_settled = false;
     if (describeFile(file)) robot_.files.push_back({.name = nameRelativeTo(urdf_, file)});
-    return LoadedMesh{
-        .index = {},
-        .failure = fmt::format("'{}' does not load: {}", nameRelativeTo(urdf_, asset.error().where),
-                               asset.error().message)};
+    std::string failure =
+        fmt::format("mesh '{}' does not load: {}", nameRelativeTo(urdf_, asset.error().where),
+                    asset.error().message);
+    robot_.unreadable.push_back(failure);
+    return LoadedMesh{.index = {}, .failure = std::move(failure)};
   }
   const fs::path folder = file.parent_path();
   for (SourceFile& source : asset->files) {
@@ -211,7 +212,7 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const UrdfShape& 
   }
   const LoadedMesh& mesh = loaded->second;
   if (!mesh.index) {
-    lost.push_back({place, "mesh " + mesh.failure});
+    lost.push_back({place, mesh.failure});
     return std::nullopt;
   }
   double largest = 0;

@@ -91,6 +91,8 @@ struct SourceRobot {
   std::vector<std::string> warnings;
   /// References to meshes that were not found, as the URDF has them.
   std::vector<std::string> missing;
+  /// One sentence for each mesh that was found and does not load.
+  std::vector<std::string> unreadable;
   /// Where each mesh was found, one line each, for -v.
   std::vector<std::string> resolutions;
 };
