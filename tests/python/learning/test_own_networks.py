@@ -217,6 +217,53 @@ class Replaced(Net):
         forward = self.layer.forward
         self.layer.forward = lambda x: 2.0 * forward(x)
 
+class MixesSteps(Net):
+    def forward(self, inputs):
+        x = self.layer(inputs.state)
+        return x - x.mean(0, keepdim=True)
+
+class MixesEnvs(Net):
+    def forward(self, inputs):
+        x = self.layer(inputs.state)
+        return x - x.mean(1, keepdim=True)
+
+class MixesAll(Net):
+    def forward(self, inputs):
+        return self.layer(inputs.state) / inputs.state.norm()
+
+class MixesImages(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.eyes = Eyes(nn.Sequential(nn.Conv2d(seen.channels, 8, 36), nn.Flatten()))
+
+    def forward(self, inputs):
+        return self.eyes(inputs) / inputs.rgb.float().std()
+
+class OneEnvAlone(Net):
+    def forward(self, inputs):
+        return self.layer(inputs.state).squeeze(1)
+
+class Averages(Net):
+    # The mean of all that it has seen of an episode: a memory of how many steps, and of their sum.
+    memory = 9
+    resets = True
+
+    def forward(self, inputs, memory, starts):
+        features = []
+        for seen, begun in zip(self.layer(inputs.state), starts):
+            kept = memory * (~begun).unsqueeze(-1) if self.resets or not features else memory
+            memory = torch.cat([kept[:, :1] + 1.0, kept[:, 1:] + seen], -1)
+            features.append(memory[:, 1:] / memory[:, :1])
+        return torch.stack(features), memory
+
+class EmptiedAtFirst(Averages):
+    resets = False
+
+class LosesSteps(Averages):
+    def forward(self, inputs, memory, starts):
+        features, _ = super().forward(inputs, memory, starts)
+        return features, torch.zeros_like(memory)
+
 def no_class(seen):
     pass
 """
@@ -254,12 +301,31 @@ def named(file: pathlib.Path, name: str, options: str = "") -> OwnNetwork:
         ("Drops", "computes something else while it learns than while it acts"),
         ("Remembers", "remembers what was before the start of an episode; empty the memory where `star"),
         ("Forgets", "returned float32 .*, expected features and memory: memory is 4"),
+        ("MixesSteps", "mixes steps: it returns something else for 2 steps of 3 envs at once, as it learns, th"),
+        ("MixesEnvs", "mixes envs: it returns .* than for each env by itself, as it acts; sum, average and"),
+        ("MixesAll", "mixes steps and envs: it returns"),
+        ("OneEnvAlone", r"returned features of float32 \[2, 8\], expected \[2, 1, 8\], which is \[T, n, fe"),
+        ("EmptiedAtFirst", "mixes steps: .*, and empty the memory in each step where `starts` is true"),
+        ("LosesSteps", "mixes steps: it returns"),
         ("Short", r"returned memory of float32 \[3, 3\], expected \[3, 4\]"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_a_network_says_why(lab: pathlib.Path, name: str, message: str) -> None:
     with pytest.raises(SettingsError, match=f"^--network: lab.py:{name} {message}"):
         named(lab, name).make(SEEN, recurrent=False)
+
+
+def test_networks_that_see_may_not_mix_either(lab: pathlib.Path) -> None:
+    seen = SEEN._replace(images={"rgb": (36, 36, 3)})
+    with pytest.raises(NetworkError, match="MixesImages mixes envs: it returns"):
+        named(lab, "MixesImages").make(seen, recurrent=False)
+    named(lab, "Looks").make(seen, recurrent=False)
+
+
+def test_what_a_memory_keeps_of_other_steps_is_not_mixed(lab: pathlib.Path) -> None:
+    for name in ("Averages", "Net", "Sums", "Halved"):
+        named(lab, name).make(SEEN, recurrent=False)
+    named(EXAMPLE, "Remembering").make(SEEN, recurrent=False)
 
 
 @pytest.mark.parametrize(

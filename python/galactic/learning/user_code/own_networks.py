@@ -60,6 +60,21 @@ def seen_by(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, i
     return Seen(shape.seen - shape.apart, places, images, shape.motions + 2)
 
 
+class _Trial(NamedTuple):
+    """What a network is tried out with."""
+
+    inputs: Inputs
+    memory: Tensor  # [n, M]: before the first step
+    starts: Tensor  # [T, n] bool
+
+    def part(self, steps: slice, envs: slice) -> _Trial:
+        """Some of its steps of some of its envs."""
+        parts = [None if one is None else one[steps, envs] for one in self.inputs]
+        state, *seen = parts
+        assert state is not None
+        return _Trial(Inputs(state, *seen), self.memory[envs], self.starts[steps, envs])
+
+
 class OwnNetwork(NamedTuple):
     """The class of a network, and what it is made with. `digest`: SHA-256 of its file, by which another one is
     told apart."""
@@ -86,7 +101,8 @@ class OwnNetwork(NamedTuple):
             size = getattr(encoder, name)
             if not isinstance(size, int) or size < least:
                 raise self._fault(f"has {name} = {size!r}, expected a whole number from {least}")
-        features, memory = self._result(encoder.eval(), seen, memory=0.0)
+        trial = _trial(encoder, seen)
+        features, _ = self._result(encoder.eval(), trial)
         if not bool(torch.isfinite(features).all()):
             raise self._fault("returned features that are no numbers (NaN or infinite)")
         for name, parameter in encoder.named_parameters():
@@ -96,33 +112,68 @@ class OwnNetwork(NamedTuple):
                     f"has a parameter {name} of {kind}, expected float32, and numbers"
                 )
         if encoder.memory:
-            self._require_forgetting(encoder, seen, features)
-        trained, _ = self._result(encoder.train(), seen, memory=0.0)
-        if not torch.allclose(trained, features, atol=1e-4):
+            self._require_forgetting(encoder, trial, features)
+        trained, _ = self._result(encoder.train(), trial)
+        if not _are_same(trained, features):
             raise self._fault(
                 "computes something else while it learns than while it acts, which PPO compares: take LayerNorm or "
                 "GroupNorm in the place of BatchNorm, and no Dropout"
             )
+        self._require_unmixed(encoder.eval(), trial)
 
-    def _require_forgetting(self, encoder: Encoder, seen: Seen, features: Tensor) -> None:
+    def _require_forgetting(self, encoder: Encoder, trial: _Trial, features: Tensor) -> None:
         """All of the episodes begin in the first step, so that the memory before it is of no account."""
-        other, _ = self._result(encoder, seen, memory=1.0)
-        if not torch.allclose(other, features, atol=1e-4):
+        other, _ = self._result(encoder, trial._replace(memory=torch.ones_like(trial.memory)))
+        if not _are_same(other, features):
             raise self._fault(
                 "remembers what was before the start of an episode; empty the memory where `starts` is true, "
                 "as sequences.run_gru() does"
             )
 
-    def _result(self, encoder: Encoder, seen: Seen, memory: float) -> tuple[Tensor, Tensor]:
-        """Features and memory after two steps of three envs, whose episodes begin in the first."""
-        steps, envs = 2, 3
-        inputs = some_inputs(encoder, seen, steps, envs)
-        starts = torch.zeros(steps, envs, dtype=torch.bool)
-        starts[0] = True
+    def _require_unmixed(self, encoder: Encoder, trial: _Trial) -> None:
+        """It acts one step after the other, and learns many at once, of any number of envs."""
+        whole = self._result(encoder, trial)
+        steps, envs = trial.starts.shape
+        by_step, after = [], trial.memory
+        for step in range(steps):
+            alone = trial.part(slice(step, step + 1), slice(None))._replace(memory=after)
+            features, after = self._result(encoder, alone)
+            by_step.append(features)
+        by_env = [
+            self._result(encoder, trial.part(slice(None), slice(env, env + 1)))
+            for env in range(envs)
+        ]
+        columns, memories = zip(*by_env)
+        found = {
+            "steps": (torch.cat(by_step), after),
+            "envs": (torch.cat(columns, 1), torch.cat(memories)),
+        }
+        mixed = [
+            axis
+            for axis, results in found.items()
+            if not all(_are_same(one, other) for one, other in zip(results, whole))
+        ]
+        if mixed:
+            each = " and ".join(axis.removesuffix("s") for axis in mixed)
+            remedy = (
+                "sum, average and sort along the last dimension alone, not along those of [T, n]"
+            )
+            if encoder.memory:
+                remedy += ", and empty the memory in each step where `starts` is true"
+            raise self._fault(
+                f"mixes {' and '.join(mixed)}: it returns something else for {steps} steps of {envs} envs at once, as "
+                f"it learns, than for each {each} by itself, as it acts; {remedy}"
+            )
+
+    def _result(self, encoder: Encoder, trial: _Trial) -> tuple[Tensor, Tensor]:
+        """Features and memory after its steps."""
+        inputs, memory, starts = trial
+        steps, envs = starts.shape
         with torch.no_grad(), goes_on(self.code, "in forward(); raise an exception instead"):
             if encoder.memory:
-                before = torch.full((envs, encoder.memory), memory)
-                found = self._tried("forward()", lambda: encoder(inputs, before, starts))
+                # What it is given it may change in place.
+                before = memory.clone()
+                found = self._tried("forward()", lambda: encoder(inputs, before, starts.clone()))
                 if not isinstance(found, tuple) or len(found) != 2:
                     raise self._fault(
                         f"returned {_described(found)}, expected features and memory: memory is {encoder.memory}"
@@ -195,6 +246,27 @@ def _digest(code: CodeName, found: type[Encoder]) -> str:
         return hashlib.sha256(file.read_bytes()).hexdigest()
     except (OSError, TypeError):
         return ""
+
+
+def _trial(encoder: Encoder, seen: Seen) -> _Trial:
+    """Two steps of three envs, whose episodes begin in the first; that of one env is over then, and another one
+    begins."""
+    steps, envs = 2, 3
+    starts = torch.zeros(steps, envs, dtype=torch.bool)
+    starts[0] = starts[1, 0] = True
+    inputs = some_inputs(encoder, seen, steps, envs)
+    return _Trial(inputs, torch.zeros(envs, encoder.memory), starts)
+
+
+_SAME = 1e-4
+"""Between numbers of which sums may be in another order, as a share of the largest, of those above 1."""
+
+
+def _are_same(one: Tensor, other: Tensor) -> bool:
+    if not one.numel():
+        return True
+    largest = max(1.0, float(other.abs().max()))
+    return float((one - other).abs().max()) <= _SAME * largest
 
 
 def some_inputs(encoder: Encoder, seen: Seen, steps: int, envs: int) -> Inputs:
