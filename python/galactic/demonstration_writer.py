@@ -80,7 +80,7 @@ class DemonstrationWriter:
             raise Error(ErrorCode.INVALID_INPUT, str(self._folder), message)
         text = demonstrations.text_of(about)
         files.write_atomically(index, lambda handle: handle.write(text), "w")
-        self._env = env
+        self._env, self._about = env, about
         is_of_the_paper = isinstance(env.single_action_space, spaces.Dict)
         count = env.simulators[0].action_count
         self._actions = Actions("paper" if is_of_the_paper else "box", count)
@@ -105,14 +105,30 @@ class DemonstrationWriter:
         """Takes in a step of all envs: what was seen before it, what was done, and what env.step() said of it.
         Arrays may be overwritten afterwards; of an env without copies, keep a copy of what was seen.
 
+        Actions outside of -1 to 1 are kept clamped, as the simulation takes them. Raises TypeError for what is no
+        array of numbers, and ValueError for one of another shape or with numbers that are not finite in an env that
+        plays; nothing of the step is kept then.
+
         `by_expert`: bool (num_envs,), in which envs the expert acted; None: in all.
         """
-        rows = self._actions.rows(actions, self._env.num_envs)
+        self._require_infos(infos)
+        count = self._env.num_envs
+        rows = self._actions.rows(actions, count)
         idle = np.concatenate([simulator.idle for simulator in self._env.simulators])
         # Those that were before it: an env may be idle once its last episode has ended.
         playing = ~idle | infos.get("_final_obs", False)
-        self._recorder.sees(observations, rows, by_expert, playing)
-        ended = self._recorder.hears(rewards, infos)
+        seen = self._seen("observations", observations, (count,))
+        with np.errstate(over="ignore"):  # what is too large is infinite, and refused
+            paid = _array_of("rewards", rewards, (count,)).astype(np.float32, copy=False)
+        if by_expert is not None:
+            _array_of("by_expert", by_expert, (count,), np.bool_)
+        for name, one in {**seen, "actions": rows, "rewards": paid}.items():
+            _require_finite(name, one, playing)
+        for env in np.flatnonzero(playing & infos.get("_final_obs", False)).tolist():
+            for name, one in self._seen("final_obs", infos["final_obs"][env], ()).items():
+                _require_finite(f"final_obs: {name}", one[np.newaxis], np.ones(1, np.bool_))
+        self._recorder.sees(seen, rows, by_expert, playing)
+        ended = self._recorder.hears(paid, infos)
         self._kept += ended
         self._count += len(ended)
         while len(self._kept) >= self._size:
@@ -140,6 +156,40 @@ class DemonstrationWriter:
     ) -> None:
         self.close()
 
+    def _require_infos(self, infos: Any) -> None:
+        """Raises where they are not those of a step."""
+        if not isinstance(infos, Mapping):
+            message = f"infos has the type {type(infos).__name__}, expected the dictionary that env.step() returned"
+            raise TypeError(message)
+        missing = {"_final_info", "final_obs", "_final_obs"} - infos.keys()
+        if "final_info" in infos and missing:
+            raise ValueError(
+                f"infos has final_info and no {', '.join(sorted(missing))}; give it as env.step() returned it"
+            )
+
+    def _seen(self, name: str, observations: Any, envs: tuple[int, ...]) -> dict[str, NDArray[Any]]:
+        """What is kept of observations, of so many envs or of one, if they have the shapes of env's."""
+        wanted: dict[str, tuple[int, ...]] = {"state": (self._about.state_size,)}
+        wanted.update(self._about.images)
+        if isinstance(observations, Mapping):
+            parts = ["state"] if "state" in observations else list(self._env.observation_parts)
+            missing = [part for part in (*parts, *self._about.images) if part not in observations]
+            if missing:
+                raise ValueError(f"{name} has no {', '.join(missing)}; give it as env returned it")
+            for part in parts if parts != ["state"] else ():
+                place = self._env.observation_parts[part]
+                _array_of(f"{name}: {part}", observations[part], (*envs, place.stop - place.start))
+        elif self._about.images:
+            found = type(observations).__name__
+            raise TypeError(
+                f"{name} has the type {found}, expected a dictionary with {', '.join(wanted)}"
+            )
+        seen = self._recorder.seen(observations)
+        return {
+            kind: _array_of(f"{name}: {kind}", seen[kind], (*envs, *shape))
+            for kind, shape in wanted.items()
+        }
+
     def _write(self, episodes: Sequence[Demonstration]) -> None:
         write_part(demonstrations.part_folder(self._folder, self._parts), episodes)
         self._parts += 1
@@ -164,7 +214,7 @@ class EpisodeRecorder:
         """Before a step: what is seen and about to be done, rows of all envs, of which those count that are
         `playing`."""
         self._playing = np.flatnonzero(playing)
-        rows = {**self._seen(observations), "actions": _as_executed(actions)}
+        rows = {**self.seen(observations), "actions": _as_executed(actions)}
         rows["by_expert"] = np.ones(len(playing), np.bool_) if by_expert is None else by_expert
         for env in self._playing.tolist():
             kept = self._under_way.setdefault(env, {})
@@ -192,7 +242,7 @@ class EpisodeRecorder:
         length = int(final["episode"]["l"][env])
         if len(kept["rewards"]) < length:
             return None
-        last = self._seen(infos["final_obs"][env])
+        last = self.seen(infos["final_obs"][env])
         arrays = {
             name: np.stack([*rows[-length:], last[name]] if name in OBSERVED else rows[-length:])
             for name, rows in kept.items()
@@ -200,10 +250,10 @@ class EpisodeRecorder:
         episode = int(final["episode_index"][env])
         return Demonstration(episode, EpisodeEnd(int(final["ending"][env])), **arrays)
 
-    def _seen(self, observations: Observations) -> dict[str, NDArray[Any]]:
+    def seen(self, observations: Observations) -> dict[str, NDArray[Any]]:
         """What is kept of observations, of many envs or of one."""
         if not isinstance(observations, Mapping):
-            return {"state": observations}
+            return {"state": np.asarray(observations)}
         state = observations.get("state")
         if state is None:
             state = np.concatenate([observations[name] for name in self._parts], axis=-1)
@@ -211,8 +261,31 @@ class EpisodeRecorder:
         if "rgb" in observations:
             seen["rgb"] = observations["rgb"]
         if "depth" in observations:
-            seen["depth"] = observations["depth"].astype(np.float16)
+            seen["depth"] = np.asarray(observations["depth"]).astype(np.float16, copy=False)
         return seen
+
+
+def _array_of(name: str, given: Any, shape: tuple[int, ...], kind: Any = None) -> NDArray[Any]:
+    """`given` as an array. Raises where it is of another type, of another shape, or of no numbers."""
+    found = np.asarray(given)
+    if found.dtype.kind not in "biuf" or (kind is not None and found.dtype != kind):
+        wanted = "numbers, such as float32" if kind is None else np.dtype(kind).name
+        raise TypeError(f"{name} has the type {found.dtype}, expected {wanted}")
+    if found.shape != shape:
+        raise ValueError(f"{name} has the shape {found.shape}, expected {shape}")
+    return found
+
+
+def _require_finite(name: str, rows: NDArray[Any], playing: NDArray[np.bool_]) -> None:
+    """Raises ValueError for rows of envs that play with numbers that are none."""
+    if rows.dtype.kind != "f":
+        return
+    wrong = playing & ~np.isfinite(rows).reshape(len(rows), -1).all(1)
+    if wrong.any():
+        raise ValueError(
+            f"{name} has numbers that are not finite (NaN or infinite), first in env {int(np.argmax(wrong))}; nothing "
+            "of this step was kept"
+        )
 
 
 def _as_executed(actions: NDArray[np.float32]) -> NDArray[np.float32]:

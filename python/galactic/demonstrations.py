@@ -36,7 +36,10 @@ from galactic.errors import Error
 INDEX = "demonstrations.json"
 FORMAT = 2
 
-_REMEDY = "remove its folder, and run galactic.demonstrate again to make what is missing"
+_REMEDY = (
+    "remove the folder of this part: the others are read without it, and galactic.demonstrate, if it has made them, "
+    "makes what is missing"
+)
 
 _OF_EPISODES: Mapping[str, Any] = {"episodes": np.int32, "lengths": np.int32, "endings": np.uint8}
 _OF_STEPS: Mapping[str, Any] = {
@@ -358,7 +361,8 @@ def read_about(folder: pathlib.Path) -> About:
         text = file.read_text(encoding="utf-8")
     except OSError as error:
         message = (
-            f"cannot be read: {error.strerror}; name a folder that galactic.demonstrate has made"
+            f"cannot be read: {error.strerror}; name a folder that galactic.demonstrate has made, or a "
+            "DemonstrationWriter"
         )
         raise Error(ErrorCode.IO, str(file), message) from None
     except UnicodeDecodeError:

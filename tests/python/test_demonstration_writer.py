@@ -201,3 +201,85 @@ def test_episodes_that_were_broken_off_are_forgotten(tmp_path, world):
         start = galactic.Simulator(world, 1, task="pick", **OPTIONS)
         start.reset(np.array([one.episode]))
         np.testing.assert_allclose(one.state[0], start.observations[0], atol=1e-6)
+
+
+FIVE = np.zeros((2, 5), np.float32)
+WRONG_STEPS = [
+    (0, lambda seen: seen[:, :3], ValueError, r"observations: state has the shape \(2, 3\), expected"),
+    (0, lambda seen: seen * np.nan, ValueError, r"state has numbers that are not finite .*, first in env 0"),
+    (0, lambda seen: "seen", TypeError, "observations: state has the type <U4, expected numbers"),
+    (0, lambda seen: {"rgb": seen}, ValueError, "observations has no robot_target, .*, time; give"),
+    (1, lambda actions: actions[:, :5], ValueError, r"actions has the shape \(2, 5\), expected \(2, "),
+    (1, lambda actions: actions * np.nan, ValueError, "actions has numbers that are not finite"),
+    (2, lambda rewards: rewards[:1], ValueError, r"rewards has the shape \(1,\), expected \(2,\)"),
+    (2, lambda rewards: [0.0, np.inf], ValueError, "rewards has numbers .*, first in env 1; nothing"),
+    (2, lambda rewards: [0.0, 1e39], ValueError, "rewards has numbers that are not finite"),
+    (3, lambda infos: [{}] * 2, TypeError, r"infos has the type list, expected the dictionary that"),
+    (3, lambda infos: {"final_info": {}}, ValueError, "infos has final_info and no _final_info, _final_o"),
+    (4, lambda by_expert: FIVE, TypeError, "by_expert has the type float32, expected bool"),
+]
+
+
+@pytest.mark.parametrize("place, spoil, kind, message", WRONG_STEPS)
+def test_a_wrong_step_is_refused_and_nothing_of_it_kept(
+    tmp_path, world, place, spoil, kind, message
+):
+    env = VectorEnv(world, 2, task="none", **OPTIONS)
+    seen, _ = env.reset()
+    with DemonstrationWriter(tmp_path, env, expert="me") as writer:
+        for step in range(7):
+            actions = np.zeros((2, ACTIONS), np.float32)
+            then, rewards, *_, infos = env.step(actions)
+            given = [seen, actions, rewards, infos, np.ones(2, np.bool_)]
+            if step == 3:
+                with pytest.raises(kind, match=message):
+                    writer.add(*(spoil(one) if n == place else one for n, one in enumerate(given)))
+            writer.add(*given)
+            seen = then
+        assert len(writer) == 2
+    assert [len(one) for one in Demonstrations(tmp_path)] == [7, 7]
+
+
+def test_a_wrong_last_observation_is_refused(tmp_path, world):
+    env = VectorEnv(world, 2, task="none", **OPTIONS)
+    seen, _ = env.reset()
+    actions = np.zeros((2, ACTIONS), np.float32)
+    with DemonstrationWriter(tmp_path, env, expert="me") as writer:
+        for step in range(7):
+            then, rewards, *_, infos = env.step(actions)
+            if step == 6:
+                infos["final_obs"][1] = infos["final_obs"][1] * np.nan
+                with pytest.raises(ValueError, match="final_obs: state has numbers that are not"):
+                    writer.add(seen, actions, rewards, infos)
+                infos["final_obs"][1] = seen[1, :3]
+                with pytest.raises(ValueError, match=r"final_obs: state has the shape \(3,\)"):
+                    writer.add(seen, actions, rewards, infos)
+                infos["final_obs"][1] = seen[1]
+            writer.add(seen, actions, rewards, infos)
+            seen = then
+    assert len(Demonstrations(tmp_path)) == 2
+
+
+def test_images_of_a_wrong_shape_are_refused(tmp_path, world):
+    env = VectorEnv(world, 2, images=CAMERA, task="none", **OPTIONS)
+    seen, _ = env.reset()
+    actions = np.zeros((2, ACTIONS), np.float32)
+    _, rewards, *_, infos = env.step(actions)
+    with DemonstrationWriter(tmp_path, env, expert="me") as writer:
+        for wrong, kind, message in (
+            ({**seen, "rgb": seen["rgb"][:, :2]}, ValueError, r"rgb has the shape \(2, 2, 6, 3\), e"),
+            ({**seen, "depth": seen["depth"] * np.inf}, ValueError, "depth has numbers that are not"),
+            ({"state": seen["state"]}, ValueError, "observations has no rgb, depth"),
+            (seen["state"], TypeError, "observations has the type ndarray, expected a dictionary wi"),
+        ):
+            with pytest.raises(kind, match=message):
+                writer.add(wrong, actions, rewards, infos)
+
+
+def test_a_reader_has_advice_for_folders_of_ones_own(tmp_path, world):
+    env = VectorEnv(world, 2, **OPTIONS)
+    written(tmp_path, env, 10)
+    file = next(tmp_path.glob("part-*")) / "rewards.npy"
+    np.save(file, np.load(file) * np.float32(np.nan))
+    with pytest.raises(galactic.Error, match="not finite; remove the folder of this part: the others"):
+        Demonstrations(tmp_path)

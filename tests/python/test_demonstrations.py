@@ -251,7 +251,7 @@ def reindexed(**changes: object) -> object:
         (reindexed(motions=3), r"actions.npy: found float32 \[16, 4\], expected float32 \[16, 5\]"),
         (
             lambda f: (f / "part-000001" / "rewards.npy").unlink(),
-            "rewards.npy: cannot be read.*; remove its folder",
+            "rewards.npy: cannot be read.*; remove the folder of this part",
         ),
         (truncate, "state.npy: is no array of numpy"),
         (pickled, "state.npy: is no array of numpy"),
