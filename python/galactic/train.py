@@ -240,8 +240,11 @@ def _train(
             trainer.resume()
         group.raise_on_all(_begin_callback(trainer, make_callback, folder))
         group.raise_on_all(_begin_log(trainer, make_log, options.out, held) if make_log else None)
+        say = trainer.reports.progress.say
         group.raise_on_all(
-            begin_folder(run, folder, teacher, resumes=options.resume) if group.rank == 0 else None
+            begin_folder(run, folder, teacher, resumes=options.resume, say=say)
+            if group.rank == 0
+            else None
         )
         undisturbed = _carry_out(trainer, run, options)
     envs.close()
@@ -363,7 +366,9 @@ def _resumed_run(options: argparse.Namespace) -> Run:
         )
     run = read_run(file)
     settings = resumed(run.settings, given_options(options))
-    done = CheckpointFolder(options.out, settings.keep).steps
+    checkpoints = CheckpointFolder(options.out, settings.keep)
+    checkpoints.latest()  # which says what to do where there is none
+    done = checkpoints.steps
     if settings.steps != run.settings.steps and settings.steps < done:
         raise SettingsError(_behind("--steps", settings.steps, done) + "begin another run")
     if options.pause_at is not None and options.pause_at < done:

@@ -6,6 +6,7 @@ import argparse
 import pathlib
 import re
 import sys
+import traceback
 from typing import Any, Callable, NoReturn, Optional
 
 import galactic
@@ -13,14 +14,15 @@ from galactic import interrupts
 from galactic.interrupts import INTERRUPTED
 from galactic.learning.ranks.distributed import RankLost
 from galactic.learning.refusals import CheckpointError, SettingsError, did_you_mean
+from galactic.learning.user_code import own_code
 from galactic.programs import UNSUPPORTED
 from galactic.streams import put
 
 # Those of all tools of the project.
 OK, COMMAND_LINE, INPUT_OUTPUT, INVALID_INPUT, INTERNAL = 0, 1, 2, 3, 4
 EXIT_CODES = (
-    "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, 4 internal, 5 unsupported, "
-    "130 interrupted"
+    "Exit codes: 0 ok, 1 command line, 2 I/O, 3 invalid input, also an exception of your own code, 4 internal, "
+    "5 unsupported, 130 interrupted"
 )
 
 
@@ -101,28 +103,22 @@ def told(
     may_tell: Callable[[BaseException], bool] = lambda error: True,
 ) -> int:
     """Does `work` and returns its exit code; what it refuses becomes a line on stderr, unless it may
-    not be told, and a code."""
+    not be told, and a code. What code of the user's raises is told with its lines, and so is what nobody has
+    thought of."""
     try:
         with interrupts.raised():
             return work()
+    except SystemExit:
+        raise
     except BaseException as error:
-        if not isinstance(error, _REFUSALS) and not _is_lack_of_memory(error):
-            raise
         code, message = _told_as(error)
         if may_tell(error):
             put(sys.stderr, f"{program}: {message}\n")
         return code
 
 
-_REFUSALS = (
-    SettingsError,
-    CheckpointError,
-    galactic.Error,
-    OSError,
-    ArithmeticError,
-    RankLost,
-    KeyboardInterrupt,
-)
+_REFUSALS = (SettingsError, CheckpointError, galactic.Error, RankLost, KeyboardInterrupt)
+"""What says in a sentence what is wrong, whoever raises it."""
 
 
 def _is_lack_of_memory(error: BaseException) -> bool:
@@ -133,7 +129,13 @@ def _is_lack_of_memory(error: BaseException) -> bool:
 
 
 def _told_as(error: BaseException) -> tuple[int, str]:
-    """Exit code and sentence."""
+    """Exit code and what there is to say."""
+    if not isinstance(error, _REFUSALS) and not _is_lack_of_memory(error):
+        lines = "".join(traceback.format_exception(error)).rstrip()
+        if own_code.has_raised(error):
+            return INVALID_INPUT, f"an exception of the code that was named ended it\n{lines}"
+        if not isinstance(error, (OSError, ArithmeticError)):
+            return INTERNAL, f"an exception that nobody has thought of ended it\n{lines}"
     if isinstance(error, SettingsError):
         return COMMAND_LINE, f"command line: {error}"
     if isinstance(error, CheckpointError):

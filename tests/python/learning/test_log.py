@@ -136,5 +136,5 @@ def test_code_that_cannot_be_imported_ends_before_there_are_ranks(tmp_path: path
     (tmp_path / "lab.py").write_text("import nonesuch\ndef log(a, b): return print\n", "utf-8")
     options = [*SMALL_OF_ANY_RANKS, "--ranks", 2, "--log-to", f"{tmp_path / 'lab.py'}:log"]
     done = run("train", WORLD, "-o", tmp_path / "run", *options)
-    assert done.returncode == 1 and done.stderr.count("No module named 'nonesuch'") == 1
+    assert done.returncode == 3 and done.stderr.count("No module named 'nonesuch'") == 1
     assert not (tmp_path / "run").exists()

@@ -320,11 +320,13 @@ def test_what_a_task_raises_comes_out_as_it_is(
     task_file.write_text(
         TASK.replace("def prepare(self, envs):", "def prepare(self, env):"), "utf-8"
     )
-    with pytest.raises(NameError, match="name 'envs' is not defined"):
-        call("train", WORLD, "-o", tmp_path / "a", *SMALL, "--task", f"{task_file}:Approach")
+    done = call("train", WORLD, "-o", tmp_path / "a", *SMALL, "--task", f"{task_file}:Approach")
+    assert done.returncode == 3 and "NameError: name 'envs' is not defined" in done.stderr
+    assert f'File "{task_file}", line ' in done.stderr
     task_file.write_text(TASK.replace('return {"way"', 'return {"road"'), "utf-8")
-    with pytest.raises(ValueError, match=r"Approach.observe\(\) returned \['dice', 'road'\]"):
-        call("train", WORLD, "-o", tmp_path / "b", *SMALL, "--task", f"{task_file}:Approach")
+    done = call("train", WORLD, "-o", tmp_path / "b", *SMALL, "--task", f"{task_file}:Approach")
+    assert done.returncode == 3
+    assert "ValueError: Approach.observe() returned ['dice', 'road']" in done.stderr
     # Options around it are the command line's.
     done = call("train", WORLD, "-o", tmp_path / "c", *SMALL, "--task", f"{task_file}:Approach",
                 "--simulation", "episode-stpes=3")  # fmt: skip

@@ -108,7 +108,7 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
 def test_what_is_no_checkpoint_is_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(
         galactic.Error,
-        match="holds no checkpoint to go on from; begin another run, in a folder of its own",
+        match="holds no checkpoint to go on from; leave out --resume and give its options again to",
     ):
         CheckpointFolder(tmp_path, 1).latest()
     (tmp_path / "policy.pt").write_bytes(b"nonsense")

@@ -18,26 +18,72 @@ import json
 import os
 import pathlib
 import shutil
-from typing import Optional
+from typing import Callable, Optional
 
 from galactic import files
 from galactic._core import ErrorCode
 from galactic.errors import Error
-from galactic.learning.refusals import SettingsError
+from galactic.learning.refusals import CheckpointError, SettingsError
 from galactic.learning.saving import checkpoint, older
 from galactic.learning.saving.checkpoint import SavedPolicy
-from galactic.learning.saving.runs import Run, write_run
+from galactic.learning.saving.runs import Run, read_run, write_run
 from galactic.learning.user_code import own_code
 
 TEACHER = "teacher.pt"
 """The copy of the teacher in the folder of a run."""
+BEST = "best.pt"
+"""The policy that did best."""
+_REPORTS = ("curves.csv", "curves.html", "report.json")
 
 
 def require_no_run(folder: pathlib.Path) -> None:
-    if (folder / own_code.RUN).exists():
+    """Raises SettingsError where the folder holds what a run has learned, or a file that it would write over. One that
+    ended before its first checkpoint can be begun again: see begin_folder()."""
+    file = folder / own_code.RUN
+    if not file.exists():
+        return
+    if CheckpointFolder(folder, 1).complete():
         raise SettingsError(
             f"{folder} already holds a run; continue it with --resume, or choose another folder"
         )
+    if (folder / BEST).exists():
+        raise SettingsError(
+            f"{folder} holds the {BEST} of a run without a checkpoint; choose another folder, where a run can begin "
+            f"with it (--start-from {folder / BEST})"
+        )
+    try:
+        read_run(file)
+    except (CheckpointError, OSError) as error:
+        raise SettingsError(
+            f"{folder} holds a {own_code.RUN} that is no run's; choose another folder"
+        ) from error
+
+
+def _make_room(run: Run, folder: pathlib.Path) -> bool:
+    """Where another run ended before its first checkpoint, removes what that has written. Returns whether there was
+    one."""
+    file = folder / own_code.RUN
+    if not file.exists():
+        return False
+    before, begun = read_run(file), file.stat().st_mtime_ns
+    copies = [
+        folder / own_code.COPIES[option]
+        for option, source in (("--task", before.task_file), ("--network", before.network_file))
+        if source is not None
+    ]
+    # What is the source of either run is the user's, and so is a copy that was changed since.
+    sources = {before.task_file, before.network_file, run.task_file, run.network_file}
+    of_run = [
+        copy
+        for copy in copies
+        if copy.is_file() and copy.resolve() not in sources and copy.stat().st_mtime_ns <= begun
+    ]
+    # The file that says what it was goes last, so that this can be done again.
+    for old in [*of_run, *(folder / name for name in _REPORTS), file]:
+        old.unlink(missing_ok=True)
+    for unfinished in (folder / "checkpoints").glob(".[0-9]*.unfinished"):
+        shutil.rmtree(unfinished, ignore_errors=True)
+    return True
 
 
 def take_folder(
@@ -63,9 +109,13 @@ def begin_folder(
     teacher: Optional[tuple[SavedPolicy, pathlib.Path]],
     *,
     resumes: bool,
+    say: Callable[[str], None],
 ) -> Optional[Exception]:
-    """Writes what the run is into its folder; why that is impossible."""
+    """Writes what the run is into its folder, in the place of one that ended before its first checkpoint; why that is
+    impossible."""
     try:
+        if not resumes and _make_room(run, folder):
+            say(f"{folder} held a run without a checkpoint; this one takes its place")
         if teacher is not None and teacher[1] != folder / TEACHER:
             checkpoint.save_policy(teacher[0], folder / TEACHER)
         for option, file in (("--task", run.task_file), ("--network", run.network_file)):
@@ -73,7 +123,7 @@ def begin_folder(
             if file is not None and not resumes:
                 _keep_code(file, folder / own_code.COPIES[option])
         write_run(run, folder)
-    except (Error, OSError) as error:
+    except (CheckpointError, Error, OSError) as error:
         return error
     return None
 
@@ -138,7 +188,10 @@ class CheckpointFolder:
     def latest(self) -> pathlib.Path:
         complete = self.complete()
         if not complete:
-            message = "holds no checkpoint to go on from; begin another run, in a folder of its own"
+            best = self.run / BEST
+            again = "leave out --resume and give its options again to begin it anew"
+            weights = f"begin another run with the weights of {BEST} (--start-from {best})"
+            message = f"holds no checkpoint to go on from; {weights if best.exists() else again}"
             raise Error(ErrorCode.IO, str(self.folder), message)
         return complete[-1]
 

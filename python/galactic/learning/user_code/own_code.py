@@ -12,6 +12,7 @@ import json
 import os
 import pathlib
 import sys
+import traceback
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple, Optional
 
@@ -19,6 +20,10 @@ from galactic.learning.refusals import SettingsError, did_you_mean
 
 RUN = "settings.json"
 """What a run is, in its folder."""
+_OWN = "galactic_own_"
+"""What names of modules begin with that are files of the user's."""
+_PLACES = (_OWN, "galactic.task_runner", "galactic.learning.user_code.")
+"""What names of modules begin with that are the user's, or call into them."""
 COPIES = {"--task": "task.py", "--network": "network.py"}
 """The copies of the files that options name, beside RUN."""
 
@@ -65,6 +70,14 @@ def goes_on(code: CodeName, when: str) -> Iterator[None]:
         yield
     except SystemExit as end:
         raise SettingsError(f"{code.option}: {code} ended the program {when}") from end
+
+
+def has_raised(error: BaseException) -> bool:
+    """Whether code of the user's has raised it, or what calls such code and takes what that returns."""
+    return any(
+        str(frame.f_globals.get("__name__", "")).startswith(_PLACES)
+        for frame, _ in traceback.walk_tb(error.__traceback__)
+    )
 
 
 def class_of(code: CodeName, base: type, base_name: str, siblings: Optional[pathlib.Path]) -> Any:
@@ -213,7 +226,7 @@ def _module_of(code: CodeName, siblings: Optional[pathlib.Path]) -> Any:
 def _module_name(file: pathlib.Path) -> str:
     """Another one for each file, and for what it says now; none that anything else could be imported by."""
     digest = hashlib.sha256(os.fsencode(file.resolve()) + b"\0" + file.read_bytes()).hexdigest()
-    return f"galactic_own_{file.stem}_{digest[:16]}"
+    return f"{_OWN}{file.stem}_{digest[:16]}"
 
 
 def _with_parents(module: str) -> list[str]:
