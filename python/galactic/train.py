@@ -26,6 +26,7 @@ from galactic.learning.command import (
     told,
 )
 from galactic.learning.homes import Homes
+from galactic.learning.packs import content
 from galactic.learning.playing.validation import validation_of
 from galactic.learning.presets import PRESETS, TAUGHT, preset
 from galactic.learning.ranks.distributed import Group, device_of, local_ranks, threads_of
@@ -294,8 +295,20 @@ def _carry_out(trainer: Trainer, run: Run, options: argparse.Namespace) -> bool:
             trainer.reports.progress.say(
                 f"the preset {options.preset} is made for a --teacher; without one, give it more --steps"
             )
+        if trainer.network is not None and trainer.group.rank == 0:
+            _tell_of_no_export(trainer)
         trainer.begin()
     return trainer.train(options.pause_at)
+
+
+def _tell_of_no_export(trainer: Trainer) -> None:
+    """Of a network that learns for hours and cannot become a pack, before it does."""
+    fault = content.fault_of(trainer.policy)
+    if fault:
+        trainer.reports.progress.say(
+            f"--network: galactic.export can make no pack of {trainer.settings.network}, which Python alone will play: "
+            f"{fault}"
+        )
 
 
 def _print_settings(options: argparse.Namespace) -> int:

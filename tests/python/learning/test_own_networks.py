@@ -264,6 +264,28 @@ class LosesSteps(Averages):
         features, _ = super().forward(inputs, memory, starts)
         return features, torch.zeros_like(memory)
 
+class Attends(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.attention = nn.MultiheadAttention(8, 2, batch_first=True)
+
+    def forward(self, inputs):
+        x = self.layer(inputs.state).unsqueeze(-2)
+        shape, x = x.shape, x.flatten(0, 1)
+        return self.attention(x, x, x, need_weights=False)[0].view(*shape[:2], -1)  # Attends
+
+class Unrolls(Net):
+    def forward(self, inputs):
+        return torch.stack([self.layer(one) for one in inputs.state])  # Unrolls
+
+class Bilinear(Net):
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.both = nn.Bilinear(seen.state, 8, 8)
+
+    def forward(self, inputs):
+        return self.both(inputs.state, self.layer(inputs.state))  # Bilinear
+
 def no_class(seen):
     pass
 """
@@ -463,8 +485,11 @@ def test_a_pack_of_known_layers_does_what_the_network_does(
 @pytest.mark.parametrize(
     "name, settings, message",
     [
-        ("Sines", {}, r"a policy pack has no layer for sin in forward\(\)"),
-        ("Branches", {}, r"forward\(\) cannot be followed \(TraceError"),
+        ("Sines", {}, r"line [0-9]+ of lab.py: a policy pack has no layer for sin in forward\(\)"),
+        ("Branches", {}, r"forward\(\) cannot be followed in line [0-9]+ of lab.py \(TraceError"),
+        ("Attends", {}, "^line {line} of lab.py: a policy pack has no layer for MultiheadAttention$"),
+        ("Unrolls", {}, "cannot be followed in line {line} of lab.py.*: write it of layers alone, wit"),
+        ("Bilinear", {}, r"^line {line} of lab.py: a policy pack has no layer for Bilinear\(.*\)$"),
         ("LooksTwice", {**EYES, "network_options": "doubled=True"}, "has no layer for Doubled"),
         ("LooksTwice", {**EYES, "network_options": "doubled=False"}, "has no layer for Weighted"),
         ("LooksBack", EYES, "has no layer for Backwards"),
@@ -481,6 +506,8 @@ def test_what_a_pack_does_not_know_is_refused(
 ) -> None:
     own = own_networks.with_options(named(lab, name), settings.get("network_options", ""))
     checkpoint.save_policy(saved_policy(own, **settings), tmp_path / "own.pt")
+    lines = [n for n, one in enumerate(WRONG.splitlines(), 1) if one.endswith(f"  # {name}")]
+    message = message.replace("{line}", str(lines[0]) if lines else "")
     with pytest.raises(CheckpointError, match=message):
         export_policy(tmp_path / "own.pt", tmp_path / "own.pack", network=f"{lab}:{name}")
     assert not (tmp_path / "own.pack").exists()
@@ -527,6 +554,21 @@ def test_a_module_is_another_file_than_the_one_that_a_policy_learned_with(
 @pytest.mark.parametrize("value", ["{[1]:2}", "(" * 300, "-" * 100_000 + "1"])
 def test_options_that_are_no_literal_are_text(value: str) -> None:
     assert own_code.keywords_of(f"a={value}", "--network-options") == {"a": value}
+
+
+@needs_worlds
+def test_what_cannot_be_exported_says_so_before_it_learns(
+    tmp_path: pathlib.Path, lab: pathlib.Path
+) -> None:
+    said = {}
+    for name in ("Attends", "Net"):
+        options = [*SMALL, "--network", f"{lab}:{name}", "--steps", UPDATE]
+        done = call("train", WORLD, "-o", tmp_path / name, *options)
+        assert done.returncode == 0, done.stderr
+        said[name] = done.stderr
+    assert "galactic.export can make no pack of lab.py:Attends, which Python alone will" in said["Attends"]
+    assert "of lab.py: a policy pack has no layer for MultiheadAttention\n" in said["Attends"]
+    assert "galactic.export" not in said["Net"]
 
 
 @needs_worlds

@@ -17,6 +17,7 @@ from galactic.learning.policies.networks import (
     ActorHead,
     EncoderPolicy,
     FeedForwardPolicy,
+    Policy,
     RecurrentPolicy,
 )
 from galactic.learning.policies.privileges import of_own_tasks, options_of_actor, parts_of_actor
@@ -44,6 +45,16 @@ def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robo
     with refusing(f"{file} cannot become a policy pack", "take another policy"):
         content = content_of(saved, name or output.stem, robot)
         _core.write_policy_pack(output, content, trained_with, file.name, file.read_bytes())
+
+
+def fault_of(policy: Policy) -> str:
+    """Why the encoder of a policy cannot become layers of a pack, whatever it learns; nothing where it can."""
+    layers = Layers()
+    try:
+        encoded(layers, policy.encoder, layers.add("observation"))
+    except ExportError as error:
+        return str(error)
+    return ""
 
 
 def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dict[str, Any]:

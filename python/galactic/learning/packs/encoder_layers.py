@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import operator
-from typing import Any
+import pathlib
+import traceback
+from typing import Any, Iterator, Optional
 
 import torch
 from torch import fx, nn
@@ -47,21 +50,28 @@ def _traced(layers: Layers, encoder: Encoder, seen: int) -> int:
             "the network has a memory of its own, and a policy pack has a GRU alone: train one without, with "
             "--recurrent"
         )
-    try:
-        graph = _Tracer().trace(encoder)
-    except Exception as error:  # torch.fx raises whatever the code does with what it is given
-        raise ExportError(
-            f"forward() cannot be followed ({type(error).__name__}: {error}): write it of layers alone, without "
-            "conditions on what is seen"
-        ) from error
+    tracer = _Tracer(encoder)
+    fault = tracer.follow()
+    for node in tracer.graph.nodes:
+        if node.op == "call_module":
+            with tracer.telling_line(node):
+                _require_layer(encoder.get_submodule(str(node.target)))
+    if fault is not None:
+        raise ExportError(tracer.told(fault)) from fault
     values: dict[fx.Node, int] = {}
-    for node in graph.nodes:
+    for node in tracer.graph.nodes:
         if node.op == "output":
             (made,) = node.all_input_nodes
             return values[made]
         if node.op.startswith(("call", "get")) and not _is_image(node):
-            values[node] = _of_node(layers, encoder, node, values, seen)
+            with tracer.telling_line(node):
+                values[node] = _of_node(layers, encoder, node, values, seen)
     raise ExportError("forward() returns nothing")
+
+
+def _require_layer(module: nn.Module) -> None:
+    """Raises ExportError for a module that no layers express."""
+    Layers().module(module.layers if isinstance(module, Eyes) else module, 0)
 
 
 def _of_node(layers: Layers, encoder: Encoder, node: fx.Node, values: dict[fx.Node, int],
@@ -108,10 +118,59 @@ def _of_node(layers: Layers, encoder: Encoder, node: fx.Node, values: dict[fx.No
 class _Tracer(fx.Tracer):
     """Follows a forward() down to the layers that Layers.module() is asked for."""
 
+    def __init__(self, encoder: Encoder) -> None:
+        super().__init__()
+        self._encoder = encoder
+        self._file = type(encoder).forward.__code__.co_filename
+        self._lines: dict[fx.Node, int] = {}
+
+    def follow(self) -> Optional[Exception]:
+        """Makes `graph`; what it was cut off by, where it was."""
+        try:
+            self.trace(self._encoder)
+        except Exception as error:  # torch.fx raises whatever the code does with what it is given
+            return error
+        return None
+
     def is_leaf_module(self, m: nn.Module, module_qualified_name: str) -> bool:
         if isinstance(m, nn.Sequential):
             return False
         return type(m).__module__.startswith(("torch.nn.", "galactic.learning."))
+
+    def create_node(self, *arguments: Any, **keywords: Any) -> fx.Node:
+        node = super().create_node(*arguments, **keywords)
+        frames = (frame for frame, _ in traceback.walk_stack(None))
+        own = (frame.f_lineno for frame in frames if frame.f_code.co_filename == self._file)
+        line = next(own, None)
+        if line is not None:
+            self._lines[node] = line
+        return node
+
+    @contextlib.contextmanager
+    def telling_line(self, node: fx.Node) -> Iterator[None]:
+        """Around what may refuse a node: says where it is in the user's file."""
+        try:
+            yield
+        except ExportError as error:
+            line = self._lines.get(node)
+            where = "" if line is None else f"{self._place(line)}: "
+            raise ExportError(f"{where}{error}") from error
+
+    def told(self, fault: Exception) -> str:
+        """Why it could not go on."""
+        frames = traceback.extract_tb(fault.__traceback__)
+        own = [frame.lineno or 0 for frame in frames if frame.filename == self._file]
+        where = f" in {self._place(own[-1])}" if own else ""
+        # What else torch.fx stumbles over in itself tells nobody anything.
+        is_said = isinstance(fault, fx.proxy.TraceError) or frames[-1].filename == self._file
+        why = f" ({type(fault).__name__}: {fault})" if is_said else ""
+        return (
+            f"forward() cannot be followed{where}{why}: write it of layers alone, without conditions on what is seen, "
+            "and without loops over it or its shape"
+        )
+
+    def _place(self, line: int) -> str:
+        return f"line {line} of {pathlib.Path(self._file).name}"
 
 
 def _is_image(node: fx.Node) -> bool:

@@ -55,7 +55,10 @@ class Layers:
             return self.add("relu", both)
         if computes_as(module, nn.Flatten):
             return x  # linear layers read images as vectors, in the same order
-        raise ExportError(f"a policy pack has no layer for {module}")
+        described = str(module)
+        if "\n" in described:  # it lists what it is made of
+            described = type(module).__name__
+        raise ExportError(f"a policy pack has no layer for {described}")
 
     def gru(self, gru: nn.GRU, x: int) -> int:
         if gru.num_layers != 1 or gru.bidirectional or not gru.bias:
