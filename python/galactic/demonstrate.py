@@ -33,6 +33,7 @@ from galactic.learning.presets import PRESETS, preset
 from galactic.learning.ranks.distributed import threads_of
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.progress import ProgressLine
+from galactic.learning.reports.shares import percent
 from galactic.learning.setting_options import add_options, given_options
 from galactic.learning.settings import CAMERA, Settings
 from galactic.learning.simulation_words import simulation_keywords
@@ -153,7 +154,10 @@ def _demonstrate(options: argparse.Namespace) -> int:
     made = Demonstrations(folder)
     solved = [one for one in made if one.is_solved]
     steps = sum(int(one.by_expert.sum()) for one in solved)
-    text = f"{folder}: {len(solved):,} of {len(made):,} episodes are solved, by {steps:,} steps of the expert\n"
+    share = percent(len(solved) / len(made), len(made))
+    text = (
+        f"{folder}: {len(solved):,} of {len(made):,} episodes are solved, {share}, by {steps:,} steps of the expert\n"
+    )
     if not put(sys.stdout, text):
         raise lost_output()
     return OK

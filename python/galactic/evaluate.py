@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from typing import Optional, Sequence
+from typing import Any, Optional, Sequence
 
 import torch
 
@@ -19,6 +19,7 @@ from galactic.learning.ranks.distributed import threads_of
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
+from galactic.learning.reports.shares import percent_of
 from galactic.learning.saving import checkpoint
 from galactic.learning.user_code import own_code
 from galactic.streams import put
@@ -278,12 +279,14 @@ def _play_there(options: argparse.Namespace, pack: bytes) -> dict[str, object]:
     )
 
 
-def _text(summary: dict[str, object]) -> str:
+def _text(summary: dict[str, Any]) -> str:
     lines = []
     for name, value in summary.items():
-        if name == "each":
+        if name in ("each", "success_interval"):
             continue
         shown = f"{value:.4g}" if isinstance(value, float) else json.dumps(value)
+        if name == "success":
+            shown = percent_of(summary["success"], summary["episodes"])
         lines.append(f"{name:10} {shown}\n")
     return "".join(lines)
 

@@ -87,6 +87,7 @@ def test_a_world_with_noise_of_motion_is_played_without_it(
     assert evaluate.main(words) == 0
     plain = capfd.readouterr()
     assert plain.err == "" and "success_there 0.5\n" in plain.out
+    assert "success    0.0 % (0.0 to 49.0) of 4 episodes\n" in plain.out
 
     def homes_of(world: galactic.World, settings: Settings, *rest: object, **more: object) -> Homes:
         """Those of a world whose own task has noise."""

@@ -187,6 +187,7 @@ def test_an_evaluation_runs_a_task_only_when_told(
     assert done.returncode == 0, done.stderr
     found = json.loads(report.read_text(encoding="utf-8"))
     assert found["success"] == 1.0 and found["endings"] == {"success": 100}
+    assert found["success_interval"] == pytest.approx([0.963, 1.0], abs=1e-4)
     assert {one["length"] for one in found["each"]} == {1}
     left = [one["measures"]["way_left"] for one in found["each"]]
     assert len(set(left)) > 50 and min(left) > 0

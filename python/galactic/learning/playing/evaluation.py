@@ -12,6 +12,7 @@ import galactic
 from galactic.learning.encoders import Inputs
 from galactic.learning.homes import Homes
 from galactic.learning.policies.networks import Policy
+from galactic.learning.reports.shares import interval
 from galactic.learning.rollouts.environments import Observation, Step
 from galactic.learning.rollouts.episode_sums import EpisodeSums
 from galactic.learning.rollouts.noise import noise_of
@@ -271,9 +272,11 @@ def summary(results: Sequence[EpisodeResult], world: "galactic.World") -> dict[s
     sums = sums_of(results)
     measures = {name: total / count for name, total in sums.measures.items()}
     logs = {name: total / steps for name, total in sums.logs.items()}
+    success = sum(result.success for result in results) / count
     return {
         "episodes": len(results),
-        "success": sum(result.success for result in results) / count,
+        "success": success,
+        "success_interval": list(interval(success, len(results))),
         "return": sum(result.reward for result in results) / count,
         "length": steps / count,
         "spl": sum(result.path_ratio for result in results) / count,

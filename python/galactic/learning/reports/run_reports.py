@@ -8,6 +8,7 @@ from typing import Mapping, Optional, Sequence
 from galactic.learning.reports.curves import VALIDATION, Curves
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
+from galactic.learning.reports.shares import percent_of
 from galactic.learning.rollouts.episode_sums import MEASURE, EpisodeSums, OwnNames
 from galactic.learning.rollouts.stopwatch import RunClock, Stopwatch
 from galactic.learning.settings import Settings
@@ -77,11 +78,16 @@ class RunReports:
         """Returns the row of the curves."""
         means = found.means()
         named = {VALIDATION + name: value for name, value in means.items()}
-        row = {"steps": steps, "seconds": self._clock.seconds, **named}
+        row = {
+            "steps": steps,
+            "seconds": self._clock.seconds,
+            "episodes": found.episodes,
+            **named,
+        }
         self.add_row(row)
         self.progress.say(
             f"validation after {amount(steps)} steps: success "
-            f"{100.0 * means['success']:.1f} % of {found.episodes:.0f} episodes, return "
+            f"{percent_of(means['success'], found.episodes)}, return "
             f"{means['return']:.2f}" + "".join(f", {one}" for one in _measured(means))
         )
         return row
