@@ -25,7 +25,7 @@ def loading() -> Optional[str]:
     # This is what Python has there until it has found the module of -m.
     if sys.argv[:1] != ["-m"]:
         return None
-    names = "train|evaluate|export|demonstrate"
+    names = "train|evaluate|export|demonstrate|compare"
     found = (re.fullmatch(rf"(?:-\w*m)?(galactic\.(?:{names}))", word) for word in sys.orig_argv)
     return next((match[1] for match in found if match), None)
 

@@ -45,7 +45,7 @@ from galactic.learning.saving.run_folder import (
 from galactic.learning.saving.runs import (
     Run,
     network_of,
-    read_run,
+    run_in,
     task_of,
     with_network,
     with_task,
@@ -60,7 +60,7 @@ from galactic.learning.setting_options import (
 )
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
-from galactic.learning.user_code import callbacks, own_code, own_tasks
+from galactic.learning.user_code import callbacks, own_tasks
 from galactic.streams import put
 
 
@@ -372,12 +372,7 @@ def _resumed_run(options: argparse.Namespace) -> Run:
         raise SettingsError(
             "a resumed run keeps its world, its preset, its weights, its teacher and its demonstrations; leave them out"
         )
-    file = options.out / own_code.RUN
-    if not file.is_file():
-        raise galactic.Error(
-            galactic.ErrorCode.IO, str(file), f"does not exist: {options.out} holds no run"
-        )
-    run = read_run(file)
+    run = run_in(options.out)
     settings = resumed(run.settings, given_options(options))
     checkpoints = CheckpointFolder(options.out, settings.keep)
     checkpoints.latest()  # which says what to do where there is none

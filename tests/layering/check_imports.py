@@ -15,7 +15,7 @@ import source_tree
 
 PACKAGE = pathlib.Path("python/galactic")
 LEARNING = PACKAGE / "learning"
-PROGRAMS = {PACKAGE / f"{name}.py" for name in ("train", "evaluate", "demonstrate", "export")}
+PROGRAMS = {PACKAGE / f"{name}.py" for name in ("train", "evaluate", "demonstrate", "export", "compare")}
 CONFINED = ("torch", "galactic.learning")
 
 

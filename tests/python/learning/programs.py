@@ -1,4 +1,4 @@
-"""The programs galactic.demonstrate, train, evaluate and export as users run them, on small runs."""
+"""The programs galactic.demonstrate, train, evaluate, export and compare as users run them, on small runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Iterator
 
 import pytest
 
-from galactic import demonstrate, evaluate, export, train
+from galactic import compare, demonstrate, evaluate, export, train
 from galactic.learning.reports.curves import read_curves
 
 WORLDS = pathlib.Path(os.environ.get("GALACTIC_LEARNING_WORLDS", "none"))
@@ -21,7 +21,13 @@ WORLD, HELD_OUT = WORLDS / "world.pack", WORLDS / "held_out.pack"
 SMALL_OF_ANY_RANKS = ["--preset", "quick", "--envs", "16", "--horizon", "8", "--log-every", "0"]
 SMALL = [*SMALL_OF_ANY_RANKS, "--ranks", "1"]
 UPDATE = 16 * 8
-_PROGRAMS = {"demonstrate": demonstrate, "train": train, "evaluate": evaluate, "export": export}
+_PROGRAMS = {
+    "compare": compare,
+    "demonstrate": demonstrate,
+    "evaluate": evaluate,
+    "export": export,
+    "train": train,
+}
 
 needs_worlds = pytest.mark.skipif(
     not WORLD.is_file(), reason="GALACTIC_LEARNING_WORLDS has no worlds"

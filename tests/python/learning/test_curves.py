@@ -115,15 +115,16 @@ def test_the_page_of_the_curves_draws_what_a_task_measures(tmp_path: pathlib.Pat
         trainer.train()
         page = (tmp_path / "curves.html").read_text(encoding="utf-8")
         data = json.loads(page.split("const data = ")[1].split(";\n")[0])
-        drawn = {name for chart in data["charts"] for name, _ in chart["lines"]}
-        assert drawn <= set(data["columns"])
+        drawn = {name for chart in data["charts"] for name, _, _ in chart["lines"]}
+        (table,) = data["tables"]
+        assert drawn <= set(table["columns"])
         return {chart["title"]: chart for chart in data["charts"]}
 
     plain, measured = charts(ReachAndGrasp), charts(Measured)
     assert list(measured) == [*list(plain)[:3], *Measured.measures, *list(plain)[3:]]
     assert measured["steps"]["lines"] == [
-        ["measure_steps", "training"],
-        ["validation_measure_steps", "validation"],
+        ["measure_steps", "training", 0],
+        ["validation_measure_steps", "validation", 0],
     ]
 
 

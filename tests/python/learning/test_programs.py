@@ -19,7 +19,7 @@ def hide(libraries: list[str], folder: pathlib.Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setenv("PYTHONPATH", f"{folder}:{os.environ.get('PYTHONPATH', '')}")
 
 
-@pytest.mark.parametrize("program", ["train", "evaluate", "export", "demonstrate"])
+@pytest.mark.parametrize("program", ["train", "evaluate", "export", "demonstrate", "compare"])
 @pytest.mark.parametrize(
     "libraries, needs, install",
     [

@@ -1,4 +1,4 @@
-"""One self-contained page with a run's curves: no requests, light and dark."""
+"""Self-contained pages with curves, of one run or of several: no requests, light and dark."""
 
 from __future__ import annotations
 
@@ -7,25 +7,41 @@ import html
 import json
 import math
 from dataclasses import dataclass
-from typing import Any, Mapping, Optional, Sequence
+from typing import Any, Mapping, NamedTuple, Optional, Sequence
 
 from galactic.learning.rollouts.episode_sums import LOG, MEASURE
 from galactic.learning.setting_fields import typed
 
+OF_VALIDATION = "validation_"
+
+
+class Line(NamedTuple):
+    """A line of a chart: a column, its name in the legend, and which of the page's tables it is of."""
+
+    column: str
+    label: str
+    table: int = 0
+
+
+class Table(NamedTuple):
+    """What curves.csv has of a run."""
+
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Optional[float]]]
+
 
 @dataclass(frozen=True)
 class Chart:
-    """`unit`: of the vertical axis, which has all the numbers of `axis` in any case. `lines`: columns with
-    their names in the legend."""
+    """`unit`: of the vertical axis, which has all the numbers of `axis` in any case."""
 
     title: str
     unit: str
-    lines: Sequence[tuple[str, str]]
+    lines: Sequence[Line]
     axis: Sequence[float] = ()
 
 
 def _of_episodes(title: str, unit: str, column: str, axis: Sequence[float] = ()) -> Chart:
-    lines = (column, "training"), (f"validation_{column}", "validation")
+    lines = Line(column, "training"), Line(OF_VALIDATION + column, "validation")
     return Chart(title, unit, lines, axis)
 
 
@@ -35,15 +51,15 @@ EPISODES = (
     _of_episodes("Length", "steps per episode", "length", (0.0,)),
 )
 LEARNING = (
-    Chart("Speed", "steps per second", (("sps", "training"),), (0.0,)),
-    Chart("Value loss", "", (("value_loss", "value loss"),)),
-    Chart("Policy loss", "", (("policy_loss", "policy loss"),)),
-    Chart("Entropy", "nats", (("entropy", "entropy"),)),
-    Chart("Divergence of an update", "nats", (("kl", "KL"),)),
-    Chart("Clipped", "share of steps", (("clipped", "clipped"),), (0.0, 0.1)),
-    Chart("Norm of the gradient", "", (("grad_norm", "norm"),)),
-    Chart("Explained variance", "of the returns", (("explained_variance", "explained"),)),
-    Chart("Learning rate", "", (("learning_rate", "rate"),)),
+    Chart("Speed", "steps per second", (Line("sps", "training"),), (0.0,)),
+    Chart("Value loss", "", (Line("value_loss", "value loss"),)),
+    Chart("Policy loss", "", (Line("policy_loss", "policy loss"),)),
+    Chart("Entropy", "nats", (Line("entropy", "entropy"),)),
+    Chart("Divergence of an update", "nats", (Line("kl", "KL"),)),
+    Chart("Clipped", "share of steps", (Line("clipped", "clipped"),), (0.0, 0.1)),
+    Chart("Norm of the gradient", "", (Line("grad_norm", "norm"),)),
+    Chart("Explained variance", "of the returns", (Line("explained_variance", "explained"),)),
+    Chart("Learning rate", "", (Line("learning_rate", "rate"),)),
 )
 
 
@@ -68,9 +84,46 @@ MOST_POINTS = 1500
 
 def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[Optional[float]]],
                 settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]]) -> str:  # fmt: skip
-    """The page as text. `breakdown`: names and shares of the time of a run."""
+    """The page of a run as text. `breakdown`: names and shares of its time."""
+    shares = table([(name, f"{100.0 * share:.1f} %") for name, share in breakdown])
+    typed_settings = table([(name, str(typed(value))) for name, value in settings.items()])
+    below = (
+        f"<div><h2>Where the time went</h2>{shares}</div>"
+        f"<div><h2>Settings</h2>{typed_settings}</div>"
+    )
+    return _page(title, [Table(columns, rows)], _charts(columns), below)
+
+
+def overlaid_page(title: str, runs: Mapping[str, Table], below: str) -> str:
+    """A page as text, on which each chart has a line for each of the runs, which have names. `below`: HTML under
+    the charts."""
+    columns = dict.fromkeys(name for run in runs.values() for name in run.columns)
+    charts = []
+    for chart in _charts(list(columns)):
+        for line in chart.lines:
+            title_of = f"{chart.title}, {line.label}" if len(chart.lines) > 1 else chart.title
+            lines = [Line(line.column, name, number) for number, name in enumerate(runs)]
+            charts.append(dataclasses.replace(chart, title=title_of, lines=lines))
+    # What a policy is chosen by comes first.
+    charts.sort(key=lambda chart: not chart.lines[0].column.startswith(OF_VALIDATION))
+    return _page(title, list(runs.values()), charts, below)
+
+
+def _page(title: str, tables: Sequence[Table], charts: Sequence[Chart], below: str) -> str:
+    data = {
+        "tables": [_thinned_out(one) for one in tables],
+        "charts": [dataclasses.asdict(chart) for chart in charts],
+    }
+    # "<" would let a string end the script.
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    return _PAGE.format(title=html.escape(title), data=text, below=below)
+
+
+def _thinned_out(whole: Table) -> dict[str, Any]:
+    """What a page has of a table: all validations, and of the other rows some."""
+    columns, rows = whole
     stride = max(1, math.ceil(len(rows) / MOST_POINTS))
-    validated = [columns.index(name) for name in columns if name.startswith("validation")]
+    validated = [n for n, name in enumerate(columns) if name.startswith(OF_VALIDATION)]
     kept = [
         row
         for number, row in enumerate(rows)
@@ -78,27 +131,19 @@ def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[Opti
         or number == len(rows) - 1
         or any(row[column] is not None for column in validated)
     ]
-    data = {
-        "columns": list(columns),
-        "rows": [[_short(value) for value in row] for row in kept],
-        "charts": [dataclasses.asdict(chart) for chart in _charts(columns)],
-    }
-    # "<" would let a string end the script.
-    text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    return _PAGE.format(
-        title=html.escape(title),
-        data=text,
-        settings=_table([(name, str(typed(value))) for name, value in settings.items()]),
-        breakdown=_table([(name, f"{100.0 * share:.1f} %") for name, share in breakdown]),
-    )
+    return {"columns": list(columns), "rows": [[_short(value) for value in row] for row in kept]}
 
 
 def _short(value: Optional[float]) -> Optional[float]:
     return None if value is None or not math.isfinite(value) else float(f"{value:.6g}")
 
 
-def _table(rows: Sequence[tuple[str, str]]) -> str:
-    lines = (f"<tr><th>{html.escape(a)}</th><td>{html.escape(b)}</td></tr>" for a, b in rows)
+def table(rows: Sequence[Sequence[str]]) -> str:
+    """A table in HTML, each row of which begins with what it is of."""
+    lines = (
+        f"<tr><th>{html.escape(name)}</th>{''.join(f'<td>{html.escape(one)}</td>' for one in cells)}</tr>"
+        for name, *cells in rows
+    )
     return "<table>" + "".join(lines) + "</table>"
 
 
@@ -110,10 +155,12 @@ _PAGE = """<!DOCTYPE html>
 <title>{title}</title>
 <style>
 :root {{ color-scheme: light dark; --back: #fff; --ink: #1c2024; --faint: #8b9198; --grid: #e4e7ea;
-  --first: #2563b0; --second: #d9730d; }}
+  --line0: #2563b0; --line1: #d9730d; --line2: #1a8f5a; --line3: #b8336a; --line4: #7a4fc0; --line5: #8a6d1f;
+  --line6: #1b8fa3; --line7: #63707c; }}
 @media (prefers-color-scheme: dark) {{
-  :root {{ --back: #16191c; --ink: #e6e8ea; --faint: #8b9198; --grid: #2c3136; --first: #6ea8ec;
-    --second: #f0a35e; }} }}
+  :root {{ --back: #16191c; --ink: #e6e8ea; --faint: #8b9198; --grid: #2c3136; --line0: #6ea8ec;
+    --line1: #f0a35e; --line2: #5fce98; --line3: #ee7fae; --line4: #b79af0; --line5: #d8bd6a; --line6: #63cfe0;
+    --line7: #a8b3bd; }} }}
 body {{ background: var(--back); color: var(--ink); font: 15px/1.45 system-ui, sans-serif;
   margin: 1.5rem; }}
 h1 {{ font-size: 1.3rem; margin: 0 0 .2rem; }}
@@ -139,13 +186,13 @@ th {{ color: var(--faint); }}
 <label>Against <select id="axis"><option value="steps">steps</option>
 <option value="seconds">wall clock</option></select></label>
 <div id="charts"></div>
-<div class="tables"><div><h2>Where the time went</h2>{breakdown}</div>
-<div><h2>Settings</h2>{settings}</div></div>
+<div class="tables">{below}</div>
 <script>
 "use strict";
 const data = {data};
-const colors = ["var(--first)", "var(--second)"];
-const column = name => data.columns.indexOf(name);
+const colors = 8;
+const style = (what, number) => `${{what}}:var(--line${{number % colors}})`;
+const dashes = number => number < colors ? "" : `;stroke-dasharray:${{4 * Math.floor(number / colors)}} 3`;
 const svg = (tag, attributes, text) => {{
   const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
@@ -170,9 +217,11 @@ const ticks = (low, high, count) => {{
   return found;
 }};
 function chart(spec, axis) {{
-  const x = column(axis), lines = spec.lines.map(([name, label], number) => ({{ label, number,
-    points: data.rows.filter(r => r[column(name)] !== null).map(r => [r[x], r[column(name)]]) }}))
-    .filter(line => line.points.length);
+  const lines = spec.lines.map(([name, label, table], number) => {{
+    const {{ columns, rows }} = data.tables[table], x = columns.indexOf(axis), y = columns.indexOf(name);
+    const points = y < 0 ? [] : rows.filter(r => r[x] !== null && r[y] !== null).map(r => [r[x], r[y]]);
+    return {{ label, number, points, isSparse: name.startsWith("validation_") || points.length === 1 }};
+  }}).filter(line => line.points.length);
   if (!lines.length) return null;
   const all = lines.flatMap(line => line.points), ys = all.map(p => p[1]);
   const right = Math.max(...all.map(p => p[0])) || 1;
@@ -188,12 +237,10 @@ function chart(spec, axis) {{
   for (const v of ticks(0, right, 4)) root.append(svg("text", {{ x: px(v), y: H - 6,
     "text-anchor": "middle" }}, axis === "steps" ? short(v) : clock(v)));
   for (const line of lines) {{
-    const style = `stroke:${{colors[line.number]}}`;
-    root.append(svg("polyline", {{ class: "line", style,
+    root.append(svg("polyline", {{ class: "line", style: style("stroke", line.number) + dashes(line.number),
       points: line.points.map(p => px(p[0]).toFixed(1) + "," + py(p[1]).toFixed(1)).join(" ") }}));
-    if (line.number || line.points.length === 1) for (const p of line.points)
-      root.append(svg("circle", {{ cx: px(p[0]), cy: py(p[1]), r: 2.5,
-        style: `fill:${{colors[line.number]}}` }}));
+    if (line.isSparse) for (const p of line.points)
+      root.append(svg("circle", {{ cx: px(p[0]), cy: py(p[1]), r: 2.5, style: style("fill", line.number) }}));
   }}
   const box = document.createElement("div"), head = document.createElement("h2");
   head.textContent = spec.title + " ";
@@ -206,7 +253,7 @@ function chart(spec, axis) {{
     legend.className = "legend";
     for (const line of lines) {{
       const name = document.createElement("span");
-      name.style.color = colors[line.number];
+      name.style = style("color", line.number);
       name.textContent = line.label + " " + short(line.points[line.points.length - 1][1]);
       legend.append(name);
     }}
@@ -219,9 +266,9 @@ function draw() {{
   document.getElementById("charts").replaceChildren(
     ...data.charts.map(spec => chart(spec, axis)).filter(Boolean));
 }}
-const last = data.rows[data.rows.length - 1];
-if (last) document.getElementById("now").textContent =
-  short(last[column("steps")]) + " steps in " + clock(last[column("seconds")]);
+const [{{ columns, rows }}] = data.tables, last = rows[rows.length - 1];
+if (last && data.tables.length === 1) document.getElementById("now").textContent =
+  short(last[columns.indexOf("steps")]) + " steps in " + clock(last[columns.indexOf("seconds")]);
 document.getElementById("axis").addEventListener("change", draw);
 draw();
 </script>

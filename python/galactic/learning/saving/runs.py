@@ -29,6 +29,15 @@ class Run:
     demonstrations: Sequence[pathlib.Path] = ()
 
 
+def run_in(folder: pathlib.Path) -> Run:
+    """The run of a folder. Raises Error where that holds none."""
+    file = folder / own_code.RUN
+    if not file.is_file():
+        message = f"does not exist: {folder} holds no run"
+        raise galactic.Error(galactic.ErrorCode.IO, str(file), message)
+    return read_run(file)
+
+
 def read_run(file: pathlib.Path) -> Run:
     remedy = "begin another run, which can have the weights of best.pt (--start-from)"
     with refusing(f"{file} does not say what the run is", remedy):

@@ -1,0 +1,226 @@
+"""Several runs side by side: how far they are, how well they do, and in which settings they differ."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import pathlib
+from typing import Iterable, Mapping, NamedTuple, Optional, Sequence
+
+from galactic.learning.refusals import SettingsError, refusing
+from galactic.learning.reports.curves import VALIDATION, read_curves
+from galactic.learning.reports.page import Table, overlaid_page, table
+from galactic.learning.reports.progress import amount
+from galactic.learning.reports.shares import percent
+from galactic.learning.saving.runs import Run, run_in
+from galactic.learning.setting_fields import typed
+from galactic.learning.simulation_words import simulation_keyword
+from galactic.learning.user_code import own_code
+
+NOTHING = "-"
+SEED = "seed"
+
+
+class Success(NamedTuple):
+    """A share of so many episodes; None where nobody has kept how many."""
+
+    share: float
+    episodes: Optional[float]
+
+    def __str__(self) -> str:
+        if self.episodes is None:
+            return f"{100.0 * self.share:.1f} %"
+        return percent(self.share, self.episodes)
+
+
+class ComparedRun(NamedTuple):
+    """A run, as far as it is."""
+
+    name: str
+    settings: Mapping[str, str]
+    """What it is about, as one types it, by name."""
+    wanted_steps: int
+    curves: Sequence[Mapping[str, Optional[float]]]
+    validations: Sequence[Success]
+    """In their order."""
+
+    @property
+    def steps(self) -> float:
+        return self._last("steps") or 0.0
+
+    @property
+    def speed(self) -> Optional[float]:
+        """Steps per second over all of its time."""
+        seconds = self._last("seconds")
+        return self.steps / seconds if seconds else None
+
+    @property
+    def in_training(self) -> Optional[float]:
+        """The share of successes among the latest episodes of the training."""
+        return self._last("success")
+
+    @property
+    def last(self) -> Optional[Success]:
+        return self.validations[-1] if self.validations else None
+
+    @property
+    def best(self) -> Optional[Success]:
+        return max(self.validations, key=lambda one: one.share, default=None)
+
+    @property
+    def but_for_its_seed(self) -> tuple[tuple[str, str], ...]:
+        """What runs have in common that differ in nothing but the seed."""
+        return tuple(sorted((n, value) for n, value in self.settings.items() if n != SEED))
+
+    def _last(self, column: str) -> Optional[float]:
+        found = (row.get(column) for row in reversed(self.curves))
+        return next((value for value in found if value is not None), None)
+
+
+def read(folders: Sequence[pathlib.Path]) -> list[ComparedRun]:
+    """The runs of these folders. Raises galactic.Error where one holds none, and CheckpointError where its files are
+    not those of a run."""
+    for number, folder in enumerate(folders):
+        if folder.resolve() in [other.resolve() for other in folders[:number]]:
+            raise SettingsError(f"{folder} is named twice; name it once")
+    return [_read(folder) for folder in folders]
+
+
+def _read(folder: pathlib.Path) -> ComparedRun:
+    run, file = run_in(folder), folder / "curves.csv"
+    with refusing(f"{file} is no table of curves", "leave this run out"):
+        # There is none before the first row.
+        rows = read_curves(file) if file.exists() else []
+        for row in rows:
+            if row.get("steps") is None or row.get("seconds") is None:
+                raise ValueError("found a row without steps or seconds")
+    validated = [row for row in rows if row.get(f"{VALIDATION}success") is not None]
+    return ComparedRun(
+        os.fspath(folder),
+        _settings_of(run, folder),
+        run.settings.steps,
+        rows,
+        [_success_of(row, run) for row in validated],
+    )
+
+
+def _success_of(row: Mapping[str, Optional[float]], run: Run) -> Success:
+    # Tables once had no number of episodes beside a validation.
+    episodes = row.get("episodes") or run.settings.validation_episodes or None
+    return Success(row[f"{VALIDATION}success"] or 0.0, episodes)
+
+
+def _settings_of(run: Run, folder: pathlib.Path) -> dict[str, str]:
+    values = run.settings.to_dict()
+    words = str(values.pop("simulation")).split()
+    about = {
+        "world": run.world,
+        "validation": run.validation,
+        "start_from": run.start_from,
+        "teacher": run.teacher,
+        "demonstrations": " ".join(map(str, run.demonstrations)) or None,
+    }
+    found = {name: str(typed(value)) for name, value in {**values, **about}.items()}
+    # Code of the user's is what its file says, wherever that was; of the simulation's options, each is one.
+    copies = {name: folder / name for name in own_code.COPIES.values()}
+    found |= {name: _digest(copy) for name, copy in copies.items() if copy.is_file()}
+    for word in words:
+        found[f"simulation {simulation_keyword(word)}"] = word.partition("=")[2] or "true"
+    return {
+        name.replace("_", "-"): NOTHING if value in ("", "None") else value
+        for name, value in found.items()
+    }
+
+
+def _digest(file: pathlib.Path) -> str:
+    """Eight digits of the hash of a file, by which one tells two apart."""
+    return hashlib.sha256(file.read_bytes()).hexdigest()[:8]
+
+
+def differing(runs: Sequence[ComparedRun]) -> list[str]:
+    """The settings that are not the same in all of them, but for the steps, which stand in every table."""
+    names = dict.fromkeys(name for run in runs for name in run.settings if name != "steps")
+    return [name for name in names if len({run.settings.get(name) for run in runs}) > 1]
+
+
+def table_of(runs: Sequence[ComparedRun]) -> list[list[str]]:
+    """A row of names and a row for each run."""
+    names = differing(runs)
+    rows = [["run", "steps", "steps/s", "last validation", "best validation", "training", *names]]
+    for run in runs:
+        trained, speed = run.in_training, run.speed
+        rows.append(
+            [
+                run.name,
+                f"{amount(run.steps)} of {amount(run.wanted_steps)}",
+                NOTHING if speed is None else amount(speed),
+                str(run.last or NOTHING),
+                str(run.best or NOTHING),
+                NOTHING if trained is None else f"{100.0 * trained:.1f} %",
+                *(run.settings.get(name, NOTHING) for name in names),
+            ]
+        )
+    return rows
+
+
+def table_of_seeds(runs: Sequence[ComparedRun]) -> list[list[str]]:
+    """A row of names and a row for each two or more runs that differ in nothing but the seed; nothing where there
+    are none."""
+    alike: dict[tuple[tuple[str, str], ...], list[ComparedRun]] = {}
+    for run in runs:
+        alike.setdefault(run.but_for_its_seed, []).append(run)
+    rows = [
+        [
+            ", ".join(run.name for run in group),
+            _spread(run.last for run in group),
+            _spread(run.best for run in group),
+        ]
+        for group in alike.values()
+        if len(group) > 1
+    ]
+    return [["seeds", "last validation", "best validation"], *rows] if rows else []
+
+
+def _spread(found: Iterable[Optional[Success]]) -> str:
+    """Mean, and from the least to the most."""
+    shares = [100.0 * one.share for one in found if one is not None]
+    if not shares:
+        return NOTHING
+    mean = math.fsum(shares) / len(shares)
+    return f"{mean:.1f} % ({min(shares):.1f} to {max(shares):.1f}) of {len(shares)}"
+
+
+_OF_SHARES = "success in percent, in brackets the interval of 95 %"
+_OF_SEEDS = "runs that differ in nothing but the seed: means, in brackets the least and the most"
+
+
+def text_of(runs: Sequence[ComparedRun]) -> str:
+    """The tables, for a console."""
+    text = _aligned(table_of(runs)) + f"({_OF_SHARES})\n"
+    seeds = table_of_seeds(runs)
+    return text + (f"\n{_aligned(seeds)}({_OF_SEEDS})\n" if seeds else "")
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> str:
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths)) for row in rows)
+    return "".join(f"{line.rstrip()}\n" for line in lines)
+
+
+def page_of(runs: Sequence[ComparedRun]) -> str:
+    """The page that overlays their curves, with the tables below, as text."""
+    tables = {run.name: _columns_of(run.curves) for run in runs}
+    below = _under("Runs", _OF_SHARES, table_of(runs))
+    seeds = table_of_seeds(runs)
+    below += _under("Seeds", _OF_SEEDS, seeds) if seeds else ""
+    return overlaid_page(" and ".join(tables) if len(tables) < 4 else f"{len(tables)} runs", tables, below)  # fmt: skip
+
+
+def _columns_of(rows: Sequence[Mapping[str, Optional[float]]]) -> Table:
+    columns = list(rows[0]) if rows else []
+    return Table(columns, [[row[name] for name in columns] for row in rows])
+
+
+def _under(title: str, about: str, rows: Sequence[Sequence[str]]) -> str:
+    return f"<div><h2>{title} <small>{about}</small></h2>{table(rows)}</div>"
