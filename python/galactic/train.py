@@ -25,14 +25,16 @@ from galactic.learning.command import (
     named_path,
     told,
 )
-from galactic.learning.homes import Homes
+from galactic.learning.homes import Homes, require_options
 from galactic.learning.packs import content
 from galactic.learning.playing.validation import validation_of
+from galactic.learning.policies.privileges import require_sensors
 from galactic.learning.presets import PRESETS, TAUGHT, preset
 from galactic.learning.ranks.distributed import Group, device_of, local_ranks, threads_of
 from galactic.learning.ranks.launch import follow_launcher, launch
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import log
+from galactic.learning.reports.progress import amount
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.run_folder import (
     TEACHER,
@@ -168,7 +170,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
         if "RANK" not in os.environ:
             device_of(options.device, 0, run.settings.ranks)
             files.require_folder(options.out)
-            return launch(run.settings.ranks, [sys.executable, "-m", "galactic.train", *given])
+            return _launched(run, options.out, [sys.executable, "-m", "galactic.train", *given])
         group = Group.join(options.device)
         try:
             work = functools.partial(_train, run, options, group, make_log, make_callback)
@@ -177,6 +179,22 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
             group.leave()
 
     return told("galactic.train", train)
+
+
+def _launched(run: Run, folder: pathlib.Path, command: Sequence[str]) -> int:
+    """Has ranks do the work, which need seconds before they say anything."""
+    settings, checkpoints = run.settings, CheckpointFolder(folder, run.settings.keep)
+    before = checkpoints.steps
+    ranks = "1 rank" if settings.ranks == 1 else f"{settings.ranks} ranks"
+    put(
+        sys.stderr,
+        f"{run.world}: {ranks} of {settings.envs} envs, {amount(settings.steps)} steps; starting ...\n",
+    )
+    code = launch(settings.ranks, command)
+    if code == INTERRUPTED and checkpoints.steps == before:
+        # Ranks that were still loading have ended without a word.
+        put(sys.stderr, f"galactic.train: interrupted before anything was saved in {folder}\n")
+    return code
 
 
 def _log_maker(options: argparse.Namespace) -> Optional[log.MakeTaker]:
@@ -351,6 +369,10 @@ def _run_of(options: argparse.Namespace, world: pathlib.Path) -> Run:
         demonstrations=[folder.resolve() for folder in options.demonstrations],
     )
     run = with_task(run, given.get("simulation", "")) if settings.task else run
+    # What is wrong in any world is told once, before ranks open this one.
+    require_options(run.settings)
+    if not settings.task:
+        require_sensors(settings.critic_only)
     return with_network(run) if settings.has_own_network else run
 
 
@@ -374,9 +396,7 @@ def _resumed_run(options: argparse.Namespace) -> Run:
         )
     run = run_in(options.out)
     settings = resumed(run.settings, given_options(options))
-    checkpoints = CheckpointFolder(options.out, settings.keep)
-    checkpoints.latest()  # which says what to do where there is none
-    done = checkpoints.steps
+    done = CheckpointFolder(options.out, settings.keep).steps
     if settings.steps != run.settings.steps and settings.steps < done:
         raise SettingsError(_behind("--steps", settings.steps, done) + "begin another run")
     if options.pause_at is not None and options.pause_at < done:

@@ -253,6 +253,10 @@ void bindQueries(py::class_<Simulator>& type) {
   type.def_property_readonly(
       "options", [](const Simulator& one) { return keywordsOf(one.batch().options()); },
       "All options in force, as keywords of Simulator.");
+  type.def_static(
+      "check_options", [](const py::kwargs& options) { (void)taskTextsOf(options); },
+      "Raises what a Simulator would for options that are wrong in any world: TypeError for an\n"
+      "unknown one, with the nearest name, and galactic.Error for a wrong value.");
   type.def_property_readonly(
       "skipped_episodes",
       [](const Simulator& one) {

@@ -526,3 +526,11 @@ def test_names_that_are_no_utf8_have_other_characters_in_their_place(world_path)
 
 def test_the_version_is_that_of_the_project():
     assert galactic.__version__.count(".") == 2
+
+
+def test_options_that_no_world_takes_are_told_without_one():
+    galactic.Simulator.check_options(task="pick", episode_steps="200", laser_beams=8, bump=True)
+    with pytest.raises(TypeError, match="no option epsiode_steps; did you mean episode_steps"):
+        galactic.Simulator.check_options(epsiode_steps=5)
+    with pytest.raises(galactic.Error, match="task: is nope, expected rearrange, pick or none"):
+        galactic.Simulator.check_options(task="nope")

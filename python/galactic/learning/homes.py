@@ -47,6 +47,17 @@ def _as_typed(error: galactic.Error, keywords: Mapping[str, Any]) -> galactic.Er
     return galactic.Error(error.code, where, error.message)
 
 
+def require_options(settings: Settings) -> None:
+    """Raises SettingsError or Error for options of the simulation that no world takes."""
+    keywords = simulation_keywords(settings.simulation)
+    try:
+        galactic.Simulator.check_options(**keywords)
+    except (TypeError, ValueError) as problem:
+        raise SettingsError(f"--simulation: {problem}") from problem
+    except galactic.Error as error:
+        raise _as_typed(error, keywords) from error
+
+
 def sizes_of(parts: Sequence[tuple[str, int]]) -> str:
     """Names and sizes of the parts of an observation, for a sentence."""
     return ", ".join(f"{name} ({size})" for name, size in parts)

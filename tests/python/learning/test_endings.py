@@ -16,7 +16,7 @@ from typing import Any, Callable, Iterator
 import pytest
 
 import galactic
-from galactic import files
+from galactic import files, train
 from galactic.learning.ranks.launch import LAUNCHER, launch
 from programs import (
     SMALL,
@@ -106,6 +106,19 @@ def test_ctrl_c_while_ranks_load_ends_them_in_silence(
     with interrupted_when(lambda: loading(endless_torch) == 2):
         assert launch(2, command("train")) == 130
     assert capfd.readouterr().err == ""
+
+
+def test_ctrl_c_before_anything_is_saved_is_told(
+    endless_torch: pathlib.Path, monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path, capfd: Any
+) -> None:
+    """By the launcher, as ranks that are loading say nothing."""
+    monkeypatch.delenv("RANK", raising=False)
+    words = ["none.pack", "-o", str(tmp_path / "run"), *SMALL_OF_ANY_RANKS, "--ranks", "2"]
+    with interrupted_when(lambda: loading(endless_torch) == 2):
+        assert train.main(words) == 130
+    first, last = capfd.readouterr().err.splitlines()
+    assert first.endswith("none.pack: 2 ranks of 16 envs, 6 M steps; starting ...")
+    assert last == f"galactic.train: interrupted before anything was saved in {tmp_path / 'run'}"
 
 
 def test_ctrl_c_before_all_ranks_have_started_reaches_all_of_them(

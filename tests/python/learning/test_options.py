@@ -126,10 +126,12 @@ def test_an_option_is_given_once(name: str, action: argparse.Action, run: Any) -
 
 def test_the_walk_reaches_options_that_are_taken(run: Any) -> None:
     words = [*PROGRAMS["train"][1], "--steps", "2e6", "--envs", "4", "--learning-rate", "1e-3"]
-    assert run("train", [*words, "--entropy-end", "-1", "--no-normalize"]) == (0, "")
+    world = pathlib.Path("none.pack").resolve()
+    begun = (0, f"{world}: 1 rank of 4 envs, 2 M steps; starting ...\n")
+    assert run("train", [*words, "--entropy-end", "-1", "--no-normalize"]) == begun
     # Values that begin with a dash, too, and are no plain numbers.
     words += ["--initial-log-std", "-5e-1", "--camera-position", "-0.1,0,.2", "--near", "0.1"]
-    assert run("train", [*words, "--camera-rpy", "-.5,0,1e1"]) == (0, "")
+    assert run("train", [*words, "--camera-rpy", "-.5,0,1e1"]) == begun
     # The policy that is missing is looked for after the options.
     assert run("evaluate", ["none.pt", "none.pack", "--seed", "7", "--episodes", "1"])[0] == 2
     assert run("export", ["none.pt", "-o", "out.pack", "--name", "a"])[0] == 2
@@ -157,6 +159,21 @@ def test_settings_are_printed_as_one_types_them(run: Any, capsys: Any) -> None:
     ):
         code, said = run("train", [*words, "--print-settings"])
         assert code == 1 and message in said
+    for words, wanted, message in (
+        (
+            ["--simulation", "task=nope"],
+            3,
+            "--simulation: task: is nope, expected rearrange, pick or",
+        ),
+        (
+            ["--simulation", "epsiode-steps=5"],
+            1,
+            "no option epsiode_steps; did you mean episode_ste",
+        ),
+        (["--critic-only", "foo"], 1, 'critic_only: "foo" is no sensor; it can be of bump'),
+    ):
+        code, said = run("train", [*words, "--preset", "quick", "--print-settings"])
+        assert code == wanted and message in said
     code, said = run("train", ["none.pack"])
     assert code == 1 and "the following arguments are required: -o/--out" in said
 

@@ -14,15 +14,21 @@ def names_of(critic_only: str) -> list[str]:
     return critic_only.replace(",", " ").replace("-", "_").split()
 
 
+def require_sensors(critic_only: str, own: Sequence[str] = ()) -> None:
+    """Raises SettingsError for a part that no sensor gives, and no task of one's own, which gives `own`."""
+    known = [*SENSORS, *own]
+    for name in names_of(critic_only):
+        if name not in known:
+            hint = did_you_mean(name, known) or f"; it can be of {', '.join(known)}"
+            raise SettingsError(f'critic_only: "{name}" is no sensor{hint}')
+
+
 def critic_columns(critic_only: str, parts: Sequence[tuple[str, int]]) -> tuple[int, ...]:
     """Columns of these parts in a row of observations, whose parts are `parts`, names and sizes in
     order. Raises SettingsError for a part that is always there, or that is not there."""
     names = names_of(critic_only)
-    known = [*SENSORS, *of_own_tasks(parts)]
+    require_sensors(critic_only, of_own_tasks(parts))
     for name in names:
-        if name not in known:
-            hint = did_you_mean(name, known) or f"; it can be of {', '.join(known)}"
-            raise SettingsError(f'critic_only: "{name}" is no sensor{hint}')
         if name not in dict(parts):
             raise SettingsError(
                 f"critic_only: {name} is not observed; turn the sensor on with --simulation, or leave "
