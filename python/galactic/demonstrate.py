@@ -155,9 +155,7 @@ def _demonstrate(options: argparse.Namespace) -> int:
     solved = [one for one in made if one.is_solved]
     steps = sum(int(one.by_expert.sum()) for one in solved)
     share = percent(len(solved) / len(made), len(made))
-    text = (
-        f"{folder}: {len(solved):,} of {len(made):,} episodes are solved, {share}, by {steps:,} steps of the expert\n"
-    )
+    text = f"{folder}: {len(solved):,} of {len(made):,} episodes are solved, {share}, by {steps:,} steps of the expert\n"
     if not put(sys.stdout, text):
         raise lost_output()
     return OK

@@ -122,8 +122,10 @@ class DemonstrationWriter:
             paid = _array_of("rewards", rewards, (count,)).astype(np.float32, copy=False)
         if by_expert is not None:
             _array_of("by_expert", by_expert, (count,), np.bool_)
-        for name, one in {**seen, "actions": rows, "rewards": paid}.items():
+        for name, one in {"actions": rows, "rewards": paid}.items():
             _require_finite(name, one, playing)
+        for name, one in seen.items():
+            _require_finite(f"observations: {name}", one, playing)
         for env in np.flatnonzero(playing & infos.get("_final_obs", False)).tolist():
             for name, one in self._seen("final_obs", infos["final_obs"][env], ()).items():
                 _require_finite(f"final_obs: {name}", one[np.newaxis], np.ones(1, np.bool_))

@@ -23,7 +23,7 @@ class Outcome(NamedTuple):
     successes: NDArray[np.bool_] | None = None
     """(n,), where the episode is solved and ends; None for nowhere."""
     failures: NDArray[np.bool_] | None = None
-    """(n,), where it ends for worse; not where it is solved."""
+    """(n,), where it ends for worse. Where both are true, it is solved."""
     logs: Mapping[str, NDArray[np.floating]] | None = None
     """What there is to say of the step, the Task's `logs`, each (n,), finite."""
 

@@ -428,6 +428,10 @@ def _parts_of(task: Task, name: str, first: int, taken: Set[str]) -> dict[str, s
     """Where the task's parts are in an observation. ValueError for sizes and names that cannot be."""
     parts: dict[str, slice] = {}
     taken = {*taken, *ALWAYS, *SENSORS, "state", "rgb", "depth", "semantics"}
+    if not isinstance(task.parts, Mapping):
+        raise ValueError(
+            f"{name}.parts is {task.parts!r}, expected sizes by name, such as {{'to_door': 2}}"
+        )
     for part, size in task.parts.items():
         if part in taken or not isinstance(part, str) or not part.isidentifier():
             raise ValueError(

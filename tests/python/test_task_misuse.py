@@ -246,6 +246,7 @@ def ends_odd(self, envs):
         (Approach(), TypeError, "task is a Approach; give what makes one for each half"),
         (lambda: 3, TypeError, "task makes a int, expected a galactic.Task"),
         (of(parts={"time": 1}), ValueError, "Faulty.parts has 'time', expected a name of its own"),
+        (of(parts=["door"]), ValueError, r"Faulty.parts is \['door'\], expected sizes by name, such as"),
         (of(parts={"to door": 1}), ValueError, "Faulty.parts has 'to door'"),
         (of(parts={"door": 0}), ValueError, r"Faulty.parts\['door'\] is 0, expected how many"),
         (of(measures=("success",)), ValueError, "Faulty.measures has 'success', expected a name of its"),

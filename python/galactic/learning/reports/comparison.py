@@ -66,7 +66,8 @@ class ComparedRun(NamedTuple):
 
     @property
     def best(self) -> Optional[Success]:
-        return max(self.validations, key=lambda one: one.share, default=None)
+        shares = [one.share for one in self.validations]
+        return self.validations[shares.index(max(shares))] if shares else None
 
     @property
     def but_for_its_seed(self) -> tuple[tuple[str, str], ...]:
