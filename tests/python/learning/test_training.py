@@ -353,8 +353,9 @@ def test_a_damaged_checkpoint_is_one_sentence_on_any_number_of_ranks(
     def refuse(code: int, message: str) -> None:
         done = run("train", "-o", folder, "--resume", "--steps", 3 * UPDATE)
         assert done.returncode == code, done.stderr
-        assert done.stderr.startswith(f"galactic.train: {message}"), done.stderr
-        assert done.stderr.count("\n") == 1
+        begun, _, said = done.stderr.partition("\n")
+        assert begun.endswith(f": 2 ranks of 16 envs, {3 * UPDATE} steps; starting ...")
+        assert said.startswith(f"galactic.train: {message}") and said.count("\n") == 1, said
 
     file.write_bytes(whole[:100])
     refuse(3, f"{file} cannot be read as a checkpoint: found 100 bytes of something else")
