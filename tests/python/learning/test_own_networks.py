@@ -339,7 +339,7 @@ def test_what_cannot_be_a_network_says_why(lab: pathlib.Path, name: str, message
 
 def test_networks_that_see_may_not_mix_either(lab: pathlib.Path) -> None:
     seen = SEEN._replace(images={"rgb": (36, 36, 3)})
-    with pytest.raises(NetworkError, match="MixesImages mixes envs: it returns"):
+    with pytest.raises(NetworkError, match="MixesImages mixes steps and envs: it returns"):
         named(lab, "MixesImages").make(seen, recurrent=False)
     named(lab, "Looks").make(seen, recurrent=False)
 
