@@ -48,6 +48,7 @@ from galactic.demonstrations import Demonstration, Demonstrations
 from galactic.env_states import EnvStates, Poses
 from galactic.episode_table import EpisodeTable
 from galactic.errors import Error
+from galactic.reached import reached
 from galactic.task import Outcome, Task, TaskEnvs
 from galactic.vector_env import VectorEnv
 
@@ -82,4 +83,5 @@ __all__ = [
     "VectorEnv",
     "World",
     "__version__",
+    "reached",
 ]

@@ -205,17 +205,47 @@ def test_episodes_that_were_broken_off_are_forgotten(tmp_path, world):
 
 FIVE = np.zeros((2, 5), np.float32)
 WRONG_STEPS = [
-    (0, lambda seen: seen[:, :3], ValueError, r"observations: state has the shape \(2, 3\), expected"),
-    (0, lambda seen: seen * np.nan, ValueError, r"state has numbers that are not finite .*, first in env 0"),
+    (
+        0,
+        lambda seen: seen[:, :3],
+        ValueError,
+        r"observations: state has the shape \(2, 3\), expected",
+    ),
+    (
+        0,
+        lambda seen: seen * np.nan,
+        ValueError,
+        r"state has numbers that are not finite .*, first in env 0",
+    ),
     (0, lambda seen: "seen", TypeError, "observations: state has the type <U4, expected numbers"),
     (0, lambda seen: {"rgb": seen}, ValueError, "observations has no robot_target, .*, time; give"),
-    (1, lambda actions: actions[:, :5], ValueError, r"actions has the shape \(2, 5\), expected \(2, "),
+    (
+        1,
+        lambda actions: actions[:, :5],
+        ValueError,
+        r"actions has the shape \(2, 5\), expected \(2, ",
+    ),
     (1, lambda actions: actions * np.nan, ValueError, "actions has numbers that are not finite"),
     (2, lambda rewards: rewards[:1], ValueError, r"rewards has the shape \(1,\), expected \(2,\)"),
-    (2, lambda rewards: [0.0, np.inf], ValueError, "rewards has numbers .*, first in env 1; nothing"),
+    (
+        2,
+        lambda rewards: [0.0, np.inf],
+        ValueError,
+        "rewards has numbers .*, first in env 1; nothing",
+    ),
     (2, lambda rewards: [0.0, 1e39], ValueError, "rewards has numbers that are not finite"),
-    (3, lambda infos: [{}] * 2, TypeError, r"infos has the type list, expected the dictionary that"),
-    (3, lambda infos: {"final_info": {}}, ValueError, "infos has final_info and no _final_info, _final_o"),
+    (
+        3,
+        lambda infos: [{}] * 2,
+        TypeError,
+        r"infos has the type list, expected the dictionary that",
+    ),
+    (
+        3,
+        lambda infos: {"final_info": {}},
+        ValueError,
+        "infos has final_info and no _final_info, _final_o",
+    ),
     (4, lambda by_expert: FIVE, TypeError, "by_expert has the type float32, expected bool"),
 ]
 
@@ -267,10 +297,22 @@ def test_images_of_a_wrong_shape_are_refused(tmp_path, world):
     _, rewards, *_, infos = env.step(actions)
     with DemonstrationWriter(tmp_path, env, expert="me") as writer:
         for wrong, kind, message in (
-            ({**seen, "rgb": seen["rgb"][:, :2]}, ValueError, r"rgb has the shape \(2, 2, 6, 3\), e"),
-            ({**seen, "depth": seen["depth"] * np.inf}, ValueError, "depth has numbers that are not"),
+            (
+                {**seen, "rgb": seen["rgb"][:, :2]},
+                ValueError,
+                r"rgb has the shape \(2, 2, 6, 3\), e",
+            ),
+            (
+                {**seen, "depth": seen["depth"] * np.inf},
+                ValueError,
+                "depth has numbers that are not",
+            ),
             ({"state": seen["state"]}, ValueError, "observations has no rgb, depth"),
-            (seen["state"], TypeError, "observations has the type ndarray, expected a dictionary wi"),
+            (
+                seen["state"],
+                TypeError,
+                "observations has the type ndarray, expected a dictionary wi",
+            ),
         ):
             with pytest.raises(kind, match=message):
                 writer.add(wrong, actions, rewards, infos)
@@ -281,5 +323,7 @@ def test_a_reader_has_advice_for_folders_of_ones_own(tmp_path, world):
     written(tmp_path, env, 10)
     file = next(tmp_path.glob("part-*")) / "rewards.npy"
     np.save(file, np.load(file) * np.float32(np.nan))
-    with pytest.raises(galactic.Error, match="not finite; remove the folder of this part: the others"):
+    with pytest.raises(
+        galactic.Error, match="not finite; remove the folder of this part: the others"
+    ):
         Demonstrations(tmp_path)

@@ -5,7 +5,7 @@ import multiprocessing
 import numpy as np
 import pytest
 
-from galactic import EpisodeEnd, Error, Renderer, Simulator, VectorEnv
+from galactic import EpisodeEnd, Error, Renderer, Simulator, VectorEnv, reached
 
 ENVS = 24
 OPTIONS = {"threads": 1, "seed": 11, "episode_steps": 35}
@@ -516,3 +516,30 @@ def test_a_seed_that_is_none_begins_nothing(world, draw_actions):
         with pytest.raises(Error, match="seed: is .*, expected a whole number from 0 to"):
             env.reset(seed=seed)
         assert env.save_state() == before
+
+
+def test_what_a_step_reached_is_the_last_of_an_episode_that_ended(world, draw_actions) -> None:
+    """And of no episode that goes on, with any number of halves and with dicts."""
+    for options in ({"halves": 2}, {"observation": "dict", "copy": False}):
+        env = VectorEnv(world, 12, seed=3, episode_steps=5, **options)
+        simulators = env.simulators
+        env.reset()
+        ended = 0
+        for _ in range(12):
+            observations, _, terminations, truncations, infos = env.step(draw_actions(12, 8))
+            done = terminations | truncations
+            ended += done.sum()
+            found = reached(observations, infos)
+            last = np.concatenate([each.final_observations for each in simulators])
+            now = np.concatenate([each.observations for each in simulators])
+            wanted = np.where(done[:, None], last, now)
+            if isinstance(found, dict):
+                assert list(found) == list(observations)
+                for name, part in found.items():
+                    assert part.dtype == np.float32 and not np.shares_memory(
+                        part, observations[name]
+                    )
+                found = np.concatenate(list(found.values()), axis=1)
+            assert not np.shares_memory(found, observations)
+            np.testing.assert_array_equal(found, wanted)
+        assert ended >= 24

@@ -75,7 +75,10 @@ def test_the_curves_have_what_a_task_measures(tmp_path: pathlib.Path, capsys: An
         found = [row[f"validation_measure_{name}"] for name in Measured.measures]
         assert found == [0.25, -0.5, 0.0] and row["measure_steps"] is None
     said = capsys.readouterr().err
-    assert "75.0 % (30.1 to 95.4) of 4 episodes, return 5.00, kl 0.25, validation_success -0.5, steps 0\n" in said
+    assert (
+        "75.0 % (30.1 to 95.4) of 4 episodes, return 5.00, kl 0.25, validation_success -0.5, steps 0\n"
+        in said
+    )
     assert f" left  kl {trained[-1]['measure_kl']:.3g}  validation_success " in said
     report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
     assert report["training"] == trainer.recent.figures() and "measure_kl" in report["training"]

@@ -566,7 +566,10 @@ def test_what_cannot_be_exported_says_so_before_it_learns(
         done = call("train", WORLD, "-o", tmp_path / name, *options)
         assert done.returncode == 0, done.stderr
         said[name] = done.stderr
-    assert "galactic.export can make no pack of lab.py:Attends, which Python alone will" in said["Attends"]
+    assert (
+        "galactic.export can make no pack of lab.py:Attends, which Python alone will"
+        in said["Attends"]
+    )
     assert "of lab.py: a policy pack has no layer for MultiheadAttention\n" in said["Attends"]
     assert "galactic.export" not in said["Net"]
 

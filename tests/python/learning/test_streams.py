@@ -99,7 +99,9 @@ def test_faults_of_the_program_are_told_with_its_lines(capsys: pytest.CaptureFix
 
     assert told("galactic.train", work) == 4
     said = capsys.readouterr().err
-    assert said.startswith("galactic.train: an exception that nobody has thought of ended it\nTrace")
+    assert said.startswith(
+        "galactic.train: an exception that nobody has thought of ended it\nTrace"
+    )
     assert "in work\n" in said and said.endswith("must match the size of tensor b (81)\n")
 
 
