@@ -196,6 +196,10 @@ class SceneBaker {
       warnings.add(baked, free.columns);
     }
     if (wantsCheck()) baked.cast_check = check(frame, raw.columns);
+    if (!room_) {
+      const bool keeps_all = options_.free_space.keep == Keep::kAll;
+      room_ = std::move(keeps_all ? free.room_of_all : free.columns);
+    }
     return baked;
   }
 
@@ -217,7 +221,7 @@ class SceneBaker {
 
   Result<FreeSpace> chooseRegions(const Columns& columns) {
     const StageTimer timer(times_.regions);
-    return chooseFreeSpace(columns, options_.free_space);
+    return chooseFreeSpace(columns, options_.free_space, room_ ? &*room_ : nullptr);
   }
 
   /// The casts of the check are the Bullet engine's own.
@@ -246,6 +250,8 @@ class SceneBaker {
   const SceneBakeOptions& options_;
   StageTimes& times_;
   std::optional<BulletColumnCaster> caster_;
+  /// Of the smallest radius: all others keep the same room.
+  std::optional<Columns> room_;
 };
 
 }  // namespace

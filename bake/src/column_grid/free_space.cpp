@@ -192,10 +192,45 @@ Result<std::uint32_t> spanAt(const Columns& columns, const Vec3& seed) {
   return seedFailure(seed, frame, free);
 }
 
+/// The cell of a frame that holds a point, in one direction.
+std::uint32_t cellAt(double at, float min, float spacing, std::uint32_t count) {
+  const double cell = std::floor((at - static_cast<double>(min)) / static_cast<double>(spacing));
+  return static_cast<std::uint32_t>(std::clamp(cell, 0.0, static_cast<double>(count - 1)));
+}
+
+/// Of each component, the length of its spans that lies within the scene's heights and, in the
+/// nearest columns, in `room`, as a share of all that lies there.
+std::vector<double> sharesIn(const Columns& columns, const Labels& labels, const Columns& room) {
+  const GridFrame& frame = columns.frame;
+  const GridFrame& other = room.frame;
+  const Bounds scene = sceneBounds(frame);
+  std::vector<double> all(labels.count);
+  std::vector<double> inside(labels.count);
+  for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
+    const std::uint32_t other_k =
+        cellAt(frame.centerZ(k), other.min_z, other.spacing, other.columns_z);
+    for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
+      const std::uint32_t other_i =
+          cellAt(frame.centerX(i), other.min_x, other.spacing, other.columns_x);
+      const std::size_t at = columns.index(i, k);
+      for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
+        const Span& heights = columns.spans[span];
+        all[labels.of_span[span]] += overlap(heights, scene);
+        for (const Span& free : room.column(room.index(other_i, other_k))) {
+          const Span both{std::max(free.lo, heights.lo), std::min(free.hi, heights.hi)};
+          if (both.hi > both.lo) inside[labels.of_span[span]] += overlap(both, scene);
+        }
+      }
+    }
+  }
+  for (std::uint32_t n = 0; n < labels.count; ++n) inside[n] = all[n] > 0 ? inside[n] / all[n] : 0;
+  return inside;
+}
+
 /// Which components are the room.
 Result<std::vector<bool>> chooseRooms(const Columns& columns, const Labels& labels,
                                       const std::vector<Component>& components,
-                                      const FreeSpaceOptions& options) {
+                                      const FreeSpaceOptions& options, const Columns* wider_room) {
   std::vector<bool> is_room(components.size(), false);
   if (!options.seeds.empty()) {
     for (const Vec3& seed : options.seeds) {
@@ -206,6 +241,10 @@ Result<std::vector<bool>> chooseRooms(const Columns& columns, const Labels& labe
   }
   std::vector<std::uint32_t> order(components.size());
   std::iota(order.begin(), order.end(), 0U);
+  if (wider_room != nullptr) {
+    const std::vector<double> shares = sharesIn(columns, labels, *wider_room);
+    std::erase_if(order, [&](std::uint32_t n) { return shares[n] < 0.5; });
+  }
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return isRather(components[a], components[b]);
   });
@@ -214,9 +253,8 @@ Result<std::vector<bool>> chooseRooms(const Columns& columns, const Labels& labe
   return is_room;
 }
 
-Columns filterSpans(const Columns& columns, const Labels& labels,
-                    const std::vector<Component>& components, Keep keep) {
-  if (keep == Keep::kAll) return columns;
+Columns roomOf(const Columns& columns, const Labels& labels,
+               const std::vector<Component>& components) {
   Columns kept;
   kept.frame = columns.frame;
   kept.first.reserve(columns.first.size());
@@ -234,10 +272,12 @@ Columns filterSpans(const Columns& columns, const Labels& labels,
 
 }  // namespace
 
-Result<FreeSpace> chooseFreeSpace(const Columns& columns, const FreeSpaceOptions& options) {
+Result<FreeSpace> chooseFreeSpace(const Columns& columns, const FreeSpaceOptions& options,
+                                  const Columns* wider_room) {
   const Labels labels = labelComponents(columns);
   std::vector<Component> components = measure(columns, labels);
-  ASSIGN_OR_RETURN(const auto is_room, chooseRooms(columns, labels, components, options));
+  ASSIGN_OR_RETURN(const auto is_room,
+                   chooseRooms(columns, labels, components, options, wider_room));
   FreeSpace result;
   for (std::size_t index = 0; index < components.size(); ++index) {
     Component& component = components[index];
@@ -249,7 +289,13 @@ Result<FreeSpace> chooseFreeSpace(const Columns& columns, const FreeSpaceOptions
     totals.spans += component.spans;
     totals.volume += component.volume;
   }
-  result.columns = filterSpans(columns, labels, components, options.keep);
+  Columns room = roomOf(columns, labels, components);
+  if (options.keep == Keep::kAll) {
+    result.columns = columns;
+    result.room_of_all = std::move(room);
+  } else {
+    result.columns = std::move(room);
+  }
   std::stable_sort(components.begin(), components.end(),
                    [](const Component& a, const Component& b) { return a.volume > b.volume; });
   result.components = std::move(components);

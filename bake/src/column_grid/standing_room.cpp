@@ -6,7 +6,7 @@
 namespace galactic::bake {
 namespace {
 
-/// Of the centers of spheres, meters.
+/// Between surfaces, meters: centers of spheres stay their radius away from both.
 constexpr float kHeight = 1.2F;
 /// From the middle of the square to its sides, meters.
 constexpr float kHalfWidth = 0.4F;
@@ -22,7 +22,8 @@ using Cells = std::vector<Cell>;
 
 /// How many of the cells are in the middle of a square of cells, `reach` to each side.
 std::size_t middles(const Cells& cells, std::uint32_t reach) {
-  if (cells.empty()) return 0;
+  const std::uint32_t side = 2 * reach + 1;
+  if (cells.size() < std::size_t{side} * side) return 0;
   Cell least = cells.front();
   Cell most = cells.front();
   for (const Cell& cell : cells) {
@@ -44,7 +45,6 @@ std::size_t middles(const Cells& cells, std::uint32_t reach) {
       sums[row * width + n] = sums[(row - 1) * width + n] + of_row;
     }
   }
-  const std::uint32_t side = 2 * reach + 1;
   std::size_t count = 0;
   for (const Cell& cell : cells) {
     if (cell.i < least.i + reach || cell.i + reach > most.i || cell.k < least.k + reach ||
@@ -75,14 +75,17 @@ std::vector<StandingRoom> standingRoom(const Columns& columns,
       for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
         const Span& heights = columns.spans[span];
         const bool has_floor = heights.lo > scene.min.y;
-        if (!has_floor || std::min(heights.hi, scene.max.y) - heights.lo < kHeight) continue;
+        const float below = heights.lo - frame.radius;
+        const float above = std::min(heights.hi + frame.radius, scene.max.y);
+        if (!has_floor || above - below < kHeight) continue;
         Cells& cells = (heights.hi < scene.max.y ? roofed : open)[component_of_span[span]];
         // Of two stories of one component the lower one.
         if (cells.empty() || cells.back() != Cell{i, k}) cells.push_back({i, k});
       }
     }
   }
-  const auto reach = static_cast<std::uint32_t>(std::lround(kHalfWidth / frame.spacing));
+  const float half = std::max(kHalfWidth - frame.radius, 0.0F);
+  const auto reach = static_cast<std::uint32_t>(std::lround(half / frame.spacing));
   const double area = static_cast<double>(frame.spacing) * static_cast<double>(frame.spacing);
   std::vector<StandingRoom> rooms(count);
   for (std::uint32_t n = 0; n < count; ++n) {

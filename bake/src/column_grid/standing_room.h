@@ -9,7 +9,8 @@ namespace galactic::bake {
 
 /// Where a robot could stand in one connected part of the free space: in the middle of a square of
 /// 80 cm, all of which is free for 1.2 m of height within the scene's bounds and has something
-/// under it. Slabs, walls, cabinets and wardrobes have no such places, however long they are.
+/// under it, whatever the radius of the spheres. Slabs, walls, cabinets and wardrobes have no such
+/// places, however long they are.
 struct StandingRoom {
   /// Under a roof, square meters.
   double roofed = 0;

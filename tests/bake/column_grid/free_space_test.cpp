@@ -173,12 +173,41 @@ TEST(FreeSpace, OfAClosedHouseInAGardenIsTheHouse) {
   expectRoom(mesh, {{1, 1, 1}, {4.7F, 0.3F, 3.7F}}, {{-5, 1, 3}, {10, 0.5F, 1}});
   const FreeSpace free = chooseFreeSpace(columnsOf(mesh, 0.05F)).value();
   const auto& house = *std::ranges::find(free.components, Region::kRoom, &Component::region);
-  // Squares of 80 cm find room for their middles; spheres stay away from walls, too.
-  EXPECT_NEAR(house.floor, 4.1 * 3.1, 0.5);
+  // Where squares of 80 cm find room for their middles.
+  EXPECT_NEAR(house.floor, 4.2 * 3.2, 0.5);
   EXPECT_EQ(house.yard, 0);
   const auto& garden = *std::ranges::find(free.components, Region::kOutside, &Component::region);
   EXPECT_EQ(garden.floor, 0);
-  EXPECT_NEAR(garden.yard, 28.3 * 26.3 - 6.1 * 5.1, 4);
+  EXPECT_NEAR(garden.yard, 28.38 * 26.38 - 6.02 * 5.02, 2);
+}
+
+TEST(FreeSpace, OfASmallHouseInAGardenIsTheHouseForAllRadii) {
+  MeshBuilder builder;
+  addRoom(builder, {0, 0, 0}, {3, 2.5F, 3}).box({-4, -0.3F, -4}, {7, -0.1F, 7});
+  const TriangleMesh mesh = builder.build();
+  expectRoom(mesh, {{1, 1, 1}}, {{-2, 1, 1}});
+  // What there is of it for large spheres is no room by itself, but it is where the room is.
+  const FreeSpace room = chooseFreeSpace(columnsOf(mesh, 0.015F)).value();
+  const Columns columns = columnsOf(mesh, 0.8F);
+  const FreeSpace inside = chooseFreeSpace(columns, {}, &room.columns).value();
+  EXPECT_NEAR(totalsOf(inside, Region::kRoom).volume, volumeOf(1.4, 0.9, 1.4),
+              oneCellLayer(1.4, 0.9, 1.4));
+  EXPECT_EQ(totalsOf(inside, Region::kOutside).components, 1U);
+  // And where no ball fits into it, there is none.
+  const FreeSpace none = chooseFreeSpace(columnsOf(mesh, 1.3F), {}, &room.columns).value();
+  EXPECT_TRUE(none.columns.spans.empty());
+}
+
+TEST(FreeSpace, OfAHouseWithAGapIsClosedForSpheresThatDoNotPassIt) {
+  MeshBuilder builder;
+  addRoom(builder, {0, 0, 0}, {5, 2.5F, 4}, false);
+  builder.box({-0.1F, 2.5F, -0.1F}, {5.1F, 2.6F, 3.9F}).box({-4, -0.3F, -4}, {9, -0.1F, 9});
+  const TriangleMesh mesh = builder.build();
+  const FreeSpace wide = chooseFreeSpace(columnsOf(mesh, 0.02F)).value();
+  EXPECT_EQ(totalsOf(wide, Region::kOutside).components, 0U);
+  const FreeSpace closed = chooseFreeSpace(columnsOf(mesh, 0.12F), {}, &wide.columns).value();
+  EXPECT_EQ(totalsOf(closed, Region::kOutside).components, 1U);
+  EXPECT_NEAR(totalsOf(closed, Region::kRoom).volume, volumeOf(4.76, 2.26, 3.76), 3);
 }
 
 TEST(FreeSpace, OfAClosedRoomThatStandsAcrossIsItsInside) {

@@ -115,6 +115,8 @@ struct RegionTotals {
 struct FreeSpace {
   /// What is kept.
   Columns columns;
+  /// The room alone, where more is kept; else empty.
+  Columns room_of_all;
   /// Every component by falling volume.
   std::vector<Component> components;
   /// Totals by region, indexed by Region.
@@ -125,8 +127,11 @@ struct FreeSpace {
 /// the seeds reach, else the component with most floor or, where none has 4 m² of it, that with
 /// most volume inside the scene's bounds, slabs last; other components that reach the border are
 /// outside, the rest enclosed. Fails with kInvalidInput when a seed is not in free space.
+/// `wider_room`: the room of the same scene for spheres of a smaller radius. Without seeds, only
+/// what lies in it is the room, so that all radii keep the same one.
 [[nodiscard]] Result<FreeSpace> chooseFreeSpace(const Columns& columns,
-                                                const FreeSpaceOptions& options = {});
+                                                const FreeSpaceOptions& options = {},
+                                                const Columns* wider_room = nullptr);
 
 /// A grid in the layout of schema/column_grid.fbs, ready to be written or queried in place.
 struct EncodedGrid {
