@@ -77,16 +77,18 @@ def require_folder(folder: pathlib.Path) -> None:
 
 
 @contextlib.contextmanager
-def alone_in(folder: pathlib.Path) -> Iterator[None]:
+def alone_in(folder: pathlib.Path) -> Iterator[bool]:
     """Around writing into the folder of a run, which exists: raises galactic.Error where another process
-    does. The lock ends with its process, however that ends; its file stays, and means nothing. Where the
-    disk has no locks, nobody is refused."""
+    does. The lock ends with its process, however that ends; its file stays, and means nothing. Yields
+    whether there is a lock: where the disk has none, nobody is refused, and nobody knows of others.
+    """
     file = folder / ".lock"
     try:
         handle = open(file, "wb")
     except OSError as error:
         raise unwritable(file, error) from None
     with handle:
+        is_locked = True
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
@@ -97,7 +99,8 @@ def alone_in(folder: pathlib.Path) -> Iterator[None]:
                     "another -o"
                 )
                 raise Error(ErrorCode.IO, str(folder), message) from None
-        yield
+            is_locked = False
+        yield is_locked
 
 
 def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: str = "wb") -> None:

@@ -8,12 +8,15 @@
     best.pt                          the policy.pt that did best
     teacher.pt                       the policy.pt of the teacher, if there is one
     curves.csv, curves.html          written while it runs
+    report.json                      written at its end
+    task.py, network.py              copies of code of one's own
     .lock                            held by who writes here: see files.alone_in()
 """
 
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import os
 import pathlib
@@ -33,16 +36,24 @@ TEACHER = "teacher.pt"
 """The copy of the teacher in the folder of a run."""
 BEST = "best.pt"
 """The policy that did best."""
-_REPORTS = ("curves.csv", "curves.html", "report.json")
+_TABLE, _PAGE, _REPORT = "curves.csv", "curves.html", "report.json"
+
+
+def files_of(folder: pathlib.Path) -> list[pathlib.Path]:
+    """Where a run has its files in `folder`, and those of its checkpoints."""
+    copies = own_code.COPIES.values()
+    names = (own_code.RUN, _TABLE, _PAGE, _REPORT, BEST, TEACHER, ".lock", *copies)
+    return [*(folder / name for name in names), *(folder / "checkpoints").rglob("*")]
 
 
 def require_no_run(folder: pathlib.Path) -> None:
-    """Raises SettingsError where the folder holds what a run has learned, or a file that it would write over. One that
-    ended before its first checkpoint can be begun again: see begin_folder()."""
-    file = folder / own_code.RUN
+    """Raises SettingsError where the folder holds what a run has learned, or a file that it would write over, and Error
+    where that cannot be read. One that ended before its first checkpoint can be begun again: see begin_folder().
+    """
+    file, checkpoints = folder / own_code.RUN, CheckpointFolder(folder, 1)
     if not file.exists():
         return
-    if CheckpointFolder(folder, 1).complete():
+    if checkpoints.complete():
         raise SettingsError(
             f"{folder} already holds a run; continue it with --resume, or choose another folder"
         )
@@ -51,39 +62,17 @@ def require_no_run(folder: pathlib.Path) -> None:
             f"{folder} holds the {BEST} of a run without a checkpoint; choose another folder, where a run can begin "
             f"with it (--start-from {folder / BEST})"
         )
+    if checkpoints.may_have_been:
+        raise SettingsError(
+            f"{folder} already holds a run, whose checkpoints are elsewhere; put them back and continue it with "
+            "--resume, or choose another folder"
+        )
     try:
         read_run(file)
-    except (CheckpointError, OSError) as error:
+    except CheckpointError as error:
         raise SettingsError(
             f"{folder} holds a {own_code.RUN} that is no run's; choose another folder"
         ) from error
-
-
-def _make_room(run: Run, folder: pathlib.Path) -> bool:
-    """Where another run ended before its first checkpoint, removes what that has written. Returns whether there was
-    one."""
-    file = folder / own_code.RUN
-    if not file.exists():
-        return False
-    before, begun = read_run(file), file.stat().st_mtime_ns
-    copies = [
-        folder / own_code.COPIES[option]
-        for option, source in (("--task", before.task_file), ("--network", before.network_file))
-        if source is not None
-    ]
-    # What is the source of either run is the user's, and so is a copy that was changed since.
-    sources = {before.task_file, before.network_file, run.task_file, run.network_file}
-    of_run = [
-        copy
-        for copy in copies
-        if copy.is_file() and copy.resolve() not in sources and copy.stat().st_mtime_ns <= begun
-    ]
-    # The file that says what it was goes last, so that this can be done again.
-    for old in [*of_run, *(folder / name for name in _REPORTS), file]:
-        old.unlink(missing_ok=True)
-    for unfinished in (folder / "checkpoints").glob(".[0-9]*.unfinished"):
-        shutil.rmtree(unfinished, ignore_errors=True)
-    return True
 
 
 def take_folder(
@@ -94,10 +83,15 @@ def take_folder(
         if not resumes:
             files.require_folder(folder)
             folder.mkdir(parents=True, exist_ok=True)
-        held.enter_context(files.alone_in(folder))
+        is_alone = held.enter_context(files.alone_in(folder))
         if not resumes:
             # Another one may have come and gone since.
             require_no_run(folder)
+            if not is_alone and (folder / own_code.RUN).exists():
+                raise SettingsError(
+                    f"{folder} already holds a run, and its disk has no locks that would tell whether that is under "
+                    f"way; if it is not, remove its {own_code.RUN}, or choose another folder"
+                )
     except (Error, OSError, SettingsError) as error:
         return error
     return None
@@ -114,27 +108,102 @@ def begin_folder(
     """Writes what the run is into its folder, in the place of one that ended before its first checkpoint; why that is
     impossible."""
     try:
-        if not resumes and _make_room(run, folder):
-            say(f"{folder} held a run without a checkpoint; this one takes its place")
+        # A run that is resumed has the copies, with which it goes on.
+        code = {} if resumes else _code_of(run, folder)
+        if not resumes:
+            _make_room(run, folder, code, say)
         if teacher is not None and teacher[1] != folder / TEACHER:
             checkpoint.save_policy(teacher[0], folder / TEACHER)
-        for option, file in (("--task", run.task_file), ("--network", run.network_file)):
-            # A run that is resumed has the copy, with which it goes on.
-            if file is not None and not resumes:
-                _keep_code(file, folder / own_code.COPIES[option])
+        for copy, text in code.items():
+            files.write_atomically(copy, lambda handle: handle.write(text))
         write_run(run, folder)
     except (CheckpointError, Error, OSError) as error:
         return error
     return None
 
 
-def _keep_code(file: pathlib.Path, copy: pathlib.Path) -> None:
-    """Copies a file of the user's, so that the run can be resumed whatever becomes of it."""
-    code = file.read_bytes()
-    if copy.exists() and copy.read_bytes() != code:
-        message = f"is there already, and is not {file}; move it, or choose another folder"
-        raise Error(ErrorCode.IO, str(copy), message)
-    files.write_atomically(copy, lambda handle: handle.write(code))
+def _code_of(run: Run, folder: pathlib.Path) -> dict[pathlib.Path, bytes]:
+    """What is copied of the user's files, so that the run can be resumed whatever becomes of them, by where."""
+    return {
+        folder / own_code.COPIES[option]: file.read_bytes()
+        for option, file in _sources_of(run).items()
+    }
+
+
+def _sources_of(run: Run) -> dict[str, pathlib.Path]:
+    """The files of the user's, by the options that named them."""
+    named = {"--task": run.task_file, "--network": run.network_file}
+    return {option: file for option, file in named.items() if file is not None}
+
+
+def _make_room(
+    run: Run, folder: pathlib.Path, code: dict[pathlib.Path, bytes], say: Callable[[str], None]
+) -> None:
+    """Where another run ended before its first checkpoint, removes what that has written, but for what may be the only
+    one of its kind, which gets another name. Raises Error, and changes nothing, where a file of the user's is in the
+    place of `code`."""
+    file = folder / own_code.RUN
+    before = read_run(file) if file.exists() else None
+    replaced = _replaced_copies(run, before, folder, code)
+    if before is None:
+        return
+    say(f"{folder} held a run without a checkpoint; this one takes its place")
+    table, teacher = folder / _TABLE, folder / TEACHER
+    if _has_rows(table):
+        replaced.append(table)
+    if before.teacher is not None and teacher.is_file():
+        is_named = teacher.resolve() in (run.teacher, run.start_from)
+        is_copy = before.teacher.is_file() and not before.teacher.samefile(teacher)
+        if is_copy and not is_named:
+            teacher.unlink()
+        elif not is_named:
+            replaced.append(teacher)
+    for old in replaced:
+        aside = _name_aside(old)
+        os.rename(old, aside)
+        say(f"its {old.name} is {aside.name} now")
+    for unfinished in CheckpointFolder(folder, 1).all_unfinished():
+        shutil.rmtree(unfinished, ignore_errors=True)
+    # The file that says what it was goes last, so that this can be done again.
+    for old in (table, folder / _PAGE, file):
+        old.unlink(missing_ok=True)
+
+
+def _replaced_copies(
+    run: Run, before: Optional[Run], folder: pathlib.Path, code: dict[pathlib.Path, bytes]
+) -> list[pathlib.Path]:
+    """The copies of code that the run `before` has kept, and that are not this run's. Raises Error where another file is
+    in the place of one of this run's."""
+    replaced = []
+    kept = _sources_of(before) if before is not None else {}
+    # What is the source of either run is the user's, and so is a copy that was changed since.
+    sources = {*kept.values(), *_sources_of(run).values()}
+    for option, name in own_code.COPIES.items():
+        copy = folder / name
+        if not copy.exists() or copy.read_bytes() == code.get(copy):
+            continue
+        if option in kept and copy.resolve() not in sources and not _is_newer(copy, folder):
+            replaced.append(copy)
+        elif copy in code:
+            file = _sources_of(run)[option]
+            message = f"is there already, and is not {file}; move it, or choose another folder"
+            raise Error(ErrorCode.IO, str(copy), message)
+    return replaced
+
+
+def _is_newer(copy: pathlib.Path, folder: pathlib.Path) -> bool:
+    return copy.stat().st_mtime_ns > (folder / own_code.RUN).stat().st_mtime_ns
+
+
+def _has_rows(table: pathlib.Path) -> bool:
+    return table.is_file() and table.read_bytes().count(b"\n") > 1
+
+
+def _name_aside(file: pathlib.Path) -> pathlib.Path:
+    """task.before.py, or task.before.2.py, ...: one that nothing has."""
+    numbers = itertools.chain(("",), (f".{number}" for number in itertools.count(2)))
+    asides = (file.with_name(f"{file.stem}.before{number}{file.suffix}") for number in numbers)
+    return next(aside for aside in asides if not os.path.lexists(aside))
 
 
 def is_complete(run: Run, folder: pathlib.Path) -> bool:
@@ -142,7 +211,7 @@ def is_complete(run: Run, folder: pathlib.Path) -> bool:
     what a signal may have put off. Of a report that is none, the run writes another."""
     done = CheckpointFolder(folder, run.settings.keep).steps
     try:
-        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+        report = json.loads((folder / _REPORT).read_text(encoding="utf-8"))
         report = older.report_values(report)
         reported, is_whole = report["steps"], not report["must_validate"]
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
@@ -185,11 +254,29 @@ class CheckpointFolder:
             return []
         return sorted(path for path in self.folder.iterdir() if path.name.isdigit())
 
+    def all_unfinished(self) -> list[pathlib.Path]:
+        """Those that a run has left which ended while it wrote them."""
+        return list(self.folder.glob(".[0-9]*.unfinished"))
+
+    @property
+    def may_have_been(self) -> bool:
+        """Whether the run may have had some, also where they are on a disk that is not there, or were moved away."""
+        if (self.run / _REPORT).exists():
+            return True
+        if not os.path.lexists(self.folder):
+            return False
+        is_link = self.folder.is_symlink() or not self.folder.is_dir()
+        return is_link or len(list(self.folder.iterdir())) > len(self.all_unfinished())
+
     def latest(self) -> pathlib.Path:
         complete = self.complete()
         if not complete:
             best = self.run / BEST
-            again = "leave out --resume and give its options again to begin it anew"
+            again = (
+                "put its checkpoints back, or begin another run in another folder"
+                if self.may_have_been
+                else "leave out --resume and give its options again to begin it anew"
+            )
             weights = f"begin another run with the weights of {BEST} (--start-from {best})"
             message = f"holds no checkpoint to go on from; {weights if best.exists() else again}"
             raise Error(ErrorCode.IO, str(self.folder), message)

@@ -39,12 +39,15 @@ def run_in(folder: pathlib.Path) -> Run:
 
 
 def read_run(file: pathlib.Path) -> Run:
+    """Of a settings.json. Raises Error where it cannot be read, and CheckpointError where it is not one."""
+    try:
+        contents = file.read_bytes()
+    except OSError as error:
+        message = f"cannot read the file: {error.strerror}"
+        raise galactic.Error(galactic.ErrorCode.IO, str(file), message) from None
     remedy = "begin another run, which can have the weights of best.pt (--start-from)"
     with refusing(f"{file} does not say what the run is", remedy):
-        run, path = older.run_values(json.loads(file.read_text(encoding="utf-8"))), (
-            str,
-            type(None),
-        )
+        run, path = older.run_values(json.loads(contents.decode("utf-8"))), (str, type(None))
         require_types(
             run,
             {
