@@ -9,6 +9,7 @@ from typing import Optional, Sequence
 from galactic import files
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told
 from galactic.learning.reports import comparison
+from galactic.learning.saving.run_folder import files_of
 from galactic.streams import put
 
 
@@ -37,6 +38,8 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 
 def _compare(options: argparse.Namespace) -> int:
     if options.out is not None:
+        of_runs = [file for folder in options.runs for file in files_of(folder)]
+        files.require_apart({"--out": options.out}, of_runs)
         files.require_writable(options.out)
     runs = comparison.read(options.runs)
     if options.out is not None:

@@ -139,6 +139,15 @@ def test_a_run_under_way_may_have_no_table_or_a_part_of_a_row(
         "steps,seconds\n,3\n",
         "1,2\n3,4\n",
         b"\xff\xfe\n",
+        HEAD + "1000,10,50,,2,\n",
+        HEAD + "1000,10,50,,-0.5,\n",
+        HEAD + "1000,10,50,,nan,\n",
+        HEAD + "1000,10,50,inf,,\n",
+        HEAD + "1000,10,inf,,0.5,\n",
+        HEAD + "nan,10,50,0.5,,\n",
+        HEAD + "inf,10,50,0.5,,\n",
+        HEAD + "1000,-1,50,0.5,,\n",
+        HEAD + "1000,inf,50,0.5,,\n",
     ],
 )
 def test_a_broken_table_is_refused(tmp_path: pathlib.Path, capsys: Any, table: Any) -> None:
@@ -149,6 +158,33 @@ def test_a_broken_table_is_refused(tmp_path: pathlib.Path, capsys: Any, table: A
     assert (code, said) == (3, "") and fault.count("\n") == 1
     assert fault.startswith(f"galactic.compare: {run / 'curves.csv'} is no table of curves: ")
     assert fault.endswith("; leave this run out\n")
+
+
+def test_a_share_that_is_none_is_told(tmp_path: pathlib.Path, capsys: Any) -> None:
+    run = make_run(tmp_path / "run", HEAD + "1000,10,50,,2,\n")
+    assert "curves: validation_success: found 2, expected 0 to 1; leave" in told(capsys, run)[2]
+    # Of no time at all, there is no speed.
+    (run / "curves.csv").write_text(HEAD + "1000,1e-320,50,,0.5,\n", encoding="utf-8")
+    code, said, _ = told(capsys, run)
+    assert code == 0 and "inf" not in said
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["settings.json", "curves.csv", "best.pt", "task.py", "checkpoints/000000001024/rank-0.pt"],
+)
+def test_a_page_in_the_place_of_a_file_of_a_run_is_refused(
+    tmp_path: pathlib.Path, capsys: Any, name: str
+) -> None:
+    runs = [make_run(tmp_path / "one"), make_run(tmp_path / "two", seed=2)]
+    file = runs[1] / name
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.touch()
+    before = file.read_bytes()
+    code, said, fault = told(capsys, *runs, "-o", file)
+    assert (code, said) == (3, "") and file.read_bytes() == before
+    assert fault == f"galactic.compare: {file}: is also an input; write to another file\n"
+    assert told(capsys, *runs, "-o", runs[1] / "compare.html")[0] == 0
 
 
 def test_what_is_no_run_is_refused(tmp_path: pathlib.Path, capsys: Any) -> None:

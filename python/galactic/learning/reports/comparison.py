@@ -53,7 +53,8 @@ class ComparedRun(NamedTuple):
     def speed(self) -> Optional[float]:
         """Steps per second over all of its time."""
         seconds = self._last("seconds")
-        return self.steps / seconds if seconds else None
+        speed = self.steps / seconds if seconds else math.inf
+        return speed if math.isfinite(speed) else None
 
     @property
     def in_training(self) -> Optional[float]:
@@ -94,8 +95,7 @@ def _read(folder: pathlib.Path) -> ComparedRun:
         # There is none before the first row.
         rows = read_curves(file) if file.exists() else []
         for row in rows:
-            if row.get("steps") is None or row.get("seconds") is None:
-                raise ValueError("found a row without steps or seconds")
+            _require_numbers(row)
     validated = [row for row in rows if row.get(f"{VALIDATION}success") is not None]
     return ComparedRun(
         os.fspath(folder),
@@ -104,6 +104,23 @@ def _read(folder: pathlib.Path) -> ComparedRun:
         rows,
         [_success_of(row, run) for row in validated],
     )
+
+
+_MOST = {
+    **dict.fromkeys(("steps", "seconds", "episodes"), math.inf),
+    **dict.fromkeys(("success", f"{VALIDATION}success"), 1.0),
+}
+
+
+def _require_numbers(row: Mapping[str, Optional[float]]) -> None:
+    """Raises ValueError where a row is none of a run's, as far as it is shown as numbers."""
+    if row.get("steps") is None or row.get("seconds") is None:
+        raise ValueError("found a row without steps or seconds")
+    for column, most in _MOST.items():
+        value = row.get(column)
+        if value is not None and not (math.isfinite(value) and 0.0 <= value <= most):
+            wanted = "0 or more" if most == math.inf else f"0 to {most:.0f}"
+            raise ValueError(f"{column}: found {value:g}, expected {wanted}")
 
 
 def _success_of(row: Mapping[str, Optional[float]], run: Run) -> Success:
