@@ -37,6 +37,7 @@ from galactic.learning.reports import log
 from galactic.learning.reports.progress import amount
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.run_folder import (
+    BEST,
     TEACHER,
     CheckpointFolder,
     begin_folder,
@@ -184,14 +185,13 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 def _launched(run: Run, folder: pathlib.Path, command: Sequence[str]) -> int:
     """Has ranks do the work, which need seconds before they say anything."""
     settings, checkpoints = run.settings, CheckpointFolder(folder, run.settings.keep)
-    before = checkpoints.steps
     ranks = "1 rank" if settings.ranks == 1 else f"{settings.ranks} ranks"
     put(
         sys.stderr,
         f"{run.world}: {ranks} of {settings.envs} envs, {amount(settings.steps)} steps; starting ...\n",
     )
     code = launch(settings.ranks, command)
-    if code == INTERRUPTED and checkpoints.steps == before:
+    if code == INTERRUPTED and not checkpoints.complete() and not (folder / BEST).exists():
         # Ranks that were still loading have ended without a word.
         put(sys.stderr, f"galactic.train: interrupted before anything was saved in {folder}\n")
     return code

@@ -17,7 +17,9 @@ import pytest
 
 import galactic
 from galactic import files, train
+from galactic.learning.presets import preset
 from galactic.learning.ranks.launch import LAUNCHER, launch
+from galactic.learning.saving.runs import Run
 from programs import (
     SMALL,
     SMALL_OF_ANY_RANKS,
@@ -119,6 +121,18 @@ def test_ctrl_c_before_anything_is_saved_is_told(
     first, last = capfd.readouterr().err.splitlines()
     assert first.endswith("none.pack: 2 ranks of 16 envs, 6 M steps; starting ...")
     assert last == f"galactic.train: interrupted before anything was saved in {tmp_path / 'run'}"
+
+
+@pytest.mark.parametrize("saved", ["checkpoints/000000001024/policy.pt", "best.pt"])
+def test_ctrl_c_where_something_was_saved_before_is_not_told_so(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path, capsys: Any, saved: str
+) -> None:
+    (tmp_path / saved).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / saved).touch()
+    monkeypatch.setattr(train, "launch", lambda ranks, command: 130)
+    run = Run(pathlib.Path("none.pack"), None, preset("quick"))
+    assert train._launched(run, tmp_path, []) == 130
+    assert "before anything was saved" not in capsys.readouterr().err
 
 
 def test_ctrl_c_before_all_ranks_have_started_reaches_all_of_them(
