@@ -14,6 +14,7 @@ import torch
 import galactic
 from galactic import evaluate
 from galactic.learning.encoders import Inputs
+from galactic.learning.packs import content
 from galactic.learning.packs.content import export_policy
 from galactic.learning.refusals import CheckpointError, NetworkError, SettingsError
 from galactic.learning.saving import checkpoint
@@ -572,6 +573,47 @@ def test_what_cannot_be_exported_says_so_before_it_learns(
     )
     assert "of lab.py: a policy pack has no layer for MultiheadAttention\n" in said["Attends"]
     assert "galactic.export" not in said["Net"]
+
+
+TIRES = """
+
+class Tires(Net):
+    calls = 0
+
+    def forward(self, inputs):
+        Tires.calls += 1
+        if Tires.calls > 12:
+            raise LookupError("no more")
+        return self.layer(inputs.state)
+"""
+
+
+@needs_worlds
+@pytest.mark.parametrize("module", ["own_tired", "own_package"])
+def test_what_a_network_in_a_module_raises_is_the_users(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, module: str
+) -> None:
+    """Also where the module has the class from another one."""
+    file = tmp_path / "own_tired.py"
+    file.write_text(WRONG + TIRES, encoding="utf-8")
+    (tmp_path / "own_package.py").write_text("from own_tired import Tires\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    for name in ("own_tired", "own_package"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    options = [*SMALL, "--network", f"{module}:Tires", "--steps", 2 * UPDATE]
+    done = call("train", WORLD, "-o", tmp_path / "run", *options)
+    assert done.returncode == 3, done.stderr
+    assert "an exception of the code that was named ended it\nTraceback" in done.stderr
+    assert f'File "{file}", line ' in done.stderr and "LookupError: no more" in done.stderr
+
+
+def test_no_fault_of_what_is_exported_ends_a_training(monkeypatch: pytest.MonkeyPatch) -> None:
+    def raises(*_: Any) -> int:
+        raise RuntimeError("a __repr__ of one's own")
+
+    monkeypatch.setattr(content, "encoded", raises)
+    policy = make_trainer(None).policy
+    assert content.fault_of(policy) == "RuntimeError: a __repr__ of one's own"
 
 
 @needs_worlds

@@ -48,12 +48,15 @@ def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robo
 
 
 def fault_of(policy: Policy) -> str:
-    """Why the encoder of a policy cannot become layers of a pack, whatever it learns; nothing where it can."""
+    """Why the encoder of a policy cannot become layers of a pack, whatever it learns; nothing where it can. Code of the
+    user's may raise anything where it is followed, and may learn nonetheless."""
     layers = Layers()
     try:
         encoded(layers, policy.encoder, layers.add("observation"))
     except ExportError as error:
         return str(error)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
     return ""
 
 

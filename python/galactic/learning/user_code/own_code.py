@@ -24,6 +24,8 @@ _OWN = "galactic_own_"
 """What names of modules begin with that are files of the user's."""
 _PLACES = (_OWN, "galactic.task_runner", "galactic.learning.user_code.")
 """What names of modules begin with that are the user's, or call into them."""
+_NAMED: set[str] = set()
+"""The names of other modules that are the user's: those that options have named, or that have what they named."""
 COPIES = {"--task": "task.py", "--network": "network.py"}
 """The copies of the files that options name, beside RUN."""
 
@@ -74,10 +76,15 @@ def goes_on(code: CodeName, when: str) -> Iterator[None]:
 
 def has_raised(error: BaseException) -> bool:
     """Whether code of the user's has raised it, or what calls such code and takes what that returns."""
-    return any(
-        str(frame.f_globals.get("__name__", "")).startswith(_PLACES)
-        for frame, _ in traceback.walk_tb(error.__traceback__)
-    )
+    frames = (frame for frame, _ in traceback.walk_tb(error.__traceback__))
+    modules = [str(frame.f_globals.get("__name__", "")) for frame in frames]
+    return any(module in _NAMED or module.startswith(_PLACES) for module in modules)
+
+
+def _remember(module: str) -> None:
+    """Has has_raised() know a module of the user's; those of galactic, of which one may name a class, are none."""
+    if module.partition(".")[0] != "galactic":
+        _NAMED.add(module)
 
 
 def class_of(code: CodeName, base: type, base_name: str, siblings: Optional[pathlib.Path]) -> Any:
@@ -85,6 +92,7 @@ def class_of(code: CodeName, base: type, base_name: str, siblings: Optional[path
     members = members_of(code, siblings)
     found = members.get(code.name)
     if isinstance(found, type) and issubclass(found, base):
+        _remember(found.__module__)
         return found
     if code.name in members:
         raise SettingsError(f"{code.option}: {code} is no class that inherits from {base_name}")
@@ -193,7 +201,9 @@ def siblings_of(code: CodeName) -> Optional[pathlib.Path]:
 def _module_of(code: CodeName, siblings: Optional[pathlib.Path]) -> Any:
     if code.file is None:
         try:
-            return importlib.import_module(code.place)
+            module = importlib.import_module(code.place)
+            _remember(module.__name__)
+            return module
         except ModuleNotFoundError as error:
             if error.name not in _with_parents(code.place):
                 raise  # of what the module imports
