@@ -80,7 +80,7 @@ class EnvStates(NamedTuple):
 
         world: whose states they are. Raises IndexError for objects that a state does not have.
         """
-        chosen = np.arange(len(self.episode))[rows]
+        chosen = np.atleast_1d(np.arange(len(self.episode))[rows])
         held = np.empty(len(chosen), np.int64)
         held[:] = self.target[chosen] if objects is None else _whole_numbers(objects)
         counts = (self.object_kinds[chosen] >= 0).sum(axis=1)

@@ -30,6 +30,8 @@ def _reached(observations: Array, infos: Mapping[str, Any], name: str | None = N
     if "final_obs" not in infos:
         return after
     ended = np.flatnonzero(infos["_final_obs"])
+    if not len(ended):
+        return after
     last = infos["final_obs"][ended]
     after[ended] = np.stack([row if name is None else row[name] for row in last])
     return after

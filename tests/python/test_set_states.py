@@ -200,6 +200,8 @@ def test_objects_are_put_into_some_hands(fresh, world):
     states.hold(world, [1, 0], rows=[4, 3])
     assert states.held[4] == 1 and states.held[3] == 0
     states.hold(world, rows=[])
+    states.hold(world, 1, rows=3)
+    assert states.held[4] == 1 and states.held[3] == 1
     for wrong, error, message in (
         ([-1] * ENVS, IndexError, "state 0 has no object -1; its last is"),
         (99, IndexError, "state 0 has no object 99; its last is"),

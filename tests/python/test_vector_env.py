@@ -518,6 +518,17 @@ def test_a_seed_that_is_none_begins_nothing(world, draw_actions):
         assert env.save_state() == before
 
 
+@pytest.mark.parametrize("is_dict", [False, True])
+def test_what_a_step_reached_where_no_episode_ended(is_dict) -> None:
+    observations = np.ones((2, 3), np.float32)
+    given = {"state": observations} if is_dict else observations
+    infos = {"final_obs": np.full(2, None), "_final_obs": np.zeros(2, bool)}
+    found = reached(given, infos)
+    part = found["state"] if is_dict else found
+    np.testing.assert_array_equal(part, observations)
+    assert part is not observations
+
+
 def test_what_a_step_reached_is_the_last_of_an_episode_that_ended(world, draw_actions) -> None:
     """And of no episode that goes on, with any number of halves and with dicts."""
     for options in ({"halves": 2}, {"observation": "dict", "copy": False}):
