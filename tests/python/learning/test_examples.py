@@ -43,9 +43,9 @@ def test_ppo_trains_and_plays_what_it_kept(tmp_path: pathlib.Path) -> None:
 
 def test_sac_trains_and_plays_what_it_kept(tmp_path: pathlib.Path) -> None:
     file = tmp_path / "pick.pt"
-    printed = output_of("sac.py", WORLD, "--unseen", HELD_OUT, "--steps", 60 * 256, "-o", file)
+    printed = output_of("sac.py", WORLD, "--unseen", HELD_OUT, "--steps", 210 * 256, "-o", file)
     *progress, result = printed.splitlines()
-    assert re.search(r"^ *15,360 steps, \S+ a second: \S+% solved, ", progress[-1])
+    assert re.search(r"^ *53,760 steps, \S+ a second: \S+% solved, ", progress[-1])
     assert re.search(r"[\d.]+% by sampled actions, [\d.]+% by the likeliest$", result)
     assert output_of("sac.py", HELD_OUT, "--play", file).splitlines() == [result]
 
