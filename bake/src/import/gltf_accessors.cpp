@@ -1,5 +1,7 @@
 #include "import/gltf_accessors.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -7,6 +9,7 @@
 #include <utility>
 
 #include "import/gltf_json.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -79,61 +82,81 @@ const Json* memberObject(const Json& parent, const char* key) {
   return member != parent.end() && member->is_object() ? &*member : nullptr;
 }
 
-/// The first `components` numbers of an element.
-void copyElement(const std::byte* from, std::uint64_t type, bool normalized, std::span<double> to) {
-  const std::uint64_t bytes = gltfComponentBytes(type);
+std::uint64_t componentType(const Json& owner) {
+  return gltfWhole(owner, "componentType").value_or(0);
+}
+
+/// The first numbers of an element of `accessor`.
+void copyElement(const std::byte* from, const Json& accessor, std::span<double> to) {
+  const std::uint64_t type = componentType(accessor);
+  const auto member = accessor.find("normalized");
+  const bool normalized = member != accessor.end() && *member == true;
   for (double& number : to) {
     number = componentAt(from, type, normalized);
-    from += bytes;
+    from += gltfComponentBytes(type);
   }
 }
 
 }  // namespace
 
 GltfAccessors::GltfAccessors(Json& document, const fs::path& path, Bytes file, Reach reach)
-    : document_(document), folder_(path.parent_path()), file_(file), reach_(reach) {}
+    : document_(document), path_(path), file_(file), reach_(reach) {}
 
 bool GltfAccessors::isFloat(std::uint64_t accessor) const {
   const Json& accessors = gltfList(document_, "accessors");
   return accessor < accessors.size() && gltfWhole(accessors[accessor], "componentType") == kFloat;
 }
 
-std::optional<std::vector<double>> GltfAccessors::read(std::uint64_t accessor,
-                                                       std::uint64_t components) {
+Result<std::optional<std::vector<double>>> GltfAccessors::read(std::uint64_t accessor,
+                                                               std::uint64_t components) {
   const Json& accessors = gltfList(document_, "accessors");
   if (accessor >= accessors.size() || !accessors[accessor].is_object()) return std::nullopt;
   const Json& stated = accessors[accessor];
-  const std::uint64_t type = gltfWhole(stated, "componentType").value_or(0);
+  const std::uint64_t bytes = components * gltfComponentBytes(componentType(stated));
   const auto count = gltfWhole(stated, "count");
-  const std::uint64_t element = components * gltfComponentBytes(type);
   const bool fits = gltfText(stated, "type") == (components == 2 ? "VEC2" : "VEC3");
-  if (!count || *count == 0 || element == 0 || !fits) return std::nullopt;
-  const auto elements = elementsOf(stated, *count, element);
-  if (!elements) return std::nullopt;
-  const auto member = stated.find("normalized");
-  const bool normalized = member != stated.end() && *member == true;
+  if (!count || *count == 0 || bytes == 0 || !fits) return std::nullopt;
   std::vector<double> numbers(*count * components);
-  const auto copy = [&](const Elements& from, std::uint64_t n, std::uint64_t to) {
-    copyElement(from.bytes.data() + n * from.stride, type, normalized,
-                std::span(numbers).subspan(to * components, components));
-  };
-  for (std::uint64_t n = 0; n < *count; ++n) copy(*elements, n, n);
+  if (stated.contains("bufferView")) {
+    ASSIGN_OR_RETURN(const auto elements, elementsOf(stated, *count, bytes));
+    if (!elements) return std::nullopt;
+    for (std::uint64_t n = 0; n < *count; ++n) {
+      copyElement(elements->at(n), stated, std::span(numbers).subspan(n * components, components));
+    }
+  }
+  ASSIGN_OR_RETURN(const bool complete, replaceSparse(accessor, components, numbers));
+  if (!complete) return std::nullopt;
+  return numbers;
+}
+
+Result<bool> GltfAccessors::replaceSparse(std::uint64_t accessor, std::uint64_t components,
+                                          std::vector<double>& numbers) {
+  const Json& stated = gltfList(document_, "accessors")[accessor];
   const Json* sparse = memberObject(stated, "sparse");
-  if (sparse == nullptr) return numbers;
+  if (sparse == nullptr) return true;
   const Json* indices = memberObject(*sparse, "indices");
   const Json* values = memberObject(*sparse, "values");
-  if (indices == nullptr || values == nullptr) return std::nullopt;
-  const std::uint64_t index_type = gltfWhole(*indices, "componentType").value_or(0);
+  if (indices == nullptr || values == nullptr) return false;
   const std::uint64_t some = gltfWhole(*sparse, "count").value_or(0);
-  const auto places = elementsOf(*indices, some, gltfComponentBytes(index_type));
-  const auto replaced = elementsOf(*values, some, element);
-  if (!places || !replaced) return std::nullopt;
+  ASSIGN_OR_RETURN(const auto places,
+                   elementsOf(*indices, some, gltfComponentBytes(componentType(*indices))));
+  ASSIGN_OR_RETURN(
+      const auto replaced,
+      elementsOf(*values, some, components * gltfComponentBytes(componentType(stated))));
+  if (!places || !replaced) return false;
+  const std::uint64_t count = numbers.size() / components;
   for (std::uint64_t n = 0; n < some; ++n) {
-    const double place = componentAt(places->bytes.data() + n * places->stride, index_type, false);
-    if (!(place >= 0 && place < static_cast<double>(*count))) return std::nullopt;
-    copy(*replaced, n, static_cast<std::uint64_t>(place));
+    const double place = componentAt(places->at(n), componentType(*indices), false);
+    if (!(place >= 0 && place < static_cast<double>(count))) {
+      return fail(ErrorCode::kInvalidInput, path_.string(),
+                  fmt::format("accessor {} has a sparse element {}, and {} elements; the file is "
+                              "damaged: export or download it again",
+                              accessor, place, count));
+    }
+    const auto to = static_cast<std::uint64_t>(place);
+    copyElement(replaced->at(n), stated, std::span(numbers).subspan(to * components, components));
   }
-  return numbers;
+  return true;
 }
 
 std::uint64_t GltfAccessors::append(std::span<const double> numbers, std::uint64_t components) {
@@ -184,22 +207,24 @@ Bytes GltfAccessors::ownBuffer() const {
 GltfAccessors::Buffer GltfAccessors::find(const std::string& uri) const {
   if (uri.starts_with("data:")) {
     const std::size_t comma = uri.find(',');
-    if (comma == uri.npos || !uri.substr(0, comma).ends_with(";base64")) return {};
-    return {.mapped = std::nullopt,
-            .decoded = base64Decoded(std::string_view(uri).substr(comma + 1))};
+    if (comma == uri.npos) return {};
+    const std::string_view data = std::string_view(uri).substr(comma + 1);
+    const bool is_base64 = uri.substr(0, comma).ends_with(";base64");
+    return {.mapped = std::nullopt, .decoded = is_base64 ? base64Decoded(data) : std::string(data)};
   }
+  const fs::path folder = path_.parent_path();
   for (const std::string& name : {uri, withoutUriEscapes(uri)}) {
-    if (reach_ == Reach::kNear && !isBelow(folder_ / name, folder_)) continue;
-    if (auto mapped = MappedFile::open(folder_ / name)) {
+    if (reach_ == Reach::kNear && !isBelow(folder / name, folder)) continue;
+    if (auto mapped = MappedFile::open(folder / name)) {
       return {.mapped = std::move(*mapped), .decoded = {}};
     }
   }
   return {};
 }
 
-std::optional<GltfAccessors::Elements> GltfAccessors::elementsOf(const Json& owner,
-                                                                 std::uint64_t count,
-                                                                 std::uint64_t bytes) {
+Result<std::optional<GltfAccessors::Elements>> GltfAccessors::elementsOf(const Json& owner,
+                                                                         std::uint64_t count,
+                                                                         std::uint64_t bytes) {
   const Json& views = gltfList(document_, "bufferViews");
   const auto number = gltfWhole(owner, "bufferView");
   if (!number || *number >= views.size() || bytes == 0) return std::nullopt;
@@ -207,14 +232,21 @@ std::optional<GltfAccessors::Elements> GltfAccessors::elementsOf(const Json& own
   const auto buffer = gltfWhole(view, "buffer");
   if (!buffer) return std::nullopt;
   Bytes held = bufferAt(*buffer);
-  for (const std::uint64_t begin :
-       {gltfWhole(view, "byteOffset").value_or(0), gltfWhole(owner, "byteOffset").value_or(0)}) {
-    if (begin > held.size()) return std::nullopt;
-    held = held.subspan(static_cast<std::size_t>(begin));
+  if (held.empty()) return std::nullopt;
+  const auto cut_off = [&, all = held.size()] {
+    return fail(ErrorCode::kInvalidInput, path_.string(),
+                fmt::format("only {} bytes of its buffer {} can be read, and buffer view {} takes "
+                            "more; the file is damaged: export or download it again",
+                            all, *buffer, *number));
+  };
+  for (const Json* one : {&view, &owner}) {
+    const auto begin = gltfWhole(*one, "byteOffset", 0);
+    if (!begin || *begin > held.size()) return cut_off();
+    held = held.subspan(static_cast<std::size_t>(*begin));
   }
   const std::uint64_t stride = std::max(bytes, gltfWhole(view, "byteStride").value_or(bytes));
   if (count != 0 && (held.size() < bytes || (held.size() - bytes) / stride < count - 1)) {
-    return std::nullopt;
+    return cut_off();
   }
   return Elements{.bytes = held, .stride = static_cast<std::size_t>(stride)};
 }

@@ -48,6 +48,11 @@ std::optional<std::uint64_t> gltfWhole(const Json& object, const char* key) {
   return member->get<std::uint64_t>();
 }
 
+std::optional<std::uint64_t> gltfWhole(const Json& object, const char* key,
+                                       std::uint64_t otherwise) {
+  return object.contains(key) ? gltfWhole(object, key) : otherwise;
+}
+
 std::string gltfText(const Json& object, const char* key) {
   const auto member = object.find(key);
   return member == object.end() || !member->is_string() ? std::string()

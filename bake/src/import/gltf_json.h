@@ -37,6 +37,10 @@ inline constexpr std::size_t kGlbChunkHeader = 8;
 /// The member as a whole number; none where it is absent or none.
 [[nodiscard]] std::optional<std::uint64_t> gltfWhole(const nlohmann::json& object, const char* key);
 
+/// The same, and `otherwise` where there is no such member.
+[[nodiscard]] std::optional<std::uint64_t> gltfWhole(const nlohmann::json& object, const char* key,
+                                                     std::uint64_t otherwise);
+
 /// The member as a text; empty where it is absent or none.
 [[nodiscard]] std::string gltfText(const nlohmann::json& object, const char* key);
 

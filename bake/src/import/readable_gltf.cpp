@@ -7,9 +7,11 @@
 #include <cstring>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "import/gltf_accessors.h"
 #include "import/gltf_json.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -89,46 +91,54 @@ class PrimitiveWriter {
       : document_(document), accessors_(accessors) {}
 
   /// Whether any primitive got others than it had.
-  bool run() {
+  Result<bool> run() {
     bool changes = false;
     if (!document_.contains("meshes") || !document_["meshes"].is_array()) return false;
     for (Json& mesh : document_["meshes"]) {
       if (!mesh.is_object() || !mesh.contains("primitives")) continue;
-      for (Json& primitive : mesh["primitives"]) changes = rewrite(primitive) || changes;
+      for (Json& primitive : mesh["primitives"]) {
+        ASSIGN_OR_RETURN(const bool changed, rewrite(primitive));
+        changes = changes || changed;
+      }
     }
     return changes;
   }
 
  private:
-  bool rewrite(Json& primitive) {
+  Result<bool> rewrite(Json& primitive) {
     if (!primitive.is_object() || !primitive.contains("attributes")) return false;
     Json& attributes = primitive["attributes"];
     if (!attributes.is_object()) return false;
-    bool changes = placeTexture(primitive, attributes);
-    changes = makeFloats(attributes) || changes;
-    if (!primitive.contains("targets") || !primitive["targets"].is_array()) return changes;
-    for (Json& target : primitive["targets"]) changes = makeFloats(target) || changes;
+    ASSIGN_OR_RETURN(bool changes, placeTexture(primitive, attributes));
+    std::vector<Json*> shapes{&attributes};
+    if (primitive.contains("targets") && primitive["targets"].is_array()) {
+      for (Json& target : primitive["targets"]) shapes.push_back(&target);
+    }
+    for (Json* shape : shapes) {
+      ASSIGN_OR_RETURN(const bool changed, makeFloats(*shape));
+      changes = changes || changed;
+    }
     return changes;
   }
 
   /// TEXCOORD_0 becomes what the color texture is drawn with.
-  bool placeTexture(const Json& primitive, Json& attributes) {
+  Result<bool> placeTexture(const Json& primitive, Json& attributes) {
     const Mapping mapping = mappingOf(document_, primitive);
     const std::string named = "TEXCOORD_" + std::to_string(mapping.set);
     const auto source = gltfWhole(attributes, named.c_str());
     if (!source) return false;
-    const auto drawn = drawnFrom(*source, mapping.image_from_uv);
+    ASSIGN_OR_RETURN(const auto drawn, drawnFrom(*source, mapping.image_from_uv));
     if (!drawn || attributes.value("TEXCOORD_0", Json()) == Json(*drawn)) return false;
     attributes["TEXCOORD_0"] = *drawn;
     return true;
   }
 
   /// The accessor of the moved coordinates; none where the one that is named cannot be read.
-  std::optional<std::uint64_t> drawnFrom(std::uint64_t source, const UvTransform& m) {
+  Result<std::optional<std::uint64_t>> drawnFrom(std::uint64_t source, const UvTransform& m) {
     if (accessors_.isFloat(source) && m == kUnmoved) return source;
     const auto made = made_.find({source, m});
     if (made != made_.end()) return made->second;
-    auto uvs = accessors_.read(source, kTexelCoordinates);
+    ASSIGN_OR_RETURN(auto uvs, accessors_.read(source, kTexelCoordinates));
     if (!uvs) return std::nullopt;
     for (std::size_t n = 0; n < uvs->size(); n += kTexelCoordinates) {
       const double u = (*uvs)[n];
@@ -142,28 +152,30 @@ class PrimitiveWriter {
   }
 
   /// KHR_mesh_quantization: positions in integers become floats. Directions in integers go, as
-  /// nobody asks for them, and so do positions that cannot be read.
-  bool makeFloats(Json& attributes) {
+  /// nobody asks for them.
+  Result<bool> makeFloats(Json& attributes) {
     bool changes = false;
     for (const char* name : {"POSITION", "NORMAL", "TANGENT"}) {
       const auto source = gltfWhole(attributes, name);
       if (!source || accessors_.isFloat(*source)) continue;
-      changes = true;
-      const bool is_position = std::string_view(name) == "POSITION";
-      const auto floats = is_position ? floatsOf(*source) : std::nullopt;
-      if (floats) {
-        attributes[name] = *floats;
-      } else {
+      if (std::string_view(name) != "POSITION") {
         attributes.erase(name);
+        changes = true;
+        continue;
       }
+      ASSIGN_OR_RETURN(const auto floats, floatsOf(*source));
+      if (!floats) continue;
+      attributes[name] = *floats;
+      changes = true;
     }
     return changes;
   }
 
-  std::optional<std::uint64_t> floatsOf(std::uint64_t source) {
+  Result<std::optional<std::uint64_t>> floatsOf(std::uint64_t source) {
     const auto [made, is_new] = floats_.try_emplace(source);
     if (!is_new) return made->second;
-    if (const auto numbers = accessors_.read(source, kSpaceCoordinates)) {
+    ASSIGN_OR_RETURN(const auto numbers, accessors_.read(source, kSpaceCoordinates));
+    if (numbers) {
       made->second = accessors_.append(*numbers, kSpaceCoordinates);
     }
     return made->second;
@@ -219,13 +231,13 @@ bool mayDiffer(Bytes file) {
 
 }  // namespace
 
-std::optional<ReadableGltf> readableGltf(const fs::path& path, Bytes file, Reach reach) {
+Result<std::optional<ReadableGltf>> readableGltf(const fs::path& path, Bytes file, Reach reach) {
   if (!mayDiffer(file)) return std::nullopt;
   Json document = parseGltf(file);
   if (!document.is_object()) return std::nullopt;
   GltfAccessors accessors(document, path, file, reach);
   const bool had_skins = dropSkins(document);
-  const bool has_others = PrimitiveWriter(document, accessors).run();
+  ASSIGN_OR_RETURN(const bool has_others, PrimitiveWriter(document, accessors).run());
   if (!had_skins && !has_others) return std::nullopt;
   std::string floats = accessors.finish(kGltfFloatsFile);
   return ReadableGltf{.file = withJson(file, document.dump()), .floats = std::move(floats)};

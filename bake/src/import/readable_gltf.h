@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "galactic/error.h"
 #include "import/source_files.h"
 
 namespace galactic::bake {
@@ -26,9 +27,11 @@ inline constexpr std::string_view kGltfFloatsFile = "galactic-floats.bin";
 /// coordinates in integers, also those of KHR_mesh_quantization, are floats. There are no skins:
 /// they may lack their inverseBindMatrices, at which the reader crashes. None where all is so
 /// already, or where the file is none that such a reader takes. Other buffers are looked for in the
-/// file's folder, as far as `reach` allows.
-[[nodiscard]] std::optional<ReadableGltf> readableGltf(const std::filesystem::path& path,
-                                                       std::span<const std::byte> file,
-                                                       Reach reach);
+/// file's folder, as far as `reach` allows; what names one that is not there stays, so that the
+/// reader tells. `file` has passed checkGltfRanges. Fails with kInvalidInput where an accessor's
+/// elements are not in its buffer, or sparse ones not in the accessor.
+[[nodiscard]] Result<std::optional<ReadableGltf>> readableGltf(const std::filesystem::path& path,
+                                                               std::span<const std::byte> file,
+                                                               Reach reach);
 
 }  // namespace galactic::bake

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <type_traits>
 
 #include "bake/import/import_helpers.h"
@@ -152,6 +154,134 @@ TEST(QuantizedGltf, IsRejectedWhereItsPositionsAreCutOff) {
       "a.glb", glbOf({cut, elementsOf(positions), elementsOf(uvs), elementsOf(positions)}, true));
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
   EXPECT_THAT(error.message, HasSubstr("accessor 0"));
+}
+
+/// A quantized triangle with a morph target, both in JSON that tests change.
+class SparseGltf : public testing::Test {
+ protected:
+  using Json = nlohmann::json;
+
+  SparseGltf() {
+    const std::vector<std::array<std::int16_t, 3>> positions{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
+    const std::vector<std::array<std::int16_t, 3>> moved{{0, 0, 8}, {2, 0, 0}};
+    for (const auto& p : positions) buffer_ += bytesOf(p);
+    buffer_ += bytesOf(std::array<std::uint16_t, 2>{1, 2});
+    for (const auto& p : moved) buffer_ += bytesOf(p);
+    json_ = Json::parse(
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+            "extensionsUsed":["KHR_mesh_quantization"],
+            "extensionsRequired":["KHR_mesh_quantization"],
+            "meshes":[{"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":1}]}],
+                       "weights":[0.5]}],
+            "accessors":[
+              {"bufferView":0,"componentType":5122,"count":3,"type":"VEC3"},
+              {"componentType":5122,"count":3,"type":"VEC3","sparse":{"count":2,
+                "indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":2}}}],
+            "bufferViews":[{"buffer":0,"byteLength":18},
+                           {"buffer":0,"byteOffset":18,"byteLength":4},
+                           {"buffer":0,"byteOffset":22,"byteLength":12}],
+            "buffers":[{"byteLength":34}]})");
+  }
+
+  [[nodiscard]] Result<bake::SourceAsset> read() const {
+    return importContent("a.glb", glbContainer(json_.dump(), buffer_));
+  }
+
+  /// Of the file with another value at `pointer`; none takes the value away.
+  [[nodiscard]] std::string messageWith(const std::string& pointer,
+                                        const std::optional<Json>& value) const {
+    Json changed = json_;
+    const Json::json_pointer at(pointer);
+    if (value) {
+      changed[at] = *value;
+    } else {
+      changed[at.parent_pointer()].erase(at.back());
+    }
+    const Error error = importError("a.glb", glbContainer(changed.dump(), buffer_));
+    EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
+    return error.message;
+  }
+
+  std::string buffer_;
+  Json json_;
+};
+
+TEST_F(SparseGltf, WithoutABufferViewIsZeroButForItsSparseElements) {
+  const auto target = read();
+  ASSERT_TRUE(target.has_value()) << target.error().text();
+  EXPECT_THAT(target->meshes[0].positions,
+              ElementsAre(Vec3{0, 0, 0}, Vec3{4, 0, 4}, Vec3{1, 4, 0}));
+  EXPECT_THAT(target->warnings, ElementsAre());
+  // The mesh's own likewise.
+  json_["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 1;
+  json_["meshes"][0]["primitives"][0]["targets"][0]["POSITION"] = 0;
+  const auto own = read();
+  ASSERT_TRUE(own.has_value()) << own.error().text();
+  EXPECT_THAT(own->meshes[0].positions, ElementsAre(Vec3{0, 0, 0}, Vec3{2, 0, 8}, Vec3{2, 2, 0}));
+  // A target that moves nothing.
+  json_["accessors"][1].erase("sparse");
+  json_["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 0;
+  json_["meshes"][0]["primitives"][0]["targets"][0]["POSITION"] = 1;
+  const auto still = read();
+  ASSERT_TRUE(still.has_value()) << still.error().text();
+  EXPECT_THAT(still->meshes[0].positions, ElementsAre(Vec3{0, 0, 0}, Vec3{4, 0, 0}, Vec3{0, 4, 0}));
+}
+
+TEST_F(SparseGltf, IsRejectedWhereNoBytesBackIt) {
+  EXPECT_THAT(messageWith("/accessors/1/count", 4),
+              HasSubstr("accessor 1 states 4 elements without a buffer view, and the largest with "
+                        "one has 3"));
+  EXPECT_THAT(messageWith("/accessors/0/bufferView", std::nullopt),
+              HasSubstr("accessor 0 states 3 elements without a buffer view"));
+  EXPECT_THAT(
+      messageWith("/accessors/1/count", 2),
+      HasSubstr("primitive 0 of mesh 0 (morph target 0) has 3 positions and 2 of POSITION"));
+  EXPECT_THAT(messageWith("/meshes/0/primitives/0/targets/0/POSITION", 9),
+              HasSubstr("(morph target 0) has 3 positions and 0 of POSITION"));
+  json_["accessors"].push_back(json_["accessors"][0]);
+  EXPECT_THAT(messageWith("/accessors/0/bufferView", std::nullopt),
+              HasSubstr("primitive 0 of mesh 0 has its positions in accessor 0, which has neither "
+                        "a bufferView nor sparse elements"));
+}
+
+TEST_F(SparseGltf, IsRejectedWhereItsElementsAreNoneOfIts) {
+  buffer_[18] = 3;
+  const auto read_beyond = read();
+  ASSERT_FALSE(read_beyond.has_value());
+  EXPECT_EQ(read_beyond.error().code, ErrorCode::kInvalidInput);
+  EXPECT_THAT(read_beyond.error().message,
+              HasSubstr("accessor 1 has a sparse element 3, and 3 elements"));
+}
+
+TEST_F(SparseGltf, SaysWhichFieldOfItIsBroken) {
+  const std::string sparse = "/accessors/1/sparse";
+  EXPECT_THAT(messageWith(sparse + "/count", std::nullopt),
+              HasSubstr("accessor 1 is sparse without a count"));
+  EXPECT_THAT(messageWith(sparse + "/values", std::nullopt),
+              HasSubstr("accessor 1 is sparse without values"));
+  EXPECT_THAT(messageWith(sparse + "/indices/componentType", 5130),
+              HasSubstr("accessor 1 has sparse indices without a componentType"));
+  EXPECT_THAT(messageWith(sparse + "/indices/bufferView", std::nullopt),
+              HasSubstr("accessor 1 sparse indices uses buffer view null, and there are 3"));
+  EXPECT_THAT(messageWith("/accessors/0/bufferView", -1),
+              HasSubstr("accessor 0 uses buffer view -1, and there are 3"));
+  for (const auto& [pointer, owner] : std::vector<std::pair<std::string, std::string>>{
+           {"/accessors/0", "accessor 0"},
+           {"/bufferViews/0", "buffer view 0"},
+           {sparse + "/values", "accessor 1 sparse values"}}) {
+    EXPECT_THAT(messageWith(pointer + "/byteOffset", -8),
+                HasSubstr(owner + " has a byteOffset that is no whole number from 0 on"));
+  }
+  json_["bufferViews"][0]["byteLength"] = 24;
+  EXPECT_THAT(messageWith("/accessors/0/type", "VEC4"),
+              HasSubstr("primitive 0 of mesh 0 has its positions in accessor 0, whose type is "
+                        "VEC4, expected VEC3"));
+}
+
+TEST_F(SparseGltf, IsRejectedWhereItsBufferCannotBeDecoded) {
+  json_["buffers"][0]["uri"] = "data:;base64,AAAA" + std::string(44, '-');
+  const Error error = importError("a.gltf", json_.dump());
+  EXPECT_THAT(error.message, HasSubstr("only 3 bytes of its buffer 0 can be read"));
 }
 
 /// The inverse matrices of a skin may be left out, and the reader crashes without them.

@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::int64_t kTriangles = 4;
+constexpr std::string_view kNoOffset = "a byteOffset that is no whole number from 0 on";
 
 /// Components of one element of an accessor; 0 of an unknown type.
 std::uint64_t componentsOf(std::string_view type) {
@@ -51,7 +52,12 @@ std::uint64_t decodedBytes(std::string_view uri) {
 class GltfRanges {
  public:
   GltfRanges(const fs::path& path, const Json& document, std::uint64_t binary_bytes)
-      : path_(path), document_(document), binary_bytes_(binary_bytes) {}
+      : path_(path), document_(document), binary_bytes_(binary_bytes) {
+    for (const Json& accessor : listOf("accessors")) {
+      if (!accessor.is_object() || !accessor.contains("bufferView")) continue;
+      most_elements_ = std::max(most_elements_, gltfWhole(accessor, "count").value_or(0));
+    }
+  }
 
   Result<void> check() const {
     const auto each = [this](const char* list, auto&& judge) -> Result<void> {
@@ -125,10 +131,11 @@ class GltfRanges {
       return broken(fmt::format("buffer view {} has no buffer or no byteLength", n));
     }
     const std::uint64_t all = gltfWhole(buffers[*buffer], "byteLength").value_or(0);
-    const std::uint64_t begin = gltfWhole(view, "byteOffset").value_or(0);
-    if (begin <= all && *length <= all - begin) return {};
+    const auto begin = gltfWhole(view, "byteOffset", 0);
+    if (!begin) return broken(fmt::format("buffer view {} has {}", n, kNoOffset));
+    if (*begin <= all && *length <= all - *begin) return {};
     return broken(fmt::format("buffer view {} is {} bytes from {} on, and its buffer has {}", n,
-                              *length, begin, all));
+                              *length, *begin, all));
   }
 
   /// Whether `count` elements of `bytes` each fit into the view that `owner` names.
@@ -136,16 +143,16 @@ class GltfRanges {
                                        const std::string& what) const {
     const Json& views = listOf("bufferViews");
     const auto index = gltfWhole(owner, "bufferView");
-    if (!index) return {};
-    if (*index >= views.size() || !views[*index].is_object()) {
-      return broken(
-          fmt::format("{} uses buffer view {}, and there are {}", what, *index, views.size()));
+    if (!index || *index >= views.size() || !views[*index].is_object()) {
+      return broken(fmt::format("{} uses buffer view {}, and there are {}", what,
+                                owner.value("bufferView", Json()).dump(), views.size()));
     }
     const std::uint64_t all = gltfWhole(views[*index], "byteLength").value_or(0);
-    const std::uint64_t begin = gltfWhole(owner, "byteOffset").value_or(0);
+    const auto begin = gltfWhole(owner, "byteOffset", 0);
+    if (!begin) return broken(fmt::format("{} has {}", what, kNoOffset));
     const std::uint64_t stride =
         std::max(bytes, gltfWhole(views[*index], "byteStride").value_or(bytes));
-    const std::uint64_t room = all < begin ? 0 : all - begin;
+    const std::uint64_t room = all < *begin ? 0 : all - *begin;
     const std::uint64_t held = room < bytes ? 0 : (room - bytes) / stride + 1;
     if (held >= count) return {};
     return broken(
@@ -159,26 +166,32 @@ class GltfRanges {
         gltfComponentBytes(gltfWhole(accessor, "componentType").value_or(0));
     const std::uint64_t bytes = component * componentsOf(gltfText(accessor, "type"));
     if (!count || bytes == 0) return broken(what + " has no count, componentType or type");
-    if (auto checked = checkFits(accessor, *count, bytes, what); !checked) return checked;
+    if (accessor.contains("bufferView")) {
+      RETURN_IF_ERROR(checkFits(accessor, *count, bytes, what));
+    } else if (*count > most_elements_) {
+      return broken(
+          fmt::format("{} states {} elements without a buffer view, and the largest with "
+                      "one has {}",
+                      what, *count, most_elements_));
+    }
     const auto sparse = accessor.find("sparse");
     if (sparse == accessor.end() || !sparse->is_object()) return {};
-    const std::uint64_t some = gltfWhole(*sparse, "count").value_or(0);
-    const auto part = [&](const char* key, auto&& bytes_of) -> Result<void> {
+    const auto some = gltfWhole(*sparse, "count");
+    if (!some) return broken(what + " is sparse without a count");
+    const auto part = [&](const char* key) -> Result<const Json*> {
       const auto found = sparse->find(key);
-      if (found == sparse->end() || !found->is_object())
+      if (found == sparse->end() || !found->is_object()) {
         return broken(what + " is sparse without " + key);
-      return checkFits(*found, some, bytes_of(*found), fmt::format("{} sparse {}", what, key));
+      }
+      return &*found;
     };
-    if (auto checked =
-            part("indices",
-                 [](const Json& indices) {
-                   return std::max<std::uint64_t>(
-                       1, gltfComponentBytes(gltfWhole(indices, "componentType").value_or(0)));
-                 });
-        !checked) {
-      return checked;
-    }
-    return part("values", [bytes](const Json&) { return bytes; });
+    ASSIGN_OR_RETURN(const Json* indices, part("indices"));
+    ASSIGN_OR_RETURN(const Json* values, part("values"));
+    const std::uint64_t index_bytes =
+        gltfComponentBytes(gltfWhole(*indices, "componentType").value_or(0));
+    if (index_bytes == 0) return broken(what + " has sparse indices without a componentType");
+    RETURN_IF_ERROR(checkFits(*indices, *some, index_bytes, what + " sparse indices"));
+    return checkFits(*values, *some, bytes, what + " sparse values");
   }
 
   [[nodiscard]] Result<void> checkMesh(const Json& mesh, std::size_t n) const {
@@ -202,6 +215,28 @@ class GltfRanges {
     return accessor.is_object() ? gltfWhole(accessor, "count") : std::nullopt;
   }
 
+  /// Those of a primitive, or of a morph target.
+  [[nodiscard]] Result<void> checkAttributes(const Json& attributes, std::uint64_t vertices,
+                                             const std::string& what) const {
+    if (!attributes.is_object()) return {};
+    for (const auto& attribute : attributes.items()) {
+      const auto count = countOf(attribute.value());
+      if (count != vertices) {
+        return broken(fmt::format("{} has {} positions and {} of {}", what, vertices,
+                                  count.value_or(0), attribute.key()));
+      }
+      if (attribute.key() != "POSITION") continue;
+      const auto number = attribute.value().get<std::size_t>();
+      const std::string type = gltfText(listOf("accessors")[number], "type");
+      if (type == "VEC3") continue;
+      return broken(
+          fmt::format("{} has its positions in accessor {}, whose type is {}, expected "
+                      "VEC3",
+                      what, number, type));
+    }
+    return {};
+  }
+
   [[nodiscard]] Result<void> checkPrimitive(const Json& primitive, const std::string& what) const {
     const auto attributes = primitive.find("attributes");
     if (attributes == primitive.end() || !attributes->is_object()) return {};
@@ -209,11 +244,20 @@ class GltfRanges {
     if (position == attributes->end()) return {};
     const auto vertices = countOf(*position);
     if (!vertices) return broken(what + " uses an accessor that is not there");
-    for (const auto& attribute : attributes->items()) {
-      const auto count = countOf(attribute.value());
-      if (count == vertices) continue;
-      return broken(fmt::format("{} has {} positions and {} of {}", what, *vertices,
-                                count.value_or(0), attribute.key()));
+    RETURN_IF_ERROR(checkAttributes(*attributes, *vertices, what));
+    const Json& accessor = listOf("accessors")[position->get<std::size_t>()];
+    if (!accessor.contains("bufferView") && !accessor.contains("sparse")) {
+      return broken(
+          fmt::format("{} has its positions in accessor {}, which has neither a "
+                      "bufferView nor sparse elements",
+                      what, position->dump()));
+    }
+    const auto targets = primitive.find("targets");
+    if (targets != primitive.end() && targets->is_array()) {
+      for (std::size_t n = 0; n < targets->size(); ++n) {
+        const std::string target = fmt::format("{} (morph target {})", what, n);
+        RETURN_IF_ERROR(checkAttributes((*targets)[n], *vertices, target));
+      }
     }
     const auto indices = primitive.find("indices");
     const auto corners = indices == primitive.end() ? vertices : countOf(*indices);
@@ -227,6 +271,9 @@ class GltfRanges {
   const fs::path& path_;
   const Json& document_;
   std::uint64_t binary_bytes_;
+  /// Of an accessor with a buffer view, so that there are bytes of them. One without is all zeros
+  /// and has as many as another of its mesh.
+  std::uint64_t most_elements_ = 0;
 };
 
 /// Length of the GLB's own buffer, which is the chunk behind the JSON; 0 of other files.
