@@ -278,6 +278,25 @@ TEST_F(SparseGltf, SaysWhichFieldOfItIsBroken) {
                         "VEC4, expected VEC3"));
 }
 
+/// Quantized, so that its JSON is written again for the reader.
+TEST_F(SparseGltf, IsRejectedWhereItIsNestedTooDeeply) {
+  const auto nested = [&](std::size_t levels) {
+    std::string json = json_.dump();
+    json.pop_back();
+    return json + R"(,"extras":)" + std::string(levels, '[') + std::string(levels, ']') + "}";
+  };
+  // The document itself is a level.
+  const auto deep = importContent("a.glb", glbContainer(nested(999), buffer_));
+  EXPECT_TRUE(deep.has_value()) << deep.error().text();
+  for (const std::size_t levels : {std::size_t{1000}, std::size_t{100'000}}) {
+    const Error error = importError("a.glb", glbContainer(nested(levels), buffer_));
+    EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
+    EXPECT_EQ(error.message,
+              "its JSON nests objects and lists in more than 1000 levels, perhaps in `extras`; "
+              "export it again without them");
+  }
+}
+
 TEST_F(SparseGltf, IsRejectedWhereItsBufferCannotBeDecoded) {
   json_["buffers"][0]["uri"] = "data:;base64,AAAA" + std::string(44, '-');
   const Error error = importError("a.gltf", json_.dump());

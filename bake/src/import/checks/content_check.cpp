@@ -26,6 +26,11 @@ std::string lowerCaseExtension(const std::filesystem::path& path) {
 
 Result<Warnings> checkGltf(const std::filesystem::path& path, std::span<const std::byte> content) {
   GltfRequirements required = gltfRequirements(content);
+  if (required.is_too_deep) {
+    return fail(ErrorCode::kInvalidInput, path.string(),
+                "its JSON nests objects and lists in more than 1000 levels, perhaps in `extras`; "
+                "export it again without them");
+  }
   if (required.unsupported) {
     return fail(ErrorCode::kUnsupported, path.string(),
                 fmt::format("it requires the glTF extension {}, which is not supported; export it "

@@ -46,10 +46,13 @@ namespace galactic::bake {
 /// An OFF file has as many vertices and faces as it states.
 [[nodiscard]] Result<void> checkOff(std::string_view file, const std::string& where);
 
-/// What a glTF 2.0 file (JSON or GLB) requires (`extensionsRequired`) and the mesh reader ignores.
+/// What a glTF 2.0 file (JSON or GLB) wants of its reader: what it requires (`extensionsRequired`)
+/// and the mesh reader ignores.
 struct GltfRequirements {
   /// The first extension that changes shapes, such as Draco and meshopt compression.
   std::optional<std::string> unsupported;
+  /// Whether its objects and lists are nested in more than 1000 levels, which no reader survives.
+  bool is_too_deep = false;
   /// One sentence for each extension whose images cannot be read.
   std::vector<std::string> warnings;
 };

@@ -28,6 +28,10 @@ constexpr std::array kImageExtensions{ImageExtension{"KHR_texture_basisu", "KTX2
                                       ImageExtension{"EXT_texture_webp", "WebP"},
                                       ImageExtension{"MSFT_texture_dds", "DDS"}};
 
+/// Readers, and what writes JSON, go down into what is nested by calling themselves. No tool writes
+/// a glTF file with a hundred levels.
+constexpr std::size_t kDeepest = 1000;
+
 /// What readableGltf undoes, so that every reader takes it rightly.
 constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 
@@ -109,6 +113,8 @@ class RequiredExtensions final : public Json::json_sax_t {
 
   bool enter() {
     ++depth_;
+    found_.is_too_deep = depth_ > kDeepest;
+    if (found_.is_too_deep) return false;
     if (in_textures_ && depth_ == kNodeDepth) texture_ = {};
     return true;
   }
