@@ -180,6 +180,10 @@ TEST_F(ObjectCli, RefusesAnObjectOfMetersUnlessItsUnitIsStated) {
   EXPECT_EQ(
       refusalOf("crate.obj", 2),
       "galactic-bake: crate.obj: the object is 2 x 4 x 6 m large " + units + "0.01 is likely\n");
+  // 3.6 m are no likely size, and neither are 3.6 cm.
+  EXPECT_EQ(refusalOf("bench.obj", 1.2F),
+            "galactic-bake: bench.obj: the object is 1.2 x 2.4 x 3.6 m large " +
+                units.substr(0, units.size() - 2) + "\n");
   EXPECT_EQ(refusalOf("screw.obj", 200),
             "galactic-bake: screw.obj: the object is 200 x 400 x 600 m large " + units +
                 "0.001 is likely\n");
@@ -189,6 +193,21 @@ TEST_F(ObjectCli, RefusesAnObjectOfMetersUnlessItsUnitIsStated) {
   EXPECT_EQ(stated.exit_code, 0) << stated.err;
   EXPECT_THAT(stated.out, HasSubstr("object 'crate': is 6 m large; is the unit right?"));
   EXPECT_EQ(bake({"crate.obj", "-o", "small.pack"}).exit_code, 0);
+}
+
+TEST_F(ObjectCli, TakesTheUnitOfAFileThatStatesIt) {
+  test::MeshContent box = test::unevenBox();
+  for (auto& p : box.positions) {
+    for (float& coordinate : p) coordinate *= 1.2F;
+  }
+  write("bench.dae", test::daeFile(box, {"Y_UP", "1", ""}));
+  write("bench.fbx", test::fbxFile(box, {}));
+  for (const std::string name : {"bench.dae", "bench.fbx"}) {
+    const ProgramRun run_of =
+        run({name, "--as", "object", "--radii", "1.5,2.5", "--eps", "1", "--tau", "1.5"});
+    EXPECT_EQ(run_of.exit_code, 0) << run_of.err;
+    EXPECT_THAT(run_of.out, HasSubstr("object 'bench': is 3.6 m large; is the unit right?"));
+  }
 }
 
 TEST_F(ObjectCli, UnderstandsEveryOptionOfObjects) {

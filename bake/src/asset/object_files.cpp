@@ -70,7 +70,7 @@ Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedO
   }();
   if (!asset) return tl::unexpected(asset.error());
   // Templates of datasets say with a transform how large their objects are.
-  if (!task.job.import.scale && !task.job.import.transform) {
+  if (!asset->unit_is_stated && !task.job.import.transform) {
     RETURN_IF_ERROR(checkObjectSize(*asset, input.path.string()));
   }
   finished.files = asset->files;

@@ -28,9 +28,9 @@ void transferFields(Archive& archive, Is<EmbeddedTexture> auto& texture) {
 /// Everything of an asset but its meshes.
 template <class Archive>
 void transferRest(Archive& archive, auto& asset) {
-  archive(asset.name, asset.format, asset.convention, asset.meters_per_unit, asset.instances,
-          asset.materials, asset.textures, asset.files, asset.absent_files, asset.missing_materials,
-          asset.missing, asset.warnings);
+  archive(asset.name, asset.format, asset.convention, asset.meters_per_unit, asset.unit_is_stated,
+          asset.instances, asset.materials, asset.textures, asset.files, asset.absent_files,
+          asset.missing_materials, asset.missing, asset.warnings);
 }
 
 namespace {

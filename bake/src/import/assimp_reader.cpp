@@ -52,8 +52,8 @@ constexpr std::array kFormats{
     Format{kObjReader, "Wavefront OBJ", statedBy(UpAxis::kY, "OBJ convention")},
     Format{kPlyReader, "Stanford PLY", statedBy(UpAxis::kZ, "PLY convention")},
     Format{"Stereolithography (STL) Importer", "STL", statedBy(UpAxis::kZ, "STL convention")},
-    Format{kColladaReader, "COLLADA", statedBy(UpAxis::kY, "file")},
-    Format{kFbxReader, "Autodesk FBX", statedBy(UpAxis::kY, "file")},
+    Format{kColladaReader, "COLLADA", statedBy(UpAxis::kY, kByFile)},
+    Format{kFbxReader, "Autodesk FBX", statedBy(UpAxis::kY, kByFile)},
 };
 
 /// The reader that was chosen for the file; null when it does not tell.
@@ -222,7 +222,8 @@ AxisConvention fbxConvention(const aiScene& scene, AxisConvention convention) {
     convention.up.value = static_cast<UpAxis>(axis + (sign < 0 ? 3 : 0));
   }
   const auto centimeters = metadata<float>(scene, "UnitScaleFactor");
-  convention.meters.value = centimeters ? shortestDecimal(*centimeters) / 100 : 0.01;
+  convention.meters = centimeters ? Stated<double>{shortestDecimal(*centimeters) / 100, kByFile}
+                                  : Stated<double>{0.01, "FBX convention"};
   return convention;
 }
 
@@ -232,7 +233,7 @@ Result<Affine> SceneReader::worldFromRoot() {
   if (format_.reader == kColladaReader) {
     // The reader puts up axis and unit, and nothing else, into the root's transform. They are taken
     // out again, so that an override replaces them instead of adding to them.
-    const auto stated = conventionOf(file_from_root, "file");
+    const auto stated = conventionOf(file_from_root, kByFile);
     if (!stated && !(options_.up && options_.scale)) {
       return invalid(
           "the meters of its <unit> are not a positive number; correct them, or give "
@@ -249,6 +250,7 @@ Result<Affine> SceneReader::worldFromRoot() {
   }
   asset_.convention = describe(convention);
   asset_.meters_per_unit = convention.meters.value;
+  asset_.unit_is_stated = isUnitStated(convention);
   return compose(compose(options_.transform.value_or(kIdentityAffine), worldFromFile(convention)),
                  file_from_root);
 }

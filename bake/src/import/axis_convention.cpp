@@ -34,8 +34,8 @@ Affine rotationFor(UpAxis up) {
 }  // namespace
 
 AxisConvention withOverrides(AxisConvention stated, const MeshImportOptions& options) {
-  if (options.up) stated.up = {*options.up, "`up`"};
-  if (options.scale) stated.meters = {*options.scale, "`scale`"};
+  if (options.up) stated.up = {*options.up, kByUp};
+  if (options.scale) stated.meters = {*options.scale, kByScale};
   return stated;
 }
 
@@ -43,6 +43,10 @@ Affine worldFromFile(const AxisConvention& convention) {
   Affine matrix = rotationFor(convention.up.value);
   for (double& value : matrix) value *= convention.meters.value;
   return matrix;
+}
+
+bool isUnitStated(const AxisConvention& convention) {
+  return convention.meters.by == kByFile || convention.meters.by == kByScale;
 }
 
 std::string describe(const AxisConvention& convention) {

@@ -15,6 +15,11 @@ struct Stated {
   std::string_view by;
 };
 
+/// Who states facts, but for conventions of formats.
+inline constexpr std::string_view kByFile = "file";
+inline constexpr std::string_view kByUp = "`up`";
+inline constexpr std::string_view kByScale = "`scale`";
+
 /// How the points of a file are to be read.
 struct AxisConvention {
   Stated<UpAxis> up;
@@ -28,6 +33,9 @@ struct AxisConvention {
 /// Rotation to Y up and scale to meters: a proper rotation (never a mirror image) times a scale.
 /// Z up becomes (x, z, -y), as in glTF and COLLADA exporters.
 [[nodiscard]] Affine worldFromFile(const AxisConvention& convention);
+
+/// Whether the file or the user says what its unit is.
+[[nodiscard]] bool isUnitStated(const AxisConvention& convention);
 
 /// For people: "Z up (file), 0.01 m per unit (--scale)".
 [[nodiscard]] std::string describe(const AxisConvention& convention);

@@ -33,6 +33,7 @@ SourceAsset exampleRest() {
   asset.format = "glTF 2.0";
   asset.convention = "Y up";
   asset.meters_per_unit = 0.25;
+  asset.unit_is_stated = true;
   asset.instances = {
       {.name = "n", .mesh = 1, .world_from_mesh = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}}};
   asset.materials.push_back({.name = "oak",
@@ -74,6 +75,7 @@ TEST(AssetTransfer, DeliversEveryField) {
   EXPECT_EQ(asset->format, expected.format);
   EXPECT_EQ(asset->convention, expected.convention);
   EXPECT_EQ(asset->meters_per_unit, expected.meters_per_unit);
+  EXPECT_EQ(asset->unit_is_stated, expected.unit_is_stated);
   ASSERT_EQ(asset->meshes.size(), 2U);
   EXPECT_EQ(asset->meshes[1].name, "mesh1");
   EXPECT_EQ(asset->meshes[1].positions, exampleMesh(1).positions);

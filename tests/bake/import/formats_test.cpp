@@ -113,6 +113,24 @@ TEST(MeshFormats, FollowTheUpAxisAndUnitOfEveryColladaFile) {
   }
 }
 
+TEST(MeshFormats, SayWhetherTheirUnitIsStated) {
+  const MeshContent box = unevenBox();
+  const auto is_stated = [](std::string_view name, const std::string& file,
+                            const bake::MeshImportOptions& options) {
+    const auto asset = importContent(name, file, options);
+    EXPECT_TRUE(asset.has_value()) << asset.error().text();
+    return asset && asset->unit_is_stated;
+  };
+  EXPECT_TRUE(is_stated("box.dae", daeFile(box, {"Y_UP", "1", ""}), {}));
+  EXPECT_TRUE(is_stated("box.fbx", fbxFile(box, {}), {}));
+  for (const auto& [name, file] : std::vector<std::pair<std::string, std::string>>{
+           {"box.obj", objFile(box)}, {"box.glb", glbFile(box)}, {"a.ply", plyAsciiFile(box)}}) {
+    EXPECT_FALSE(is_stated(name, file, {})) << name;
+    EXPECT_TRUE(is_stated(name, file, {.up = {}, .scale = 0.5, .transform = {}})) << name;
+    EXPECT_FALSE(is_stated(name, file, {.up = UpAxis::kZ, .scale = {}, .transform = {}})) << name;
+  }
+}
+
 TEST(MeshFormats, ReplaceTheColladaAxisOrUnitByAnOverrideAndKeepTheOther) {
   const std::string file = daeFile(unevenBox(), {"Z_UP", "0.01", ""});
   expectBox({"box.dae",

@@ -87,6 +87,8 @@ struct SourceAsset {
   std::string convention;
   /// The unit in which the file was read.
   double meters_per_unit = 1;
+  /// Whether the file or the user states that unit; else it is the one that is usual in the format.
+  bool unit_is_stated = false;
   std::vector<SourceMesh> meshes;
   std::vector<SourceInstance> instances;
   std::vector<SourceMaterial> materials;

@@ -181,11 +181,12 @@ Result<void> checkObjectSize(const SourceAsset& asset, const std::string& where)
   const std::array<double, 3> size = extentsOf(asset);
   const double largest = *std::ranges::max_element(size);
   if (largest <= kLargestObject) return {};
+  // What hands grasp, or a piece of furniture.
+  constexpr double kSmallestLikely = 0.05;
   std::string likely;
   for (const double unit : {0.01, 0.001}) {
-    if (unit == asset.meters_per_unit || largest / asset.meters_per_unit * unit > kLargestObject) {
-      continue;
-    }
+    const double size_in_unit = largest / asset.meters_per_unit * unit;
+    if (size_in_unit < kSmallestLikely || size_in_unit > kLargestObject) continue;
     likely = fmt::format("; {} is likely", unit);
     break;
   }

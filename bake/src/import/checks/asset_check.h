@@ -25,7 +25,8 @@ inline constexpr double kLargestObject = 3;
 
 /// Refuses an object that is larger than kLargestObject in any direction: spheres of a few
 /// millimeters would be fitted to it for minutes. For objects whose unit nobody has stated; the
-/// message names the unit that is likely. kInvalidInput; `asset` has passed checkAsset.
+/// message names a unit that gives it a likely size, 5 cm or more. kInvalidInput; `asset` has
+/// passed checkAsset.
 [[nodiscard]] Result<void> checkObjectSize(const SourceAsset& asset, const std::string& where);
 
 }  // namespace galactic::bake
