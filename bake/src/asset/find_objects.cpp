@@ -174,6 +174,7 @@ std::string leftOut(const fs::path& root, const fs::path& model,
   constexpr std::size_t kMostNamed = 6;
   // Relative paths, because warnings go into packs, which must not depend on the machine.
   std::vector<std::string> names;
+  names.reserve(hidden.size());
   for (const fs::path& file : hidden) names.push_back(file.filename().string());
   const std::size_t more = names.size() - std::min(names.size(), kMostNamed);
   names.resize(names.size() - more);

@@ -95,40 +95,61 @@ bool isAtEdge(float x, float z, const Bounds& scene, float spacing) {
          scene.max.z - z < spacing;
 }
 
+/// What the spans of a column share.
+struct ColumnPlace {
+  float x = 0;
+  float z = 0;
+  /// Square meters.
+  double area = 0;
+  /// Of the grid.
+  bool is_at_border = false;
+  bool is_in_scene = false;
+  /// Of the scene.
+  bool is_at_edge = false;
+};
+
+ColumnPlace placeOf(const GridFrame& frame, const Bounds& scene, std::uint32_t i, std::uint32_t k) {
+  ColumnPlace place;
+  place.x = static_cast<float>(frame.centerX(i));
+  place.z = static_cast<float>(frame.centerZ(k));
+  place.area = static_cast<double>(frame.spacing) * static_cast<double>(frame.spacing);
+  place.is_at_border = i == 0 || k == 0 || i + 1 == frame.columns_x || k + 1 == frame.columns_z;
+  place.is_in_scene = place.x >= scene.min.x && place.x <= scene.max.x && place.z >= scene.min.z &&
+                      place.z <= scene.max.z;
+  place.is_at_edge = place.is_in_scene && isAtEdge(place.x, place.z, scene, frame.spacing);
+  return place;
+}
+
+void addSpan(const Span& span, const ColumnPlace& place, const Bounds& scene,
+             Component& component) {
+  component.touches_border = component.touches_border || place.is_at_border;
+  ++component.spans;
+  component.greatest_height = std::max(component.greatest_height, span.hi - span.lo);
+  component.volume += place.area * (static_cast<double>(span.hi) - static_cast<double>(span.lo));
+  const double inside = place.is_in_scene ? place.area * overlap(span, scene) : 0;
+  component.volume_inside += inside;
+  if (span.hi > scene.max.y) component.volume_open_above += inside;
+  if (span.lo < scene.min.y) component.volume_open_below += inside;
+  if (place.is_at_edge && overlap(span, scene) > 0) ++component.columns_at_edge;
+  Bounds& bounds = component.bounds;
+  bounds.min = {std::min(bounds.min.x, place.x), std::min(bounds.min.y, span.lo),
+                std::min(bounds.min.z, place.z)};
+  bounds.max = {std::max(bounds.max.x, place.x), std::max(bounds.max.y, span.hi),
+                std::max(bounds.max.z, place.z)};
+}
+
 std::vector<Component> measure(const Columns& columns, const Labels& labels) {
   const GridFrame& frame = columns.frame;
   Component empty;
   empty.bounds = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   std::vector<Component> components(labels.count, empty);
   const Bounds scene = sceneBounds(frame);
-  const double area = static_cast<double>(frame.spacing) * static_cast<double>(frame.spacing);
   for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
-    const auto z = static_cast<float>(frame.centerZ(k));
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
-      const auto x = static_cast<float>(frame.centerX(i));
-      const bool border = i == 0 || k == 0 || i + 1 == frame.columns_x || k + 1 == frame.columns_z;
-      const bool in_scene =
-          x >= scene.min.x && x <= scene.max.x && z >= scene.min.z && z <= scene.max.z;
-      const bool at_edge = in_scene && isAtEdge(x, z, scene, frame.spacing);
+      const ColumnPlace place = placeOf(frame, scene, i, k);
       const std::size_t at = columns.index(i, k);
       for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
-        Component& component = components[labels.of_span[span]];
-        const Span& heights = columns.spans[span];
-        component.touches_border = component.touches_border || border;
-        ++component.spans;
-        component.greatest_height = std::max(component.greatest_height, heights.hi - heights.lo);
-        component.volume +=
-            area * (static_cast<double>(heights.hi) - static_cast<double>(heights.lo));
-        const double inside = in_scene ? area * overlap(heights, scene) : 0;
-        component.volume_inside += inside;
-        if (heights.hi > scene.max.y) component.volume_open_above += inside;
-        if (heights.lo < scene.min.y) component.volume_open_below += inside;
-        if (at_edge && overlap(heights, scene) > 0) ++component.columns_at_edge;
-        Bounds& bounds = component.bounds;
-        bounds.min = {std::min(bounds.min.x, x), std::min(bounds.min.y, heights.lo),
-                      std::min(bounds.min.z, z)};
-        bounds.max = {std::max(bounds.max.x, x), std::max(bounds.max.y, heights.hi),
-                      std::max(bounds.max.z, z)};
+        addSpan(columns.spans[span], place, scene, components[labels.of_span[span]]);
       }
     }
   }

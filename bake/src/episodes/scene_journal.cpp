@@ -51,12 +51,12 @@ bool isSound(const DrawnEpisode& episode, std::size_t objects) {
 }  // namespace
 
 SceneJournal::Key SceneJournal::keyOf(std::string_view scene, const SceneDetails& details) {
-  const auto hashOf = [](const auto& list) {
+  const auto hash_of = [](const auto& list) {
     return detail::contentHash(std::as_bytes(std::span(list)));
   };
   // Meshes are large, and not copied.
-  return hashOf(bytesOf(scene, hashOf(details.mesh.vertices), hashOf(details.mesh.triangles),
-                        details.receptacles));
+  return hash_of(bytesOf(scene, hash_of(details.mesh.vertices), hash_of(details.mesh.triangles),
+                         details.receptacles));
 }
 
 SceneJournal::SceneJournal(Journal* journal, std::size_t objects)

@@ -241,12 +241,12 @@ class RobotGuesser {
     constexpr float kLooksUpOrDown = 0.9F;
     /// Of a quarter over another, so that slanted cameras stay as they are.
     constexpr float kClearlyBetter = 0.1F;
-    const auto inRoot = [&, pose = startPoses()[link]](const Vec3& v) {
+    const auto in_root = [&, pose = startPoses()[link]](const Vec3& v) {
       return rotate(pose.rotation, v);
     };
     // Of the URDF's axes: forward is Z, up is -Y; else forward is X, up is Z.
-    const Vec3 forward = inRoot(is_optical ? Vec3{0, 1, 0} : Vec3{1, 0, 0});
-    const Vec3 up = inRoot(is_optical ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
+    const Vec3 forward = in_root(is_optical ? Vec3{0, 1, 0} : Vec3{1, 0, 0});
+    const Vec3 up = in_root(is_optical ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
     const Vec3 left = cross(up, forward);
     if (std::abs(forward.y) > kLooksUpOrDown) return 0;
     int best = 0;

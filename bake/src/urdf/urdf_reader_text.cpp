@@ -221,12 +221,12 @@ std::vector<TiXmlElement> partsOfCapsule(const TiXmlElement& element, const TiXm
   const auto radius = numbersOf(capsule.Attribute("radius"), 1);
   const auto length = numbersOf(capsule.Attribute("length"), 1);
   const TiXmlElement* origin = element.FirstChildElement("origin");
-  const auto numbersOfOrigin = [&](const char* attribute) {
+  const auto numbers_of_origin = [&](const char* attribute) {
     const bool stated = origin != nullptr && origin->Attribute(attribute) != nullptr;
     return numbersOf(stated ? origin->Attribute(attribute) : "0 0 0", 3);
   };
-  const auto xyz = numbersOfOrigin("xyz");
-  const auto rpy = numbersOfOrigin("rpy");
+  const auto xyz = numbers_of_origin("xyz");
+  const auto rpy = numbers_of_origin("rpy");
   if (!radius || !length || !xyz || !rpy) return {};
   const auto part = [&](const char* shape, double along) {
     TiXmlElement copy(element);

@@ -73,7 +73,7 @@ Result<void> DrawnSteps::finish(const BatchSimulator& simulator, const RunReport
     rendering_.end();
     added = output_.addLast(report.steps, rendering_.frames());
   }
-  const Result<void> finished = output_.finish();
+  Result<void> finished = output_.finish();
   RETURN_IF_ERROR(added);
   return finished;
 }

@@ -242,7 +242,7 @@ Result<void> PictureOutput::show(std::uint64_t step, std::span<const EnvFrame> f
 
 Result<void> PictureOutput::finish() {
   const Result<void> filmed = video_ ? video_->finish() : Result<void>();
-  const Result<void> drawn = sheet_ ? writeSheet() : Result<void>();
+  Result<void> drawn = sheet_ ? writeSheet() : Result<void>();
   RETURN_IF_ERROR(filmed);
   return drawn;
 }

@@ -107,8 +107,7 @@ TrackedRun::TrackedRun(const World& world, const BatchSimulator& simulator,
 Result<void> TrackedRun::finish() const {
   ASSIGN_OR_RETURN(const auto assets, pageAssetsOf(track_));
   const Result<void> page = options_.view.empty() ? Result<void>() : writePage(assets);
-  const Result<void> animation =
-      options_.animation.empty() ? Result<void>() : writeAnimation(assets);
+  Result<void> animation = options_.animation.empty() ? Result<void>() : writeAnimation(assets);
   RETURN_IF_ERROR(page);
   return animation;
 }

@@ -10,7 +10,8 @@ namespace galactic {
 class OptionalIndex {
  public:
   constexpr OptionalIndex() = default;
-  /// Any but the largest number.
+  /// Any but the largest number. Implicit, as those of a std::optional are.
+  // NOLINTNEXTLINE(google-explicit-constructor)
   constexpr OptionalIndex(std::uint32_t index) : index_(index) { assert(index != kNone); }
 
   constexpr explicit operator bool() const { return index_ != kNone; }

@@ -20,7 +20,8 @@ StopRequest::StopRequest(std::string program) : program_(std::move(program)) {
 
 StopRequest::~StopRequest() {
   over_ = true;
-  // It waits for nothing else.
+  // It waits for nothing else, and takes the signal with sigwait().
+  // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
   pthread_kill(watcher_.native_handle(), SIGTERM);
   watcher_.join();
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);

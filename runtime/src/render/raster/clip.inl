@@ -97,7 +97,7 @@ GALACTIC_EVERYWHERE inline ClipVertex clipVertex(const State& state, std::uint32
   };
   const float x = on_lattice(block[0], cluster.origin_x);
   const float y = on_lattice(block[kWidth], cluster.origin_y);
-  const float z = on_lattice(block[2 * kWidth], cluster.origin_z);
+  const float z = on_lattice(block[std::size_t{2} * kWidth], cluster.origin_z);
   const auto at = [&](const float* row) {
     return ((row[0] * x + row[1] * y) + row[2] * z) + row[3];
   };

@@ -194,7 +194,7 @@ struct BoxesSeen {
 /// The boxes of a block of eight, and of the one `next` numbers further where vectors take two.
 GALACTIC_EVERYWHERE inline BoxLanes loadBoxes(const float* bounds, std::size_t next = 0) {
   BoxLanes box;
-  for (std::uint32_t n = 0; n < 3; ++n) {
+  for (std::size_t n = 0; n < 3; ++n) {
     box.center[n] = loadRows(bounds + kWidth * (kCenterX + n), next);
     box.half[n] = loadRows(bounds + kWidth * (kHalfX + n), next);
   }

@@ -253,13 +253,13 @@ inline Lanes gatherLeast(const float* from, IntLanes at, IntLanes both) {
 /// A table of pairs: sixteen first numbers, then their second ones.
 template <class Element>
 inline auto lookUpPairs(const Element* table, IntLanes at) {
-  constexpr std::size_t kStride = 2 * kLanes;
+  constexpr std::size_t kStride = std::size_t{2} * kLanes;
   return Pair<decltype(lookUp(table, at))>{lookUp(table, at, kStride),
                                            lookUp(table + kLanes, at, kStride)};
 }
 template <class Element>
 inline Pair<Element> pairAt(const Element* table, std::uint32_t number) {
-  const Element* first = table + std::size_t{2} * (number / kLanes * kLanes) + number % kLanes;
+  const Element* first = table + std::size_t{2} * kLanes * (number / kLanes) + number % kLanes;
   return {first[0], first[kLanes]};
 }
 template <class Vector, class Element>

@@ -22,7 +22,7 @@ GALACTIC_EVERYWHERE inline CornerLanes unpacked(IntLanes corners) {
 /// further where vectors take two. Counter-clockwise from outside is clockwise where rows run down:
 /// two corners change places.
 GALACTIC_EVERYWHERE inline CornerLanes cornersAt(const std::uint8_t* block, std::size_t next = 0) {
-  return {loadRows(block, next), loadRows(block + 2 * kWidth, next),
+  return {loadRows(block, next), loadRows(block + std::size_t{2} * kWidth, next),
           loadRows(block + kWidth, next)};
 }
 

@@ -161,7 +161,7 @@ inline float tileDepth(const Pane& pane, std::uint32_t tile_x, std::uint32_t til
   if ((scratch.tile_changed[tile_y] >> tile_x & 1U) == 0) return scratch.tile_depth[tile];
   constexpr std::uint32_t kRows = kTileEdge / kHigh;
   const std::size_t stride = rowStride(pane);
-  const float* from = scratch.depth + tile_y * kRows * stride + std::size_t{2} * tile_x * kLanes;
+  const float* from = scratch.depth + std::size_t{tile_y} * kRows * stride + std::size_t{2} * tile_x * kLanes;
   Lanes farthest = load<Lanes>(from);
   for (std::uint32_t row = 0; row < kRows; ++row, from += stride) {
     for (std::uint32_t n = 0; n < 2 * kLanes; n += kLanes) {

@@ -239,7 +239,7 @@ struct WholeVectors {
 [[gnu::always_inline]] inline void fetchBelow(const WholeVectors& vectors, std::uint32_t n,
                                               const void* image, std::size_t bytes_each) {
   const std::uint32_t row = n % kHigh;
-  const std::size_t pixel = vectors.target.pixel + (n - row) * kBlockWidth +
+  const std::size_t pixel = vectors.target.pixel + std::size_t{n - row} * kBlockWidth +
                             std::size_t{vectors.below + row} * vectors.pane.task->image_width;
   __builtin_prefetch(static_cast<const std::uint8_t*>(image) + bytes_each * pixel, 1);
 }

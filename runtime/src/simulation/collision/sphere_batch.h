@@ -39,7 +39,8 @@ struct RadiusRanges {
   std::size_t count = 0;
 
   constexpr RadiusRanges() = default;
-  /// Of a vector, a span, or an array of them.
+  /// Of a vector, a span, or an array of them. Implicit, as those of a std::span are.
+  // NOLINTNEXTLINE(google-explicit-constructor)
   template <class Ranges>
   constexpr RadiusRanges(const Ranges& ranges) : first(ranges.data()), count(ranges.size()) {}
 
