@@ -294,6 +294,27 @@ class RayCaster:
         *,
         threads: int = 1,
     ) -> CastHits: ...
+    @staticmethod
+    def cast_rays_in_envs(
+        simulator: Simulator,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        lengths: ArrayLike = ...,
+        *,
+        robot: bool = False,
+        threads: int = 1,
+    ) -> CastHits: ...
+    @staticmethod
+    def sweep_spheres_in_envs(
+        simulator: Simulator,
+        radius: float,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        lengths: ArrayLike = ...,
+        *,
+        robot: bool = False,
+        threads: int = 1,
+    ) -> CastHits: ...
 
 class EpisodeTally:
     def __init__(self, simulator: Simulator) -> None: ...

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class CastHits:
-    """Of n rays or spheres, in their order."""
+    """Of n rays or spheres, in their order, or of n in each of some envs."""
 
     distance: NDArray[np.float32]
-    """(n,), meters; 0 where one begins in what it comes to, or outside the grid."""
+    """(n,) or (envs, n), meters; 0 where one begins in what it comes to, or outside the grid."""
     end: NDArray[np.uint8]
-    """(n,), what each comes to: a CastEnd."""
+    """(n,) or (envs, n), what each comes to: a CastEnd."""
     index: NDArray[np.int32]
-    """(n,), where that is an object, its index into EnvState.objects; of the robot, its link's into
-    World.links; else -1."""
+    """(n,) or (envs, n), where that is an object, its index into EnvState.objects; of the robot, its
+    link's into World.links; else -1."""

@@ -38,6 +38,34 @@ void requireNoFractions(const py::handle& given, const char* name) {
     refuseNumbers(name, typeText(array.dtype()) + " numbers");
 }
 
+constexpr py::ssize_t kNumbersOfAPoint = 3;
+
+std::string shapeFound(const py::array& array) {
+  return array ? "the shape " + shapeText(shapeOf(array)) : "no shape";
+}
+
+/// `shaped`: (n, 3) or (envs, n, 3).
+std::vector<Vec3> pointsIn(const py::array& shaped, const char* name) {
+  const std::span<const py::ssize_t> shape = shapeOf(shaped);
+  const auto array =
+      inputOf<float>(numbersIn(shaped, name), name, Shape(shape.begin(), shape.end()));
+  const float* numbers = array.data();
+  const py::ssize_t count = array.size() / kNumbersOfAPoint;
+  std::vector<Vec3> points;
+  points.reserve(static_cast<std::size_t>(count));
+  for (py::ssize_t n = 0; n < count; ++n, numbers += kNumbersOfAPoint) {
+    if (!std::all_of(numbers, numbers + kNumbersOfAPoint,
+                     [](float one) { return std::isfinite(one); })) {
+      const py::ssize_t each = shape[shape.size() - 2];
+      const std::string env = shape.size() == 2 ? "" : fmt::format("{}, ", n / each);
+      throw py::value_error(
+          fmt::format("{}[{}{}] holds a number that is not finite", name, env, n % each));
+    }
+    points.push_back({numbers[0], numbers[1], numbers[2]});
+  }
+  return points;
+}
+
 }  // namespace
 
 std::string typeName(const py::handle& value) {
@@ -106,25 +134,24 @@ py::array numbersIn(const py::handle& given, const char* name) {
 }
 
 std::vector<Vec3> pointsOf(const py::handle& given, const char* name) {
-  constexpr py::ssize_t kNumbers = 3;
   const py::array shaped = py::array::ensure(given);
   if (!shaped) PyErr_Clear();
   if (shaped && shaped.ndim() == 1 && shaped.size() == 0) return {};
-  if (!shaped || shaped.ndim() != 2 || shaped.shape(1) != kNumbers) {
-    const std::string found = shaped ? shapeText(shapeOf(shaped)) : "no array";
-    throw py::value_error(fmt::format("{} has the shape {}, expected (n, 3)", name, found));
+  if (!shaped || shaped.ndim() != 2 || shaped.shape(1) != kNumbersOfAPoint) {
+    throw py::value_error(fmt::format("{} has {}, expected (n, 3)", name, shapeFound(shaped)));
   }
-  const auto array = inputOf<float>(numbersIn(shaped, name), name, {shaped.shape(0), kNumbers});
-  const float* numbers = array.data();
-  std::vector<Vec3> points;
-  points.reserve(static_cast<std::size_t>(array.shape(0)));
-  for (py::ssize_t n = 0; n < array.shape(0); ++n, numbers += kNumbers) {
-    if (!std::all_of(numbers, numbers + kNumbers, [](float one) { return std::isfinite(one); })) {
-      throw py::value_error(fmt::format("{}[{}] holds a number that is not finite", name, n));
-    }
-    points.push_back({numbers[0], numbers[1], numbers[2]});
+  return pointsIn(shaped, name);
+}
+
+std::vector<Vec3> pointsOf(const py::handle& given, const char* name, py::ssize_t envs) {
+  const py::array shaped = py::array::ensure(given);
+  if (!shaped) PyErr_Clear();
+  if (!shaped || shaped.ndim() != 3 || shaped.shape(0) != envs ||
+      shaped.shape(2) != kNumbersOfAPoint) {
+    throw py::value_error(
+        fmt::format("{} has {}, expected ({}, n, 3)", name, shapeFound(shaped), envs));
   }
-  return points;
+  return pointsIn(shaped, name);
 }
 
 template <class T>

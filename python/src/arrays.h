@@ -53,6 +53,9 @@ template <class T>
 /// `given` as points, float (n, 3), or an empty list; ValueError for another shape or numbers that
 /// are not finite.
 [[nodiscard]] std::vector<Vec3> pointsOf(const py::handle& given, const char* name);
+/// The same of as many points for each of `envs`: float (envs, n, 3), env after env.
+[[nodiscard]] std::vector<Vec3> pointsOf(const py::handle& given, const char* name,
+                                         py::ssize_t envs);
 
 /// Memory of the caller, as `name`, that results are written to: an array of exactly this type and
 /// shape, writable and in rows without gaps; nothing is converted. TypeError or ValueError when it

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "arrays.h"
@@ -17,6 +17,8 @@
 namespace galactic::python {
 namespace {
 
+CastRobot seen(bool robot) { return robot ? CastRobot::kIsSeen : CastRobot::kIsUnseen; }
+
 std::unique_ptr<RayCaster> casterOfScene(const World& world, const py::object& scene) {
   const std::uint64_t last = world.scenes().size() - 1;
   return std::make_unique<RayCaster>(world.scenes()[wholeOf("scene", scene, 0, last)]);
@@ -25,61 +27,116 @@ std::unique_ptr<RayCaster> casterOfScene(const World& world, const py::object& s
 std::unique_ptr<RayCaster> casterOfEnv(const py::object& given, const py::object& env, bool robot) {
   Simulator& simulator = simulatorOf(given);
   const Confinement::Use use = simulator.readState();
-  return std::make_unique<RayCaster>(simulator.world(),
-                                     simulator.batch().envState(simulator.envNumber(env)),
-                                     robot ? CastRobot::kIsSeen : CastRobot::kIsUnseen);
+  return std::make_unique<RayCaster>(
+      simulator.world(), simulator.batch().envState(simulator.envNumber(env)), seen(robot));
 }
 
-/// One length for all lines, or one for each.
-std::vector<float> lengthsOf(const py::object& given, std::size_t count) {
-  const py::array array = numbersIn(given, "lengths");
-  if (array.ndim() == 0)
-    return std::vector<float>(count, *inputOf<float>(array, "lengths", {}).data());
-  const auto lengths = inputOf<float>(array, "lengths", {static_cast<py::ssize_t>(count)});
-  return {lengths.data(), lengths.data() + count};
-}
+/// Lines as a caller gives them.
+struct GivenLines {
+  const py::object& origins;
+  const py::object& directions;
+  const py::object& lengths;
+};
 
-/// `radius`: none for rays.
-py::object cast(const RayCaster& caster, std::optional<float> radius, const py::object& origins,
-                const py::object& directions, const py::object& lengths,
-                const py::object& threads) {
-  const std::vector<Vec3> from = pointsOf(origins, "origins");
-  const std::vector<Vec3> along = pointsOf(directions, "directions");
-  const std::vector<float> ways = lengthsOf(lengths, from.size());
-  const std::uint32_t thread_count = threadsOf(threads);
-  std::vector<CastHit> hits(from.size());
-  {
-    const py::gil_scoped_release unlocked;
-    const CastLines lines{from, along, ways};
-    if (radius) {
-      caster.sweepSpheres(*radius, lines, hits, thread_count);
+/// Lines of which results have a shape of their own: (n,), or (envs, n).
+class Lines {
+ public:
+  /// For casts through one home.
+  explicit Lines(const GivenLines& given)
+      : origins_(pointsOf(given.origins, "origins")),
+        directions_(pointsOf(given.directions, "directions")),
+        shape_{static_cast<py::ssize_t>(origins_.size())} {
+    readLengths(given.lengths);
+  }
+  /// For casts through all envs of a batch.
+  Lines(const GivenLines& given, py::ssize_t envs)
+      : origins_(pointsOf(given.origins, "origins", envs)),
+        directions_(pointsOf(given.directions, "directions", envs)),
+        shape_{envs, static_cast<py::ssize_t>(origins_.size()) / envs} {
+    readLengths(given.lengths);
+  }
+
+  [[nodiscard]] CastLines view() const { return {origins_, directions_, lengths_}; }
+
+  /// What `cast` makes of them, which fills the hits that it is given without the interpreter.
+  template <class Cast>
+  [[nodiscard]] py::object hitsOf(const Cast& cast) const {
+    std::vector<CastHit> hits(origins_.size());
+    {
+      const py::gil_scoped_release unlocked;
+      cast(view(), std::span(hits));
+    }
+    Filled<float> distances(shape_);
+    Filled<std::uint8_t> ends(shape_);
+    Filled<std::int32_t> indices(shape_);
+    for (const CastHit& hit : hits) {
+      distances.put(hit.distance);
+      ends.put(static_cast<std::uint8_t>(hit.end));
+      indices.put(hit.index);
+    }
+    return py::module_::import("galactic.cast_hits")
+        .attr("CastHits")(distances.array(), ends.array(), indices.array());
+  }
+
+ private:
+  /// One length for all lines, or one for each.
+  void readLengths(const py::object& given) {
+    const py::array array = numbersIn(given, "lengths");
+    if (array.ndim() == 0) {
+      lengths_.assign(origins_.size(), *inputOf<float>(array, "lengths", {}).data());
     } else {
-      caster.castRays(lines, hits, thread_count);
+      const auto lengths = inputOf<float>(array, "lengths", shape_);
+      lengths_.assign(lengths.data(), lengths.data() + lengths.size());
     }
   }
-  const Shape shape{static_cast<py::ssize_t>(hits.size())};
-  Filled<float> distances(shape);
-  Filled<std::uint8_t> ends(shape);
-  Filled<std::int32_t> indices(shape);
-  for (const CastHit& hit : hits) {
-    distances.put(hit.distance);
-    ends.put(static_cast<std::uint8_t>(hit.end));
-    indices.put(hit.index);
-  }
-  return py::module_::import("galactic.cast_hits")
-      .attr("CastHits")(distances.array(), ends.array(), indices.array());
-}
+
+  std::vector<Vec3> origins_;
+  std::vector<Vec3> directions_;
+  std::vector<float> lengths_;
+  Shape shape_;
+};
 
 py::object castRays(const RayCaster& caster, const py::object& origins,
                     const py::object& directions, const py::object& lengths,
                     const py::object& threads) {
-  return cast(caster, std::nullopt, origins, directions, lengths, threads);
+  const std::uint32_t count = threadsOf(threads);
+  return Lines({origins, directions, lengths})
+      .hitsOf([&](const CastLines& lines, std::span<CastHit> hits) {
+        caster.castRays(lines, hits, count);
+      });
 }
 
 py::object sweepSpheres(const RayCaster& caster, float radius, const py::object& origins,
                         const py::object& directions, const py::object& lengths,
                         const py::object& threads) {
-  return cast(caster, radius, origins, directions, lengths, threads);
+  const std::uint32_t count = threadsOf(threads);
+  return Lines({origins, directions, lengths})
+      .hitsOf([&](const CastLines& lines, std::span<CastHit> hits) {
+        caster.sweepSpheres(radius, lines, hits, count);
+      });
+}
+
+py::object castRaysInAll(Simulator& simulator, const py::object& origins,
+                         const py::object& directions, const py::object& lengths, bool robot,
+                         const py::object& threads) {
+  const std::uint32_t count = threadsOf(threads);
+  const Confinement::Use use = simulator.readState();
+  return Lines({origins, directions, lengths}, simulator.envs())
+      .hitsOf([&](const CastLines& lines, std::span<CastHit> hits) {
+        castRaysInEnvs(simulator.world(), simulator.batch(), lines, hits, seen(robot), count);
+      });
+}
+
+py::object sweepSpheresInAll(Simulator& simulator, float radius, const py::object& origins,
+                             const py::object& directions, const py::object& lengths, bool robot,
+                             const py::object& threads) {
+  const std::uint32_t count = threadsOf(threads);
+  const Confinement::Use use = simulator.readState();
+  return Lines({origins, directions, lengths}, simulator.envs())
+      .hitsOf([&](const CastLines& lines, std::span<CastHit> hits) {
+        sweepSpheresInEnvs(simulator.world(), simulator.batch(), radius, lines, hits, seen(robot),
+                           count);
+      });
 }
 
 }  // namespace
@@ -113,7 +170,19 @@ void bindRayCaster(py::module_& module) {
            py::arg("directions"), py::arg("lengths") = infinity, py::kw_only(),
            py::arg("threads") = 1,
            "How far spheres get before they touch something: CastHits, as of cast_rays().\n\n"
-           "radius: one of World.radii. origins: where their centers begin.");
+           "radius: one of World.radii. origins: where their centers begin.")
+      .def_static("cast_rays_in_envs", &castRaysInAll, py::arg("simulator"), py::arg("origins"),
+                  py::arg("directions"), py::arg("lengths") = infinity, py::kw_only(),
+                  py::arg("robot").noconvert() = false, py::arg("threads") = 1,
+                  "How far rays get in all envs of a simulator as they are now, from origins,\n"
+                  "(num_envs, n, 3), in directions, (num_envs, n, 3): CastHits of shape\n"
+                  "(num_envs, n), as of_env(simulator, env, robot=robot).cast_rays() has them.\n\n"
+                  "lengths: for all or (num_envs, n). threads share the envs; 0 for all.")
+      .def_static("sweep_spheres_in_envs", &sweepSpheresInAll, py::arg("simulator"),
+                  py::arg("radius"), py::arg("origins"), py::arg("directions"),
+                  py::arg("lengths") = infinity, py::kw_only(),
+                  py::arg("robot").noconvert() = false, py::arg("threads") = 1,
+                  "How far spheres get in all envs: as cast_rays_in_envs() for sweep_spheres().");
   type.doc() =
       "Casts rays and sweeps spheres through a home as the simulation knows it. It never changes.";
   type.attr("__module__") = "galactic";

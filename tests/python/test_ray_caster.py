@@ -154,3 +154,58 @@ def test_no_copies(caster):
     for copied in (copy.copy, copy.deepcopy, pickle.dumps):
         with pytest.raises(TypeError):
             copied(caster)
+
+
+def test_casts_in_all_envs_are_those_in_each(world):
+    """More threads than envs, and fewer."""
+    simulator = galactic.Simulator(world, envs=5, threads=1, order="linear", task="none")
+    random = np.random.default_rng(3)
+    origins = random.uniform([0.1, 0.1, 0.1], [2.9, 1.5, 2.9], (5, 300, 3))
+    directions = random.normal(size=(5, 300, 3))
+    lengths = random.uniform(0, 3, (5, 300))
+    for robot in (False, True):
+        casters = [galactic.RayCaster.of_env(simulator, env, robot=robot) for env in range(5)]
+        for threads in (1, 2, 0):
+            options = {"robot": robot, "threads": threads}
+            rays = galactic.RayCaster.cast_rays_in_envs(
+                simulator, origins, directions, lengths, **options
+            )
+            sweeps = galactic.RayCaster.sweep_spheres_in_envs(
+                simulator, 0.05, origins, directions, 2, **options
+            )
+            assert rays.distance.shape == rays.end.shape == sweeps.index.shape == (5, 300)
+            for env, caster in enumerate(casters):
+                lines = origins[env], directions[env]
+                for found, wanted in (
+                    (rays, caster.cast_rays(*lines, lengths[env])),
+                    (sweeps, caster.sweep_spheres(0.05, *lines, 2)),
+                ):
+                    assert (found.distance[env] == wanted.distance).all()
+                    assert (found.end[env] == wanted.end).all()
+                    assert (found.index[env] == wanted.index).all()
+        assert (rays.end == CastEnd.OBJECT).any()
+        assert (rays.end == CastEnd.ROBOT).any() == robot
+
+
+def test_lines_that_do_not_fit_the_envs_are_refused(simulator):
+    def refusal(origins, directions, lengths=1):
+        with pytest.raises(ValueError) as failure:
+            galactic.RayCaster.cast_rays_in_envs(simulator, origins, directions, lengths)
+        return str(failure.value)
+
+    some = np.ones((2, 4, 3))
+    assert refusal(some[0], some) == "origins has the shape (4, 3), expected (2, n, 3)"
+    assert (
+        refusal(np.ones((3, 4, 3)), some) == "origins has the shape (3, 4, 3), expected (2, n, 3)"
+    )
+    assert refusal(some, np.ones((2, 4, 2))) == (
+        "directions has the shape (2, 4, 2), expected (2, n, 3)"
+    )
+    assert refusal(some, some, np.ones(4)) == "lengths has the shape (4,), expected (2, 4)"
+    with pytest.raises(galactic.Error, match='"directions" has the length 6, expected 8'):
+        galactic.RayCaster.cast_rays_in_envs(simulator, some, some[:, :3])
+    wrong = some.copy()
+    wrong[1, 3, 0] = np.nan
+    assert refusal(wrong, some) == "origins[1, 3] holds a number that is not finite"
+    empty = galactic.RayCaster.cast_rays_in_envs(simulator, some[:, :0], some[:, :0])
+    assert empty.distance.shape == (2, 0)

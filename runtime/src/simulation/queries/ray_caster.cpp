@@ -107,6 +107,38 @@ void checkLines(const char* call, const CastLines& lines, std::size_t hits) {
   }
 }
 
+/// The grid for spheres of a radius.
+const ColumnGrid& gridOf(const char* call, const Scene& scene, float radius) {
+  const std::optional<std::size_t> index = scene.gridIndex(radius);
+  if (index) return scene.grids()[*index];
+  std::string radii;
+  for (const ColumnGrid& grid : scene.grids()) {
+    radii += fmt::format("{}{}", radii.empty() ? "" : ", ", grid.radius());
+  }
+  detail::refuseCall(call, fmt::format("found the radius {} m, expected one that the scene has a "
+                                       "grid for: {}",
+                                       radius, radii));
+}
+
+/// Calls `cast` with the number, the lines and the hits of each env of a batch.
+template <class Cast>
+void forEachEnv(const char* call, const BatchSimulator& simulator, const CastLines& lines,
+                std::span<CastHit> hits, std::uint32_t threads, const Cast& cast) {
+  const std::size_t envs = simulator.envCount();
+  if (hits.size() % envs != 0) {
+    detail::refuseCall(call, fmt::format("found {} lines for {} envs, expected as many for each",
+                                         hits.size(), envs));
+  }
+  const std::size_t each = hits.size() / envs;
+  if (each == 0) return;
+  detail::forEachPart(detail::threadCount(threads), envs, [&](std::size_t env) {
+    const std::size_t first = env * each;
+    const CastLines own{lines.origins.subspan(first, each), lines.directions.subspan(first, each),
+                        lines.lengths.subspan(first, each)};
+    cast(env, own, hits.subspan(first, each));
+  });
+}
+
 /// Of the objects of a state.
 std::span<const Placement> placementsOf(const World& world, const EnvState& state) {
   constexpr const char* kCall = "RayCaster";
@@ -209,7 +241,7 @@ void RayCaster::Impl::cast(const ColumnGrid& grid, float radius, const CastLines
                            std::span<CastHit> hits, std::uint32_t threads) const {
   const std::size_t count = hits.size();
   const std::size_t parts = (count + kLinesOfAPart - 1) / kLinesOfAPart;
-  detail::forEachPart(threads, parts, [&](std::size_t part) {
+  detail::forEachPart(detail::threadCount(threads), parts, [&](std::size_t part) {
     const std::size_t end = std::min(count, (part + 1) * kLinesOfAPart);
     for (std::size_t n = part * kLinesOfAPart; n < end; ++n) {
       const auto length = static_cast<double>(lines.lengths[n]);
@@ -234,19 +266,30 @@ void RayCaster::sweepSpheres(float radius, const CastLines& lines, std::span<Cas
                              std::uint32_t threads) const {
   constexpr const char* kCall = "RayCaster::sweepSpheres";
   checkLines(kCall, lines, hits.size());
-  const Scene& scene = impl_->scene();
-  const std::optional<std::size_t> index = scene.gridIndex(radius);
-  if (!index) {
-    std::string radii;
-    for (const ColumnGrid& grid : scene.grids()) {
-      radii += fmt::format("{}{}", radii.empty() ? "" : ", ", grid.radius());
-    }
-    detail::refuseCall(kCall, fmt::format("found the radius {} m, expected one that the scene has "
-                                          "a grid for: {}",
-                                          radius, radii));
-  }
-  const ColumnGrid& grid = scene.grids()[*index];
+  const ColumnGrid& grid = gridOf(kCall, impl_->scene(), radius);
   impl_->cast(grid, grid.radius(), lines, hits, threads);
+}
+
+void castRaysInEnvs(const World& world, const BatchSimulator& simulator, const CastLines& lines,
+                    std::span<CastHit> hits, CastRobot robot, std::uint32_t threads) {
+  checkLines("castRaysInEnvs", lines, hits.size());
+  forEachEnv("castRaysInEnvs", simulator, lines, hits, threads,
+             [&](std::size_t env, const CastLines& own, std::span<CastHit> found) {
+               RayCaster(world, simulator.envState(env), robot).castRays(own, found);
+             });
+}
+
+void sweepSpheresInEnvs(const World& world, const BatchSimulator& simulator, float radius,
+                        const CastLines& lines, std::span<CastHit> hits, CastRobot robot,
+                        std::uint32_t threads) {
+  constexpr const char* kCall = "sweepSpheresInEnvs";
+  checkLines(kCall, lines, hits.size());
+  // The scenes of a world have grids of the same radii.
+  static_cast<void>(gridOf(kCall, world.scenes()[0], radius));
+  forEachEnv(kCall, simulator, lines, hits, threads,
+             [&](std::size_t env, const CastLines& own, std::span<CastHit> found) {
+               RayCaster(world, simulator.envState(env), robot).sweepSpheres(radius, own, found);
+             });
 }
 
 }  // namespace galactic

@@ -12,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -418,6 +419,67 @@ TEST_F(RayCasterInTheSmallHome, RefusesCallsThatDoNotFit) {
   EXPECT_EQ(sweep(0.05F), "RayCaster::sweepSpheres: \"lengths\" has the length 2, expected 1");
   lines.directions.clear();
   EXPECT_EQ(sweep(0.05F), "RayCaster::sweepSpheres: \"directions\" has the length 0, expected 1");
+}
+
+TEST_F(RayCasterInTheSmallHome, CastsInAllEnvsAsInEachOfThem) {
+  RecordProperty("seed", static_cast<int>(kSeed));
+  std::mt19937 random(kSeed);
+  SimulationOptions options;
+  options.envs = 3;
+  options.order = EpisodeOrder::kLinear;
+  const BatchSimulator batch = BatchSimulator::create(world(), options).value();
+  constexpr std::size_t kEach = 200;
+  const Lines lines = randomLines(batch.envCount() * kEach, random);
+  for (const CastRobot robot : {CastRobot::kIsUnseen, CastRobot::kIsSeen}) {
+    std::vector<CastHit> wanted_rays;
+    std::vector<CastHit> wanted_sweeps;
+    std::set<CastEnd> ends;
+    for (std::size_t env = 0; env < batch.envCount(); ++env) {
+      const RayCaster caster(world(), batch.envState(env), robot);
+      Lines own;
+      for (std::size_t n = env * kEach; n < (env + 1) * kEach; ++n) {
+        own.add(lines.origins[n], lines.directions[n], lines.lengths[n]);
+      }
+      for (const CastHit& hit : rays(caster, own)) {
+        wanted_rays.push_back(hit);
+        ends.insert(hit.end);
+      }
+      for (const CastHit& hit : sweeps(caster, 0.05F, own)) wanted_sweeps.push_back(hit);
+    }
+    EXPECT_TRUE(ends.contains(CastEnd::kObject)) << "else objects play no part";
+    EXPECT_EQ(ends.contains(CastEnd::kRobot), robot == CastRobot::kIsSeen);
+    for (const std::uint32_t threads : {0U, 1U, 2U, 7U}) {
+      std::vector<CastHit> hits(lines.origins.size());
+      castRaysInEnvs(world(), batch, lines.view(), hits, robot, threads);
+      EXPECT_EQ(hits, wanted_rays) << threads;
+      sweepSpheresInEnvs(world(), batch, 0.05F, lines.view(), hits, robot, threads);
+      EXPECT_EQ(hits, wanted_sweeps) << threads;
+    }
+  }
+}
+
+TEST_F(RayCasterInTheSmallHome, RefusesLinesThatDoNotFitTheEnvs) {
+  SimulationOptions options;
+  options.envs = 2;
+  const BatchSimulator batch = BatchSimulator::create(world(), options).value();
+  Lines lines;
+  std::vector<CastHit> hits;
+  const auto cast = [&] {
+    return refusal([&] { castRaysInEnvs(world(), batch, lines.view(), hits); });
+  };
+  EXPECT_EQ(cast(), "") << "no line in any env";
+  lines.add({1, 1, 1}, {1, 0, 0});
+  hits.resize(1, CastHit{77});
+  EXPECT_EQ(cast(), "castRaysInEnvs: found 1 lines for 2 envs, expected as many for each");
+  lines.add({1, 1, 1}, {0, 0, 0});
+  hits.resize(2, CastHit{77});
+  EXPECT_EQ(cast(), "castRaysInEnvs: directions[1] is zero, and leads nowhere");
+  EXPECT_EQ(hits[0].distance, 77) << "nothing is written";
+  lines.directions[1] = {1, 0, 0};
+  EXPECT_EQ(refusal([&] { sweepSpheresInEnvs(world(), batch, 0.03F, lines.view(), hits); }),
+            "sweepSpheresInEnvs: found the radius 0.03 m, expected one that the scene has a grid "
+            "for: 0.016, 0.05, 0.12");
+  EXPECT_EQ(hits[0].distance, 77) << "nothing is written";
 }
 
 TEST_F(RayCasterInTheSmallHome, RefusesStatesOfOtherWorlds) {
