@@ -64,8 +64,8 @@ enum class GoalOf : std::uint8_t {
 /// Where the robot of a world can drive on one floor of a scene, and the shortest paths there. The
 /// floor consists of cells of 10 cm in which the robot's start pose is free of the static scene in
 /// some heading, and which lie within a step (GroundOptions) of a neighbor; objects are not in the
-/// way. Lengths come from fast marching (Sethian 1996), which is not bound to the directions of
-/// cells. Immutable; copies share what they know, and keep the world.
+/// way. Lengths come from fast marching of second order (Sethian 1999), which is not bound to the
+/// directions of cells. Immutable; copies share what they know, and keep the world.
 class PathFinder {
  public:
   /// The floor at or up to half a meter under `start`, or that begins within 30 cm of there: where

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <functional>
 #include <limits>
@@ -13,6 +14,7 @@ namespace galactic::sensors {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Both sides along X, then along Z.
 constexpr std::array<PlanCell, 4> kAround{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 /// How far above and below a floor a point may be, meters, to be reached from it.
 constexpr Span kReach{-0.3F, 2.2F};
@@ -42,27 +44,38 @@ bool isInSight(const ColumnGrid& grid, const Vec3& point, const Vec3& from) {
   return false;
 }
 
-/// Lengths of ways, spreading over a plan.
+/// Lengths of ways, spreading over a plan: fast marching (Sethian 1999, "Fast Marching Methods"),
+/// of second order where two cells on a line know theirs, of first order elsewhere.
 class Spreading {
  public:
-  explicit Spreading(const FloorPlan& plan) : plan_(plan), lengths_(plan.cellCount(), kInfinity) {}
-
-  void begin(const PlanCell& cell, float length) {
-    if (length < lengths_[plan_.indexOf(cell)]) put(cell, length);
+  explicit Spreading(const FloorPlan& plan)
+      : plan_(plan),
+        steps_{1, -1, plan.columnsX(), -plan.columnsX()},
+        exits_(plan.cellCount()),
+        tried_(plan.cellCount(), kInfinity),
+        lengths_(plan.cellCount(), kInfinity) {
+    for (std::size_t index = 0; index < exits_.size(); ++index) {
+      const PlanCell cell = cellOf(index);
+      for (std::size_t way = 0; way < kAround.size(); ++way) {
+        const PlanCell next{cell.i + kAround[way].i, cell.k + kAround[way].k};
+        if (plan.areConnected(cell, next)) exits_[index] |= 1U << way;
+      }
+    }
   }
+
+  void begin(const PlanCell& cell, float length) { tryLength(plan_.indexOf(cell), length); }
 
   void run() {
     while (!waiting_.empty()) {
       std::ranges::pop_heap(waiting_, std::greater<>());
       const auto [length, index] = waiting_.back();
       waiting_.pop_back();
-      if (length > lengths_[index]) continue;
-      const PlanCell cell = cellOf(index);
-      for (const PlanCell& way : kAround) {
-        const PlanCell next{cell.i + way.i, cell.k + way.k};
-        if (!plan_.areConnected(cell, next)) continue;
-        const float reached = reachedFrom(next);
-        if (reached < lengths_[plan_.indexOf(next)]) put(next, reached);
+      if (lengths_[index] != kInfinity) continue;
+      lengths_[index] = length;
+      for (std::size_t way = 0; way < kAround.size(); ++way) {
+        if (!leadsOn(index, way)) continue;
+        const std::size_t next = beside(index, way);
+        if (lengths_[next] == kInfinity) tryLength(next, reachedFrom(next));
       }
     }
   }
@@ -83,9 +96,18 @@ class Spreading {
     lengths_ = std::move(wide);
   }
 
+  /// Of all cells.
   [[nodiscard]] const std::vector<float>& lengths() const { return lengths_; }
 
  private:
+  /// A term (weight (length - from) / cell)^2 of the eikonal equation, whose terms add up to 1.
+  struct Term {
+    float weight = 0;
+    float from = kInfinity;
+    /// The length where this is the only one: the way goes along the axis, from cell to cell.
+    float alone = kInfinity;
+  };
+
   [[nodiscard]] PlanCell cellOf(std::size_t index) const {
     const auto columns = static_cast<std::size_t>(plan_.columnsX());
     return {static_cast<std::int32_t>(index % columns), static_cast<std::int32_t>(index / columns)};
@@ -93,25 +115,64 @@ class Spreading {
   [[nodiscard]] float at(const PlanCell& cell) const {
     return plan_.isInside(cell) ? lengths_[plan_.indexOf(cell)] : kInfinity;
   }
-  void put(const PlanCell& cell, float length) {
-    lengths_[plan_.indexOf(cell)] = length;
-    waiting_.emplace_back(length, plan_.indexOf(cell));
+  /// Whether a base can go from a cell to the one beside it.
+  [[nodiscard]] bool leadsOn(std::size_t index, std::size_t way) const {
+    return (exits_[index] >> way & 1U) != 0;
+  }
+  [[nodiscard]] std::size_t beside(std::size_t index, std::size_t way) const {
+    return index + static_cast<std::size_t>(steps_[way]);
+  }
+  void tryLength(std::size_t index, float length) {
+    if (!(length < tried_[index])) return;
+    tried_[index] = length;
+    waiting_.emplace_back(length, index);
     std::ranges::push_heap(waiting_, std::greater<>());
   }
 
+  /// Of the neighbor on one side of a cell, and of the one behind it.
+  [[nodiscard]] Term termOf(std::size_t index, std::size_t way) const {
+    if (!leadsOn(index, way)) return {};
+    const std::size_t first = beside(index, way);
+    const float length = lengths_[first];
+    if (length == kInfinity) return {};
+    if (leadsOn(first, way)) {
+      const float behind = lengths_[beside(first, way)];
+      if (behind <= length) {
+        return {1.5F, (4 * length - behind) / 3, length + kPlanCell};
+      }
+    }
+    return {1, length, length + kPlanCell};
+  }
+  /// Along X or Z: of the side from which the way is shorter. `way`: one of both sides.
+  [[nodiscard]] Term shorterOf(std::size_t index, std::size_t way) const {
+    const Term one = termOf(index, way);
+    const Term other = termOf(index, way + 1);
+    return one.alone <= other.alone ? one : other;
+  }
   /// The eikonal equation at a cell, upwind, of the neighbors from which a base can come.
-  [[nodiscard]] float reachedFrom(const PlanCell& cell) const {
-    const auto from = [&](const PlanCell& neighbor) {
-      return plan_.areConnected(cell, neighbor) ? at(neighbor) : kInfinity;
-    };
-    const float a = std::min(from({cell.i - 1, cell.k}), from({cell.i + 1, cell.k}));
-    const float b = std::min(from({cell.i, cell.k - 1}), from({cell.i, cell.k + 1}));
-    const float apart = std::fabs(a - b);
-    if (!(apart < kPlanCell)) return std::min(a, b) + kPlanCell;
-    return 0.5F * (a + b + std::sqrt(2 * kPlanCell * kPlanCell - apart * apart));
+  [[nodiscard]] float reachedFrom(std::size_t index) const {
+    const Term x = shorterOf(index, 0);
+    const Term z = shorterOf(index, 2);
+    const float alone = std::min(x.alone, z.alone);
+    if (x.weight == 0 || z.weight == 0) return alone;
+    const float square_x = x.weight * x.weight;
+    const float square_z = z.weight * z.weight;
+    const float sum = square_x + square_z;
+    const float apart = x.from - z.from;
+    const float rest = kPlanCell * kPlanCell - square_x * square_z / sum * apart * apart;
+    if (!(rest > 0)) return alone;
+    const float both = (square_x * x.from + square_z * z.from) / sum + std::sqrt(rest / sum);
+    return both >= std::max(x.from, z.from) ? std::min(both, alone) : alone;
   }
 
   const FloorPlan& plan_;
+  /// From the index of a cell to those around it.
+  std::array<std::ptrdiff_t, kAround.size()> steps_;
+  /// The ways of kAround on which a base can leave each cell, as bits.
+  std::vector<std::uint8_t> exits_;
+  /// The least that was found so far.
+  std::vector<float> tried_;
+  /// Those that no other way makes less.
   std::vector<float> lengths_;
   std::vector<std::pair<float, std::size_t>> waiting_;
 };
