@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -12,6 +11,7 @@
 
 #include "common/srgb.h"
 #include "galactic/bake/triangle_mesh.h"
+#include "import/asset_extents.h"
 #include "import/source_files.h"
 #include "support/try.h"
 #include "urdf/urdf_frames.h"
@@ -95,24 +95,10 @@ Result<void> checkShape(const UrdfShape& shape, const std::string& place) {
   return {};
 }
 
-/// The box around the points of a mesh that was read as Z up, along the axes of its file.
+/// The box around a mesh that was read as Z up, along the axes of its file.
 std::array<double, 3> sizeInFile(const SourceAsset& asset) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
-  std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
-  for (const SourceInstance& instance : asset.instances) {
-    const SourceMesh& mesh = asset.meshes[instance.mesh];
-    for (const Triangle& triangle : mesh.triangles) {
-      for (const std::uint32_t corner : triangle) {
-        const auto p = transformed(instance.world_from_mesh, mesh.positions[corner]);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          low[axis] = std::min(low[axis], p[axis]);
-          high[axis] = std::max(high[axis], p[axis]);
-        }
-      }
-    }
-  }
-  return {high[0] - low[0], high[2] - low[2], high[1] - low[1]};
+  const std::array<double, 3> size = extentsOf(asset);
+  return {size[0], size[2], size[1]};
 }
 
 bool hasSize(const UrdfShape& shape) {

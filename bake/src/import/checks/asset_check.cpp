@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string_view>
 #include <vector>
 
 #include "import/affine.h"
+#include "import/asset_extents.h"
 
 namespace galactic::bake {
 namespace {
@@ -93,26 +93,6 @@ Result<void> checkInstance(const SourceAsset& asset, const SourceInstance& insta
 constexpr std::string_view kUnits =
     "0.01 for centimeters, 0.001 for millimeters, 1 if it is right in meters";
 
-/// Of the box around all triangles, along the axes of the world.
-std::array<double, 3> extentsOf(const SourceAsset& asset) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
-  std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
-  for (const SourceInstance& instance : asset.instances) {
-    const SourceMesh& mesh = asset.meshes[instance.mesh];
-    for (const Triangle& triangle : mesh.triangles) {
-      for (const std::uint32_t vertex : triangle) {
-        const auto p = transformed(instance.world_from_mesh, mesh.positions[vertex]);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          low[axis] = std::min(low[axis], p[axis]);
-          high[axis] = std::max(high[axis], p[axis]);
-        }
-      }
-    }
-  }
-  return {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
-}
-
 }  // namespace
 
 Result<void> checkAsset(const SourceAsset& asset, const std::string& where) {
@@ -141,30 +121,12 @@ Result<void> checkAsset(const SourceAsset& asset, const std::string& where) {
 
 void warnAboutSize(SourceAsset& asset, double smallest_size) {
   if (smallest_size <= 0) return;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::array<double, 3> low{kInfinity, kInfinity, kInfinity};
-  std::array<double, 3> high{-kInfinity, -kInfinity, -kInfinity};
-  // A scene with more triangles than this is no toy, however small it is.
-  std::uint64_t budget = 10'000'000;
-  for (const SourceInstance& instance : asset.instances) {
-    for (const Triangle& triangle : asset.meshes[instance.mesh].triangles) {
-      if (budget-- == 0) return;
-      for (const std::uint32_t vertex : triangle) {
-        const auto p =
-            transformed(instance.world_from_mesh, asset.meshes[instance.mesh].positions[vertex]);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          low[axis] = std::min(low[axis], p[axis]);
-          high[axis] = std::max(high[axis], p[axis]);
-        }
-      }
-      // Almost every scene is larger than this after a few triangles.
-      if (std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) >= smallest_size) return;
-    }
-  }
+  const std::array<double, 3> size = extentsOf(asset);
+  if (*std::ranges::max_element(size) >= smallest_size) return;
   asset.warnings.push_back(fmt::format(
       "the whole scene is only {:.3g} x {:.3g} x {:.3g} m large: is its unit the meter? "
       "Give meters per unit with `scale`",
-      high[0] - low[0], high[1] - low[1], high[2] - low[2]));
+      size[0], size[1], size[2]));
 }
 
 Result<void> checkHeight(const SourceAsset& asset, const std::string& where) {
