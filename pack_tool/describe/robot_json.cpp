@@ -4,10 +4,10 @@
 #include <limits>
 #include <string>
 
+#include "galactic/position_names.h"
 #include "galactic/robot.h"
 #include "pack_tool/describe/asset_json.h"
 #include "pack_tool/describe/json_parts.h"
-#include "pack_tool/figure/joint_positions.h"
 
 namespace galactic::pack_tool {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pack_tool/figure/joint_positions.h"
+#include "galactic/position_names.h"
 #include "pack_tool/support/xml_text.h"
 
 namespace galactic::pack_tool {

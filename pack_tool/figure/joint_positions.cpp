@@ -3,24 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <string_view>
+
+#include "galactic/position_names.h"
 
 namespace galactic::pack_tool {
-
 namespace {
-
-constexpr std::uint32_t kNoLink = 0xffffffffU;
-
-constexpr std::array<std::string_view, 3> kPlanarParts{".x", ".y", ".angle"};
-constexpr std::array<std::string_view, 7> kFloatingParts{".x",  ".y",  ".z", ".qx",
-                                                         ".qy", ".qz", ".qw"};
-
-std::string_view partName(JointType type, std::uint32_t n) {
-  if (type == JointType::kPlanar) return kPlanarParts.at(n);
-  if (type == JointType::kFloating) return kFloatingParts.at(n);
-  return {};
-}
 
 std::vector<float> unnamedPositions(const Robot& robot, OtherJoints others) {
   if (others == OtherJoints::kStart) {
@@ -30,7 +17,7 @@ std::vector<float> unnamedPositions(const Robot& robot, OtherJoints others) {
   for (const LinkFrame& link : robot.links()) {
     // The last of seven values is the quaternion's w.
     if (link.type == JointType::kFloating) {
-      positions[static_cast<std::size_t>(link.position) + kFloatingParts.size() - 1] = 1;
+      positions[static_cast<std::size_t>(link.position) + positionCount(link.type) - 1] = 1;
     }
   }
   return positions;
@@ -51,40 +38,6 @@ std::string unknownJoint(const Robot& robot, const std::vector<std::string>& nam
 }
 
 }  // namespace
-
-std::vector<std::uint32_t> positionOwners(const Robot& robot) {
-  std::vector<std::uint32_t> owners(robot.positionCount(), kNoLink);
-  // First those that take their position as it is, then, should there be none, any.
-  for (const bool only_plain : {true, false}) {
-    for (std::uint32_t n = 0; n < robot.links().size(); ++n) {
-      const LinkFrame& link = robot.links()[n];
-      const bool plain = link.multiplier == 1 && link.offset == 0;
-      if (link.position < 0 || (only_plain && !plain)) continue;
-      for (std::uint32_t value = 0; value < positionCount(link.type); ++value) {
-        std::uint32_t& owner = owners[static_cast<std::size_t>(link.position) + value];
-        if (owner == kNoLink) owner = n;
-      }
-    }
-  }
-  return owners;
-}
-
-std::vector<std::string> positionNames(const Robot& robot) {
-  const std::vector<std::uint32_t> owners = positionOwners(robot);
-  std::vector<std::string> names;
-  for (std::uint32_t position = 0; position < owners.size(); ++position) {
-    const std::uint32_t owner = owners[position];
-    if (owner == kNoLink) {
-      names.push_back(fmt::format("position {}", position));
-      continue;
-    }
-    const LinkFrame& link = robot.links()[owner];
-    names.push_back(
-        std::string(robot.jointName(owner)) +
-        std::string(partName(link.type, position - static_cast<std::uint32_t>(link.position))));
-  }
-  return names;
-}
 
 Result<std::vector<float>> jointPositions(const Robot& robot, const JointChoice& choice,
                                           const std::string& where) {

@@ -8,14 +8,6 @@
 
 namespace galactic::pack_tool {
 
-/// The link whose joint owns each position of the robot, one per position. Of several joints with
-/// one position the first that takes it as it is; the others mimic it.
-[[nodiscard]] std::vector<std::uint32_t> positionOwners(const Robot& robot);
-
-/// What the user calls each position: the joint's name; with ".x", ".y" and ".angle" for planar
-/// joints; with ".x", ".y", ".z", ".qx", ".qy", ".qz" and ".qw" for floating ones.
-[[nodiscard]] std::vector<std::string> positionNames(const Robot& robot);
-
 /// One joint value as the user gave it, radians or meters.
 struct JointValue {
   std::string name;

@@ -53,8 +53,9 @@ class EnvStates(NamedTuple):
     world_from_root: Poses
     """Of n robots, upright. Where it is set, only the yaw counts, and the height where it is near a floor."""
     joint_positions: NDArray[np.float32]
-    """(n, joints) of the whole robot, radians or meters; World.actions says where in it the joints
-    are that actions move."""
+    """(n, positions) of the whole robot, radians or meters: World.positions names the columns, and
+    World.actions says which of them actions move. Where they are set, those that neither actions nor episodes
+    move stay as they are."""
     world_from_grip: Poses
     """Of n hands: origin at the grasp point, axes of the end effector's link."""
     objects: Poses

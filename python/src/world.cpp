@@ -21,6 +21,7 @@
 #include "episode_table.h"
 #include "filled.h"
 #include "galactic/error.h"
+#include "galactic/position_names.h"
 #include "options.h"
 
 namespace galactic::python {
@@ -135,6 +136,12 @@ py::tuple jointNames(const World& world) {
   return py::tuple(names);
 }
 
+py::tuple namesOfPositions(const World& world) {
+  py::list names;
+  for (const std::string& name : positionNames(world.robot())) names.append(fileText(name));
+  return py::tuple(names);
+}
+
 py::str actionText(const Action& action) {
   std::string text = fmt::format("<galactic.Action {}", action.name);
   if (action.step && action.unit) {
@@ -197,6 +204,11 @@ void bindWorld(py::module_& module) {
                              "PlanningScene.root_from_links.")
       .def_property_readonly("joints", &jointNames,
                              "Names of the joints that actions move, in their order.")
+      .def_property_readonly(
+          "positions", &namesOfPositions,
+          "What the columns of joint_positions are: the names of the whole robot's joints, "
+          "without\n"
+          "those that follow others; with .x, .y and .angle or .x to .qw where one has several.")
       .def_property_readonly(
           "actions", [](const World& world) { return py::tuple(py::cast(actionsOf(world))); },
           "What the columns of the actions do: an Action for each, joints first, then forward,\n"

@@ -24,6 +24,7 @@ def test_world_says_what_is_in_it(world):
     assert world.scenes == ("room",) or len(world.scenes) == 1
     assert world.robot == "helper"
     assert world.joints == ("lift", "elbow", "reach", "wrist")
+    assert world.positions == world.joints
     assert world.episodes == 4
     assert len(world.objects) == 2
     assert world.radii == pytest.approx((0.016, 0.05, 0.12))

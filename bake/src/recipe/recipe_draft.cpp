@@ -18,6 +18,9 @@ constexpr double kPrismaticStep = 0.05;
 constexpr double kExampleTurn = 0.5;
 constexpr double kExampleSlide = 0.05;
 
+/// Meters, rounded to millimeters; never -0.
+double inMillimeters(double meters) { return std::round(meters * 1000) / 1000 + 0.0; }
+
 /// A TOML string.
 std::string tomlText(std::string_view name) {
   std::string text = "\"";
@@ -137,7 +140,8 @@ class RecipeDraft {
         "ground.\n"
         "[base]\nfootprint_radius = {:.3f}\nroot_height = {:.3f}\n"
         "forward_step = 0.1\nturn_step_degrees = 5.0\n\n",
-        printable(robot_.links.front().name), guess_.footprint_radius, guess_.root_height);
+        printable(robot_.links.front().name), guess_.footprint_radius,
+        inMillimeters(guess_.root_height));
   }
 
   void addJoints() {

@@ -25,8 +25,8 @@ inline constexpr std::uint16_t kNoWay = 0xFFFF;
 /// kWayUnit, at most 127 m. A way leads over passable cells, then straight to the point: from cells
 /// within kLastLeg of it from which it is in sight just above its own height; where there is no
 /// such cell, no way leads to it. Lengths spread by fast marching of second order (Sethian 1999),
-/// which is not bound to the lattice's directions. Cells beside the floor (kBeside) have lengths too, for bases
-/// that are nearer to things than the start pose can be. Shape: plan.cellCount().
+/// which is not bound to the lattice's directions. Cells beside the floor (kBeside) have lengths
+/// too, for bases that are nearer to things than the start pose can be. Shape: plan.cellCount().
 [[nodiscard]] std::vector<std::uint16_t> wayField(const FloorPlan& plan, const Scene& scene,
                                                   const Vec3& point);
 

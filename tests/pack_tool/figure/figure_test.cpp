@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "galactic/position_names.h"
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/figure/figures_of_pack.h"
 #include "support/pack_tool_fixture.h"

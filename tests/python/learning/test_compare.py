@@ -80,6 +80,10 @@ def test_runs_that_differ_in_their_seed_alone_are_averaged(
     assert "nothing but the seed" in grouped[2] and "other" not in grouped[1]
     # One of each is no group.
     assert "seeds" not in told(capsys, runs[0], runs[3])[1]
+    # A seed that is there twice counts once.
+    again = make_run(tmp_path / "again", seed=2)
+    assert "seeds" not in told(capsys, runs[1], again)[1]
+    assert grouped[1] in told(capsys, *runs[:3], again)[1]
 
 
 def test_a_task_of_another_text_is_another_setting(tmp_path: pathlib.Path) -> None:

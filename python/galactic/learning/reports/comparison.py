@@ -183,18 +183,18 @@ def table_of(runs: Sequence[ComparedRun]) -> list[list[str]]:
 
 
 def table_of_seeds(runs: Sequence[ComparedRun]) -> list[list[str]]:
-    """A row of names and a row for each two or more runs that differ in nothing but the seed; nothing where there
-    are none."""
-    alike: dict[tuple[tuple[str, str], ...], list[ComparedRun]] = {}
+    """A row of names and a row for each two or more runs that differ in their seed alone; nothing where there are
+    none. Of runs with the same seed, which are one run made twice, the first counts."""
+    alike: dict[tuple[tuple[str, str], ...], dict[str, ComparedRun]] = {}
     for run in runs:
-        alike.setdefault(run.but_for_its_seed, []).append(run)
+        alike.setdefault(run.but_for_its_seed, {}).setdefault(run.settings.get(SEED, ""), run)
     rows = [
         [
             ", ".join(run.name for run in group),
             _spread(run.last for run in group),
             _spread(run.best for run in group),
         ]
-        for group in alike.values()
+        for group in ([*by_seed.values()] for by_seed in alike.values())
         if len(group) > 1
     ]
     return [["seeds", "last validation", "best validation"], *rows] if rows else []
