@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <limits>
 
 #include "support/atomic_file.h"
 
@@ -53,14 +52,6 @@ Result<void> write(const std::filesystem::path& path, const RawImage& image) {
 }
 
 }  // namespace
-
-bool fitsPng(int width, int height) {
-  constexpr int kLongestEdge = 1'000'000;
-  constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
-  return width <= kLongestEdge && height <= kLongestEdge &&
-         sizeof(Rgb) * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) <=
-             kMostBytes;
-}
 
 Result<std::string> encodePng(const AlphaImage& image) {
   static_assert(std::endian::native == std::endian::little, "libpng reads R first");

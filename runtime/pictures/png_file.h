@@ -24,10 +24,6 @@ struct AlphaImage {
   std::span<const std::uint32_t> pixels;
 };
 
-/// Whether libpng makes a file of a picture of so many pixels: up to a million along an edge, and
-/// in all what it counts the bytes of in 32 bits.
-[[nodiscard]] bool fitsPng(int width, int height);
-
 /// The bytes of a PNG file, 8-bit sRGB; without alpha where all of it is 255. The same image gives
 /// the same bytes. Fails with kInternal when libpng refuses the image.
 [[nodiscard]] Result<std::string> encodePng(const AlphaImage& image);

@@ -327,10 +327,10 @@ TEST_F(RenderCli, ASheetThatIsTooLargeIsRefusedBeforeTheRun) {
       {"world.pack", "--backend", "soft", "--envs", "300", "--frame-envs", "300", "--steps", "1",
        "--render", "rgb", "--size", "4096x1", "--contact-sheet", "a.png", "--record", "a.rec"});
   EXPECT_EQ(result.exit_code, 5);
-  EXPECT_EQ(result.err,
-            "galactic-run: a.png: would be a picture of 1231208 x 92 pixels, which is more than "
-            "PNG files are made of here; show fewer envs (--frame-envs), or smaller images "
-            "(--size)\n");
+  EXPECT_EQ(
+      result.err,
+      "galactic-run: a.png: would be a picture of 1231208 x 92 pixels, and viewers show up to "
+      "16384 along a side; show at most 3 of its 300 envs (--frame-envs)\n");
   EXPECT_THAT(result.out, IsEmpty());
 }
 

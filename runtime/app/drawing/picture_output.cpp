@@ -30,6 +30,9 @@ using pictures::Image;
 /// Between the images of a tile, and between the tiles of a video; pixels.
 constexpr int kTileGap = 2;
 
+/// Most pixels along a side of a sheet: what viewers and browsers show.
+constexpr int kMostSheetSide = 16384;
+
 /// Beside the frames: what semantic ids mean.
 constexpr std::string_view kLegendName = "semantics.json";
 
@@ -80,6 +83,25 @@ Image emptyTile(const DrawingOptions& options) {
   return {images * (static_cast<int>(options.width) + kTileGap) - kTileGap,
           static_cast<int>(options.height),
           {}};
+}
+
+bool isViewable(const SheetLayout& layout) {
+  return layout.width() <= kMostSheetSide && layout.height() <= kMostSheetSide;
+}
+
+/// The largest number up to `most` that `fits`, as all smaller ones do; 0 when none does.
+template <typename Fits>
+std::size_t largestThat(std::size_t most, const Fits& fits) {
+  std::size_t known = 0;
+  while (known < most) {
+    const std::size_t next = most - (most - known) / 2;
+    if (fits(next)) {
+      known = next;
+    } else {
+      most = next - 1;
+    }
+  }
+  return known;
 }
 
 /// What depths and the colors of the debug view mean, and which image is which.
@@ -167,28 +189,50 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const P
   return output;
 }
 
-/// Before the run: it would be a pity afterwards.
-Result<void> PictureOutput::checkSheet(const PicturedRun& run) const {
-  if (!sheet_) return {};
+/// How a sheet of the first `envs` lies when a run does all its steps.
+SheetLayout PictureOutput::plannedSheet(const PicturedRun& run, const DrawingOptions& options,
+                                        std::size_t envs) const {
   EnvFrame frame;
   frame.episode = static_cast<std::uint32_t>(run.episodes);
   frame.target = frame.held = run.longest_name;
-  const std::string longest = captionOf(envs_ - 1, run.steps, frame);
-  const SheetLayout layout = sheetLayout(envs_ * sheet_->planned(), envs_, emptyTile(options_),
-                                         std::span(&longest, 1), guideOf(options_));
-  constexpr const char* kAdvice = "show fewer envs (--frame-envs), or smaller images (--size)";
-  if (!pictures::fitsPng(layout.width(), layout.height())) {
+  const std::string longest = captionOf(envs - 1, run.steps, frame);
+  return sheetLayout(envs * sheet_->planned(), envs, emptyTile(options), std::span(&longest, 1),
+                     guideOf(options));
+}
+
+/// What makes a sheet that is too large one that can be viewed.
+std::string PictureOutput::adviceForSheet(const PicturedRun& run) const {
+  const std::size_t envs = largestThat(
+      envs_, [&](std::size_t count) { return isViewable(plannedSheet(run, options_, count)); });
+  if (envs > 0) return fmt::format("show at most {} of its {} envs (--frame-envs)", envs, envs_);
+  const std::size_t most = std::max(options_.width, options_.height);
+  const std::size_t edge = largestThat(most, [&](std::size_t longest) {
+    DrawingOptions smaller = options_;
+    smaller.width = std::min(options_.width, static_cast<std::uint32_t>(longest));
+    smaller.height = std::min(options_.height, static_cast<std::uint32_t>(longest));
+    return isViewable(plannedSheet(run, smaller, 1));
+  });
+  return fmt::format("draw images of at most {} pixels along a side (--size), then one env fits",
+                     edge);
+}
+
+/// Before the run: it would be a pity afterwards.
+Result<void> PictureOutput::checkSheet(const PicturedRun& run) const {
+  if (!sheet_) return {};
+  const SheetLayout layout = plannedSheet(run, options_, envs_);
+  if (!isViewable(layout)) {
     return fail(ErrorCode::kUnsupported, options_.contact_sheet,
-                fmt::format("would be a picture of {} x {} pixels, which is more than PNG files "
-                            "are made of here; {}",
-                            layout.width(), layout.height(), kAdvice));
+                fmt::format("would be a picture of {} x {} pixels, and viewers show up to {} along "
+                            "a side; {}",
+                            layout.width(), layout.height(), kMostSheetSide, adviceForSheet(run)));
   }
   // The tiles of all moments that are held, the sheet, and the file that becomes of it.
   constexpr double kHeld =
       static_cast<double>(SheetMoments::mostHeld()) / static_cast<double>(SheetMoments::kMost);
   constexpr double kBytesPerPixel = (kHeld + 2) * sizeof(pictures::Rgb);
   return checkMemory(kBytesPerPixel * layout.width() * layout.height(),
-                     fmt::format("pictures of {} envs on one sheet", envs_), kAdvice);
+                     fmt::format("pictures of {} envs on one sheet", envs_),
+                     "show fewer envs (--frame-envs), or smaller images (--size)");
 }
 
 Result<void> PictureOutput::writeLegend(std::string_view json) const {

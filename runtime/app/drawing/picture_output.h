@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "command_line/render_options.h"
+#include "drawing/contact_sheet.h"
 #include "drawing/frame_images.h"
 #include "drawing/sheet_moments.h"
 #include "drawing/video_pipe.h"
@@ -79,6 +81,9 @@ class PictureOutput {
  private:
   PictureOutput(const DrawingOptions& options, const PicturedRun& run);
 
+  [[nodiscard]] SheetLayout plannedSheet(const PicturedRun& run, const DrawingOptions& options,
+                                         std::size_t envs) const;
+  [[nodiscard]] std::string adviceForSheet(const PicturedRun& run) const;
   [[nodiscard]] Result<void> checkSheet(const PicturedRun& run) const;
   [[nodiscard]] Result<void> show(std::uint64_t step, std::span<const EnvFrame> frames,
                                   bool is_on_sheet);

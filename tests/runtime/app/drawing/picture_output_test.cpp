@@ -214,6 +214,36 @@ TEST_F(Pictures, ShowWhoIsIdleInTheStateThatIsDrawn) {
   EXPECT_EQ(idle, 2 * kStates - 2 - 4);
 }
 
+TEST_F(Pictures, ASheetThatNoViewerShowsIsRefusedWithWhatFits) {
+  DrawingOptions options = smallOptions();
+  options.contact_sheet = file("sheet.png");
+  const auto refusal_of = [&](std::uint32_t envs) {
+    options.frame_envs = envs;
+    const auto output = PictureOutput::open(options, {2, envs});
+    return output ? std::string() : output.error().message;
+  };
+  const std::string refusal = refusal_of(200);
+  EXPECT_THAT(refusal, HasSubstr(" pixels, and viewers show up to 16384 along a side; show at "
+                                 "most "));
+  const std::string most = "at most ";
+  const unsigned long fits = std::stoul(refusal.substr(refusal.find(most) + most.size()));
+  EXPECT_EQ(refusal_of(static_cast<std::uint32_t>(fits)), "");
+  EXPECT_THAT(refusal_of(static_cast<std::uint32_t>(fits + 1)),
+              HasSubstr(" show at most " + std::to_string(fits) + " of its "));
+  // Three moments of 6000 pixels.
+  options.width = 100;
+  options.height = 6000;
+  const std::string smaller = refusal_of(2);
+  EXPECT_THAT(smaller, HasSubstr("; draw images of at most "));
+  EXPECT_THAT(smaller, HasSubstr(" pixels along a side (--size), then one env fits"));
+  options.height =
+      static_cast<std::uint32_t>(std::stoul(smaller.substr(smaller.find(most) + most.size())));
+  EXPECT_GT(options.height, 5000U);
+  EXPECT_EQ(refusal_of(1), "");
+  ++options.height;
+  EXPECT_NE(refusal_of(1), "");
+}
+
 TEST_F(Pictures, ASheetIsWrittenThoughFramesAndVideoCannotBe) {
   fakeFfmpeg("exit 3\n");
   DrawingOptions options = smallOptions();
