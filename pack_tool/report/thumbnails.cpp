@@ -16,6 +16,7 @@
 #include "pack_tool/pictures/scene_picture.h"
 #include "pack_tool/support/open_scene.h"
 #include "pictures/png_file.h"
+#include "support/printable.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {
@@ -30,15 +31,6 @@ constexpr int kViewSize = 200;
 constexpr std::size_t kMostOnSheet = 240;
 constexpr std::size_t kMostPlansOnSheet = 60;
 
-/// A part of a picture.
-Image cutOut(const Image& image, const pictures::PixelRect& part) {
-  Image plot(part.width, part.height, {});
-  for (int y = 0; y < part.height; ++y) {
-    for (int x = 0; x < part.width; ++x) plot.set(x, y, image.at(part.x + x, part.y + y));
-  }
-  return plot;
-}
-
 Result<Thumbnail> encoded(std::string caption, const Image& image) {
   ASSIGN_OR_RETURN(auto png, pictures::encodePng(image));
   return Thumbnail{std::move(caption), image.width(), image.height(), std::move(png)};
@@ -46,10 +38,10 @@ Result<Thumbnail> encoded(std::string caption, const Image& image) {
 
 Result<void> addPlans(const Scene& scene, std::vector<Thumbnail>& thumbnails) {
   for (const ColumnGrid& grid : scene.grids()) {
-    const auto plan = pictures::drawPlan(std::span(&grid, 1), {.width = kPlanWidth});
+    const auto plan = pictures::drawPlan(std::span(&grid, 1),
+                                         {.width = kPlanWidth, .title = printable(scene.name())});
     ASSIGN_OR_RETURN(auto thumbnail,
-                     encoded(fmt::format("free height, radius {:g} m", grid.radius()),
-                             cutOut(plan.image, plan.plots.front())));
+                     encoded(fmt::format("free height, radius {:g} m", grid.radius()), plan.image));
     thumbnails.push_back(std::move(thumbnail));
   }
   return {};

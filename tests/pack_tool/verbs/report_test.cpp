@@ -13,6 +13,7 @@
 #include "support/pack_tool_fixture.h"
 #include "support/packs/texture_pack_builder.h"
 #include "support/packs/world_pack_builder.h"
+#include "view/page_data.h"
 
 namespace galactic::test::report_test {
 namespace {
@@ -56,6 +57,20 @@ TEST(Report, ShowsEveryGridAndEverythingThatIsDrawn) {
   // PNG files, as base64 begins with them.
   EXPECT_EQ(countOf(html, "base64,iVBORw0KGgo"), countOf(html, "<img "));
   EXPECT_EQ(countOf(html, "http"), 0U) << "the page must not need the network";
+}
+
+TEST(Report, ShowsGridsAsPicturesOfThemDo) {
+  const ScratchFolder folder;
+  const fs::path pack = kGolden / "room-column.pack";
+  const fs::path page = folder.path() / "page.html";
+  const fs::path picture = folder.path() / "plan.png";
+  ASSERT_EQ(run({.packs = {pack}, .output = page}).exit_code, kExitOk);
+  std::ostringstream out;
+  std::ostringstream err;
+  pack_tool::PictureOptions options{.pack = pack, .output = picture, .size = 360};
+  options.grids.radius = 0.12F;
+  ASSERT_EQ(pack_tool::runPicture(options, {out, err}), kExitOk) << err.str();
+  EXPECT_EQ(countOf(fileContent(page), base64(fileContent(picture))), 1U);
 }
 
 TEST(Report, HasSeveralSheetsOfManyObjects) {
