@@ -234,6 +234,10 @@ class Timeline(PageCase):
             (0, 1, ["0", "0.5", "1"]),
             (-1, 1, ["-1", "0", "1"]),
             (-0.3, 0.1, ["-0.2", "0"]),
+            (-0.45, 0.45, ["-0.4", "0", "0.4"]),
+            (-0.3, 0.3, ["-0.2", "0", "0.2"]),
+            (-9.5, 9.5, ["-5", "0", "5"]),
+            (-1.6, 1.6, ["-1", "0", "1"]),
             (0, 4.7e-4, ["0", "0.0002", "0.0004"]),
             (0, 123456, ["0", "50000", "100000"]),
         ):
@@ -241,6 +245,23 @@ class Timeline(PageCase):
                 f"galactic.view.timeline.curves.ticks({least}, {most}).map((one) => one.text)"
             )
             self.assertEqual(texts, wanted)
+
+    def test_sizes_that_change_while_a_page_is_laid_out_are_no_errors(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        drawn = page.evaluate(
+            "(async () => { globalThis.problems = []; addEventListener('error', (event) => problems.push(event.message));"
+            "const { stage, view: { timeline: { curves, marks } } } = galactic; const drawn = [];"
+            "for (const [part, draw, element] of"
+            " [[stage, 'resize', stage.canvas.parentElement], [marks, 'layOut', marks.marks], [curves, 'draw', curves.element]]) {"
+            "  const before = part[draw].bind(part); let left = 1;"
+            "  part[draw] = () => { drawn.push(draw); if (left-- > 0) element.style.width = 'calc(100% - 20px)'; before(); };"
+            "  element.style.width = 'calc(100% - 10px)';"
+            "  await new Promise((done) => setTimeout(done, 200)); }"
+            "return drawn; })()"
+        )
+        for draw in ("resize", "layOut", "draw"):
+            self.assertGreaterEqual(drawn.count(draw), 2, "again in its new size")
+        self.assertEqual(page.evaluate("problems"), [])
 
     def test_who_comes_back_to_a_run_that_waited_goes_on_where_he_was(self):
         page = self.open("run", "env=0&t=0", "run 0")

@@ -1,5 +1,5 @@
 // Curves under the picture, with a cursor: one small chart for each group of values.
-import { el } from "./dom.js";
+import { el, onResize } from "./dom.js";
 
 const kColors = ["--blue", "--orange", "--green", "--purple", "--sky", "--red"];
 const kDashes = [[], [6, 3], [2, 3]];
@@ -13,14 +13,24 @@ const kFont = "11px system-ui, sans-serif";
 const kLineGap = 18;
 const kStepGap = 90;
 
-/// Round numbers from `least` to `most`, at most `count` gaps of 1, 2 or 5 times a power of ten.
+/// What steps from tick to tick may begin with, and what they may where only one tick would be in the range: nobody could
+/// tell its scale.
+const kSteps = [1, 2, 5, 10];
+const kSmallerSteps = [5, 4, 2, 1, 0.5, 0.4, 0.2];
+
+/// Round numbers from `least` to `most`, two at least: at most `count` gaps of 1, 2 or 5 times a power of ten, or smaller
+/// gaps where one of those leads out of the range.
 function ticksOf(least, most, count) {
   const rough = (most - least) / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((one) => one * power).find((one) => one >= rough * (1 - 1e-9));
-  const [first, last] = [Math.ceil(least / step - 1e-9), Math.floor(most / step + 1e-9)];
-  // Not -0.
-  return Array.from({ length: last - first + 1 }, (_, n) => (first + n) * step || 0);
+  const usual = kSteps.find((one) => one * power >= rough * (1 - 1e-9));
+  const ticksAt = (step) => {
+    const [first, last] = [Math.ceil(least / step - 1e-9), Math.floor(most / step + 1e-9)];
+    // Not -0.
+    return Array.from({ length: last - first + 1 }, (_, n) => (first + n) * step || 0);
+  };
+  const steps = [usual, ...kSmallerSteps.filter((one) => one < usual)];
+  return steps.map((one) => ticksAt(one * power)).find((ticks) => ticks.length > 1);
 }
 
 /// A value as it stands beside its grid line: 15 digits and more are those of a sum that was rounded.
@@ -33,7 +43,7 @@ export class Curves {
     this.cursor = 0;
     this.charts = charts.map((chart) => this.makeChart(chart, onPick));
     this.element = el("div", { className: "curves" }, ...this.charts.flatMap((one) => [one.legend, one.canvas]));
-    new ResizeObserver(() => this.draw()).observe(this.element);
+    onResize(this.element, () => this.draw());
   }
 
   makeChart(chart, onPick) {

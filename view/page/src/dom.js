@@ -10,6 +10,15 @@ export function el(name, properties = {}, ...children) {
   return element;
 }
 
+/// Calls `then` when an element has another size, once a frame: sizes that change while browsers tell of them make them complain.
+export function onResize(element, then) {
+  let frame = 0;
+  new ResizeObserver(() => {
+    cancelAnimationFrame(frame);
+    frame = requestAnimationFrame(() => then());
+  }).observe(element);
+}
+
 /// The key of an event. With caps lock a letter is the same key.
 export const keyOf = ({ key }) => (key.length === 1 ? key.toLowerCase() : key);
 

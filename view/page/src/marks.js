@@ -1,6 +1,6 @@
 // What happened in a run: marks above its track, each where its step is. Where several would lie on each other, they
 // are one, with their number and a list.
-import { button, el, note } from "./dom.js";
+import { button, el, note, onResize } from "./dom.js";
 import { kEndings, kEvents } from "./track.js";
 
 // Told apart by shape; colors only help.
@@ -70,7 +70,7 @@ export class Marks {
     this.list = el("div", { className: "moments", hidden: true });
     this.list.addEventListener("keydown", (event) => { if (event.key === "Escape") this.close(); });
     this.element = el("div", {}, this.list, this.marks);
-    new ResizeObserver(() => this.layOut()).observe(this.marks);
+    onResize(this.marks, () => this.layOut());
   }
 
   setTrack(track) {

@@ -4,6 +4,7 @@ import {
   Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { onResize } from "./dom.js";
 
 const kFov = 50;
 /// What a picture that is filled leaves free at its edges.
@@ -49,7 +50,7 @@ export class Stage {
     this.scene.add(this.content);
     // A browser takes a picture's memory away from a page that waits, or whose driver begins anew.
     canvas.addEventListener("webglcontextrestored", () => this.draw());
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    onResize(canvas.parentElement, () => this.resize());
     this.resize();
   }
 
