@@ -8,9 +8,6 @@ namespace galactic::pictures {
 
 namespace {
 
-/// True for the second and later bytes of a UTF-8 character.
-bool continuesCharacter(char byte) { return (static_cast<unsigned char>(byte) & 0xc0U) == 0x80U; }
-
 void drawGlyph(Image& image, int x, int y, const Glyph& glyph, Rgb color) {
   for (int row = 0; row < kGlyphHeight; ++row) {
     for (int column = 0; column < kGlyphWidth; ++column) {
@@ -47,18 +44,15 @@ void drawFrame(Image& image, const PixelRect& rect, Rgb color) {
 }
 
 int textWidth(std::string_view text) {
-  const auto characters =
-      std::count_if(text.begin(), text.end(), [](char byte) { return !continuesCharacter(byte); });
-  return std::max(0, static_cast<int>(characters) * kTextAdvance - kTextScale);
+  return std::max(0, static_cast<int>(lettering(text).size()) * kTextAdvance - kTextScale);
 }
 
 void drawText(Image& image, TextPlace place, std::string_view text, Rgb color) {
   int x = place.x;
   if (place.anchor == Anchor::kCenter) x -= textWidth(text) / 2;
   if (place.anchor == Anchor::kRight) x -= textWidth(text);
-  for (const char byte : text) {
-    if (continuesCharacter(byte)) continue;
-    drawGlyph(image, x, place.y + glyphDrop(byte) * kTextScale, glyphOf(byte), color);
+  for (const char letter : lettering(text)) {
+    drawGlyph(image, x, place.y + glyphDrop(letter) * kTextScale, glyphOf(letter), color);
     x += kTextAdvance;
   }
 }

@@ -40,10 +40,10 @@ void paste(Image& onto, const Image& picture, int left, int top);
 /// A frame one pixel wide just outside `rect`.
 void drawFrame(Image& image, const PixelRect& rect, Rgb color);
 
-/// Width of a text in pixels; a UTF-8 character counts once.
+/// Width of a text in pixels, as drawText() writes it.
 [[nodiscard]] int textWidth(std::string_view text);
 
-/// Draws a text in one line; characters beyond ASCII appear as '?'.
+/// Draws a UTF-8 text in one line, in ASCII: see lettering().
 void drawText(Image& image, TextPlace place, std::string_view text, Rgb color);
 
 }  // namespace galactic::pictures

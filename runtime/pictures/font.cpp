@@ -112,7 +112,40 @@ constexpr std::array<Glyph, kLastCharacter - kFirstCharacter + 1> kGlyphs{{
 
 constexpr std::string_view kDescending = "gpqy";
 
+/// The letters of Latin-1 from U+00C0 on, in ASCII.
+constexpr std::array<std::string_view, 64> kLatinLetters{
+    "A", "A", "A", "A", "A", "A", "AE", "C", "E", "E", "E", "E", "I", "I", "I",  "I",
+    "D", "N", "O", "O", "O", "O", "O",  "x", "O", "U", "U", "U", "U", "Y", "Th", "ss",
+    "a", "a", "a", "a", "a", "a", "ae", "c", "e", "e", "e", "e", "i", "i", "i",  "i",
+    "d", "n", "o", "o", "o", "o", "o",  "?", "o", "u", "u", "u", "u", "y", "th", "y"};
+
+/// The first byte of those letters, and of the second byte what is not the letter's number.
+constexpr unsigned char kLatinLead = 0xC3;
+constexpr unsigned char kContinuation = 0x80;
+constexpr unsigned char kContinuationMask = 0xC0;
+
+constexpr bool continuesCharacter(unsigned char byte) {
+  return (byte & kContinuationMask) == kContinuation;
+}
+
 }  // namespace
+
+std::string lettering(std::string_view text) {
+  std::string letters;
+  unsigned char before = 0;
+  for (const char character : text) {
+    const auto byte = static_cast<unsigned char>(character);
+    if (before == kLatinLead && continuesCharacter(byte)) {
+      letters += kLatinLetters[byte - kContinuation];
+    } else if (byte < kContinuation) {
+      letters += character;
+    } else if (!continuesCharacter(byte) && byte != kLatinLead) {
+      letters += '?';
+    }
+    before = byte;
+  }
+  return letters;
+}
 
 int glyphDrop(char character) {
   return kDescending.find(character) == std::string_view::npos ? 0 : kDescent;

@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
+#include <string_view>
 
 namespace galactic::pictures {
 
@@ -11,6 +13,10 @@ inline constexpr int kDescent = 2;
 
 /// A character as rows from top to bottom; bit 4 of a row is its leftmost pixel.
 using Glyph = std::array<std::uint8_t, kGlyphHeight>;
+
+/// A UTF-8 text as glyphs write it: of a Latin-1 letter its base letters, "?" for each other
+/// character beyond ASCII.
+[[nodiscard]] std::string lettering(std::string_view text);
 
 /// The glyph of an ASCII character; of '?' for anything else.
 [[nodiscard]] const Glyph& glyphOf(char character);

@@ -291,8 +291,24 @@ TEST(DrawText, DrawsTheGlyphsPixelsAndNothingOutsideTheImage) {
   EXPECT_EQ(image.at(1 + kTextScale, 1), kInk);
   EXPECT_EQ(image.at(1 + 4 * kTextScale, 1), kPaper);
   drawText(image, {-30, -5}, "outside \xc3\xbc text that is much too long", kInk);
-  EXPECT_EQ(textWidth("\xc3\xbc"), textWidth("u"));
   EXPECT_EQ(glyphOf('\x01'), glyphOf('?'));
+}
+
+TEST(DrawText, WritesLatinLettersWithTheirBaseLetters) {
+  EXPECT_EQ(lettering("plain ASCII ~"), "plain ASCII ~");
+  EXPECT_EQ(lettering("K\u00fcche, Caf\u00e9, \u00c5, \u00ff"), "Kuche, Cafe, A, y");
+  EXPECT_EQ(lettering("Stra\u00dfe, \u00c6, \u00f8"), "Strasse, AE, o");
+  EXPECT_EQ(lettering("\u53f0\u6240, \u0161, \U0001f600, 2 \u00b5m, \u00f7"), "??, ?, ?, 2 ?m, ?");
+  // Not UTF-8.
+  EXPECT_EQ(lettering("a\xc3"), "a");
+  EXPECT_EQ(lettering("\xc3(\xbc\xff"), "(?");
+  EXPECT_EQ(textWidth("\u00fc"), textWidth("u"));
+  EXPECT_EQ(textWidth("\u00df"), textWidth("ss"));
+  Image letter(40, 20, kPaper);
+  Image base(40, 20, kPaper);
+  drawText(letter, {1, 1}, "\u00df", kInk);
+  drawText(base, {1, 1}, "ss", kInk);
+  EXPECT_EQ(letter.pixels(), base.pixels());
 }
 
 TEST(WritePng, WritesASignedFileOfTheImagesSizeAndTheSameBytesAgain) {
