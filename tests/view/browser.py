@@ -86,7 +86,17 @@ class Page:
         raise TimeoutError(f"never true: {expression}; errors: {self.errors}")
 
     def shown(self, part: str):
+        """Waits until a part is shown and laid out."""
         self.wait(f"document.documentElement?.dataset.shown === {json.dumps(part)}")
+        # Sizes are told after the first frame, and followed in another.
+        self.frames(3)
+
+    def frames(self, count: int):
+        """Waits until so many frames have begun."""
+        self.evaluate(
+            f"new Promise((done) => {{ let left = {count};"
+            "const next = () => (left-- > 0 ? requestAnimationFrame(next) : done(1)); next(); })"
+        )
 
     def size(self, width: int, height: int):
         self.call(

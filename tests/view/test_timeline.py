@@ -256,7 +256,7 @@ class Timeline(PageCase):
             "  const before = part[draw].bind(part); let left = 1;"
             "  part[draw] = () => { drawn.push(draw); if (left-- > 0) element.style.width = 'calc(100% - 20px)'; before(); };"
             "  element.style.width = 'calc(100% - 10px)';"
-            "  await new Promise((done) => setTimeout(done, 200)); }"
+            "  for (let left = 6; left > 0; --left) await new Promise(requestAnimationFrame); }"
             "return drawn; })()"
         )
         for draw in ("resize", "layOut", "draw"):

@@ -181,6 +181,7 @@ class BatchSimulator {
   BatchSimulator(BatchSimulator&&) noexcept;
   BatchSimulator& operator=(BatchSimulator&&) noexcept;
 
+  [[nodiscard]] const World& world() const;
   /// As the simulator was created, with the seed of the last restart().
   [[nodiscard]] const SimulationOptions& options() const;
   [[nodiscard]] std::size_t envCount() const;
@@ -213,6 +214,8 @@ class BatchSimulator {
   /// between it takes no other step, and no state is reset, saved, restored or copied.
   void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
   void endStep();
+  /// Whether a step has begun and not ended.
+  [[nodiscard]] bool isStepping() const;
 
   /// A step that was made elsewhere. The envs are in `states` (one per env) now, whatever the
   /// simulation would have made of `actions`; observations, rewards and ends of episodes follow as

@@ -47,6 +47,8 @@ class DebugModels {
   /// world's.
   [[nodiscard]] static Result<DebugModels> from(const World& world, const DebugOptions& options);
 
+  /// World::hash() of the world.
+  [[nodiscard]] std::uint64_t worldHash() const { return world_hash_; }
   [[nodiscard]] const RenderLibrary& library() const { return *library_; }
   /// The free space of a scene (index into World::scenes()), in the world's frame; none when
   /// nothing is free.
@@ -69,6 +71,7 @@ class DebugModels {
  private:
   DebugModels() = default;
 
+  std::uint64_t world_hash_ = 0;
   std::shared_ptr<const RenderLibrary> library_;
   std::uint32_t first_box_ = 0;
   std::uint32_t first_target_ = 0;

@@ -59,6 +59,9 @@ class World {
   [[nodiscard]] const std::vector<Scene>& scenes() const { return content_->scenes; }
   [[nodiscard]] const Robot& robot() const { return content_->robot.front(); }
   [[nodiscard]] const EpisodeSet& episodes() const { return content_->episodes.front(); }
+  /// What tells it from other worlds: it follows from the kinds, sizes and hashes of its packs, in
+  /// any order.
+  [[nodiscard]] std::uint64_t hash() const { return content_->hash; }
   /// The packs of the assets, without the world pack that listed them.
   [[nodiscard]] const std::vector<PackFile>& packs() const { return content_->packs; }
 
@@ -100,6 +103,7 @@ class World {
     std::vector<ObjectModel> object_of_name;
     std::vector<std::uint32_t> start_position_indices;
     std::size_t most_objects = 0;
+    std::uint64_t hash = 0;
     std::vector<OptionText> task_options;
   };
 

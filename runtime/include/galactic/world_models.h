@@ -26,6 +26,8 @@ class WorldModels {
   /// Fails with kInvalidInput when a pack was baked without render meshes.
   [[nodiscard]] static Result<WorldModels> from(const World& world);
 
+  /// World::hash() of the world.
+  [[nodiscard]] std::uint64_t worldHash() const { return content_->world_hash; }
   [[nodiscard]] const RenderLibrary& library() const { return content_->library; }
   /// The model of a scene (index into World::scenes()); none when it has nothing to show.
   [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const {
@@ -40,6 +42,7 @@ class WorldModels {
 
  private:
   struct Content {
+    std::uint64_t world_hash = 0;
     RenderLibrary library;
     std::vector<std::optional<std::uint32_t>> scenes;
     std::vector<std::optional<std::uint32_t>> objects;

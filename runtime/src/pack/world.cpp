@@ -1,9 +1,12 @@
 #include "galactic/world.h"
 
+#define XXH_INLINE_ALL
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -292,6 +295,18 @@ Result<void> checkParts(const std::vector<PackFile>& packs, const Parts& parts) 
   return checkRobotName(parts);
 }
 
+std::uint64_t hashOf(const std::vector<PackFile>& packs) {
+  std::vector<std::array<std::uint64_t, 3>> stamps;
+  stamps.reserve(packs.size());
+  for (const PackFile& pack : packs) {
+    const PackHeader& header = pack.header();
+    stamps.push_back(
+        {static_cast<std::uint64_t>(header.kind), header.payload_bytes, header.payload_xxh64});
+  }
+  std::ranges::sort(stamps);
+  return XXH3_64bits(stamps.data(), stamps.size() * sizeof(stamps.front()));
+}
+
 Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
   const auto references = packReferences(world);
   if (!references) return tl::unexpected<Error>(references.error());
@@ -355,6 +370,7 @@ Result<World> World::make(std::vector<PackFile> packs, std::vector<OptionText> t
   // First of all: what follows points to the packs.
   world.packs = std::move(packs);
   world.task_options = std::move(task_options);
+  world.hash = hashOf(world.packs);
   Result<Parts> parts = sortByKind(world.packs);
   if (!parts) return tl::unexpected<Error>(std::move(parts.error()));
   if (auto complete = checkComplete(*parts); !complete) {

@@ -222,6 +222,7 @@ class BatchSimulator::Impl {
   const Model& model() const { return model_; }
   BatchState& state() { return state_; }
   const BatchState& state() const { return state_; }
+  bool isStepping() const { return is_stepping_; }
   std::size_t threads() const { return threads_; }
   std::uint64_t steps() const { return steps_; }
   void sample(std::uint32_t every) { sample_every_ = every; }
@@ -361,6 +362,7 @@ BatchSimulator::~BatchSimulator() = default;
 BatchSimulator::BatchSimulator(BatchSimulator&&) noexcept = default;
 BatchSimulator& BatchSimulator::operator=(BatchSimulator&&) noexcept = default;
 
+const World& BatchSimulator::world() const { return *impl_->model().world; }
 const SimulationOptions& BatchSimulator::options() const { return impl_->model().options; }
 std::size_t BatchSimulator::envCount() const { return impl_->model().options.envs; }
 std::size_t BatchSimulator::actionCount() const { return impl_->model().actionCount(); }
@@ -378,6 +380,7 @@ void BatchSimulator::beginStep(std::span<const float> actions,
   impl_->begin(actions, resets);
 }
 void BatchSimulator::endStep() { impl_->end(); }
+bool BatchSimulator::isStepping() const { return impl_->isStepping(); }
 void BatchSimulator::follow(std::span<const float> actions, std::span<const FollowedState> states) {
   impl_->follow(actions, states);
 }

@@ -70,6 +70,7 @@ Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& op
   const Result<std::size_t> grid = gridIndexOf(world, options.radius);
   if (!grid) return tl::unexpected<Error>(grid.error());
   DebugModels models;
+  models.world_hash_ = world.hash();
   PartList parts;
   for (const Scene& scene : world.scenes()) {
     parts.add(debug::gridSurface(scene.grids()[*grid]), kGrid);

@@ -66,6 +66,7 @@ std::optional<std::uint32_t> find(const ModelOfName& models, std::string_view na
 
 Result<WorldModels> WorldModels::from(const World& world) {
   auto content = std::make_shared<Content>();
+  content->world_hash = world.hash();
   content->library.keep(std::make_shared<const World>(world));
   ModelOfName scenes;
   ModelOfName objects;

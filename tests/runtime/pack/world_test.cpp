@@ -111,6 +111,24 @@ TEST(World, OpensThePacksThemselvesInAnyOrder) {
   } while (std::next_permutation(paths.begin(), paths.end()));
 }
 
+TEST(World, IsToldFromOthersByItsPacksInAnyOrder) {
+  const WorldBytes bytes{WorldFields{}};
+  std::vector<PackFile> packs = packsOf(bytes);
+  std::vector<PackFile> again = packsOf(bytes);
+  std::ranges::reverse(again);
+  const Result<World> world = World::from(std::move(packs));
+  const Result<World> same = World::from(std::move(again));
+  ASSERT_TRUE(world.has_value() && same.has_value());
+  EXPECT_EQ(world->hash(), same->hash());
+
+  WorldFields fields;
+  fields.episodes.robot.clear();
+  const WorldBytes others{fields};
+  const Result<World> other = World::from(packsOf(others));
+  ASSERT_TRUE(other.has_value()) << other.error().text();
+  EXPECT_NE(world->hash(), other->hash());
+}
+
 TEST(World, StaysValidWhenItIsMoved) {
   const ScratchFolder folder;
   Result<World> world = openWorld(writeWorld(folder, WorldFields{}));

@@ -72,19 +72,6 @@ struct EnvRecord {
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
               sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 24 + 16 + sizeof(GripFrame) + 20);
 
-/// What tells a world from all others: kinds, sizes and hashes of its packs, in any order.
-std::uint64_t worldHash(const World& world) {
-  std::vector<std::array<std::uint64_t, 3>> stamps;
-  stamps.reserve(world.packs().size());
-  for (const PackFile& pack : world.packs()) {
-    const PackHeader& header = pack.header();
-    stamps.push_back(
-        {static_cast<std::uint64_t>(header.kind), header.payload_bytes, header.payload_xxh64});
-  }
-  std::ranges::sort(stamps);
-  return XXH3_64bits(stamps.data(), stamps.size() * sizeof(stamps.front()));
-}
-
 /// The options that two simulators must share for a state of one to mean something in the other.
 std::vector<OptionText> sharedOptions(const SimulationOptions& options) {
   std::vector<OptionText> shared = listOptions(options);
@@ -337,7 +324,7 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
 
 /// Of the header and the options, apart from the envs.
 Result<void> checkSubject(const Model& model, const Header& header, std::string_view lines) {
-  if (header.world != worldHash(*model.world)) {
+  if (header.world != model.world->hash()) {
     return refused("is of another world; restore it where it was saved");
   }
   const std::vector<OptionText> options = sharedOptions(model.options);
@@ -376,7 +363,7 @@ std::vector<std::byte> saveEnvs(const Model& model, const BatchState& state,
                 .bodies = static_cast<std::uint32_t>(model.bodyCount()),
                 .seed = model.options.seed,
                 .steps = steps,
-                .world = worldHash(*model.world)};
+                .world = model.world->hash()};
   std::vector<std::byte> bytes;
   Writer out(bytes);
   out.add(header);
