@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string_view>
 
 #include "galactic/bake/triangle_mesh.h"
@@ -18,6 +19,10 @@ namespace {
 constexpr double kShortestAxis = 1e-6;
 /// Axes are often written with three digits: no warning for those.
 constexpr double kAxisTolerance = 1e-3;
+/// Limits of revolute joints in between are more likely degrees than radians: few joints turn twice
+/// either way, and those that turn for ever have limits far beyond.
+constexpr double kFewestDegrees = 4 * std::numbers::pi;
+constexpr double kMostDegrees = 720;
 
 tl::unexpected<Error> invalid(const std::string& where, std::string message) {
   return fail(ErrorCode::kInvalidInput, where, std::move(message));
@@ -194,6 +199,13 @@ Result<void> checkLimits(UrdfJoint& joint, const std::string& place,
     return invalid(place, fmt::format("its lower limit {} is above its upper limit {}; swap or "
                                       "correct them",
                                       joint.lower, joint.upper));
+  }
+  const double farthest = std::max(std::abs(joint.lower), std::abs(joint.upper));
+  if (joint.type == JointType::kRevolute && farthest > kFewestDegrees && farthest <= kMostDegrees) {
+    warnings.push_back(
+        fmt::format("joint '{}': its limits {} to {} are taken as radians, more than two turns; if "
+                    "they are degrees, convert them",
+                    joint.name, joint.lower, joint.upper));
   }
   return {};
 }

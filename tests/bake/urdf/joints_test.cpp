@@ -10,6 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 std::string links(std::string_view names) {
   std::string text;
@@ -125,6 +126,24 @@ TEST(UrdfJoints, ThatAreDoubtfulDrawWarnings) {
                           "counts",
                           "joint 'j': it is continuous, so its limits -1 to 1 are not used"));
   EXPECT_THAT(robot->links[1].axis, ElementsAre(0, 0.8, -0.6));
+}
+
+TEST(UrdfJoints, WithLimitsThatLookLikeDegreesDrawAWarning) {
+  const ScratchFolder folder;
+  const auto warnings = [&](const char* type, const char* lower, const char* upper) {
+    const std::string limit =
+        fmt::format(R"(<limit lower="{}" upper="{}" effort="1" velocity="1"/>)", lower, upper);
+    return importText(folder, robotText(links("ab") + jointText("j", type, "a,b", limit)))
+        .value()
+        .warnings;
+  };
+  EXPECT_THAT(warnings("revolute", "-170", "60"),
+              ElementsAre("joint 'j': its limits -170 to 60 are taken as radians, more than two "
+                          "turns; if they are degrees, convert them"));
+  EXPECT_THAT(warnings("revolute", "0", "90"), SizeIs(1));
+  EXPECT_THAT(warnings("revolute", "-12.5", "12.5"), IsEmpty()) << "a wrist of many turns";
+  EXPECT_THAT(warnings("revolute", "-1e6", "1e6"), IsEmpty()) << "no limits";
+  EXPECT_THAT(warnings("prismatic", "0", "90"), IsEmpty());
 }
 
 TEST(UrdfJoints, OfFixedTypeNeedNoAxis) {
