@@ -34,6 +34,7 @@ class ContactQuery final : public btCollisionWorld::ContactResultCallback {
   bool needsCollision(btBroadphaseProxy* proxy) const override {
     return (proxy->m_collisionFilterGroup & m_collisionFilterMask) != 0;
   }
+  // NOLINTNEXTLINE(readability-function-size): Bullet's.
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* first, int,
                            int first_index, const btCollisionObjectWrapper* second, int,
                            int second_index) override {

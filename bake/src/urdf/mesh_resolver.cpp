@@ -183,46 +183,55 @@ bool MeshResolver::isInReach(const fs::path& path) {
          });
 }
 
-MeshResolution MeshResolver::resolvePackage(const std::string& package, const std::string& rest) {
-  std::vector<fs::path> tried;
-  const auto in = [&](const fs::path& folder, std::string how) -> std::optional<MeshResolution> {
-    if (auto file = fileIn(folder, rest); file && (isBelow(*file, folder) || isInReach(*file))) {
-      return MeshResolution{.file = *file, .how = std::move(how), .guessed = false};
+std::optional<MeshResolution> MeshResolver::resolveIn(const fs::path& folder, Wanted& wanted,
+                                                      std::string how) {
+  if (auto file = fileIn(folder, wanted.rest);
+      file && (isBelow(*file, folder) || isInReach(*file))) {
+    return MeshResolution{.file = *file, .how = std::move(how), .guessed = false};
+  }
+  std::error_code ignored;
+  wanted.tried.push_back(fs::absolute(folder / wanted.rest, ignored).lexically_normal());
+  return std::nullopt;
+}
+
+std::optional<MeshResolution> MeshResolver::resolveAboveUrdf(Wanted& wanted) {
+  for (const fs::path& ancestor : ancestors_) {
+    if (isPackageAbove(ancestor, wanted.package)) {
+      if (auto found = resolveIn(ancestor, wanted, "package above the URDF")) return found;
     }
-    std::error_code ignored;
-    tried.push_back(fs::absolute(folder / rest, ignored).lexically_normal());
-    return std::nullopt;
-  };
+    const fs::path beside = ancestor / wanted.package;
+    if (search_.findsFolder(beside)) {
+      if (auto found = resolveIn(beside, wanted, "package beside the URDF's folders")) return found;
+    }
+  }
+  for (const fs::path& ancestor : ancestors_) {
+    if (auto file = fileIn(ancestor, wanted.rest); file && isBelow(*file, ancestor)) {
+      return MeshResolution{
+          .file = *file,
+          .how = fmt::format("no package '{}'; by its path from above the URDF", wanted.package),
+          .guessed = true};
+    }
+  }
+  return std::nullopt;
+}
+
+MeshResolution MeshResolver::resolvePackage(const std::string& package, const std::string& rest) {
+  Wanted wanted{.package = package, .rest = rest, .tried = {}};
   const auto named = options_.packages.find(package);
   if (named != options_.packages.end()) {
-    if (auto found = in(named->second, fmt::format("`package` {}", package))) return *found;
+    const std::string how = fmt::format("`package` {}", package);
+    if (auto found = resolveIn(named->second, wanted, how)) return *found;
   }
   for (const fs::path& folder : foldersOf(package)) {
-    if (auto found = in(folder, "package search path")) return *found;
+    if (auto found = resolveIn(folder, wanted, "package search path")) return *found;
   }
-  for (const fs::path& ancestor : ancestors_) {
-    if (isPackageAbove(ancestor, package)) {
-      if (auto found = in(ancestor, "package above the URDF")) return *found;
-    }
-    if (search_.findsFolder(ancestor / package)) {
-      if (auto found = in(ancestor / package, "package beside the URDF's folders")) return *found;
-    }
-  }
-  for (const fs::path& ancestor : ancestors_) {
-    if (auto file = fileIn(ancestor, rest); file && isBelow(*file, ancestor)) {
-      return {.file = *file,
-              .how = fmt::format("no package '{}'; by its path from above the URDF", package),
-              .guessed = true};
-    }
-  }
-  if (tried.empty()) {
-    return {.file = {},
-            .how = fmt::format("a folder '{}' or a package.xml of that name in the search path and "
-                               "above the URDF",
-                               package),
-            .guessed = false};
-  }
-  return notFound(tried);
+  if (auto found = resolveAboveUrdf(wanted)) return *found;
+  if (!wanted.tried.empty()) return notFound(wanted.tried);
+  return {.file = {},
+          .how = fmt::format("a folder '{}' or a package.xml of that name in the search path and "
+                             "above the URDF",
+                             package),
+          .guessed = false};
 }
 
 MeshResolution MeshResolver::resolveRelative(const std::string& reference) {

@@ -40,7 +40,21 @@ class MeshResolver {
   [[nodiscard]] bool hasSearched() const { return has_searched_; }
 
  private:
+  /// A file of a package.
+  struct Wanted {
+    std::string package;
+    /// Its path in the package.
+    std::string rest;
+    /// Where it is not.
+    std::vector<std::filesystem::path> tried;
+  };
+
   [[nodiscard]] MeshResolution resolvePackage(const std::string& package, const std::string& rest);
+  /// The file in a folder that may be its package's.
+  [[nodiscard]] std::optional<MeshResolution> resolveIn(const std::filesystem::path& folder,
+                                                        Wanted& wanted, std::string how);
+  /// The file in the folders above the URDF, and beside these.
+  [[nodiscard]] std::optional<MeshResolution> resolveAboveUrdf(Wanted& wanted);
   [[nodiscard]] MeshResolution resolveRelative(const std::string& reference);
   /// A resolution without file that lists where it was looked for.
   [[nodiscard]] MeshResolution notFound(const std::vector<std::filesystem::path>& tried) const;

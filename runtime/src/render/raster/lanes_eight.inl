@@ -231,8 +231,9 @@ inline Pair<IntLanes> gatherTwo(const std::int32_t* from, IntLanes at) {
 #else
   Pair<IntLanes> result;
   for (unsigned n = 0; n < kWidth; ++n) {
-    result.first[n] = from[kStride * at[n]];
-    result.second[n] = from[kStride * at[n] + 1];
+    const std::int32_t* both = from + std::ptrdiff_t{kStride} * at[n];
+    result.first[n] = both[0];
+    result.second[n] = both[1];
   }
   return result;
 #endif

@@ -40,9 +40,10 @@ struct RadiusRanges {
 
   constexpr RadiusRanges() = default;
   /// Of a vector, a span, or an array of them. Implicit, as those of a std::span are.
-  // NOLINTNEXTLINE(google-explicit-constructor)
+  // NOLINTBEGIN(google-explicit-constructor)
   template <class Ranges>
   constexpr RadiusRanges(const Ranges& ranges) : first(ranges.data()), count(ranges.size()) {}
+  // NOLINTEND(google-explicit-constructor)
 
   [[nodiscard]] constexpr const RadiusRange* begin() const { return first; }
   [[nodiscard]] constexpr const RadiusRange* end() const { return first + count; }

@@ -80,7 +80,7 @@ struct SurroundingRows {
     constexpr std::size_t kWhole = Surroundings::kWords - 1;
     __builtin_memcpy(found.rows.data(), row, kWhole * sizeof(found.rows[0]));
     // Of the last word one row counts. Written in a part, it would be waited for.
-    found.rows[kWhole] = row[2 * kCellsAround];
+    found.rows[kWhole] = row[std::size_t{2} * kCellsAround];
     for (std::uint64_t& rows : found.rows) rows >>= column;
     return found;
   }
