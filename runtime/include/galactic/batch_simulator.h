@@ -312,8 +312,8 @@ class BatchSimulator {
   [[nodiscard]] EnvObjects envObjects(std::size_t env) const noexcept;
   /// What the random numbers of the sensors of an env, which is not checked, follow from.
   [[nodiscard]] EnvMoment envMoment(std::size_t env) const noexcept;
-  /// The noise of the episode that an env, which is not checked, is in.
-  [[nodiscard]] EpisodeNoise episodeNoise(std::size_t env) const noexcept;
+  /// The noise of the episode that an env is in.
+  [[nodiscard]] EpisodeNoise episodeNoise(std::size_t env) const;
   /// A body is a group of links that no joint moves against each other in this run (joints that
   /// neither actions nor episodes move count as fixed). The root's is body 0.
   [[nodiscard]] std::size_t bodyCount() const;

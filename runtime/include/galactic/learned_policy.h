@@ -61,7 +61,8 @@ class LearnedPolicy {
  public:
   /// Lays the weights out for this processor; `pack` is not needed afterwards. Fails with
   /// kInvalidInput when `pack` holds no policy, or robot, observation or actions of the batch are
-  /// not what it was trained for; the message names what differs.
+  /// not what it was trained for (the message names what differs), when the batch has no envs, or
+  /// a part of its observation that is not within observation_size.
   [[nodiscard]] static Result<LearnedPolicy> create(const PackFile& pack, const PolicyBatch& batch,
                                                     const LearnedPolicyOptions& options);
   ~LearnedPolicy();

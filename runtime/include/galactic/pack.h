@@ -21,7 +21,8 @@ enum class Trust {
 };
 
 /// An open pack: the bytes, checked, and the FlatBuffer in them. Movable; immutable, so safe to
-/// share between threads. What it returns is valid as long as it lives.
+/// share between threads. What it returns is valid as long as it lives. One that was moved from
+/// holds no bytes, and throws ErrorException with kInvalidInput where its content is asked for.
 class PackFile {
  public:
   /// Maps and checks `path`. Errors name the file, the field and the offence: kIo (cannot read),
@@ -40,7 +41,7 @@ class PackFile {
 
   [[nodiscard]] const PackHeader& header() const { return header_; }
   [[nodiscard]] PackKind kind() const { return header_.kind; }
-  [[nodiscard]] const schema::Pack& root() const { return *root_; }
+  [[nodiscard]] const schema::Pack& root() const;
   /// The whole file's bytes.
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
   /// The path or name given at opening.

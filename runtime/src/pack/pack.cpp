@@ -5,6 +5,7 @@
 
 #include "check/pack_check.h"
 #include "galactic/schema/pack_generated.h"
+#include "support/call_check.h"
 #include "support/mapped_file.h"
 
 namespace galactic {
@@ -25,8 +26,27 @@ class PackFile::Storage {
 };
 
 PackFile::~PackFile() = default;
-PackFile::PackFile(PackFile&&) noexcept = default;
-PackFile& PackFile::operator=(PackFile&&) noexcept = default;
+
+PackFile::PackFile(PackFile&& other) noexcept
+    : storage_(std::move(other.storage_)),
+      bytes_(std::exchange(other.bytes_, {})),
+      header_(other.header_),
+      root_(std::exchange(other.root_, nullptr)),
+      where_(std::move(other.where_)) {}
+
+PackFile& PackFile::operator=(PackFile&& other) noexcept {
+  storage_ = std::move(other.storage_);
+  bytes_ = std::exchange(other.bytes_, {});
+  header_ = other.header_;
+  root_ = std::exchange(other.root_, nullptr);
+  where_ = std::move(other.where_);
+  return *this;
+}
+
+const schema::Pack& PackFile::root() const {
+  if (root_ == nullptr) detail::refuseCall("PackFile", "found a pack that was moved elsewhere");
+  return *root_;
+}
 
 Result<PackFile> PackFile::open(const std::filesystem::path& path, Trust trust) {
   Result<MappedFile> file = MappedFile::open(path);

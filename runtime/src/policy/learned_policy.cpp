@@ -13,6 +13,7 @@
 #include "policy/layer_shapes.h"
 #include "policy/operation.h"
 #include "support/call_check.h"
+#include "support/try.h"
 #include "support/workers.h"
 
 namespace galactic {
@@ -55,6 +56,22 @@ Result<std::vector<ObservationRange>> findParts(const PackFile& pack, const Poli
     ranges.push_back({found->first, found->size});
   }
   return ranges;
+}
+
+/// Whether the batch is one at all.
+Result<void> checkBatch(const PolicyBatch& batch) {
+  if (batch.envs == 0) {
+    return fail(ErrorCode::kInvalidInput, "policy batch", "has no envs, expected at least one");
+  }
+  const std::size_t size = batch.observation_size;
+  for (const ObservationPart& part : batch.observation) {
+    if (part.first <= size && part.size <= size - part.first) continue;
+    return fail(ErrorCode::kInvalidInput, "policy batch",
+                fmt::format("has {} numbers of \"{}\" from number {} of an observation on, "
+                            "expected them within its {} numbers",
+                            part.size, part.name, part.first, size));
+  }
+  return {};
 }
 
 Result<void> checkActions(const PackFile& pack, const PolicyInterface& needs,
@@ -282,9 +299,8 @@ Result<LearnedPolicy> LearnedPolicy::create(const PackFile& pack, const PolicyBa
                                             const LearnedPolicyOptions& options) {
   Result<PolicyInterface> needs = policyInterface(pack);
   if (!needs) return tl::unexpected<Error>(needs.error());
-  if (auto fits = checkActions(pack, *needs, batch); !fits) {
-    return tl::unexpected<Error>(fits.error());
-  }
+  RETURN_IF_ERROR(checkBatch(batch));
+  RETURN_IF_ERROR(checkActions(pack, *needs, batch));
   const auto ranges = findParts(pack, *needs, batch);
   if (!ranges) return tl::unexpected<Error>(ranges.error());
   const schema::Policy& stored = *pack.root().asset_as_Policy();

@@ -209,11 +209,15 @@ class BatchSimulator::Impl {
     RETURN_IF_ERROR(checkStates(states));
     if (!chooser_) chooser_ = std::make_unique<simulation::StateChooser>(model_);
     std::vector<std::uint8_t> were_set(envs.size());
+    // Whatever needs memory comes before the first env changes.
+    std::vector<std::optional<SavedEnv>> chosen(envs.size());
     for (std::size_t n = 0; n < envs.size(); ++n) {
-      std::optional<SavedEnv> chosen = chooser_->choose(states[n]);
-      if (!chosen) continue;
-      keepRecord(envs[n], choice, *chosen);
-      simulation::restoreEnv(model_, state_, envs[n], *chosen);
+      chosen[n] = chooser_->choose(states[n]);
+      if (chosen[n]) keepRecord(envs[n], choice, *chosen[n]);
+    }
+    for (std::size_t n = 0; n < envs.size(); ++n) {
+      if (!chosen[n]) continue;
+      simulation::restoreEnv(model_, state_, envs[n], *chosen[n]);
       were_set[n] = 1;
     }
     return were_set;
@@ -484,7 +488,8 @@ EnvMoment BatchSimulator::envMoment(std::size_t env) const noexcept {
   return simulation::momentOf(impl_->model(), impl_->state(), env);
 }
 
-EpisodeNoise BatchSimulator::episodeNoise(std::size_t env) const noexcept {
+EpisodeNoise BatchSimulator::episodeNoise(std::size_t env) const {
+  detail::checkIndex("BatchSimulator::episodeNoise", "env", env, envCount());
   return simulation::episodeNoiseIn(impl_->model(), envMoment(env));
 }
 

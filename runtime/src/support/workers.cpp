@@ -1,7 +1,10 @@
 #include "support/workers.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <system_error>
 #include <utility>
@@ -76,7 +79,7 @@ void forEachPart(std::uint32_t threads, std::size_t count,
 }
 
 Workers::Workers(std::size_t threads, std::size_t parts, Work work)
-    : work_(std::move(work)), parts_(parts), ranges_(countFor(threads)) {
+    : work_(std::move(work)), parts_(parts), ranges_(countFor(threads)), process_(getpid()) {
   const std::size_t count = ranges_.size();
   for (std::size_t n = 0; n < count; ++n) {
     ranges_[n].first = n * parts / count;
@@ -99,6 +102,12 @@ Workers::Workers(std::size_t parts, std::function<void(std::size_t)> work)
               [work = std::move(work)](std::size_t, std::size_t part) { work(part); }) {}
 
 Workers::~Workers() {
+  if (getpid() != process_) {
+    // Nobody to wait for: threads stay behind in the process that was forked. To end what stands
+    // for them is undefined, so that it is left.
+    static_cast<void>(std::make_unique<std::vector<std::jthread>>(std::move(threads_)).release());
+    return;
+  }
   stops_.store(true, std::memory_order_relaxed);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();

@@ -1,4 +1,6 @@
 #pragma once
+#include <sys/types.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -27,7 +29,8 @@ void forEachPart(std::uint32_t threads, std::size_t count,
 /// end, so there is one thread fewer than asked for, but at least one, so that the caller may do
 /// something else in between. Where the system gives fewer, those that it gives do the work.
 /// Nothing locks. Threads wait awake only for as long as it takes to wake one up, so that rounds
-/// that follow each other closely start at once, then asleep.
+/// that follow each other closely start at once, then asleep. A process that was forked between two
+/// rounds has no threads but the one that forked, which does all the work there.
 class Workers {
  public:
   /// Does a part; it must not throw. `thread`, below countFor(), is not at work on another part.
@@ -77,6 +80,8 @@ class Workers {
   std::atomic<bool> stops_{false};
   std::vector<Range> ranges_;
   AloneOrTogether way_;
+  /// The process that the threads are in.
+  pid_t process_;
   std::vector<std::jthread> threads_;
 };
 

@@ -15,6 +15,7 @@
 #include "galactic/robot.h"
 #include "galactic/scene.h"
 #include "galactic/schema/pack_generated.h"
+#include "galactic/world.h"
 #include "layout/column_cell.h"
 #include "support/packs/pack_parts.h"
 #include "support/packs/scene_pack_builder.h"
@@ -195,6 +196,29 @@ TEST(PackFile, RefusesAPayloadThatIsNoFlatBufferOfOurs) {
     }
   }
 }
+
+// NOLINTBEGIN(bugprone-use-after-move): what is left then is what it tells of.
+TEST(PackFile, HoldsNothingOnceItIsMoved) {
+  const AlignedBytes bytes = buildPack(smallScene());
+  Result<PackFile> pack = PackFile::view(bytes.bytes(), "home.pack");
+  ASSERT_TRUE(pack.has_value());
+  PackFile moved = std::move(*pack);
+  EXPECT_EQ(moved.where(), "home.pack");
+  EXPECT_TRUE(Scene::from(moved).has_value());
+  const auto expectEmpty = [](const PackFile& empty) {
+    EXPECT_TRUE(empty.bytes().empty());
+    EXPECT_THROW(static_cast<void>(empty.root()), ErrorException);
+    EXPECT_THROW(static_cast<void>(Scene::from(empty)), ErrorException);
+  };
+  expectEmpty(*pack);
+  *pack = std::move(moved);
+  EXPECT_TRUE(Scene::from(*pack).has_value());
+  expectEmpty(moved);
+  std::vector<PackFile> packs;
+  packs.push_back(std::move(moved));
+  EXPECT_THROW(static_cast<void>(World::from(std::move(packs))), ErrorException);
+}
+// NOLINTEND(bugprone-use-after-move)
 
 TEST(Scene, RefusesATrustedPackOfAnotherKind) {
   ScenePackFields fields = smallScene();

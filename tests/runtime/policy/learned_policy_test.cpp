@@ -3,11 +3,13 @@
 #include "galactic/learned_policy.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "runtime/policy/policy_run.h"
@@ -18,6 +20,8 @@
 
 namespace galactic::test::learned_policy_test {
 namespace {
+
+using testing::HasSubstr;
 
 /// A batch of envs with a policy, and what is seen there: numbers that look random.
 class Acting {
@@ -67,6 +71,8 @@ class Acting {
 
   [[nodiscard]] std::size_t actions() const { return batch_.actions; }
   LearnedPolicy& policy() { return policy_; }
+  [[nodiscard]] const PackFile& pack() const { return pack_; }
+  [[nodiscard]] const PolicyBatch& batch() const { return batch_; }
   [[nodiscard]] const PolicyContent& content() const { return content_; }
   PolicyInputs lastInputs() { return {observations_, {}, color_, depth_}; }
   std::span<float> lastActions() { return actions_; }
@@ -288,6 +294,23 @@ TEST(LearnedPolicy, AllocatesNothingWhenItActs) {
       acting.policy().act(acting.lastInputs(), acting.lastActions());
     }
     EXPECT_EQ(allocationCount(), before);
+  }
+}
+
+TEST(LearnedPolicy, RefusesABatchThatIsNone) {
+  Acting acting(smallPolicy(), 2, kLikeliest);
+  const auto refusal = [&](const PolicyBatch& batch) {
+    const auto policy = LearnedPolicy::create(acting.pack(), batch, kLikeliest);
+    return policy ? std::string("none") : policy.error().text();
+  };
+  EXPECT_EQ(refusal(acting.batch()), "none");
+  PolicyBatch empty = acting.batch();
+  empty.envs = 0;
+  EXPECT_THAT(refusal(empty), HasSubstr("has no envs"));
+  for (const std::size_t first : {acting.batch().observation_size, ~std::size_t{0}}) {
+    PolicyBatch beyond = acting.batch();
+    beyond.observation.back().first = first;
+    EXPECT_THAT(refusal(beyond), HasSubstr("expected them within its"));
   }
 }
 

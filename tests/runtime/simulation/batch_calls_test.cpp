@@ -63,6 +63,8 @@ TEST_F(BatchCalls, WithNumbersOfNoEnvAreRefused) {
       simulator_, [&] { static_cast<void>(simulator_.saveState(envs)); }, "env 20");
   expectRefused(
       simulator_, [&] { static_cast<void>(simulator_.linkOnBody(1000)); }, "link 1000");
+  expectRefused(
+      simulator_, [&] { static_cast<void>(simulator_.episodeNoise(kEnvs)); }, "env 20");
   const std::vector<std::byte> two = simulator_.saveState(std::array<std::uint32_t, 2>{0, 1});
   const Result<void> restored = simulator_.restoreState(two, envs);
   ASSERT_FALSE(restored.has_value());

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <new>
 
 #include "batch_trace.h"
 #include "counted_new.h"
@@ -38,6 +39,33 @@ TEST(BatchMemory, IsNotAllocatedInAStep) {
     EXPECT_GT(seen.drops + seen.restored, 0U);
     EXPECT_GT(seen.episodes, 0U);
   }
+}
+
+TEST(BatchMemory, ThatLacksWhileStatesAreSetLeavesAllEnvsAsTheyWere) {
+  const BoxWorld world = furnishedWorld();
+  constexpr std::uint32_t kEnvs = 3;
+  auto from = BatchSimulator::create(world.world(), optionsFor(kEnvs)).value();
+  for (std::uint32_t step = 0; step < 5; ++step) from.step(actionsFor(from, 0, step));
+  const std::vector<std::uint32_t> envs{0, 1, 2};
+  std::vector<EnvState> states;
+  for (const std::uint32_t env : envs) states.push_back(from.envState(env));
+  auto simulator = BatchSimulator::create(world.world(), optionsFor(kEnvs)).value();
+  const std::vector<std::byte> before = simulator.saveState();
+  const auto isSet = [&](std::uint64_t allocations) {
+    const FailingAllocation failing(allocations);
+    try {
+      return simulator.setStates(envs, states).has_value();
+    } catch (const std::bad_alloc&) {
+      return false;
+    }
+  };
+  std::uint64_t allocations = 0;
+  while (!isSet(allocations)) {
+    ASSERT_EQ(simulator.saveState(), before) << "after " << allocations << " allocations";
+    ASSERT_LT(++allocations, 10'000U);
+  }
+  EXPECT_GT(allocations, kEnvs);
+  EXPECT_NE(simulator.saveState(), before);
 }
 
 TEST(BatchMemory, IsWhatTheBatchSaysForEachEnv) {

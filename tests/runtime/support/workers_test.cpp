@@ -2,7 +2,10 @@
 #include "support/workers.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -181,6 +184,30 @@ TEST(Workers, CanBeDestroyedWhileTheyWait) {
       workers.reset();
       for (const Slot& slot : slots) ASSERT_EQ(slot.rounds, static_cast<std::uint64_t>(n % 3));
     }
+  }
+}
+
+TEST(Workers, WorkAndEndInAForkedProcessWithoutItsThreads) {
+  for (const std::size_t threads : kThreadCounts) {
+    std::vector<Slot> slots(threads);
+    auto workers = std::make_unique<Workers>(threads, [&](std::size_t t) { ++slots[t].rounds; });
+    workers->begin();
+    workers->end();
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      workers->begin();
+      workers->end();
+      workers.reset();
+      const bool is_done = std::ranges::all_of(slots, [](const Slot& s) { return s.rounds == 2; });
+      _exit(is_done ? 0 : 1);
+    }
+    int status = -1;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status << ", " << threads;
+    workers->begin();
+    workers->end();
+    for (const Slot& slot : slots) EXPECT_EQ(slot.rounds, 2U);
   }
 }
 
