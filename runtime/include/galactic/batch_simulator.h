@@ -211,7 +211,8 @@ class BatchSimulator {
 
   /// The same in two halves, so that the caller can work meanwhile. `actions` and `resets` must
   /// stay as they are until endStep() returns; what the simulator returns is valid after it. In
-  /// between it takes no other step, and no state is reset, saved, restored or copied.
+  /// between it takes no other step, no state is reset, saved, restored or copied, and neither
+  /// statistics nor times of phases are read.
   void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
   void endStep();
   /// Whether a step has begun and not ended.
