@@ -161,7 +161,8 @@ enum class EpisodeChoice : std::uint8_t {
 /// same for any number of threads and of other envs. A step neither allocates, nor throws, nor
 /// locks. Calls with arrays of other lengths than said, or with numbers of envs that there are not,
 /// throw ErrorException with kInvalidInput and change nothing, as do those that have to wait for
-/// endStep() where a step has begun. Not safe to call from several threads at once.
+/// endStep() where a step has begun: steps, states, statistics and times of phases. Not safe to
+/// call from several threads at once.
 ///
 /// Actions, for each env: one per controlled joint of the robot, in the order of its recipe (+-1:
 /// the largest step); forward (+1: forward_step meters ahead); turn (+1: turn_step radians
