@@ -239,7 +239,7 @@ TEST_F(PolicyCli, SaysWhatDoesNotFit) {
       {{"--policy", "wide.pack"},
        3,
        "reads 3 numbers of the observation \"joints\", and the simulation has 4"},
-      {{"--policy", "nose.pack", "--backend", "soft"}, 3, "found no link nose in helper"},
+      {{"--policy", "nose.pack", "--backend", "soft"}, 3, "found no link \"nose\" in helper"},
       {{"--policy", "blind.pack", "--depth-noise", "0.1"},
        3,
        "blind.pack: this policy sees no depth, and nobody else does, but noise or jitter of it was "

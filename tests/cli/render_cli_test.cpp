@@ -290,10 +290,12 @@ TEST_F(RenderCli, SendsAVideoToFfmpeg) {
 TEST_F(RenderCli, WhatCannotWorkIsRefusedBeforeTheRun) {
   static_cast<void>(folder_.write("occupied", "a file"));
   const std::vector<std::tuple<std::vector<std::string>, int, std::string>> mistakes{
-      {{"--render", "rgb", "--camera", "nose"}, 3, "galactic-run: --camera: found no link nose"},
+      {{"--render", "rgb", "--camera", "nose"},
+       3,
+       "galactic-run: --camera: found no link \"nose\""},
       {{"--render", "rgb", "--frames", "f", "--debug-view", "--debug-camera", "nose"},
        3,
-       "galactic-run: --debug-camera: found no link nose"},
+       "galactic-run: --debug-camera: found no link \"nose\""},
       {{"--render", "rgb", "--frames", "f", "--debug-view", "--debug-radius", "0.3"},
        3,
        "galactic-run: debug view: found a radius of 0.3 m"},

@@ -206,7 +206,7 @@ def test_two_threads_cannot_use_one_renderer_at_once(world, refused_at_once):
         ({"color": "bgr"}, Error, "color: is bgr, expected rgb, rgba or None"),
         ({"backend": "vulkan"}, Error, "backend: is vulkan, expected auto, soft, gl or cuda"),
         ({"color": None, "depth": False}, Error, "found no image to make"),
-        ({"camera": "tail"}, Error, "camera: found no link tail in helper"),
+        ({"camera": "tail"}, Error, 'camera: found no link "tail" in helper'),
     ],
 )
 def test_wrong_options_are_refused(simulator, options, error, message):

@@ -117,7 +117,8 @@ struct NoiseSource {
 /// One image: a camera and what it sees. A camera whose numbers are not finite, or whose field of
 /// view is not within its range, sees nothing. Where a model is in one place twice, the first one
 /// shows: instances come before posed models, and those before attached ones. Which of two other
-/// surfaces in one place shows is for the backend to say, the same one each time.
+/// surfaces in one place shows is for the backend to say, the same one each time. BatchRenderer
+/// refuses numbers of models and of bodies that are not there.
 struct RenderView {
   RenderCamera camera;
   std::span<const RenderInstance> instances = {};
@@ -157,7 +158,8 @@ struct RenderStatistics {
 /// locks, once it has seen its largest load: until then it throws std::bad_alloc, or ErrorException
 /// with kUnsupported, where memory is lacking, and may be called with a smaller load afterwards. A
 /// graphics processor that fails is an ErrorException, too, and with kInvalidInput a call that does
-/// not keep to the shapes or to the order of beginRender() and endRender(). Not safe to call from
+/// not keep to the shapes or to the order of beginRender() and endRender(), or whose views have
+/// numbers of no model of the library or of no body; then nothing is drawn. Not safe to call from
 /// several threads at once.
 class BatchRenderer {
  public:

@@ -161,7 +161,8 @@ enum class EpisodeChoice : std::uint8_t {
 /// same for any number of threads and of other envs. A step neither allocates, nor throws, nor
 /// locks. Calls with arrays of other lengths than said, or with numbers of envs that there are not,
 /// throw ErrorException with kInvalidInput and change nothing, as do those that have to wait for
-/// endStep() where a step has begun. Not safe to call from several threads at once.
+/// endStep() where a step has begun: steps, states, statistics and times of phases. Not safe to
+/// call from several threads at once.
 ///
 /// Actions, for each env: one per controlled joint of the robot, in the order of its recipe (+-1:
 /// the largest step); forward (+1: forward_step meters ahead); turn (+1: turn_step radians
@@ -211,7 +212,8 @@ class BatchSimulator {
 
   /// The same in two halves, so that the caller can work meanwhile. `actions` and `resets` must
   /// stay as they are until endStep() returns; what the simulator returns is valid after it. In
-  /// between it takes no other step, and no state is reset, saved, restored or copied.
+  /// between it takes no other step, no state is reset, saved, restored or copied, and neither
+  /// statistics nor times of phases are read.
   void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
   void endStep();
   /// Whether a step has begun and not ended.

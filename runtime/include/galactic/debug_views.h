@@ -41,6 +41,7 @@ enum class DebugSpheres : std::uint8_t {
 /// space of the column grid as gray floors, walls and ceilings, seen from inside; spheres of each
 /// radius; the oriented box of each object in orange, that of a target in magenta; its edges alone,
 /// for a goal. Immutable, so safe to share between threads. Copies are cheap and share one content.
+/// Indices of no scene, object or radius throw ErrorException with kInvalidInput.
 class DebugModels {
  public:
   /// Reads all grids of that radius. Fails with kInvalidInput when `options.radius` is none of the
@@ -54,22 +55,18 @@ class DebugModels {
   /// nothing is free.
   [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const;
   /// The box of an object (index into EpisodeSet::objectNames()), in the object's frame.
-  [[nodiscard]] std::uint32_t boxModel(std::uint32_t object) const { return first_box_ + object; }
+  [[nodiscard]] std::uint32_t boxModel(std::uint32_t object) const;
   /// The same box in magenta: of the object that has to go to the goal.
-  [[nodiscard]] std::uint32_t targetModel(std::uint32_t object) const {
-    return first_target_ + object;
-  }
+  [[nodiscard]] std::uint32_t targetModel(std::uint32_t object) const;
   /// The same box as a frame of thin beams, magenta.
-  [[nodiscard]] std::uint32_t goalModel(std::uint32_t object) const { return first_goal_ + object; }
+  [[nodiscard]] std::uint32_t goalModel(std::uint32_t object) const;
   /// A sphere about the origin; `radius_index` counts in World::radii().
-  [[nodiscard]] std::uint32_t sphereModel(DebugSpheres whose, std::uint32_t radius_index) const {
-    const std::uint32_t first =
-        whose == DebugSpheres::kRobot ? first_robot_sphere_ : first_held_sphere_;
-    return first + radius_index;
-  }
+  [[nodiscard]] std::uint32_t sphereModel(DebugSpheres whose, std::uint32_t radius_index) const;
 
  private:
   DebugModels() = default;
+
+  [[nodiscard]] std::uint32_t objectCount() const { return first_target_ - first_box_; }
 
   std::uint64_t world_hash_ = 0;
   std::shared_ptr<const RenderLibrary> library_;
@@ -83,8 +80,10 @@ class DebugModels {
 /// The debug view of the first envs of a batch: WorldViews of what the simulation knows. Movable.
 class DebugViews {
  public:
-  /// Of the first `envs` envs. Throws ErrorException with kInvalidInput where there are fewer, and
-  /// where `simulator` was made without SimulationOptions::body_transforms.
+  /// Of the first `envs` envs. Throws ErrorException with kInvalidInput where there are fewer,
+  /// where `world`, `models` and `simulator` are not of one world (World::hash()), where the
+  /// simulator was made without SimulationOptions::body_transforms, and between its beginStep() and
+  /// endStep().
   DebugViews(const World& world, const DebugModels& models, const BatchSimulator& simulator,
              const CameraMount& camera, std::size_t envs);
 
@@ -93,8 +92,10 @@ class DebugViews {
   DebugViews(DebugViews&&) noexcept = default;
   DebugViews& operator=(DebugViews&&) noexcept = default;
 
-  /// Copies the state after the last step of the simulator that the views were made for. Does not
-  /// allocate. Throws ErrorException with kInvalidInput on a simulator of other shapes.
+  /// Copies the state after the last step of the simulator that the views were made for, or of
+  /// another one of the same world. Does not allocate. Throws ErrorException with kInvalidInput on
+  /// a simulator of another world, of fewer envs or without body transforms, and between
+  /// beginStep() and endStep().
   void update(const BatchSimulator& simulator);
 
   /// As of the last update. Shape: envs.

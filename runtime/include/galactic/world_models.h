@@ -21,6 +21,7 @@ struct LinkModel {
 
 /// What a world has to draw: the models of all its packs, and which of them shows what. Immutable,
 /// so safe to share between threads. Copies are cheap and share one content, which keeps the world.
+/// Indices of no scene or object throw ErrorException with kInvalidInput.
 class WorldModels {
  public:
   /// Fails with kInvalidInput when a pack was baked without render meshes.
@@ -30,13 +31,9 @@ class WorldModels {
   [[nodiscard]] std::uint64_t worldHash() const { return content_->world_hash; }
   [[nodiscard]] const RenderLibrary& library() const { return content_->library; }
   /// The model of a scene (index into World::scenes()); none when it has nothing to show.
-  [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const {
-    return content_->scenes[scene];
-  }
+  [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const;
   /// The model of an object (index into EpisodeSet::objectNames()).
-  [[nodiscard]] std::optional<std::uint32_t> objectModel(std::uint32_t object) const {
-    return content_->objects[object];
-  }
+  [[nodiscard]] std::optional<std::uint32_t> objectModel(std::uint32_t object) const;
   /// Ascending links.
   [[nodiscard]] const std::vector<LinkModel>& links() const { return content_->links; }
 

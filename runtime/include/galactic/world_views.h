@@ -48,10 +48,12 @@ struct CameraMount {
 /// A camera on the robot of a batch.
 class MountedCamera {
  public:
+  /// Throws ErrorException with kInvalidInput where `simulator` is of another world (World::hash())
+  /// and where the robot has no link CameraMount::link.
   MountedCamera(const World& world, const BatchSimulator& simulator, const CameraMount& mount);
 
   /// `bodies`: BatchSimulator::bodyTransforms() of one env, which is in World::scenes()[scene];
-  /// `moment`: its BatchSimulator::envMoment().
+  /// `moment`: its BatchSimulator::envMoment(). Made for each env and image, and so not checked.
   [[nodiscard]] RenderCamera at(std::span<const RigidTransform> bodies, std::uint32_t scene,
                                 const EnvMoment& moment) const noexcept;
   /// CameraMount::number.
@@ -84,8 +86,10 @@ enum class ObjectIds : std::uint8_t {
 /// while that changes, so that a renderer can draw one step while the next is simulated. Movable.
 class WorldViews {
  public:
-  /// Throws ErrorException with kInvalidInput where `simulator` was made without
-  /// SimulationOptions::body_transforms.
+  /// Throws ErrorException with kInvalidInput where `world`, `models` and `simulator` are not of
+  /// one world (World::hash()), where the simulator was made without
+  /// SimulationOptions::body_transforms, where it has no link CameraMount::link, and between its
+  /// beginStep() and endStep().
   WorldViews(const World& world, const WorldModels& models, const BatchSimulator& simulator,
              const CameraMount& camera, ObjectIds ids = ObjectIds::kNames);
 
@@ -94,8 +98,10 @@ class WorldViews {
   WorldViews(WorldViews&&) noexcept = default;
   WorldViews& operator=(WorldViews&&) noexcept = default;
 
-  /// Copies the state after the last step of the simulator that the views were made for. Does not
-  /// allocate. Throws ErrorException with kInvalidInput on a simulator of other shapes.
+  /// Copies the state after the last step of the simulator that the views were made for, or of
+  /// another one of the same world. Does not allocate. Throws ErrorException with kInvalidInput on
+  /// a simulator of another world, of fewer envs or without body transforms, and between
+  /// beginStep() and endStep().
   void update(const BatchSimulator& simulator);
 
   /// As of the last update. Shape: envs.

@@ -11,6 +11,7 @@
 #include "galactic/drawn_number.h"
 #include "render/noise/noise_pass.h"
 #include "render/render_engine.h"
+#include "render/view_check.h"
 #include "support/call_check.h"
 #include "support/try.h"
 
@@ -30,6 +31,16 @@ Result<void> checkOptions(const RenderOptions& options) {
   if (!(options.near > 0) || !std::isfinite(options.near)) {
     return refuse("found a near plane at " + std::to_string(options.near) +
                   " m; expected a distance above 0");
+  }
+  if (options.color != ColorFormat::kNone && options.color != ColorFormat::kRgb8 &&
+      options.color != ColorFormat::kRgba8) {
+    return refuse(fmt::format("found the color format {}; expected one of ColorFormat: 0, 3 or 4",
+                              static_cast<unsigned>(options.color)));
+  }
+  if (options.backend > RenderBackend::kCuda) {
+    return refuse(fmt::format("found the backend {}; expected one of RenderBackend: 0 to {}",
+                              static_cast<unsigned>(options.backend),
+                              static_cast<unsigned>(RenderBackend::kCuda)));
   }
   if (options.color == ColorFormat::kNone && !options.depth && !options.semantics) {
     return refuse("found no image to make; expected color, depth or semantics");
@@ -137,15 +148,17 @@ class BatchRenderer::Impl {
     if (options.noise.changesDepth() || options.noise.changesColor()) noise_.emplace(options);
   }
 
-  void begin(std::span<const RenderView> views, const RenderTargets& targets) {
-    requireIdle("BatchRenderer::beginRender");
+  /// `call`: BatchRenderer's function.
+  void begin(const char* call, std::span<const RenderView> views, const RenderTargets& targets) {
+    requireIdle(call);
     const std::size_t pixels = views.size() * options_.width * options_.height;
-    const auto check = [](const char* array, std::size_t found, std::size_t expected) {
-      detail::checkLength("BatchRenderer::render", array, found, expected);
+    const auto check = [&](const char* array, std::size_t found, std::size_t expected) {
+      detail::checkLength(call, array, found, expected);
     };
     check("color", targets.color.size(), pixels * static_cast<std::size_t>(options_.color));
     check("depth", targets.depth.size(), options_.depth ? pixels : 0);
     check("semantics", targets.semantics.size(), options_.semantics ? pixels : 0);
+    render::checkViews(call, views, library_->modelCount());
     views_ = views;
     targets_ = targets;
     engine_->begin(views, targets);
@@ -160,7 +173,9 @@ class BatchRenderer::Impl {
     if (noise_) noise_->run(views_, targets_);
   }
   Result<DeviceImages> renderToDevice(std::span<const RenderView> views, std::uintptr_t stream) {
-    requireIdle("BatchRenderer::renderToDevice");
+    constexpr const char* kCall = "BatchRenderer::renderToDevice";
+    requireIdle(kCall);
+    render::checkViews(kCall, views, library_->modelCount());
     if (noise_) {
       return fail(ErrorCode::kUnsupported, "device images",
                   "found noise of images, which is added in memory of the processor, and images "
@@ -210,11 +225,11 @@ BatchRenderer::BatchRenderer(BatchRenderer&&) noexcept = default;
 BatchRenderer& BatchRenderer::operator=(BatchRenderer&&) noexcept = default;
 
 void BatchRenderer::render(std::span<const RenderView> views, const RenderTargets& targets) {
-  impl_->begin(views, targets);
+  impl_->begin("BatchRenderer::render", views, targets);
   impl_->end();
 }
 void BatchRenderer::beginRender(std::span<const RenderView> views, const RenderTargets& targets) {
-  impl_->begin(views, targets);
+  impl_->begin("BatchRenderer::beginRender", views, targets);
 }
 void BatchRenderer::endRender() { impl_->end(); }
 Result<DeviceImages> BatchRenderer::renderToDevice(std::span<const RenderView> views,

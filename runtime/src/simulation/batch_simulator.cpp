@@ -227,11 +227,19 @@ class BatchSimulator::Impl {
   BatchState& state() { return state_; }
   const BatchState& state() const { return state_; }
   bool isStepping() const { return is_stepping_; }
+  void requireIdle(const char* call) const {
+    if (!is_stepping_) return;
+    detail::refuseCall(call, "found a step that has begun; end it first, with endStep()");
+  }
   std::size_t threads() const { return threads_; }
   std::uint64_t steps() const { return steps_; }
-  void sample(std::uint32_t every) { sample_every_ = every; }
+  void sample(std::uint32_t every) {
+    requireIdle("BatchSimulator::samplePhases");
+    sample_every_ = every;
+  }
 
   std::vector<PhaseTime> phaseTimes() const {
+    requireIdle("BatchSimulator::phaseTimes");
     std::vector<PhaseTime> times;
     times.reserve(simulation::kPhaseNames.size());
     for (std::size_t n = 0; n < simulation::kPhaseNames.size(); ++n) {
@@ -252,11 +260,6 @@ class BatchSimulator::Impl {
   };
 
   std::size_t envCount() const { return model_.options.envs; }
-
-  void requireIdle(const char* call) const {
-    if (!is_stepping_) return;
-    detail::refuseCall(call, "found a step that has begun; end it first, with endStep()");
-  }
 
   void prepare(const char* call, std::span<const float> actions,
                std::span<const std::int32_t> resets) {
@@ -457,7 +460,9 @@ SimulationStatistics BatchSimulator::statistics() const {
   return sum;
 }
 SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
-  detail::checkIndex("BatchSimulator::statistics", "env", env, envCount());
+  constexpr const char* kCall = "BatchSimulator::statistics";
+  impl_->requireIdle(kCall);
+  detail::checkIndex(kCall, "env", env, envCount());
   const simulation::EnvCounters& counters = impl_->state().counters(env);
   const simulation::MoveCounters& moves = impl_->state().moves(env);
   // An env that came from a longer run may have idled for longer than this one has run.

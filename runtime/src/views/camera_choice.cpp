@@ -81,7 +81,7 @@ Result<ChosenCamera> cameraOf(const Robot& robot, const CameraWish& wish) {
   const std::optional<std::uint32_t> link = robot.findLink(link_name);
   if (!link) {
     return fail(ErrorCode::kInvalidInput, wish.options.camera,
-                fmt::format("found no link {} in {}; expected head, follow, top or one of {}",
+                fmt::format("found no link \"{}\" in {}; expected head, follow, top or one of {}",
                             link_name, robot.name(), linkNames(robot)));
   }
   return ChosenCamera{{.frame = CameraFrame::kLink, .link = *link, .frame_from_camera = {}}};

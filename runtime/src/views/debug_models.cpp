@@ -6,6 +6,7 @@
 
 #include "galactic/debug_views.h"
 #include "layout/render_mesh_builder.h"
+#include "support/call_check.h"
 #include "views/grid_surface.h"
 #include "views/shapes.h"
 
@@ -105,8 +106,31 @@ Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& op
 }
 
 std::optional<std::uint32_t> DebugModels::sceneModel(std::uint32_t scene) const {
+  // Scenes come first, then spheres, one for each radius, then boxes, one for each object.
+  detail::checkIndex("DebugModels::sceneModel", "scene", scene, first_robot_sphere_);
   if (library_->model(scene).cluster_count == 0) return std::nullopt;
   return scene;
+}
+
+std::uint32_t DebugModels::boxModel(std::uint32_t object) const {
+  detail::checkIndex("DebugModels::boxModel", "object", object, objectCount());
+  return first_box_ + object;
+}
+
+std::uint32_t DebugModels::targetModel(std::uint32_t object) const {
+  detail::checkIndex("DebugModels::targetModel", "object", object, objectCount());
+  return first_target_ + object;
+}
+
+std::uint32_t DebugModels::goalModel(std::uint32_t object) const {
+  detail::checkIndex("DebugModels::goalModel", "object", object, objectCount());
+  return first_goal_ + object;
+}
+
+std::uint32_t DebugModels::sphereModel(DebugSpheres whose, std::uint32_t radius_index) const {
+  detail::checkIndex("DebugModels::sphereModel", "radius", radius_index,
+                     first_held_sphere_ - first_robot_sphere_);
+  return (whose == DebugSpheres::kRobot ? first_robot_sphere_ : first_held_sphere_) + radius_index;
 }
 
 }  // namespace galactic

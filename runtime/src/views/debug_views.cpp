@@ -1,7 +1,10 @@
 #include "galactic/debug_views.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "support/call_check.h"
 #include "views/followed_batch.h"
 
 namespace galactic {
@@ -30,10 +33,14 @@ std::size_t mostHeldSpheres(const World& world) {
 DebugViews::DebugViews(const World& world, const DebugModels& models,
                        const BatchSimulator& simulator, const CameraMount& camera, std::size_t envs)
     : world_(world),
-      models_(models),
+      models_(views::checkedModels("DebugViews", world, models, simulator)),
       camera_(world, simulator, camera),
       body_count_(simulator.bodyCount()) {
-  views::requireSameBatch("DebugViews", simulator, envs, body_count_);
+  if (envs > simulator.envCount()) {
+    detail::refuseCall("DebugViews",
+                       fmt::format("found {} envs to show, expected at most the simulator's {}",
+                                   envs, simulator.envCount()));
+  }
   const Robot& robot = world.robot();
   spheres_.reserve(robot.spheres().size());
   for (const SphereGroup& group : robot.groups()) {
@@ -51,7 +58,7 @@ DebugViews::DebugViews(const World& world, const DebugModels& models,
 }
 
 void DebugViews::update(const BatchSimulator& simulator) {
-  views::requireSameBatch("DebugViews::update", simulator, views_.size(), body_count_);
+  views::requireFollowed("DebugViews::update", models_.worldHash(), simulator, views_.size());
   for (std::size_t env = 0; env < views_.size(); ++env) updateEnv(simulator, env);
 }
 

@@ -5,23 +5,54 @@
 #include "support/call_check.h"
 
 namespace galactic::views {
+namespace {
 
-void requireBodies(const char* call, const BatchSimulator& simulator) {
-  if (!simulator.bodyTransforms().empty()) return;
-  detail::refuseCall(call,
-                     "found a simulator without poses of bodies; make it with "
-                     "SimulationOptions::body_transforms");
+/// A state that can be read: one with poses of bodies, which no thread is changing.
+void requireState(const char* call, const BatchSimulator& simulator) {
+  if (simulator.isStepping()) {
+    detail::refuseCall(call, "found a step that has begun; end it first, with endStep()");
+  }
+  if (simulator.bodyTransforms().empty()) {
+    detail::refuseCall(call,
+                       "found a simulator without poses of bodies; make it with "
+                       "SimulationOptions::body_transforms");
+  }
 }
 
-void requireSameBatch(const char* call, const BatchSimulator& simulator, std::size_t envs,
-                      std::size_t bodies) {
-  requireBodies(call, simulator);
-  if (simulator.envCount() >= envs && simulator.bodyCount() == bodies) return;
-  detail::refuseCall(
-      call,
-      fmt::format("found a simulator of {} envs with {} bodies each, expected the one that the "
-                  "views were made for: {} envs, {} bodies",
-                  simulator.envCount(), simulator.bodyCount(), envs, bodies));
+}  // namespace
+
+const World& requireWorld(const char* call, const World& world, const BatchSimulator& simulator) {
+  if (simulator.world().hash() != world.hash()) {
+    detail::refuseCall(call,
+                       "found a simulator of another world than the one given with it; give "
+                       "BatchSimulator::world()");
+  }
+  return world;
+}
+
+void requireParts(const char* call, const World& world, std::uint64_t models,
+                  const BatchSimulator& simulator) {
+  requireWorld(call, world, simulator);
+  if (models != world.hash()) {
+    detail::refuseCall(call,
+                       "found models of another world than that of the simulator; make them of "
+                       "BatchSimulator::world()");
+  }
+  requireState(call, simulator);
+}
+
+void requireFollowed(const char* call, std::uint64_t world, const BatchSimulator& simulator,
+                     std::size_t envs) {
+  if (simulator.world().hash() != world) {
+    detail::refuseCall(call,
+                       "found a simulator of another world than the one that the views were made "
+                       "of; make views of that one, too");
+  }
+  requireState(call, simulator);
+  if (simulator.envCount() >= envs) return;
+  detail::refuseCall(call, fmt::format("found a simulator of {} envs, expected at least the {} "
+                                       "that the views were made for",
+                                       simulator.envCount(), envs));
 }
 
 }  // namespace galactic::views

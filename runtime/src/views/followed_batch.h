@@ -1,17 +1,33 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 
 #include "galactic/batch_simulator.h"
+#include "galactic/world.h"
 
 namespace galactic::views {
 
-/// Throws ErrorException with kInvalidInput where a simulator keeps no body transforms. `call`:
-/// "WorldViews".
-void requireBodies(const char* call, const BatchSimulator& simulator);
+// Of calls that read a simulator for views: all throw ErrorException with kInvalidInput. `call`:
+// "WorldViews".
 
-/// Throws ErrorException with kInvalidInput where a simulator is not of the batch that views were
-/// made for: has fewer envs, or robots of another number of bodies.
-void requireSameBatch(const char* call, const BatchSimulator& simulator, std::size_t envs,
-                      std::size_t bodies);
+/// Where `simulator` is of another world. Returns `world`.
+const World& requireWorld(const char* call, const World& world, const BatchSimulator& simulator);
+
+/// Where no views of `world` can be made of `simulator` and of models with this worldHash().
+void requireParts(const char* call, const World& world, std::uint64_t models,
+                  const BatchSimulator& simulator);
+
+/// The same; returns `models`, so that no member is built before.
+template <class Models>
+const Models& checkedModels(const char* call, const World& world, const Models& models,
+                            const BatchSimulator& simulator) {
+  requireParts(call, world, models.worldHash(), simulator);
+  return models;
+}
+
+/// Where `simulator` cannot be followed by views of the first `envs` envs of a world with this
+/// World::hash().
+void requireFollowed(const char* call, std::uint64_t world, const BatchSimulator& simulator,
+                     std::size_t envs);
 
 }  // namespace galactic::views

@@ -12,6 +12,7 @@
 #include "galactic/object_set.h"
 #include "galactic/render_library.h"
 #include "galactic/scene.h"
+#include "support/call_check.h"
 
 namespace galactic {
 namespace {
@@ -100,6 +101,16 @@ Result<WorldModels> WorldModels::from(const World& world) {
     content->objects.push_back(find(objects, name));
   }
   return WorldModels(std::move(content));
+}
+
+std::optional<std::uint32_t> WorldModels::sceneModel(std::uint32_t scene) const {
+  detail::checkIndex("WorldModels::sceneModel", "scene", scene, content_->scenes.size());
+  return content_->scenes[scene];
+}
+
+std::optional<std::uint32_t> WorldModels::objectModel(std::uint32_t object) const {
+  detail::checkIndex("WorldModels::objectModel", "object", object, content_->objects.size());
+  return content_->objects[object];
 }
 
 }  // namespace galactic

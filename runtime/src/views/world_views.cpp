@@ -31,7 +31,7 @@ std::optional<CameraMount> robotCamera(const Robot& robot) {
 
 MountedCamera::MountedCamera(const World& world, const BatchSimulator& simulator,
                              const CameraMount& mount)
-    : world_(world),
+    : world_(views::requireWorld("MountedCamera", world, simulator)),
       frame_(mount.frame),
       keeps_sight_(mount.frame == CameraFrame::kBase && mount.keeps_sight),
       on_body_(simulator.linkOnBody(mount.frame == CameraFrame::kLink ? mount.link : 0)),
@@ -63,14 +63,13 @@ RigidTransform MountedCamera::withoutJitter(std::span<const RigidTransform> bodi
 
 WorldViews::WorldViews(const World& world, const WorldModels& models,
                        const BatchSimulator& simulator, const CameraMount& camera, ObjectIds ids)
-    : models_(models),
+    : models_(views::checkedModels("WorldViews", world, models, simulator)),
       camera_(world, simulator, camera),
       stride_(world.mostObjects()),
       posed_(simulator.envCount() * stride_),
       posed_semantics_(ids == ObjectIds::kObjects ? posed_.size() : 0),
       bodies_(simulator.bodyTransforms().size()),
       views_(simulator.envCount()) {
-  views::requireBodies("WorldViews", simulator);
   scenes_.resize(world.scenes().size());
   for (std::uint32_t scene = 0; scene < scenes_.size(); ++scene) {
     if (const auto model = models.sceneModel(scene)) scenes_[scene].push_back({*model, {}});
@@ -89,8 +88,7 @@ WorldViews::WorldViews(const World& world, const WorldModels& models,
 }
 
 void WorldViews::update(const BatchSimulator& simulator) {
-  views::requireSameBatch("WorldViews::update", simulator, views_.size(),
-                          bodies_.size() / views_.size());
+  views::requireFollowed("WorldViews::update", models_.worldHash(), simulator, views_.size());
   std::ranges::copy(simulator.bodyTransforms().first(bodies_.size()), bodies_.begin());
   for (std::size_t env = 0; env < views_.size(); ++env) updateEnv(simulator, env);
 }

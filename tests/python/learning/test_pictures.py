@@ -96,7 +96,7 @@ def test_a_network_sees_through_the_camera_of_its_settings() -> None:
     wanted = galactic.Renderer(homes.env.simulators[0], camera="follow", fov_degrees=90)
     np.testing.assert_array_equal(drawn, wanted.render()["rgb"])
     for wrong, message in (
-        ({"camera": "nose"}, "^--camera: found no link nose"),
+        ({"camera": "nose"}, '^--camera: found no link "nose"'),
         ({"near": 0.001}, "^--near: found 0.001 m, expected 0.01 to 100"),
         ({"fov": 0.5}, "^--fov: found a vertical field of view of 0.5 degrees"),
     ):
@@ -185,7 +185,7 @@ def test_an_evaluation_replaces_none_of_its_inputs_and_outputs(
         (
             {"network": "simple_cnn", "camera": "nose"},
             3,
-            "in {world}: --camera: found no link nose",
+            'in {world}: --camera: found no link "nose"',
         ),
     ],
 )

@@ -406,6 +406,12 @@ TEST(SoftRenderer, RefusesOptionsOutOfRange) {
   options.color = ColorFormat::kNone;
   options.depth = options.semantics = false;
   EXPECT_EQ(message(options), "found no image to make; expected color, depth or semantics");
+  options = batchOptions(128, 128);
+  options.color = static_cast<ColorFormat>(7);
+  EXPECT_EQ(message(options), "found the color format 7; expected one of ColorFormat: 0, 3 or 4");
+  options = batchOptions(128, 128);
+  options.backend = static_cast<RenderBackend>(9);
+  EXPECT_EQ(message(options), "found the backend 9; expected one of RenderBackend: 0 to 3");
 }
 
 }  // namespace

@@ -118,6 +118,10 @@ TEST_F(BatchCalls, ThatWouldMeetAHalfStepAreRefused) {
   refused([&] { static_cast<void>(simulator_.saveState()); }, "saveState");
   refused([&] { static_cast<void>(simulator_.restoreState(state)); }, "restoreState");
   refused([&] { static_cast<void>(simulator_.envState(0)); }, "envState");
+  refused([&] { static_cast<void>(simulator_.statistics()); }, "statistics");
+  refused([&] { static_cast<void>(simulator_.statistics(0)); }, "statistics");
+  refused([&] { simulator_.samplePhases(1); }, "samplePhases");
+  refused([&] { static_cast<void>(simulator_.phaseTimes()); }, "phaseTimes");
   simulator_.endStep();
   EXPECT_THAT([&] { simulator_.endStep(); },
               ThrowsMessage<ErrorException>(HasSubstr("found no step that has begun")));

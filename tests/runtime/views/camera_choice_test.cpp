@@ -195,8 +195,12 @@ TEST(CameraChoice, AnUnknownLinkIsRefusedWithThoseThereAre) {
   EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(none.error().where, "--debug-camera");
   EXPECT_THAT(none.error().message,
-              AllOf(HasSubstr("found no link nose"),
+              AllOf(HasSubstr("found no link \"nose\" in helper"),
                     HasSubstr("head, follow, top or one of base, mast, turret, arm, hand")));
+  for (const char* empty : {"", "link:"}) {
+    EXPECT_THAT(chooseCamera(home.world().robot(), {.name = empty}).error().message,
+                HasSubstr("found no link \"\" in helper"));
+  }
 }
 
 }  // namespace

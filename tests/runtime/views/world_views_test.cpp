@@ -22,7 +22,9 @@
 namespace galactic::world_views_test {
 namespace {
 
+using test::EpisodePackFields;
 using test::SmallHomeRow;
+using test::WorldFields;
 
 /// Floats along chains of five links, meters from the origin.
 constexpr float kPlaceTolerance = 1e-5F;
@@ -616,13 +618,122 @@ TEST_F(WorldViewsOfAHome, AreNotMadeOfASimulatorThatKeepsNoBodiesNorFollowAnothe
               testing::ThrowsMessage<ErrorException>(
                   testing::HasSubstr("make it with SimulationOptions::body_transforms")));
   EXPECT_THROW(DebugViews(*world_, debug_models, bare, mount, 1), ErrorException);
-  EXPECT_THROW(DebugViews(*world_, debug_models, *simulator_, mount, kEnvs + 1), ErrorException);
+  EXPECT_THAT([&] { DebugViews(*world_, debug_models, *simulator_, mount, kEnvs + 1); },
+              testing::ThrowsMessage<ErrorException>(testing::StrEq(
+                  "DebugViews: found 4 envs to show, expected at most the simulator's 3")));
   WorldViews views(*world_, *models_, *simulator_, mount);
   DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
-  EXPECT_THROW(views.update(smaller), ErrorException);
+  EXPECT_THAT([&] { views.update(smaller); },
+              testing::ThrowsMessage<ErrorException>(
+                  testing::StrEq("WorldViews::update: found a simulator of 2 envs, expected at "
+                                 "least the 3 that the views were made for")));
   EXPECT_THROW(views.update(bare), ErrorException);
   EXPECT_THROW(debug_views.update(smaller), ErrorException);
   views.update(*simulator_);
+}
+
+/// A home with the same robot, whose episodes have one object each.
+WorldFields emptierHome() {
+  WorldFields fields = test::smallHomeWorldWithModels();
+  EpisodePackFields& episodes = fields.episodes;
+  episodes.episodes.resize(1);
+  episodes.episodes[0].target = 0;
+  episodes.episodes[0].placement_count = 1;
+  episodes.placements.resize(1);
+  episodes.start_positions.resize(2);
+  return fields;
+}
+
+TEST_F(WorldViewsOfAHome, AreMadeOfOneWorldAndFollowItAlone) {
+  const test::SmallHome emptier(emptierHome());
+  const World& other = emptier.world();
+  ASSERT_LT(other.mostObjects(), world_->mostObjects());
+  const WorldModels other_models = WorldModels::from(other).value();
+  const BatchSimulator other_simulator =
+      BatchSimulator::create(other, simulator_->options()).value();
+  ASSERT_EQ(other_simulator.bodyCount(), simulator_->bodyCount());
+  const DebugModels debug_models = DebugModels::from(*world_, {}).value();
+  const DebugModels other_debug_models = DebugModels::from(other, {}).value();
+  const CameraMount mount = robotCamera(world_->robot()).value();
+  const auto refused = [](const auto& call, const std::string& message) {
+    EXPECT_THAT(call, testing::ThrowsMessage<ErrorException>(testing::StartsWith(message)));
+  };
+  const std::string of_simulator =
+      ": found a simulator of another world than the one given with it";
+  const std::string of_models = ": found models of another world than that of the simulator";
+  refused([&] { WorldViews(other, other_models, *simulator_, mount); },
+          "WorldViews" + of_simulator);
+  refused([&] { WorldViews(other, *models_, *simulator_, mount); }, "WorldViews" + of_simulator);
+  refused([&] { WorldViews(*world_, other_models, *simulator_, mount); }, "WorldViews" + of_models);
+  refused([&] { DebugViews(other, other_debug_models, *simulator_, mount, 1); },
+          "DebugViews" + of_simulator);
+  refused([&] { DebugViews(*world_, other_debug_models, *simulator_, mount, 1); },
+          "DebugViews" + of_models);
+  // Before it is asked for a link of the wrong robot.
+  refused([&] { MountedCamera(other, *simulator_, {.link = 99, .frame_from_camera = {}}); },
+          "MountedCamera" + of_simulator);
+  const std::string of_views =
+      "::update: found a simulator of another world than the one that the views were made of";
+  WorldViews views(other, other_models, other_simulator, mount);
+  DebugViews debug_views(other, other_debug_models, other_simulator, mount, kEnvs);
+  refused([&] { views.update(*simulator_); }, "WorldViews" + of_views);
+  refused([&] { debug_views.update(*simulator_); }, "DebugViews" + of_views);
+  EXPECT_EQ(views.views()[0].posed.size(), 1U);
+
+  // The same packs, opened again.
+  const std::filesystem::path path = folder_.path() / "world.pack";
+  const World again = World::open(std::span(&path, 1)).value();
+  BatchSimulator simulator = BatchSimulator::create(again, simulator_->options()).value();
+  WorldViews views_of_all(*world_, *models_, simulator, mount);
+  DebugViews debug_views_of_all(again, debug_models, *simulator_, mount, kEnvs);
+  simulator.step(std::vector<float>(kEnvs * simulator.actionCount(), 1));
+  views_of_all.update(simulator);
+  debug_views_of_all.update(simulator);
+  EXPECT_EQ(difference(views_of_all.views()[0].camera.world_from_camera,
+                       debug_views_of_all.views()[0].camera.world_from_camera),
+            0);
+}
+
+TEST_F(WorldViewsOfAHome, ReadNoStepThatHasNotEnded) {
+  const CameraMount mount = robotCamera(world_->robot()).value();
+  const DebugModels debug_models = DebugModels::from(*world_, {}).value();
+  WorldViews views(*world_, *models_, *simulator_, mount);
+  DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
+  const std::vector<float> actions(kEnvs * simulator_->actionCount());
+  simulator_->beginStep(actions);
+  const auto refused = [](const auto& call, const std::string& name) {
+    EXPECT_THAT(call, testing::ThrowsMessage<ErrorException>(testing::StrEq(
+                          name + ": found a step that has begun; end it first, with endStep()")));
+  };
+  refused([&] { WorldViews(*world_, *models_, *simulator_, mount); }, "WorldViews");
+  refused([&] { DebugViews(*world_, debug_models, *simulator_, mount, 1); }, "DebugViews");
+  refused([&] { views.update(*simulator_); }, "WorldViews::update");
+  refused([&] { debug_views.update(*simulator_); }, "DebugViews::update");
+  simulator_->endStep();
+  views.update(*simulator_);
+  debug_views.update(*simulator_);
+  EXPECT_EQ(views.views()[0].noise.moment.step, 1U);
+}
+
+TEST_F(WorldViewsOfAHome, HaveNoModelsOfWhatTheWorldDoesNotHave) {
+  const DebugModels models = DebugModels::from(*world_, {}).value();
+  const auto refused = [](const auto& call, const std::string& message) {
+    EXPECT_THAT(call, testing::ThrowsMessage<ErrorException>(testing::StrEq(message)));
+  };
+  refused([&] { static_cast<void>(models.sceneModel(1)); },
+          "DebugModels::sceneModel: found scene 1, expected one below 1");
+  refused([&] { static_cast<void>(models.boxModel(2)); },
+          "DebugModels::boxModel: found object 2, expected one below 2");
+  refused([&] { static_cast<void>(models.targetModel(2)); },
+          "DebugModels::targetModel: found object 2, expected one below 2");
+  refused([&] { static_cast<void>(models.goalModel(~0U)); },
+          "DebugModels::goalModel: found object 4294967295, expected one below 2");
+  refused([&] { static_cast<void>(models.sphereModel(DebugSpheres::kHeld, 3)); },
+          "DebugModels::sphereModel: found radius 3, expected one below 3");
+  refused([&] { static_cast<void>(models_->sceneModel(1)); },
+          "WorldModels::sceneModel: found scene 1, expected one below 1");
+  refused([&] { static_cast<void>(models_->objectModel(2)); },
+          "WorldModels::objectModel: found object 2, expected one below 2");
 }
 
 TEST_F(WorldViewsOfAHome, AreDrawnIntoImagesOfTheirSizeAlone) {
