@@ -36,9 +36,9 @@ struct BasePlace {
 /// the constructor, update() and hold(). Not safe to share between threads; use one for each.
 ///
 /// Calls that do not keep to what is said of them throw ErrorException with kInvalidInput and
-/// change nothing: questions about an env before update(), such about links, hand or places before
-/// setJoints(), too, and numbers of objects that there are not (objectCount()). Places with numbers
-/// that are not finite are places that the column grids do not know.
+/// change nothing: questions about an env before update(), those about links, hand or places before
+/// setJoints(), and numbers of objects that there are not (objectCount()). Places with numbers that
+/// are not finite are allowed where nothing else is said: the column grids do not know them.
 class PlanningScene {
  public:
   /// Of `options` it takes TaskOptions::distractors, the ground, ActionOptions::grasp_shape and the
