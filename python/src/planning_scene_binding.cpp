@@ -43,7 +43,6 @@ class EnvScene {
     scene_.update(state);
     scene_.setJoints(state.joint_positions);
     base_ = scene_.baseOf(state);
-    is_pretended_ = false;
   }
 
   void setJoints(const py::object& positions) {
@@ -79,24 +78,15 @@ class EnvScene {
     return scene_.graspedAt(placeOf(base));
   }
   void hold(std::int64_t object, const py::object& base) {
-    if (scene_.isHolding()) throw py::value_error("the hand holds an object already");
     const auto last = static_cast<std::int64_t>(scene_.objectCount()) - 1;
     if (object < 0 || object > last) {
       throw py::index_error(fmt::format("there is no object {}, the last is {}", object, last));
     }
     scene_.hold(static_cast<std::uint32_t>(object), placeOf(base));
-    is_pretended_ = true;
   }
-  void putBack() {
-    if (!is_pretended_) {
-      throw py::value_error("only what hold() took can be put back");
-    }
-    scene_.putBack();
-    is_pretended_ = false;
-  }
+  void putBack() { scene_.putBack(); }
   [[nodiscard]] bool isHolding() const { return scene_.isHolding(); }
   [[nodiscard]] std::optional<Pose> landing(const py::object& base) {
-    if (!scene_.isHolding()) throw py::value_error("the hand is empty");
     return scene_.landing(placeOf(base));
   }
 
@@ -110,8 +100,6 @@ class EnvScene {
   Simulator* simulator_;
   PlanningScene scene_;
   BasePlace base_;
-  /// Whether what is held was taken by hold(), not by the robot of the env.
-  bool is_pretended_ = false;
 };
 
 }  // namespace
@@ -150,14 +138,16 @@ void bindPlanningScene(py::module_& module) {
            "cannot stand.")
       .def("grasped_at", &EnvScene::graspedAt, py::arg("base"),
            "Index of the object that a hand grasps that closes here, or None.")
-      .def("hold", &EnvScene::hold, py::arg("object"), py::arg("base"),
-           "Holds an object as if it were grasped here.")
-      .def("put_back", &EnvScene::putBack, "Puts what hold() took back to where it rested.")
+      .def(
+          "hold", &EnvScene::hold, py::arg("object"), py::arg("base"),
+          "Holds an object as if it were grasped here. galactic.Error where the hand is not empty.")
+      .def("put_back", &EnvScene::putBack,
+           "Puts what hold() took back to where it rested. galactic.Error where it took nothing.")
       .def_property_readonly("is_holding", &EnvScene::isHolding,
                              "Whether something is in the hand, in the env or by hold().")
       .def("landing", &EnvScene::landing, py::arg("base"),
            "Pose in which the held object comes to rest if it is released here, without random\n"
-           "jitters, or None when it finds no place.");
+           "jitters, or None when it finds no place. galactic.Error where the hand is empty.");
   type.attr("__module__") = "galactic";
   refusePickling(type, "make one from its simulator");
 }

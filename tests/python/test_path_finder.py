@@ -98,6 +98,9 @@ def test_ways(finder):
         ahead = places + 0.05 * directions
         after = fields.distances(ahead, np.full(len(places), number))
         assert (after[far] < lengths[far]).mean() > 0.98
+    # At their ends, they lead nowhere.
+    assert not fields.distances(goals, np.arange(20)).any()
+    assert not fields.directions(goals, np.arange(20)).any()
     between = np.array([fields.distances(goals, np.full(20, number)) for number in range(20)])
     np.testing.assert_allclose(between, between.T, atol=0.25)
     # All to the first, unless it is said to which.

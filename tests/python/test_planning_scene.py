@@ -5,7 +5,7 @@ import copy
 import numpy as np
 import pytest
 
-from galactic import PlanningScene, Simulator
+from galactic import Error, PlanningScene, Simulator
 
 LIFT, FORWARD, ACTIONS = 0, 4, 8
 
@@ -99,10 +99,12 @@ def test_objects_are_held_put_back_and_land(simulator):
     assert scene.grasped_at(base) is None
     rest = scene.landing(base)
     assert rest.translation == pytest.approx(state.objects[state.target].translation, abs=5e-3)
-    with pytest.raises(ValueError, match="already"):
+    with pytest.raises(Error, match="hold: found object .* in the hand already"):
         scene.hold(0, base)
     scene.put_back()
     assert scene.grasped_at(base) == state.target
+    with pytest.raises(Error, match="found no object in the hand that hold"):
+        scene.put_back()
 
 
 def test_what_makes_no_sense_is_refused(simulator):
@@ -114,9 +116,11 @@ def test_what_makes_no_sense_is_refused(simulator):
         scene.set_joints([0])
     with pytest.raises(ValueError):
         scene.floor_at(float("nan"), 0, 0)
-    with pytest.raises(ValueError, match="empty"):
+    with pytest.raises(ValueError, match="joint_positions holds a number that is not finite"):
+        scene.set_joints([float("nan")] * len(simulator.env_state(1).joint_positions))
+    with pytest.raises(Error, match="found an empty hand"):
         scene.landing(scene.base)
-    with pytest.raises(ValueError, match="hold"):
+    with pytest.raises(Error, match="found no object in the hand that hold"):
         scene.put_back()
     for wrong in (100, -1, np.int32(-1)):
         with pytest.raises(IndexError, match=f"there is no object {wrong}, the last is"):

@@ -45,6 +45,7 @@ class Floor {
     state.world_from_root.translation = from;
     const auto start = made_.world().robot().startPositions();
     joints_.assign(start.begin(), start.end());
+    state.joint_positions = joints_;
     scene_.update(state);
     start_ = {from, 0.3F};
     target_ = to;
@@ -168,10 +169,11 @@ TEST(FloorSearch, TellsPlacesThatAreNotWantedFromNoWay) {
   const ScriptedWorld made = stickWorld(madeRoom(3, 3).build(), kWest, {2, 0.5F, 2}, {});
   PlanningScene scene(made.world(), {});
   EnvState state;
+  const auto start = made.world().robot().startPositions();
   state.objects = {{{2, 0.5F, 2}, {}}};
+  state.joint_positions = {start.begin(), start.end()};
   scene.update(state);
   FloorSearch search(scene, made.world().robot());
-  const auto start = made.world().robot().startPositions();
   int offers = 0;
   const auto answer = search.search({kWest, 0}, {start.begin(), start.end()},
                                     {.point = {2, 0.5F, 2}}, [&](const BasePlace& place) {
@@ -194,10 +196,11 @@ TEST(FloorSearch, OffersPlacesWithTheTargetOnTheWantedSide) {
     const ScriptedWorld made = stickWorld(madeRoom(4, 4).build(), kWest, to, {});
     PlanningScene scene(made.world(), {});
     EnvState state;
+    const auto start = made.world().robot().startPositions();
     state.objects = {{to, {}}};
+    state.joint_positions = {start.begin(), start.end()};
     scene.update(state);
     FloorSearch search(scene, made.world().robot());
-    const auto start = made.world().robot().startPositions();
     int offers = 0;
     const auto answer = search.search(
         {kWest, 0}, {start.begin(), start.end()}, {.point = to, .bearing = bearing},

@@ -23,13 +23,16 @@ class FloorPlan;
 struct GeodesicWay {
   /// Meters; infinite where there is none.
   float distance = std::numeric_limits<float>::infinity();
-  /// Unit direction in which it begins, world frame; (0, 0) without a way or at its end.
+  /// Unit direction in which it begins, world frame; (0, 0) without a way or at its end, within
+  /// 0.1 mm of which the distance is 0.
   float x = 0;
   float z = 0;
 };
 
 /// Shortest ways to some goals from everywhere on a floor. Immutable, and valid without its
-/// PathFinder.
+/// PathFinder. One that no PathFinder has made has no goals. Numbers of goals that there are not
+/// throw ErrorException with kInvalidInput; from places with numbers that are not finite, there is
+/// no way.
 class GeodesicFields {
  public:
   [[nodiscard]] std::size_t size() const noexcept { return goals_.size(); }
@@ -69,7 +72,9 @@ enum class GoalOf : std::uint8_t {
 class PathFinder {
  public:
   /// The floor at or up to half a meter under `start`, or that begins within 30 cm of there: where
-  /// the base or the root of a robot is. kInvalidInput where there is none, or no such scene.
+  /// the base or the root of a robot is. kInvalidInput where there is none, where a number is
+  /// not finite, where there is no such scene, and where `ground` is out of its ranges
+  /// (checkOptions).
   [[nodiscard]] static Result<PathFinder> make(const World& world, std::uint32_t scene,
                                                const Vec3& start, const GroundOptions& ground = {});
 
@@ -83,9 +88,12 @@ class PathFinder {
   /// Of the floor in each cell, meters, X first; NaN where the robot cannot go.
   [[nodiscard]] std::span<const float> heights() const;
 
-  /// Whether a base may be here: in a cell of the floor, and not a storey above or below.
+  /// Whether a base may be here: in a cell of the floor, and not a storey above or below. False
+  /// where a number is not finite.
   [[nodiscard]] bool isNavigable(const Vec3& base) const;
-  /// The middle of the cell of the floor that is nearest to a finite point. O(cells).
+  /// The middle of the cell of the floor that is nearest to a point. O(cells). Throws
+  /// ErrorException with kInvalidInput for a point with a number that is not finite, or further
+  /// than 1000 km away.
   [[nodiscard]] Vec3 snap(const Vec3& point) const;
   /// The middles of all cells of the floor.
   [[nodiscard]] std::vector<Vec3> places() const;

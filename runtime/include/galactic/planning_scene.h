@@ -34,24 +34,34 @@ struct BasePlace {
 /// Take over an env with update(), choose joint positions with setJoints(), then ask about places
 /// of the base. Every answer depends on these and on the arguments only. Memory is allocated by
 /// the constructor, update() and hold(). Not safe to share between threads; use one for each.
+///
+/// Calls that do not keep to what is said of them throw ErrorException with kInvalidInput and
+/// change nothing: questions about an env before update(), those about links, hand or places before
+/// setJoints(), and numbers of objects that there are not (objectCount()). Places with numbers that
+/// are not finite are allowed where nothing else is said: the column grids do not know them.
 class PlanningScene {
  public:
   /// Of `options` it takes TaskOptions::distractors, the ground, ActionOptions::grasp_shape and the
-  /// placement of released objects. Call update() and setJoints() before anything else:
-  /// without update(), questions throw ErrorException with kInvalidInput.
+  /// placement of released objects. Throws ErrorException with kInvalidInput for options out of
+  /// their ranges (checkOptions).
   PlanningScene(const World& world, const SimulationOptions& options);
   ~PlanningScene();
   PlanningScene(PlanningScene&&) noexcept;
   PlanningScene& operator=(PlanningScene&&) noexcept;
 
   /// Takes over an env's scene, its objects and what its robot holds, all of whose spheres count
-  /// again. `state`: of the same world.
+  /// again. `state`: of the same world, and with the objects that TaskOptions::distractors says.
+  /// Refused where the world has no such scene or episode, or the episode is in another scene,
+  /// where the episode or the robot has another number of objects or positions, where
+  /// EnvState::held is no index of an object nor -1, and where a number is not finite or a rotation
+  /// is not of unit length.
   void update(const EnvState& state);
   /// The static scene of that env.
   [[nodiscard]] const Scene& scene() const;
 
   /// The joint positions of the questions that follow: one per position of the robot
-  /// (Robot::positionCount()), radians or meters. Limits are not enforced.
+  /// (Robot::positionCount()), radians or meters, finite. Limits are not enforced. They stay as
+  /// they are when another env is taken over.
   void setJoints(std::span<const float> positions);
   /// root_from_link of all links for these joints (forward kinematics); valid until the next call
   /// of setJoints().
@@ -65,7 +75,8 @@ class PlanningScene {
   [[nodiscard]] BasePlace baseOf(const EnvState& state) const;
   [[nodiscard]] Pose worldFromRoot(const BasePlace& base) const;
   /// Height of the floor under (x, z), meters, for a base that comes from the height `from`; none
-  /// where the floor rises or drops too far (GroundOptions) or there is none.
+  /// where the floor rises or drops too far (GroundOptions), or there is none, as where a number is
+  /// not finite. Needs no joints.
   [[nodiscard]] std::optional<float> floorAt(float x, float z, float from) const;
 
   /// Whether neither the robot nor what it holds penetrates the static scene or an object at rest.
@@ -73,7 +84,8 @@ class PlanningScene {
   /// itself is not asked: BatchSimulator does not ask either.
   [[nodiscard]] bool isFree(const BasePlace& base);
   /// The two parts of isFree(), for planners that remember what they know of the static scene: the
-  /// robot against the scene, and everything else.
+  /// robot against the scene, and everything else. The robot meets nothing else at a place with
+  /// numbers that are not finite: it is the first that says that this is no place.
   [[nodiscard]] bool isRobotFreeOfScene(const BasePlace& base);
   [[nodiscard]] bool isFreeOfAllElse(const BasePlace& base);
 
@@ -91,13 +103,15 @@ class PlanningScene {
   /// no such object.
   [[nodiscard]] std::optional<std::uint32_t> graspedAt(const BasePlace& base) const;
 
-  /// Holds an object that rests, as if it were grasped here; all its spheres count. The hand must
-  /// be empty.
+  /// Holds an object that rests, as if it were grasped here, a place of finite numbers; all its
+  /// spheres count. The hand must be empty.
   void hold(std::uint32_t object, const BasePlace& base);
-  /// Puts what hold() holds back to where it rested.
+  /// Puts what hold() holds back to where it rested. Refused where hold() has taken nothing since
+  /// the last update() or putBack(): what the robot of the env holds rests nowhere.
   void putBack();
+  /// False before update().
   [[nodiscard]] bool isHolding() const;
-  /// Of the held object.
+  /// Of the held object; refused where the hand is empty.
   [[nodiscard]] const Pose& gripFromObject() const;
 
   /// Spheres of the held object that penetrate something here do not count from now on. The
@@ -108,8 +122,8 @@ class PlanningScene {
   void countFree(const BasePlace& base);
 
   /// world_from_object of the held object after a release here: where it comes to rest, placed as
-  /// the simulation does but without random jitters. None when it finds no place; an object must be
-  /// held.
+  /// the simulation does but without random jitters. None when it finds no place. Refused where the
+  /// hand is empty.
   [[nodiscard]] std::optional<Pose> landing(const BasePlace& base);
 
  private:

@@ -58,7 +58,9 @@ class RayCaster {
   explicit RayCaster(const Scene& scene);
   /// Of an env as `state` has it, which has to be one of this world: with its objects where they
   /// are. Throws ErrorException with kInvalidInput where the world has no such scene or episode, or
-  /// where the episode or the robot has another number of objects or positions. Keeps the world.
+  /// the episode is in another scene, where the episode or the robot has another number of objects
+  /// or positions, where EnvState::held is no index of an object nor -1, and where a number is not
+  /// finite or a rotation is not of unit length. Keeps the world.
   RayCaster(const World& world, const EnvState& state, CastRobot robot = CastRobot::kIsUnseen);
 
   /// How far rays get. `hits`: one for each line, overwritten. Objects and the robot are hit on
@@ -86,9 +88,11 @@ class RayCaster {
 /// How far rays get in all envs of a batch as they are now, as many in each: of `lines` and `hits`,
 /// the first belong to env 0, as many next to env 1, and so on. Each env answers as
 /// RayCaster(world, simulator.envState(env), robot).castRays() does; up to `threads` threads share
-/// the envs (0: as many as there are processors). `world`: the simulator's. Not while a step has
-/// begun. Throws ErrorException with kInvalidInput, before anything is written, where castRays()
-/// would, or where the number of lines is no multiple of that of the envs.
+/// the envs (0: as many as there are processors). Throws ErrorException with kInvalidInput, before
+/// anything is written, where castRays() would, where `world` is not the simulator's, where a step
+/// has begun, or where the number of lines is no multiple of that of the envs; and, with some hits
+/// written, where RayCaster() refuses the state of an env, such as BatchSimulator::follow() can
+/// bring about.
 void castRaysInEnvs(const World& world, const BatchSimulator& simulator, const CastLines& lines,
                     std::span<CastHit> hits, CastRobot robot = CastRobot::kIsUnseen,
                     std::uint32_t threads = 1);

@@ -9,10 +9,13 @@
 #include <memory>
 #include <optional>
 
+#include "galactic/option_text.h"
 #include "sensors/floor_plan.h"
 #include "sensors/way_field.h"
 #include "simulation/collision/floor_query.h"
 #include "simulation/motion/motion_model.h"
+#include "support/call_check.h"
+#include "support/try.h"
 #include "support/workers.h"
 
 namespace galactic {
@@ -40,6 +43,17 @@ bool isPlace(const Vec3& point) {
 float squaredDistance(const Vec3& a, const Vec3& b) {
   const Vec3 apart = a - b;
   return dot(apart, apart);
+}
+
+/// Whether a base is where its way ends. So near to the goal, what a field says between the middles
+/// of cells has no direction, and is too long.
+bool isAtEnd(float distance, const Vec3& base, const Vec3& goal) {
+  constexpr float kThere = 1e-4F;
+  // A hand's goal may be right above a base that has to go around something to reach it.
+  constexpr float kNear = 2 * kPlanCell;
+  const float x = goal.x - base.x;
+  const float z = goal.z - base.z;
+  return distance < kNear && x * x + z * z < kThere * kThere;
 }
 
 /// The passable cell nearest to a base, of those within kBeside and on its storey.
@@ -119,13 +133,16 @@ std::vector<Vec3> pulledTight(const FloorPlan& plan, const std::vector<Vec3>& po
 }  // namespace
 
 GeodesicWay GeodesicFields::way(std::size_t n, const Vec3& base) const {
+  detail::checkIndex("GeodesicFields::way", "goal", n, goals_.size());
   if (!cellBeside(*plan_, base)) return {};
   const sensors::Way way = sensors::wayFrom(*plan_, lengths_[n], base.x, base.z);
   if (way.distance < 0 || way.distance >= kFarthest) return {};
+  if (isAtEnd(way.distance, base, goals_[n])) return {.distance = 0};
   return {way.distance, way.x, way.z};
 }
 
 std::vector<Vec3> GeodesicFields::path(std::size_t n, const Vec3& base) const {
+  detail::checkIndex("GeodesicFields::path", "goal", n, goals_.size());
   const std::span<const std::uint16_t> lengths = lengths_[n];
   std::optional<PlanCell> cell = cellBeside(*plan_, base);
   // Behind the farthest length, nothing tells the way.
@@ -140,6 +157,9 @@ std::vector<Vec3> GeodesicFields::path(std::size_t n, const Vec3& base) const {
 
 Result<PathFinder> PathFinder::make(const World& world, std::uint32_t scene, const Vec3& start,
                                     const GroundOptions& ground) {
+  SimulationOptions options;
+  options.ground = ground;
+  RETURN_IF_ERROR(checkOptions(options));
   const std::size_t count = world.scenes().size();
   if (scene >= count) {
     return fail(ErrorCode::kInvalidInput, "path finder",
@@ -177,9 +197,14 @@ bool PathFinder::isNavigable(const Vec3& base) const {
 }
 
 Vec3 PathFinder::snap(const Vec3& point) const {
+  if (!isPlace(point)) {
+    detail::refuseCall("PathFinder::snap",
+                       fmt::format("found ({:g}, {:g}, {:g}), which is no point of a scene; take "
+                                   "one within 1000 km",
+                                   point.x, point.y, point.z));
+  }
   Vec3 nearest{};
-  // Of a point that is none, it is any place.
-  float least = std::numeric_limits<float>::quiet_NaN();
+  float least = std::numeric_limits<float>::infinity();
   for (std::int32_t k = 0; k < columnsZ(); ++k) {
     for (std::int32_t i = 0; i < columnsX(); ++i) {
       if (!plan_->isPassable({i, k})) continue;

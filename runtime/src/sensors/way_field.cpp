@@ -56,10 +56,12 @@ class Spreading {
         lengths_(plan.cellCount(), kInfinity) {
     for (std::size_t index = 0; index < exits_.size(); ++index) {
       const PlanCell cell = cellOf(index);
+      unsigned exits = 0;
       for (std::size_t way = 0; way < kAround.size(); ++way) {
         const PlanCell next{cell.i + kAround[way].i, cell.k + kAround[way].k};
-        if (plan.areConnected(cell, next)) exits_[index] |= 1U << way;
+        if (plan.areConnected(cell, next)) exits |= 1U << way;
       }
+      exits_[index] = static_cast<std::uint8_t>(exits);
     }
   }
 
@@ -117,7 +119,7 @@ class Spreading {
   }
   /// Whether a base can go from a cell to the one beside it.
   [[nodiscard]] bool leadsOn(std::size_t index, std::size_t way) const {
-    return (exits_[index] >> way & 1U) != 0;
+    return (static_cast<unsigned>(exits_[index]) >> way & 1U) != 0;
   }
   [[nodiscard]] std::size_t beside(std::size_t index, std::size_t way) const {
     return index + static_cast<std::size_t>(steps_[way]);

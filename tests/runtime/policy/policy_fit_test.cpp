@@ -59,6 +59,7 @@ TEST_F(PolicyFit, NeedsEachPartOfTheObservation) {
 
 TEST_F(PolicyFit, NeedsEachPartInItsSize) {
   batch_.observation[1].size = 2;
+  ++batch_.observation_size;
   expectUnfit(
       "reads 1 numbers of the observation \"is_holding\", and the simulation has 2; take the "
       "options and the robot that it was trained with");

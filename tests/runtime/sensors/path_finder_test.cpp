@@ -9,9 +9,11 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
+#include "galactic/error.h"
 #include "support/homes/box_world.h"
 
 namespace galactic::test::path_finder_test {
@@ -225,6 +227,82 @@ TEST(PathFinder, IsTheSameForAnyNumberOfThreads) {
     // There and back, ways are as long.
     ASSERT_NEAR(one.way(n, kStart).distance,
                 fieldsOf(finder, {finder.snap(kStart)}).way(0, goals[n]).distance, 0.15F);
+  }
+}
+
+TEST(PathFinder, SaysThatAWayEndsAtItsGoal) {
+  const BoxWorld world = worldWith(walls());
+  const PathFinder finder = finderIn(world);
+  constexpr float kHere = 2e-5F;
+  constexpr float kAside = 5e-3F;
+  // In the middle of a cell, near its corner and at the wall; for a hand, on the floor.
+  for (const Vec3& goal :
+       {Vec3{0.75F, 0, 0.75F}, Vec3{0.798F, 0, 0.703F}, Vec3{1.299F, 0, 1}, Vec3{1.2F, 0, 0.8F}}) {
+    const std::vector<GeodesicFields> fields{fieldsOf(finder, {goal}),
+                                             fieldsOf(finder, {goal}, GoalOf::kHand)};
+    for (const GeodesicFields& to : fields) {
+      for (const Vec3& off : {Vec3{}, Vec3{kHere, 0, -kHere}, Vec3{0, 0.3F, 0}}) {
+        const GeodesicWay way = to.way(0, goal + off);
+        EXPECT_EQ(way.distance, 0);
+        EXPECT_EQ(way.x, 0);
+        EXPECT_EQ(way.z, 0);
+      }
+      EXPECT_GT(to.way(0, goal - Vec3{kAside, 0, 0}).distance, 0);
+      EXPECT_EQ(to.way(0, goal + Vec3{0, 2.5F, 0}).distance, kInfinity) << "another storey";
+    }
+  }
+}
+
+TEST(PathFinder, HasAWayToAHandsGoalThatIsTooHighAboveTheBase) {
+  // A hand gets there from the doorstep alone.
+  const BoxWorld world = worldWith({plainFloor(), {{1.5F, 0, 0}, {3, 0.15F, 3}}});
+  const PathFinder finder =
+      PathFinder::make(world.world(), 0, kStart, {.most_rise = 0.2F, .most_drop = 0.2F}).value();
+  const Vec3 under{1, 0, 1.5F};
+  ASSERT_TRUE(finder.isNavigable(under));
+  const GeodesicWay way = fieldsOf(finder, {under + Vec3{0, 2.3F, 0}}, GoalOf::kHand).way(0, under);
+  EXPECT_GT(way.distance, 0.8F);
+  EXPECT_LT(way.distance, 1.3F);
+  EXPECT_GT(way.x, 0.9F);
+}
+
+TEST(PathFinder, RefusesGoalsThatThereAreNot) {
+  const GeodesicFields none;
+  const BoxWorld world = worldWith(walls());
+  const GeodesicFields one = fieldsOf(finderIn(world), {kStart});
+  const auto expect = [](const GeodesicFields& fields, std::size_t n, const std::string& message) {
+    EXPECT_THAT([&] { static_cast<void>(fields.way(n, kStart)); },
+                testing::ThrowsMessage<ErrorException>("GeodesicFields::way: " + message));
+    EXPECT_THAT([&] { static_cast<void>(fields.path(n, kStart)); },
+                testing::ThrowsMessage<ErrorException>("GeodesicFields::path: " + message));
+  };
+  EXPECT_EQ(none.size(), 0U);
+  expect(none, 0, "found goal 0, expected one below 0");
+  expect(one, 1, "found goal 1, expected one below 1");
+  expect(one, ~std::size_t{0}, "found goal 18446744073709551615, expected one below 1");
+}
+
+TEST(PathFinder, RefusesToSnapWhatIsNoPoint) {
+  const BoxWorld world = worldWith(walls());
+  const PathFinder finder = finderIn(world);
+  for (const float wrong : {std::nanf(""), kInfinity, -kInfinity, 1e30F}) {
+    for (const Vec3& point : {Vec3{wrong, 0, 0}, Vec3{0, wrong, 0}, Vec3{0, 0, wrong}}) {
+      EXPECT_THAT([&] { static_cast<void>(finder.snap(point)); },
+                  testing::ThrowsMessage<ErrorException>(HasSubstr("PathFinder::snap: found (")));
+    }
+  }
+  EXPECT_TRUE(finder.isNavigable(finder.snap({-9e5F, 0, 9e5F})));
+}
+
+TEST(PathFinder, RefusesGroundOutOfItsRanges) {
+  const BoxWorld world = worldWith(walls());
+  for (const float wrong : {std::nanf(""), kInfinity, -1.0F}) {
+    for (const GroundOptions& ground : {GroundOptions{.most_rise = wrong}, {.most_drop = wrong}}) {
+      const auto refused = PathFinder::make(world.world(), 0, kStart, ground);
+      ASSERT_FALSE(refused.has_value());
+      EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+      EXPECT_THAT(refused.error().message, HasSubstr("expected 0.001 to 1000"));
+    }
   }
 }
 

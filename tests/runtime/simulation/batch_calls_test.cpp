@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "batch_trace.h"
-#include "galactic/planning_scene.h"
 
 namespace galactic::test::batch_calls_test {
 namespace {
@@ -127,14 +126,6 @@ TEST_F(BatchCalls, ThatWouldMeetAHalfStepAreRefused) {
               ThrowsMessage<ErrorException>(HasSubstr("found no step that has begun")));
   other.step(actions_);
   EXPECT_EQ(simulator_.saveState(), other.saveState());
-}
-
-TEST_F(BatchCalls, OfAPlannerWithoutAnEnvAreRefused) {
-  PlanningScene scene(world_.world(), simulator_.options());
-  EXPECT_THAT([&] { static_cast<void>(scene.isFree({})); },
-              ThrowsMessage<ErrorException>(HasSubstr("with update()")));
-  EXPECT_THROW(static_cast<void>(scene.floorAt(0, 0, 0)), ErrorException);
-  EXPECT_THROW(static_cast<void>(scene.scene()), ErrorException);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <string_view>
 
 #include "simulation/collision/grasp_query.h"
 #include "simulation/collision/resting_box.h"
@@ -13,8 +12,8 @@
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/move.h"
 #include "simulation/phases/object_placement.h"
+#include "simulation/state/env_state.h"
 #include "simulation/state/grip_frame.h"
-#include "simulation/state/plain_numbers.h"
 
 namespace galactic::simulation {
 namespace {
@@ -31,53 +30,9 @@ bool knowsWaysToGoals(const Model& model) {
   return model.options.sensors.geodesic || model.options.task.geodesic_weight != 0;
 }
 
-std::string faultIn(std::string_view field, const Vec3& v) {
-  return fmt::format("has {} ({:g}, {:g}, {:g}), expected finite numbers of at most {:g} m", field,
-                     v.x, v.y, v.z, kLargestPlain);
-}
-
-/// Of a pose that is not plain.
-std::string faultIn(std::string_view field, const Pose& pose) {
-  if (!isPlain(pose.translation)) {
-    return faultIn(fmt::format("{}.translation", field), pose.translation);
-  }
-  const Quat& q = pose.rotation;
-  return fmt::format(
-      "has {}.rotation ({:g}, {:g}, {:g}, {:g}), expected a unit quaternion: w, x, y, z", field,
-      q.w, q.x, q.y, q.z);
-}
-
 /// How far the vertical axis is from that of the world, radians.
 float tiltOf(const Quat& rotation) {
   return 2 * std::asin(std::min(1.0F, std::hypot(rotation.x, rotation.z)));
-}
-
-/// Of the numbers of a state with the counts of its episode and robot.
-std::string faultOfNumbers(const EnvState& state) {
-  if (!isPlain(state.world_from_root)) return faultIn("world_from_root", state.world_from_root);
-  const float tilt = tiltOf(state.world_from_root.rotation);
-  if (tilt > kMostTilt) {
-    return fmt::format(
-        "has world_from_root.rotation tilted by {:.2f} rad, expected at most {}: "
-        "robots stand upright; quaternions are w, x, y, z",
-        tilt, kMostTilt);
-  }
-  for (std::size_t n = 0; n < state.joint_positions.size(); ++n) {
-    if (isPlain(state.joint_positions[n])) continue;
-    return fmt::format("has joint_positions[{}] {:g}, expected a finite number of at most {:g}", n,
-                       state.joint_positions[n], kLargestPlain);
-  }
-  if (!isPlain(state.goal.translation)) {
-    return faultIn("goal.translation", state.goal.translation);
-  }
-  if (state.held >= 0 && !isPlain(state.world_from_grip)) {
-    return faultIn("world_from_grip", state.world_from_grip);
-  }
-  for (std::size_t n = 0; n < state.objects.size(); ++n) {
-    if (isPlain(state.objects[n])) continue;
-    return faultIn(fmt::format("objects[{}]", n), state.objects[n]);
-  }
-  return {};
 }
 
 }  // namespace
@@ -109,6 +64,13 @@ std::string faultOf(const Model& model, const EnvState& state) {
     return fmt::format("is after {} steps, and an episode has {}", state.step, most_steps);
   }
   if (std::string fault = faultOfNumbers(state); !fault.empty()) return fault;
+  const float tilt = tiltOf(state.world_from_root.rotation);
+  if (tilt > kMostTilt) {
+    return fmt::format(
+        "has world_from_root.rotation tilted by {:.2f} rad, expected at most {}: "
+        "robots stand upright; quaternions are w, x, y, z",
+        tilt, kMostTilt);
+  }
   if (knowsWaysToGoals(model) && !(state.goal.translation == episode.goal.translation)) {
     return "has another goal than its episode, and ways along the floor (geodesic) are known to "
            "the goals of episodes alone";

@@ -1,17 +1,23 @@
 #include "galactic/planning_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "galactic/error.h"
 #include "galactic/kinematics.h"
+#include "galactic/option_text.h"
 #include "galactic/robot.h"
 #include "simulation/collision/collision.h"
 #include "simulation/collision/floor_query.h"
 #include "simulation/collision/grasp_query.h"
 #include "simulation/collision/resting_objects.h"
 #include "simulation/phases/object_placement.h"
+#include "simulation/queries/checked_state.h"
 #include "simulation/queries/sphere_cloud.h"
+#include "simulation/state/plain_numbers.h"
 #include "support/call_check.h"
 #include "support/random_stream.h"
 
@@ -29,6 +35,20 @@ SphereCloud cloudOf(const Robot& robot) {
     for (const SetSphere& sphere : group.spheres) spheres.push_back({group.link, sphere});
   }
   return {spheres, robot.radii()};
+}
+
+/// Options in their ranges; throws for others.
+const SimulationOptions& checked(const SimulationOptions& options) {
+  orThrow(checkOptions(options));
+  return options;
+}
+
+// Out of the way of calls that are in order.
+[[noreturn]] void refuseWithoutEnv(const char* call) {
+  detail::refuseCall(call, "found no env; take one over first, with update()");
+}
+[[noreturn]] void refuseWithoutJoints(const char* call) {
+  detail::refuseCall(call, "found no joint positions; choose them first, with setJoints()");
 }
 
 std::size_t mostSpheres(const World& world) {
@@ -49,7 +69,7 @@ class PlanningScene::Impl {
  public:
   Impl(const World& world, const SimulationOptions& options)
       : world_(world),
-        options_(options),
+        options_(checked(options)),
         root_height_(world.robot().base()->root_height),
         links_(world.robot().links().size()),
         robot_(cloudOf(world.robot())),
@@ -90,12 +110,8 @@ class PlanningScene::Impl {
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const SimulationOptions& options() const { return options_; }
   [[nodiscard]] float rootHeight() const { return root_height_; }
-  [[nodiscard]] const Scene& scene() const {
-    if (scene_ == nullptr) {
-      detail::refuseCall("PlanningScene", "was asked before it took over an env, with update()");
-    }
-    return *scene_;
-  }
+  /// Of an env that was taken over.
+  [[nodiscard]] const Scene& scene() const { return *scene_; }
   [[nodiscard]] std::span<const Pose> links() const { return links_; }
   [[nodiscard]] float reach() const { return reach_; }
   [[nodiscard]] const simulation::RestingObjects& resting() const { return resting_; }
@@ -103,6 +119,33 @@ class PlanningScene::Impl {
   [[nodiscard]] const Pose& poseOf(std::size_t object) const { return poses_[object]; }
   [[nodiscard]] bool isHolding() const { return held_ != nullptr; }
   [[nodiscard]] const Pose& gripFromObject() const { return grip_from_object_; }
+
+  // What calls ask of those before them: they throw where that is missing.
+  void requireUpdated(const char* call) const {
+    if (scene_ == nullptr) [[unlikely]]
+      refuseWithoutEnv(call);
+  }
+  void requireJoints(const char* call) const {
+    if (!has_joints_) [[unlikely]]
+      refuseWithoutJoints(call);
+  }
+  /// Both: one branch, as planners ask millions of times.
+  void requireReady(const char* call) const {
+    if (is_ready_) [[likely]]
+      return;
+    requireUpdated(call);
+    requireJoints(call);
+  }
+  void requireHeld(const char* call) const {
+    requireUpdated(call);
+    if (!isHolding()) {
+      detail::refuseCall(call, "found an empty hand, expected one that holds an object");
+    }
+  }
+  void requireObject(const char* call, std::size_t object) const {
+    requireUpdated(call);
+    detail::checkIndex(call, "object", object, models_.size());
+  }
 
  private:
   [[nodiscard]] simulation::Obstacles obstacles() const { return {scene(), resting_}; }
@@ -120,13 +163,19 @@ class PlanningScene::Impl {
   SphereCloud robot_;
   float reach_ = 0;
 
+  /// None before update().
   const Scene* scene_ = nullptr;
+  bool has_joints_ = false;
+  /// Whether there are both, as questions about places want it.
+  bool is_ready_ = false;
   simulation::RestingObjects resting_;
   std::vector<const ObjectModel*> models_;
   std::vector<Pose> poses_;
 
   const ObjectModel* held_ = nullptr;
   std::uint32_t held_number_ = 0;
+  /// Whether hold() took it, not the robot of the env.
+  bool is_pretended_ = false;
   Pose grip_from_object_;
   SphereCloud held_spheres_;
   /// One bit per sphere of the held object.
@@ -138,10 +187,14 @@ class PlanningScene::Impl {
 };
 
 void PlanningScene::Impl::update(const EnvState& state) {
+  constexpr const char* kCall = "PlanningScene::update";
+  const std::span<const Placement> placements = simulation::checkedObjects(kCall, world_, state);
   const Episode& episode = world_.episodes().episodes()[state.episode];
-  const std::span<const Placement> placements =
-      world_.episodes().present(episode, options_.task.distractors).placements;
+  detail::checkLength(
+      kCall, "objects", placements.size(),
+      world_.episodes().present(episode, options_.task.distractors).placements.size());
   scene_ = &world_.scenes()[state.scene];
+  is_ready_ = has_joints_;
   models_.clear();
   resting_.clear();
   held_ = nullptr;
@@ -151,12 +204,23 @@ void PlanningScene::Impl::update(const EnvState& state) {
     resting_.insert(n, simulation::restingBox(models_[n]->box, state.objects[n]));
   }
   poses_ = state.objects;
+  is_pretended_ = false;
   if (state.held < 0) return;
   const auto held = static_cast<std::uint32_t>(state.held);
   take(held, inverse(state.world_from_grip) * state.objects[held]);
 }
 
 void PlanningScene::Impl::setJoints(std::span<const float> positions) {
+  constexpr const char* kCall = "PlanningScene::setJoints";
+  detail::checkLength(kCall, "positions", positions.size(), world_.robot().positionCount());
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    if (simulation::isPlain(positions[n])) continue;
+    detail::refuseCall(kCall, fmt::format("found positions[{}] {:g}, expected a finite number of "
+                                          "at most {:g}",
+                                          n, positions[n], simulation::kLargestPlain));
+  }
+  has_joints_ = true;
+  is_ready_ = scene_ != nullptr;
   forwardKinematics(world_.robot().links(), {}, positions, links_);
   robot_.assemble(links_);
   reach_ = robot_.reach();
@@ -183,23 +247,46 @@ void PlanningScene::Impl::assembleHeld() {
 }
 
 void PlanningScene::Impl::hold(std::uint32_t object, const BasePlace& base) {
+  constexpr const char* kCall = "PlanningScene::hold";
+  requireReady(kCall);
+  requireObject(kCall, object);
+  if (isHolding()) {
+    detail::refuseCall(kCall, fmt::format("found object {} in the hand already, expected an empty "
+                                          "one",
+                                          held_number_));
+  }
+  if (!simulation::isPlain(base.position) || !simulation::isPlain(base.yaw)) {
+    detail::refuseCall(
+        kCall, fmt::format("found a base at ({:g}, {:g}, {:g}) with the yaw {:g}, expected finite "
+                           "numbers of at most {:g}",
+                           base.position.x, base.position.y, base.position.z, base.yaw,
+                           simulation::kLargestPlain));
+  }
   const Pose world_from_grip = worldFromRoot(base) * rootFromGrip();
   resting_.remove(object);
   take(object, inverse(world_from_grip) * poses_[object]);
+  is_pretended_ = true;
 }
 
 void PlanningScene::Impl::putBack() {
+  if (!is_pretended_) {
+    detail::refuseCall("PlanningScene::putBack",
+                       "found no object in the hand that hold() has taken, and no other goes back");
+  }
   held_ = nullptr;
+  is_pretended_ = false;
   resting_.insert(held_number_,
                   simulation::restingBox(models_[held_number_]->box, poses_[held_number_]));
 }
 
 bool PlanningScene::Impl::isFree(const BasePlace& base) {
+  requireReady("PlanningScene::isFree");
   if (simulation::penetrates(obstacles(), robot_.at(base, root_height_))) return false;
   return isHeldFree(base);
 }
 
 bool PlanningScene::Impl::isRobotFreeOfScene(const BasePlace& base) {
+  requireReady("PlanningScene::isRobotFreeOfScene");
   const simulation::SphereBatch spheres = robot_.at(base, root_height_);
   return std::ranges::all_of(spheres.ranges, [&](const simulation::RadiusRange& range) {
     const std::size_t count = simulation::paddedToLanes(range.count);
@@ -211,6 +298,7 @@ bool PlanningScene::Impl::isRobotFreeOfScene(const BasePlace& base) {
 }
 
 bool PlanningScene::Impl::isFreeOfAllElse(const BasePlace& base) {
+  requireReady("PlanningScene::isFreeOfAllElse");
   if (isAnyNear(base.position) && resting_.touches(robot_.at(base, root_height_))) return false;
   return isHeldFree(base);
 }
@@ -245,17 +333,22 @@ std::span<const std::uint64_t> PlanningScene::Impl::findPenetrating(const BasePl
 }
 
 void PlanningScene::Impl::ignorePenetrating(const BasePlace& base) {
+  requireReady("PlanningScene::ignorePenetrating");
   if (held_ == nullptr) return;
   std::ranges::copy(findPenetrating(base), ignored_.begin());
 }
 
 void PlanningScene::Impl::countFree(const BasePlace& base) {
+  requireReady("PlanningScene::countFree");
   if (held_ == nullptr) return;
   const std::span<const std::uint64_t> penetrating = findPenetrating(base);
   for (std::size_t w = 0; w < ignored_.size(); ++w) ignored_[w] &= penetrating[w];
 }
 
 std::optional<Pose> PlanningScene::Impl::landing(const BasePlace& base) {
+  constexpr const char* kCall = "PlanningScene::landing";
+  requireReady(kCall);
+  requireHeld(kCall);
   const Pose released = worldFromRoot(base) * (rootFromGrip() * grip_from_object_);
   RandomStream random(0, 0, 0, 0);
   const simulation::Landing landing = simulation::placeObject(obstacles(), *held_, released, random,
@@ -271,11 +364,23 @@ PlanningScene::PlanningScene(PlanningScene&&) noexcept = default;
 PlanningScene& PlanningScene::operator=(PlanningScene&&) noexcept = default;
 
 void PlanningScene::update(const EnvState& state) { impl_->update(state); }
-const Scene& PlanningScene::scene() const { return impl_->scene(); }
+const Scene& PlanningScene::scene() const {
+  impl_->requireUpdated("PlanningScene::scene");
+  return impl_->scene();
+}
 void PlanningScene::setJoints(std::span<const float> positions) { impl_->setJoints(positions); }
-std::span<const Pose> PlanningScene::rootFromLinks() const { return impl_->links(); }
-Pose PlanningScene::rootFromGrip() const { return impl_->rootFromGrip(); }
-float PlanningScene::reach() const { return impl_->reach(); }
+std::span<const Pose> PlanningScene::rootFromLinks() const {
+  impl_->requireJoints("PlanningScene::rootFromLinks");
+  return impl_->links();
+}
+Pose PlanningScene::rootFromGrip() const {
+  impl_->requireJoints("PlanningScene::rootFromGrip");
+  return impl_->rootFromGrip();
+}
+float PlanningScene::reach() const {
+  impl_->requireJoints("PlanningScene::reach");
+  return impl_->reach();
+}
 
 BasePlace PlanningScene::baseOf(const EnvState& state) const {
   const Quat& q = state.world_from_root.rotation;
@@ -288,6 +393,7 @@ Pose PlanningScene::worldFromRoot(const BasePlace& base) const {
 }
 
 std::optional<float> PlanningScene::floorAt(float x, float z, float from) const {
+  impl_->requireUpdated("PlanningScene::floorAt");
   const simulation::FloorUnder under =
       simulation::floorUnder(impl_->scene(), {x, from, z}, impl_->options().ground);
   if (under.floor != simulation::Floor::kCarries) return std::nullopt;
@@ -300,9 +406,13 @@ bool PlanningScene::isRobotFreeOfScene(const BasePlace& base) {
 }
 bool PlanningScene::isFreeOfAllElse(const BasePlace& base) { return impl_->isFreeOfAllElse(base); }
 
-std::size_t PlanningScene::objectCount() const { return impl_->models().size(); }
+std::size_t PlanningScene::objectCount() const {
+  impl_->requireUpdated("PlanningScene::objectCount");
+  return impl_->models().size();
+}
 
 OrientedBox PlanningScene::objectBox(std::size_t object) const {
+  impl_->requireObject("PlanningScene::objectBox", object);
   const OrientedBox& own = impl_->models()[object]->box;
   const Pose& pose = impl_->poseOf(object);
   const simulation::RestingBox box = simulation::restingBox(own, pose);
@@ -310,6 +420,7 @@ OrientedBox PlanningScene::objectBox(std::size_t object) const {
 }
 
 float PlanningScene::squaredGraspDistance(std::size_t object, const Vec3& point) const {
+  impl_->requireObject("PlanningScene::squaredGraspDistance", object);
   const ObjectModel& model = *impl_->models()[object];
   const Pose& pose = impl_->poseOf(object);
   return simulation::squaredGraspDistance(model, simulation::restingBox(model.box, pose), pose,
@@ -317,6 +428,7 @@ float PlanningScene::squaredGraspDistance(std::size_t object, const Vec3& point)
 }
 
 std::optional<std::uint32_t> PlanningScene::graspedAt(const BasePlace& base) const {
+  impl_->requireReady("PlanningScene::graspedAt");
   const Pose world_from_grip = impl_->worldFromRoot(base) * impl_->rootFromGrip();
   const auto model_of = [this](std::uint32_t index) -> const ObjectModel& {
     return *impl_->models()[index];
@@ -332,7 +444,10 @@ std::optional<std::uint32_t> PlanningScene::graspedAt(const BasePlace& base) con
 void PlanningScene::hold(std::uint32_t object, const BasePlace& base) { impl_->hold(object, base); }
 void PlanningScene::putBack() { impl_->putBack(); }
 bool PlanningScene::isHolding() const { return impl_->isHolding(); }
-const Pose& PlanningScene::gripFromObject() const { return impl_->gripFromObject(); }
+const Pose& PlanningScene::gripFromObject() const {
+  impl_->requireHeld("PlanningScene::gripFromObject");
+  return impl_->gripFromObject();
+}
 void PlanningScene::ignorePenetrating(const BasePlace& base) { impl_->ignorePenetrating(base); }
 void PlanningScene::countFree(const BasePlace& base) { impl_->countFree(base); }
 std::optional<Pose> PlanningScene::landing(const BasePlace& base) { return impl_->landing(base); }

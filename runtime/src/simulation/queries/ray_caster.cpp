@@ -12,6 +12,7 @@
 #include "galactic/kinematics.h"
 #include "galactic/robot.h"
 #include "simulation/collision/resting_box.h"
+#include "simulation/queries/checked_state.h"
 #include "support/call_check.h"
 #include "support/workers.h"
 
@@ -120,6 +121,16 @@ const ColumnGrid& gridOf(const char* call, const Scene& scene, float radius) {
                                        radius, radii));
 }
 
+/// Whether the envs can be looked at, and are of that world.
+void checkBatch(const char* call, const World& world, const BatchSimulator& simulator) {
+  if (simulator.isStepping()) {
+    detail::refuseCall(call, "found a step that has begun; end it first, with endStep()");
+  }
+  if (simulator.world().hash() != world.hash()) {
+    detail::refuseCall(call, "found a simulator of another world, expected one of the given world");
+  }
+}
+
 /// Calls `cast` with the number, the lines and the hits of each env of a batch.
 template <class Cast>
 void forEachEnv(const char* call, const BatchSimulator& simulator, const CastLines& lines,
@@ -137,21 +148,6 @@ void forEachEnv(const char* call, const BatchSimulator& simulator, const CastLin
                         lines.lengths.subspan(first, each)};
     cast(env, own, hits.subspan(first, each));
   });
-}
-
-/// Of the objects of a state.
-std::span<const Placement> placementsOf(const World& world, const EnvState& state) {
-  constexpr const char* kCall = "RayCaster";
-  detail::checkIndex(kCall, "scene", state.scene, world.scenes().size());
-  detail::checkIndex(kCall, "episode", state.episode, world.episodes().episodes().size());
-  const Episode& episode = world.episodes().episodes()[state.episode];
-  detail::checkLength(kCall, "joint_positions", state.joint_positions.size(),
-                      world.robot().positionCount());
-  const PresentObjects present = world.episodes().presentOf(episode, state.objects.size());
-  if (state.objects.size() != present.placements.size()) {
-    detail::checkLength(kCall, "objects", state.objects.size(), episode.placement_count);
-  }
-  return present.placements;
 }
 
 }  // namespace
@@ -182,7 +178,8 @@ class RayCaster::Impl {
 
 RayCaster::Impl::Impl(const World& world, const EnvState& state, CastRobot robot)
     : world_(world), scene_(world.scenes()[0]) {
-  const std::span<const Placement> placements = placementsOf(world, state);
+  const std::span<const Placement> placements =
+      simulation::checkedObjects("RayCaster", world, state);
   scene_ = world.scenes()[state.scene];
   for (std::size_t n = 0; n < placements.size(); ++n) {
     const ObjectModel& model = world.objectOf(placements[n]);
@@ -272,8 +269,10 @@ void RayCaster::sweepSpheres(float radius, const CastLines& lines, std::span<Cas
 
 void castRaysInEnvs(const World& world, const BatchSimulator& simulator, const CastLines& lines,
                     std::span<CastHit> hits, CastRobot robot, std::uint32_t threads) {
-  checkLines("castRaysInEnvs", lines, hits.size());
-  forEachEnv("castRaysInEnvs", simulator, lines, hits, threads,
+  constexpr const char* kCall = "castRaysInEnvs";
+  checkBatch(kCall, world, simulator);
+  checkLines(kCall, lines, hits.size());
+  forEachEnv(kCall, simulator, lines, hits, threads,
              [&](std::size_t env, const CastLines& own, std::span<CastHit> found) {
                RayCaster(world, simulator.envState(env), robot).castRays(own, found);
              });
@@ -283,6 +282,7 @@ void sweepSpheresInEnvs(const World& world, const BatchSimulator& simulator, flo
                         const CastLines& lines, std::span<CastHit> hits, CastRobot robot,
                         std::uint32_t threads) {
   constexpr const char* kCall = "sweepSpheresInEnvs";
+  checkBatch(kCall, world, simulator);
   checkLines(kCall, lines, hits.size());
   // The scenes of a world have grids of the same radii.
   static_cast<void>(gridOf(kCall, world.scenes()[0], radius));

@@ -1,10 +1,33 @@
 #include "simulation/state/env_state.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <string_view>
 
 #include "simulation/state/grip_frame.h"
+#include "simulation/state/plain_numbers.h"
 
 namespace galactic::simulation {
+namespace {
+
+std::string faultIn(std::string_view field, const Vec3& v) {
+  return fmt::format("has {} ({:g}, {:g}, {:g}), expected finite numbers of at most {:g} m", field,
+                     v.x, v.y, v.z, kLargestPlain);
+}
+
+/// Of a pose that is not plain.
+std::string faultIn(std::string_view field, const Pose& pose) {
+  if (!isPlain(pose.translation)) {
+    return faultIn(fmt::format("{}.translation", field), pose.translation);
+  }
+  const Quat& q = pose.rotation;
+  return fmt::format(
+      "has {}.rotation ({:g}, {:g}, {:g}, {:g}), expected a unit quaternion: w, x, y, z", field,
+      q.w, q.x, q.y, q.z);
+}
+
+}  // namespace
 
 EnvObjects envObjectsOf(const Model& model, const BatchState& state, std::size_t n) noexcept {
   const Env& env = state.env(n);
@@ -45,6 +68,26 @@ EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) 
   result.goal = objects.goal;
   result.begun = state.counters(n).begun;
   return result;
+}
+
+std::string faultOfNumbers(const EnvState& state) {
+  if (!isPlain(state.world_from_root)) return faultIn("world_from_root", state.world_from_root);
+  for (std::size_t n = 0; n < state.joint_positions.size(); ++n) {
+    if (isPlain(state.joint_positions[n])) continue;
+    return fmt::format("has joint_positions[{}] {:g}, expected a finite number of at most {:g}", n,
+                       state.joint_positions[n], kLargestPlain);
+  }
+  if (!isPlain(state.goal.translation)) {
+    return faultIn("goal.translation", state.goal.translation);
+  }
+  if (state.held >= 0 && !isPlain(state.world_from_grip)) {
+    return faultIn("world_from_grip", state.world_from_grip);
+  }
+  for (std::size_t n = 0; n < state.objects.size(); ++n) {
+    if (isPlain(state.objects[n])) continue;
+    return faultIn(fmt::format("objects[{}]", n), state.objects[n]);
+  }
+  return {};
 }
 
 }  // namespace galactic::simulation

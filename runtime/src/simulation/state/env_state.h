@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <string>
 
 #include "galactic/batch_simulator.h"
 #include "simulation/state/batch_state.h"
@@ -11,5 +12,9 @@ namespace galactic::simulation {
 [[nodiscard]] EnvObjects envObjectsOf(const Model& model, const BatchState& state,
                                       std::size_t env) noexcept;
 [[nodiscard]] EnvState envStateOf(const Model& model, const BatchState& state, std::size_t env);
+
+/// What is wrong with the numbers of a state that somebody has made: they have to be finite, of
+/// kLargestPlain at most, and rotations of unit length. Empty when nothing is.
+[[nodiscard]] std::string faultOfNumbers(const EnvState& state);
 
 }  // namespace galactic::simulation

@@ -1,12 +1,17 @@
 // What a PlanningScene answers, against what the simulation then does in the small home.
 #include "galactic/planning_scene.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <random>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "support/homes/small_home_actor.h"
 #include "support/homes/task_twins.h"
@@ -299,6 +304,208 @@ TEST(AGrasp, ReachesAsFarAsALargeHand) {
   for (const GraspShape shape : {GraspShape::kHull, GraspShape::kBox}) {
     EXPECT_TRUE(graspedIn(home.world(), shape, {0.3F, 0, 0}));
     EXPECT_FALSE(graspedIn(home.world(), shape, {0.4F, 0, 0}));
+  }
+}
+
+/// Why a call is refused; empty where it is not.
+std::string refusalOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const ErrorException& refused) {
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+    return refused.error().text();
+  }
+  return {};
+}
+
+/// A call by its name.
+struct NamedCall {
+  std::string name;
+  std::function<void()> call;
+};
+
+/// Questions about an env, whatever the joints.
+std::vector<NamedCall> questionsOfEnvs(PlanningScene& scene) {
+  return {{"scene", [&] { static_cast<void>(scene.scene()); }},
+          {"floorAt", [&] { static_cast<void>(scene.floorAt(0, 0, 0)); }},
+          {"objectCount", [&] { static_cast<void>(scene.objectCount()); }},
+          {"objectBox", [&] { static_cast<void>(scene.objectBox(0)); }},
+          {"squaredGraspDistance", [&] { static_cast<void>(scene.squaredGraspDistance(0, {})); }}};
+}
+/// Questions about joints, whatever the env.
+std::vector<NamedCall> questionsOfJoints(PlanningScene& scene) {
+  return {{"rootFromLinks", [&] { static_cast<void>(scene.rootFromLinks()); }},
+          {"rootFromGrip", [&] { static_cast<void>(scene.rootFromGrip()); }},
+          {"reach", [&] { static_cast<void>(scene.reach()); }}};
+}
+/// Questions about places of the robot in an env.
+std::vector<NamedCall> questionsOfPlaces(PlanningScene& scene) {
+  return {{"isFree", [&] { static_cast<void>(scene.isFree({})); }},
+          {"isRobotFreeOfScene", [&] { static_cast<void>(scene.isRobotFreeOfScene({})); }},
+          {"isFreeOfAllElse", [&] { static_cast<void>(scene.isFreeOfAllElse({})); }},
+          {"graspedAt", [&] { static_cast<void>(scene.graspedAt({})); }},
+          {"hold", [&] { scene.hold(0, {}); }},
+          {"ignorePenetrating", [&] { scene.ignorePenetrating({}); }},
+          {"countFree", [&] { scene.countFree({}); }},
+          {"landing", [&] { static_cast<void>(scene.landing({})); }}};
+}
+
+TEST_F(PlanningSceneInTheSmallHome, RefusesQuestionsBeforeItKnowsWhatTheyAreAbout) {
+  const auto expect = [](const std::vector<NamedCall>& calls, const std::string& message) {
+    for (const auto& [name, call] : calls) {
+      EXPECT_EQ(refusalOf(call), message.empty() ? "" : "PlanningScene::" + name + message);
+    }
+  };
+  const std::string no_env = ": found no env; take one over first, with update()";
+  const std::string no_joints = ": found no joint positions; choose them first, with setJoints()";
+  PlanningScene blank(home_.world(), oneEnv());
+  EXPECT_FALSE(blank.isHolding());
+  expect(questionsOfEnvs(blank), no_env);
+  expect(questionsOfPlaces(blank), no_env);
+  expect(questionsOfJoints(blank), no_joints);
+  PlanningScene jointless(home_.world(), oneEnv());
+  jointless.update(state());
+  expect(questionsOfEnvs(jointless), "");
+  expect(questionsOfPlaces(jointless), no_joints);
+  expect(questionsOfJoints(jointless), no_joints);
+  PlanningScene envless(home_.world(), oneEnv());
+  envless.setJoints(state().joint_positions);
+  expect(questionsOfEnvs(envless), no_env);
+  expect(questionsOfPlaces(envless), no_env);
+  expect(questionsOfJoints(envless), "");
+  // In either order.
+  envless.update(state());
+  jointless.setJoints(state().joint_positions);
+  for (PlanningScene* scene : {&envless, &jointless}) {
+    EXPECT_TRUE(scene->isFree(scene->baseOf(state())));
+    EXPECT_FALSE(scene->isHolding());
+  }
+}
+
+TEST_F(PlanningSceneInTheSmallHome, RefusesObjectsThatThereAreNot) {
+  EXPECT_EQ(refusalOf([&] { static_cast<void>(scene_.objectBox(2)); }),
+            "PlanningScene::objectBox: found object 2, expected one below 2");
+  EXPECT_EQ(refusalOf([&] { static_cast<void>(scene_.squaredGraspDistance(9999, {})); }),
+            "PlanningScene::squaredGraspDistance: found object 9999, expected one below 2");
+  EXPECT_EQ(refusalOf([&] { scene_.hold(2, {}); }),
+            "PlanningScene::hold: found object 2, expected one below 2");
+  EXPECT_FALSE(scene_.isHolding());
+}
+
+TEST_F(PlanningSceneInTheSmallHome, RefusesHandsThatAreEmptyOrFull) {
+  const BasePlace base = scene_.baseOf(state());
+  const auto refused_empty = [&] {
+    const std::string empty = ": found an empty hand, expected one that holds an object";
+    EXPECT_EQ(refusalOf([&] { static_cast<void>(scene_.landing(base)); }),
+              "PlanningScene::landing" + empty);
+    EXPECT_EQ(refusalOf([&] { static_cast<void>(scene_.gripFromObject()); }),
+              "PlanningScene::gripFromObject" + empty);
+  };
+  const auto refused_back = [&] {
+    EXPECT_EQ(refusalOf([&] { scene_.putBack(); }),
+              "PlanningScene::putBack: found no object in the hand that hold() has taken, and no "
+              "other goes back");
+  };
+  refused_empty();
+  refused_back();
+  const float nan = std::nanf("");
+  for (const BasePlace& nowhere : {BasePlace{{nan, 0, 0}, 0}, BasePlace{{0, 0, 0}, nan}}) {
+    EXPECT_THAT(refusalOf([&] { scene_.hold(0, nowhere); }),
+                testing::HasSubstr("PlanningScene::hold: found a base at ("));
+  }
+  EXPECT_FALSE(scene_.isHolding());
+  scene_.hold(1, base);
+  EXPECT_EQ(refusalOf([&] { scene_.hold(0, base); }),
+            "PlanningScene::hold: found object 1 in the hand already, expected an empty one");
+  EXPECT_TRUE(scene_.isHolding());
+  scene_.putBack();
+  refused_empty();
+  refused_back();
+  EXPECT_TRUE(scene_.isFree(base));
+  scene_.hold(1, base);
+  look();
+  refused_empty();
+  refused_back();
+  // What the robot itself holds rests nowhere.
+  fetchTarget();
+  refused_back();
+  EXPECT_TRUE(scene_.isHolding());
+}
+
+TEST_F(PlanningSceneInTheSmallHome, KeepsWhatItHasWhenWrongStatesAndJointsAreRefused) {
+  const BasePlace base = scene_.baseOf(state());
+  const Pose grip = scene_.rootFromGrip();
+  EnvState wrong = state();
+  wrong.held = 99;
+  EXPECT_EQ(refusalOf([&] { scene_.update(wrong); }),
+            "PlanningScene::update: found held 99, expected -1 or an index below 2");
+  wrong = state();
+  wrong.objects.resize(1);
+  EXPECT_EQ(refusalOf([&] { scene_.update(wrong); }),
+            "PlanningScene::update: \"objects\" has the length 1, expected 2");
+  EXPECT_EQ(refusalOf([&] { scene_.setJoints(std::vector<float>(3)); }),
+            "PlanningScene::setJoints: \"positions\" has the length 3, expected 4");
+  EXPECT_EQ(refusalOf([&] { scene_.setJoints({}); }),
+            "PlanningScene::setJoints: \"positions\" has the length 0, expected 4");
+  std::vector<float> joints = state().joint_positions;
+  joints[2] = std::nanf("");
+  EXPECT_EQ(refusalOf([&] { scene_.setJoints(joints); }),
+            "PlanningScene::setJoints: found positions[2] nan, expected a finite number of at most "
+            "1e+06");
+  EXPECT_EQ(scene_.objectCount(), 2U);
+  EXPECT_EQ(scene_.rootFromGrip(), grip);
+  EXPECT_TRUE(scene_.isFree(base));
+}
+
+TEST_F(PlanningSceneInTheSmallHome, TakesTheObjectsThatItsOptionsSay) {
+  SimulationOptions alone = oneEnv();
+  alone.task.distractors = false;
+  PlanningScene scene(home_.world(), alone);
+  EXPECT_EQ(refusalOf([&] { scene.update(state()); }),
+            "PlanningScene::update: \"objects\" has the length 2, expected 1");
+  BatchSimulator simulator = simulatorOf(home_.world(), alone);
+  scene.update(simulator.envState(0));
+  EXPECT_EQ(scene.objectCount(), 1U);
+}
+
+TEST_F(PlanningSceneInTheSmallHome, RefusesOptionsOutOfTheirRanges) {
+  const auto refused = [&](const auto& change) {
+    SimulationOptions options = oneEnv();
+    change(options);
+    return refusalOf([&] { const PlanningScene scene(home_.world(), options); });
+  };
+  EXPECT_EQ(refused([](SimulationOptions&) {}), "");
+  EXPECT_THAT(refused([](SimulationOptions& o) { o.placement.attempts = 4'000'000'000; }),
+              testing::HasSubstr("simulation options: place-attempts is 4000000000, expected"));
+  EXPECT_THAT(refused([](SimulationOptions& o) { o.ground.most_rise = std::nanf(""); }),
+              testing::HasSubstr("floor-rise is nan, expected"));
+}
+
+TEST_F(PlanningSceneInTheSmallHome, FindsNothingFreeAtPlacesThatAreNone) {
+  const BasePlace sound = scene_.baseOf(state());
+  for (int round = 0; round < 2; ++round) {
+    for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity(), -1e30F}) {
+      for (int part = 0; part < 4; ++part) {
+        BasePlace place = sound;
+        (part == 0   ? place.position.x
+         : part == 1 ? place.position.y
+         : part == 2 ? place.position.z
+                     : place.yaw) = wrong;
+        // Any finite yaw is one.
+        if (part == 3 && std::isfinite(wrong)) continue;
+        EXPECT_FALSE(scene_.isFree(place));
+        EXPECT_FALSE(scene_.isRobotFreeOfScene(place));
+        EXPECT_FALSE(scene_.graspedAt(place));
+        if (part < 3) {
+          EXPECT_FALSE(scene_.floorAt(place.position.x, place.position.z, place.position.y));
+        }
+        if (scene_.isHolding()) {
+          EXPECT_FALSE(scene_.landing(place));
+          EXPECT_FALSE(scene_.isFreeOfAllElse(place));
+        }
+      }
+    }
+    if (round == 0) fetchTarget();
   }
 }
 

@@ -482,23 +482,56 @@ TEST_F(RayCasterInTheSmallHome, RefusesLinesThatDoNotFitTheEnvs) {
   EXPECT_EQ(hits[0].distance, 77) << "nothing is written";
 }
 
-TEST_F(RayCasterInTheSmallHome, RefusesStatesOfOtherWorlds) {
-  const auto refused = [&](const auto& change) {
-    EnvState changed = state();
-    change(changed);
-    return refusal([&] { const RayCaster caster(world(), changed); });
+TEST_F(RayCasterInTheSmallHome, RefusesBatchesOfOtherWorldsAndHalfSteps) {
+  SimulationOptions options;
+  options.envs = 40;
+  options.threads = 2;
+  BatchSimulator batch = BatchSimulator::create(world(), options).value();
+  Lines lines;
+  for (std::size_t n = 0; n < batch.envCount(); ++n) lines.add({1, 1, 1}, {1, 0, 0});
+  std::vector<CastHit> hits(lines.origins.size(), CastHit{77});
+  const auto expect = [&](const World& of, const std::string& message) {
+    for (const std::uint32_t threads : {1U, 4U}) {
+      const auto cast = [&] {
+        castRaysInEnvs(of, batch, lines.view(), hits, CastRobot::kIsUnseen, threads);
+      };
+      const auto sweep = [&] {
+        sweepSpheresInEnvs(of, batch, 0.05F, lines.view(), hits, CastRobot::kIsUnseen, threads);
+      };
+      EXPECT_EQ(refusal(cast), "castRaysInEnvs: " + message);
+      EXPECT_EQ(refusal(sweep), "sweepSpheresInEnvs: " + message);
+    }
+    EXPECT_EQ(hits, std::vector<CastHit>(hits.size(), CastHit{77})) << "nothing is written";
   };
-  EXPECT_EQ(refused([](EnvState&) {}), "");
-  EXPECT_EQ(refused([](EnvState& s) { s.scene = 1; }),
-            "RayCaster: found scene 1, expected one below 1");
-  EXPECT_EQ(refused([](EnvState& s) { s.episode = 4; }),
-            "RayCaster: found episode 4, expected one below 4");
-  EXPECT_EQ(refused([](EnvState& s) { s.joint_positions.pop_back(); }),
-            "RayCaster: \"joint_positions\" has the length 3, expected 4");
-  EXPECT_EQ(refused([](EnvState& s) { s.objects.emplace_back(); }),
-            "RayCaster: \"objects\" has the length 4, expected 3");
-  // What is nowhere is not seen.
-  EXPECT_EQ(refused([](EnvState& s) { s.objects[0].translation.x = std::nanf(""); }), "");
+  WorldFields other = smallHomeWorld();
+  other.robot.end_effector->grasp_radius = 0.3F;
+  expect(SmallHome(other).world(),
+         "found a simulator of another world, expected one of the given "
+         "world");
+  const std::vector<float> actions(batch.envCount() * batch.actionCount());
+  batch.beginStep(actions);
+  expect(world(), "found a step that has begun; end it first, with endStep()");
+  batch.endStep();
+  // Another World of the same packs will do.
+  castRaysInEnvs(SmallHome().world(), batch, lines.view(), hits);
+  EXPECT_NE(hits[0].distance, 77);
+}
+
+TEST_F(RayCasterInTheSmallHome, RefusesStatesThatOnlyFollowingBringsAbout) {
+  EnvState now = state();
+  now.objects[0].translation.x = std::nanf("");
+  const FollowedState nowhere{.world_from_root = now.world_from_root,
+                              .joint_positions = now.joint_positions,
+                              .objects = now.objects};
+  simulator_.follow(SmallHomeRow{}, std::span(&nowhere, 1));
+  Lines lines;
+  lines.add({1, 1, 1}, {1, 0, 0});
+  std::vector<CastHit> hits(1);
+  // In a thread, too, and to whoever asked.
+  EXPECT_THAT(refusal([&] {
+                castRaysInEnvs(world(), simulator_, lines.view(), hits, CastRobot::kIsSeen, 4);
+              }),
+              testing::HasSubstr("RayCaster: found a state that has objects[0].translation (nan"));
 }
 
 }  // namespace
