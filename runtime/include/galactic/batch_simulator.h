@@ -222,7 +222,8 @@ class BatchSimulator {
   /// A step that was made elsewhere. The envs are in `states` (one per env) now, whatever the
   /// simulation would have made of `actions`; observations, rewards and ends of episodes follow as
   /// in step(), from where robot and objects are and from what is held now and was held before.
-  /// Nothing asks whether a robot can be where it is said to be.
+  /// Nothing asks whether a robot can be where it is said to be, but numbers that are not finite,
+  /// rotations that are none and held objects that there are not are refused (ErrorException).
   void follow(std::span<const float> actions, std::span<const FollowedState> states);
 
   /// What reset() takes for an env instead of an episode: leave it as it is, or begin the episode

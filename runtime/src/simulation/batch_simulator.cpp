@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "galactic/option_text.h"
@@ -275,8 +276,13 @@ class BatchSimulator::Impl {
     detail::checkLength(call, "states[].joint_positions", state.joint_positions.size(),
                         model_.world->robot().positionCount());
     detail::checkLength(call, "states[].objects", state.objects.size(), objects);
-    if (state.held >= 0) {
-      detail::checkIndex(call, "object", static_cast<std::size_t>(state.held), objects);
+    if (state.held < -1 || state.held >= static_cast<std::int64_t>(objects)) {
+      detail::refuseCall(call, fmt::format("found states[{}].held {}, expected -1 or an index "
+                                           "below {}",
+                                           env, state.held, objects));
+    }
+    if (const std::string fault = simulation::faultOfNumbers(state); !fault.empty()) {
+      detail::refuseCall(call, fmt::format("found states[{}], which {}", env, fault));
     }
   }
 

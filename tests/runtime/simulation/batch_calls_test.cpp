@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -94,7 +95,22 @@ TEST_F(BatchCalls, ThatFollowSayWhereAllJointsAndObjectsAre) {
   refused(wrong, "\"states[].objects\" has the length 0");
   wrong = followed.back();
   wrong.held = 99;
-  refused(wrong, "found object 99");
+  refused(wrong, "found states[19].held 99, expected -1 or an index below 6");
+  wrong.held = -2;
+  refused(wrong, "found states[19].held -2");
+  wrong = followed.back();
+  wrong.world_from_root.translation.x = std::numeric_limits<float>::quiet_NaN();
+  refused(wrong, "found states[19], which has world_from_root.translation (nan, ");
+  wrong = followed.back();
+  std::vector<Pose> objects(wrong.objects.begin(), wrong.objects.end());
+  objects[1].rotation = {0, 0, 0, 0};
+  wrong.objects = objects;
+  refused(wrong, "which has objects[1].rotation (0, 0, 0, 0)");
+  wrong = followed.back();
+  std::vector<float> joints(wrong.joint_positions.begin(), wrong.joint_positions.end());
+  joints.back() = 1e30F;
+  wrong.joint_positions = joints;
+  refused(wrong, "which has joint_positions[");
   expectRefused(
       simulator_, [&] { simulator_.follow(actions_, std::span(followed).first(1)); }, "\"states\"");
   simulator_.follow(actions_, followed);

@@ -70,22 +70,30 @@ EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) 
   return result;
 }
 
-std::string faultOfNumbers(const EnvState& state) {
+std::string faultOfNumbers(const FollowedState& state) {
   if (!isPlain(state.world_from_root)) return faultIn("world_from_root", state.world_from_root);
   for (std::size_t n = 0; n < state.joint_positions.size(); ++n) {
     if (isPlain(state.joint_positions[n])) continue;
     return fmt::format("has joint_positions[{}] {:g}, expected a finite number of at most {:g}", n,
                        state.joint_positions[n], kLargestPlain);
   }
+  for (std::size_t n = 0; n < state.objects.size(); ++n) {
+    if (isPlain(state.objects[n])) continue;
+    return faultIn(fmt::format("objects[{}]", n), state.objects[n]);
+  }
+  return {};
+}
+
+std::string faultOfNumbers(const EnvState& state) {
+  std::string fault = faultOfNumbers(FollowedState{.world_from_root = state.world_from_root,
+                                                   .joint_positions = state.joint_positions,
+                                                   .objects = state.objects});
+  if (!fault.empty()) return fault;
   if (!isPlain(state.goal.translation)) {
     return faultIn("goal.translation", state.goal.translation);
   }
   if (state.held >= 0 && !isPlain(state.world_from_grip)) {
     return faultIn("world_from_grip", state.world_from_grip);
-  }
-  for (std::size_t n = 0; n < state.objects.size(); ++n) {
-    if (isPlain(state.objects[n])) continue;
-    return faultIn(fmt::format("objects[{}]", n), state.objects[n]);
   }
   return {};
 }

@@ -16,5 +16,6 @@ namespace galactic::simulation {
 /// What is wrong with the numbers of a state that somebody has made: they have to be finite, of
 /// kLargestPlain at most, and rotations of unit length. Empty when nothing is.
 [[nodiscard]] std::string faultOfNumbers(const EnvState& state);
+[[nodiscard]] std::string faultOfNumbers(const FollowedState& state);
 
 }  // namespace galactic::simulation
