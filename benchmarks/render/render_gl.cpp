@@ -102,7 +102,7 @@ class Scene {
     options.body_transforms = true;
     simulator_ = std::make_unique<BatchSimulator>(orExit(BatchSimulator::create(*world_, options)));
     const auto camera = galactic::robotCamera(world_->robot());
-    world_views_ = std::make_unique<WorldViews>(*world_, *models_, *simulator_,
+    world_views_ = std::make_unique<WorldViews>(*models_, *simulator_,
                                                 camera.value_or(galactic::CameraMount{}));
     world_views_->update(*simulator_);
     return {world_views_->views().begin(), world_views_->views().end()};

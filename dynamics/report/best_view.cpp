@@ -125,7 +125,7 @@ Result<std::unique_ptr<BestView>> BestView::create(const World& world,
   RenderOptions picture = imageOptions(kWidth, kHeight, follow.near);
   picture.depth = false;
   ASSIGN_OR_RETURN(view->picture_, ImageBatch::create(library, picture, 1));
-  view->views_.emplace(world, view->models_, simulator, follow.mount);
+  view->views_.emplace(view->models_, simulator, follow.mount);
   for (std::size_t link = 0; link < world.robot().links().size(); ++link) {
     view->body_of_link_.push_back(simulator.linkOnBody(link).body);
   }

@@ -24,7 +24,7 @@ int main(int argc, char** argv) try {
   const auto camera = orThrow(galactic::chooseCamera(world.robot(), {.name = "follow"}));
   const galactic::RenderOptions drawing{.width = 64, .height = 48, .near = camera.near};
   auto renderer = orThrow(galactic::BatchRenderer::create(models.library(), drawing));
-  galactic::WorldViews views(world, models, simulator, camera.mount);
+  galactic::WorldViews views(models, simulator, camera.mount);
 
   const std::size_t pixels = simulator.envCount() * drawing.height * drawing.width;
   std::vector<std::uint8_t> color(pixels * 4);

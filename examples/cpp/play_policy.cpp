@@ -27,8 +27,8 @@ int main(int argc, char** argv) try {
     return static_cast<int>(galactic::ErrorCode::kInvalidInput);
   }
   auto simulator = orThrow(galactic::BatchSimulator::create(world, options));
-  auto policy = orThrow(galactic::LearnedPolicy::create(
-      pack, galactic::policyBatchOf(simulator, world), {.samples = true, .seed = 1}));
+  auto policy = orThrow(galactic::LearnedPolicy::create(pack, galactic::policyBatchOf(simulator),
+                                                        {.samples = true, .seed = 1}));
   std::vector<float> actions(simulator.envCount() * simulator.actionCount());
   for (int step = 0; step < 100; ++step) {
     policy.act({.observations = simulator.observations(), .dones = simulator.dones()}, actions);

@@ -123,7 +123,7 @@ py::object castRaysInAll(Simulator& simulator, const py::object& origins,
   const Confinement::Use use = simulator.readState();
   return Lines({origins, directions, lengths}, simulator.envs())
       .hitsOf([&](const CastLines& lines, std::span<CastHit> hits) {
-        castRaysInEnvs(simulator.world(), simulator.batch(), lines, hits, seen(robot), count);
+        castRaysInEnvs(simulator.batch(), lines, hits, seen(robot), count);
       });
 }
 
@@ -134,8 +134,7 @@ py::object sweepSpheresInAll(Simulator& simulator, float radius, const py::objec
   const Confinement::Use use = simulator.readState();
   return Lines({origins, directions, lengths}, simulator.envs())
       .hitsOf([&](const CastLines& lines, std::span<CastHit> hits) {
-        sweepSpheresInEnvs(simulator.world(), simulator.batch(), radius, lines, hits, seen(robot),
-                           count);
+        sweepSpheresInEnvs(simulator.batch(), radius, lines, hits, seen(robot), count);
       });
 }
 

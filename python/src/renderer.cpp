@@ -68,8 +68,7 @@ std::unique_ptr<Renderer> Renderer::create(const py::object& simulator,
   const Confinement::Use use = shown.readState();
   const py::gil_scoped_release unlocked;
   renderer->renderer_.emplace(orThrow(BatchRenderer::create(renderer->models_.library(), render)));
-  renderer->views_.emplace(shown.world(), renderer->models_, shown.batch(), camera.mount,
-                           options.ids);
+  renderer->views_.emplace(renderer->models_, shown.batch(), camera.mount, options.ids);
   return renderer;
 }
 

@@ -122,7 +122,7 @@ class DebugBatch {
     options.background = kSky;
     options.noise = {};
     ASSIGN_OR_RETURN(batch->images_, ImageBatch::create(batch->models_.library(), options, shown));
-    batch->views_.emplace(world, batch->models_, simulator, camera->mount, shown);
+    batch->views_.emplace(batch->models_, simulator, camera->mount, shown);
     return batch;
   }
 
@@ -177,7 +177,7 @@ Result<Rendering> Rendering::create(const World& world, const BatchSimulator& si
   ASSIGN_OR_RETURN(parts->images, ImageBatch::create(parts->models.library(),
                                                      rendererOptions(options, camera->near),
                                                      simulator.envCount()));
-  parts->views.emplace(world, parts->models, simulator, camera->mount);
+  parts->views.emplace(parts->models, simulator, camera->mount);
   if (drawing.debug_view) {
     auto debug = DebugBatch::create(world, simulator, options, shown);
     if (!debug) return tl::unexpected<Error>(debug.error());

@@ -52,7 +52,7 @@ class PolicyEyes {
     options.threads = run.simulation.threads;
     ASSIGN_OR_RETURN(eyes->images_,
                      ImageBatch::create(eyes->models_.library(), options, simulator.envCount()));
-    eyes->views_.emplace(world, eyes->models_, simulator, camera->mount);
+    eyes->views_.emplace(eyes->models_, simulator, camera->mount);
     return eyes;
   }
 
@@ -144,7 +144,7 @@ Result<std::unique_ptr<Policy>> makeLearnedPolicy(const OpenedPolicy& policy, co
                                                   const RunOptions& options) {
   const SimulationOptions& simulation = options.simulation;
   Result<LearnedPolicy> network =
-      LearnedPolicy::create(policy.pack, policyBatchOf(simulator, world),
+      LearnedPolicy::create(policy.pack, policyBatchOf(simulator),
                             {.samples = !options.is_deterministic,
                              .seed = simulation.seed,
                              .first_env = simulation.rank * simulation.envs,

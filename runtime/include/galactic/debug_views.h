@@ -81,11 +81,10 @@ class DebugModels {
 class DebugViews {
  public:
   /// Of the first `envs` envs. Throws ErrorException with kInvalidInput where there are fewer,
-  /// where `world`, `models` and `simulator` are not of one world (World::hash()), where the
-  /// simulator was made without SimulationOptions::body_transforms, and between its beginStep() and
-  /// endStep().
-  DebugViews(const World& world, const DebugModels& models, const BatchSimulator& simulator,
-             const CameraMount& camera, std::size_t envs);
+  /// where `models` are not of the simulator's world (World::hash()), where the simulator was made
+  /// without SimulationOptions::body_transforms, and between its beginStep() and endStep().
+  DebugViews(const DebugModels& models, const BatchSimulator& simulator, const CameraMount& camera,
+             std::size_t envs);
 
   DebugViews(const DebugViews&) = delete;
   DebugViews& operator=(const DebugViews&) = delete;

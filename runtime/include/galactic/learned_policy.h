@@ -25,7 +25,7 @@ struct PolicyBatch {
 };
 
 /// The batch of a simulator.
-[[nodiscard]] PolicyBatch policyBatchOf(const BatchSimulator& simulator, const World& world);
+[[nodiscard]] PolicyBatch policyBatchOf(const BatchSimulator& simulator);
 
 struct LearnedPolicyOptions {
   /// Whether actions are drawn from the policy's distribution, as in training; else they are its

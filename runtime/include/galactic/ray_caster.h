@@ -87,19 +87,17 @@ class RayCaster {
 
 /// How far rays get in all envs of a batch as they are now, as many in each: of `lines` and `hits`,
 /// the first belong to env 0, as many next to env 1, and so on. Each env answers as
-/// RayCaster(world, simulator.envState(env), robot).castRays() does; up to `threads` threads share
-/// the envs (0: as many as there are processors). Throws ErrorException with kInvalidInput, before
-/// anything is written, where castRays() would, where `world` is not the simulator's, where a step
-/// has begun, or where the number of lines is no multiple of that of the envs; and, with some hits
-/// written, where RayCaster() refuses the state of an env, such as BatchSimulator::follow() can
-/// bring about.
-void castRaysInEnvs(const World& world, const BatchSimulator& simulator, const CastLines& lines,
+/// RayCaster(simulator.world(), simulator.envState(env), robot).castRays() does; up to `threads`
+/// threads share the envs (0: as many as there are processors). Throws ErrorException with
+/// kInvalidInput, before anything is written, where castRays() would, where a step has begun, or
+/// where the number of lines is no multiple of that of the envs.
+void castRaysInEnvs(const BatchSimulator& simulator, const CastLines& lines,
                     std::span<CastHit> hits, CastRobot robot = CastRobot::kIsUnseen,
                     std::uint32_t threads = 1);
 
 /// The same for spheres of a radius of World::radii(), as RayCaster::sweepSpheres() has it.
-void sweepSpheresInEnvs(const World& world, const BatchSimulator& simulator, float radius,
-                        const CastLines& lines, std::span<CastHit> hits,
-                        CastRobot robot = CastRobot::kIsUnseen, std::uint32_t threads = 1);
+void sweepSpheresInEnvs(const BatchSimulator& simulator, float radius, const CastLines& lines,
+                        std::span<CastHit> hits, CastRobot robot = CastRobot::kIsUnseen,
+                        std::uint32_t threads = 1);
 
 }  // namespace galactic

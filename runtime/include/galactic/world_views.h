@@ -48,9 +48,8 @@ struct CameraMount {
 /// A camera on the robot of a batch.
 class MountedCamera {
  public:
-  /// Throws ErrorException with kInvalidInput where `simulator` is of another world (World::hash())
-  /// and where the robot has no link CameraMount::link.
-  MountedCamera(const World& world, const BatchSimulator& simulator, const CameraMount& mount);
+  /// Throws ErrorException with kInvalidInput where the robot has no link CameraMount::link.
+  MountedCamera(const BatchSimulator& simulator, const CameraMount& mount);
 
   /// `bodies`: BatchSimulator::bodyTransforms() of one env, which is in World::scenes()[scene];
   /// `moment`: its BatchSimulator::envMoment(). Made for each env and image, and so not checked.
@@ -86,12 +85,11 @@ enum class ObjectIds : std::uint8_t {
 /// while that changes, so that a renderer can draw one step while the next is simulated. Movable.
 class WorldViews {
  public:
-  /// Throws ErrorException with kInvalidInput where `world`, `models` and `simulator` are not of
-  /// one world (World::hash()), where the simulator was made without
-  /// SimulationOptions::body_transforms, where it has no link CameraMount::link, and between its
-  /// beginStep() and endStep().
-  WorldViews(const World& world, const WorldModels& models, const BatchSimulator& simulator,
-             const CameraMount& camera, ObjectIds ids = ObjectIds::kNames);
+  /// Throws ErrorException with kInvalidInput where `models` are not of the simulator's world
+  /// (World::hash()), where the simulator was made without SimulationOptions::body_transforms,
+  /// where its robot has no link CameraMount::link, and between its beginStep() and endStep().
+  WorldViews(const WorldModels& models, const BatchSimulator& simulator, const CameraMount& camera,
+             ObjectIds ids = ObjectIds::kNames);
 
   WorldViews(const WorldViews&) = delete;
   WorldViews& operator=(const WorldViews&) = delete;

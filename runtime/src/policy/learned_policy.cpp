@@ -116,12 +116,12 @@ std::size_t tileSize(const OperationList& network, std::size_t envs, std::size_t
 
 }  // namespace
 
-PolicyBatch policyBatchOf(const BatchSimulator& simulator, const World& world) {
+PolicyBatch policyBatchOf(const BatchSimulator& simulator) {
   return {.envs = simulator.envCount(),
           .actions = simulator.actionCount(),
           .observation_size = simulator.observationSize(),
           .observation = simulator.observationParts(),
-          .robot = std::string(world.robot().name())};
+          .robot = std::string(simulator.world().robot().name())};
 }
 
 /// Stays in one place: its threads look at it.

@@ -30,18 +30,18 @@ std::size_t mostHeldSpheres(const World& world) {
 
 }  // namespace
 
-DebugViews::DebugViews(const World& world, const DebugModels& models,
-                       const BatchSimulator& simulator, const CameraMount& camera, std::size_t envs)
-    : world_(world),
-      models_(views::checkedModels("DebugViews", world, models, simulator)),
-      camera_(world, simulator, camera),
+DebugViews::DebugViews(const DebugModels& models, const BatchSimulator& simulator,
+                       const CameraMount& camera, std::size_t envs)
+    : world_(simulator.world()),
+      models_(views::checkedModels("DebugViews", models, simulator)),
+      camera_(simulator, camera),
       body_count_(simulator.bodyCount()) {
   if (envs > simulator.envCount()) {
     detail::refuseCall("DebugViews",
                        fmt::format("found {} envs to show, expected at most the simulator's {}",
                                    envs, simulator.envCount()));
   }
-  const Robot& robot = world.robot();
+  const Robot& robot = world_.robot();
   spheres_.reserve(robot.spheres().size());
   for (const SphereGroup& group : robot.groups()) {
     const LinkOnBody link = simulator.linkOnBody(group.link);
@@ -51,7 +51,7 @@ DebugViews::DebugViews(const World& world, const DebugModels& models,
     }
   }
   // A scene, the objects, the goal, the robot and what it holds.
-  stride_ = 1 + world.mostObjects() + 1 + spheres_.size() + mostHeldSpheres(world);
+  stride_ = 1 + world_.mostObjects() + 1 + spheres_.size() + mostHeldSpheres(world_);
   instances_.resize(envs * stride_);
   views_.resize(envs);
   update(simulator);

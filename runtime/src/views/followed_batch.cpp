@@ -21,19 +21,8 @@ void requireState(const char* call, const BatchSimulator& simulator) {
 
 }  // namespace
 
-const World& requireWorld(const char* call, const World& world, const BatchSimulator& simulator) {
-  if (simulator.world().hash() != world.hash()) {
-    detail::refuseCall(call,
-                       "found a simulator of another world than the one given with it; give "
-                       "BatchSimulator::world()");
-  }
-  return world;
-}
-
-void requireParts(const char* call, const World& world, std::uint64_t models,
-                  const BatchSimulator& simulator) {
-  requireWorld(call, world, simulator);
-  if (models != world.hash()) {
+void requireParts(const char* call, std::uint64_t models, const BatchSimulator& simulator) {
+  if (models != simulator.world().hash()) {
     detail::refuseCall(call,
                        "found models of another world than that of the simulator; make them of "
                        "BatchSimulator::world()");

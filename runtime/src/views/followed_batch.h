@@ -3,25 +3,20 @@
 #include <cstdint>
 
 #include "galactic/batch_simulator.h"
-#include "galactic/world.h"
 
 namespace galactic::views {
 
 // Of calls that read a simulator for views: all throw ErrorException with kInvalidInput. `call`:
 // "WorldViews".
 
-/// Where `simulator` is of another world. Returns `world`.
-const World& requireWorld(const char* call, const World& world, const BatchSimulator& simulator);
-
-/// Where no views of `world` can be made of `simulator` and of models with this worldHash().
-void requireParts(const char* call, const World& world, std::uint64_t models,
-                  const BatchSimulator& simulator);
+/// Where no views can be made of `simulator` and of models with this worldHash().
+void requireParts(const char* call, std::uint64_t models, const BatchSimulator& simulator);
 
 /// The same; returns `models`, so that no member is built before.
 template <class Models>
-const Models& checkedModels(const char* call, const World& world, const Models& models,
+const Models& checkedModels(const char* call, const Models& models,
                             const BatchSimulator& simulator) {
-  requireParts(call, world, models.worldHash(), simulator);
+  requireParts(call, models.worldHash(), simulator);
   return models;
 }
 

@@ -29,15 +29,14 @@ std::optional<CameraMount> robotCamera(const Robot& robot) {
                      .vertical_fov = robot.camera()->vertical_fov};
 }
 
-MountedCamera::MountedCamera(const World& world, const BatchSimulator& simulator,
-                             const CameraMount& mount)
-    : world_(views::requireWorld("MountedCamera", world, simulator)),
+MountedCamera::MountedCamera(const BatchSimulator& simulator, const CameraMount& mount)
+    : world_(simulator.world()),
       frame_(mount.frame),
       keeps_sight_(mount.frame == CameraFrame::kBase && mount.keeps_sight),
       on_body_(simulator.linkOnBody(mount.frame == CameraFrame::kLink ? mount.link : 0)),
       frame_from_camera_(rigidTransform(mount.frame_from_camera)),
       vertical_fov_(mount.vertical_fov),
-      root_height_(world.robot().base() ? world.robot().base()->root_height : 0),
+      root_height_(world_.robot().base() ? world_.robot().base()->root_height : 0),
       jitter_(mount.jitter),
       number_(mount.number) {}
 
@@ -61,16 +60,16 @@ RigidTransform MountedCamera::withoutJitter(std::span<const RigidTransform> bodi
   return wanted;
 }
 
-WorldViews::WorldViews(const World& world, const WorldModels& models,
-                       const BatchSimulator& simulator, const CameraMount& camera, ObjectIds ids)
-    : models_(views::checkedModels("WorldViews", world, models, simulator)),
-      camera_(world, simulator, camera),
-      stride_(world.mostObjects()),
+WorldViews::WorldViews(const WorldModels& models, const BatchSimulator& simulator,
+                       const CameraMount& camera, ObjectIds ids)
+    : models_(views::checkedModels("WorldViews", models, simulator)),
+      camera_(simulator, camera),
+      stride_(simulator.world().mostObjects()),
       posed_(simulator.envCount() * stride_),
       posed_semantics_(ids == ObjectIds::kObjects ? posed_.size() : 0),
       bodies_(simulator.bodyTransforms().size()),
       views_(simulator.envCount()) {
-  scenes_.resize(world.scenes().size());
+  scenes_.resize(simulator.world().scenes().size());
   for (std::uint32_t scene = 0; scene < scenes_.size(); ++scene) {
     if (const auto model = models.sceneModel(scene)) scenes_[scene].push_back({*model, {}});
   }

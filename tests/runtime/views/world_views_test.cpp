@@ -115,7 +115,7 @@ TEST_F(WorldViewsOfAHome, TheCameraOfALinkFollowsTheForwardKinematics) {
                           .link = 4,
                           .frame_from_camera = {{0.01F, 0.02F, 0.03F}, test::yaw(0.7)},
                           .vertical_fov = 1.25F};
-  WorldViews views(*world_, *models_, *simulator_, mount);
+  WorldViews views(*models_, *simulator_, mount);
   for (int n = 0; n < 40; ++n) {
     step();
     views.update(*simulator_);
@@ -132,9 +132,9 @@ TEST_F(WorldViewsOfAHome, TheCameraOfALinkFollowsTheForwardKinematics) {
 
 TEST_F(WorldViewsOfAHome, AllThatWasMadeOfAWorldLivesOnWithoutIt) {
   const CameraMount mount = robotCamera(world_->robot()).value();
-  WorldViews views(*world_, *models_, *simulator_, mount);
+  WorldViews views(*models_, *simulator_, mount);
   DebugModels debug_models = DebugModels::from(*world_, {}).value();
-  DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
+  DebugViews debug_views(debug_models, *simulator_, mount, kEnvs);
   PlanningScene planning(*world_, simulator_->options());
   const auto look = [&] {
     std::vector<float> seen;
@@ -165,7 +165,7 @@ TEST_F(WorldViewsOfAHome, AllThatWasMadeOfAWorldLivesOnWithoutIt) {
 TEST_F(WorldViewsOfAHome, TheCameraOfTheBaseStandsOnTheFloor) {
   const CameraMount mount{
       .frame = CameraFrame::kBase, .link = 0, .frame_from_camera = {{-1, 2, 0.5F}, {}}};
-  WorldViews views(*world_, *models_, *simulator_, mount);
+  WorldViews views(*models_, *simulator_, mount);
   step();
   views.update(*simulator_);
   for (std::size_t env = 0; env < kEnvs; ++env) {
@@ -179,8 +179,8 @@ TEST_F(WorldViewsOfAHome, TheCameraOfTheBaseStandsOnTheFloor) {
 
 TEST_F(WorldViewsOfAHome, ObjectsHaveIdsOfTheirNamesOrOfTheirOwn) {
   const CameraMount mount = robotCamera(world_->robot()).value();
-  WorldViews of_names(*world_, *models_, *simulator_, mount);
-  WorldViews of_objects(*world_, *models_, *simulator_, mount, ObjectIds::kObjects);
+  WorldViews of_names(*models_, *simulator_, mount);
+  WorldViews of_objects(*models_, *simulator_, mount, ObjectIds::kObjects);
   const std::size_t names = models_->library().semanticNames().size();
   for (int n = 0; n < 20; ++n) {  // with one in the hand at last
     step();
@@ -207,16 +207,16 @@ TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightStaysInTheRoom) {
     const Vec3& at = camera.world_from_camera.origin;
     return at.x > 0 && at.x < 3 && at.z > 0 && at.z < 3 && at.y > 0.3F;
   };
-  const WorldViews views(*world_, *models_, *simulator_, mount);
+  const WorldViews views(*models_, *simulator_, mount);
   auto models = DebugModels::from(*world_, {});
   ASSERT_TRUE(models);
-  const DebugViews debug_views(*world_, *models, *simulator_, mount, 1);
+  const DebugViews debug_views(*models, *simulator_, mount, 1);
   EXPECT_TRUE(inside(views.views()[0].camera));
   EXPECT_EQ(difference(debug_views.views()[0].camera.world_from_camera,
                        views.views()[0].camera.world_from_camera),
             0);
   mount.keeps_sight = false;
-  const WorldViews outside(*world_, *models_, *simulator_, mount);
+  const WorldViews outside(*models_, *simulator_, mount);
   EXPECT_FALSE(inside(outside.views()[0].camera));
 }
 
@@ -228,7 +228,7 @@ TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightMayLookStraightUpOrDown) {
         chooseCamera(world_->robot(), {.name = "follow", .rpy_degrees = {0, pitch, 0}});
     ASSERT_TRUE(camera);
     ASSERT_TRUE(camera->mount.keeps_sight);
-    const WorldViews views(*world_, *models_, *simulator_, camera->mount);
+    const WorldViews views(*models_, *simulator_, camera->mount);
     for (const RenderView& view : views.views()) EXPECT_TRUE(render::canSee(view.camera)) << pitch;
   }
 }
@@ -238,9 +238,9 @@ TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightStaysWhereItIsWhenItLooksAway) {
     CameraMount mount =
         chooseCamera(world_->robot(), {.name = "follow", .rpy_degrees = {0, 0, yaw}})->mount;
     ASSERT_TRUE(mount.keeps_sight);
-    const WorldViews views(*world_, *models_, *simulator_, mount);
+    const WorldViews views(*models_, *simulator_, mount);
     mount.keeps_sight = false;
-    const WorldViews wanted(*world_, *models_, *simulator_, mount);
+    const WorldViews wanted(*models_, *simulator_, mount);
     for (std::size_t env = 0; env < kEnvs; ++env) {
       EXPECT_EQ(difference(views.views()[env].camera.world_from_camera,
                            wanted.views()[env].camera.world_from_camera),
@@ -253,7 +253,7 @@ TEST_F(WorldViewsOfAHome, ACameraThatKeepsSightStaysWhereItIsWhenItLooksAway) {
 TEST_F(WorldViewsOfAHome, ACameraOfTheWorldStaysWhereItIs) {
   const CameraMount mount{
       .frame = CameraFrame::kWorld, .link = 0, .frame_from_camera = {{1, 2, 3}, test::yaw(1)}};
-  const WorldViews views(*world_, *models_, *simulator_, mount);
+  const WorldViews views(*models_, *simulator_, mount);
   EXPECT_EQ(difference(views.views()[2].camera.world_from_camera,
                        rigidTransform(mount.frame_from_camera)),
             0);
@@ -299,11 +299,11 @@ TEST_F(WorldViewsOfAHome, WithJitterTheCameraIsElsewhereInEachEpisodeWithinLimit
   CameraMount mount{.frame = CameraFrame::kLink,
                     .link = 4,
                     .frame_from_camera = {{0.01F, 0.02F, 0.03F}, test::yaw(0.7)}};
-  WorldViews plain(*world_, *models_, *simulator_, mount);
+  WorldViews plain(*models_, *simulator_, mount);
   mount.jitter = {.camera_jitter = kMeters, .camera_jitter_degrees = kDegrees};
-  WorldViews jittered(*world_, *models_, *simulator_, mount);
+  WorldViews jittered(*models_, *simulator_, mount);
   mount.number = 1;
-  WorldViews of_another_camera(*world_, *models_, *simulator_, mount);
+  WorldViews of_another_camera(*models_, *simulator_, mount);
   const auto offset = [&](const WorldViews& views, std::size_t env) {
     return inverse(plain.views()[env].camera.world_from_camera) *
            views.views()[env].camera.world_from_camera;
@@ -370,11 +370,11 @@ TEST_F(WorldViewsOfAHome, WithJitterOfItsFieldOfViewTheCameraIsAnotherInEachEpis
                     .frame_from_camera = {},
                     .vertical_fov = 1,
                     .jitter = {.camera_jitter = 0.05F}};
-  WorldViews without(*world_, *models_, *simulator_, mount);
+  WorldViews without(*models_, *simulator_, mount);
   mount.jitter.camera_jitter_fov = kDegrees;
-  WorldViews with(*world_, *models_, *simulator_, mount);
+  WorldViews with(*models_, *simulator_, mount);
   mount.jitter.camera_jitter_fov = {0, kDegrees};
-  WorldViews drawn(*world_, *models_, *simulator_, mount);
+  WorldViews drawn(*models_, *simulator_, mount);
   const auto update = [&] {
     for (WorldViews* views : {&without, &with, &drawn}) views->update(*simulator_);
   };
@@ -422,11 +422,11 @@ TEST_F(WorldViewsOfAHome, EachEpisodeDrawsItsOwnLimitOfTheJitterFromARange) {
   constexpr float kLeast = 0.02F;
   constexpr float kMost = 0.1F;
   CameraMount mount{.frame = CameraFrame::kLink, .link = 4, .frame_from_camera = {}};
-  WorldViews plain(*world_, *models_, *simulator_, mount);
+  WorldViews plain(*models_, *simulator_, mount);
   mount.jitter = {.camera_jitter = {kLeast, kMost}};
-  WorldViews jittered(*world_, *models_, *simulator_, mount);
+  WorldViews jittered(*models_, *simulator_, mount);
   mount.jitter.camera_jitter = kMost;
-  WorldViews widest(*world_, *models_, *simulator_, mount);
+  WorldViews widest(*models_, *simulator_, mount);
   float sum = 0;
   constexpr std::uint64_t kSeeds = 200;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -450,7 +450,7 @@ TEST_F(WorldViewsOfAHome, EachEpisodeDrawsItsOwnLimitOfTheJitterFromARange) {
 }
 
 TEST_F(WorldViewsOfAHome, AViewHoldsTheSceneItsObjectsAndTheLinksThatShowSomething) {
-  WorldViews views(*world_, *models_, *simulator_, robotCamera(world_->robot()).value());
+  WorldViews views(*models_, *simulator_, robotCamera(world_->robot()).value());
   std::size_t with_held = 0;
   std::size_t cases = 0;
   for (int n = 0; n < 60; ++n) {
@@ -488,7 +488,7 @@ TEST_F(WorldViewsOfAHome, AViewHoldsTheSceneItsObjectsAndTheLinksThatShowSomethi
 
 TEST_F(WorldViewsOfAHome, WithoutDistractorsTheTargetIsShownAndNothingElse) {
   open({.safe_drop = true, .distractors = false});
-  const WorldViews views(*world_, *models_, *simulator_, robotCamera(world_->robot()).value());
+  const WorldViews views(*models_, *simulator_, robotCamera(world_->robot()).value());
   const EpisodeSet& episodes = world_->episodes();
   std::size_t not_first = 0;
   for (std::size_t env = 0; env < kEnvs; ++env) {
@@ -515,7 +515,7 @@ TEST_F(WorldViewsOfAHome, TheDebugViewShowsSpheresBoxesAndTheGoal) {
   const auto models = DebugModels::from(*world_, {});
   ASSERT_TRUE(models) << models.error().message;
   const CameraMount mount{.frame = CameraFrame::kBase, .link = 0, .frame_from_camera = {}};
-  DebugViews views(*world_, *models, *simulator_, mount, 2);
+  DebugViews views(*models, *simulator_, mount, 2);
   ASSERT_EQ(views.views().size(), 2U);
   const auto find = [&](std::size_t env, std::uint32_t model) {
     std::vector<RigidTransform> places;
@@ -580,8 +580,8 @@ TEST_F(WorldViewsOfAHome, GoOnWithoutTheModelsTheyWereMadeFromAndWhereTheyAreMov
     const WorldModels models = WorldModels::from(*world_).value();
     const DebugModels debug_models = DebugModels::from(*world_, {}).value();
     return Drawing{BatchRenderer::create(models.library(), options).value(),
-                   WorldViews(*world_, models, *simulator_, mount),
-                   DebugViews(*world_, debug_models, *simulator_, mount, kEnvs),
+                   WorldViews(models, *simulator_, mount),
+                   DebugViews(debug_models, *simulator_, mount, kEnvs),
                    BatchRenderer::create(debug_models.library(), options).value()};
   };
   const auto drawn = [&](BatchRenderer& renderer, std::span<const RenderView> views) {
@@ -595,11 +595,11 @@ TEST_F(WorldViewsOfAHome, GoOnWithoutTheModelsTheyWereMadeFromAndWhereTheyAreMov
   step();
   moved.views.update(*simulator_);
   moved.debug_views.update(*simulator_);
-  WorldViews views(*world_, *models_, *simulator_, mount);
+  WorldViews views(*models_, *simulator_, mount);
   BatchRenderer renderer = BatchRenderer::create(models_->library(), options).value();
   EXPECT_EQ(drawn(moved.renderer, moved.views.views()), drawn(renderer, views.views()));
   const DebugModels debug_models = DebugModels::from(*world_, {}).value();
-  DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
+  DebugViews debug_views(debug_models, *simulator_, mount, kEnvs);
   BatchRenderer debug_renderer = BatchRenderer::create(debug_models.library(), options).value();
   EXPECT_EQ(drawn(moved.debug_renderer, moved.debug_views.views()),
             drawn(debug_renderer, debug_views.views()));
@@ -614,15 +614,15 @@ TEST_F(WorldViewsOfAHome, AreNotMadeOfASimulatorThatKeepsNoBodiesNorFollowAnothe
   options.envs = kEnvs - 1;
   const BatchSimulator smaller = BatchSimulator::create(*world_, options).value();
   const DebugModels debug_models = DebugModels::from(*world_, {}).value();
-  EXPECT_THAT([&] { WorldViews(*world_, *models_, bare, mount); },
+  EXPECT_THAT([&] { WorldViews(*models_, bare, mount); },
               testing::ThrowsMessage<ErrorException>(
                   testing::HasSubstr("make it with SimulationOptions::body_transforms")));
-  EXPECT_THROW(DebugViews(*world_, debug_models, bare, mount, 1), ErrorException);
-  EXPECT_THAT([&] { DebugViews(*world_, debug_models, *simulator_, mount, kEnvs + 1); },
+  EXPECT_THROW(DebugViews(debug_models, bare, mount, 1), ErrorException);
+  EXPECT_THAT([&] { DebugViews(debug_models, *simulator_, mount, kEnvs + 1); },
               testing::ThrowsMessage<ErrorException>(testing::StrEq(
                   "DebugViews: found 4 envs to show, expected at most the simulator's 3")));
-  WorldViews views(*world_, *models_, *simulator_, mount);
-  DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
+  WorldViews views(*models_, *simulator_, mount);
+  DebugViews debug_views(debug_models, *simulator_, mount, kEnvs);
   EXPECT_THAT([&] { views.update(smaller); },
               testing::ThrowsMessage<ErrorException>(
                   testing::StrEq("WorldViews::update: found a simulator of 2 envs, expected at "
@@ -658,24 +658,15 @@ TEST_F(WorldViewsOfAHome, AreMadeOfOneWorldAndFollowItAlone) {
   const auto refused = [](const auto& call, const std::string& message) {
     EXPECT_THAT(call, testing::ThrowsMessage<ErrorException>(testing::StartsWith(message)));
   };
-  const std::string of_simulator =
-      ": found a simulator of another world than the one given with it";
   const std::string of_models = ": found models of another world than that of the simulator";
-  refused([&] { WorldViews(other, other_models, *simulator_, mount); },
-          "WorldViews" + of_simulator);
-  refused([&] { WorldViews(other, *models_, *simulator_, mount); }, "WorldViews" + of_simulator);
-  refused([&] { WorldViews(*world_, other_models, *simulator_, mount); }, "WorldViews" + of_models);
-  refused([&] { DebugViews(other, other_debug_models, *simulator_, mount, 1); },
-          "DebugViews" + of_simulator);
-  refused([&] { DebugViews(*world_, other_debug_models, *simulator_, mount, 1); },
-          "DebugViews" + of_models);
-  // Before it is asked for a link of the wrong robot.
-  refused([&] { MountedCamera(other, *simulator_, {.link = 99, .frame_from_camera = {}}); },
-          "MountedCamera" + of_simulator);
+  refused([&] { WorldViews(other_models, *simulator_, mount); }, "WorldViews" + of_models);
+  refused([&] { DebugViews(other_debug_models, *simulator_, mount, 1); }, "DebugViews" + of_models);
+  refused([&] { MountedCamera(*simulator_, {.link = 99, .frame_from_camera = {}}); },
+          "BatchSimulator::linkOnBody: found link 99");
   const std::string of_views =
       "::update: found a simulator of another world than the one that the views were made of";
-  WorldViews views(other, other_models, other_simulator, mount);
-  DebugViews debug_views(other, other_debug_models, other_simulator, mount, kEnvs);
+  WorldViews views(other_models, other_simulator, mount);
+  DebugViews debug_views(other_debug_models, other_simulator, mount, kEnvs);
   refused([&] { views.update(*simulator_); }, "WorldViews" + of_views);
   refused([&] { debug_views.update(*simulator_); }, "DebugViews" + of_views);
   EXPECT_EQ(views.views()[0].posed.size(), 1U);
@@ -684,8 +675,8 @@ TEST_F(WorldViewsOfAHome, AreMadeOfOneWorldAndFollowItAlone) {
   const std::filesystem::path path = folder_.path() / "world.pack";
   const World again = World::open(std::span(&path, 1)).value();
   BatchSimulator simulator = BatchSimulator::create(again, simulator_->options()).value();
-  WorldViews views_of_all(*world_, *models_, simulator, mount);
-  DebugViews debug_views_of_all(again, debug_models, *simulator_, mount, kEnvs);
+  WorldViews views_of_all(*models_, simulator, mount);
+  DebugViews debug_views_of_all(debug_models, simulator, mount, kEnvs);
   simulator.step(std::vector<float>(kEnvs * simulator.actionCount(), 1));
   views_of_all.update(simulator);
   debug_views_of_all.update(simulator);
@@ -697,16 +688,16 @@ TEST_F(WorldViewsOfAHome, AreMadeOfOneWorldAndFollowItAlone) {
 TEST_F(WorldViewsOfAHome, ReadNoStepThatHasNotEnded) {
   const CameraMount mount = robotCamera(world_->robot()).value();
   const DebugModels debug_models = DebugModels::from(*world_, {}).value();
-  WorldViews views(*world_, *models_, *simulator_, mount);
-  DebugViews debug_views(*world_, debug_models, *simulator_, mount, kEnvs);
+  WorldViews views(*models_, *simulator_, mount);
+  DebugViews debug_views(debug_models, *simulator_, mount, kEnvs);
   const std::vector<float> actions(kEnvs * simulator_->actionCount());
   simulator_->beginStep(actions);
   const auto refused = [](const auto& call, const std::string& name) {
     EXPECT_THAT(call, testing::ThrowsMessage<ErrorException>(testing::StrEq(
                           name + ": found a step that has begun; end it first, with endStep()")));
   };
-  refused([&] { WorldViews(*world_, *models_, *simulator_, mount); }, "WorldViews");
-  refused([&] { DebugViews(*world_, debug_models, *simulator_, mount, 1); }, "DebugViews");
+  refused([&] { WorldViews(*models_, *simulator_, mount); }, "WorldViews");
+  refused([&] { DebugViews(debug_models, *simulator_, mount, 1); }, "DebugViews");
   refused([&] { views.update(*simulator_); }, "WorldViews::update");
   refused([&] { debug_views.update(*simulator_); }, "DebugViews::update");
   simulator_->endStep();
@@ -738,7 +729,7 @@ TEST_F(WorldViewsOfAHome, HaveNoModelsOfWhatTheWorldDoesNotHave) {
 
 TEST_F(WorldViewsOfAHome, AreDrawnIntoImagesOfTheirSizeAlone) {
   const CameraMount mount = robotCamera(world_->robot()).value();
-  const WorldViews views(*world_, *models_, *simulator_, mount);
+  const WorldViews views(*models_, *simulator_, mount);
   const RenderOptions options{.width = 8, .height = 4, .backend = RenderBackend::kSoft};
   BatchRenderer renderer = BatchRenderer::create(models_->library(), options).value();
   std::vector<std::uint8_t> color(std::size_t{kEnvs} * 8 * 4 * 4);

@@ -99,8 +99,8 @@ class ChangedWorld {
     const CameraMount above{.frame = CameraFrame::kWorld,
                             .frame_from_camera = {{0.2F, 2, 0.2F}, {0, -0.38F, 0, 0.925F}}};
     const CameraMount mount = robotCamera(world.robot()).value_or(above);
-    WorldViews on_robot(world, *models, *simulator, mount);
-    WorldViews in_room(world, *models, *simulator, above);
+    WorldViews on_robot(*models, *simulator, mount);
+    WorldViews in_room(*models, *simulator, above);
     RenderOptions drawing;
     drawing.width = kPixels;
     drawing.height = kPixels;

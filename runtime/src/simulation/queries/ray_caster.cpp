@@ -121,20 +121,13 @@ const ColumnGrid& gridOf(const char* call, const Scene& scene, float radius) {
                                        radius, radii));
 }
 
-/// Whether the envs can be looked at, and are of that world.
-void checkBatch(const char* call, const World& world, const BatchSimulator& simulator) {
-  if (simulator.isStepping()) {
-    detail::refuseCall(call, "found a step that has begun; end it first, with endStep()");
-  }
-  if (simulator.world().hash() != world.hash()) {
-    detail::refuseCall(call, "found a simulator of another world, expected one of the given world");
-  }
-}
-
 /// Calls `cast` with the number, the lines and the hits of each env of a batch.
 template <class Cast>
 void forEachEnv(const char* call, const BatchSimulator& simulator, const CastLines& lines,
                 std::span<CastHit> hits, std::uint32_t threads, const Cast& cast) {
+  if (simulator.isStepping()) {
+    detail::refuseCall(call, "found a step that has begun; end it first, with endStep()");
+  }
   const std::size_t envs = simulator.envCount();
   if (hits.size() % envs != 0) {
     detail::refuseCall(call, fmt::format("found {} lines for {} envs, expected as many for each",
@@ -267,28 +260,26 @@ void RayCaster::sweepSpheres(float radius, const CastLines& lines, std::span<Cas
   impl_->cast(grid, grid.radius(), lines, hits, threads);
 }
 
-void castRaysInEnvs(const World& world, const BatchSimulator& simulator, const CastLines& lines,
+void castRaysInEnvs(const BatchSimulator& simulator, const CastLines& lines,
                     std::span<CastHit> hits, CastRobot robot, std::uint32_t threads) {
   constexpr const char* kCall = "castRaysInEnvs";
-  checkBatch(kCall, world, simulator);
   checkLines(kCall, lines, hits.size());
   forEachEnv(kCall, simulator, lines, hits, threads,
              [&](std::size_t env, const CastLines& own, std::span<CastHit> found) {
-               RayCaster(world, simulator.envState(env), robot).castRays(own, found);
+               RayCaster(simulator.world(), simulator.envState(env), robot).castRays(own, found);
              });
 }
 
-void sweepSpheresInEnvs(const World& world, const BatchSimulator& simulator, float radius,
-                        const CastLines& lines, std::span<CastHit> hits, CastRobot robot,
-                        std::uint32_t threads) {
+void sweepSpheresInEnvs(const BatchSimulator& simulator, float radius, const CastLines& lines,
+                        std::span<CastHit> hits, CastRobot robot, std::uint32_t threads) {
   constexpr const char* kCall = "sweepSpheresInEnvs";
-  checkBatch(kCall, world, simulator);
   checkLines(kCall, lines, hits.size());
   // The scenes of a world have grids of the same radii.
-  static_cast<void>(gridOf(kCall, world.scenes()[0], radius));
+  static_cast<void>(gridOf(kCall, simulator.world().scenes()[0], radius));
   forEachEnv(kCall, simulator, lines, hits, threads,
              [&](std::size_t env, const CastLines& own, std::span<CastHit> found) {
-               RayCaster(world, simulator.envState(env), robot).sweepSpheres(radius, own, found);
+               RayCaster(simulator.world(), simulator.envState(env), robot)
+                   .sweepSpheres(radius, own, found);
              });
 }
 

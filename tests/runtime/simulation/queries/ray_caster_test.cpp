@@ -450,9 +450,9 @@ TEST_F(RayCasterInTheSmallHome, CastsInAllEnvsAsInEachOfThem) {
     EXPECT_EQ(ends.contains(CastEnd::kRobot), robot == CastRobot::kIsSeen);
     for (const std::uint32_t threads : {0U, 1U, 2U, 7U}) {
       std::vector<CastHit> hits(lines.origins.size());
-      castRaysInEnvs(world(), batch, lines.view(), hits, robot, threads);
+      castRaysInEnvs(batch, lines.view(), hits, robot, threads);
       EXPECT_EQ(hits, wanted_rays) << threads;
-      sweepSpheresInEnvs(world(), batch, 0.05F, lines.view(), hits, robot, threads);
+      sweepSpheresInEnvs(batch, 0.05F, lines.view(), hits, robot, threads);
       EXPECT_EQ(hits, wanted_sweeps) << threads;
     }
   }
@@ -464,9 +464,7 @@ TEST_F(RayCasterInTheSmallHome, RefusesLinesThatDoNotFitTheEnvs) {
   const BatchSimulator batch = BatchSimulator::create(world(), options).value();
   Lines lines;
   std::vector<CastHit> hits;
-  const auto cast = [&] {
-    return refusal([&] { castRaysInEnvs(world(), batch, lines.view(), hits); });
-  };
+  const auto cast = [&] { return refusal([&] { castRaysInEnvs(batch, lines.view(), hits); }); };
   EXPECT_EQ(cast(), "") << "no line in any env";
   lines.add({1, 1, 1}, {1, 0, 0});
   hits.resize(1, CastHit{77});
@@ -476,13 +474,13 @@ TEST_F(RayCasterInTheSmallHome, RefusesLinesThatDoNotFitTheEnvs) {
   EXPECT_EQ(cast(), "castRaysInEnvs: directions[1] is zero, and leads nowhere");
   EXPECT_EQ(hits[0].distance, 77) << "nothing is written";
   lines.directions[1] = {1, 0, 0};
-  EXPECT_EQ(refusal([&] { sweepSpheresInEnvs(world(), batch, 0.03F, lines.view(), hits); }),
+  EXPECT_EQ(refusal([&] { sweepSpheresInEnvs(batch, 0.03F, lines.view(), hits); }),
             "sweepSpheresInEnvs: found the radius 0.03 m, expected one that the scene has a grid "
             "for: 0.016, 0.05, 0.12");
   EXPECT_EQ(hits[0].distance, 77) << "nothing is written";
 }
 
-TEST_F(RayCasterInTheSmallHome, RefusesBatchesOfOtherWorldsAndHalfSteps) {
+TEST_F(RayCasterInTheSmallHome, RefusesBatchesInAHalfStep) {
   SimulationOptions options;
   options.envs = 40;
   options.threads = 2;
@@ -490,48 +488,22 @@ TEST_F(RayCasterInTheSmallHome, RefusesBatchesOfOtherWorldsAndHalfSteps) {
   Lines lines;
   for (std::size_t n = 0; n < batch.envCount(); ++n) lines.add({1, 1, 1}, {1, 0, 0});
   std::vector<CastHit> hits(lines.origins.size(), CastHit{77});
-  const auto expect = [&](const World& of, const std::string& message) {
-    for (const std::uint32_t threads : {1U, 4U}) {
-      const auto cast = [&] {
-        castRaysInEnvs(of, batch, lines.view(), hits, CastRobot::kIsUnseen, threads);
-      };
-      const auto sweep = [&] {
-        sweepSpheresInEnvs(of, batch, 0.05F, lines.view(), hits, CastRobot::kIsUnseen, threads);
-      };
-      EXPECT_EQ(refusal(cast), "castRaysInEnvs: " + message);
-      EXPECT_EQ(refusal(sweep), "sweepSpheresInEnvs: " + message);
-    }
-    EXPECT_EQ(hits, std::vector<CastHit>(hits.size(), CastHit{77})) << "nothing is written";
-  };
-  WorldFields other = smallHomeWorld();
-  other.robot.end_effector->grasp_radius = 0.3F;
-  expect(SmallHome(other).world(),
-         "found a simulator of another world, expected one of the given "
-         "world");
   const std::vector<float> actions(batch.envCount() * batch.actionCount());
   batch.beginStep(actions);
-  expect(world(), "found a step that has begun; end it first, with endStep()");
-  batch.endStep();
-  // Another World of the same packs will do.
-  castRaysInEnvs(SmallHome().world(), batch, lines.view(), hits);
-  EXPECT_NE(hits[0].distance, 77);
-}
-
-TEST_F(RayCasterInTheSmallHome, RefusesStatesThatOnlyFollowingBringsAbout) {
-  EnvState now = state();
-  now.objects[0].translation.x = std::nanf("");
-  const FollowedState nowhere{.world_from_root = now.world_from_root,
-                              .joint_positions = now.joint_positions,
-                              .objects = now.objects};
-  simulator_.follow(SmallHomeRow{}, std::span(&nowhere, 1));
-  Lines lines;
-  lines.add({1, 1, 1}, {1, 0, 0});
-  std::vector<CastHit> hits(1);
-  // In a thread, too, and to whoever asked.
-  EXPECT_THAT(refusal([&] {
-                castRaysInEnvs(world(), simulator_, lines.view(), hits, CastRobot::kIsSeen, 4);
+  for (const std::uint32_t threads : {1U, 4U}) {
+    const std::string message = "found a step that has begun; end it first, with endStep()";
+    EXPECT_EQ(
+        refusal([&] { castRaysInEnvs(batch, lines.view(), hits, CastRobot::kIsUnseen, threads); }),
+        "castRaysInEnvs: " + message);
+    EXPECT_EQ(refusal([&] {
+                sweepSpheresInEnvs(batch, 0.05F, lines.view(), hits, CastRobot::kIsUnseen, threads);
               }),
-              testing::HasSubstr("RayCaster: found a state that has objects[0].translation (nan"));
+              "sweepSpheresInEnvs: " + message);
+  }
+  EXPECT_EQ(hits, std::vector<CastHit>(hits.size(), CastHit{77})) << "nothing is written";
+  batch.endStep();
+  castRaysInEnvs(batch, lines.view(), hits);
+  EXPECT_NE(hits[0].distance, 77);
 }
 
 }  // namespace
