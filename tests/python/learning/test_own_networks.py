@@ -5,307 +5,19 @@ from __future__ import annotations
 import dataclasses
 import pathlib
 import sys
-from typing import Any
 
-import numpy as np
 import pytest
 import torch
 
 import galactic
-from galactic import evaluate
-from galactic.learning.encoders import Inputs
-from galactic.learning.packs import content
-from galactic.learning.packs.content import export_policy
 from galactic.learning.refusals import CheckpointError, NetworkError, SettingsError
 from galactic.learning.saving import checkpoint
 from galactic.learning.settings import Settings
-from galactic.learning.user_code import own_code, own_networks
-from galactic.learning.user_code.own_networks import OwnNetwork, Seen
+from galactic.learning.user_code import own_code
+from own_lab import EXAMPLE, NETWORKS, SEEN, lab, named, saved_policy, with_line
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
 from toys import Remember
 from trainers import SETTINGS, UPDATE as TOY_UPDATE, make_trainer, parameters
-
-EXAMPLE = pathlib.Path(__file__).parents[3] / "examples" / "python" / "own_network.py"
-WRONG = """
-import torch
-from torch import nn
-from galactic.learning.encoders import Encoder, Eyes, StateEncoder
-from galactic.learning.sequences import run_gru
-
-class Net(Encoder):
-    features = 8
-
-    def __init__(self, seen):
-        super().__init__()
-        self.layer = nn.Linear(seen.state, 8)
-
-    def forward(self, inputs):
-        return self.layer(inputs.state)
-
-class Narrow(Net):
-    features = 9
-
-class Nameless(Net):
-    features = 0
-
-class Flat(Net):
-    def forward(self, inputs):
-        return self.layer(inputs.state).sum(-1)
-
-class Nothing(Net):
-    def forward(self, inputs):
-        pass
-
-class Misfit(Net):
-    def forward(self, inputs):
-        return self.layer(inputs.state[..., 1:])
-
-class Blind(Net):
-    def forward(self, inputs):
-        return self.layer(inputs.state) + inputs.depth.mean()
-
-class Unmade(Net):
-    def __init__(self, seen):
-        raise KeyError("no such part")
-
-class Ends(Net):
-    def __init__(self, seen):
-        raise SystemExit(0)
-
-class NaNs(Net):
-    def forward(self, inputs):
-        return self.layer(inputs.state) / 0.0 * 0.0
-
-class Wide(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.scale = nn.Parameter(torch.ones(8, dtype=torch.float64))
-
-class Drops(Net):
-    def forward(self, inputs):
-        return nn.functional.dropout(self.layer(inputs.state), 0.5, self.training)
-
-class Remembers(Net):
-    memory = 4
-
-    def forward(self, inputs, memory, starts):
-        return self.layer(inputs.state) + memory.sum(), memory
-
-class Forgets(Remembers):
-    def forward(self, inputs, memory, starts):
-        return self.layer(inputs.state)
-
-class Short(Remembers):
-    def forward(self, inputs, memory, starts):
-        return self.layer(inputs.state), memory[..., 1:]
-
-class Formless(Encoder):
-    features = 8
-
-class Looks(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.features = 8 + seen.state
-        self.eyes = Eyes(nn.Sequential(
-            nn.Conv2d(seen.channels, 4, 8, 8), nn.ReLU(), nn.Flatten(), nn.Linear(4 * 4 * 4, 8)))
-
-    def forward(self, inputs):
-        return torch.cat([self.eyes(inputs), inputs.state], -1)
-
-class Sines(Net):
-    def forward(self, inputs):
-        return torch.sin(self.layer(inputs.state))
-
-class Branches(Net):
-    def forward(self, inputs):
-        return self.layer(inputs.state) if inputs.state.sum() > 0 else self.layer(-inputs.state)
-
-class Sums(Net):
-    features = 12
-
-    def forward(self, inputs):
-        x = self.layer(inputs.state)
-        return torch.cat([torch.relu(x) + torch.tanh(x), x[..., 2:6]], -1)
-
-class Doubled(nn.Conv2d):
-    def forward(self, x):
-        return 2.0 * super().forward(x)
-
-class Weighted(nn.Conv2d):
-    def _conv_forward(self, x, weight, bias):
-        return super()._conv_forward(x, 2.0 * weight, bias)
-
-class Backwards(nn.Sequential):
-    def forward(self, x):
-        return -super().forward(x)
-
-class Patch(nn.Sequential):
-    def __init__(self, first):
-        super().__init__(first, nn.ReLU(inplace=True), nn.Flatten(), nn.Linear(4 * 4 * 4, 8))
-
-class LooksTwice(Looks):
-    def __init__(self, seen, doubled=True):
-        super().__init__(seen)
-        first = (Doubled if doubled else Weighted)(seen.channels, 4, 8, 8)
-        self.eyes = Eyes(Patch(first))
-
-class LooksBack(Looks):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.eyes = Eyes(Backwards(*self.eyes.layers))
-
-class LooksPlainly(Looks):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.eyes = Eyes(Patch(nn.Conv2d(seen.channels, 4, 8, 8)))
-
-class Halved(StateEncoder):
-    def __init__(self, seen, width=8):
-        super().__init__(seen.state, width, 1, "tanh")
-
-    def forward(self, inputs):
-        return torch.cat([super().forward(inputs)[..., 0:4], inputs.state[..., 0:4]], -1)
-
-class Perceptron(StateEncoder):
-    def __init__(self, seen):
-        super().__init__(seen.state, 8, 1, "tanh")
-
-class InPlace(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.relu = nn.ReLU(inplace=True)
-
-    def forward(self, inputs):
-        x = self.layer(inputs.state)
-        return self.relu(x) + x
-
-class InPlaceToo(Net):
-    def forward(self, inputs):
-        x = self.layer(inputs.state)
-        return nn.functional.relu(x, inplace=True) + x
-
-class OfASlice(Net):
-    features = 6
-
-    def forward(self, inputs):
-        x = self.layer(inputs.state)
-        nn.functional.relu(x[..., 0:6], True)
-        return x[..., 0:6]
-
-class BehindAView(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.flat = nn.Flatten(2)
-        self.relu = nn.ReLU(inplace=True)
-
-    def forward(self, inputs):
-        x = self.layer(inputs.state)
-        return self.relu(self.flat(x)) + x
-
-class WeightNormed(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.layer = nn.utils.weight_norm(self.layer)
-
-class Parametrized(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.layer = nn.utils.parametrizations.orthogonal(self.layer)
-
-class Replaced(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        forward = self.layer.forward
-        self.layer.forward = lambda x: 2.0 * forward(x)
-
-class MixesSteps(Net):
-    def forward(self, inputs):
-        x = self.layer(inputs.state)
-        return x - x.mean(0, keepdim=True)
-
-class MixesEnvs(Net):
-    def forward(self, inputs):
-        x = self.layer(inputs.state)
-        return x - x.mean(1, keepdim=True)
-
-class MixesAll(Net):
-    def forward(self, inputs):
-        return self.layer(inputs.state) / inputs.state.norm()
-
-class MixesImages(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.eyes = Eyes(nn.Sequential(nn.Conv2d(seen.channels, 8, 36), nn.Flatten()))
-
-    def forward(self, inputs):
-        return self.eyes(inputs) / inputs.rgb.float().std()
-
-class OneEnvAlone(Net):
-    def forward(self, inputs):
-        return self.layer(inputs.state).squeeze(1)
-
-class Averages(Net):
-    # The mean of all that it has seen of an episode: a memory of how many steps, and of their sum.
-    memory = 9
-    resets = True
-
-    def forward(self, inputs, memory, starts):
-        features = []
-        for seen, begun in zip(self.layer(inputs.state), starts):
-            kept = memory * (~begun).unsqueeze(-1) if self.resets or not features else memory
-            memory = torch.cat([kept[:, :1] + 1.0, kept[:, 1:] + seen], -1)
-            features.append(memory[:, 1:] / memory[:, :1])
-        return torch.stack(features), memory
-
-class EmptiedAtFirst(Averages):
-    resets = False
-
-class LosesSteps(Averages):
-    def forward(self, inputs, memory, starts):
-        features, _ = super().forward(inputs, memory, starts)
-        return features, torch.zeros_like(memory)
-
-class Attends(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.attention = nn.MultiheadAttention(8, 2, batch_first=True)
-
-    def forward(self, inputs):
-        x = self.layer(inputs.state).unsqueeze(-2)
-        shape, x = x.shape, x.flatten(0, 1)
-        return self.attention(x, x, x, need_weights=False)[0].view(*shape[:2], -1)  # Attends
-
-class Unrolls(Net):
-    def forward(self, inputs):
-        return torch.stack([self.layer(one) for one in inputs.state])  # Unrolls
-
-class Bilinear(Net):
-    def __init__(self, seen):
-        super().__init__(seen)
-        self.both = nn.Bilinear(seen.state, 8, 8)
-
-    def forward(self, inputs):
-        return self.both(inputs.state, self.layer(inputs.state))  # Bilinear
-
-def no_class(seen):
-    pass
-"""
-EYES = {"sees": "rgb", "image_size": 36}
-SEEN = Seen(6, {"way": slice(0, 3)}, {}, 4)
-
-
-@pytest.fixture
-def lab(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
-    """WRONG in a file."""
-    monkeypatch.setattr(sys, "path", list(sys.path))
-    file = tmp_path / "lab.py"
-    file.write_text(WRONG, encoding="utf-8")
-    return file
-
-
-def named(file: pathlib.Path, name: str, options: str = "") -> OwnNetwork:
-    found = own_networks.network_of(own_code.named(f"{file}:{name}", "--network"))
-    return own_networks.with_options(found, options)
 
 
 @pytest.mark.parametrize(
@@ -315,9 +27,9 @@ def named(file: pathlib.Path, name: str, options: str = "") -> OwnNetwork:
         ("Nameless", "has features = 0, expected a whole number from 1"),
         ("Flat", r"returned features of float32 \[2, 3\], expected \[2, 3, 8\]"),
         ("Nothing", r"returned features of NoneType, expected \[2, 3, 8\]"),
-        ("Misfit", r"failed in forward\(\), in line 33: RuntimeError: mat1 and mat2 shapes cannot be"),
-        ("Blind", r"failed in forward\(\), in line 37: AttributeError: 'NoneType' object has no attri"),
-        ("Unmade", r"failed in __init__\(\), in line 41: KeyError: 'no such part'"),
+        ("Misfit", r"failed in forward\(\), in line {line}: RuntimeError: mat1 and mat2 shapes cannot be"),
+        ("Blind", r"failed in forward\(\), in line {line}: AttributeError: 'NoneType' object has no attri"),
+        ("Unmade", r"failed in __init__\(\), in line {line}: KeyError: 'no such part'"),
         ("Ends", "ended the program when it was made; raise an exception instead"),
         ("NaNs", r"returned features that are no numbers \(NaN or infinite\)"),
         ("Wide", "has a parameter scale of float64, expected float32"),
@@ -334,6 +46,7 @@ def named(file: pathlib.Path, name: str, options: str = "") -> OwnNetwork:
     ],
 )  # fmt: skip
 def test_what_cannot_be_a_network_says_why(lab: pathlib.Path, name: str, message: str) -> None:
+    message = with_line(message, name)
     with pytest.raises(SettingsError, match=f"^--network: lab.py:{name} {message}"):
         named(lab, name).make(SEEN, recurrent=False)
 
@@ -418,7 +131,7 @@ def test_a_resumed_run_is_the_run_that_would_have_been(
     assert torch.equal(parameters(whole), parameters(resumed))
     # The file is another one now.
     file = next((tmp_path / "half").glob("checkpoints/*/policy.pt"))
-    lab.write_text(WRONG + "# changed\n", encoding="utf-8")
+    lab.write_text(NETWORKS + "# changed\n", encoding="utf-8")
     with pytest.raises(NetworkError, match="lab.py is another file than it was then; put it back"):
         checkpoint.load_policy(file, network=named(lab, "Net"))
     with pytest.raises(NetworkError, match="found --network lab.py:Narrow; if you trust it, add"):
@@ -438,113 +151,17 @@ def test_weights_of_another_class_of_the_name_are_refused(
     )
     trainer.begin()
     trainer.train()
-    lab.write_text(WRONG.replace("8)", "7)").replace("= 8", "= 7"), encoding="utf-8")
+    lab.write_text(NETWORKS.replace("8)", "7)").replace("= 8", "= 7"), encoding="utf-8")
     with pytest.raises(CheckpointError, match="is not a policy of this version: Error"):
         checkpoint.load_policy(tmp_path / "run" / "best.pt", network=named(lab, "Net"))
-
-
-def saved_policy(own: OwnNetwork, **settings: Any) -> checkpoint.SavedPolicy:
-    parts = [("robot_target", 3), ("joints", 3)]
-    made = Settings(**{"network": str(own.code), "simulation": "task=pick", **settings})
-    shape = checkpoint.PolicyShape(6, 9)
-    torch.manual_seed(2)
-    policy = checkpoint.new_policy(made, shape, parts, own)
-    policy.action.linear.weight.data.normal_(0.0, 0.3)
-    return checkpoint.SavedPolicy(policy.eval(), made, shape, parts, 1, None, {}, own)
-
-
-@pytest.mark.parametrize(
-    "name, settings",
-    [
-        ("Sums", {}),
-        ("Sums", {"recurrent": True}),
-        ("Net", {}),
-        ("Perceptron", {}),
-        ("Halved", {}),
-        ("Parametrized", {}),
-        ("LooksPlainly", EYES),
-    ],
-)
-def test_a_pack_of_known_layers_does_what_the_network_does(
-    tmp_path: pathlib.Path, lab: pathlib.Path, name: str, settings: dict[str, Any]
-) -> None:
-    saved, pack = saved_policy(named(lab, name), **settings), tmp_path / "own.pack"
-    checkpoint.save_policy(saved, tmp_path / "own.pt")
-    export_policy(tmp_path / "own.pt", pack, network=f"{lab}:{name}")
-    draws = np.random.default_rng(1)
-    seen = draws.normal(size=(5, 6)).astype(np.float32)
-    rgb = draws.integers(0, 256, (5, 36, 36, 3)).astype(np.uint8) if settings is EYES else None
-    with torch.inference_mode():
-        hidden = saved.policy.initial_hidden(5, torch.device("cpu"))
-        starts = torch.ones(1, 5, dtype=torch.bool)
-        colors = torch.from_numpy(rgb)[None] if rgb is not None else None
-        said = saved.policy.act(Inputs(torch.from_numpy(seen)[None], colors), hidden, starts)
-    played = galactic.LearnedPolicy(pack, 5, deterministic=True).act(seen, rgb=rgb)
-    np.testing.assert_allclose(played, said.actions.mode()[0].numpy(), atol=1e-4)
-
-
-@pytest.mark.parametrize(
-    "name, settings, message",
-    [
-        ("Sines", {}, r"line [0-9]+ of lab.py: a policy pack has no layer for sin in forward\(\)"),
-        ("Branches", {}, r"forward\(\) cannot be followed in line [0-9]+ of lab.py \(TraceError"),
-        ("Attends", {}, "^line {line} of lab.py: a policy pack has no layer for MultiheadAttention$"),
-        ("Unrolls", {}, "cannot be followed in line {line} of lab.py.*: write it of layers alone, wit"),
-        ("Bilinear", {}, r"^line {line} of lab.py: a policy pack has no layer for Bilinear\(.*\)$"),
-        ("LooksTwice", {**EYES, "network_options": "doubled=True"}, "has no layer for Doubled"),
-        ("LooksTwice", {**EYES, "network_options": "doubled=False"}, "has no layer for Weighted"),
-        ("LooksBack", EYES, "has no layer for Backwards"),
-        ("InPlace", {}, r"relu in forward\(\) works in place on what is read elsewhere \(%relu"),
-        ("InPlaceToo", {}, "works in place on what is read elsewhere .*: leave inplace=True out"),
-        ("OfASlice", {}, "works in place on what is read elsewhere"),
-        ("BehindAView", {}, r"make other features than it \([0-9.]+ apart on made-up inputs\): write"),
-        ("WeightNormed", {}, r"layer \(Linear\) has hooks around its forward\(\), as torch.nn.utils.wei"),
-        ("Replaced", {}, r"layer \(Linear\) was given another forward\(\) than its class has"),
-    ],
-)  # fmt: skip
-def test_what_a_pack_does_not_know_is_refused(
-    tmp_path: pathlib.Path, lab: pathlib.Path, name: str, settings: dict[str, Any], message: str
-) -> None:
-    own = own_networks.with_options(named(lab, name), settings.get("network_options", ""))
-    checkpoint.save_policy(saved_policy(own, **settings), tmp_path / "own.pt")
-    lines = [n for n, one in enumerate(WRONG.splitlines(), 1) if one.endswith(f"  # {name}")]
-    message = message.replace("{line}", str(lines[0]) if lines else "")
-    with pytest.raises(CheckpointError, match=message):
-        export_policy(tmp_path / "own.pt", tmp_path / "own.pack", network=f"{lab}:{name}")
-    assert not (tmp_path / "own.pack").exists()
-
-
-def test_a_pack_has_no_memory_of_ones_own(tmp_path: pathlib.Path) -> None:
-    checkpoint.save_policy(saved_policy(named(EXAMPLE, "Remembering")), tmp_path / "own.pt")
-    with pytest.raises(CheckpointError, match="has a memory of its own, and .* with --recurrent"):
-        export_policy(tmp_path / "own.pt", tmp_path / "a.pack", network=f"{EXAMPLE}:Remembering")
-
-
-@pytest.mark.parametrize(
-    "name, code, message",
-    [
-        ("Sines", 3, "a policy pack has no layer for sin in forward()"),
-        ("Net", 2, "none.pack"),
-    ],
-)
-def test_what_dynamics_cannot_play_is_refused_before_a_world_is_opened(
-    tmp_path: pathlib.Path, lab: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: Any,
-    name: str, code: int, message: str
-) -> None:  # fmt: skip
-    """And the network that was named is the one that is exported."""
-    monkeypatch.setattr(evaluate.dynamics, "require_tool", lambda: "galactic-dynamics")
-    checkpoint.save_policy(saved_policy(named(lab, name)), tmp_path / "own.pt")
-    words = [str(tmp_path / "own.pt"), str(tmp_path / "none.pack"), "--dynamics", "none.toml"]
-    found, said = evaluate.main([*words, "--network", f"{lab}:{name}"]), capsys.readouterr().err
-    assert message in said and found == code, said
 
 
 def test_a_module_is_another_file_than_the_one_that_a_policy_learned_with(
     tmp_path: pathlib.Path, lab: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     checkpoint.save_policy(saved_policy(named(lab, "Net")), tmp_path / "own.pt")
-    (tmp_path / "own_module_a.py").write_text(WRONG, encoding="utf-8")
-    (tmp_path / "own_module_b.py").write_text(WRONG + "# changed\n", encoding="utf-8")
+    (tmp_path / "own_module_a.py").write_text(NETWORKS, encoding="utf-8")
+    (tmp_path / "own_module_b.py").write_text(NETWORKS + "# changed\n", encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
     load = checkpoint.load_with
     assert load("own_module_a:Net", tmp_path / "own.pt").network is not None
@@ -555,24 +172,6 @@ def test_a_module_is_another_file_than_the_one_that_a_policy_learned_with(
 @pytest.mark.parametrize("value", ["{[1]:2}", "(" * 300, "-" * 100_000 + "1"])
 def test_options_that_are_no_literal_are_text(value: str) -> None:
     assert own_code.keywords_of(f"a={value}", "--network-options") == {"a": value}
-
-
-@needs_worlds
-def test_what_cannot_be_exported_says_so_before_it_learns(
-    tmp_path: pathlib.Path, lab: pathlib.Path
-) -> None:
-    said = {}
-    for name in ("Attends", "Net"):
-        options = [*SMALL, "--network", f"{lab}:{name}", "--steps", UPDATE]
-        done = call("train", WORLD, "-o", tmp_path / name, *options)
-        assert done.returncode == 0, done.stderr
-        said[name] = done.stderr
-    assert (
-        "galactic.export can make no pack of lab.py:Attends, which Python alone will"
-        in said["Attends"]
-    )
-    assert "of lab.py: a policy pack has no layer for MultiheadAttention\n" in said["Attends"]
-    assert "galactic.export" not in said["Net"]
 
 
 TIRES = """
@@ -595,7 +194,7 @@ def test_what_a_network_in_a_module_raises_is_the_users(
 ) -> None:
     """Also where the module has the class from another one."""
     file = tmp_path / "own_tired.py"
-    file.write_text(WRONG + TIRES, encoding="utf-8")
+    file.write_text(NETWORKS + TIRES, encoding="utf-8")
     (tmp_path / "own_package.py").write_text("from own_tired import Tires\n", encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
     for name in ("own_tired", "own_package"):
@@ -605,15 +204,6 @@ def test_what_a_network_in_a_module_raises_is_the_users(
     assert done.returncode == 3, done.stderr
     assert "an exception of the code that was named ended it\nTraceback" in done.stderr
     assert f'File "{file}", line ' in done.stderr and "LookupError: no more" in done.stderr
-
-
-def test_no_fault_of_what_is_exported_ends_a_training(monkeypatch: pytest.MonkeyPatch) -> None:
-    def raises(*_: Any) -> int:
-        raise RuntimeError("a __repr__ of one's own")
-
-    monkeypatch.setattr(content, "encoded", raises)
-    policy = make_trainer(None).policy
-    assert content.fault_of(policy) == "RuntimeError: a __repr__ of one's own"
 
 
 @needs_worlds
