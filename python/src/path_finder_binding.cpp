@@ -121,7 +121,7 @@ std::unique_ptr<PathFinder> makeFinder(const World& world, const py::object& sce
   keywords["floor_drop"] = drop;
   const GroundOptions ground = optionsOf(world, keywords).ground;
   const py::gil_scoped_release unlocked;
-  return std::make_unique<PathFinder>(orThrow(PathFinder::make(world, number, place, ground)));
+  return std::make_unique<PathFinder>(orThrow(PathFinder::create(world, number, place, ground)));
 }
 
 /// Floats or truths of all cells, (columns in Z, columns in X).

@@ -62,7 +62,7 @@ py::array_t<float> objectCenters(const World& world) {
   const std::size_t count = world.episodes().objectNames().size();
   Filled<float> centers({static_cast<py::ssize_t>(count), 3});
   for (std::uint32_t object = 0; object < count; ++object) {
-    centers.put(numbersOf(world.objectOf({.object = object, .pose = {}}).box.pose.translation));
+    centers.put(numbersOf(world.object(object).box.pose.translation));
   }
   return centers.array();
 }

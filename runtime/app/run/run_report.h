@@ -37,7 +37,7 @@ struct StepTime {
 
 /// What drawing a run took.
 struct RenderReport {
-  /// BatchRenderer::description(), and whether it is "gl" or "soft".
+  /// BatchRenderer::description(), and its backendName().
   std::string description;
   std::string backend;
   /// By the ids of semantic images; empty where none are drawn.

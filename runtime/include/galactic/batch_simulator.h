@@ -280,7 +280,7 @@ class BatchSimulator {
   /// one becomes each of them; the random numbers and episodes to come are those of the env that a
   /// state is restored to. The bytes need not be trusted: fails with kInvalidInput or kUnsupported
   /// and changes nothing if they are not such a state, are of another number of envs or, with
-  /// `envs`, of another seed, or where there is no such env, or one is named twice.
+  /// `envs`, of another seed, or where one is named twice.
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state);
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state,
                                           std::span<const std::uint32_t> envs);

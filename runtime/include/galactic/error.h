@@ -61,9 +61,10 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(Error{code, std::move(where), std::move(message), name});
 }
 
-/// Thrown where a call that returns no Result cannot go on: when a graphics processor runs out of
-/// memory in the middle of its work, and when the caller has not kept what the function asks for,
-/// as with arrays of another length.
+/// Thrown where the caller has not kept what a function asks for, as with arrays of another length,
+/// numbers of what there is not or calls out of their order, whatever the function returns; and
+/// where one that returns no Result cannot go on, as when a graphics processor runs out of memory
+/// in the middle of its work. What a user can get wrong is a Result.
 class ErrorException : public std::runtime_error {
  public:
   explicit ErrorException(Error error)

@@ -75,8 +75,9 @@ class PathFinder {
   /// the base or the root of a robot is. kInvalidInput where there is none, where a number is
   /// not finite, where there is no such scene, and where `ground` is out of its ranges
   /// (checkOptions).
-  [[nodiscard]] static Result<PathFinder> make(const World& world, std::uint32_t scene,
-                                               const Vec3& start, const GroundOptions& ground = {});
+  [[nodiscard]] static Result<PathFinder> create(const World& world, std::uint32_t scene,
+                                                 const Vec3& start,
+                                                 const GroundOptions& ground = {});
 
   /// Edge of a cell, meters.
   [[nodiscard]] static float cellSize();

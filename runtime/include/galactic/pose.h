@@ -1,8 +1,11 @@
 #pragma once
+#include <cmath>
+#include <numbers>
 
 namespace galactic {
 
-/// A point or direction in the world frame: right-handed, Y up, meters.
+/// A point in meters or a direction, in the world's frame, which is right-handed with Y up, or in
+/// the one that a name or a comment says.
 struct Vec3 {
   float x = 0;
   float y = 0;
@@ -11,7 +14,7 @@ struct Vec3 {
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
-/// A closed interval of heights, meters; lo <= hi.
+/// A closed interval, of heights in meters where nothing else is said; lo <= hi.
 struct Span {
   float lo = 0;
   float hi = 0;
@@ -73,6 +76,24 @@ struct Pose {
 
 /// The opposite rotation of a unit quaternion.
 [[nodiscard]] constexpr Quat conjugate(const Quat& q) { return {-q.x, -q.y, -q.z, q.w}; }
+
+/// Radians.
+inline constexpr float kFullTurn = 2 * std::numbers::pi_v<float>;
+
+/// The same angle from -pi to pi, radians.
+[[nodiscard]] inline float wrappedAngle(float angle) { return std::remainder(angle, kFullTurn); }
+
+/// How far a rotation turns about +Y, radians, counter-clockwise seen from above, from -2 pi to
+/// 2 pi: all of it where it is upright, as that of a robot's root.
+[[nodiscard]] inline float yawOf(const Quat& rotation) {
+  return 2 * std::atan2(rotation.y, rotation.w);
+}
+
+/// The upright rotation with this yaw.
+[[nodiscard]] inline Quat rotationOfYaw(float yaw) {
+  const float half = 0.5F * yaw;
+  return {0, std::sin(half), 0, std::cos(half)};
+}
 
 /// The point `p` (frame b) in frame a.
 [[nodiscard]] constexpr Vec3 operator*(const Pose& a_from_b, const Vec3& p) {

@@ -72,8 +72,12 @@ class World {
   [[nodiscard]] std::uint32_t sceneIndexOf(const Episode& episode) const {
     return content_->scene_of_name[episode.scene];
   }
+  /// `number`: index into EpisodeSet::objectNames().
+  [[nodiscard]] const ObjectModel& object(std::uint32_t number) const {
+    return content_->object_of_name[number];
+  }
   [[nodiscard]] const ObjectModel& objectOf(const Placement& placement) const {
-    return content_->object_of_name[placement.object];
+    return object(placement.object);
   }
   /// Index into the robot's joint positions of each of the episodes' startJoints().
   [[nodiscard]] std::span<const std::uint32_t> startPositionIndices() const {
@@ -81,6 +85,8 @@ class World {
   }
   /// The most objects that one episode has.
   [[nodiscard]] std::size_t mostObjects() const { return content_->most_objects; }
+  /// The most spheres that one object of the episodes has.
+  [[nodiscard]] std::size_t mostObjectSpheres() const { return content_->most_object_spheres; }
 
   /// What the world pack says of the task, in the order of the option table; empty where it says
   /// nothing, and where the packs were opened one by one.
@@ -103,6 +109,7 @@ class World {
     std::vector<ObjectModel> object_of_name;
     std::vector<std::uint32_t> start_position_indices;
     std::size_t most_objects = 0;
+    std::size_t most_object_spheres = 0;
     std::uint64_t hash = 0;
     std::vector<OptionText> task_options;
   };

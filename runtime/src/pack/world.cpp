@@ -395,6 +395,9 @@ Result<World> World::make(std::vector<PackFile> packs, std::vector<OptionText> t
   for (const Episode& episode : world.episodes.front().episodes()) {
     world.most_objects = std::max<std::size_t>(world.most_objects, episode.placement_count);
   }
+  for (const ObjectModel& object : world.object_of_name) {
+    world.most_object_spheres = std::max(world.most_object_spheres, object.spheres.size());
+  }
   return World(std::make_shared<const Content>(std::move(world)));
 }
 

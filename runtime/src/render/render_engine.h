@@ -22,12 +22,8 @@ class RenderEngine {
 
   /// Draws, and leaves the images on a CUDA device: see BatchRenderer::renderToDevice(). Fails with
   /// kUnsupported where it cannot.
-  [[nodiscard]] virtual Result<DeviceImages> renderToDevice(std::span<const RenderView> /*views*/,
-                                                            std::uintptr_t /*stream*/) {
-    return fail(
-        ErrorCode::kUnsupported, "device images",
-        "the soft backend draws into memory of the processor; use the cuda or the gl backend");
-  }
+  [[nodiscard]] virtual Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
+                                                            std::uintptr_t stream) = 0;
 
   /// kSoft, kGl or kCuda.
   [[nodiscard]] virtual RenderBackend backend() const = 0;

@@ -93,7 +93,7 @@ StandingRobot::StandingRobot(const Robot& robot, const simulation::MotionModel& 
   for (std::size_t v = 0; v < variables.size(); ++v) {
     const simulation::MotionVariable& variable = motion.variables[v];
     const float start = robot.startPositions()[variable.position];
-    variables[v].values.fill(variable.wraps ? std::remainder(start, 2 * std::numbers::pi_v<float>)
+    variables[v].values.fill(variable.wraps ? wrappedAngle(start)
                                             : std::clamp(start, variable.lower, variable.upper));
   }
   std::vector<simulation::EnvRow> grips(simulation::kGripNumbers);

@@ -21,7 +21,6 @@ using simulation::RestingBox;
 /// What a robot without a laser in its recipe gets: meters and radians.
 constexpr float kHeight = 0.25F;
 constexpr float kRange = 10.0F;
-constexpr float kTurn = 2 * std::numbers::pi_v<float>;
 /// As options allow.
 constexpr std::size_t kMostBeams = 1024;
 
@@ -53,7 +52,7 @@ Result<void> mount(const Robot& robot, const simulation::MotionModel& motion,
   settings.yaw = std::atan2(-middle.z, middle.x);
   const float height = origin.y + motion.base.root_height;
   settings.heights = {{height, height}};
-  settings.field_of_view = std::min(laser.field_of_view, kTurn);
+  settings.field_of_view = std::min(laser.field_of_view, kFullTurn);
   settings.range = laser.range;
   settings.least_range = laser.least_range;
   settings.noise = laser.noise;
@@ -82,7 +81,8 @@ std::vector<std::vector<float>> floorsOf(std::span<const StoodOn> stood_on, std:
 
 Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& robot,
                                     const simulation::MotionModel& motion) {
-  LaserSettings settings{.heights = {{kHeight, kHeight}}, .field_of_view = kTurn, .range = kRange};
+  LaserSettings settings{
+      .heights = {{kHeight, kHeight}}, .field_of_view = kFullTurn, .range = kRange};
   settings.beams = options.beams;
   if (options.beams == 0) return settings;
   if (robot.laser()) {
@@ -159,7 +159,7 @@ void Laser::aimBeams() {
   beams_right_.resize(padded);
   const auto field = static_cast<double>(settings_.field_of_view);
   // A whole turn has no two ends.
-  const bool is_round = settings_.field_of_view >= kTurn;
+  const bool is_round = settings_.field_of_view >= kFullTurn;
   const std::uint32_t gaps = is_round && beams > 1 ? beams : beams - 1;
   for (std::uint32_t n = 0; n < padded; ++n) {
     const std::uint32_t beam = std::min(n, beams - 1);

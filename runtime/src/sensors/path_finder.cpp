@@ -155,8 +155,8 @@ std::vector<Vec3> GeodesicFields::path(std::size_t n, const Vec3& base) const {
   return pulledTight(*plan_, points);
 }
 
-Result<PathFinder> PathFinder::make(const World& world, std::uint32_t scene, const Vec3& start,
-                                    const GroundOptions& ground) {
+Result<PathFinder> PathFinder::create(const World& world, std::uint32_t scene, const Vec3& start,
+                                      const GroundOptions& ground) {
   SimulationOptions options;
   options.ground = ground;
   RETURN_IF_ERROR(checkOptions(options));

@@ -162,11 +162,10 @@ class BatchSimulator::Impl {
   }
 
   Result<void> restore(std::span<const std::byte> bytes, std::span<const std::uint32_t> envs) {
-    requireIdle("BatchSimulator::restoreState");
+    constexpr const char* kCall = "BatchSimulator::restoreState";
+    requireIdle(kCall);
     for (const std::uint32_t env : envs) {
-      if (env < envCount() || env == kNoEnv) continue;
-      return fail(ErrorCode::kInvalidInput, "saved state",
-                  fmt::format("cannot become env {}: there are {}", env, envCount()));
+      if (env != kNoEnv) detail::checkIndex(kCall, "env", env, envCount());
     }
     RETURN_IF_ERROR(requireDistinct(envs));
     const Result<SavedState> saved = simulation::readState(model_, bytes);

@@ -54,13 +54,11 @@ class PartList {
   RenderMeshSource source_;
 };
 
-/// The box of each object that the episodes name; a point where no episode places one.
+/// The box of each object that the episodes name.
 std::vector<OrientedBox> boxesOf(const World& world) {
-  std::vector<OrientedBox> boxes(world.episodes().objectNames().size());
-  for (const Episode& episode : world.episodes().episodes()) {
-    for (const Placement& placement : world.episodes().placements(episode)) {
-      boxes[placement.object] = world.objectOf(placement).box;
-    }
+  std::vector<OrientedBox> boxes;
+  for (std::uint32_t n = 0; n < world.episodes().objectNames().size(); ++n) {
+    boxes.push_back(world.object(n).box);
   }
   return boxes;
 }
@@ -74,26 +72,26 @@ Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& op
   models.world_hash_ = world.hash();
   PartList parts;
   for (const Scene& scene : world.scenes()) {
-    parts.add(debug::gridSurface(scene.grids()[*grid]), kGrid);
+    parts.add(views::gridSurface(scene.grids()[*grid]), kGrid);
   }
   models.first_robot_sphere_ = parts.count();
   for (const float radius : world.radii()) {
-    parts.add(debug::sphereSurface(radius, kDebugRobot.color), kRobotSphere);
+    parts.add(views::sphereSurface(radius, kDebugRobot.color), kRobotSphere);
   }
   models.first_held_sphere_ = parts.count();
   for (const float radius : world.radii()) {
-    parts.add(debug::sphereSurface(radius, kDebugHeld.color), kHeldSphere);
+    parts.add(views::sphereSurface(radius, kDebugHeld.color), kHeldSphere);
   }
   const std::vector<OrientedBox> boxes = boxesOf(world);
   models.first_box_ = parts.count();
   for (const OrientedBox& box : boxes)
-    parts.add(debug::boxSurface(box, kDebugObject.color), kRestingBox);
+    parts.add(views::boxSurface(box, kDebugObject.color), kRestingBox);
   models.first_target_ = parts.count();
   for (const OrientedBox& box : boxes)
-    parts.add(debug::boxSurface(box, kDebugTask.color), kRestingBox);
+    parts.add(views::boxSurface(box, kDebugTask.color), kRestingBox);
   models.first_goal_ = parts.count();
   for (const OrientedBox& box : boxes)
-    parts.add(debug::boxFrameSurface(box, kDebugTask.color), kGoal);
+    parts.add(views::boxFrameSurface(box, kDebugTask.color), kGoal);
 
   Result<RenderMeshStorage> built = buildRenderMeshes(parts.source());
   if (!built) return tl::unexpected<Error>(built.error());

@@ -17,17 +17,6 @@ RigidTransform sphereAt(const Vec3& center_in_world) {
   return place;
 }
 
-/// The most spheres that an object of the world has.
-std::size_t mostHeldSpheres(const World& world) {
-  std::size_t most = 0;
-  for (const Episode& episode : world.episodes().episodes()) {
-    for (const Placement& placement : world.episodes().placements(episode)) {
-      most = std::max(most, world.objectOf(placement).spheres.size());
-    }
-  }
-  return most;
-}
-
 }  // namespace
 
 DebugViews::DebugViews(const DebugModels& models, const BatchSimulator& simulator,
@@ -51,7 +40,7 @@ DebugViews::DebugViews(const DebugModels& models, const BatchSimulator& simulato
     }
   }
   // A scene, the objects, the goal, the robot and what it holds.
-  stride_ = 1 + world_.mostObjects() + 1 + spheres_.size() + mostHeldSpheres(world_);
+  stride_ = 1 + world_.mostObjects() + 1 + spheres_.size() + world_.mostObjectSpheres();
   instances_.resize(envs * stride_);
   views_.resize(envs);
   update(simulator);

@@ -9,7 +9,7 @@
 
 #include "views/merge_squares.h"
 
-namespace galactic::debug {
+namespace galactic::views {
 namespace {
 
 /// Which way a face looks; the first number of a square's key.
@@ -218,4 +218,4 @@ RenderSurface gridSurface(const ColumnGrid& grid) {
   return writer.take();
 }
 
-}  // namespace galactic::debug
+}  // namespace galactic::views

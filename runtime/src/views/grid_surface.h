@@ -4,7 +4,7 @@
 #include "galactic/column_grid.h"
 #include "layout/render_mesh_builder.h"
 
-namespace galactic::debug {
+namespace galactic::views {
 
 /// Heights are rounded to multiples of this, so that level ground becomes few triangles; meters.
 inline constexpr double kHeightStep = 0.005;
@@ -15,4 +15,4 @@ inline constexpr double kHeightStep = 0.005;
 /// Colors: shades of gray by direction. No triangles where nothing is free.
 [[nodiscard]] RenderSurface gridSurface(const ColumnGrid& grid);
 
-}  // namespace galactic::debug
+}  // namespace galactic::views

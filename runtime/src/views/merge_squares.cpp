@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace galactic::debug {
+namespace galactic::views {
 
 std::vector<KeyedRectangle> mergeSquares(std::vector<KeyedSquare> squares) {
   std::sort(squares.begin(), squares.end());
@@ -33,4 +33,4 @@ std::vector<KeyedRectangle> mergeSquares(std::vector<KeyedSquare> squares) {
   return rectangles;
 }
 
-}  // namespace galactic::debug
+}  // namespace galactic::views

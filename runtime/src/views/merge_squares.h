@@ -4,7 +4,7 @@
 #include <tuple>
 #include <vector>
 
-namespace galactic::debug {
+namespace galactic::views {
 
 /// A square of a plane of squares. Squares of equal `key` can be joined.
 struct KeyedSquare {
@@ -38,4 +38,4 @@ struct KeyedRectangle {
 /// runs along the columns, joined along the rows where they are equally long.
 [[nodiscard]] std::vector<KeyedRectangle> mergeSquares(std::vector<KeyedSquare> squares);
 
-}  // namespace galactic::debug
+}  // namespace galactic::views

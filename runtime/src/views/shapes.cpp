@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-namespace galactic::debug {
+namespace galactic::views {
 namespace {
 
 /// `color` with that share of its brightness.
@@ -167,4 +167,4 @@ RenderSurface boxFrameSurface(const OrientedBox& box, std::uint32_t color) {
   return surface;
 }
 
-}  // namespace galactic::debug
+}  // namespace galactic::views

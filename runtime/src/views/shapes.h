@@ -2,7 +2,7 @@
 #include "galactic/shapes.h"
 #include "layout/render_mesh_builder.h"
 
-namespace galactic::debug {
+namespace galactic::views {
 
 // Closed shapes seen from outside, in colors that show their form: balls as if light
 // came from above, boxes with a shade for each direction.
@@ -18,4 +18,4 @@ namespace galactic::debug {
 /// Half the thickness of the beams, meters.
 inline constexpr float kBeamHalfThickness = 0.004F;
 
-}  // namespace galactic::debug
+}  // namespace galactic::views

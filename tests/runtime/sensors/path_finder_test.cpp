@@ -36,7 +36,7 @@ BoxWorld worldWith(const std::vector<Block>& blocks) {
 }
 
 PathFinder finderIn(const BoxWorld& world) {
-  return PathFinder::make(world.world(), 0, kStart).value();
+  return PathFinder::create(world.world(), 0, kStart).value();
 }
 
 GeodesicFields fieldsOf(const PathFinder& finder, std::vector<Vec3> goals,
@@ -68,7 +68,7 @@ TEST(PathFinder, KnowsWhereTheRobotCanGo) {
     EXPECT_EQ(fieldsOf(finder, {kStart}).way(0, {wrong, 0, 0.75F}).distance, kInfinity);
     EXPECT_TRUE(fieldsOf(finder, {kStart}).path(0, {0.75F, 0, wrong}).empty());
     EXPECT_FALSE(finder.fieldsTo(std::vector{Vec3{0.75F, wrong, 0}}, GoalOf::kHand).has_value());
-    EXPECT_FALSE(PathFinder::make(world.world(), 0, {wrong, 0, wrong}).has_value());
+    EXPECT_FALSE(PathFinder::create(world.world(), 0, {wrong, 0, wrong}).has_value());
   }
   const std::vector<Vec3> places = finder.places();
   std::size_t cells = 0;
@@ -196,7 +196,7 @@ TEST(PathFinder, SaysThatThereIsNoWay) {
   const GeodesicFields hand = fieldsOf(finder, {{2.25F, 0.05F, 0.75F}}, GoalOf::kHand);
   EXPECT_EQ(hand.way(0, kStart).distance, kInfinity);
   EXPECT_TRUE(hand.path(0, kStart).empty());
-  const auto other = PathFinder::make(world.world(), 0, kBehind);
+  const auto other = PathFinder::create(world.world(), 0, kBehind);
   ASSERT_TRUE(other.has_value());
   EXPECT_FALSE(other->isNavigable(kStart));
 }
@@ -257,7 +257,7 @@ TEST(PathFinder, HasAWayToAHandsGoalThatIsTooHighAboveTheBase) {
   // A hand gets there from the doorstep alone.
   const BoxWorld world = worldWith({plainFloor(), {{1.5F, 0, 0}, {3, 0.15F, 3}}});
   const PathFinder finder =
-      PathFinder::make(world.world(), 0, kStart, {.most_rise = 0.2F, .most_drop = 0.2F}).value();
+      PathFinder::create(world.world(), 0, kStart, {.most_rise = 0.2F, .most_drop = 0.2F}).value();
   const Vec3 under{1, 0, 1.5F};
   ASSERT_TRUE(finder.isNavigable(under));
   const GeodesicWay way = fieldsOf(finder, {under + Vec3{0, 2.3F, 0}}, GoalOf::kHand).way(0, under);
@@ -298,7 +298,7 @@ TEST(PathFinder, RefusesGroundOutOfItsRanges) {
   const BoxWorld world = worldWith(walls());
   for (const float wrong : {std::nanf(""), kInfinity, -1.0F}) {
     for (const GroundOptions& ground : {GroundOptions{.most_rise = wrong}, {.most_drop = wrong}}) {
-      const auto refused = PathFinder::make(world.world(), 0, kStart, ground);
+      const auto refused = PathFinder::create(world.world(), 0, kStart, ground);
       ASSERT_FALSE(refused.has_value());
       EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
       EXPECT_THAT(refused.error().message, HasSubstr("expected 0.001 to 1000"));
@@ -309,13 +309,13 @@ TEST(PathFinder, RefusesGroundOutOfItsRanges) {
 TEST(PathFinder, RefusesWhatIsNoStart) {
   const BoxWorld world = worldWith(walls());
   // The root of a robot may be above its base.
-  const auto above = PathFinder::make(world.world(), 0, {0.75F, 0.4F, 0.75F});
+  const auto above = PathFinder::create(world.world(), 0, {0.75F, 0.4F, 0.75F});
   ASSERT_TRUE(above.has_value());
   EXPECT_NEAR(above->snap(kStart).y, 0, 1e-3F);
-  const auto no_scene = PathFinder::make(world.world(), 1, kStart);
+  const auto no_scene = PathFinder::create(world.world(), 1, kStart);
   ASSERT_FALSE(no_scene.has_value());
   EXPECT_THAT(no_scene.error().message, HasSubstr("there is no scene 1, the last is 0"));
-  const auto in_air = PathFinder::make(world.world(), 0, {0.75F, 7, 0.75F});
+  const auto in_air = PathFinder::create(world.world(), 0, {0.75F, 7, 0.75F});
   ASSERT_FALSE(in_air.has_value());
   EXPECT_EQ(in_air.error().code, ErrorCode::kInvalidInput);
   EXPECT_THAT(in_air.error().message, HasSubstr("cannot stand at or near (0.75, 7.00, 0.75)"));

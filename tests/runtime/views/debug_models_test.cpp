@@ -18,7 +18,7 @@
 #include "views/merge_squares.h"
 #include "views/shapes.h"
 
-namespace galactic::debug::debug_models_test {
+namespace galactic::views::debug_models_test {
 namespace {
 
 using testing::HasSubstr;
@@ -197,4 +197,4 @@ TEST(DebugModels, TheGridIsThatOfTheRadius) {
 }
 
 }  // namespace
-}  // namespace galactic::debug::debug_models_test
+}  // namespace galactic::views::debug_models_test

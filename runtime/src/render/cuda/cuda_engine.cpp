@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cstring>
 #include <utility>
 #if defined(__SSE2__)
@@ -12,6 +11,7 @@
 #endif
 
 #include "render/cuda/kernel_image.h"
+#include "support/stopwatch.h"
 #include "support/thread_clock.h"
 #include "support/try.h"
 
@@ -114,21 +114,6 @@ ListSizes listSizes(std::span<const RenderView> views) {
   }
   return sizes;
 }
-
-/// Adds the time from its beginning to its end to a sum, in seconds.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum) {}
-  ~Stopwatch() {
-    sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Adds what this thread took of the processor, in seconds.
 class ThreadStopwatch {
@@ -487,7 +472,7 @@ ViewSlice CudaEngine::sliceOf(const ViewRange& range, std::size_t number,
 Result<void> CudaEngine::launch(Kernel kernel, std::uint32_t blocks,
                                 const PassParameters& parameters) {
   if (!tuning_.measure) return kernels_->launch(kernel, blocks, parameters, stream_);
-  const Stopwatch watch(timings_.kernels[static_cast<std::size_t>(kernel)]);
+  const detail::Stopwatch watch(timings_.kernels[static_cast<std::size_t>(kernel)]);
   RETURN_IF_ERROR(kernels_->launch(kernel, blocks, parameters, stream_));
   return driver_->check(driver_->functions().synchronize(stream_), "draw");
 }
@@ -533,7 +518,7 @@ Result<void> CudaEngine::readCounts() {
 }
 
 Result<void> CudaEngine::readImages() {
-  const Stopwatch watch(timings_.readback);
+  const detail::Stopwatch watch(timings_.readback);
   const auto read = [this](auto target, const Memory& memory) {
     if (target.empty()) return 0;
     return driver_->functions().copy_to_host(target.data(), memory.address(), target.size_bytes(),

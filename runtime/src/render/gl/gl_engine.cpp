@@ -51,7 +51,7 @@ void GlEngine::begin(std::span<const RenderView> views, const RenderTargets& tar
   targets_ = targets;
   submitted_views_ = 0;
   submitted_slices_ = 0;
-  collected_rounds_ = 0;
+  collected_slices_ = 0;
   const CurrentContext current(context_);
   if (!current.holds()) throw ErrorException(lostContext(current));
   // A batch that failed leaves slices behind, whose buffers are in use until they are drawn.
@@ -61,20 +61,20 @@ void GlEngine::begin(std::span<const RenderView> views, const RenderTargets& tar
 }
 
 void GlEngine::end() {
-  // Who ends a batch that did not begin finds nothing to wait for.
-  if (collected_rounds_ == submitted_slices_) return;
+  // A batch without views has nothing to wait for.
+  if (collected_slices_ == submitted_slices_) return;
   const CurrentContext current(context_);
   if (!current.holds()) throw ErrorException(lostContext(current));
-  while (collected_rounds_ < submitted_slices_) {
-    renderer_->collect(slices_[collected_rounds_ % slices_.size()], targets_);
-    ++collected_rounds_;
+  while (collected_slices_ < submitted_slices_) {
+    renderer_->collect(slices_[collected_slices_ % slices_.size()], targets_);
+    ++collected_slices_;
     submitNext();
   }
 }
 
 void GlEngine::submitNext() {
   while (submitted_views_ < views_.size() &&
-         submitted_slices_ - collected_rounds_ < slices_.size()) {
+         submitted_slices_ - collected_slices_ < slices_.size()) {
     ViewSlice& slice = slices_[submitted_slices_ % slices_.size()];
     const std::size_t count = std::min(renderer_->mostViews(), views_.size() - submitted_views_);
     slice.first_view = submitted_views_;
@@ -98,7 +98,7 @@ void GlEngine::finishSlices() {
 
 Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
   // What a batch that failed left behind is not to be collected any more.
-  collected_rounds_ = submitted_slices_;
+  collected_slices_ = submitted_slices_;
   const CurrentContext current(context_);
   if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
   finishSlices();

@@ -53,7 +53,7 @@ class GlEngine final : public RenderEngine {
   RenderTargets targets_;
   std::size_t submitted_views_ = 0;
   std::size_t submitted_slices_ = 0;
-  std::size_t collected_rounds_ = 0;
+  std::size_t collected_slices_ = 0;
 };
 
 }  // namespace galactic::render::gl

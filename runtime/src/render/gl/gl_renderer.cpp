@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cstring>
 #include <numeric>
 
 #include "render/device_wish.h"
 #include "render/gl/library_textures.h"
+#include "support/stopwatch.h"
 
 namespace galactic::render::gl {
 namespace {
@@ -105,21 +105,6 @@ std::array<std::uint32_t, kDrawClasses> firstOf(
   std::exclusive_scan(counts.begin(), counts.end(), first.begin(), 0U);
   return first;
 }
-
-/// Adds the time until its end to a sum of seconds.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() {
-    sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 void stamp(Query& query) {
   if (query.get() == 0) {
@@ -232,7 +217,7 @@ void GlRenderer::chooseSlices(const GlTuning& tuning) {
 }
 
 void GlRenderer::submit(std::span<const RenderView> views, ViewSlice& slice) {
-  const Stopwatch watch(timings_.setup);
+  const detail::Stopwatch watch(timings_.setup);
   slice.layout = imageLayout(options_, views.size());
   slice.stays = false;
   images_.reserve(slice.layout.bytes);
@@ -255,7 +240,7 @@ Result<ImageLayout> GlRenderer::reserveDeviceImages(std::size_t views) {
 
 void GlRenderer::submitToDevice(std::span<const RenderView> views, const ImageLayout& layout,
                                 ViewSlice& slice) {
-  const Stopwatch watch(timings_.setup);
+  const detail::Stopwatch watch(timings_.setup);
   slice.layout = layout;
   slice.stays = true;
   start(views, slice);
@@ -436,7 +421,7 @@ void GlRenderer::finish(ViewSlice& slice) {
 
 void GlRenderer::collect(ViewSlice& slice, const RenderTargets& targets) {
   finish(slice);
-  const Stopwatch watch(timings_.copy);
+  const detail::Stopwatch watch(timings_.copy);
   const ImageLayout& layout = slice.layout;
   const auto copy_to = [&](auto* target, std::size_t begin, std::size_t bytes_of_view) {
     if (bytes_of_view == 0) return;

@@ -66,6 +66,12 @@ void SoftEngine::end() {
   }
 }
 
+Result<DeviceImages> SoftEngine::renderToDevice(std::span<const RenderView>, std::uintptr_t) {
+  return fail(
+      ErrorCode::kUnsupported, "device images",
+      "the soft backend draws into memory of the processor; use the cuda or the gl backend");
+}
+
 std::string SoftEngine::description() const {
   const char* instructions = draw_ == drawPaneAvx512 ? "AVX-512"
                              : draw_ == drawPaneAvx2 ? "AVX2"

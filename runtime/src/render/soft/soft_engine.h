@@ -21,6 +21,8 @@ class SoftEngine final : public RenderEngine {
 
   void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
   void end() override;
+  [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
+                                                    std::uintptr_t stream) override;
   [[nodiscard]] RenderBackend backend() const override { return RenderBackend::kSoft; }
   [[nodiscard]] std::string description() const override;
   [[nodiscard]] RenderStatistics statistics() const override { return statistics_; }

@@ -32,9 +32,7 @@ struct MotionVariable {
 
 /// The nearest value that a variable takes.
 [[nodiscard]] inline float within(const MotionVariable& variable, float value) {
-  constexpr float kTurn = 6.28318531F;
-  return variable.wraps ? std::remainder(value, kTurn)
-                        : std::clamp(value, variable.lower, variable.upper);
+  return variable.wraps ? wrappedAngle(value) : std::clamp(value, variable.lower, variable.upper);
 }
 
 enum class NodeMotion : std::uint8_t { kTurns, kSlides };

@@ -18,7 +18,6 @@
 namespace galactic::simulation {
 namespace {
 
-constexpr float kTurn = 6.28318531F;
 /// Roots that are tilted further, radians, are of another frame, or of quaternions in another
 /// order.
 constexpr float kMostTilt = 0.1F;
@@ -88,7 +87,7 @@ std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
   // faultOf() has looked whether there is one.
   beginEpisode(model_, state_, 0, *model_.startOf(chosen.episode), EpisodeChoice::kDrawn);
   if (chosen.held >= 0 && !touchesHeld(chosen)) return std::nullopt;
-  moveObjects(chosen);
+  restObjects(model_, state_, 0, chosen.objects, chosen.held);
   if (!standOnFloor(chosen)) return std::nullopt;
   setVariables(chosen);
   placeBodies(step());
@@ -107,23 +106,13 @@ bool StateChooser::touchesHeld(const EnvState& chosen) const {
   return squaredDistance(box, chosen.world_from_grip.translation) < reach * reach;
 }
 
-void StateChooser::moveObjects(const EnvState& chosen) {
-  const Env& env = state_.env(0);
-  for (std::uint32_t object = 0; object < env.objects; ++object) {
-    const Pose& pose = chosen.objects[object];
-    const bool is_held = static_cast<std::int32_t>(object) == chosen.held;
-    if (is_held || pose == state_.objects(0)[object]) continue;
-    restObject(model_, state_, 0, object, pose);
-  }
-}
-
 bool StateChooser::standOnFloor(const EnvState& chosen) {
   const Pose& root = chosen.world_from_root;
   const Vec3 base{root.translation.x, root.translation.y - model_.motion.base.root_height,
                   root.translation.z};
   const FloorUnder under =
       floorUnder(model_.scenes[state_.env(0).scene], base, model_.options.ground);
-  const float yaw = std::remainder(2 * std::atan2(root.rotation.y, root.rotation.w), kTurn);
+  const float yaw = wrappedAngle(yawOf(root.rotation));
   for (const PoseArrays& pose : {chunk_.candidates(0), state_.poses(0)}) {
     *pose.x = base.x;
     *pose.y = under.height;
@@ -178,7 +167,7 @@ void StateChooser::leaveWhatIsInReach() {
 /// Whether the target has been in the hand: is now, or lies elsewhere after steps of the episode.
 bool StateChooser::hasPicked(const EnvState& chosen) const {
   const Env& env = state_.env(0);
-  if (env.held == static_cast<std::int32_t>(env.target)) return true;
+  if (holdsTarget(env)) return true;
   const Placement& start = model_.placements(model_.episodeOf(env.start))[env.target];
   return chosen.step > 0 && !(chosen.objects[env.target] == start.pose);
 }

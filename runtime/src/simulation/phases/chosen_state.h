@@ -30,7 +30,6 @@ class StateChooser {
  private:
   [[nodiscard]] ChunkStep step() { return {model_, state_, chunk_, 0}; }
   [[nodiscard]] bool touchesHeld(const EnvState& chosen) const;
-  void moveObjects(const EnvState& chosen);
   [[nodiscard]] bool standOnFloor(const EnvState& chosen);
   void setVariables(const EnvState& chosen);
   void fillHand(const EnvState& chosen);

@@ -1,7 +1,6 @@
 #include "simulation/phases/follow.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "simulation/phases/action_delay.h"
 #include "simulation/phases/episode_start.h"
@@ -23,7 +22,7 @@ void propose(const ChunkStep& step, std::size_t e, const FollowedState& state) {
   *to.x = root.translation.x;
   *to.y = root.translation.y - step.model.motion.base.root_height;
   *to.z = root.translation.z;
-  *to.yaw = 2 * std::atan2(root.rotation.y, root.rotation.w);
+  *to.yaw = yawOf(root.rotation);
   for (std::size_t v = 0; v < step.model.variableCount(); ++v) {
     to.variables[v * to.stride] = state.joint_positions[step.model.motion.variables[v].position];
   }
@@ -42,16 +41,6 @@ void copyPose(const PoseArrays& from, const PoseArrays& to, std::size_t variable
 /// What nobody asked for stays where it is: forward kinematics reads all envs of the chunk.
 void proposeCurrent(const ChunkStep& step, std::size_t e) {
   copyPose(step.state.poses(step.first + e), step.chunk.candidates(e), step.model.variableCount());
-}
-
-void moveObjects(const ChunkStep& step, std::size_t n, std::span<const Pose> poses) {
-  const Env& env = step.state.env(n);
-  const std::span<const Pose> objects = step.state.objects(n);
-  for (std::uint32_t object = 0; object < env.objects; ++object) {
-    const bool is_held = env.held == static_cast<std::int32_t>(object);
-    if (is_held || objects[object] == poses[object]) continue;
-    restObject(step.model, step.state, n, object, poses[object]);
-  }
 }
 
 /// Grasps and releases as the hand did, after the objects have moved.
@@ -110,7 +99,8 @@ void followChunk(const ChunkStep& step, std::span<const float> actions,
   for (std::size_t e = 0; e < kChunk; ++e) {
     if (!is_followed(e)) continue;
     const FollowedState& state = states[step.first + e];
-    moveObjects(step, step.first + e, state.objects);
+    const std::size_t n = step.first + e;
+    restObjects(step.model, step.state, n, state.objects, step.state.env(n).held);
     followHand(step, e, state);
   }
   judge(step, {});

@@ -30,8 +30,7 @@ void grasp(const ChunkStep& step, std::size_t e) {
 bool mayRestAt(const ChunkStep& step, std::size_t n, const Pose& pose) {
   const Env& env = step.state.env(n);
   const TaskOptions& task = step.model.options.task;
-  const bool is_target = env.held == static_cast<std::int32_t>(env.target);
-  if (task.drop_fails || task.kind != TaskKind::kRearrange || !is_target) return true;
+  if (task.drop_fails || task.kind != TaskKind::kRearrange || !holdsTarget(env)) return true;
   const Vec3 away = pose.translation - step.state.goal(n);
   return dot(away, away) < task.success_distance * task.success_distance;
 }

@@ -105,9 +105,9 @@ void senseWays(const Model& model, const BatchState& state, std::size_t n, std::
     out.add(left);
   };
   const Vec3 base = state.base(n);
-  const bool is_held = env.held == static_cast<std::int32_t>(env.target);
   const Vec3 target = state.objects(n)[env.target].translation;
-  add(is_held ? sensors::Way{.distance = 0} : model.geodesic.toTarget(env.start, base, target));
+  add(holdsTarget(env) ? sensors::Way{.distance = 0}
+                       : model.geodesic.toTarget(env.start, base, target));
   add(model.geodesic.toGoal(env.start, base));
 }
 
@@ -139,7 +139,7 @@ class BelievedPoints {
     // What is in the hand is where the hand is.
     for (std::size_t e = 0; e < kChunk; ++e) {
       const Env& env = state.env(first + e);
-      if (env.held != static_cast<std::int32_t>(env.target)) continue;
+      if (!holdsTarget(env)) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         current_[axis].values[e] = batch.current_targets[axis * kChunk + e];
       }

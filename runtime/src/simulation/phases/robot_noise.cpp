@@ -1,7 +1,6 @@
 #include "simulation/phases/robot_noise.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "simulation/phases/action_delay.h"
 #include "simulation/state/env_moment.h"
@@ -62,8 +61,6 @@ Vec3 turned(const Vec3& way, float angle) {
   return {cosine * way.x + sine * way.z, 0, cosine * way.z - sine * way.x};
 }
 
-float wrapped(float angle) { return std::remainder(angle, 2 * std::numbers::pi_v<float>); }
-
 }  // namespace
 
 std::span<const EnvRow> motionsOf(const ChunkStep& step) noexcept {
@@ -85,7 +82,7 @@ void followOdometry(const ChunkStep& step) noexcept {
     const auto [was, believed] = step.state.odometry(n);
     const PlanarPose now = step.state.planarPose(n);
     const Vec3 way{now.x - was.x, 0, now.z - was.z};
-    const float turn = wrapped(now.yaw - was.yaw);
+    const float turn = wrappedAngle(now.yaw - was.yaw);
     const float length = std::sqrt(dot(way, way));
     if (length == 0 && turn == 0) continue;
     const EnvMoment moment = momentOf(step.model, step.state, n);
@@ -94,7 +91,7 @@ void followOdometry(const ChunkStep& step) noexcept {
     // As motions are off: see disturb().
     const float felt_turn = turn * (1 + errors.next());
     const float drift = length / steps.forward_step * steps.turn_step * errors.next();
-    const float yaw = wrapped(believed.yaw + felt_turn + drift);
+    const float yaw = wrappedAngle(believed.yaw + felt_turn + drift);
     const Vec3 felt_way = turned(way, yaw - now.yaw) * (1 + errors.next());
     step.state.setOdometry(n, {now, {believed.x + felt_way.x, believed.z + felt_way.z, yaw}});
   }

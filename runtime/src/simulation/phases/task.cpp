@@ -14,12 +14,10 @@ float distance(const Vec3& a, const Vec3& b) {
   return std::sqrt(dot(away, away));
 }
 
-bool isHeld(const Env& env) { return env.held == static_cast<std::int32_t>(env.target); }
-
-bool holdsAnother(const Env& env) { return env.held >= 0 && !isHeld(env); }
+bool holdsAnother(const Env& env) { return env.held >= 0 && !holdsTarget(env); }
 
 EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transport) {
-  const bool is_there = transport < task.success_distance && !isHeld(env);
+  const bool is_there = transport < task.success_distance && !holdsTarget(env);
   if (task.needs_terminate && env.events.terminates) {
     return is_there ? EpisodeEnd::kSuccess : EpisodeEnd::kWrongTerminate;
   }
@@ -36,7 +34,7 @@ inline EpisodeEnd findEnd(const TaskOptions& task, const Env& env, float transpo
       end = endOfRearrange(task, env, transport);
       break;
     case TaskKind::kMobilePick:
-      if (isHeld(env)) end = EpisodeEnd::kSuccess;
+      if (holdsTarget(env)) end = EpisodeEnd::kSuccess;
       break;
     case TaskKind::kNone:
       break;
@@ -73,7 +71,7 @@ PointRows targetsNow(const BatchState& state, std::size_t first) noexcept {
   std::memcpy(targets.data(), state.targets(first), sizeof(targets));
   for (std::size_t e = 0; e < kChunk; ++e) {
     const Env& env = state.env(first + e);
-    if (!isHeld(env)) continue;
+    if (!holdsTarget(env)) continue;
     const Vec3 target = state.heldOrigin(first + e);
     targets[0].values[e] = target.x;
     targets[1].values[e] = target.y;
@@ -84,14 +82,15 @@ PointRows targetsNow(const BatchState& state, std::size_t first) noexcept {
 
 TargetDistances measureTarget(const BatchState& state, std::size_t n) noexcept {
   const Env& env = state.env(n);
-  const Vec3 target = isHeld(env) ? state.heldOrigin(n) : state.objects(n)[env.target].translation;
+  const Vec3 target =
+      holdsTarget(env) ? state.heldOrigin(n) : state.objects(n)[env.target].translation;
   return {distance(gripOrigin(state.grip(n)), target), distance(target, state.goal(n))};
 }
 
 Vec3 targetUp(const Model& model, const BatchState& state, std::size_t n) noexcept {
   const Env& env = state.env(n);
   const Pose& resting = state.objects(n)[env.target];
-  const Quat now = (isHeld(env) ? state.heldPose(n) : resting).rotation;
+  const Quat now = (holdsTarget(env) ? state.heldPose(n) : resting).rotation;
   const Placement& start = model.placements(model.episodeOf(env.start))[env.target];
   return rotate(now, rotate(conjugate(start.pose.rotation), {0, 1, 0}));
 }
@@ -104,7 +103,7 @@ WayLeft measureWay(const Model& model, const BatchState& state, std::size_t env_
   if (model.options.task.geodesic_weight == 0) return {};
   const Env& env = state.env(env_number);
   const Vec3 base = state.base(env_number);
-  if (isHeld(env)) return {model.geodesic.toGoal(env.start, base).distance, true};
+  if (holdsTarget(env)) return {model.geodesic.toGoal(env.start, base).distance, true};
   const Vec3 target = state.objects(env_number)[env.target].translation;
   return {model.geodesic.toTarget(env.start, base, target).distance, false};
 }
@@ -173,7 +172,7 @@ float earnOfWay(const ChunkStep& step, std::size_t n, Env& env) {
 
 /// What a target that is carried tilted costs: nothing upright, the penalty on its side.
 float payForTilt(const ChunkStep& step, std::size_t n) {
-  if (!isHeld(step.state.env(n))) return 0;
+  if (!holdsTarget(step.state.env(n))) return 0;
   return step.model.options.task.tilt_penalty * (1 - targetUp(step.model, step.state, n).y);
 }
 

@@ -12,7 +12,6 @@
 namespace galactic::simulation {
 namespace {
 
-constexpr float kTurn = 6.28318531F;
 /// The lane of `step.between` in which slides are looked at on their way.
 constexpr std::size_t kSpareLane = kLanes;
 
@@ -46,7 +45,7 @@ class Walker {
         scene_(step.model.scenes[step.state.env(step.first + e).scene]),
         from_(step.state.poses(step.first + e)),
         to_(step.chunk.candidates(e)),
-        turn_(std::remainder(*to_.yaw - *from_.yaw, kTurn)) {
+        turn_(wrappedAngle(*to_.yaw - *from_.yaw)) {
     heights_[0] = *from_.y;
     placeNext();
     cutInParts();
@@ -95,14 +94,14 @@ class Walker {
       const auto between = [share](float from, float to) { return from + share * (to - from); };
       places.x[lane] = between(*from_.x, *to_.x) + slid_.x;
       places.z[lane] = between(*from_.z, *to_.z) + slid_.z;
-      places.yaw[lane] = std::remainder(*from_.yaw + share * turn_, kTurn);
+      places.yaw[lane] = wrappedAngle(*from_.yaw + share * turn_);
       for (std::size_t v = 0; v < step_.model.variableCount(); ++v) {
         const float from = from_.variables[v * from_.stride];
         const float to = to_.variables[v * to_.stride];
         // An angle that came to the other end of its turn went the short way there.
         places.variables[v * places.stride + lane] =
             step_.model.motion.variables[v].wraps
-                ? std::remainder(between(from, from + std::remainder(to - from, kTurn)), kTurn)
+                ? wrappedAngle(between(from, from + wrappedAngle(to - from)))
                 : between(from, to);
       }
       followFloor(places, lane);

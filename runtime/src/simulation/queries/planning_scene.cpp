@@ -52,12 +52,7 @@ const SimulationOptions& checked(const SimulationOptions& options) {
 }
 
 std::size_t mostSpheres(const World& world) {
-  std::size_t most = world.robot().spheres().size();
-  for (const Episode& episode : world.episodes().episodes()) {
-    for (const Placement& placement : world.episodes().placements(episode)) {
-      most = std::max(most, world.objectOf(placement).spheres.size());
-    }
-  }
+  const std::size_t most = std::max(world.robot().spheres().size(), world.mostObjectSpheres());
   return simulation::paddedToLanes(most) + simulation::kLanes * world.radii().size();
 }
 
@@ -92,8 +87,7 @@ class PlanningScene::Impl {
     return links_[hand.link] * Pose{hand.grasp_point, {}};
   }
   [[nodiscard]] Pose worldFromRoot(const BasePlace& base) const {
-    const float half = 0.5F * base.yaw;
-    return {base.position + Vec3{0, root_height_, 0}, {0, std::sin(half), 0, std::cos(half)}};
+    return {base.position + Vec3{0, root_height_, 0}, rotationOfYaw(base.yaw)};
   }
 
   [[nodiscard]] bool isFree(const BasePlace& base);
@@ -383,9 +377,8 @@ float PlanningScene::reach() const {
 }
 
 BasePlace PlanningScene::baseOf(const EnvState& state) const {
-  const Quat& q = state.world_from_root.rotation;
   return {state.world_from_root.translation - Vec3{0, impl_->rootHeight(), 0},
-          2 * std::atan2(q.y, q.w)};
+          yawOf(state.world_from_root.rotation)};
 }
 
 Pose PlanningScene::worldFromRoot(const BasePlace& base) const {

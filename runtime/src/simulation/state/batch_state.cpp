@@ -67,6 +67,16 @@ void restObject(const Model& model, BatchState& state, std::size_t n, std::uint3
   resting.insert(object, restingBox(box, world_from_object));
 }
 
+void restObjects(const Model& model, BatchState& state, std::size_t n, std::span<const Pose> poses,
+                 std::int32_t held) noexcept {
+  const std::span<const Pose> objects = state.objects(n);
+  for (std::uint32_t object = 0; object < state.env(n).objects; ++object) {
+    const bool is_held = held == static_cast<std::int32_t>(object);
+    if (is_held || objects[object] == poses[object]) continue;
+    restObject(model, state, n, object, poses[object]);
+  }
+}
+
 void measureHeld(const ObjectModel& object, Held& held) noexcept {
   if (object.spheres.empty()) return;
   Vec3 least = object.spheres.front().center;

@@ -138,6 +138,11 @@ static_assert(sizeof(Env) == 64);
   return model.object(env.start, static_cast<std::uint32_t>(env.held));
 }
 
+/// Whether the target is in the hand.
+inline bool holdsTarget(const Env& env) {
+  return env.held == static_cast<std::int32_t>(env.target);
+}
+
 /// Sets what is kept about the spheres of the object in the hand.
 void measureHeld(const ObjectModel& object, Held& held) noexcept;
 
@@ -147,6 +152,9 @@ class BatchState;
 /// `world_from_object`: its pose, and what is in the robot's way.
 void restObject(const Model& model, BatchState& state, std::size_t n, std::uint32_t object,
                 const Pose& world_from_object) noexcept;
+/// The same for all objects of the env that rest and do not rest there yet: `held` does not.
+void restObjects(const Model& model, BatchState& state, std::size_t n, std::span<const Pose> poses,
+                 std::int32_t held) noexcept;
 
 /// What a BatchState of so many envs allocates, about.
 [[nodiscard]] std::size_t stateBytes(const Model& model, std::size_t envs);

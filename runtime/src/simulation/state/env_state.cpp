@@ -46,13 +46,12 @@ EnvState envStateOf(const Model& model, const BatchState& state, std::size_t n) 
   const Env& env = state.env(n);
   const EnvObjects objects = envObjectsOf(model, state, n);
   const Vec3 base = state.base(n);
-  const float half_yaw = 0.5F * state.yaw(n);
   EnvState result;
   result.scene = objects.scene;
   result.episode = objects.episode;
   result.step = env.step;
   result.world_from_root = {{base.x, base.y + model.motion.base.root_height, base.z},
-                            {0, std::sin(half_yaw), 0, std::cos(half_yaw)}};
+                            rotationOfYaw(state.yaw(n))};
   const std::span<const float> start = model.world->robot().startPositions();
   result.joint_positions.assign(start.begin(), start.end());
   for (std::size_t v = 0; v < model.variableCount(); ++v) {
