@@ -23,11 +23,10 @@ int main(int argc, char** argv) try {
   auto simulator = orThrow(galactic::BatchSimulator::create(world, options));
 
   // A row of actions for each env: the joints, forward, turn, hand, terminate.
-  const galactic::Robot& robot = world.robot();
-  const std::size_t forward = robot.controlledJoints().size();
-  std::vector<float> actions(simulator.envCount() * simulator.actionCount());
+  const galactic::ActionLayout layout = simulator.actionLayout();
+  std::vector<float> actions(simulator.envCount() * layout.count());
   for (std::size_t env = 0; env < simulator.envCount(); ++env) {
-    actions[env * simulator.actionCount() + forward] = 1;
+    actions[env * layout.count() + layout.forward()] = 1;
   }
 
   // The part of the observation that the reward is about: from the grip to the target, meters.
@@ -48,6 +47,7 @@ int main(int argc, char** argv) try {
 
   // Where are the links and the objects of an env? World frame.
   const galactic::EnvState state = simulator.envState(0);
+  const galactic::Robot& robot = world.robot();
   std::vector<galactic::Pose> world_from_link(robot.links().size());
   forwardKinematics(robot.links(), state.world_from_root, state.joint_positions, world_from_link);
   const galactic::Vec3& root = world_from_link[0].translation;

@@ -9,10 +9,6 @@
 namespace galactic {
 namespace {
 
-/// Actions behind the joints.
-constexpr std::size_t kForward = 4;
-constexpr std::size_t kTerminate = 1;
-
 /// The top 24 bits of a word as a number in [-1, 1).
 float symmetric(std::uint32_t word) { return static_cast<float>(word >> 8U) * 0x1p-23F - 1; }
 
@@ -31,8 +27,9 @@ class RandomPolicy final : public Policy {
   RandomPolicy(const PolicyShape& shape, Drive drive) : shape_(shape), drive_(drive) {}
 
   Result<void> act(std::uint64_t step, std::span<float> actions) override {
-    for (std::size_t env = 0; env < actions.size() / shape_.actions; ++env) {
-      fillRow(actions.subspan(env * shape_.actions, shape_.actions), step, shape_.first_env + env);
+    const std::size_t count = shape_.actions.count();
+    for (std::size_t env = 0; env < actions.size() / count; ++env) {
+      fillRow(actions.subspan(env * count, count), step, shape_.first_env + env);
     }
     return {};
   }
@@ -50,10 +47,11 @@ class RandomPolicy final : public Policy {
       row[n] = symmetric(static_cast<std::uint32_t>(bits));
       if (n + 1 < row.size()) row[n + 1] = symmetric(static_cast<std::uint32_t>(bits >> 32U));
     }
-    float& forward = row[row.size() - kForward];
+    float& forward = row[shape_.actions.forward()];
     if (drive_ == Drive::kAhead) forward = 0.5F + 0.5F * forward;
     constexpr std::uint64_t kTerminateEvery = 500;
-    row[row.size() - kTerminate] = hash(step, env, row.size()) % kTerminateEvery == 0 ? 1.0F : 0.0F;
+    row[shape_.actions.terminate()] =
+        hash(step, env, row.size()) % kTerminateEvery == 0 ? 1.0F : 0.0F;
   }
 
   PolicyShape shape_;

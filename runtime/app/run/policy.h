@@ -4,6 +4,7 @@
 #include <span>
 #include <string_view>
 
+#include "galactic/batch_simulator.h"
 #include "galactic/error.h"
 
 namespace galactic {
@@ -37,8 +38,7 @@ inline constexpr std::string_view kScriptedPolicy = "scripted";
 /// What a generated policy's numbers depend on: an env's on its number over all ranks only, so that
 /// they are the same for any batch that it is part of.
 struct PolicyShape {
-  /// Per env: joints, forward, turn, hand, terminate.
-  std::size_t actions = 0;
+  ActionLayout actions;
   std::uint64_t seed = 0;
   /// Number of the batch's first env over all ranks.
   std::uint64_t first_env = 0;

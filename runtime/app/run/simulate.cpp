@@ -143,7 +143,7 @@ class Run {
     if (!policy_) {
       const SimulationOptions& simulation = options_.simulation;
       policy_ = makeGeneratedPolicy(
-          options_.policy, {.actions = simulator_.actionCount(),
+          options_.policy, {.actions = simulator_.actionLayout(),
                             .seed = simulation.seed,
                             .first_env = std::uint64_t{simulation.rank} * simulation.envs});
     }

@@ -15,6 +15,20 @@
 
 namespace galactic {
 
+/// Which element of an env's row of actions is which. See BatchSimulator.
+struct ActionLayout {
+  /// Of the controlled joints, which come first, in the order of the robot's recipe.
+  std::size_t joints = 0;
+
+  [[nodiscard]] constexpr std::size_t forward() const { return joints; }
+  [[nodiscard]] constexpr std::size_t turn() const { return joints + 1; }
+  [[nodiscard]] constexpr std::size_t hand() const { return joints + 2; }
+  [[nodiscard]] constexpr std::size_t terminate() const { return joints + 3; }
+  /// How many there are, and how many of them, the first ones, move the robot.
+  [[nodiscard]] constexpr std::size_t count() const { return joints + 4; }
+  [[nodiscard]] constexpr std::size_t movingCount() const { return joints + 2; }
+};
+
 /// One named part of an env's observation.
 struct ObservationPart {
   std::string name;
@@ -166,9 +180,9 @@ enum class EpisodeChoice : std::uint8_t {
 ///
 /// Actions, for each env: one per controlled joint of the robot, in the order of its recipe (+-1:
 /// the largest step); forward (+1: forward_step meters ahead); turn (+1: turn_step radians
-/// clockwise, seen from above); grasp (1: grasp what the gripper touches, or keep it; 0: release);
-/// terminate (1: the robot says that the task is done). Values are clamped to [-1, 1]; NaN is taken
-/// as 0 and counted.
+/// clockwise, seen from above); hand (1: grasp what the gripper touches, or keep it; 0: release);
+/// terminate (1: the robot says that the task is done): see ActionLayout. Values are clamped to
+/// [-1, 1]; NaN is taken as 0 and counted.
 class BatchSimulator {
  public:
   /// All envs stand at the start of their first episode. Fails
@@ -187,6 +201,7 @@ class BatchSimulator {
   [[nodiscard]] const SimulationOptions& options() const;
   [[nodiscard]] std::size_t envCount() const;
   [[nodiscard]] std::size_t actionCount() const;
+  [[nodiscard]] ActionLayout actionLayout() const;
   [[nodiscard]] std::size_t observationSize() const;
   [[nodiscard]] std::size_t threadCount() const;
   /// The parts of an observation, in order:

@@ -378,6 +378,7 @@ const World& BatchSimulator::world() const { return *impl_->model().world; }
 const SimulationOptions& BatchSimulator::options() const { return impl_->model().options; }
 std::size_t BatchSimulator::envCount() const { return impl_->model().options.envs; }
 std::size_t BatchSimulator::actionCount() const { return impl_->model().actionCount(); }
+ActionLayout BatchSimulator::actionLayout() const { return impl_->model().actionLayout(); }
 std::size_t BatchSimulator::observationSize() const { return impl_->model().observation_size; }
 std::size_t BatchSimulator::threadCount() const { return impl_->threads(); }
 const std::vector<ObservationPart>& BatchSimulator::observationParts() const {

@@ -46,6 +46,35 @@ void expectSame(float wild, float tame, const Chosen& chosen) {
   EXPECT_EQ(first_trace.hashes(), second_trace.hashes());
 }
 
+TEST(Actions, LieWhereTheirLayoutSays) {
+  const BoxWorld world = furnishedWorld();
+  auto simulator = BatchSimulator::create(world.world(), optionsFor(1)).value();
+  const ActionLayout layout = simulator.actionLayout();
+  EXPECT_EQ(layout.joints, world.world().robot().controlledJoints().size());
+  ASSERT_EQ(layout.count(), simulator.actionCount());
+  const auto stateAfter = [&](std::size_t action) {
+    simulator.restart(1);
+    std::vector<float> actions(layout.count());
+    actions[action] = 1;
+    simulator.step(actions);
+    return simulator.envState(0);
+  };
+  const EnvState still = stateAfter(layout.hand());
+  for (std::size_t joint = 0; joint < layout.joints; ++joint) {
+    const EnvState moved = stateAfter(joint);
+    EXPECT_NE(moved.joint_positions, still.joint_positions) << joint;
+  }
+  const EnvState ahead = stateAfter(layout.forward());
+  EXPECT_NE(ahead.world_from_root.translation, still.world_from_root.translation);
+  EXPECT_EQ(ahead.world_from_root.rotation, still.world_from_root.rotation);
+  const EnvState turned = stateAfter(layout.turn());
+  EXPECT_EQ(turned.world_from_root.translation, still.world_from_root.translation);
+  EXPECT_LT(yawOf(turned.world_from_root.rotation), yawOf(still.world_from_root.rotation));
+  EXPECT_EQ(simulator.dones()[0], 0);
+  static_cast<void>(stateAfter(layout.terminate()));
+  EXPECT_EQ(simulator.dones()[0], 1);
+}
+
 TEST(Actions, ThatAreNotANumberAreTakenAsZero) {
   expectSame(kNan, 0, [](std::size_t n) { return n % 7 == 0; });
   expectSame(-kNan, 0, [](std::size_t) { return true; });

@@ -34,13 +34,14 @@ void keep(const ChunkStep& step) {
 
 }  // namespace
 
-void beginDelay(BatchState& state, std::size_t n) noexcept {
+void beginDelay(const Model& model, BatchState& state, std::size_t n) noexcept {
   // A hand holds still at a number that depends on what it holds, and at none in any case.
   constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+  const std::size_t moving = model.actionLayout().movingCount();
   for (std::size_t step = 0; step < state.keptSteps(); ++step) {
     const std::span<EnvRow> kept = state.keptActions(n, step);
     for (std::size_t a = 0; a < kept.size(); ++a) {
-      kept[a].values[n % kChunk] = a + kSwitches < kept.size() ? 0 : kNothing;
+      kept[a].values[n % kChunk] = a < moving ? 0 : kNothing;
     }
   }
 }

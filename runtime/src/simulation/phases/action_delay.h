@@ -7,7 +7,7 @@
 namespace galactic::simulation {
 
 /// Nothing is under way to the robot of an env: its episode begins.
-void beginDelay(BatchState& state, std::size_t n) noexcept;
+void beginDelay(const Model& model, BatchState& state, std::size_t n) noexcept;
 
 /// Lets those actions of a chunk arrive that are due, where they may be late, and keeps those that
 /// are asked for now, where they are wanted later.

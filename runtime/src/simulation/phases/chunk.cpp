@@ -38,7 +38,7 @@ Chunk::Chunk(const Model& model)
       ranges_(model.motion.ranges),
       actions_(model.actionCount()),
       arrived_(model.options.noise.delaysActions() ? model.actionCount() : 0),
-      motions_(model.options.noise.changesMotion() ? model.motion.controlled.size() + 2 : 0),
+      motions_(model.options.noise.changesMotion() ? model.actionLayout().movingCount() : 0),
       given_actions_(kChunk * model.actionCount()),
       rows_(kBaseRows + model.variableCount() + kGripNumbers),
       centers_(kChunk * 3 * model.sphereCount() / kLanes),

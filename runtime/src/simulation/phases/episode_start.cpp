@@ -29,7 +29,7 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
                     state.bodyTransforms(n).begin());
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) state.setLastAction(j, n, 0);
   beginOdometry(state, n);
-  beginDelay(state, n);
+  beginDelay(model, state, n);
 }
 
 void placeObjects(const Model& model, BatchState& state, std::size_t n, std::uint32_t start) {

@@ -47,7 +47,7 @@ void proposeCurrent(const ChunkStep& step, std::size_t e) {
 void followHand(const ChunkStep& step, std::size_t e, const FollowedState& state) {
   const std::size_t n = step.first + e;
   Env& env = step.state.env(n);
-  const std::size_t terminate = step.model.actionCount() - 1;
+  const std::size_t terminate = step.model.actionLayout().terminate();
   env.events = {.terminates =
                     arrivedOf(step)[terminate].values[e] >= step.model.options.action.terminate};
   if (env.held >= 0 && env.held != state.held) {

@@ -108,9 +108,9 @@ void layDown(const ChunkStep& step, std::size_t e, const Pose& world_from_object
 
 void useHands(const ChunkStep& step) noexcept {
   const ActionOptions& options = step.model.options.action;
-  const std::size_t hand_action = step.model.motion.controlled.size() + 2;
-  const EnvRow& values = arrivedOf(step)[hand_action];
-  const EnvRow& terminates = arrivedOf(step)[hand_action + 1];
+  const ActionLayout layout = step.model.actionLayout();
+  const EnvRow& values = arrivedOf(step)[layout.hand()];
+  const EnvRow& terminates = arrivedOf(step)[layout.terminate()];
   const std::uint8_t* idle = step.state.idle().data() + step.first;
   // Nobody can guess what a hand does next, so no branch depends on it but those of the few that do
   // something.

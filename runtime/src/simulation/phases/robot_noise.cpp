@@ -50,8 +50,8 @@ void disturb(const ChunkStep& step, std::size_t e) {
   }
   // Wheels that differ turn a base that drives.
   const float drift = fleeting.next() + lasting.next();
-  const std::size_t forward = motions.size() - 2;
-  motions[forward + 1].values[e] += asked[forward].values[e] * drift;
+  const ActionLayout layout = step.model.actionLayout();
+  motions[layout.turn()].values[e] += asked[layout.forward()].values[e] * drift;
 }
 
 /// A way along the floor, turned.

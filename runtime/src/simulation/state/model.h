@@ -45,9 +45,6 @@ struct EpisodeStart {
   std::size_t objects = 0;
 };
 
-/// Actions behind those that move the robot, the last ones: hand and terminate.
-inline constexpr std::size_t kSwitches = 2;
-
 /// What never changes in a run: computed once, shared by all threads.
 struct Model {
   std::optional<World> world;
@@ -88,7 +85,8 @@ struct Model {
 
   /// Of what grows with the world: homes and episodes.
   [[nodiscard]] std::size_t bytes() const;
-  [[nodiscard]] std::size_t actionCount() const { return motion.controlled.size() + 4; }
+  [[nodiscard]] ActionLayout actionLayout() const { return {motion.controlled.size()}; }
+  [[nodiscard]] std::size_t actionCount() const { return actionLayout().count(); }
   [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }
   /// Of how many steps, the last ones, actions are kept: they may arrive late, or be observed.
   [[nodiscard]] std::size_t keptSteps() const {

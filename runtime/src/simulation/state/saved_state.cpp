@@ -276,9 +276,9 @@ bool leavesAsSaid(const Model& model, const SavedEnv& saved) {
 
 /// Whether they can be those of some steps: from -1 to 1, and hands and terminations also no
 /// numbers, of steps in which nothing was asked for.
-bool areActions(std::span<const float> actions, std::size_t of_step) {
+bool areActions(std::span<const float> actions, const ActionLayout& layout) {
   for (std::size_t n = 0; n < actions.size(); ++n) {
-    const bool may_be_none = n % of_step + kSwitches >= of_step && std::isnan(actions[n]);
+    const bool may_be_none = n % layout.count() >= layout.movingCount() && std::isnan(actions[n]);
     if (!may_be_none && !(std::abs(actions[n]) <= 1)) return false;
   }
   return true;
@@ -314,7 +314,7 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
   const auto plain = [](const auto& one) { return isPlain(one); };
   const PlanarPose& believed = saved.believed;
   if (!arePlain(saved.variables) || !arePlain(saved.last_actions) ||
-      !areActions(saved.kept_actions, model.actionCount()) || !isPlain(believed.x) ||
+      !areActions(saved.kept_actions, model.actionLayout()) || !isPlain(believed.x) ||
       !isPlain(believed.z) || !isPlain(believed.yaw) ||
       !std::ranges::all_of(saved.objects, plain) || !std::ranges::all_of(saved.bodies, plain)) {
     return refused(fmt::format("env {} has a number that no simulation leaves; it is damaged", n));

@@ -8,11 +8,12 @@
 namespace galactic::policy_test {
 namespace {
 
-constexpr std::size_t kActions = 11;
+constexpr ActionLayout kLayout{.joints = 7};
+constexpr std::size_t kActions = kLayout.count();
 
 std::vector<float> actionsOf(std::string_view name, const PolicyShape& shape, std::uint64_t step,
                              std::size_t envs) {
-  std::vector<float> actions(envs * shape.actions, -9);
+  std::vector<float> actions(envs * shape.actions.count(), -9);
   EXPECT_TRUE(makeGeneratedPolicy(name, shape)->act(step, actions));
   return actions;
 }
@@ -26,14 +27,14 @@ TEST(Policy, KnowsItsNames) {
 }
 
 TEST(Policy, ZeroDoesNothing) {
-  const auto actions = actionsOf("zero", {.actions = kActions}, 3, 5);
+  const auto actions = actionsOf("zero", {.actions = kLayout}, 3, 5);
   ASSERT_FALSE(actions.empty());
   for (const float action : actions) EXPECT_EQ(action, 0);
 }
 
 TEST(Policy, GivesAnEnvTheSameActionsInEveryBatch) {
-  const PolicyShape whole{.actions = kActions, .seed = 5};
-  const PolicyShape part{.actions = kActions, .seed = 5, .first_env = 6};
+  const PolicyShape whole{.actions = kLayout, .seed = 5};
+  const PolicyShape part{.actions = kLayout, .seed = 5, .first_env = 6};
   for (const std::string_view name : {"random", "forward"}) {
     const std::vector<float> all = actionsOf(name, whole, 17, 10);
     const std::vector<float> some = actionsOf(name, part, 17, 3);
@@ -42,18 +43,20 @@ TEST(Policy, GivesAnEnvTheSameActionsInEveryBatch) {
 }
 
 TEST(Policy, DependsOnSeedStepAndEnv) {
-  const std::vector<float> first = actionsOf("random", {.actions = kActions, .seed = 5}, 17, 2);
-  EXPECT_NE(first, actionsOf("random", {.actions = kActions, .seed = 6}, 17, 2));
-  EXPECT_NE(first, actionsOf("random", {.actions = kActions, .seed = 5}, 18, 2));
+  const std::vector<float> first = actionsOf("random", {.actions = kLayout, .seed = 5}, 17, 2);
+  EXPECT_NE(first, actionsOf("random", {.actions = kLayout, .seed = 6}, 17, 2));
+  EXPECT_NE(first, actionsOf("random", {.actions = kLayout, .seed = 5}, 18, 2));
   EXPECT_FALSE(std::equal(first.begin(), first.begin() + kActions, first.begin() + kActions));
 }
 
 TEST(Policy, IsUniformAndTerminatesSeldom) {
   constexpr std::size_t kEnvs = 100;
   constexpr std::uint64_t kSteps = 1000;
-  for (const std::size_t actions : {kActions, kActions + 1}) {
-    const auto policy = makeGeneratedPolicy("random", {.actions = actions, .seed = 1});
-    const auto ahead = makeGeneratedPolicy("forward", {.actions = actions, .seed = 1});
+  for (const std::size_t joints : {kLayout.joints, kLayout.joints + 1}) {
+    const ActionLayout layout{.joints = joints};
+    const std::size_t actions = layout.count();
+    const auto policy = makeGeneratedPolicy("random", {.actions = layout, .seed = 1});
+    const auto ahead = makeGeneratedPolicy("forward", {.actions = layout, .seed = 1});
     std::vector<float> row(kEnvs * actions);
     std::vector<double> sums(actions);
     std::size_t terminates = 0;
