@@ -28,18 +28,15 @@ Result<DrawnSteps> DrawnSteps::create(const World& world, const BatchSimulator& 
       .longest_name = std::ranges::max(world.episodes().objectNames(), {}, &std::string_view::size),
       .episodes = world.episodes().episodes().size()};
   const std::size_t shown = std::min<std::size_t>(options.drawing.frame_envs, run.envs);
-  Result<Rendering> rendering =
-      Rendering::create(world, simulator, options, options.drawing.makesPictures() ? shown : 0);
-  if (!rendering) return tl::unexpected<Error>(rendering.error());
-  Result<PictureOutput> output = PictureOutput::open(options.drawing, run);
-  if (!output) return tl::unexpected<Error>(output.error());
+  ASSIGN_OR_RETURN(
+      Rendering rendering,
+      Rendering::create(world, simulator, options, options.drawing.makesPictures() ? shown : 0));
+  ASSIGN_OR_RETURN(PictureOutput output, PictureOutput::open(options.drawing, run));
   if (options.drawing.hasSemantics()) {
-    const std::string legend = semanticLegend(rendering->semanticNames());
-    if (auto written = output->writeLegend(legend); !written) {
-      return tl::unexpected<Error>(written.error());
-    }
+    const std::string legend = semanticLegend(rendering.semanticNames());
+    RETURN_IF_ERROR(output.writeLegend(legend));
   }
-  return DrawnSteps(std::move(*rendering), std::move(*output));
+  return DrawnSteps(std::move(rendering), std::move(output));
 }
 
 Result<void> DrawnSteps::step(BatchSimulator& simulator, std::span<const float> actions,

@@ -182,9 +182,8 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const P
   RETURN_IF_ERROR(output.checkSheet(run));
   if (!options.video.empty()) {
     const std::vector<Image> tiles(output.envs_, emptyTile(options));
-    Result<VideoPipe> video = VideoPipe::start(options.video, output.videoFrame(tiles));
-    if (!video) return tl::unexpected<Error>(video.error());
-    output.video_.emplace(std::move(*video));
+    ASSIGN_OR_RETURN(VideoPipe video, VideoPipe::start(options.video, output.videoFrame(tiles)));
+    output.video_.emplace(std::move(video));
   }
   return output;
 }

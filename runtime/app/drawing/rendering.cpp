@@ -108,13 +108,13 @@ class DebugBatch {
   static Result<std::unique_ptr<DebugBatch>> create(const World& world,
                                                     const BatchSimulator& simulator,
                                                     const RunOptions& run, std::size_t shown) {
-    const Result<ChosenCamera> camera = chooseCamera(
-        world.robot(), {.name = run.drawing.debug_camera, .options = {.camera = "--debug-camera"}});
-    if (!camera) return tl::unexpected<Error>(camera.error());
-    Result<DebugModels> models = DebugModels::from(world, {.radius = run.drawing.debug_radius});
-    if (!models) return tl::unexpected<Error>(models.error());
-    auto batch = std::unique_ptr<DebugBatch>(new DebugBatch(std::move(*models)));
-    RenderOptions options = rendererOptions(run, camera->near);
+    ASSIGN_OR_RETURN(const ChosenCamera camera,
+                     chooseCamera(world.robot(), {.name = run.drawing.debug_camera,
+                                                  .options = {.camera = "--debug-camera"}}));
+    ASSIGN_OR_RETURN(DebugModels models,
+                     DebugModels::from(world, {.radius = run.drawing.debug_radius}));
+    auto batch = std::unique_ptr<DebugBatch>(new DebugBatch(std::move(models)));
+    RenderOptions options = rendererOptions(run, camera.near);
     options.color = ColorFormat::kRgba8;
     options.depth = false;
     options.semantics = false;
@@ -122,7 +122,7 @@ class DebugBatch {
     options.background = kSky;
     options.noise = {};
     ASSIGN_OR_RETURN(batch->images_, ImageBatch::create(batch->models_.library(), options, shown));
-    batch->views_.emplace(batch->models_, simulator, camera->mount, shown);
+    batch->views_.emplace(batch->models_, simulator, camera.mount, shown);
     return batch;
   }
 
@@ -163,25 +163,22 @@ Rendering& Rendering::operator=(Rendering&&) noexcept = default;
 Result<Rendering> Rendering::create(const World& world, const BatchSimulator& simulator,
                                     const RunOptions& options, std::size_t shown) {
   const DrawingOptions& drawing = options.drawing;
-  const Result<ChosenCamera> camera =
-      chooseCamera(world.robot(), {.name = drawing.camera,
-                                   .fov_degrees = drawing.fov_degrees,
-                                   .position = drawing.camera_position,
-                                   .rpy_degrees = drawing.camera_rpy_degrees,
-                                   .near = drawing.near,
-                                   .jitter = drawing.jitter});
-  if (!camera) return tl::unexpected<Error>(camera.error());
-  Result<WorldModels> models = WorldModels::from(world);
-  if (!models) return tl::unexpected<Error>(models.error());
-  auto parts = std::make_unique<Parts>(world, std::move(*models));
-  ASSIGN_OR_RETURN(parts->images, ImageBatch::create(parts->models.library(),
-                                                     rendererOptions(options, camera->near),
-                                                     simulator.envCount()));
-  parts->views.emplace(parts->models, simulator, camera->mount);
+  ASSIGN_OR_RETURN(const ChosenCamera camera,
+                   chooseCamera(world.robot(), {.name = drawing.camera,
+                                                .fov_degrees = drawing.fov_degrees,
+                                                .position = drawing.camera_position,
+                                                .rpy_degrees = drawing.camera_rpy_degrees,
+                                                .near = drawing.near,
+                                                .jitter = drawing.jitter}));
+  ASSIGN_OR_RETURN(WorldModels models, WorldModels::from(world));
+  auto parts = std::make_unique<Parts>(world, std::move(models));
+  ASSIGN_OR_RETURN(parts->images,
+                   ImageBatch::create(parts->models.library(),
+                                      rendererOptions(options, camera.near), simulator.envCount()));
+  parts->views.emplace(parts->models, simulator, camera.mount);
   if (drawing.debug_view) {
-    auto debug = DebugBatch::create(world, simulator, options, shown);
-    if (!debug) return tl::unexpected<Error>(debug.error());
-    parts->debug = std::move(*debug);
+    ASSIGN_OR_RETURN(auto debug, DebugBatch::create(world, simulator, options, shown));
+    parts->debug = std::move(debug);
   }
   parts->frames.resize(shown);
   return Rendering(std::move(parts));

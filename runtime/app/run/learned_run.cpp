@@ -34,25 +34,23 @@ class PolicyEyes {
   static Result<std::unique_ptr<PolicyEyes>> create(const PolicyImage& image, const World& world,
                                                     const BatchSimulator& simulator,
                                                     const RunOptions& run) {
-    const Result<ChosenCamera> camera =
-        chooseCamera(world.robot(), wishOf(image, run.drawing.jitter, run.policy));
-    if (!camera) return tl::unexpected<Error>(camera.error());
-    Result<WorldModels> models = WorldModels::from(world);
-    if (!models) return tl::unexpected<Error>(models.error());
-    auto eyes = std::unique_ptr<PolicyEyes>(new PolicyEyes(std::move(*models)));
+    ASSIGN_OR_RETURN(const ChosenCamera camera,
+                     chooseCamera(world.robot(), wishOf(image, run.drawing.jitter, run.policy)));
+    ASSIGN_OR_RETURN(WorldModels models, WorldModels::from(world));
+    auto eyes = std::unique_ptr<PolicyEyes>(new PolicyEyes(std::move(models)));
     RenderOptions options;
     options.width = image.width;
     options.height = image.height;
     options.color = image.color ? ColorFormat::kRgba8 : ColorFormat::kNone;
     options.depth = image.depth;
-    options.near = camera->near;
+    options.near = camera.near;
     options.backend = run.drawing.backend;
     options.device = run.drawing.device;
     options.noise = noiseFor(run.drawing.noise, options);
     options.threads = run.simulation.threads;
     ASSIGN_OR_RETURN(eyes->images_,
                      ImageBatch::create(eyes->models_.library(), options, simulator.envCount()));
-    eyes->views_.emplace(eyes->models_, simulator, camera->mount);
+    eyes->views_.emplace(eyes->models_, simulator, camera.mount);
     return eyes;
   }
 
@@ -122,12 +120,11 @@ class NetworkPolicy final : public Policy {
 }  // namespace
 
 Result<OpenedPolicy> openPolicy(const RunOptions& options) {
-  Result<PackFile> pack =
-      PackFile::open(options.policyFile(), options.trusted ? Trust::kTrusted : Trust::kVerify);
-  if (!pack) return tl::unexpected<Error>(std::move(pack.error()));
-  Result<PolicyInterface> needs = policyInterface(*pack);
-  if (!needs) return tl::unexpected<Error>(std::move(needs.error()));
-  return OpenedPolicy{std::move(*pack), std::move(*needs)};
+  ASSIGN_OR_RETURN(
+      PackFile pack,
+      PackFile::open(options.policyFile(), options.trusted ? Trust::kTrusted : Trust::kVerify));
+  ASSIGN_OR_RETURN(PolicyInterface needs, policyInterface(pack));
+  return OpenedPolicy{std::move(pack), std::move(needs)};
 }
 
 Result<void> applyNeeds(const OpenedPolicy& policy, SimulationOptions& simulation) {
@@ -143,23 +140,21 @@ Result<std::unique_ptr<Policy>> makeLearnedPolicy(const OpenedPolicy& policy, co
                                                   const BatchSimulator& simulator,
                                                   const RunOptions& options) {
   const SimulationOptions& simulation = options.simulation;
-  Result<LearnedPolicy> network =
-      LearnedPolicy::create(policy.pack, policyBatchOf(simulator),
-                            {.samples = !options.is_deterministic,
-                             .seed = simulation.seed,
-                             .first_env = simulation.rank * simulation.envs,
-                             .threads = simulation.threads});
-  if (!network) return tl::unexpected<Error>(network.error());
+  ASSIGN_OR_RETURN(LearnedPolicy network,
+                   LearnedPolicy::create(policy.pack, policyBatchOf(simulator),
+                                         {.samples = !options.is_deterministic,
+                                          .seed = simulation.seed,
+                                          .first_env = simulation.rank * simulation.envs,
+                                          .threads = simulation.threads}));
   std::unique_ptr<PolicyEyes> eyes;
   if (Result<void> drawn = checkNoise(policy, options.drawing); !drawn) {
     return tl::unexpected<Error>(drawn.error());
   }
   if (policy.needs.image) {
-    auto made = PolicyEyes::create(*policy.needs.image, world, simulator, options);
-    if (!made) return tl::unexpected<Error>(made.error());
-    eyes = std::move(*made);
+    ASSIGN_OR_RETURN(auto made, PolicyEyes::create(*policy.needs.image, world, simulator, options));
+    eyes = std::move(made);
   }
-  return std::make_unique<NetworkPolicy>(std::move(*network), simulator, std::move(eyes));
+  return std::make_unique<NetworkPolicy>(std::move(network), simulator, std::move(eyes));
 }
 
 }  // namespace galactic

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "scripted/scripted_policy.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -28,9 +29,8 @@ class PlannedPolicy final : public Policy {
 
 Result<std::unique_ptr<Policy>> makePlannedPolicy(const World& world,
                                                   const BatchSimulator& simulator) {
-  Result<ScriptedPolicy> policy = ScriptedPolicy::create(world, simulator.options());
-  if (!policy) return tl::unexpected<Error>(policy.error());
-  return std::make_unique<PlannedPolicy>(std::move(*policy), simulator);
+  ASSIGN_OR_RETURN(ScriptedPolicy policy, ScriptedPolicy::create(world, simulator.options()));
+  return std::make_unique<PlannedPolicy>(std::move(policy), simulator);
 }
 
 }  // namespace galactic

@@ -12,6 +12,7 @@
 #include "command_line/option_lines.h"
 #include "galactic/pack_header.h"
 #include "support/printable.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -150,9 +151,8 @@ RecordingWriter::RecordingWriter(AtomicFile file, const RecordingSubject& subjec
 
 Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path& path,
                                                 const RecordingSubject& subject) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return tl::unexpected<Error>(file.error());
-  RecordingWriter writer(std::move(*file), subject);
+  ASSIGN_OR_RETURN(AtomicFile file, AtomicFile::create(path));
+  RecordingWriter writer(std::move(file), subject);
   if (Result<void> written = writer.writeFront(); !written) {
     return tl::unexpected<Error>(written.error());
   }
@@ -197,26 +197,24 @@ Result<RecordingReader> RecordingReader::open(const std::filesystem::path& path)
     return fail(ErrorCode::kIo, reader.where_,
                 "cannot read the recording; check the name and the permissions");
   }
-  const Result<Header> header = readHeader(reader.file_, reader.where_, size);
-  if (!header) return tl::unexpected<Error>(header.error());
+  ASSIGN_OR_RETURN(const Header header, readHeader(reader.file_, reader.where_, size));
   RecordingSubject& subject = reader.subject_;
-  subject.packs.resize(header->packs);
-  std::string text(header->text_bytes, '\0');
+  subject.packs.resize(header.packs);
+  std::string text(header.text_bytes, '\0');
   if (!fill(reader.file_, std::as_writable_bytes(std::span(subject.packs))) ||
       !fill(reader.file_, std::as_writable_bytes(std::span(text)))) {
     return fail(ErrorCode::kIo, reader.where_, "cannot be read to its end");
   }
-  if (hashOf(*header, subject.packs, text) != header->hash) {
+  if (hashOf(header, subject.packs, text) != header.hash) {
     return damaged(reader.where_, "has a header that does not match its hash");
   }
-  Result<SimulationOptions> options = parseOptionLines(text, reader.where_);
-  if (!options) return tl::unexpected<Error>(options.error());
-  subject.options = *options;
-  subject.actions = header->actions;
-  reader.steps_ = header->steps;
-  if (subject.options.envs != header->envs) {
+  ASSIGN_OR_RETURN(SimulationOptions options, parseOptionLines(text, reader.where_));
+  subject.options = options;
+  subject.actions = header.actions;
+  reader.steps_ = header.steps;
+  if (subject.options.envs != header.envs) {
     return damaged(reader.where_, fmt::format("has {} envs in its header and {} in its options",
-                                              header->envs, subject.options.envs));
+                                              header.envs, subject.options.envs));
   }
   return reader;
 }

@@ -38,9 +38,8 @@ class ReplayPolicy final : public Policy {
   explicit ReplayPolicy(RecordingReader& recording) : recording_(recording) {}
 
   Result<void> act(std::uint64_t, std::span<float> actions) override {
-    const Result<std::uint64_t> digest = recording_.next(actions);
-    if (!digest) return tl::unexpected<Error>(digest.error());
-    digest_ = *digest;
+    ASSIGN_OR_RETURN(const std::uint64_t digest, recording_.next(actions));
+    digest_ = digest;
     return {};
   }
 
@@ -94,17 +93,16 @@ class Run {
 
   /// Before go().
   Result<void> plan(const World& world) {
-    Result<std::unique_ptr<Policy>> policy = makePlannedPolicy(world, simulator_);
-    if (!policy) return tl::unexpected<Error>(policy.error());
-    policy_ = std::move(*policy);
+    ASSIGN_OR_RETURN(std::unique_ptr<Policy> policy, makePlannedPolicy(world, simulator_));
+    policy_ = std::move(policy);
     return {};
   }
 
   /// Before go().
   Result<void> play(const OpenedPolicy& policy, const World& world) {
-    Result<std::unique_ptr<Policy>> made = makeLearnedPolicy(policy, world, simulator_, options_);
-    if (!made) return tl::unexpected<Error>(made.error());
-    policy_ = std::move(*made);
+    ASSIGN_OR_RETURN(std::unique_ptr<Policy> made,
+                     makeLearnedPolicy(policy, world, simulator_, options_));
+    policy_ = std::move(made);
     report_.learned.emplace(
         LearnedReport{.name = policy.needs.name, .samples = !options_.is_deterministic});
     return {};
@@ -112,9 +110,8 @@ class Run {
 
   /// Before go().
   Result<void> draw(const World& world) {
-    Result<DrawnSteps> drawn = DrawnSteps::create(world, simulator_, options_);
-    if (!drawn) return tl::unexpected<Error>(drawn.error());
-    drawn_.emplace(std::move(*drawn));
+    ASSIGN_OR_RETURN(DrawnSteps drawn, DrawnSteps::create(world, simulator_, options_));
+    drawn_.emplace(std::move(drawn));
     const BatchRenderer& renderer = drawn_->renderer();
     report_.rendering.emplace();
     report_.rendering->description = renderer.description();
@@ -131,9 +128,8 @@ class Run {
   Result<void> record(const World& world) {
     const RecordingSubject subject{
         options_.simulation, static_cast<std::uint32_t>(simulator_.actionCount()), stampsOf(world)};
-    Result<RecordingWriter> writer = RecordingWriter::create(options_.record, subject);
-    if (!writer) return tl::unexpected<Error>(writer.error());
-    writer_.emplace(std::move(*writer));
+    ASSIGN_OR_RETURN(RecordingWriter writer, RecordingWriter::create(options_.record, subject));
+    writer_.emplace(std::move(writer));
     return {};
   }
 
@@ -251,9 +247,9 @@ Result<void> checkSubject(const RecordingReader* replay, const World& world,
 Result<OpenedWorld> openWorld(const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   const std::vector<std::filesystem::path> paths(options.packs.begin(), options.packs.end());
-  Result<World> world = World::open(paths, options.trusted ? Trust::kTrusted : Trust::kVerify);
-  if (!world) return tl::unexpected<Error>(std::move(world.error()));
-  return OpenedWorld{std::move(*world), secondsBetween(start, Clock::now())};
+  ASSIGN_OR_RETURN(World world,
+                   World::open(paths, options.trusted ? Trust::kTrusted : Trust::kVerify));
+  return OpenedWorld{std::move(world), secondsBetween(start, Clock::now())};
 }
 
 Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
@@ -266,44 +262,35 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
   report.world_task = world.taskOptions();
   report.open_seconds = opened.seconds;
   const Clock::time_point start = Clock::now();
-  Result<BatchSimulator> simulator = BatchSimulator::create(world, options.simulation);
-  if (!simulator) return tl::unexpected<Error>(simulator.error());
+  ASSIGN_OR_RETURN(BatchSimulator simulator, BatchSimulator::create(world, options.simulation));
   report.create_seconds = secondsBetween(start, Clock::now());
-  if (auto same = checkSubject(source.replay, world, *simulator); !same) {
-    return tl::unexpected<Error>(same.error());
-  }
+  RETURN_IF_ERROR(checkSubject(source.replay, world, simulator));
   constexpr std::uint32_t kSampleEvery = 16;
-  simulator->samplePhases(kSampleEvery);
-  Run run(options, *simulator, report);
+  simulator.samplePhases(kSampleEvery);
+  Run run(options, simulator, report);
   if (source.replay != nullptr) run.replay(*source.replay);
   if (source.policy != nullptr) {
-    if (auto played = run.play(*source.policy, world); !played) {
-      return tl::unexpected<Error>(played.error());
-    }
+    RETURN_IF_ERROR(run.play(*source.policy, world));
   }
   if (source.replay == nullptr && options.policy == kScriptedPolicy) {
-    if (auto planned = run.plan(world); !planned) {
-      return tl::unexpected<Error>(planned.error());
-    }
+    RETURN_IF_ERROR(run.plan(world));
   }
   if (options.drawing.draws()) {
-    if (auto drawn = run.draw(world); !drawn) return tl::unexpected<Error>(drawn.error());
+    RETURN_IF_ERROR(run.draw(world));
   }
   if (!options.view.empty() || !options.animation.empty()) run.track(world);
   if (!options.record.empty()) {
-    if (auto opened_file = run.record(world); !opened_file) {
-      return tl::unexpected<Error>(opened_file.error());
-    }
+    RETURN_IF_ERROR(run.record(world));
   }
   if (Result<void> done = run.go(stop); !done) return tl::unexpected<Error>(done.error());
-  report.threads = simulator->threadCount();
-  report.phases = simulator->phaseTimes();
+  report.threads = simulator.threadCount();
+  report.phases = simulator.phaseTimes();
   report.sampled_steps = (report.steps + kSampleEvery - 1) / kSampleEvery;
-  report.sum = simulator->statistics();
+  report.sum = simulator.statistics();
   report.world_episodes = world.episodes().episodes().size();
-  report.skipped.assign(simulator->skippedEpisodes().begin(), simulator->skippedEpisodes().end());
-  report.memory_bytes = simulator->memoryBytes();
-  report.shared_bytes = simulator->sharedBytes();
+  report.skipped.assign(simulator.skippedEpisodes().begin(), simulator.skippedEpisodes().end());
+  report.memory_bytes = simulator.memoryBytes();
+  report.shared_bytes = simulator.sharedBytes();
   return report;
 }
 

@@ -11,6 +11,7 @@
 #include "check/world_check.h"
 #include "galactic/world_views.h"
 #include "policy/layer_shapes.h"
+#include "support/try.h"
 
 namespace galactic::detail {
 namespace {
@@ -31,9 +32,8 @@ class PolicyChecker {
     checkObservation();
     if (policy_.image() != nullptr) checkImage(*policy_.image());
     if (offence_.found()) return offence_.result();
-    const auto shapes = policy::layerShapes(policy_, offence_.where());
-    if (!shapes) return tl::unexpected<Error>(shapes.error());
-    checkActions(*shapes);
+    ASSIGN_OR_RETURN(const auto shapes, policy::layerShapes(policy_, offence_.where()));
+    checkActions(shapes);
     return offence_.result();
   }
 

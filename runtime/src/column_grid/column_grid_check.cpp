@@ -8,6 +8,7 @@
 #include "column_grid/grid_layout.h"
 #include "galactic/schema/pack_generated.h"
 #include "layout/column_cell.h"
+#include "support/try.h"
 
 namespace galactic::detail {
 namespace {
@@ -150,9 +151,8 @@ Result<void> checkColumnGrid(const schema::ColumnGrid& grid, std::span<const std
                         .stored_cells = {grid.cells()->data(), grid.cells()->size()},
                         .overflow_elements = std::size_t{grid.overflow_codes()->size()} +
                                              grid.overflow_spans()->size()};
-  const Result<CellTotals> totals = checkCells(block, where);
-  if (!totals) return tl::unexpected<Error>(totals.error());
-  return checkStatistics(*grid.statistics(), *totals, where);
+  ASSIGN_OR_RETURN(const CellTotals totals, checkCells(block, where));
+  return checkStatistics(*grid.statistics(), totals, where);
 }
 
 }  // namespace galactic::detail

@@ -7,6 +7,7 @@
 #include "galactic/schema/pack_generated.h"
 #include "support/call_check.h"
 #include "support/mapped_file.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -49,11 +50,10 @@ const schema::Pack& PackFile::root() const {
 }
 
 Result<PackFile> PackFile::open(const std::filesystem::path& path, Trust trust) {
-  Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return tl::unexpected<Error>(std::move(file.error()));
-  Result<PackFile> pack = view(file->bytes(), path.string(), trust);
+  ASSIGN_OR_RETURN(MappedFile file, MappedFile::open(path));
+  Result<PackFile> pack = view(file.bytes(), path.string(), trust);
   // Moving the mapping does not move the bytes that the pack points to.
-  if (pack) pack->storage_ = std::make_unique<Storage>(std::move(*file));
+  if (pack) pack->storage_ = std::make_unique<Storage>(std::move(file));
   return pack;
 }
 
@@ -63,19 +63,18 @@ Result<PackFile> PackFile::view(std::span<const std::byte> file, std::string whe
                 "lies at an address that is not a multiple of 32; copy it to aligned memory",
                 "pack/alignment");
   }
-  Result<PackHeader> header = readPackHeader(file, where);
-  if (!header) return tl::unexpected<Error>(std::move(header.error()));
+  ASSIGN_OR_RETURN(PackHeader header, readPackHeader(file, where));
   const auto payload = file.subspan(sizeof(PackHeader));
   Result<void> checked = detail::checkPayloadStart(payload, where);
   if (trust == Trust::kVerify) {
     // The hash first: a damaged file is told apart from one that was written wrongly.
-    if (auto intact = checkPackHash(*header, payload, where); !intact) checked = intact;
-    if (checked) checked = detail::checkPack(*header, file, where);
+    if (auto intact = checkPackHash(header, payload, where); !intact) checked = intact;
+    if (checked) checked = detail::checkPack(header, file, where);
   }
   if (!checked) return tl::unexpected<Error>(std::move(checked.error()));
   PackFile pack;
   pack.bytes_ = file;
-  pack.header_ = *header;
+  pack.header_ = header;
   pack.root_ = schema::GetPack(payload.data());
   pack.where_ = std::move(where);
   return pack;

@@ -9,6 +9,7 @@
 #include "check/world_check.h"
 #include "pack/schema_values.h"
 #include "support/content_hash.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -52,9 +53,8 @@ Result<void> checkLinked(const PackFile& pack, const PackReference& reference,
 }  // namespace
 
 Result<std::vector<PackReference>> packReferences(const PackFile& world) {
-  const auto content = contentOf(world);
-  if (!content) return tl::unexpected<Error>(content.error());
-  const schema::World* stored = *content;
+  ASSIGN_OR_RETURN(const auto content, contentOf(world));
+  const schema::World* stored = content;
   std::vector<PackReference> references;
   references.reserve(stored->packs()->size());
   for (const schema::PackReference* one : *stored->packs()) {
@@ -70,14 +70,11 @@ Result<std::vector<PackReference>> packReferences(const PackFile& world) {
 }
 
 Result<std::vector<OptionText>> taskOptions(const PackFile& world) {
-  const auto content = contentOf(world);
-  if (!content) return tl::unexpected<Error>(content.error());
-  const auto* stored = (*content)->task();
+  ASSIGN_OR_RETURN(const auto content, contentOf(world));
+  const auto* stored = (content)->task();
   if (stored == nullptr) return {};
   // What was verified before passes; a trusted pack may hold anything.
-  if (auto checked = detail::checkOptions(*stored, "task", world.where() + ": world"); !checked) {
-    return tl::unexpected<Error>(std::move(checked.error()));
-  }
+  RETURN_IF_ERROR(detail::checkOptions(*stored, "task", world.where() + ": world"));
   std::vector<OptionText> options;
   options.reserve(stored->size());
   for (const OptionText& known : listOptions({}, OptionScope::kTask)) {
@@ -106,12 +103,9 @@ Result<PackFile> openReference(const PackFile& world, const PackReference& refer
   // mapping, so that what is verified is what was compared.
   Result<PackFile> pack = PackFile::open(path, Trust::kTrusted);
   if (!pack) return pack;
-  if (auto linked = checkLinked(*pack, reference, world.where(), trust); !linked) {
-    return tl::unexpected<Error>(std::move(linked.error()));
-  }
+  RETURN_IF_ERROR(checkLinked(*pack, reference, world.where(), trust));
   if (trust == Trust::kTrusted) return pack;
-  const auto verified = PackFile::view(pack->bytes(), pack->where(), trust);
-  if (!verified) return tl::unexpected<Error>(verified.error());
+  ASSIGN_OR_RETURN(const auto verified, PackFile::view(pack->bytes(), pack->where(), trust));
   return pack;
 }
 

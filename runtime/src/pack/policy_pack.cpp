@@ -16,6 +16,7 @@
 #include "pack/schema_values.h"
 #include "support/atomic_file.h"
 #include "support/content_hash.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -285,9 +286,7 @@ Result<void> writePolicyPack(const std::filesystem::path& path, const PolicyCont
         fmt::format("would have weights of {} bytes, a policy has at most {}", size, kMostBytes));
   }
   const AlignedCopy file(encodePolicyPack(content, provenance));
-  if (const auto checked = PackFile::view(file.bytes(), path.string()); !checked) {
-    return tl::unexpected<Error>(checked.error());
-  }
+  RETURN_IF_ERROR(PackFile::view(file.bytes(), path.string()));
   return writeFileAtomically(path, {file.bytes()});
 }
 

@@ -18,6 +18,7 @@
 
 #include "galactic/pack_reference.h"
 #include "support/counted.h"
+#include "support/try.h"
 #include "support/workers.h"
 
 namespace galactic {
@@ -52,18 +53,16 @@ tl::unexpected<Error> repeated(const PackFile& pack, std::string_view what, std:
 }
 
 Result<void> addScene(const PackFile& pack, Parts& parts) {
-  Result<Scene> scene = Scene::from(pack);
-  if (!scene) return tl::unexpected<Error>(std::move(scene.error()));
-  const std::string_view name = scene->name();
-  const auto [place, is_new] = parts.scenes.try_emplace(name, Packed<Scene>{*scene, &pack});
+  ASSIGN_OR_RETURN(Scene scene, Scene::from(pack));
+  const std::string_view name = scene.name();
+  const auto [place, is_new] = parts.scenes.try_emplace(name, Packed<Scene>{scene, &pack});
   if (!is_new) return repeated(pack, "scene", name, *place->second.pack);
   return {};
 }
 
 Result<void> addObjects(const PackFile& pack, Parts& parts) {
-  const Result<ObjectSet> set = ObjectSet::from(pack);
-  if (!set) return tl::unexpected<Error>(set.error());
-  for (const ObjectModel& object : set->objects()) {
+  ASSIGN_OR_RETURN(const ObjectSet set, ObjectSet::from(pack));
+  for (const ObjectModel& object : set.objects()) {
     const auto [place, is_new] =
         parts.objects.try_emplace(object.name, Packed<ObjectModel>{object, &pack});
     if (!is_new) return repeated(pack, "object", object.name, *place->second.pack);
@@ -80,9 +79,8 @@ Result<void> addOnly(const PackFile& pack, std::optional<Packed<T>>& only, std::
                             what, only->pack->where()),
                 "world/repeated-part");
   }
-  Result<T> content = T::from(pack);
-  if (!content) return tl::unexpected<Error>(std::move(content.error()));
-  only.emplace(Packed<T>{std::move(*content), &pack});
+  ASSIGN_OR_RETURN(T content, T::from(pack));
+  only.emplace(Packed<T>{std::move(content), &pack});
   return {};
 }
 
@@ -114,7 +112,7 @@ Result<void> add(const PackFile& pack, Parts& parts) {
 Result<Parts> sortByKind(const std::vector<PackFile>& packs) {
   Parts parts;
   for (const PackFile& pack : packs) {
-    if (auto added = add(pack, parts); !added) return tl::unexpected<Error>(added.error());
+    RETURN_IF_ERROR(add(pack, parts));
   }
   return parts;
 }
@@ -167,18 +165,16 @@ Result<std::vector<StatedRadii>> statedRadii(const std::vector<PackFile>& packs,
   }
   for (const PackFile& pack : packs) {
     if (pack.kind() != PackKind::kObjects) continue;
-    const Result<ObjectSet> set = ObjectSet::from(pack);
-    if (!set) return tl::unexpected<Error>(set.error());
-    stated.push_back({{set->radii().begin(), set->radii().end()}, &pack});
+    ASSIGN_OR_RETURN(const ObjectSet set, ObjectSet::from(pack));
+    stated.push_back({{set.radii().begin(), set.radii().end()}, &pack});
   }
   return stated;
 }
 
 Result<void> checkAllRadii(const std::vector<PackFile>& packs, const Parts& parts) {
-  const auto stated = statedRadii(packs, parts);
-  if (!stated) return tl::unexpected<Error>(stated.error());
-  for (const StatedRadii& one : *stated) {
-    if (auto same = checkRadii(one, stated->front()); !same) return same;
+  ASSIGN_OR_RETURN(const auto stated, statedRadii(packs, parts));
+  for (const StatedRadii& one : stated) {
+    if (auto same = checkRadii(one, stated.front()); !same) return same;
   }
   return {};
 }
@@ -308,15 +304,14 @@ std::uint64_t hashOf(const std::vector<PackFile>& packs) {
 }
 
 Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
-  const auto references = packReferences(world);
-  if (!references) return tl::unexpected<Error>(references.error());
+  ASSIGN_OR_RETURN(const auto references, packReferences(world));
   // There may be thousands, and each is read and checked from end to end.
-  std::vector<std::optional<Result<PackFile>>> opened(references->size());
+  std::vector<std::optional<Result<PackFile>>> opened(references.size());
   std::atomic<std::size_t> failed = opened.size();
   detail::forEachPart(detail::threadCount(0), opened.size(), [&](std::size_t n) {
     // The first one that fails is told of, whichever thread is ahead.
     if (n > failed) return;
-    opened[n] = openReference(world, (*references)[n], trust);
+    opened[n] = openReference(world, (references)[n], trust);
     if (*opened[n]) return;
     for (std::size_t known = failed; n < known && !failed.compare_exchange_weak(known, n);) {
     }
@@ -333,11 +328,9 @@ Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
 }  // namespace
 
 Result<void> checkTogether(std::vector<PackFile> packs) {
-  const Result<Parts> parts = sortByKind(packs);
-  if (!parts) return tl::unexpected<Error>(parts.error());
-  if (!parts->robot || !parts->episodes) return checkAllRadii(packs, *parts);
-  const Result<World> world = World::from(std::move(packs));
-  if (!world) return tl::unexpected<Error>(world.error());
+  ASSIGN_OR_RETURN(const Parts parts, sortByKind(packs));
+  if (!parts.robot || !parts.episodes) return checkAllRadii(packs, parts);
+  ASSIGN_OR_RETURN(const World world, World::from(std::move(packs)));
   return {};
 }
 
@@ -345,16 +338,13 @@ Result<World> World::open(std::span<const std::filesystem::path> paths, Trust tr
   std::vector<PackFile> packs;
   packs.reserve(paths.size());
   for (const std::filesystem::path& path : paths) {
-    Result<PackFile> pack = PackFile::open(path, trust);
-    if (!pack) return tl::unexpected<Error>(std::move(pack.error()));
-    packs.push_back(std::move(*pack));
+    ASSIGN_OR_RETURN(PackFile pack, PackFile::open(path, trust));
+    packs.push_back(std::move(pack));
   }
   if (packs.size() != 1 || packs.front().kind() != PackKind::kWorld) return from(std::move(packs));
-  Result<std::vector<PackFile>> listed = openList(packs.front(), trust);
-  if (!listed) return tl::unexpected<Error>(std::move(listed.error()));
-  auto task_options = galactic::taskOptions(packs.front());
-  if (!task_options) return tl::unexpected<Error>(std::move(task_options.error()));
-  return make(std::move(*listed), std::move(*task_options));
+  ASSIGN_OR_RETURN(std::vector<PackFile> listed, openList(packs.front(), trust));
+  ASSIGN_OR_RETURN(auto task_options, galactic::taskOptions(packs.front()));
+  return make(std::move(listed), std::move(task_options));
 }
 
 SimulationOptions World::withTask(SimulationOptions base) const {
@@ -371,27 +361,19 @@ Result<World> World::make(std::vector<PackFile> packs, std::vector<OptionText> t
   world.packs = std::move(packs);
   world.task_options = std::move(task_options);
   world.hash = hashOf(world.packs);
-  Result<Parts> parts = sortByKind(world.packs);
-  if (!parts) return tl::unexpected<Error>(std::move(parts.error()));
-  if (auto complete = checkComplete(*parts); !complete) {
-    return tl::unexpected<Error>(std::move(complete.error()));
-  }
-  if (auto sound = checkParts(world.packs, *parts); !sound) {
-    return tl::unexpected<Error>(std::move(sound.error()));
-  }
-  auto scenes = findScenes(*parts);
-  if (!scenes) return tl::unexpected<Error>(std::move(scenes.error()));
-  auto objects = findObjects(*parts);
-  if (!objects) return tl::unexpected<Error>(std::move(objects.error()));
-  auto positions = findStartPositions(*parts);
-  if (!positions) return tl::unexpected<Error>(std::move(positions.error()));
-  world.scene_of_name = std::move(*scenes);
-  world.object_of_name = std::move(*objects);
-  world.start_position_indices = std::move(*positions);
-  world.scenes.reserve(parts->scenes.size());
-  for (auto& [name, scene] : parts->scenes) world.scenes.push_back(std::move(scene.content));
-  world.robot.push_back(std::move(parts->robot->content));
-  world.episodes.push_back(std::move(parts->episodes->content));
+  ASSIGN_OR_RETURN(Parts parts, sortByKind(world.packs));
+  RETURN_IF_ERROR(checkComplete(parts));
+  RETURN_IF_ERROR(checkParts(world.packs, parts));
+  ASSIGN_OR_RETURN(auto scenes, findScenes(parts));
+  ASSIGN_OR_RETURN(auto objects, findObjects(parts));
+  ASSIGN_OR_RETURN(auto positions, findStartPositions(parts));
+  world.scene_of_name = std::move(scenes);
+  world.object_of_name = std::move(objects);
+  world.start_position_indices = std::move(positions);
+  world.scenes.reserve(parts.scenes.size());
+  for (auto& [name, scene] : parts.scenes) world.scenes.push_back(std::move(scene.content));
+  world.robot.push_back(std::move(parts.robot->content));
+  world.episodes.push_back(std::move(parts.episodes->content));
   for (const Episode& episode : world.episodes.front().episodes()) {
     world.most_objects = std::max<std::size_t>(world.most_objects, episode.placement_count);
   }

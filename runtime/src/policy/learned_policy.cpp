@@ -297,18 +297,15 @@ class LearnedPolicy::Impl {
 
 Result<LearnedPolicy> LearnedPolicy::create(const PackFile& pack, const PolicyBatch& batch,
                                             const LearnedPolicyOptions& options) {
-  Result<PolicyInterface> needs = policyInterface(pack);
-  if (!needs) return tl::unexpected<Error>(needs.error());
+  ASSIGN_OR_RETURN(PolicyInterface needs, policyInterface(pack));
   RETURN_IF_ERROR(checkBatch(batch));
-  RETURN_IF_ERROR(checkActions(pack, *needs, batch));
-  const auto ranges = findParts(pack, *needs, batch);
-  if (!ranges) return tl::unexpected<Error>(ranges.error());
+  RETURN_IF_ERROR(checkActions(pack, needs, batch));
+  ASSIGN_OR_RETURN(const auto ranges, findParts(pack, needs, batch));
   const schema::Policy& stored = *pack.root().asset_as_Policy();
-  const auto shapes = policy::layerShapes(stored, pack.where() + ": policy");
-  if (!shapes) return tl::unexpected<Error>(shapes.error());
-  OperationList network = policy::makeOperations(stored, *shapes, *ranges, decidingLayers(stored));
+  ASSIGN_OR_RETURN(const auto shapes, policy::layerShapes(stored, pack.where() + ": policy"));
+  OperationList network = policy::makeOperations(stored, shapes, ranges, decidingLayers(stored));
   return LearnedPolicy(
-      std::make_unique<Impl>(stored, std::move(*needs), std::move(network), batch, options));
+      std::make_unique<Impl>(stored, std::move(needs), std::move(network), batch, options));
 }
 
 LearnedPolicy::LearnedPolicy(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

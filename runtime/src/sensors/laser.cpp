@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "support/height_text.h"
+#include "support/try.h"
 #include "support/workers.h"
 
 namespace galactic::sensors {
@@ -86,9 +87,7 @@ Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& ro
   settings.beams = options.beams;
   if (options.beams == 0) return settings;
   if (robot.laser()) {
-    if (auto mounted = mount(robot, motion, settings); !mounted) {
-      return tl::unexpected<Error>(mounted.error());
-    }
+    RETURN_IF_ERROR(mount(robot, motion, settings));
   }
   if (!options.heights.empty()) settings.heights = options.heights;
   constexpr float kDegree = std::numbers::pi_v<float> / 180;

@@ -165,10 +165,9 @@ Result<PathFinder> PathFinder::create(const World& world, std::uint32_t scene, c
     return fail(ErrorCode::kInvalidInput, "path finder",
                 fmt::format("there is no scene {}, the last is {}", scene, count - 1));
   }
-  const Result<simulation::MotionModel> motion =
-      simulation::makeMotionModel(world.robot(), world.startPositionIndices());
-  if (!motion) return tl::unexpected<Error>(motion.error());
-  const sensors::StandingRobot robot(world.robot(), *motion, simulation::motionKernels());
+  ASSIGN_OR_RETURN(const simulation::MotionModel motion,
+                   simulation::makeMotionModel(world.robot(), world.startPositionIndices()));
+  const sensors::StandingRobot robot(world.robot(), motion, simulation::motionKernels());
   const Scene& home = world.scenes()[scene];
   std::optional<sensors::FloorSeed> seed;
   if (isPlace(start)) {

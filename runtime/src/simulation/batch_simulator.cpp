@@ -151,13 +151,12 @@ class BatchSimulator::Impl {
 
   Result<void> restore(std::span<const std::byte> bytes) {
     requireIdle("BatchSimulator::restoreState");
-    const Result<SavedState> saved = simulation::readState(model_, bytes);
-    if (!saved) return tl::unexpected<Error>(saved.error());
+    ASSIGN_OR_RETURN(const SavedState saved, simulation::readState(model_, bytes));
     const std::vector<std::uint32_t> all = allEnvs(envCount());
-    if (Result<void> fits = checkCount(*saved, all); !fits) return fits;
-    model_.options.seed = saved->seed;
-    steps_ = saved->steps;
-    put(*saved, all);
+    if (Result<void> fits = checkCount(saved, all); !fits) return fits;
+    model_.options.seed = saved.seed;
+    steps_ = saved.steps;
+    put(saved, all);
     return {};
   }
 
@@ -168,16 +167,15 @@ class BatchSimulator::Impl {
       if (env != kNoEnv) detail::checkIndex(kCall, "env", env, envCount());
     }
     RETURN_IF_ERROR(requireDistinct(envs));
-    const Result<SavedState> saved = simulation::readState(model_, bytes);
-    if (!saved) return tl::unexpected<Error>(saved.error());
-    if (Result<void> fits = checkCount(*saved, envs); !fits) return fits;
-    if (saved->seed != model_.options.seed) {
+    ASSIGN_OR_RETURN(const SavedState saved, simulation::readState(model_, bytes));
+    if (Result<void> fits = checkCount(saved, envs); !fits) return fits;
+    if (saved.seed != model_.options.seed) {
       return fail(ErrorCode::kInvalidInput, "saved state",
                   fmt::format("was saved with seed {}, and the simulator has {}; restart it with "
                               "that seed",
-                              saved->seed, model_.options.seed));
+                              saved.seed, model_.options.seed));
     }
-    put(*saved, envs);
+    put(saved, envs);
     return {};
   }
 
@@ -360,13 +358,12 @@ Result<BatchSimulator> BatchSimulator::create(const World& world,
                     "; expected at least one env and a rank below the number of ranks");
   }
   RETURN_IF_ERROR(checkOptions(options));
-  Result<Model> model = simulation::makeModel(world, options);
-  if (!model) return tl::unexpected<Error>(model.error());
-  const auto bytes = static_cast<double>(simulation::stateBytes(*model, options.envs));
+  ASSIGN_OR_RETURN(Model model, simulation::makeModel(world, options));
+  const auto bytes = static_cast<double>(simulation::stateBytes(model, options.envs));
   RETURN_IF_ERROR(
       checkMemory(bytes, fmt::format("{} envs", options.envs), "simulate fewer at once (--envs)"));
   return BatchSimulator(
-      std::make_unique<Impl>(std::move(*model), detail::threadCount(options.threads)));
+      std::make_unique<Impl>(std::move(model), detail::threadCount(options.threads)));
 }
 
 BatchSimulator::BatchSimulator(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "support/part_files.h"
+#include "support/try.h"
 
 namespace galactic {
 
@@ -148,12 +149,11 @@ Result<void> AtomicFile::publish() {
 
 Result<void> writeFileAtomically(const std::filesystem::path& path,
                                  std::initializer_list<std::span<const std::byte>> parts) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return tl::unexpected<Error>(file.error());
+  ASSIGN_OR_RETURN(AtomicFile file, AtomicFile::create(path));
   for (const std::span<const std::byte>& part : parts) {
-    if (auto appended = file->append(part); !appended) return appended;
+    if (auto appended = file.append(part); !appended) return appended;
   }
-  return file->publish();
+  return file.publish();
 }
 
 }  // namespace galactic

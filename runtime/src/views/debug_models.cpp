@@ -7,6 +7,7 @@
 #include "galactic/debug_views.h"
 #include "layout/render_mesh_builder.h"
 #include "support/call_check.h"
+#include "support/try.h"
 #include "views/grid_surface.h"
 #include "views/shapes.h"
 
@@ -66,13 +67,12 @@ std::vector<OrientedBox> boxesOf(const World& world) {
 }  // namespace
 
 Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& options) {
-  const Result<std::size_t> grid = gridIndexOf(world, options.radius);
-  if (!grid) return tl::unexpected<Error>(grid.error());
+  ASSIGN_OR_RETURN(const std::size_t grid, gridIndexOf(world, options.radius));
   DebugModels models;
   models.world_hash_ = world.hash();
   PartList parts;
   for (const Scene& scene : world.scenes()) {
-    parts.add(views::gridSurface(scene.grids()[*grid]), kGrid);
+    parts.add(views::gridSurface(scene.grids()[grid]), kGrid);
   }
   models.first_robot_sphere_ = parts.count();
   for (const float radius : world.radii()) {
@@ -93,9 +93,8 @@ Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& op
   for (const OrientedBox& box : boxes)
     parts.add(views::boxFrameSurface(box, kDebugTask.color), kGoal);
 
-  Result<RenderMeshStorage> built = buildRenderMeshes(parts.source());
-  if (!built) return tl::unexpected<Error>(built.error());
-  auto memory = std::make_shared<const RenderMeshStorage>(std::move(*built));
+  ASSIGN_OR_RETURN(RenderMeshStorage built, buildRenderMeshes(parts.source()));
+  auto memory = std::make_shared<const RenderMeshStorage>(std::move(built));
   auto library = std::make_shared<RenderLibrary>();
   library->add(memory->view());
   library->keep(std::move(memory));

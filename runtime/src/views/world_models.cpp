@@ -13,6 +13,7 @@
 #include "galactic/render_library.h"
 #include "galactic/scene.h"
 #include "support/call_check.h"
+#include "support/try.h"
 
 namespace galactic {
 namespace {
@@ -23,27 +24,26 @@ Result<SharedTextures> texturesOf(const World& world) {
   SharedTextures textures;
   for (const PackFile& pack : world.packs()) {
     if (pack.kind() != PackKind::kTexture) continue;
-    if (auto added = textures.add(pack); !added) return tl::unexpected<Error>(added.error());
+    RETURN_IF_ERROR(textures.add(pack));
   }
   return textures;
 }
 
 Result<RenderMeshes> requiredMeshes(const PackFile& pack, const SharedTextures& textures) {
-  Result<std::optional<RenderMeshes>> meshes = renderMeshesOf(pack, textures);
-  if (!meshes) return tl::unexpected<Error>(meshes.error());
-  if (!meshes->has_value()) {
+  ASSIGN_OR_RETURN(std::optional<RenderMeshes> meshes, renderMeshesOf(pack, textures));
+  if (!meshes.has_value()) {
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "was baked without render meshes, which drawing needs; bake it again with them");
   }
-  if (!(*meshes)->missing_textures.empty()) {
-    const MissingTexture& missing = (*meshes)->missing_textures.front();
+  if (!(meshes)->missing_textures.empty()) {
+    const MissingTexture& missing = (meshes)->missing_textures.front();
     return fail(
         ErrorCode::kInvalidInput, pack.where(),
         fmt::format("shares the texture \"{}\" ({:016x}{:016x}), which is in no pack of the "
                     "world; add its texture pack",
                     missing.name, missing.hash_high, missing.hash_low));
   }
-  return std::move(**meshes);
+  return std::move(*meshes);
 }
 
 /// Adds a pack's models; `name_of(part)` says which of the world's things a model shows.
@@ -71,23 +71,21 @@ Result<WorldModels> WorldModels::from(const World& world) {
   content->library.keep(std::make_shared<const World>(world));
   ModelOfName scenes;
   ModelOfName objects;
-  const Result<SharedTextures> textures = texturesOf(world);
-  if (!textures) return tl::unexpected<Error>(textures.error());
+  ASSIGN_OR_RETURN(const SharedTextures textures, texturesOf(world));
   for (const PackFile& pack : world.packs()) {
     if (pack.kind() == PackKind::kEpisodes || pack.kind() == PackKind::kTexture) continue;
-    Result<RenderMeshes> meshes = requiredMeshes(pack, *textures);
-    if (!meshes) return tl::unexpected<Error>(meshes.error());
+    ASSIGN_OR_RETURN(RenderMeshes meshes, requiredMeshes(pack, textures));
     if (pack.kind() == PackKind::kScene) {
       const std::string_view name = Scene::from(pack)->name();
       addNamed(
-          content->library, std::move(*meshes), [&](std::uint32_t) { return name; }, scenes);
+          content->library, std::move(meshes), [&](std::uint32_t) { return name; }, scenes);
     } else if (pack.kind() == PackKind::kObjects) {
       const Result<ObjectSet> set = ObjectSet::from(pack);
       const auto name_of = [&](std::uint32_t part) { return set->objects()[part].name; };
-      addNamed(content->library, std::move(*meshes), name_of, objects);
+      addNamed(content->library, std::move(meshes), name_of, objects);
     } else {
-      const std::vector<RenderModel> robot_models = meshes->models;
-      const std::uint32_t first = content->library.add(std::move(*meshes));
+      const std::vector<RenderModel> robot_models = meshes.models;
+      const std::uint32_t first = content->library.add(std::move(meshes));
       for (std::uint32_t n = 0; n < robot_models.size(); ++n) {
         if (robot_models[n].cluster_count == 0) continue;
         content->links.push_back({robot_models[n].part, first + n});

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "support/try.h"
+
 namespace galactic::render::gl {
 namespace {
 
@@ -156,11 +158,9 @@ Result<EglContext> openFirst(const DeviceWish& wish, std::span<const EGLDeviceEX
 Result<std::string> softwareName(std::span<const EGLDeviceEXT> handles,
                                  std::span<const DeviceFacts> devices) {
   const DeviceWish software{.kind = DeviceWish::Kind::kSoftware};
-  const auto numbers = devicesFor(software, devices);
-  if (!numbers) return tl::unexpected<Error>(numbers.error());
-  const Result<EglContext> opened = openFirst(software, handles, devices, *numbers);
-  if (!opened) return tl::unexpected<Error>(opened.error());
-  return opened->facts().renderer;
+  ASSIGN_OR_RETURN(const auto numbers, devicesFor(software, devices));
+  ASSIGN_OR_RETURN(const EglContext opened, openFirst(software, handles, devices, numbers));
+  return opened.facts().renderer;
 }
 
 bool isNamed(const DeviceWish& wish) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string>
 
+#include "support/try.h"
+
 namespace galactic::render::gl {
 namespace {
 
@@ -22,18 +24,15 @@ Result<std::unique_ptr<GlEngine>> GlEngine::make(const RenderLibrary& library,
                                                  const RenderOptions& options,
                                                  const GlTuning& tuning,
                                                  const LibraryLoads& loads) {
-  const Result<DeviceWish> wish = parseDeviceWish(options.device);
-  if (!wish) return tl::unexpected<Error>(wish.error());
+  ASSIGN_OR_RETURN(const DeviceWish wish, parseDeviceWish(options.device));
   if (const Result<void> there = checkLibraries(loads); !there) {
     return tl::unexpected<Error>(there.error());
   }
-  Result<EglContext> context = openContext(*wish, options.backend == RenderBackend::kGl);
-  if (!context) return tl::unexpected<Error>(context.error());
-  const CurrentContext current(*context);
+  ASSIGN_OR_RETURN(EglContext context, openContext(wish, options.backend == RenderBackend::kGl));
+  const CurrentContext current(context);
   if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
-  auto renderer = GlRenderer::make(library, options, tuning);
-  if (!renderer) return tl::unexpected<Error>(renderer.error());
-  return std::make_unique<GlEngine>(std::move(*context), std::move(*renderer));
+  ASSIGN_OR_RETURN(auto renderer, GlRenderer::make(library, options, tuning));
+  return std::make_unique<GlEngine>(std::move(context), std::move(renderer));
 }
 
 GlEngine::~GlEngine() {
@@ -125,16 +124,15 @@ Result<ImageLayout> GlEngine::drawToDevice(std::span<const RenderView> views) {
 
 Result<DeviceImages> GlEngine::renderToDevice(std::span<const RenderView> views,
                                               std::uintptr_t stream) {
-  const Result<ImageLayout> layout = drawToDevice(views);
-  if (!layout) return tl::unexpected<Error>(layout.error());
+  ASSIGN_OR_RETURN(const ImageLayout layout, drawToDevice(views));
   const CurrentContext current(context_);
   if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
-  const Result<std::uint64_t> address = cuda_->map(renderer_->deviceImages().get(), stream);
-  if (!address) return tl::unexpected<Error>(address.error());
+  ASSIGN_OR_RETURN(const std::uint64_t address,
+                   cuda_->map(renderer_->deviceImages().get(), stream));
   DeviceImages images;
-  if (layout->color_of_view > 0) images.color = *address + layout->color;
-  if (layout->depth_of_view > 0) images.depth = *address + layout->depth;
-  if (layout->semantics_of_view > 0) images.semantics = *address + layout->semantics;
+  if (layout.color_of_view > 0) images.color = address + layout.color;
+  if (layout.depth_of_view > 0) images.depth = address + layout.depth;
+  if (layout.semantics_of_view > 0) images.semantics = address + layout.semantics;
   return images;
 }
 
@@ -150,9 +148,8 @@ namespace galactic::render {
 
 Result<std::unique_ptr<RenderEngine>> makeGlEngine(const RenderLibrary& library,
                                                    const RenderOptions& options) {
-  auto engine = gl::GlEngine::make(library, options, {}, gl::loadsLibrary);
-  if (!engine) return tl::unexpected<Error>(engine.error());
-  return std::unique_ptr<RenderEngine>(std::move(*engine));
+  ASSIGN_OR_RETURN(auto engine, gl::GlEngine::make(library, options, {}, gl::loadsLibrary));
+  return std::unique_ptr<RenderEngine>(std::move(engine));
 }
 
 }  // namespace galactic::render

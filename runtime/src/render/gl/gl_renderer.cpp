@@ -10,6 +10,7 @@
 #include "render/device_wish.h"
 #include "render/gl/library_textures.h"
 #include "support/stopwatch.h"
+#include "support/try.h"
 
 namespace galactic::render::gl {
 namespace {
@@ -139,27 +140,27 @@ Result<void> GlRenderer::load(const RenderLibrary& library, const GlTuning& tuni
   const auto has = [&](const char* extension) {
     return !tuning.core_only && epoxy_has_gl_extension(extension);
   };
-  const Result<TexturePlan> plan = planTextures(
-      library,
-      {.arrays = std::min<std::size_t>(
-           static_cast<std::size_t>(limitOf(GL_MAX_TEXTURE_IMAGE_UNITS)), Targets::kFirstUnit),
-       .layers = static_cast<std::size_t>(limitOf(GL_MAX_ARRAY_TEXTURE_LAYERS)),
-       .bc1 = has("GL_EXT_texture_compression_s3tc")});
-  if (!plan) return tl::unexpected<Error>(plan.error());
+  ASSIGN_OR_RETURN(
+      const TexturePlan plan,
+      planTextures(
+          library,
+          {.arrays = std::min<std::size_t>(
+               static_cast<std::size_t>(limitOf(GL_MAX_TEXTURE_IMAGE_UNITS)), Targets::kFirstUnit),
+           .layers = static_cast<std::size_t>(limitOf(GL_MAX_ARRAY_TEXTURE_LAYERS)),
+           .bc1 = has("GL_EXT_texture_compression_s3tc")}));
   indirect_count_ = has("GL_ARB_indirect_parameters");
   measures_ = tuning.measure;
-  LibraryGeometry geometry = gatherGeometry(library, plan->slots);
-  Result<Programs> programs =
-      makePrograms({.layer_in_vertex = has("GL_ARB_shader_viewport_layer_array"),
-                    .vertex_colors = geometry.vertex_colors,
-                    .color = options_.color != ColorFormat::kNone,
-                    .color_bytes = static_cast<unsigned>(options_.color),
-                    .depth = options_.depth,
-                    .semantics = options_.semantics,
-                    .texture_arrays = plan->arrays.size()});
-  if (!programs) return tl::unexpected<Error>(programs.error());
-  programs_ = std::move(*programs);
-  textures_ = uploadTextures(*plan);
+  LibraryGeometry geometry = gatherGeometry(library, plan.slots);
+  ASSIGN_OR_RETURN(Programs programs,
+                   makePrograms({.layer_in_vertex = has("GL_ARB_shader_viewport_layer_array"),
+                                 .vertex_colors = geometry.vertex_colors,
+                                 .color = options_.color != ColorFormat::kNone,
+                                 .color_bytes = static_cast<unsigned>(options_.color),
+                                 .depth = options_.depth,
+                                 .semantics = options_.semantics,
+                                 .texture_arrays = plan.arrays.size()}));
+  programs_ = std::move(programs);
+  textures_ = uploadTextures(plan);
   vertices_.fill(geometry.vertices.data(), geometry.vertices.size() * sizeof(GpuVertex));
   indices_.fill(geometry.indices.data(), geometry.indices.size() * sizeof(std::uint32_t));
   bounds_.fill(geometry.bounds.data(), geometry.bounds.size() * sizeof(GpuBounds));

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "support/try.h"
+
 namespace galactic::simulation {
 namespace {
 
@@ -258,17 +260,16 @@ Result<MotionModel> makeMotionModel(const Robot& robot,
   model.base = *robot.base();
   model.grasp_radius = robot.endEffector()->grasp_radius;
   addVariables(robot, also_variable, model);
-  const Result<std::vector<Attached>> links = Folding(robot, model).fold();
-  if (!links) return tl::unexpected<Error>(links.error());
+  ASSIGN_OR_RETURN(const std::vector<Attached> links, Folding(robot, model).fold());
 
-  model.links.reserve(links->size());
-  for (const Attached& link : *links) {
+  model.links.reserve(links.size());
+  for (const Attached& link : links) {
     model.links.push_back(fixedFrame(link.node, link.node_from_link));
   }
-  const Attached& hand = (*links)[robot.endEffector()->link];
+  const Attached& hand = (links)[robot.endEffector()->link];
   model.grip =
       fixedFrame(hand.node, hand.node_from_link * Pose{robot.endEffector()->grasp_point, {}});
-  addSpheres(robot, *links, model);
+  addSpheres(robot, links, model);
   if (model.ranges.empty()) {
     return fail(ErrorCode::kInvalidInput, where,
                 "has no collision spheres, so nothing would stop it; bake it with its geometry or "

@@ -13,6 +13,7 @@
 #include "simulation/phases/slide.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/floor_maps.h"
+#include "support/try.h"
 #include "support/workers.h"
 
 namespace galactic::simulation {
@@ -196,16 +197,15 @@ std::vector<sensors::Errand> errandsOf(const Model& model) {
 Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
   const SimulationOptions& options = model.options;
   const std::uint32_t threads = detail::threadCount(options.threads);
-  Result<sensors::Laser> made = sensors::Laser::make(laser, *model.world, floorsOf(model), threads);
-  if (!made) return tl::unexpected<Error>(made.error());
-  model.laser = std::move(*made);
+  ASSIGN_OR_RETURN(sensors::Laser made,
+                   sensors::Laser::make(laser, *model.world, floorsOf(model), threads));
+  model.laser = std::move(made);
   if (!options.sensors.geodesic && options.task.geodesic_weight == 0) return {};
   const sensors::StandingRobot robot(model.world->robot(), model.motion, model.kernels);
-  Result<sensors::Geodesic> ways =
-      sensors::Geodesic::make(*model.world, robot, options.ground, errandsOf(model),
-                              options.sensors.geodesic_megabytes, threads);
-  if (!ways) return tl::unexpected<Error>(ways.error());
-  model.geodesic = std::move(*ways);
+  ASSIGN_OR_RETURN(sensors::Geodesic ways,
+                   sensors::Geodesic::make(*model.world, robot, options.ground, errandsOf(model),
+                                           options.sensors.geodesic_megabytes, threads));
+  model.geodesic = std::move(ways);
   return {};
 }
 
@@ -232,19 +232,18 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   model.world = world;
   model.scenes = model.world->scenes();
   model.options = options;
-  Result<MotionModel> motion = makeMotionModel(world.robot(), world.startPositionIndices());
-  if (!motion) return tl::unexpected<Error>(motion.error());
-  model.motion = std::move(*motion);
+  ASSIGN_OR_RETURN(MotionModel motion,
+                   makeMotionModel(world.robot(), world.startPositionIndices()));
+  model.motion = std::move(motion);
   model.kernels = motionKernels();
   model.tables = motionTables(model.motion);
-  const Result<sensors::LaserSettings> laser =
-      sensors::laserSettings(options.sensors.laser, world.robot(), model.motion);
-  if (!laser) return tl::unexpected<Error>(laser.error());
+  ASSIGN_OR_RETURN(const sensors::LaserSettings laser,
+                   sensors::laserSettings(options.sensors.laser, world.robot(), model.motion));
   const SensorSizes sensors{.bump = options.sensors.bump ? 1U : 0U,
                             .target_goal = options.sensors.target_goal ? 3U : 0U,
                             .target_up = options.sensors.target_up ? kTargetUpSize : 0,
                             .near_objects = kWaySize * options.sensors.near_objects,
-                            .laser = laser->size(),
+                            .laser = laser.size(),
                             .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0,
                             .last_actions = model.actionCount() * options.sensors.last_actions};
   model.observation = observationParts(model.motion.controlled.size(), sensors);
@@ -263,7 +262,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
                     " episodes; check that scene, robot and episodes belong together");
   }
   mapFloors(finder.heights(), model);
-  if (auto made = makeSensors(*laser, model); !made) return tl::unexpected<Error>(made.error());
+  RETURN_IF_ERROR(makeSensors(laser, model));
   return model;
 }
 

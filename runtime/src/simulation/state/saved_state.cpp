@@ -16,6 +16,7 @@
 #include "galactic/option_text.h"
 #include "simulation/phases/episode_start.h"
 #include "simulation/state/plain_numbers.h"
+#include "support/try.h"
 
 namespace galactic::simulation {
 namespace {
@@ -390,17 +391,15 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
     return refused("does not have the hash that it states; it is damaged");
   }
   const std::vector<char> lines = in.takeMany<char>(header.option_bytes);
-  const auto checked = checkSubject(model, header, std::string_view(lines.data(), lines.size()));
-  if (!checked) return tl::unexpected<Error>(checked.error());
+  RETURN_IF_ERROR(checkSubject(model, header, std::string_view(lines.data(), lines.size())));
   const std::size_t bodies = model.motion.nodes.size() + 1;
   if (header.bodies != 0 && header.bodies != bodies) {
     return refused(fmt::format("has {} bodies, expected {}; it is damaged", header.bodies, bodies));
   }
   SavedState saved{.seed = header.seed, .steps = header.steps, .envs = {}};
   for (std::uint32_t n = 0; n < header.envs; ++n) {
-    Result<SavedEnv> env = readEnv(model, header.bodies, n, in);
-    if (!env) return tl::unexpected<Error>(env.error());
-    saved.envs.push_back(std::move(*env));
+    ASSIGN_OR_RETURN(SavedEnv env, readEnv(model, header.bodies, n, in));
+    saved.envs.push_back(std::move(env));
   }
   if (in.left() != 0) return refused("goes on behind its last env; it is damaged");
   return saved;
