@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "galactic/episode_set.h"
+#include "support/try.h"
 
 namespace galactic::pack_tool {
 
@@ -157,10 +158,8 @@ Json namesAndCounts(const Json& description) {
 
 Result<void> compareEpisodes(const PackFile& a, const PackFile& b, const DiffOptions& options,
                              PackDifference& difference) {
-  const auto set_a = EpisodeSet::from(a);
-  if (!set_a) return tl::unexpected<Error>(set_a.error());
-  const auto set_b = EpisodeSet::from(b);
-  if (!set_b) return tl::unexpected<Error>(set_b.error());
+  ASSIGN_OR_RETURN(const auto set_a, EpisodeSet::from(a));
+  ASSIGN_OR_RETURN(const auto set_b, EpisodeSet::from(b));
   const Both<Json> descriptions{describePack(a, Detail::kSummary),
                                 describePack(b, Detail::kSummary)};
   if (options.scope == DiffScope::kEverything) {
@@ -174,7 +173,7 @@ Result<void> compareEpisodes(const PackFile& a, const PackFile& b, const DiffOpt
     names.b.erase("name");
   }
   difference.content = compareFields(names.a, names.b, 0);
-  append(difference.content, EpisodeComparison(*set_a, *set_b, options.tolerance).run());
+  append(difference.content, EpisodeComparison(set_a, set_b, options.tolerance).run());
   return {};
 }
 

@@ -95,12 +95,11 @@ Result<std::optional<PackFile>> scenePack(const std::filesystem::path& path, std
                                           Trust trust) {
   std::error_code fault;
   if (!std::filesystem::is_regular_file(path, fault)) return std::nullopt;
-  auto pack = PackFile::open(path, trust);
-  if (!pack) return tl::unexpected<Error>(pack.error());
-  if (pack->kind() != PackKind::kScene) return std::nullopt;
-  const auto found = Scene::from(*pack);
+  ASSIGN_OR_RETURN(auto pack, PackFile::open(path, trust));
+  if (pack.kind() != PackKind::kScene) return std::nullopt;
+  const auto found = Scene::from(pack);
   if (!found || found->name() != scene) return std::nullopt;
-  return std::move(*pack);
+  return std::move(pack);
 }
 
 /// Whether a name can be that of a file in a folder.
