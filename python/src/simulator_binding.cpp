@@ -320,6 +320,7 @@ void bindSimulator(py::module_& module) {
       "(they keep the simulator), with new contents after each step. One thread at a time.";
   type.attr("STAYS") = BatchSimulator::kStays;
   type.attr("NEXT_EPISODE") = BatchSimulator::kNextEpisode;
+  type.attr("NOISE_OPTIONS") = py::tuple(py::cast(robotNoiseKeywords()));
   bindStepping(type);
   bindResults(type);
   bindQueries(type);
