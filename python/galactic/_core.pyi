@@ -139,6 +139,7 @@ class Statistics(TypedDict):
 class Simulator:
     STAYS: int
     NEXT_EPISODE: int
+    NOISE_OPTIONS: tuple[str, ...]  # the keywords of noise of motion and localization, and of delay
     def __init__(
         self,
         world: World,
@@ -346,6 +347,7 @@ class DeviceArray:
 
 class Renderer:
     OPTIONS: tuple[str, ...]  # what its keywords are called
+    NOISE_OPTIONS: tuple[str, ...]  # those of noise and jitter
     def __init__(
         self,
         simulator: Simulator,

@@ -44,8 +44,7 @@ py::tuple EpisodeTally::add(const py::object& rewards, const py::object& endings
     returns_[env] += static_cast<double>(paid.data()[env]);
     ++lengths_[env];
     if (end == static_cast<std::uint8_t>(EpisodeEnd::kNone)) continue;
-    const bool is_truncation = end == static_cast<std::uint8_t>(EpisodeEnd::kTimeOut);
-    (is_truncation ? truncations : terminations).mutable_data()[env] = true;
+    (isTruncation(EpisodeEnd{end}) ? truncations : terminations).mutable_data()[env] = true;
     ended_.push_back(env);
     endings_.push_back(end);
   }

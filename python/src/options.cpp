@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "arrays.h"
@@ -94,12 +95,15 @@ py::object valueOf(const OptionText& option) {
   return is_whole ? py::object(py::int_(text)) : py::object(py::float_(text));
 }
 
+std::vector<std::string> keywordsIn(OptionScope scope) {
+  std::vector<std::string> names = optionNames(scope);
+  for (std::string& name : names) name = underscored(std::move(name));
+  return names;
+}
+
 /// The names that optionsOf() takes.
 std::vector<std::string> knownKeywords() {
-  std::vector<std::string> known;
-  for (const std::string& name : optionNames(OptionScope::kTyped)) {
-    known.push_back(underscored(name));
-  }
+  std::vector<std::string> known = keywordsIn(OptionScope::kTyped);
   known.insert(known.end(), {"threads", "body_transforms", "auto_reset"});
   return known;
 }
@@ -254,6 +258,8 @@ py::dict keywordsOf(const SimulationOptions& options) {
   }
   return keywords;
 }
+
+std::vector<std::string> robotNoiseKeywords() { return keywordsIn(OptionScope::kRobotNoise); }
 
 void refuseKeyword(const std::string& keyword, const std::vector<std::string>& known) {
   const py::list names = py::cast(known);

@@ -47,6 +47,9 @@ namespace py = pybind11;
 /// All options of the table as keywords with their values.
 [[nodiscard]] py::dict keywordsOf(const SimulationOptions& options);
 
+/// Those that are noise of the robot (OptionScope::kRobotNoise), as keywords.
+[[nodiscard]] std::vector<std::string> robotNoiseKeywords();
+
 /// Throws the TypeError of a keyword that is none of `known`, with the nearest of them.
 [[noreturn]] void refuseKeyword(const std::string& keyword, const std::vector<std::string>& known);
 

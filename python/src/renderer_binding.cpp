@@ -97,11 +97,18 @@ std::string keywordOf(const SensorOption<Options>& option) {
   return name;
 }
 
+/// Those that make images other than they are, and cameras other than they should be.
+std::vector<std::string> noiseNames() {
+  std::vector<std::string> names;
+  for (const auto& option : kImageNoiseOptions) names.push_back(keywordOf(option));
+  for (const auto& option : kCameraJitterOptions) names.push_back(keywordOf(option));
+  return names;
+}
+
 std::vector<std::string> keywordNames() {
   std::vector<std::string> names;
   for (const auto& [name, take] : kKeywords) names.emplace_back(name);
-  for (const auto& option : kImageNoiseOptions) names.push_back(keywordOf(option));
-  for (const auto& option : kCameraJitterOptions) names.push_back(keywordOf(option));
+  std::ranges::move(noiseNames(), std::back_inserter(names));
   return names;
 }
 
@@ -213,6 +220,7 @@ void bindRenderer(py::module_& module) {
       "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
       "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.";
   type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
+  type.attr("NOISE_OPTIONS") = py::tuple(py::cast(noiseNames()));
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"
            "out: arrays by name that are drawn to, of exactly the images' shape and type; what it\n"

@@ -63,7 +63,7 @@ Simulator::StepInput Simulator::inputOfStep(const py::object& actions,
 
 Confinement::Use Simulator::readState() {
   Confinement::Use use = confinement_.enter();
-  if (is_stepping_) throw std::runtime_error("a step is under way; call end_step() first");
+  if (batch_.isStepping()) throw std::runtime_error("a step is under way; call end_step() first");
   return use;
 }
 
@@ -78,18 +78,18 @@ void Simulator::beginStep(const py::object& actions, const py::object& resets) {
   StepInput input = inputOfStep(actions, resets);
   const Confinement::Use use = readState();
   input_ = std::move(input);
-  is_stepping_ = true;
   batch_.beginStep(input_.actionSpan(), input_.resetSpan());
 }
 
 void Simulator::endStep() {
   const Confinement::Use use = confinement_.enter();
-  if (!is_stepping_) throw std::runtime_error("no step is under way; call begin_step() first");
+  if (!batch_.isStepping()) {
+    throw std::runtime_error("no step is under way; call begin_step() first");
+  }
   {
     const py::gil_scoped_release unlocked;
     batch_.endStep();
   }
-  is_stepping_ = false;
   input_ = {};
 }
 

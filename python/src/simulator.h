@@ -92,7 +92,6 @@ class Simulator {
   Confinement confinement_{"Simulator"};
   /// Of the step under way, which reads it until the batch is gone: so before the batch.
   StepInput input_;
-  bool is_stepping_ = false;
   BatchSimulator batch_;
 };
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "arrays.h"
@@ -53,17 +54,7 @@ py::dict statistics(Simulator& simulator, const py::object& env) {
   const SimulationStatistics sum =
       env.is_none() ? batch.statistics() : batch.statistics(simulator.envNumber(env));
   py::dict figures;
-  figures["steps"] = sum.steps;
-  figures["refused"] = sum.refused;
-  figures["slid"] = sum.slid;
-  figures["grasps"] = sum.grasps;
-  figures["drops"] = sum.drops;
-  figures["restored"] = sum.restored;
-  figures["episodes"] = sum.episodes;
-  figures["successes"] = sum.successes;
-  figures["failures"] = sum.failures;
-  figures["nan_actions"] = sum.nan_actions;
-  figures["reward"] = sum.reward;
+  visitStatistics([&](const char* name, auto member) { figures[name] = sum.*member; });
   return figures;
 }
 
@@ -71,30 +62,19 @@ py::dict statistics(Simulator& simulator, const py::object& env) {
 py::dict counts(Simulator& simulator, const py::object& envs) {
   const Confinement::Use use = simulator.readState();
   const std::vector<std::uint32_t> chosen = simulator.allOrThose(envs);
-  const Shape each{static_cast<py::ssize_t>(chosen.size())};
-  Filled<std::int64_t> steps(each), refused(each), slid(each), grasps(each), drops(each),
-      restored(each), episodes(each), successes(each), failures(each), nan_actions(each);
-  Filled<double> reward(each);
-  for (const std::uint32_t env : chosen) {
-    const SimulationStatistics of_env = simulator.batch().statistics(env);
-    steps.put(static_cast<std::int64_t>(of_env.steps));
-    refused.put(static_cast<std::int64_t>(of_env.refused));
-    slid.put(static_cast<std::int64_t>(of_env.slid));
-    grasps.put(static_cast<std::int64_t>(of_env.grasps));
-    drops.put(static_cast<std::int64_t>(of_env.drops));
-    restored.put(static_cast<std::int64_t>(of_env.restored));
-    episodes.put(static_cast<std::int64_t>(of_env.episodes));
-    successes.put(static_cast<std::int64_t>(of_env.successes));
-    failures.put(static_cast<std::int64_t>(of_env.failures));
-    nan_actions.put(static_cast<std::int64_t>(of_env.nan_actions));
-    reward.put(of_env.reward);
-  }
-  using namespace py::literals;
-  return py::dict("steps"_a = steps.array(), "refused"_a = refused.array(), "slid"_a = slid.array(),
-                  "grasps"_a = grasps.array(), "drops"_a = drops.array(),
-                  "restored"_a = restored.array(), "episodes"_a = episodes.array(),
-                  "successes"_a = successes.array(), "failures"_a = failures.array(),
-                  "nan_actions"_a = nan_actions.array(), "reward"_a = reward.array());
+  std::vector<SimulationStatistics> each;
+  each.reserve(chosen.size());
+  for (const std::uint32_t env : chosen) each.push_back(simulator.batch().statistics(env));
+  py::dict columns;
+  visitStatistics([&]<class T>(const char* name, T SimulationStatistics::*member) {
+    using Number = std::conditional_t<std::is_integral_v<T>, std::int64_t, T>;
+    Filled<Number> column({static_cast<py::ssize_t>(each.size())});
+    for (const SimulationStatistics& of_env : each) {
+      column.put(static_cast<Number>(of_env.*member));
+    }
+    columns[name] = column.array();
+  });
+  return columns;
 }
 
 py::dict episodeNoise(Simulator& simulator, const py::object& envs) {
@@ -340,6 +320,7 @@ void bindSimulator(py::module_& module) {
       "(they keep the simulator), with new contents after each step. One thread at a time.";
   type.attr("STAYS") = BatchSimulator::kStays;
   type.attr("NEXT_EPISODE") = BatchSimulator::kNextEpisode;
+  type.attr("NOISE_OPTIONS") = py::tuple(py::cast(robotNoiseKeywords()));
   bindStepping(type);
   bindResults(type);
   bindQueries(type);

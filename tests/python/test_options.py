@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from galactic import Error, Simulator
+from galactic.sensors import ALWAYS, SENSORS
 
 
 def test_options_are_those_of_the_option_table(world):
@@ -36,6 +37,17 @@ def test_options_are_those_of_the_option_table(world):
     )
     again = Simulator(world, threads=1, **options)
     assert again.options == options
+
+
+def test_the_parts_of_observations_and_the_options_of_sensors_are_known(world):
+    sensors = {name: 2 for name in ("near_objects", "laser_beams", "last_actions")}
+    switches = {name: True for name in ("bump", "target_goal", "target_up", "geodesic")}
+    simulator = Simulator(world, envs=1, threads=1, **sensors, **switches)
+    assert list(simulator.observation_parts) == [*ALWAYS, *SENSORS]
+    # They are the table's last ones; of memory alone, no part has a meaning.
+    options = list(simulator.options)
+    known = {"geodesic_megabytes"}.union(*SENSORS.values())
+    assert set(options[options.index("bump") :]) == known
 
 
 @pytest.mark.parametrize(

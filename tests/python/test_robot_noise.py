@@ -9,6 +9,10 @@ from galactic import Simulator, VectorEnv
 NOISE = {"motion_noise": 0.2, "motion_bias": 0.1, "localization_noise": 0.1}
 
 
+def test_the_options_of_noise_are_listed() -> None:
+    assert Simulator.NOISE_OPTIONS == (*NOISE, "action_delay")
+
+
 def play(envs: VectorEnv, steps: int = 40, **reset) -> np.ndarray:
     """Observations of steps with actions of their own."""
     generator = np.random.default_rng(8)

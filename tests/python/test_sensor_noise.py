@@ -34,6 +34,11 @@ def played(env, actions):
     return seen + [drawn(env, env.step(action)[0]) for action in actions]
 
 
+def test_the_options_of_noise_are_listed():
+    assert Renderer.NOISE_OPTIONS == (*NOISE, *JITTER, "camera_jitter_fov")
+    assert set(Renderer.NOISE_OPTIONS) < set(Renderer.OPTIONS)
+
+
 def test_without_noise_images_are_as_they_were(simulator):
     plain = Renderer(simulator, **CAMERA)
     off = Renderer(simulator, **CAMERA, **{name: 0 for name in {**NOISE, **JITTER}})

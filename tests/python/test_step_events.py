@@ -6,6 +6,19 @@ import pytest
 import galactic
 from galactic import Simulator, VectorEnv
 
+STATISTICS = {
+    "steps": np.int64,
+    "refused": np.int64,
+    "slid": np.int64,
+    "grasps": np.int64,
+    "drops": np.int64,
+    "restored": np.int64,
+    "episodes": np.int64,
+    "successes": np.int64,
+    "failures": np.int64,
+    "nan_actions": np.int64,
+    "reward": np.float64,
+}
 EVENTS = ("refused", "slid", "grasped", "dropped", "restored", "touched")
 
 
@@ -22,7 +35,9 @@ def test_counts_are_the_statistics_of_each_env(world, draw_actions) -> None:
     for step in range(100):
         simulator.step(drive(draw_actions, 30, step))
     counts = simulator.counts()
-    assert list(counts) == list(simulator.statistics())
+    assert list(counts) == list(simulator.statistics()) == list(STATISTICS)
+    assert {name: values.dtype for name, values in counts.items()} == STATISTICS
+    assert isinstance(simulator.statistics()["slid"], int)
     for name, values in counts.items():
         assert values.shape == (30,)
         assert list(values) == [simulator.statistics(env)[name] for env in range(30)]

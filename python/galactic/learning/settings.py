@@ -7,6 +7,7 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any, Mapping
 
+import galactic
 from galactic.learning.policies.sight import (
     IMAGE_SIZE,
     OF_THE_PAPER,
@@ -19,17 +20,10 @@ from galactic.learning.setting_fields import Drawn, require_valid, setting
 from galactic.learning.simulation_words import is_robot_noise, latest_words
 
 
-# Settings that change colors, and all that make the images of training unlike those that policies are
-# judged by.
+# Settings that change colors.
 COLOR_NOISE = ("color_noise", "light_jitter")
-CAMERA_NOISE = (
-    "depth_noise",
-    "depth_dropout",
-    *COLOR_NOISE,
-    "camera_jitter",
-    "camera_jitter_degrees",
-    "camera_jitter_fov",
-)
+# All that make the images of training unlike those that policies are judged by.
+CAMERA_NOISE = galactic.Renderer.NOISE_OPTIONS
 # Options of galactic.Renderer, and the settings that they are taken from.
 CAMERA = {
     "camera": "camera",

@@ -10,8 +10,6 @@ import galactic
 from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_fields import ends_of
 
-# Options of the simulation that make robots unlike those that policies are judged by.
-ROBOT_NOISE = ("motion_noise", "motion_bias", "localization_noise", "action_delay")
 # What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
 _CHOSEN_BY_TRAINER = {
     *set(inspect.signature(galactic.VectorEnv).parameters) - {"task"},
@@ -67,9 +65,9 @@ def latest_words(words: str) -> str:
 
 
 def is_robot_noise(word: str) -> bool:
-    """Whether a word of Settings.simulation adds such noise; one that switches that of a world off does
-    not."""
-    if simulation_keyword(word) not in ROBOT_NOISE:
+    """Whether a word of Settings.simulation makes robots unlike those that policies are judged by; one that
+    switches noise of a world off does not."""
+    if simulation_keyword(word) not in galactic.Simulator.NOISE_OPTIONS:
         return False
     try:
         return any(float(end) != 0.0 for end in ends_of(word.partition("=")[2]))

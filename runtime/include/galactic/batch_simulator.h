@@ -83,6 +83,30 @@ struct SimulationStatistics {
   double reward = 0;
 };
 
+/// Calls `visit(name, member)` for each of them, in their order: the name that it has in Python,
+/// and a pointer to the member.
+template <class Visit>
+constexpr void visitStatistics(Visit&& visit) {
+  visit("steps", &SimulationStatistics::steps);
+  visit("refused", &SimulationStatistics::refused);
+  visit("slid", &SimulationStatistics::slid);
+  visit("grasps", &SimulationStatistics::grasps);
+  visit("drops", &SimulationStatistics::drops);
+  visit("restored", &SimulationStatistics::restored);
+  visit("episodes", &SimulationStatistics::episodes);
+  visit("successes", &SimulationStatistics::successes);
+  visit("failures", &SimulationStatistics::failures);
+  visit("nan_actions", &SimulationStatistics::nan_actions);
+  visit("reward", &SimulationStatistics::reward);
+}
+
+// No member without a name.
+static_assert([] {
+  std::size_t bytes = 0;
+  visitStatistics([&]<class T>(const char*, T SimulationStatistics::*) { bytes += sizeof(T); });
+  return bytes;
+}() == sizeof(SimulationStatistics));
+
 /// The state of one env: for exports, pictures, planners; and to go on from, with
 /// BatchSimulator::setStates(). A copy.
 struct EnvState {

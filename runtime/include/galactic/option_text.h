@@ -28,6 +28,8 @@ enum class OptionScope {
   kAll,
   /// What a world may say of its task (visitWorldTask): not those of a batch.
   kTask,
+  /// Of kTask, those of RobotNoise: what robots do and know otherwise than asked and told.
+  kRobotNoise,
   /// kAll, and the presets, which options named beside them refine: what a user may type.
   kTyped,
 };

@@ -448,17 +448,7 @@ SimulationStatistics BatchSimulator::statistics() const {
   SimulationStatistics sum;
   for (std::size_t n = 0; n < envCount(); ++n) {
     const SimulationStatistics env = statistics(n);
-    sum.steps += env.steps;
-    sum.refused += env.refused;
-    sum.slid += env.slid;
-    sum.grasps += env.grasps;
-    sum.drops += env.drops;
-    sum.restored += env.restored;
-    sum.episodes += env.episodes;
-    sum.successes += env.successes;
-    sum.failures += env.failures;
-    sum.nan_actions += env.nan_actions;
-    sum.reward += env.reward;
+    visitStatistics([&](const char*, auto member) { sum.*member += env.*member; });
   }
   return sum;
 }

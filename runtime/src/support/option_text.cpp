@@ -288,6 +288,8 @@ template <class Visitor>
 void visit(SimulationOptions& options, OptionScope scope, Visitor& visitor) {
   if (scope == OptionScope::kTask) {
     visitWorldTask(options, visitor);
+  } else if (scope == OptionScope::kRobotNoise) {
+    visitNoiseOptions(options.noise, visitor);
   } else {
     visitOptions(options, visitor);
   }

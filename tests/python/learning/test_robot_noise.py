@@ -8,7 +8,6 @@ import pathlib
 import galactic
 from galactic.learning.saving import checkpoint
 from galactic.learning.settings import Settings
-from galactic.learning.simulation_words import ROBOT_NOISE
 from policies import untrained
 from programs import HELD_OUT, WORLD, call, curve, needs_worlds
 
@@ -40,6 +39,11 @@ def test_what_a_training_adds_is_left_out_and_nothing_else() -> None:
         "motion-noise=x",
     ):
         assert of_state(words).without_robot_noise().simulation == words
+
+
+def test_all_noise_that_a_simulation_has_is_left_out() -> None:
+    for name in galactic.Simulator.NOISE_OPTIONS:
+        assert of_state(f"task=pick {name}=0-1").without_noise() == of_state("task=pick"), name
 
 
 @needs_worlds
@@ -79,7 +83,7 @@ def test_a_policy_is_evaluated_without_the_noise_of_its_training(tmp_path: pathl
     done = call("export", noisy, "-o", pack)
     assert done.returncode == 0, done.stderr
     options = galactic.LearnedPolicy(pack, 2).options
-    assert options["task"] == "pick" and not set(ROBOT_NOISE) & set(options)
+    assert options["task"] == "pick" and not set(galactic.Simulator.NOISE_OPTIONS) & set(options)
     assert b"motion-noise=0.4" in pack.read_bytes(), "what it was trained with stands in the pack"
 
 

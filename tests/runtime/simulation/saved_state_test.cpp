@@ -70,17 +70,7 @@ std::vector<std::uint64_t> traceOf(const BatchSimulator& simulator) {
 }
 
 void expectSameStatistics(const SimulationStatistics& a, const SimulationStatistics& b) {
-  EXPECT_EQ(a.steps, b.steps);
-  EXPECT_EQ(a.refused, b.refused);
-  EXPECT_EQ(a.slid, b.slid);
-  EXPECT_EQ(a.grasps, b.grasps);
-  EXPECT_EQ(a.drops, b.drops);
-  EXPECT_EQ(a.restored, b.restored);
-  EXPECT_EQ(a.episodes, b.episodes);
-  EXPECT_EQ(a.successes, b.successes);
-  EXPECT_EQ(a.failures, b.failures);
-  EXPECT_EQ(a.nan_actions, b.nan_actions);
-  EXPECT_EQ(a.reward, b.reward);
+  visitStatistics([&](const char* name, auto member) { EXPECT_EQ(a.*member, b.*member) << name; });
 }
 
 TEST(SavedState, GoesOnBitForBitInTheSameAndInOtherSimulators) {

@@ -104,6 +104,19 @@ TEST(OptionTexts, HaveTheNamesOfTheTable) {
   EXPECT_NE(std::find(typed.begin(), typed.end(), "slide"), typed.end());
 }
 
+TEST(OptionTexts, TellWhichAreNoiseOfTheRobot) {
+  EXPECT_EQ(optionNames(OptionScope::kRobotNoise),
+            (std::vector<std::string>{"motion-noise", "motion-bias", "localization-noise",
+                                      "action-delay"}));
+  SimulationOptions options;
+  options.noise.motion = 0.5F;
+  const std::vector<OptionText> listed = listOptions(options, OptionScope::kRobotNoise);
+  ASSERT_EQ(listed.size(), 4U);
+  EXPECT_EQ(listed[0], (OptionText{"motion-noise", "0.5", false}));
+  const std::vector<OptionText> laser{{"laser-noise", "0.1"}};
+  EXPECT_TRUE(setOptions(laser, OptionScope::kRobotNoise, options));
+}
+
 /// Numbers about the ends of the range of an option of the table, and whether it should take them:
 /// the answer comes from the numbers, before they are text.
 class RangeProbe {
