@@ -62,7 +62,8 @@ inline constexpr std::size_t kEpisodeEnds = 6;
   return isTermination(end) && end != EpisodeEnd::kSuccess;
 }
 
-/// What happened in all envs since the simulator was made.
+/// What happened in all envs, or in one, since the simulator was made or began anew (restart()), or
+/// as a state that was restored has it.
 struct SimulationStatistics {
   /// Steps of idle envs do not count.
   std::uint64_t steps = 0;
