@@ -99,7 +99,7 @@ Result<std::optional<PackFile>> scenePack(const std::filesystem::path& path, std
   if (pack.kind() != PackKind::kScene) return std::nullopt;
   const auto found = Scene::from(pack);
   if (!found || found->name() != scene) return std::nullopt;
-  return std::move(pack);
+  return pack;
 }
 
 /// Whether a name can be that of a file in a folder.
