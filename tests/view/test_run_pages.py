@@ -41,6 +41,16 @@ class RunPages(PageCase):
                 self.expect_poses(shown["links"], frames[number][env]["links"], number)
                 self.expect_poses(shown["objects"], frames[number][env]["objects"], number)
 
+    def test_long_names_stay_within_the_panel(self):
+        page = self.open("run", "env=0&t=0", "run 0")
+        widths = page.evaluate(
+            "(() => { const panel = document.getElementById('panel');"
+            "const cell = [...panel.querySelectorAll('td')].find((one) => one.textContent && !one.classList.contains('number'));"
+            "const before = panel.scrollWidth; cell.textContent = 'ACE_Coffee_Mug_Kristen_16_oz_cup_'.repeat(4);"
+            "return [before, panel.scrollWidth, panel.clientWidth]; })()"
+        )
+        self.assertEqual(widths, [widths[2]] * 3, "nothing is beside it")
+
     def test_the_twin_of_an_env_is_shown_as_a_ghost(self):
         page = self.open("run", "env=0&t=0", "run 0")
         frames = json.loads((self.folder / "poses.json").read_text())
