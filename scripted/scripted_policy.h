@@ -78,7 +78,9 @@ class ScriptedPolicy {
   /// BatchSimulator::step takes them. Call it once before each step. Where others act meanwhile, or
   /// have acted before, it goes on, or plans, from where the robot is then. `where` (of size envs,
   /// or empty: all) is 0 for envs in which others act: the policy leaves their actions as they are,
-  /// and plans nothing.
+  /// and plans nothing. Throws ErrorException with kInvalidInput, and changes nothing, when a step
+  /// of `simulator` has begun, when it has another world or another number of envs than the policy,
+  /// and when `actions` or `where` has another length.
   void act(const BatchSimulator& simulator, std::span<float> actions,
            std::span<const std::uint8_t> where = {});
 
@@ -93,7 +95,7 @@ class ScriptedPolicy {
   /// far behind, and until they are there before it drives, grasps or lets go. False at first.
   void expectLag(bool lags);
 
-  /// Of the last call of act.
+  /// Of the last call of act. An `env` that there is not throws ErrorException with kInvalidInput.
   [[nodiscard]] ScriptedPhase phase(std::size_t env) const;
   [[nodiscard]] ScriptedTrouble trouble(std::size_t env) const;
 
