@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "galactic/planning_scene.h"
+#include "galactic/world.h"
 #include "scripted/arm_planner.h"
 #include "scripted/floor_search.h"
 #include "scripted/plan.h"
@@ -15,7 +16,7 @@ namespace galactic::scripted {
 /// Makes the plans of one env after the other.
 class Planner {
  public:
-  /// `world`, whose robot has base and end effector, must outlive the planner.
+  /// `world`: its robot has base and end effector.
   Planner(const World& world, const SimulationOptions& options);
 
   /// From anywhere with an empty hand, to the grasp of the target; to a stance that is like one
@@ -99,7 +100,7 @@ class Planner {
   [[nodiscard]] Pose gripAt(const Joints& joints) { return arm_.gripOf(arm_.placeLinks(joints)); }
   [[nodiscard]] std::uint64_t nextSeed();
 
-  const World& world_;
+  World world_;
   SimulationOptions options_;
   PlanningScene scene_;
   Arm arm_;

@@ -268,7 +268,7 @@ class ScriptedPolicy::Impl {
     }
   }
 
-  const World& world_;
+  World world_;
   SimulationOptions options_;
   scripted::Decisions decisions_;
   scripted::Arm arm_;

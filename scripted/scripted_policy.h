@@ -64,10 +64,10 @@ enum class ScriptedTrouble : std::uint8_t {
 /// threads at once.
 class ScriptedPolicy {
  public:
-  /// For a batch of `options.envs` envs that was made from the same world and options. `world` must
-  /// outlive the policy. Fails with kUnsupported when the task is TaskKind::kNone, when actions
-  /// arrive late (RobotNoise::action_delay), or when thresholds of ActionOptions leave no value
-  /// that decides, or none that does not.
+  /// For a batch of `options.envs` envs that was made from the same world and options. Fails with
+  /// kUnsupported when the task is TaskKind::kNone, when actions arrive late
+  /// (RobotNoise::action_delay), or when thresholds of ActionOptions leave no value that decides,
+  /// or none that does not.
   [[nodiscard]] static Result<ScriptedPolicy> create(const World& world,
                                                      const SimulationOptions& options);
   ~ScriptedPolicy();

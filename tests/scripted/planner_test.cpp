@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
@@ -103,6 +104,17 @@ TEST(Planner, LetsThePolicyTryElsewhereWhatTheHandHasMissed) {
     EXPECT_GE(stances.size(), 4U) << is_empty;
     EXPECT_EQ(countOther(stances), stances.size()) << is_empty;
   }
+}
+
+TEST(Planner, KeepsItsWorld) {
+  const ScriptedWorld made = tableWorld();
+  const BatchSimulator simulator =
+      MemoryPack::opened(BatchSimulator::create(made.world(), oneEnv()));
+  auto world = std::make_unique<World>(made.world());
+  Planner planner(*world, oneEnv());
+  world.reset();
+  const EnvState state = simulator.envState(0);
+  EXPECT_EQ(planner.planPick(state, {}).trouble, ScriptedTrouble::kNone);
 }
 
 }  // namespace

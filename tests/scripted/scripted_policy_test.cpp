@@ -303,6 +303,19 @@ TEST(ScriptedPolicy, RefusesToActInOtherEnvsThanItsOwnAndByArraysOfAnotherLength
   EXPECT_NE(std::ranges::count(two, 0.5F), static_cast<std::ptrdiff_t>(two.size()));
 }
 
+TEST(ScriptedPolicy, KeepsItsWorld) {
+  const ScriptedWorld made = tableWorld(1.7F);
+  const SimulationOptions options = optionsOf(1);
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
+  auto world = std::make_unique<World>(made.world());
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(*world, options));
+  world.reset();
+  std::vector<float> actions(simulator.actionCount());
+  policy.act(simulator, actions);
+  EXPECT_EQ(policy.phase(0), ScriptedPhase::kPick);
+  EXPECT_EQ(policy.trouble(0), ScriptedTrouble::kNone);
+}
+
 TEST(ScriptedPolicy, RefusesToTellOfEnvsThatItDoesNotHave) {
   const ScriptedWorld made = tableWorld(1.7F);
   const ScriptedPolicy policy =
