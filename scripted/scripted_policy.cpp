@@ -13,6 +13,7 @@
 #include "galactic/drawn_number.h"
 #include "scripted/plan_player.h"
 #include "scripted/planner.h"
+#include "support/call_check.h"
 #include "support/try.h"
 #include "support/workers.h"
 
@@ -70,6 +71,7 @@ class ScriptedPolicy::Impl {
 
   void act(const BatchSimulator& simulator, std::span<float> actions,
            std::span<const std::uint8_t> where) {
+    check(simulator, actions, where);
     simulator_ = &simulator;
     actions_ = actions;
     where_ = where;
@@ -88,10 +90,34 @@ class ScriptedPolicy::Impl {
   void expectLag(bool lags) { lags_ = lags; }
   void allowPlans(std::uint32_t most) { most_plans_ = most; }
 
-  [[nodiscard]] const EnvPlan& env(std::size_t n) const { return envs_[n]; }
+  [[nodiscard]] const EnvPlan& env(const char* call, std::size_t n) const {
+    detail::checkIndex(call, "env", n, envs_.size());
+    return envs_[n];
+  }
 
  private:
   using Progress = scripted::PlanPlayer::Progress;
+
+  /// What act() asks of its caller.
+  void check(const BatchSimulator& simulator, std::span<const float> actions,
+             std::span<const std::uint8_t> where) const {
+    constexpr const char* kCall = "ScriptedPolicy::act";
+    if (simulator.isStepping()) {
+      detail::refuseCall(kCall, "found a step that has begun; end it first, with endStep()");
+    }
+    if (simulator.world().hash() != world_.hash()) {
+      detail::refuseCall(kCall,
+                         "found a simulator of another world than the one that the policy was made "
+                         "for; make a policy for that one, too");
+    }
+    if (simulator.envCount() != envs_.size()) {
+      detail::refuseCall(kCall, "found a simulator of " + std::to_string(simulator.envCount()) +
+                                    " envs, expected the " + std::to_string(envs_.size()) +
+                                    " that the policy was made for");
+    }
+    detail::checkLength(kCall, "actions", actions.size(), envs_.size() * simulator.actionCount());
+    if (!where.empty()) detail::checkLength(kCall, "where", where.size(), envs_.size());
+  }
 
   /// Acts in one env after the other, with the planner of thread `n`, as long as there are any.
   void work(std::size_t n) noexcept {
@@ -242,7 +268,7 @@ class ScriptedPolicy::Impl {
     }
   }
 
-  const World& world_;
+  World world_;
   SimulationOptions options_;
   scripted::Decisions decisions_;
   scripted::Arm arm_;
@@ -292,8 +318,12 @@ void ScriptedPolicy::expectLag(bool lags) { impl_->expectLag(lags); }
 
 void ScriptedPolicy::allowPlans(std::uint32_t most) { impl_->allowPlans(most); }
 
-ScriptedPhase ScriptedPolicy::phase(std::size_t env) const { return impl_->env(env).phase; }
+ScriptedPhase ScriptedPolicy::phase(std::size_t env) const {
+  return impl_->env("ScriptedPolicy::phase", env).phase;
+}
 
-ScriptedTrouble ScriptedPolicy::trouble(std::size_t env) const { return impl_->env(env).trouble; }
+ScriptedTrouble ScriptedPolicy::trouble(std::size_t env) const {
+  return impl_->env("ScriptedPolicy::trouble", env).trouble;
+}
 
 }  // namespace galactic

@@ -64,9 +64,10 @@ enum class ScriptedTrouble : std::uint8_t {
 /// threads at once.
 class ScriptedPolicy {
  public:
-  /// For a batch of `options.envs` envs that was made from the same world and options. `world` must
-  /// outlive the policy. Fails with kUnsupported when the task is TaskKind::kNone, or when
-  /// thresholds of ActionOptions leave no value that decides, or none that does not.
+  /// For a batch of `options.envs` envs that was made from the same world and options. Fails with
+  /// kUnsupported when the task is TaskKind::kNone, when actions arrive late
+  /// (RobotNoise::action_delay), or when thresholds of ActionOptions leave no value that decides,
+  /// or none that does not.
   [[nodiscard]] static Result<ScriptedPolicy> create(const World& world,
                                                      const SimulationOptions& options);
   ~ScriptedPolicy();
@@ -77,7 +78,9 @@ class ScriptedPolicy {
   /// BatchSimulator::step takes them. Call it once before each step. Where others act meanwhile, or
   /// have acted before, it goes on, or plans, from where the robot is then. `where` (of size envs,
   /// or empty: all) is 0 for envs in which others act: the policy leaves their actions as they are,
-  /// and plans nothing.
+  /// and plans nothing. Throws ErrorException with kInvalidInput, and changes nothing, when a step
+  /// of `simulator` has begun, when it has another world or another number of envs than the policy,
+  /// and when `actions` or `where` has another length.
   void act(const BatchSimulator& simulator, std::span<float> actions,
            std::span<const std::uint8_t> where = {});
 
@@ -92,7 +95,7 @@ class ScriptedPolicy {
   /// far behind, and until they are there before it drives, grasps or lets go. False at first.
   void expectLag(bool lags);
 
-  /// Of the last call of act.
+  /// Of the last call of act. An `env` that there is not throws ErrorException with kInvalidInput.
   [[nodiscard]] ScriptedPhase phase(std::size_t env) const;
   [[nodiscard]] ScriptedTrouble trouble(std::size_t env) const;
 

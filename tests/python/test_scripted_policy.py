@@ -141,6 +141,10 @@ def test_same_simulator_same_actions(world):
 def test_refuses_what_it_cannot_solve(world, simulator):
     with pytest.raises(Error, match="task"):
         ScriptedPolicy(Simulator(world, envs=2, task="none"))
+    with pytest.raises(Error, match="an action-delay of 2, expected 0"):
+        ScriptedPolicy(Simulator(world, envs=2, action_delay=2))
+    with pytest.raises(Error, match="grasp-from is 2, so that no action .* closes the hand"):
+        ScriptedPolicy(Simulator(world, envs=2, grasp_from=2))
     with pytest.raises(TypeError, match="is a VectorEnv, expected a galactic.Simulator"):
         ScriptedPolicy(VectorEnv(world, 2))
     for most_plans in (0, -1, 2.5, "many"):

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
@@ -103,6 +105,90 @@ TEST(Planner, LetsThePolicyTryElsewhereWhatTheHandHasMissed) {
     EXPECT_GE(stances.size(), 4U) << is_empty;
     EXPECT_EQ(countOther(stances), stances.size()) << is_empty;
   }
+}
+
+bool areEqual(const Stance& a, const Stance& b) {
+  return a.base.position == b.base.position && a.base.yaw == b.base.yaw && a.grip == b.grip &&
+         a.approach == b.approach;
+}
+
+/// Whether two plans are the same, bit for bit.
+bool areEqual(const Plan& a, const Plan& b) {
+  return a.trouble == b.trouble && areEqual(a.stance, b.stance) &&
+         std::ranges::equal(
+             a.steps, b.steps, [](const scripted::PlanStep& one, const scripted::PlanStep& other) {
+               return one.kind == other.kind && one.base.position == other.base.position &&
+                      one.base.yaw == other.base.yaw && one.from == other.from &&
+                      one.joints == other.joints;
+             });
+}
+
+/// The last state in which the policy has the target in its hand.
+EnvState lastHeldState(const World& world) {
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(world, oneEnv()));
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(world, oneEnv()));
+  std::vector<float> actions(simulator.actionCount());
+  EnvState held;
+  while (simulator.dones()[0] == 0) {
+    const EnvState state = simulator.envState(0);
+    if (state.held >= 0) held = state;
+    policy.act(simulator, actions);
+    simulator.step(actions);
+  }
+  return held;
+}
+
+TEST(Planner, PlansTheSameWhateverItHasPlannedBefore) {
+  const ScriptedWorld made = tableWorld();
+  const World& world = made.world();
+  const EnvState empty = MemoryPack::opened(BatchSimulator::create(world, oneEnv())).envState(0);
+  const EnvState full = lastHeldState(world);
+  ASSERT_EQ(full.held, static_cast<std::int32_t>(full.target));
+  // The base stands where the arm reaches the target, too.
+  EnvState opened = full;
+  opened.held = -1;
+
+  using MakePlan = std::function<Plan(Planner&)>;
+  const std::vector<Stance> failed{Planner(world, oneEnv()).planPick(empty, {}).stance,
+                                   Planner(world, oneEnv()).planPlace(full, {}).stance};
+  const std::vector<MakePlan> makers{
+      [&](Planner& planner) { return planner.planPick(empty, {}); },
+      [&](Planner& planner) {
+        return planner.planPlace(full, {1, failed});
+      },
+      [&](Planner& planner) { return planner.planPickFromHere(opened, {}, 0); },
+      [&](Planner& planner) { return planner.planPlaceFromHere(full, {}, 1); },
+      [&](Planner& planner) {
+        return planner.planPick(empty, {1, failed});
+      },
+      [&](Planner& planner) { return planner.planPlace(full, {}); }};
+  std::vector<Plan> fresh;
+  for (const MakePlan& make : makers) {
+    Planner planner(world, oneEnv());
+    fresh.push_back(make(planner));
+  }
+  for (const Plan& plan : fresh) EXPECT_EQ(plan.trouble, ScriptedTrouble::kNone);
+  EXPECT_FALSE(areEqual(fresh[0], fresh[4]));
+  EXPECT_FALSE(areEqual(fresh[1], fresh[5]));
+
+  Planner planner(world, oneEnv());
+  for (std::size_t first = 0; first < makers.size(); ++first) {
+    for (std::size_t then = 0; then < makers.size(); ++then) {
+      (void)makers[first](planner);
+      EXPECT_TRUE(areEqual(makers[then](planner), fresh[then])) << then << " after " << first;
+    }
+  }
+}
+
+TEST(Planner, KeepsItsWorld) {
+  const ScriptedWorld made = tableWorld();
+  const BatchSimulator simulator =
+      MemoryPack::opened(BatchSimulator::create(made.world(), oneEnv()));
+  auto world = std::make_unique<World>(made.world());
+  Planner planner(*world, oneEnv());
+  world.reset();
+  const EnvState state = simulator.envState(0);
+  EXPECT_EQ(planner.planPick(state, {}).trouble, ScriptedTrouble::kNone);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "galactic/batch_simulator.h"
@@ -184,15 +185,27 @@ TEST_F(ScriptedPolicyInTheSampleWorld, RefusesToHaveNothingToDo) {
             "the task is none, which has nothing to plan for; use rearrange or mobile pick");
 }
 
+SimulationOptions optionsOf(std::uint32_t envs) {
+  SimulationOptions options;
+  options.envs = envs;
+  options.threads = 1;
+  return options;
+}
+
+/// A cube on a table, and its goal at `goal` along it, meters.
+ScriptedWorld tableWorld(float goal) {
+  MeshBuilder room = madeRoom(4, 3);
+  room.box({2.2F, 0, 1}, {2.8F, 0.5F, 2});
+  return stickWorld(room.build(), {0.8F, 0, 1.5F}, {2.4F, 0.501F, 1.3F}, {2.4F, 0.501F, goal});
+}
+
 TEST(ScriptedPolicy, GivesUpWhereThereIsNoWayAndStandsStill) {
   MeshBuilder room = madeRoom(4, 3);
   room.box({1.95F, 0, 0}, {2.05F, 2.5F, 3});
   room.box({3.2F, 0, 1}, {3.8F, 0.5F, 2});
   const ScriptedWorld made =
       stickWorld(room.build(), {0.8F, 0, 1.5F}, {3.5F, 0.501F, 1.2F}, {3.5F, 0.501F, 1.8F});
-  SimulationOptions options;
-  options.envs = 1;
-  options.threads = 1;
+  const SimulationOptions options = optionsOf(1);
   BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
   ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(made.world(), options));
   std::vector<float> actions(simulator.actionCount(), 1);
@@ -207,13 +220,8 @@ TEST(ScriptedPolicy, GivesUpWhereThereIsNoWayAndStandsStill) {
 }
 
 TEST(ScriptedPolicy, PlansAnewWhereItMeetsTheSameEpisodeBegunAgain) {
-  MeshBuilder room = madeRoom(4, 3);
-  room.box({2.2F, 0, 1}, {2.8F, 0.5F, 2});
-  const ScriptedWorld made =
-      stickWorld(room.build(), {0.8F, 0, 1.5F}, {2.4F, 0.501F, 1.3F}, {2.4F, 0.501F, 1.7F});
-  SimulationOptions options;
-  options.envs = 1;
-  options.threads = 1;
+  const ScriptedWorld made = tableWorld(1.7F);
+  const SimulationOptions options = optionsOf(1);
   BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
   ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(made.world(), options));
   std::vector<float> actions(simulator.actionCount(), 0);
@@ -234,6 +242,94 @@ TEST(ScriptedPolicy, PlansAnewWhereItMeetsTheSameEpisodeBegunAgain) {
   EXPECT_EQ(policy.phase(0), ScriptedPhase::kPick);
 }
 
+/// What `call` is refused with.
+template <class Call>
+Error refusalOf(const Call& call) {
+  try {
+    call();
+  } catch (const ErrorException& refused) {
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+    return refused.error();
+  }
+  ADD_FAILURE() << "expected a refusal";
+  return {};
+}
+
+TEST(ScriptedPolicy, RefusesToActInOtherEnvsThanItsOwnAndByArraysOfAnotherLength) {
+  const ScriptedWorld made = tableWorld(1.7F);
+  const ScriptedWorld other_world = tableWorld(1.75F);
+  const SimulationOptions options = optionsOf(2);
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(made.world(), options));
+  const std::size_t count = simulator.actionCount();
+  std::vector<float> actions(3 * count, 0.5F);
+  const std::span<float> two = std::span(actions).first(2 * count);
+  const std::vector<std::uint8_t> where{1, 1, 1};
+
+  const auto refusal = [&](const BatchSimulator& acted_in, std::span<float> acted,
+                           std::span<const std::uint8_t> in = {}) {
+    const Error error = refusalOf([&] { policy.act(acted_in, acted, in); });
+    EXPECT_EQ(error.where, "ScriptedPolicy::act");
+    return error.message;
+  };
+  for (const std::uint32_t envs : {1U, 3U}) {
+    const BatchSimulator others =
+        MemoryPack::opened(BatchSimulator::create(made.world(), optionsOf(envs)));
+    EXPECT_EQ(refusal(others, std::span(actions).first(envs * count)),
+              "found a simulator of " + std::to_string(envs) +
+                  " envs, expected the 2 that the policy was made for");
+  }
+  const BatchSimulator elsewhere =
+      MemoryPack::opened(BatchSimulator::create(other_world.world(), options));
+  EXPECT_EQ(refusal(elsewhere, two),
+            "found a simulator of another world than the one that the policy was made for; make a "
+            "policy for that one, too");
+  const std::string expected = ", expected " + std::to_string(2 * count);
+  EXPECT_EQ(refusal(simulator, actions),
+            "\"actions\" has the length " + std::to_string(3 * count) + expected);
+  EXPECT_EQ(refusal(simulator, two.first(count)),
+            "\"actions\" has the length " + std::to_string(count) + expected);
+  EXPECT_EQ(refusal(simulator, two, where), "\"where\" has the length 3, expected 2");
+  EXPECT_EQ(refusal(simulator, two, std::span(where).first(1)),
+            "\"where\" has the length 1, expected 2");
+
+  const std::vector<float> zeros(2 * count, 0);
+  simulator.beginStep(zeros);
+  EXPECT_EQ(refusal(simulator, two), "found a step that has begun; end it first, with endStep()");
+  simulator.endStep();
+  EXPECT_EQ(std::ranges::count(actions, 0.5F), static_cast<std::ptrdiff_t>(actions.size()));
+
+  policy.act(simulator, two, std::span(where).first(2));
+  EXPECT_NE(std::ranges::count(two, 0.5F), static_cast<std::ptrdiff_t>(two.size()));
+}
+
+TEST(ScriptedPolicy, KeepsItsWorld) {
+  const ScriptedWorld made = tableWorld(1.7F);
+  const SimulationOptions options = optionsOf(1);
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
+  auto world = std::make_unique<World>(made.world());
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(*world, options));
+  world.reset();
+  std::vector<float> actions(simulator.actionCount());
+  policy.act(simulator, actions);
+  EXPECT_EQ(policy.phase(0), ScriptedPhase::kPick);
+  EXPECT_EQ(policy.trouble(0), ScriptedTrouble::kNone);
+}
+
+TEST(ScriptedPolicy, RefusesToTellOfEnvsThatItDoesNotHave) {
+  const ScriptedWorld made = tableWorld(1.7F);
+  const ScriptedPolicy policy =
+      MemoryPack::opened(ScriptedPolicy::create(made.world(), optionsOf(2)));
+  EXPECT_EQ(policy.phase(1), ScriptedPhase::kPick);
+  EXPECT_EQ(policy.trouble(1), ScriptedTrouble::kNone);
+  const Error phase = refusalOf([&] { (void)policy.phase(2); });
+  EXPECT_EQ(phase.where, "ScriptedPolicy::phase");
+  EXPECT_EQ(phase.message, "found env 2, expected one below 2");
+  const Error trouble = refusalOf([&] { (void)policy.trouble(2); });
+  EXPECT_EQ(trouble.where, "ScriptedPolicy::trouble");
+  EXPECT_EQ(trouble.message, "found env 2, expected one below 2");
+}
+
 TEST(ScriptedPolicy, GivesUpWhereTheArmWouldHaveToUnwindForever) {
   // The way back is looked at neither in millions of places nor with a tree that grows along it.
   RobotPackFields robot = stickRobot();
@@ -244,9 +340,7 @@ TEST(ScriptedPolicy, GivesUpWhereTheArmWouldHaveToUnwindForever) {
   room.box({2.2F, 0, 1}, {2.8F, 0.5F, 2});
   const ScriptedWorld made =
       stickWorld(room.build(), {0.8F, 0, 1.5F}, {2.5F, 0.501F, 1.2F}, {2.5F, 0.501F, 1.8F}, robot);
-  SimulationOptions options;
-  options.envs = 1;
-  options.threads = 1;
+  const SimulationOptions options = optionsOf(1);
   BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(made.world(), options));
   ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(made.world(), options));
   std::vector<float> actions(simulator.actionCount(), 1);

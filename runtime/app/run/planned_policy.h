@@ -8,8 +8,8 @@
 
 namespace galactic {
 
-/// The actions of a plan, which looks at the simulator: see ScriptedPolicy. `world` and `simulator`
-/// must outlive it. Fails as ScriptedPolicy::create does.
+/// The actions of a plan, which looks at the simulator: see ScriptedPolicy. `simulator` must
+/// outlive it. Fails as ScriptedPolicy::create does.
 [[nodiscard]] Result<std::unique_ptr<Policy>> makePlannedPolicy(const World& world,
                                                                 const BatchSimulator& simulator);
 
