@@ -8,7 +8,6 @@ namespace galactic::scripted {
 namespace {
 
 constexpr float kPi = 3.14159265F;
-constexpr float kTurn = 6.28318531F;
 
 /// Whether a whole turn more or less changes nothing, as the simulation has it: a continuous joint
 /// that nobody limits, followed by none that slides or turns by another part of a turn.
@@ -101,7 +100,7 @@ void Arm::draw(RandomStream& random, Joints& positions) const {
     } else if (leader.upper > leader.lower) {
       share = (positions[leader.position] - leader.lower) / (leader.upper - leader.lower);
     }
-    const bool winds = joint.wraps || joint.upper - joint.lower > 2 * kTurn;
+    const bool winds = joint.wraps || joint.upper - joint.lower > 2 * kFullTurn;
     const float lower = winds ? std::max(joint.lower, -kPi) : joint.lower;
     const float upper = winds ? std::min(joint.upper, kPi) : joint.upper;
     positions[joint.position] = lower + share * (upper - lower);
@@ -138,7 +137,7 @@ float Arm::difference(std::size_t joint, std::span<const float> from,
                       std::span<const float> to) const {
   const ArmJoint& arm_joint = joints_[joint];
   const float way = to[arm_joint.position] - from[arm_joint.position];
-  return arm_joint.wraps ? std::remainder(way, kTurn) : way;
+  return arm_joint.wraps ? wrappedAngle(way) : way;
 }
 
 float Arm::distance(std::span<const float> from, std::span<const float> to) const {
@@ -169,7 +168,7 @@ void Arm::interpolate(std::span<const float> from, std::span<const float> to, fl
 void Arm::move(std::size_t joint, float by, Joints& positions) const {
   const ArmJoint& arm_joint = joints_[joint];
   float& position = positions[arm_joint.position];
-  position = arm_joint.wraps ? std::remainder(position + by, kTurn)
+  position = arm_joint.wraps ? wrappedAngle(position + by)
                              : std::clamp(position + by, arm_joint.lower, arm_joint.upper);
 }
 

@@ -9,7 +9,6 @@
 namespace galactic::scripted {
 namespace {
 
-constexpr float kTurn = 6.28318531F;
 constexpr float kLongestEdge = 0.1F;
 /// What robots of shorter actions are searched with, meters and radians: cells of the lattice, and
 /// how far apart the poses on their ways are looked at. The time and the memory of a search are
@@ -42,8 +41,6 @@ constexpr std::array<CellStep, 8> kSteps{
 
 float actionsFor(float way, float step) { return std::ceil(std::fabs(way) / step - kSlack); }
 
-float wrapped(float angle) { return std::remainder(angle, kTurn); }
-
 }  // namespace
 
 FloorSearch::FloorSearch(PlanningScene& scene, const Robot& robot, std::size_t most_bytes)
@@ -52,8 +49,8 @@ FloorSearch::FloorSearch(PlanningScene& scene, const Robot& robot, std::size_t m
       forward_step_(robot.base()->forward_step),
       turn_step_(robot.base()->turn_step),
       eighth_(static_cast<std::uint32_t>(
-          std::max(actionsFor(kTurn / 8, std::max(turn_step_, kFinestTurn)), 1.0F))),
-      eighth_cost_(std::max(actionsFor(kTurn / 8, turn_step_), 1.0F)),
+          std::max(actionsFor(kFullTurn / 8, std::max(turn_step_, kFinestTurn)), 1.0F))),
+      eighth_cost_(std::max(actionsFor(kFullTurn / 8, turn_step_), 1.0F)),
       fines_(kHeadings * eighth_) {}
 
 std::optional<Lattice> FloorSearch::latticeAbout(const Vec3& start, float edge) const {
@@ -82,13 +79,13 @@ void FloorSearch::clear() {
 
 BasePlace FloorSearch::placeOf(std::uint32_t cell, std::uint32_t fine) const {
   BasePlace place{lattice_.placeOf(cell),
-                  wrapped(kTurn * static_cast<float>(fine) / static_cast<float>(fines_))};
+                  wrappedAngle(kFullTurn * static_cast<float>(fine) / static_cast<float>(fines_))};
   place.position.y = memories_[memory_].floors[cell];
   return place;
 }
 
 std::uint32_t FloorSearch::fineOf(float yaw) const {
-  const float share = wrapped(yaw) / kTurn;
+  const float share = wrappedAngle(yaw) / kFullTurn;
   const auto nearest = static_cast<std::int32_t>(std::lround(share * static_cast<float>(fines_)));
   const auto count = static_cast<std::int32_t>(fines_);
   return static_cast<std::uint32_t>((nearest + count) % count);
@@ -210,7 +207,7 @@ bool FloorSearch::canTurnOnLattice(std::uint32_t cell, std::uint32_t from, std::
 }
 
 bool FloorSearch::canTurn(const BasePlace& at, float to) {
-  const float way = wrapped(to - at.yaw);
+  const float way = wrappedAngle(to - at.yaw);
   const int looks = static_cast<int>(actionsFor(way, std::max(turn_step_, kFinestTurn)));
   for (int n = 1; n <= looks; ++n) {
     const float turned = way * (static_cast<float>(n) / static_cast<float>(looks));
@@ -244,8 +241,8 @@ void FloorSearch::tryEntry(const BasePlace& start, std::uint32_t cell) {
   if (length > kEntryReach) return;
   const bool stays = length < kOnLattice;
   const float bearing = std::atan2(-way.z, way.x);
-  for (const float turned : {0.0F, 0.5F * kTurn}) {
-    const float yaw = stays ? start.yaw : wrapped(bearing + turned);
+  for (const float turned : {0.0F, 0.5F * kFullTurn}) {
+    const float yaw = stays ? start.yaw : wrappedAngle(bearing + turned);
     const BasePlace facing{start.position, yaw};
     const BasePlace arrived{stays ? start.position : at.position, yaw};
     const std::uint32_t heading = (fineOf(yaw) + eighth_ / 2) / eighth_ % kHeadings;
@@ -253,9 +250,9 @@ void FloorSearch::tryEntry(const BasePlace& start, std::uint32_t cell) {
     if (!canTurn(start, yaw) || (!stays && !canDrive(facing, arrived))) continue;
     if (!canTurn({settled.position, yaw}, settled.yaw)) continue;
     Entry entry{cell * kHeadings + heading, 0, {}};
-    entry.cost = actionsFor(wrapped(yaw - start.yaw), turn_step_) +
+    entry.cost = actionsFor(wrappedAngle(yaw - start.yaw), turn_step_) +
                  actionsFor(length, forward_step_) +
-                 actionsFor(wrapped(settled.yaw - yaw), turn_step_);
+                 actionsFor(wrappedAngle(settled.yaw - yaw), turn_step_);
     if (!stays) entry.route = {facing, arrived};
     entry.route.push_back({arrived.position, settled.yaw});
     entries_.push_back(std::move(entry));

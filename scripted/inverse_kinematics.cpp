@@ -33,7 +33,7 @@ Rows rowsOf(const Arm::Column& column, const Vec3& point, const Vec3& direction,
 /// Turned about +Y.
 Vec3 aboutUp(const Vec3& v, float angle) {
   if (angle == 0) return v;
-  return rotate(Quat{0, std::sin(0.5F * angle), 0, std::cos(0.5F * angle)}, v);
+  return rotate(rotationOfYaw(angle), v);
 }
 
 /// Solves a x = b for a symmetric positive definite matrix (Cholesky).

@@ -6,7 +6,6 @@
 namespace galactic::scripted {
 namespace {
 
-constexpr float kFullTurn = 6.28318531F;
 /// A base this far from where the plan has it while the arm moves is off, meters and radians.
 constexpr float kOff = 5e-3F;
 constexpr float kOffYaw = 5e-3F;
@@ -55,9 +54,9 @@ void clear(const ActionRow& row) {
 }  // namespace
 
 ActionRow rowOf(std::span<float> actions) {
-  const std::size_t joints = actions.size() - 4;
-  return {actions.first(joints), actions[joints], actions[joints + 1], actions[joints + 2],
-          actions[joints + 3]};
+  const ActionLayout layout{.joints = actions.size() - ActionLayout{}.count()};
+  return {actions.first(layout.joints), actions[layout.forward()], actions[layout.turn()],
+          actions[layout.hand()], actions[layout.terminate()]};
 }
 
 bool PlanPlayer::decides(PlanStep::Kind kind, const ActionRow& row) const {
@@ -84,7 +83,7 @@ bool PlanPlayer::isBeforeArm() const {
 PlanPlayer::Way PlanPlayer::turn(const RobotBase& robot_base, const BasePlace& at,
                                  const ActionRow& row) const {
   const BasePlace& to = plan_.steps[next_].base;
-  const float left = std::remainder(to.yaw - at.yaw, kFullTurn) / robot_base.turn_step;
+  const float left = wrappedAngle(to.yaw - at.yaw) / robot_base.turn_step;
   Way result;
   // Another drive makes a turn good that is not quite right.
   const float off = 0.9F * kOffYaw / robot_base.turn_step;
@@ -107,7 +106,7 @@ PlanPlayer::Way PlanPlayer::drive(const RobotBase& robot_base, const BasePlace& 
   const float left = dot(to_end, way);
   const Vec3 to_line = to_end - way * left;
   const Vec3 aim = (way * kLookAhead + to_line) * sign;
-  const float askew = std::remainder(std::atan2(-aim.z, aim.x) - at.yaw, kFullTurn);
+  const float askew = wrappedAngle(std::atan2(-aim.z, aim.x) - at.yaw);
   Way result;
   result.rest = kRoughRest;
   result.strays = dot(to_line, to_line) > kStray * kStray;
@@ -128,7 +127,7 @@ PlanPlayer::Way PlanPlayer::moveArm(const Arm& arm, const BasePlace& at,
   result.rest = isBeforeArm() ? kRoughRest : kFineRest;
   result.remaining = arm.actionsBetween(asked, step.joints);
   result.strays = planeDistance(at.position, step.base.position) > kOff ||
-                  std::fabs(std::remainder(at.yaw - step.base.yaw, kFullTurn)) > kOffYaw;
+                  std::fabs(wrappedAngle(at.yaw - step.base.yaw)) > kOffYaw;
   // All joints arrive together, so that the arm stays on the planned line.
   const float share = 1 / std::max(result.remaining, 1.0F);
   for (std::size_t joint = 0; joint < arm.joints().size(); ++joint) {
@@ -186,8 +185,7 @@ bool PlanPlayer::isHeldBack(float lag, bool is_arm_next) const {
 PlanPlayer::Progress PlanPlayer::play(const Arm& arm, const RobotBase& robot_base,
                                       const EnvState& state, std::span<const float> asked,
                                       const ActionRow& row) {
-  const Quat& q = state.world_from_root.rotation;
-  const BasePlace at{state.world_from_root.translation, 2 * std::atan2(q.y, q.w)};
+  const BasePlace at{state.world_from_root.translation, yawOf(state.world_from_root.rotation)};
   const float lag = arm.actionsBetween(state.joint_positions, asked);
   for (; next_ < plan_.steps.size(); goOn()) {
     const PlanStep& step = plan_.steps[next_];

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -44,7 +43,7 @@ std::vector<float> halfWay(const Robot& robot, std::span<const float> from,
   for (const LinkFrame& link : robot.links()) {
     if (link.type != JointType::kContinuous) continue;
     float& way = ways[static_cast<std::size_t>(link.position)];
-    way = std::remainder(way, 2 * std::numbers::pi_v<float>);
+    way = wrappedAngle(way);
   }
   std::vector<float> middle(from.begin(), from.end());
   for (std::size_t n = 0; n < middle.size(); ++n) middle[n] += 0.5F * ways[n];

@@ -8,11 +8,11 @@ namespace {
 
 float clamped(float action) { return std::isnan(action) ? 0.0F : std::clamp(action, -1.0F, 1.0F); }
 
-Quat yawOf(float angle) { return {0, std::sin(angle / 2), 0, std::cos(angle / 2)}; }
+ActionLayout layoutOf(const Robot& robot) { return {.joints = robot.controlledJoints().size()}; }
 
 /// Turns clockwise, seen from above, then drives ahead.
 void moveBase(float forward, float turn, Pose& world_from_root) {
-  world_from_root.rotation = yawOf(-turn) * world_from_root.rotation;
+  world_from_root.rotation = rotationOfYaw(-turn) * world_from_root.rotation;
   world_from_root.translation =
       world_from_root.translation + rotate(world_from_root.rotation, {forward, 0, 0});
 }
@@ -45,10 +45,10 @@ void moveJoints(const Robot& robot, std::span<const float> actions, std::span<fl
 void applyActions(const Robot& robot, std::span<const float> actions, Pose& world_from_root,
                   std::span<float> positions) {
   moveJoints(robot, actions, positions);
-  const std::size_t joints = robot.controlledJoints().size();
+  const ActionLayout layout = layoutOf(robot);
   const RobotBase& base = *robot.base();
-  moveBase(base.forward_step * clamped(actions[joints]),
-           base.turn_step * clamped(actions[joints + 1]), world_from_root);
+  moveBase(base.forward_step * clamped(actions[layout.forward()]),
+           base.turn_step * clamped(actions[layout.turn()]), world_from_root);
 }
 
 RobotDriver::RobotDriver(const Robot& robot, DynamicsWorld& world, const SimulationOptions& options)
@@ -61,7 +61,7 @@ DrivenStep RobotDriver::step(std::span<const float> actions) {
   world_.drive(root.value_or(world_.worldFromRoot()), targets_);
   world_.step();
   DrivenStep step{.base_refused = !root, .grasped = {}, .released = {}};
-  useHand(clamped(actions[robot_.controlledJoints().size() + 2]), step);
+  useHand(clamped(actions[layoutOf(robot_).hand()]), step);
   return step;
 }
 
@@ -71,9 +71,9 @@ Pose RobotDriver::worldFromGrip() const {
 
 Pose RobotDriver::driveBase(std::span<const float> actions) {
   const RobotBase& base = *robot_.base();
-  const std::size_t joints = robot_.controlledJoints().size();
-  const float forward = base.forward_step * clamped(actions[joints]);
-  const float turn = base.turn_step * clamped(actions[joints + 1]);
+  const ActionLayout layout = layoutOf(robot_);
+  const float forward = base.forward_step * clamped(actions[layout.forward()]);
+  const float turn = base.turn_step * clamped(actions[layout.turn()]);
   Pose root = world_.worldFromRoot();
   const WorldOptions& options = world_.options();
   if (options.base == BaseDrive::kKinematic) {

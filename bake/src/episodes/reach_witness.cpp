@@ -48,7 +48,7 @@ std::optional<std::vector<BodySphere>> findReach(const DraftHome& home, const Pl
     const auto samples = home.reach.between(height - kHeightRange, height + kHeightRange);
     if (samples.empty() || distanceToBox(object, aim) >= grasp) continue;
     const ArmSample& sample = samples[random.below(static_cast<std::uint32_t>(samples.size()))];
-    const Vec3 offset = rotate(yawRotation(yaw), sample.grasp_point);
+    const Vec3 offset = rotate(rotationOfYaw(yaw), sample.grasp_point);
     Vec3 ground{aim.x - offset.x, floor_height, aim.z - offset.z};
     const FloorPlace* place = standingPlace(home.floor, ground, yaw);
     if (place == nullptr) continue;

@@ -41,7 +41,7 @@ StandingSize standingSize(const ObjectModel& model, const StablePose& pose) {
 PlacedObject placeObject(const ObjectModel& model, std::uint32_t object, const StablePose& stable,
                          const Spot& spot) {
   const StandingSize size = standingSize(model, stable);
-  const Quat yaw = yawRotation(spot.yaw);
+  const Quat yaw = rotationOfYaw(spot.yaw);
   const Vec3 along = rotate(yaw, {1, 0, 0});
   const Vec3 center =
       rotate(yaw, {(size.min.x + size.max.x) / 2, 0, (size.min.z + size.max.z) / 2});

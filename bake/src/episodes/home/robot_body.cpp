@@ -1,7 +1,6 @@
 #include "episodes/home/robot_body.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace galactic::bake {
 namespace {
@@ -20,8 +19,6 @@ bool overlap(std::span<const BodySphere> spheres, std::uint32_t first, std::uint
 }
 
 }  // namespace
-
-Quat yawRotation(float yaw) { return {0, std::sin(yaw / 2), 0, std::cos(yaw / 2)}; }
 
 RobotBody robotBody(const Robot& robot, const Pose& world_from_ground,
                     std::span<const float> positions) {

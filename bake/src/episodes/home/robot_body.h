@@ -25,12 +25,9 @@ struct RobotBody {
   Vec3 grasp_point;
 };
 
-/// Turns by `yaw` radians about +Y, counter-clockwise seen from above.
-[[nodiscard]] Quat yawRotation(float yaw);
-
 /// The frame on the ground under the root's origin: `position` in the world, turned by `yaw`.
 [[nodiscard]] inline Pose groundPose(const Vec3& position, float yaw) {
-  return {position, yawRotation(yaw)};
+  return {position, rotationOfYaw(yaw)};
 }
 
 /// Spheres and grasp point with the base at `world_from_ground` and the joints at `positions`
