@@ -73,6 +73,12 @@ def _restore_all(halves: Sequence[HalfBatch], found: Mapping[str, Array]) -> Non
         raise _refused(
             f"halves: found {there}, expected {len(halves)}; restore it in an env of as many"
         )
+    count = sum(half.simulator.num_envs for half in halves)
+    sizes = [array.size for name, array in found.items() if name.startswith("returns_")]
+    if sizes == sizes[:1] * len(halves) and sum(sizes) != count:
+        raise _refused(
+            f"is of {sum(sizes)} envs, expected {count}; restore it in an env of as many"
+        )
     arrays = [
         {name[: -len(end)]: array for name, array in found.items() if name.endswith(end)}
         for end in (f"_{half}" for half in range(len(halves)))

@@ -190,10 +190,13 @@ def _launched(run: Run, folder: pathlib.Path, command: Sequence[str]) -> int:
         sys.stderr,
         f"{run.world}: {ranks} of {settings.envs} envs, {amount(settings.steps)} steps; starting ...\n",
     )
+    before = checkpoints.complete()
     code = launch(settings.ranks, command)
+    # Ranks that were still loading have ended without a word.
     if code == INTERRUPTED and not checkpoints.complete() and not (folder / BEST).exists():
-        # Ranks that were still loading have ended without a word.
         put(sys.stderr, f"galactic.train: interrupted before anything was saved in {folder}\n")
+    elif code == INTERRUPTED and checkpoints.complete() == before:
+        put(sys.stderr, f"galactic.train: interrupted; nothing more was saved in {folder}\n")
     return code
 
 

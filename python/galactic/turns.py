@@ -32,8 +32,7 @@ class Turns:
 
     def begin(self, half: int, actions: NDArray[np.float32], out: Row | None) -> Future[StepResult]:
         """Begins a step of one half."""
-        if os.getpid() != self._process:
-            raise RuntimeError("the threads of this env are in another process; make one in each")
+        self._require_threads()
         # A second thread may have come as far as here.
         with self._beginning:
             if not self._halves:
@@ -45,6 +44,7 @@ class Turns:
 
     def end(self, half: int) -> StepResult:
         """Waits for the step that begin() began. Where Ctrl-C ends the wait, it stays under way."""
+        self._require_threads()
         wait([self._under_way(half)])
         # A second thread may have waited for the same.
         with self._beginning:
@@ -77,13 +77,19 @@ class Turns:
         asked = halves or range(len(self))
         busy = [half for half in asked if self._pending[half] is not None]
         if busy:
-            raise RuntimeError(f"half {busy[0]} is under way; call recv({busy[0]}) first")
+            raise RuntimeError(
+                f"half {busy[0]} is under way; call recv({busy[0]}) first, from one thread alone"
+            )
 
     def close(self) -> None:
         """Waits for what is under way, which end() still returns, and lets go of the halves."""
         for thread in self._threads:
             thread.shutdown()
         self._halves = []
+
+    def _require_threads(self) -> None:
+        if os.getpid() != self._process:
+            raise RuntimeError("the threads of this env are in another process; make one in each")
 
     def _under_way(self, half: int) -> Future[StepResult]:
         step = self._pending[half]

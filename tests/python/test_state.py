@@ -192,6 +192,13 @@ def test_other_files_are_no_states_of_environments(world, draw_actions):
 
 
 @pytest.mark.parametrize("halves", [1, 2])
+def test_a_state_of_another_number_of_envs_says_so(world, halves):
+    saved, env = (VectorEnv(world, envs, halves=halves, seed=3) for envs in (8, 4))
+    with pytest.raises(Error, match="is of 8 envs, expected 4; restore it in an env of as many"):
+        env.restore_state(saved.save_state())
+
+
+@pytest.mark.parametrize("halves", [1, 2])
 def test_a_state_from_before_the_first_reset_is_one_to_reset(world, halves):
     def episodes(env):
         env.reset()

@@ -505,6 +505,9 @@ def test_a_forked_process_is_told_to_make_its_own_halves(world, draw_actions):
     halves.step(actions)
     for work in (lambda: halves.step(actions), lambda: halves.send(actions[:12], 1)):
         assert "in another process; make one in each" in in_a_forked_process(work)
+    halves.send(actions[:12], 0)
+    assert "in another process; make one in each" in in_a_forked_process(lambda: halves.recv(0))
+    halves.recv(0)
     halves.step(actions)
 
 

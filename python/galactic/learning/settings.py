@@ -128,7 +128,7 @@ class Settings:
     image_size: int = setting(
         IMAGE_SIZE,
         "Network",
-        f"height and width of the images, pixels; the paper's networks are made for {IMAGE_SIZE}",
+        f"height and width of the images, {SMALLEST_IMAGE} to 512 pixels; the paper's networks are made for {IMAGE_SIZE}",
         low=SMALLEST_IMAGE,
         high=512,
     )

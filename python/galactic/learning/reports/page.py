@@ -144,7 +144,7 @@ def table(rows: Sequence[Sequence[str]]) -> str:
         f"<tr><th>{html.escape(name)}</th>{''.join(f'<td>{html.escape(one)}</td>' for one in cells)}</tr>"
         for name, *cells in rows
     )
-    return "<table>" + "".join(lines) + "</table>"
+    return '<div class="wide"><table>' + "".join(lines) + "</table></div>"
 
 
 _PAGE = """<!DOCTYPE html>
@@ -173,11 +173,12 @@ svg {{ width: 100%; display: block; overflow: visible; }}
 svg text {{ fill: var(--faint); font-size: 11px; font-variant-numeric: tabular-nums; }}
 .grid {{ stroke: var(--grid); }}
 .line {{ fill: none; stroke-width: 1.6; stroke-linejoin: round; }}
-.legend span {{ margin-right: .8rem; }}
+.legend span {{ margin-right: .8rem; white-space: nowrap; display: inline-block; }}
 table {{ border-collapse: collapse; font-size: .85rem; }}
 th, td {{ text-align: left; font-weight: normal; padding: .08rem 1.2rem .08rem 0; }}
 th {{ color: var(--faint); }}
 .tables {{ display: flex; gap: 3rem; flex-wrap: wrap; }}
+.wide {{ overflow-x: auto; max-width: 100%; }}
 </style>
 </head>
 <body>

@@ -55,8 +55,8 @@ std::string faultOf(const Model& model, const EnvState& state) {
     return fmt::format("holds object {} of {}", state.held, objects);
   }
   if (state.target != model.present(episode).target) {
-    return fmt::format("has the target {}, and its episode {}", state.target,
-                       model.present(episode).target);
+    return fmt::format("has the target {}, and that of its episode, {}, is {}; set both",
+                       state.target, state.episode, model.present(episode).target);
   }
   const std::uint32_t most_steps = model.options.task.most_steps;
   if (most_steps != 0 && state.step > most_steps) {
