@@ -75,7 +75,7 @@ def _restore_all(halves: Sequence[HalfBatch], found: Mapping[str, Array]) -> Non
         )
     count = sum(half.simulator.num_envs for half in halves)
     sizes = [array.size for name, array in found.items() if name.startswith("returns_")]
-    if sizes == sizes[:1] * len(halves) and sum(sizes) != count:
+    if sizes == len(halves) * sizes[:1] and 0 < sum(sizes) != count:
         raise _refused(
             f"is of {sum(sizes)} envs, expected {count}; restore it in an env of as many"
         )

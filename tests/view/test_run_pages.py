@@ -45,8 +45,8 @@ class RunPages(PageCase):
         page = self.open("run", "env=0&t=0", "run 0")
         widths = page.evaluate(
             "(() => { const panel = document.getElementById('panel');"
-            "const cell = [...panel.querySelectorAll('td')].find((one) => one.textContent && !one.classList.contains('number'));"
-            "const before = panel.scrollWidth; cell.textContent = 'ACE_Coffee_Mug_Kristen_16_oz_cup_'.repeat(4);"
+            "const before = panel.scrollWidth;"
+            "for (const cell of panel.querySelectorAll('td')) cell.textContent = 'ACE_Coffee_Mug_Kristen_16_oz_cup_'.repeat(4);"
             "return [before, panel.scrollWidth, panel.clientWidth]; })()"
         )
         self.assertEqual(widths, [widths[2]] * 3, "nothing is beside it")
