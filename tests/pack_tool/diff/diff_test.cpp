@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "pack_tool/diff/grid_diff.h"
@@ -156,6 +157,46 @@ TEST(CompareFields, NumbersRepeatedNames) {
   const Json a = Json::parse(R"([{"name": "seed", "value": "1"}, {"name": "seed", "value": "2"}])");
   const Json b = Json::parse(R"([{"name": "seed", "value": "1"}, {"name": "seed", "value": "3"}])");
   EXPECT_THAT(compareFields(a, b, 0), ElementsAre(FieldDifference{"seed#2", "2", "3"}));
+}
+
+/// What galactic-bake writes of a world: a scene, which has no name, and two objects of one pack.
+Json worldReport() {
+  return Json::parse(R"({
+    "jobs": [{"pack": "objects.pack", "as": "object"}, {"pack": "scenes/a.pack", "as": "scene"}],
+    "baked": [{"pack": "objects.pack", "name": "mug", "spheres": 3},
+              {"pack": "objects.pack", "name": "box", "spheres": 4},
+              {"pack": "scenes/a.pack", "grids": [{"radius": 0.1, "spans": 5},
+                                                  {"radius": 0.2, "spans": 6}]}],
+    "left_out": [{"scene": "d", "reasons": ["dark"]}, {"scene": "e", "reasons": ["empty"]}]})");
+}
+
+TEST(CompareFields, PairsTheEntriesOfAWorldsReportInAnyOrder) {
+  Json other = worldReport();
+  for (const char* list : {"jobs", "baked", "left_out"}) {
+    std::reverse(other[list].begin(), other[list].end());
+  }
+  std::reverse(other["baked"][0]["grids"].begin(), other["baked"][0]["grids"].end());
+  EXPECT_THAT(compareFields(worldReport(), other, 0), IsEmpty());
+}
+
+TEST(CompareFields, TellsWhatAWorldsReportLacksAndNothingElse) {
+  Json other = worldReport();
+  other["jobs"].erase(0);
+  other["baked"].erase(0);
+  other["baked"][1]["grids"].erase(0);
+  other["left_out"].erase(0);
+  EXPECT_THAT(compareFields(worldReport(), other, 0),
+              testing::UnorderedElementsAre(
+                  FieldDifference{"jobs.objects.pack.as", "object", "none"},
+                  FieldDifference{"baked.objects.pack.mug.spheres", "3", "none"},
+                  FieldDifference{"baked.scenes/a.pack.grids.0.1.spans", "5", "none"},
+                  FieldDifference{"left_out.d.reasons.0", "dark", "none"}));
+}
+
+TEST(CompareFields, TakesSpheresByTheirPositions) {
+  const Json a = Json::parse(R"([{"radius": 0.1, "x": 1}, {"radius": 0.1, "x": 2}])");
+  const Json b = Json::parse(R"([{"radius": 0.1, "x": 1}, {"radius": 0.1, "x": 3}])");
+  EXPECT_THAT(compareFields(a, b, 0), ElementsAre(FieldDifference{"1.x", "2", "3"}));
 }
 
 TEST(CompareOrder, LooksAtTheNamesThatBothHave) {
