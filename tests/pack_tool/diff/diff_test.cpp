@@ -301,6 +301,31 @@ TEST(DiffVerb, PrintsTheMostDifferentColumnsAsTextAndJson) {
   EXPECT_EQ(json.at("grids").at(1).at("differs"), false);
 }
 
+TEST(DiffVerb, PairsThePacksOfAWorldThatWasRenamedAndTellsOfEachOnce) {
+  const test::ScratchFolder folder;
+  const auto worldOf = [&](const std::string& file, const std::string& name, std::uint64_t hash) {
+    test::WorldPackFields fields;
+    fields.packs = {{.path = name + "/objects/mug.pack", .kind = "OBJS"},
+                    {.path = name + "/scenes/home.pack", .kind = "SCEN", .hash = {{hash, 2}}}};
+    return folder.write(file, test::textOf(test::buildPack(fields)));
+  };
+  const auto diff = [](const std::filesystem::path& a, const std::filesystem::path& b) -> Outcome {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int exit_code = runDiff({.a = a, .b = b}, Console{out, err});
+    EXPECT_EQ(err.str(), "");
+    return {exit_code, out.str()};
+  };
+  const std::filesystem::path before = worldOf("before.pack", "home", 1);
+  const Outcome same = diff(before, worldOf("again.pack", "again", 1));
+  EXPECT_EQ(same.exit_code, kExitOk) << same.out;
+  const Outcome other = diff(before, worldOf("home.pack", "home", 3));
+  EXPECT_EQ(other.exit_code, kExitDiffers);
+  EXPECT_THAT(other.out, HasSubstr("packs.scenes/home.pack.xxh3_128"));
+  EXPECT_THAT(other.out, testing::Not(HasSubstr("mug.pack")));
+  EXPECT_THAT(other.out, testing::Not(HasSubstr("sources.")));
+}
+
 TEST(DiffVerb, PairsThePacksOfWorldsByTheirPathsBelowTheWorldsFolders) {
   const test::ScratchFolder folder;
   const auto worldOf = [&](const std::string& name, std::uint64_t hash) {
