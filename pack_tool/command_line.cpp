@@ -374,7 +374,8 @@ void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
 void addExport(CLI::App& app, ExportOptions& options) {
   CLI::App& verb = *app.add_subcommand(
       "export", "Write a scene's grid, objects, a robot or episodes for other programs");
-  addPack(verb, {"PACK", "A pack of a scene, of objects, of a robot or of episodes"}, options.pack);
+  addPack(verb, {"PACK", "A pack of a scene, of objects, of a robot or of episodes, or a world"},
+          options.pack);
   verb.add_option("-o,--out", options.output,
                   "The file to write; replaced if it exists (default for episode_set: "
                   "NAME.episode_set.json)")

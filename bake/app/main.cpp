@@ -94,11 +94,15 @@ Result<void> tryCache(const fs::path& folder) {
 /// of the packs and of the cache.
 Result<void> tryOutputs(const BakeCommand& command, const JobList& list) {
   if (!command.run.dry_run) {
+    const auto cache = cacheOf(command, list);
+    // A cache elsewhere first: if it is refused, no empty folder of packs is left.
+    const bool is_elsewhere = !command.many.cache.empty();
+    if (cache && is_elsewhere) RETURN_IF_ERROR(tryCache(*cache));
     for (const fs::path& pack : packsOfOut(list)) {
       RETURN_IF_ERROR(makeFolders(list.world ? list.folder : pack.parent_path()));
       RETURN_IF_ERROR(tryFile(pack));
     }
-    if (const auto cache = cacheOf(command, list)) RETURN_IF_ERROR(tryCache(*cache));
+    if (cache && !is_elsewhere) RETURN_IF_ERROR(tryCache(*cache));
   }
   return command.run.report.empty() ? Result<void>() : tryFile(command.run.report);
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -20,13 +21,33 @@ std::string leafText(const Json& json) {
 
 /// The key that tells the elements of a list apart, none when they go by position.
 const char* keyOfList(const Json& list) {
-  for (const char* key : {"name", "region", "path"}) {
-    const auto has_key = [key](const Json& element) {
+  const auto have = [&list](const char* key) {
+    return !list.empty() && std::ranges::all_of(list, [key](const Json& element) {
       return element.is_object() && element.contains(key);
-    };
-    if (!list.empty() && std::all_of(list.begin(), list.end(), has_key)) return key;
+    });
+  };
+  for (const char* key : {"pack", "name", "region", "path"}) {
+    if (have(key)) return key;
+  }
+  // Spheres and episodes have these, too, where they tell nothing apart.
+  for (const char* key : {"radius", "scene"}) {
+    if (!have(key)) continue;
+    std::unordered_set<std::string> values;
+    for (const Json& element : list) values.insert(leafText(element.at(key)));
+    if (values.size() == list.size()) return key;
   }
   return nullptr;
+}
+
+/// What `key` says of the element, which is taken out of it. A pack may have several entries: each
+/// is of one of its objects, by name.
+std::string takeName(Json& element, const char* key) {
+  std::string name = leafText(element.at(key));
+  element.erase(key);
+  if (std::string_view(key) != "pack" || !element.contains("name")) return name;
+  name += '.' + leafText(element.at("name"));
+  element.erase("name");
+  return name;
 }
 
 std::string extended(const std::string& path, const std::string& step) {
@@ -68,10 +89,9 @@ class LeafList {
     const char* key = keyOfList(list);
     std::unordered_map<std::string, std::size_t> seen;
     for (std::size_t n = 0; n < list.size(); ++n) {
-      const std::string name = key == nullptr ? std::to_string(n) : leafText(list[n].at(key));
-      const std::size_t number = ++seen[name];
       Json value = list[n];
-      if (key != nullptr) value.erase(key);
+      const std::string name = key == nullptr ? std::to_string(n) : takeName(value, key);
+      const std::size_t number = ++seen[name];
       // {"name": ..., "value": ...} reads best as one leaf.
       if (value.is_object() && value.size() == 1 && value.contains("value")) value = value["value"];
       add(value, extended(path, number > 1 ? fmt::format("{}#{}", name, number) : name), keys);

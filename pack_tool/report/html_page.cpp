@@ -68,7 +68,8 @@ std::string section(std::size_t number, const PackEntry& pack) {
 
 }  // namespace
 
-std::string htmlPage(const std::string& title, const std::vector<PackEntry>& packs) {
+std::string htmlPage(const std::string& title, const std::vector<PackEntry>& packs,
+                     const ListedTextures& textures) {
   double bytes = 0;
   std::size_t warnings = 0;
   std::string rows;
@@ -79,15 +80,20 @@ std::string htmlPage(const std::string& title, const std::vector<PackEntry>& pac
     rows += row(n, packs[n]);
     sections += section(n, packs[n]);
   }
+  std::string also;
+  if (textures.count > 0) {
+    also = fmt::format("and {}, {:.2f} MB; ", counted(textures.count, "texture"),
+                       static_cast<double>(textures.bytes) / 1e6);
+  }
   return fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n"
       "<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n"
-      "<p>{2}, {3:.2f} MB, {4}</p>\n"
+      "<p>{2}, {3:.2f} MB, {7}{4}</p>\n"
       "<table>\n<tr><th>pack</th><th>kind</th><th class=\"number\">MB</th>"
       "<th class=\"number\">warnings</th></tr>\n{5}</table>\n{6}</body>\n</html>\n",
       xmlEscaped(title), kStyle, counted(packs.size(), "pack"), bytes / 1e6,
-      counted(warnings, "warning"), rows, sections);
+      counted(warnings, "warning"), rows, sections, also);
 }
 
 }  // namespace galactic::pack_tool

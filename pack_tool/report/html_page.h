@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,8 +16,15 @@ struct PackEntry {
   std::vector<Thumbnail> thumbnails;
 };
 
+/// The texture packs that worlds list. A page counts them; they are shown with what they lie on.
+struct ListedTextures {
+  std::size_t count = 0;
+  std::uint64_t bytes = 0;
+};
+
 /// One self-contained HTML file: a table of the packs, then each with its warnings, what `info`
 /// prints and its pictures. The same packs give the same bytes.
-[[nodiscard]] std::string htmlPage(const std::string& title, const std::vector<PackEntry>& packs);
+[[nodiscard]] std::string htmlPage(const std::string& title, const std::vector<PackEntry>& packs,
+                                   const ListedTextures& textures);
 
 }  // namespace galactic::pack_tool

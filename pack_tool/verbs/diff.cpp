@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "pack_tool/diff/asset_diff.h"
 #include "pack_tool/diff/diff_text.h"
@@ -95,18 +97,67 @@ const char* whollyDescribedAs(PackKind kind) {
   return kind == PackKind::kTexture ? "texture" : nullptr;
 }
 
-/// Takes the folder that has the world's own name out of the paths of a world's packs, so that one
-/// baked under another name has the same.
-void leaveOutOwnFolder(Json& description, const std::string& file) {
-  const std::string folder = std::filesystem::path(file).stem().string() + "/";
-  const auto shorten = [&folder](Json& list, const char* key) {
-    for (Json& element : list) {
-      const std::string path = element.at(key).get<std::string>();
-      if (path.starts_with(folder)) element[key] = path.substr(folder.size());
-    }
+/// "home/" of "home/scenes/a.pack", "" of "a.pack".
+std::string firstFolder(const std::string& path) {
+  const std::size_t slash = path.find('/');
+  return slash == std::string::npos ? std::string() : path.substr(0, slash + 1);
+}
+
+/// Where the paths of a world's packs may begin.
+struct WorldFolders {
+  /// The folder of the world's name, "" where no path begins with it.
+  std::string named;
+  /// The one in which all packs are, "" where there is none.
+  std::string common;
+};
+
+WorldFolders foldersOf(const Json& description, const std::string& file) {
+  const std::string name = std::filesystem::path(file).stem().string() + "/";
+  const Json& packs = description.at("world").at("packs");
+  WorldFolders folders;
+  for (const Json& pack : packs) {
+    const std::string folder = firstFolder(pack.at("path").get<std::string>());
+    if (folder == name) folders.named = name;
+    if (&pack == &packs.front()) folders.common = folder;
+    if (folder != folders.common) folders.common.clear();
+  }
+  return folders;
+}
+
+void leaveOut(const std::string& folder, Json& description) {
+  for (Json& pack : description.at("world").at("packs")) {
+    const std::string path = pack.at("path").get<std::string>();
+    if (path.starts_with(folder)) pack["path"] = path.substr(folder.size());
+  }
+}
+
+/// Takes out of a world's sources the packs that its list tells of.
+void leaveOutListed(Json& description) {
+  std::set<std::pair<Json, Json>> listed;
+  for (const Json& pack : description.at("world").at("packs")) {
+    listed.emplace(pack.at("path"), pack.at("xxh3_128"));
+  }
+  Json kept = Json::array();
+  for (const Json& source : description.at("provenance").at("sources")) {
+    if (!listed.contains({source.at("name"), source.at("xxh3_128")})) kept.push_back(source);
+  }
+  description.at("provenance")["sources"] = std::move(kept);
+}
+
+/// Takes the worlds' own folders out of the paths of their packs, so that one baked under another
+/// name has the same. The file may have been renamed since: then it is the folder of all packs, if
+/// the other world has one, too, as it may be "scenes/", which the other has beside "objects/".
+void alignWorlds(DescribedPair& worlds, const PackDifference& files) {
+  leaveOutListed(worlds.a);
+  leaveOutListed(worlds.b);
+  const WorldFolders a = foldersOf(worlds.a, files.a);
+  const WorldFolders b = foldersOf(worlds.b, files.b);
+  const auto own = [](const WorldFolders& of, const WorldFolders& other) {
+    if (!of.named.empty()) return of.named;
+    return other.named.empty() && other.common.empty() ? std::string() : of.common;
   };
-  shorten(description.at("world").at("packs"), "path");
-  shorten(description.at("provenance").at("sources"), "name");
+  leaveOut(own(a, b), worlds.a);
+  leaveOut(own(b, a), worlds.b);
 }
 
 void compareDescriptions(const DescribedPair& packs, const char* asset, const DiffOptions& options,
@@ -144,10 +195,7 @@ Result<PackDifference> comparePacks(const PackFile& a, const PackFile& b,
   }
   if (const char* asset = whollyDescribedAs(a.kind())) {
     DescribedPair descriptions{describePack(a), describePack(b)};
-    if (a.kind() == PackKind::kWorld) {
-      leaveOutOwnFolder(descriptions.a, difference.a);
-      leaveOutOwnFolder(descriptions.b, difference.b);
-    }
+    if (a.kind() == PackKind::kWorld) alignWorlds(descriptions, difference);
     compareDescriptions(descriptions, asset, options, difference);
     return difference;
   }

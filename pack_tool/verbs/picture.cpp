@@ -137,6 +137,13 @@ Result<Image> draw(const PackFile& pack, const PictureOptions& options, AbsentTe
   RETURN_IF_ERROR(checkOptions(pack, options));
   if (pack.kind() == PackKind::kScene) return drawScenePack(pack, options, absent);
   if (hasEpisodes(pack)) return drawEpisodes(pack, options);
+  if (pack.kind() != PackKind::kObjects && pack.kind() != PackKind::kRobot) {
+    return fail(
+        ErrorCode::kInvalidInput, pack.where(),
+        fmt::format("is a pack of kind {}, expected a scene (SCEN), objects (OBJS), a robot "
+                    "(RBOT), episodes (EPIS) or a world (WRLD)",
+                    packKindName(pack.kind())));
+  }
   return drawFigures(pack, options, absent);
 }
 

@@ -1,7 +1,10 @@
 #include <cstddef>
+#include <filesystem>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include "galactic/pack_reference.h"
 #include "pack_tool/report/html_page.h"
 #include "pack_tool/support/open_listed.h"
 #include "pack_tool/support/output_file.h"
@@ -44,6 +47,23 @@ std::vector<Result<PackEntry>> entriesOf(const std::vector<PackFile>& packs,
   return entries;
 }
 
+/// Those that the worlds among the packs list, each once.
+Result<ListedTextures> listedTextures(const std::vector<PackFile>& packs) {
+  ListedTextures textures;
+  std::set<std::filesystem::path> seen;
+  for (const PackFile& pack : packs) {
+    if (pack.kind() != PackKind::kWorld) continue;
+    ASSIGN_OR_RETURN(const auto references, packReferences(pack));
+    for (const PackReference& reference : references) {
+      if (reference.kind != PackKind::kTexture) continue;
+      if (!seen.insert(pathOf(reference, pack).lexically_normal()).second) continue;
+      ++textures.count;
+      textures.bytes += reference.bytes;
+    }
+  }
+  return textures;
+}
+
 Result<void> makeReport(const ReportOptions& options, AbsentTextures& absent) {
   RETURN_IF_ERROR(checkExtension(options.output, kPageFile));
   ASSIGN_OR_RETURN(
@@ -58,7 +78,9 @@ Result<void> makeReport(const ReportOptions& options, AbsentTextures& absent) {
     if (!entry) return tl::unexpected(entry.error());
     entries.push_back(std::move(*entry));
   }
-  return writeOutput(options.output, htmlPage(options.packs.front().filename().string(), entries));
+  ASSIGN_OR_RETURN(const auto textures, listedTextures(packs));
+  return writeOutput(options.output,
+                     htmlPage(options.packs.front().filename().string(), entries, textures));
 }
 
 }  // namespace

@@ -218,7 +218,8 @@ TEST_F(PlanCli, ListsScenesAndChoosesThemByPattern) {
   const ProgramRun some =
       run({"data/home.scene_dataset_config.json", "--list", "--scenes", "[", "--scenes", "a"});
   EXPECT_EQ(some.exit_code, 3);
-  EXPECT_THAT(some.err, HasSubstr("--scenes: \"[\" fits none of the dataset's 5 scenes; --list"));
+  EXPECT_THAT(some.err, HasSubstr("--scenes: \"[\" fits none of the dataset's 5 scenes; "
+                                  "galactic-bake DATASET --list prints them"));
   const ProgramRun two =
       run({"data/home.scene_dataset_config.json", "--list", "--scenes", "?", "--scenes", "a*"});
   EXPECT_EQ(two.out, "a\nb\nc\nd\ne\n");
@@ -243,7 +244,7 @@ TEST_F(PlanCli, TreatsScenesThatLackSomethingAsTheUserWants) {
   EXPECT_THAT(packsThatAre("planned"), Contains("scenes/d.pack"));
   const ProgramRun nothing = bake("out", {"--scenes", "e"});
   EXPECT_EQ(nothing.exit_code, 3);
-  EXPECT_THAT(nothing.err, HasSubstr("out/home.pack: would have no scene, 1 are left out: e: stage "
+  EXPECT_THAT(nothing.err, HasSubstr("out/home.pack: would have no scene, 1 is left out: e: stage "
                                      "'hall' is in none of the dataset's paths; a world has"));
   EXPECT_FALSE(has("out/home.pack"));
 }
@@ -442,6 +443,17 @@ TEST_F(PlanCli, WritesNoPacksIntoTheFolderOfTheirInputs) {
   const ProgramRun beside = run({"data/home.scene_dataset_config.json", "-o", "data/home.pack",
                                  "--scenes", "c", "--dry-run"});
   EXPECT_EQ(beside.exit_code, 0) << beside.err;
+}
+
+TEST_F(PlanCli, IsComparedWithARenamedWorldOfBefore) {
+  ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);
+  fs::rename(path("out/home.pack"), path("out/before.pack"));
+  ASSERT_EQ(bake("out", {"--scenes", "c", "--coverage", "cell"}).exit_code, 0);
+  const ProgramRun diff = runProgram(builtProgram("galactic-pack"), path(""),
+                                     {"diff", "out/before.pack", "out/home.pack"});
+  EXPECT_EQ(diff.exit_code, kExitDiffers) << diff.err;
+  EXPECT_THAT(diff.out, AllOf(HasSubstr("packs.scenes/c.pack.xxh3_128"), Not(HasSubstr("none\n")),
+                              Not(HasSubstr("sources."))));
 }
 
 TEST_F(PlanCli, ReportsTheSameOfPacksThatWereMadeBeforeAndNow) {

@@ -121,6 +121,21 @@ TEST_F(PlanEpisodes, StandInTheReceptaclesOfTheDataset) {
   EXPECT_THAT(placesAlongX(), AllOf(Contains(Ge(1.F)), Contains(testing::Lt(1.F))));
 }
 
+TEST_F(PlanEpisodes, AreCountedByADryRunAsByABake) {
+  write("flat.toml",
+        test::quickRecipe("dataset = \"data/home.scene_dataset_config.json\"\nscenes = [\"c\"]",
+                          "count = 6"));
+  const std::vector<std::string> words{"flat.toml", "--data", sampleFile(""), "--report",
+                                       "report.json"};
+  std::vector<std::string> dry = words;
+  dry.emplace_back("--dry-run");
+  ASSERT_EQ(run(dry).exit_code, 0);
+  const std::vector<std::string> planned = packsThatAre("planned");
+  EXPECT_THAT(planned, Contains("episodes.pack"));
+  ASSERT_EQ(run(words).exit_code, 0);
+  EXPECT_EQ(packsThatAre("baked"), planned);
+}
+
 TEST_F(PlanEpisodes, SayWhetherTheyCanBeSolved) {
   const auto table =
       AllOf(HasSubstr("episodes.pack:\n"), HasSubstr(": 6 episodes; "),

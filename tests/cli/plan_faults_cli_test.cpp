@@ -335,6 +335,9 @@ TEST_F(PlanFaults, TriesItsCacheBeforeItBakes) {
   EXPECT_EQ(elsewhere.exit_code, 2);
   EXPECT_THAT(elsewhere.err, HasSubstr("/proc/none: cannot be made a folder"));
   EXPECT_FALSE(has("out/home/scenes"));
+  const ProgramRun fresh = bake("new", {"--scenes", "c", "--cache", "/proc/none"});
+  EXPECT_EQ(fresh.exit_code, 2);
+  EXPECT_FALSE(has("new")) << "an empty folder is left";
   EXPECT_EQ(bake("out", {"--scenes", "c", "--dry-run"}).exit_code, 0) << "it writes nothing";
 }
 
@@ -399,6 +402,7 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
   write("task.toml", scene + "[task]\nsafe-drop = true\nepisode-steps = -1\n");
   write("mesh.toml", scene + "[episodes]\ngeometry = { apartment = \"none.glb\" }\n");
   write("pack.toml", scene + "[episodes]\nfiles = \"value.toml\"\nobject-pack = \"none.pack\"\n");
+  write("order.toml", "[bake]\nradii = [0.05, 0.015]\n" + scene);
   write("lost.toml", scene + "[robot]\nfiles = \"option.toml\"\nrecipe = \"none.toml\"\n");
   const std::string objects = "[[objects]]\nfiles = \"data/meshes/objects\"\n";
   write("bare.urdf", "<robot name=\"r\"><link name=\"base\"/></robot>");
@@ -428,6 +432,9 @@ TEST_F(PlanFaults, RefusesRecipesThatDoNotFit) {
       {{"far.toml"}, 2, "far.toml:1: none/*.glb: fits no file in "},
       {{"option.toml"}, 3, "option.toml:5: spacing: does not go with --as object"},
       {{"value.toml"}, 3, "value.toml:3: spacing: found wide, expected a number above 0"},
+      {{"order.toml"},
+       3,
+       "order.toml:2: radii: has 0.015 m after 0.05 m; list each radius once, in ascending order"},
       {{"robots.toml"}, 3, "robots.toml:3: [robot] names "},
       {{"lost.toml"}, 2, "lost.toml:5: recipe: none.toml fits no file in "},
       {{"none.toml"}, 2, "none.toml"},

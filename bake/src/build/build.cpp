@@ -61,9 +61,12 @@ class Build {
     for (const std::size_t n : order) outcome_.packs[n].state = PackState::kPlanned;
     if (options_.mode == BuildMode::kBake) removeLeftovers();
     sayWhatIsBroken();
-    if (options_.mode != BuildMode::kList) {
+    const bool has_episodes = list_.episodes && options_.shard.count == 1;
+    if (options_.mode == BuildMode::kList) {
+      if (has_episodes) outcome_.packs.push_back({.name = list_.episodes->name});
+    } else {
       bakeAssets(order);
-      if (list_.episodes && options_.shard.count == 1) bakeEpisodes();
+      if (has_episodes) bakeEpisodes();
     }
     outcome_.stopped = observer_.stops();
     outcome_.seconds =

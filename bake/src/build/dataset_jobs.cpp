@@ -77,9 +77,11 @@ Result<std::vector<std::string>> wantedScenes(const std::vector<std::string>& sc
     std::ranges::copy_if(scenes, std::back_inserter(names),
                          [&](const std::string& name) { return fitsPattern(name, pattern); });
     if (names.size() > before) continue;
-    return fail(ErrorCode::kInvalidInput, "scenes",
-                fmt::format("\"{}\" fits none of the dataset's {} scenes; `list` prints them",
-                            pattern, scenes.size()));
+    return fail(
+        ErrorCode::kInvalidInput, "scenes",
+        fmt::format(
+            "\"{}\" fits none of the dataset's {} scenes; galactic-bake DATASET `list` prints them",
+            pattern, scenes.size()));
   }
   std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());

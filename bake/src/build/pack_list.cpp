@@ -86,7 +86,8 @@ Result<void> PackList::checkScenes() const {
   std::string why;
   if (!list_.left_out.empty()) {
     const LeftOut& first = list_.left_out.front();
-    why = fmt::format(", {} are left out: {}: {}", list_.left_out.size(), first.name,
+    const std::size_t count = list_.left_out.size();
+    why = fmt::format(", {} {} left out: {}: {}", count, count == 1 ? "is" : "are", first.name,
                       first.reasons.front());
   }
   return fail(ErrorCode::kInvalidInput, list_.world->output.string(),

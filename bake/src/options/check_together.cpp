@@ -1,7 +1,14 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
+#include <functional>
+#include <iterator>
 #include <string_view>
+#include <vector>
 
 #include "galactic/bake/job_lists.h"
+#include "support/try.h"
 
 namespace galactic::bake {
 namespace {
@@ -27,7 +34,17 @@ Result<void> checkDrawing(const DrawOptions& draw, const OptionReader& given) {
   return {};
 }
 
+/// Found before anything is baked, and where they are written.
+Result<void> checkRadii(const std::vector<float>& radii, const OptionReader& given) {
+  const auto found = std::ranges::adjacent_find(radii, std::greater_equal<>());
+  if (found == radii.end()) return {};
+  return given.refuse("radii",
+                      fmt::format("has {} m after {} m; list each radius once, in ascending order",
+                                  *std::next(found), *found));
+}
+
 Result<void> checkOne(const SceneJob& job, const OptionReader& given) {
+  RETURN_IF_ERROR(checkRadii(job.grids.radii, given));
   const bool has_components = given.isGiven("keep-components");
   if (has_components && given.isGiven("inside")) {
     return given.refuse("keep-components",
@@ -44,6 +61,7 @@ Result<void> checkOne(const SceneJob& job, const OptionReader& given) {
 
 /// A collection's boxes stand in the frame of the mesh files.
 Result<void> checkOne(const ObjectJob& job, const OptionReader& given) {
+  RETURN_IF_ERROR(checkRadii(job.shape.spheres.radii, given));
   if (!job.collection.empty() && (!job.import.up || job.import.transform)) {
     return given.refuse("collection",
                         "needs the up axis of the meshes, in whose frame its boxes stand: give "
@@ -53,6 +71,7 @@ Result<void> checkOne(const ObjectJob& job, const OptionReader& given) {
 }
 
 Result<void> checkOne(const RobotJob& job, const OptionReader& given) {
+  RETURN_IF_ERROR(checkRadii(job.shape.radii, given));
   return checkDrawing(job.draw, given);
 }
 

@@ -46,6 +46,9 @@ Result<void> checkLinked(const PackFile& pack, const PackReference& reference,
   const detail::ContentHash wanted{reference.hash_low, reference.hash_high};
   const detail::ContentHash found = detail::contentHash(pack.bytes());
   if (found == wanted) return {};
+  // Of a damaged one linking again would only make a list that it passes.
+  const auto payload = pack.bytes().subspan(sizeof(PackHeader));
+  RETURN_IF_ERROR(checkPackHash(pack.header(), payload, pack.where()));
   return other(fmt::format("lists {}, whose hash is {:016x}{:016x}, expected {:016x}{:016x}",
                            pack.where(), found.high, found.low, wanted.high, wanted.low));
 }

@@ -291,6 +291,17 @@ TEST(SceneExport, RefusesOptionsOfObjects) {
   EXPECT_THAT(answer.err, HasSubstr("is a scene; --object, --joints and --all-zero are for "));
 }
 
+TEST(Picture, NamesAllKindsThatItDraws) {
+  const ScratchFolder folder;
+  const auto path =
+      folder.write("wood.pack", test::textOf(test::buildPack(test::TexturePackFields{})));
+  const Answer answer =
+      answerOf(runPicture, PictureOptions{.pack = path, .output = folder.path() / "a.png"});
+  EXPECT_EQ(answer.exit_code, kInvalid);
+  EXPECT_THAT(answer.err, HasSubstr("expected a scene (SCEN), objects (OBJS), a robot (RBOT), "
+                                    "episodes (EPIS) or a world (WRLD)"));
+}
+
 TEST(ScenePicture, ShowsTheMeshesWhenAskedTo) {
   const ScratchFolder folder;
   const auto path = writeScene(folder, "a.pack", paintedMeshes());

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "pack_tool/diff/grid_diff.h"
@@ -158,6 +159,46 @@ TEST(CompareFields, NumbersRepeatedNames) {
   EXPECT_THAT(compareFields(a, b, 0), ElementsAre(FieldDifference{"seed#2", "2", "3"}));
 }
 
+/// What galactic-bake writes of a world: a scene, which has no name, and two objects of one pack.
+Json worldReport() {
+  return Json::parse(R"({
+    "jobs": [{"pack": "objects.pack", "as": "object"}, {"pack": "scenes/a.pack", "as": "scene"}],
+    "baked": [{"pack": "objects.pack", "name": "mug", "spheres": 3},
+              {"pack": "objects.pack", "name": "box", "spheres": 4},
+              {"pack": "scenes/a.pack", "grids": [{"radius": 0.1, "spans": 5},
+                                                  {"radius": 0.2, "spans": 6}]}],
+    "left_out": [{"scene": "d", "reasons": ["dark"]}, {"scene": "e", "reasons": ["empty"]}]})");
+}
+
+TEST(CompareFields, PairsTheEntriesOfAWorldsReportInAnyOrder) {
+  Json other = worldReport();
+  for (const char* list : {"jobs", "baked", "left_out"}) {
+    std::reverse(other[list].begin(), other[list].end());
+  }
+  std::reverse(other["baked"][0]["grids"].begin(), other["baked"][0]["grids"].end());
+  EXPECT_THAT(compareFields(worldReport(), other, 0), IsEmpty());
+}
+
+TEST(CompareFields, TellsWhatAWorldsReportLacksAndNothingElse) {
+  Json other = worldReport();
+  other["jobs"].erase(0);
+  other["baked"].erase(0);
+  other["baked"][1]["grids"].erase(0);
+  other["left_out"].erase(0);
+  EXPECT_THAT(compareFields(worldReport(), other, 0),
+              testing::UnorderedElementsAre(
+                  FieldDifference{"jobs.objects.pack.as", "object", "none"},
+                  FieldDifference{"baked.objects.pack.mug.spheres", "3", "none"},
+                  FieldDifference{"baked.scenes/a.pack.grids.0.1.spans", "5", "none"},
+                  FieldDifference{"left_out.d.reasons.0", "dark", "none"}));
+}
+
+TEST(CompareFields, TakesSpheresByTheirPositions) {
+  const Json a = Json::parse(R"([{"radius": 0.1, "x": 1}, {"radius": 0.1, "x": 2}])");
+  const Json b = Json::parse(R"([{"radius": 0.1, "x": 1}, {"radius": 0.1, "x": 3}])");
+  EXPECT_THAT(compareFields(a, b, 0), ElementsAre(FieldDifference{"1.x", "2", "3"}));
+}
+
 TEST(CompareOrder, LooksAtTheNamesThatBothHave) {
   const Json a = Json::parse(R"([{"name": "lift"}, {"name": "swing"}, {"name": "grip"}])");
   const Json more = Json::parse(R"([{"name": "lift"}, {"name": "neck"}, {"name": "grip"}])");
@@ -258,6 +299,31 @@ TEST(DiffVerb, PrintsTheMostDifferentColumnsAsTextAndJson) {
   EXPECT_EQ(json.at("grids").at(0).at("worst").at(0).at("cell"), Json::parse("[4, 2]"));
   EXPECT_EQ(json.at("grids").at(0).at("free_only_in_a"), 1.0);
   EXPECT_EQ(json.at("grids").at(1).at("differs"), false);
+}
+
+TEST(DiffVerb, PairsThePacksOfAWorldThatWasRenamedAndTellsOfEachOnce) {
+  const test::ScratchFolder folder;
+  const auto worldOf = [&](const std::string& file, const std::string& name, std::uint64_t hash) {
+    test::WorldPackFields fields;
+    fields.packs = {{.path = name + "/objects/mug.pack", .kind = "OBJS"},
+                    {.path = name + "/scenes/home.pack", .kind = "SCEN", .hash = {{hash, 2}}}};
+    return folder.write(file, test::textOf(test::buildPack(fields)));
+  };
+  const auto diff = [](const std::filesystem::path& a, const std::filesystem::path& b) -> Outcome {
+    std::ostringstream out;
+    std::ostringstream err;
+    const int exit_code = runDiff({.a = a, .b = b}, Console{out, err});
+    EXPECT_EQ(err.str(), "");
+    return {exit_code, out.str()};
+  };
+  const std::filesystem::path before = worldOf("before.pack", "home", 1);
+  const Outcome same = diff(before, worldOf("again.pack", "again", 1));
+  EXPECT_EQ(same.exit_code, kExitOk) << same.out;
+  const Outcome other = diff(before, worldOf("home.pack", "home", 3));
+  EXPECT_EQ(other.exit_code, kExitDiffers);
+  EXPECT_THAT(other.out, HasSubstr("packs.scenes/home.pack.xxh3_128"));
+  EXPECT_THAT(other.out, testing::Not(HasSubstr("mug.pack")));
+  EXPECT_THAT(other.out, testing::Not(HasSubstr("sources.")));
 }
 
 TEST(DiffVerb, PairsThePacksOfWorldsByTheirPathsBelowTheWorldsFolders) {

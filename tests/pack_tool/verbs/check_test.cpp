@@ -145,6 +145,18 @@ TEST(FindingCodes, TellWhatIsWrongWithAWorld) {
   EXPECT_EQ(world.at("packs").at(3).at("code"), "world/other-pack");
 }
 
+TEST(FindingCodes, CallAPackThatAWorldListsDamagedWhereItIs) {
+  const ScratchFolder folder;
+  const auto path = test::writeWorld(folder, WorldFields{});
+  std::string bytes = test::fileContent(folder.path() / "objects.pack");
+  bytes.back() = static_cast<char>(bytes.back() ^ 1);
+  static_cast<void>(folder.write("objects.pack", bytes));
+  const Outcome outcome = check({.packs = {path}, .form = OutputForm::kJson});
+  const Json world = Json::parse(outcome.out).at(0);
+  EXPECT_EQ(world.at("packs").at(1).at("code"), "pack/hash");
+  EXPECT_THAT(world.dump(), testing::Not(HasSubstr("link the world again")));
+}
+
 TEST(FindingCodes, TellFilesThatAreNone) {
   const ScratchFolder folder;
   const auto code = [](const std::filesystem::path& path) {

@@ -157,6 +157,20 @@ TEST(Report, IsNotWrittenOverATextureThatAWorldLists) {
   EXPECT_EQ(run({.packs = {pack}, .output = folder.path() / "page.html"}).exit_code, kExitOk);
 }
 
+TEST(Report, CountsTheTexturesThatAWorldLists) {
+  const ScratchFolder folder;
+  WorldPackFields world = writePacks(folder, {});
+  const std::size_t shown = world.packs.size() + 1;
+  world.packs.push_back(writeListed(folder, "wood.pack", buildPack(TexturePackFields{})));
+  const fs::path pack = folder.write("world.pack", textOf(buildPack(world)));
+  const fs::path page = folder.path() / "page.html";
+  // Twice, and yet the texture is one.
+  ASSERT_EQ(run({.packs = {pack, pack}, .output = page}).exit_code, kExitOk);
+  const std::string html = fileContent(page);
+  EXPECT_EQ(countOf(html, "<p>" + std::to_string(2 * shown) + " packs, "), 1U);
+  EXPECT_EQ(countOf(html, "MB, and 1 texture, 0.00 MB; "), 1U);
+}
+
 TEST(Report, OfAFileThatIsNoPackFailsAndLeavesNothing) {
   const ScratchFolder folder;
   const fs::path text = folder.write("text.pack", "no pack at all");

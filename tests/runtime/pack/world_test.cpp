@@ -243,6 +243,22 @@ TEST(World, RefusesALinkedPackThatIsDamaged) {
               "is empty, expected the object's name; bake the pack again");
 }
 
+TEST(World, TellsALinkedPackThatWasDamagedSinceFromAnotherOne) {
+  const ScratchFolder folder;
+  const WorldFields fields;
+  const fs::path path = writeWorld(folder, fields);
+  const AlignedBytes file = buildPack(fields.objects);
+  std::string bytes(textOf(file));
+  bytes.back() = static_cast<char>(bytes.back() ^ 1);
+  const fs::path damaged = folder.write("objects.pack", bytes);
+  const Result<World> world = openWorld(path);
+  ASSERT_FALSE(world.has_value());
+  EXPECT_EQ(world.error().name, "pack/hash");
+  EXPECT_EQ(world.error().where, damaged);
+  EXPECT_NE(world.error().message.find("the file is damaged, copy or bake it again"),
+            std::string::npos);
+}
+
 TEST(World, RefusesATruncatedPack) {
   const ScratchFolder folder;
   const fs::path path = writeWorld(folder, WorldFields{});
