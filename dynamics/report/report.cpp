@@ -104,13 +104,13 @@ Json gapsOf(const Sums& sums) {
 Json jsonOf(const EpisodeComparison& episode) {
   Json rests = Json::array();
   for (const Rest& rest : episode.rests) {
-    rests.push_back({{"step", rest.step},
+    rests.push_back({{"step", rest.step + 1},
                      {"displacement", rest.displacement},
                      {"lean", rest.lean},
                      {"drop", rest.drop}});
   }
   Json parted = nullptr;
-  if (episode.parted) parted = *episode.parted;
+  if (episode.parted) parted = *episode.parted + 1;
   return {{"env", episode.env},
           {"episode", episode.episode},
           {"steps", episode.steps},
@@ -133,7 +133,7 @@ Json worstOf(const Comparisons& comparisons, const World& world) {
     const EpisodeComparison& episode = comparisons.episodes[moment.comparison];
     worst.push_back({{"kind", nameOf(moment.kind)},
                      {"episode", episode.episode},
-                     {"step", moment.step},
+                     {"step", moment.step + 1},
                      {"meters", moment.meters},
                      {"text", describe(moment, episode, world)}});
   }

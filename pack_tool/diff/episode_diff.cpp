@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "galactic/episode_set.h"
+#include "support/counted.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {
@@ -46,6 +48,53 @@ bool same(const Pose& a, const Pose& b, double tolerance) {
   return same(numbersOf(a), numbersOf(b), tolerance) ||
          same(numbersOf(a), numbersOf(turned), tolerance);
 }
+
+/// The angle of the turn from one to the other, in double precision: it may be that of a last
+/// digit.
+double degreesBetween(const Quat& a, const Quat& b) {
+  const auto wide = [](const Quat& q) {
+    return std::array{static_cast<double>(q.x), static_cast<double>(q.y), static_cast<double>(q.z),
+                      static_cast<double>(q.w)};
+  };
+  const auto p = wide(a);
+  const auto q = wide(b);
+  // The sine and the cosine of half the angle, as the parts of conjugate(a) * b.
+  const double x = p[3] * q[0] - p[0] * q[3] - p[1] * q[2] + p[2] * q[1];
+  const double y = p[3] * q[1] - p[1] * q[3] - p[2] * q[0] + p[0] * q[2];
+  const double z = p[3] * q[2] - p[2] * q[3] - p[0] * q[1] + p[1] * q[0];
+  const double w = p[3] * q[3] + p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+  return 2 * std::atan2(std::hypot(x, y, z), std::abs(w)) * 180 / std::numbers::pi;
+}
+
+/// What differs between the poses of the same objects.
+struct Moves {
+  std::size_t count = 0;
+  bool is_elsewhere = false;
+  bool is_turned = false;
+  /// Meters, the most of all.
+  double way = 0;
+  /// Degrees, the most of all.
+  double turn = 0;
+
+  void add(const Pose& a, const Pose& b, double tolerance) {
+    if (same(a, b, tolerance)) return;
+    ++count;
+    const Vec3 between = a.translation - b.translation;
+    is_elsewhere = is_elsewhere || between != Vec3{};
+    way = std::max(way, std::sqrt(static_cast<double>(dot(between, between))));
+    const bool is_same_turn = same(Pose{{}, a.rotation}, Pose{{}, b.rotation}, 0);
+    is_turned = is_turned || !is_same_turn;
+    if (!is_same_turn) turn = std::max(turn, degreesBetween(a.rotation, b.rotation));
+  }
+
+  [[nodiscard]] std::string text() const {
+    std::string ways;
+    if (is_elsewhere) ways = fmt::format("up to {:.3g} m away", way);
+    if (is_elsewhere && is_turned) ways += " and ";
+    if (is_turned) ways += fmt::format("turned by up to {:.3g} degrees", turn);
+    return fmt::format("{} {}: {}", count, count == 1 ? "differs" : "differ", ways);
+  }
+};
 
 /// Compares two episode sets, episode by episode.
 class EpisodeComparison {
@@ -104,21 +153,13 @@ class EpisodeComparison {
                               fmt::format("{}", fmt::join(names_b, ", "))});
       return;
     }
-    std::size_t moved = 0;
-    double farthest = 0;
+    Moves moves;
     for (std::size_t n = 0; n < placements.a.size(); ++n) {
-      const Pose& pose_a = placements.a[n].pose;
-      const Pose& pose_b = placements.b[n].pose;
-      if (same(pose_a, pose_b, tolerance_)) continue;
-      ++moved;
-      const Vec3 way = pose_a.translation - pose_b.translation;
-      farthest = std::max(farthest, std::sqrt(static_cast<double>(dot(way, way))));
+      moves.add(placements.a[n].pose, placements.b[n].pose, tolerance_);
     }
-    if (moved == 0) return;
-    differences_.push_back(
-        {field, fmt::format("{} objects", names_a.size()),
-         fmt::format("{} objects, {} lie elsewhere, up to {:.3g} m away, or otherwise",
-                     names_b.size(), moved, farthest)});
+    if (moves.count == 0) return;
+    const std::string objects = counted(names_a.size(), "object");
+    differences_.push_back({field, objects, fmt::format("{}, {}", objects, moves.text())});
   }
 
   static std::vector<std::string_view> namesOf(const EpisodeSet& set,

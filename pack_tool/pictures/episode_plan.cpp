@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "pack_tool/pictures/axes.h"
 #include "pack_tool/pictures/figure_view.h"
@@ -41,6 +45,13 @@ constexpr double kFloorHeight = 2;
 constexpr Rgb kLowSpace{168, 170, 176};
 constexpr Rgb kOpenFloor{246, 246, 248};
 constexpr Rgb kMutedBlocked{92, 94, 100};
+/// Free below a table, meters; what is on solid furniture looks alike.
+constexpr float kTableHeight = 0.7F;
+
+/// Of ground with so much free above it, meters.
+Rgb freeColor(double height) {
+  return blend(kLowSpace, kOpenFloor, std::min(height / kFloorHeight, 1.0));
+}
 
 /// What a plot shows of the ground, meters.
 struct Window {
@@ -197,12 +208,55 @@ class MarkPen {
   PixelRect part_;
 };
 
+/// Heights of the floors, ascending, meters: of the commonest ground, and of others that are large.
+/// Houses may have split levels, or storeys beside each other on a slope; furniture is smaller.
+std::vector<float> floorsOf(std::span<const float> ground) {
+  constexpr float kBin = 0.1F;
+  constexpr double kLarge = 0.2;
+  struct Bin {
+    double sum = 0;
+    std::size_t count = 0;
+  };
+  std::map<long, Bin> bins;
+  std::size_t most = 0;
+  for (const float height : ground) {
+    if (std::isnan(height)) continue;
+    Bin& bin = bins[std::lround(height / kBin)];
+    bin.sum += static_cast<double>(height);
+    most = std::max(most, ++bin.count);
+  }
+  std::vector<float> floors;
+  for (const auto& [number, bin] : bins) {
+    const auto count = static_cast<double>(bin.count);
+    if (count >= kLarge * static_cast<double>(most)) {
+      floors.push_back(static_cast<float>(bin.sum / count));
+    }
+  }
+  return floors;
+}
+
+/// The free height over each column, but no more than over a table where its ground is solid
+/// furniture: further above a floor than a base climbs.
+std::vector<float> heightsOverFloors(const ColumnGrid& grid) {
+  constexpr float kClimbed = 0.1F;
+  std::vector<float> heights = planValues(grid, PlanValue::kLowestHeight);
+  const std::vector<float> ground = lowestGround(grid);
+  const std::vector<float> floors = floorsOf(ground);
+  for (std::size_t n = 0; n < heights.size(); ++n) {
+    if (heights[n] == kBlockedValue) continue;
+    const auto above = std::ranges::upper_bound(floors, ground[n]);
+    const bool is_raised = above != floors.begin() && ground[n] - *std::prev(above) > kClimbed;
+    if (is_raised) heights[n] = std::min(heights[n], kTableHeight);
+  }
+  return heights;
+}
+
 void drawGround(Image& image, const EpisodePlan& plan, const Plot& plot) {
   if (plan.grid) {
-    const PlanPanel panel{&*plan.grid, planValues(*plan.grid, PlanValue::kLowestHeight), plot.rect};
+    const PlanPanel panel{&*plan.grid, heightsOverFloors(*plan.grid), plot.rect};
     paintColumns(image, panel, [](float value) {
       if (value == kBlockedValue) return kMutedBlocked;
-      return blend(kLowSpace, kOpenFloor, std::min(static_cast<double>(value) / kFloorHeight, 1.0));
+      return freeColor(static_cast<double>(value));
     });
   }
   drawFrame(image, plot.rect, kFaintInk);
@@ -280,9 +334,9 @@ Legend legendOf(std::span<const EpisodePlan> plans) {
     legend.entries.push_back(entryOf("other object", &MarkPen::drawOther));
   }
   if (any([](const EpisodePlan& plan) { return plan.grid.has_value(); })) {
-    constexpr double kTable = 0.35;
     legend.entries.push_back({"floor", kOpenFloor});
-    legend.entries.push_back({"less than 2 m free", blend(kLowSpace, kOpenFloor, kTable)});
+    legend.entries.push_back(
+        {"on furniture, or less than 2 m free", freeColor(double{kTableHeight})});
     legend.entries.push_back({"blocked", kMutedBlocked});
   }
   return legend;

@@ -44,37 +44,53 @@ float leastValue(const PlanPanel& panel, const CellRange& columns, const CellRan
 /// the rounding of their ends, less than what a grid extends beyond its scene.
 constexpr float kAtEdge = 1e-3F;
 
-/// The height of the lowest span in the scene: what is free from the grid's lower edge on lies
-/// under the floor of a scene that is open to the outside, and counts only where nothing is above
-/// it.
-float lowestHeight(const std::vector<Span>& spans, float edge) {
+/// The lowest span in the scene: what is free from the grid's lower edge on lies under the floor of
+/// a scene that is open to the outside, and counts only where nothing is above it.
+const Span& lowestOf(const std::vector<Span>& spans, float edge) {
   const bool is_under = spans.front().lo <= edge + kAtEdge && spans.size() > 1;
-  const Span& lowest = is_under ? spans[1] : spans[0];
-  return lowest.hi - lowest.lo;
+  return is_under ? spans[1] : spans[0];
 }
 
 float valueOf(const std::vector<Span>& spans, PlanValue value, float edge) {
   if (spans.empty()) return kBlockedValue;
   if (value == PlanValue::kSpanCount) return static_cast<float>(spans.size());
-  if (value == PlanValue::kLowestHeight) return lowestHeight(spans, edge);
+  if (value == PlanValue::kLowestHeight) {
+    const Span& lowest = lowestOf(spans, edge);
+    return lowest.hi - lowest.lo;
+  }
   float total = 0;
   for (const Span& span : spans) total += span.hi - span.lo;
   return total;
 }
 
-}  // namespace
-
-std::vector<float> planValues(const ColumnGrid& grid, PlanValue value) {
+/// `value_of(spans)` for each column, row by row along Z.
+template <class ValueOf>
+std::vector<float> valuesOf(const ColumnGrid& grid, const ValueOf& value_of) {
   std::vector<float> values;
   values.reserve(std::size_t{grid.columnsX()} * grid.columnsZ());
   std::vector<Span> spans;
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
     for (std::uint32_t i = 0; i < grid.columnsX(); ++i) {
       pack_tool::readSpans(grid, {i, k}, spans);
-      values.push_back(valueOf(spans, value, grid.heights().lo));
+      values.push_back(value_of(spans));
     }
   }
   return values;
+}
+
+}  // namespace
+
+std::vector<float> planValues(const ColumnGrid& grid, PlanValue value) {
+  return valuesOf(grid, [&grid, value](const std::vector<Span>& spans) {
+    return valueOf(spans, value, grid.heights().lo);
+  });
+}
+
+std::vector<float> lowestGround(const ColumnGrid& grid) {
+  return valuesOf(grid, [&grid](const std::vector<Span>& spans) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    return spans.empty() ? kNone : lowestOf(spans, grid.heights().lo).lo;
+  });
 }
 
 void paintColumns(Image& image, const PlanPanel& panel, const std::function<Rgb(float)>& color_of) {

@@ -23,6 +23,9 @@ struct PlanPanel {
 /// One for each column of `grid`, row by row along Z; kBlockedValue where there is no span.
 [[nodiscard]] std::vector<float> planValues(const ColumnGrid& grid, PlanValue value);
 
+/// Where the lowest span in the scene begins, meters, in the same order; NaN where there is none.
+[[nodiscard]] std::vector<float> lowestGround(const ColumnGrid& grid);
+
 /// Paints the columns of a grid over its plot. A pixel that shows several columns has the least of
 /// their values, and so is blocked where one of them is.
 void paintColumns(Image& image, const PlanPanel& panel, const std::function<Rgb(float)>& color_of);

@@ -315,6 +315,19 @@ TEST(AReport, NamesTheOptionsThatDecideWhatItSays) {
 )"));
 }
 
+TEST(AReport, CountsStepsFromOneAsTextsDo) {
+  const ScratchFolder folder;
+  const World world = smallHome(folder);
+  dynamics::Comparisons comparisons{.episodes = {made(0)}, .worst = {}};
+  comparisons.worst = {{.kind = MomentKind::kLost, .comparison = 0, .step = 2, .meters = 0.7F}};
+  const std::string json = dynamics::reportJson(comparisons, world, {});
+  EXPECT_THAT(json, HasSubstr("episode 0, step 3: success lost"));
+  EXPECT_THAT(json, HasSubstr("\"step\": 3,"));
+  EXPECT_THAT(json, HasSubstr("\"parted\": 3,"));
+  EXPECT_THAT(json, HasSubstr("\"step\": 4,")) << "of what was let go";
+  EXPECT_THAT(json, Not(HasSubstr("\"step\": 2")));
+}
+
 TEST(AReport, TellsNoFiguresOfWhatWasNotLetGo) {
   const ScratchFolder folder;
   const World world = smallHome(folder);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -234,8 +235,9 @@ void adviseOn(const EpisodeGeneratorOptions& options, GeneratedEpisodes& generat
   if (!is_most || are_shortened || by_distance < kManyDrafts * options.episodes) return;
   warnings.push_back(fmt::format(
       "{} of {} places drawn and not taken were goals that are not {} away from their targets: "
-      "with a shorter `goal-distance` episodes are drawn sooner and use more places",
-      by_distance, all, textOf(options.target_to_goal)));
+      "with a {} `goal-distance` episodes are drawn sooner and use more places",
+      by_distance, all, textOf(options.target_to_goal),
+      std::isfinite(options.target_to_goal.most) ? "wider" : "shorter"));
 }
 
 /// Says what is not as it was asked for.

@@ -121,6 +121,30 @@ class EpisodeCheck {
   Result<void> result_;
 };
 
+/// Exports turn rotations to the frames of mesh files, imports turn them back, both in double
+/// precision: each part comes back to about 4e-16. So that this is the same float, parts are
+/// multiples of 2^-48 (4e-15), as all floats from 2^-25 on are.
+Quat rounded(const Quat& rotation) {
+  constexpr double kSteps = 0x1p48;
+  // The sum makes 0 of -0.
+  const auto round = [](float part) {
+    return static_cast<float>(std::nearbyint(static_cast<double>(part) * kSteps) / kSteps + 0.0);
+  };
+  return {round(rotation.x), round(rotation.y), round(rotation.z), round(rotation.w)};
+}
+
+std::vector<Placement> rounded(std::vector<Placement> placements) {
+  for (Placement& placement : placements) {
+    placement.pose.rotation = rounded(placement.pose.rotation);
+  }
+  return placements;
+}
+
+std::vector<Episode> rounded(std::vector<Episode> episodes) {
+  for (Episode& episode : episodes) episode.goal.rotation = rounded(episode.goal.rotation);
+  return episodes;
+}
+
 std::uint64_t storedBytes(const SourceEpisodes& source) {
   return source.placements.size() * sizeof(Placement) + source.episodes.size() * sizeof(Episode) +
          source.start_positions.size() * sizeof(float);
@@ -146,8 +170,8 @@ Result<std::vector<std::byte>> encodeEpisodePack(const SourceEpisodes& source,
   const auto robot = builder.CreateString(source.robot);
   const auto start_joints = builder.CreateVectorOfStrings(source.start_joints);
   const auto start_positions = alignedVector<float>(builder, source.start_positions);
-  const auto placements = alignedStructs<schema::Placement>(builder, source.placements);
-  const auto episodes = alignedStructs<schema::Episode>(builder, source.episodes);
+  const auto placements = alignedStructs<schema::Placement>(builder, rounded(source.placements));
+  const auto episodes = alignedStructs<schema::Episode>(builder, rounded(source.episodes));
   const auto root = schema::CreateEpisodeSet(builder, name, scenes, objects, robot, start_joints,
                                              start_positions, placements, episodes);
   return finishPack(builder, provenance_table, schema::Asset::EpisodeSet, root.Union());

@@ -226,7 +226,7 @@ TEST(EpisodesOnFewPlaces, SayWhichOptionsWouldHelp) {
                               "there are [0-9]+"),
                           testing::MatchesRegex(
                               "[0-9]+ of [0-9]+ places drawn and not taken were goals that are not "
-                              "2.95 to 2.954 m away from their targets: with a shorter "
+                              "2.95 to 2.954 m away from their targets: with a wider "
                               "`goal-distance` episodes are drawn sooner and use more places")));
   options.flatness = 0.01F;
   options.target_to_goal = {0.3F, 5};

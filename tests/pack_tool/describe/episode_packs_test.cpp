@@ -189,8 +189,21 @@ TEST(EpisodeDiff, TellsEachFieldOfAnEpisodeThatDiffers) {
   differs([](EpisodePackFields& f) { f.placements[0].object = 1; },
           "episodes.0.placements: bowl, mug, mug | mug, mug, mug");
   differs([](EpisodePackFields& f) { f.placements[1].pose.translation.y = 1.5F; },
-          "episodes.0.placements: 3 objects | 3 objects, 1 lie elsewhere, up to 0.5 m away, or "
-          "otherwise");
+          "episodes.0.placements: 3 objects | 3 objects, 1 differs: up to 0.5 m away");
+  differs(
+      [](EpisodePackFields& f) {
+        Quat& q = f.placements[1].pose.rotation;
+        q = q * Quat{std::sin(0.1F), 0, 0, std::cos(0.1F)};
+      },
+      "episodes.0.placements: 3 objects | 3 objects, 1 differs: turned by up to 11.5 degrees");
+  differs(
+      [](EpisodePackFields& f) {
+        f.placements[0].pose.translation.x += 0.25F;
+        Quat& q = f.placements[2].pose.rotation;
+        q = q * Quat{0, 4e-8F, 0, 1};
+      },
+      "episodes.0.placements: 3 objects | 3 objects, 2 differ: up to 0.25 m away and turned by up "
+      "to 4.58e-06 degrees");
   differs([](EpisodePackFields& f) { f.episodes[1].goal.translation.z = 2; },
           "episodes.1.goal: 3.5, 1.25, 1.5, 1, 0, 0, 0 | 3.5, 1.25, 2, 1, 0, 0, 0");
 }

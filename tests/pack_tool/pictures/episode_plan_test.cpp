@@ -86,6 +86,26 @@ TEST(EpisodePlanPicture, ShowsWhatIsBlockedAndWhatIsLow) {
   EXPECT_LT(brightness(2.5), 120);
 }
 
+TEST(EpisodePlanPicture, ShowsSolidFurnitureInGrayAndFloorsOfAllLevelsLight) {
+  GridBuilder builder(GridSpec{.heights = {-1, 7}, .columns_x = 10, .columns_z = 6});
+  for (std::uint32_t k = 0; k < 6; ++k) {
+    for (std::uint32_t i = 0; i < 10; ++i) {
+      // From x = 7 on, a floor half a meter higher.
+      const float floor = i < 7 ? 0 : 0.5F;
+      builder.column(i, k, {{floor, 3}});
+    }
+  }
+  builder.column(1, 0, {{0.25F, 3}});
+  // A threshold, a sunken place and a bag on the upper floor.
+  builder.column(3, 0, {{0.0625F, 3}}).column(5, 0, {{-0.5F, 3}}).column(8, 0, {{0.75F, 3}});
+  const auto grid = builder.build();
+  const Picture picture = drawEpisodePlan({"hall", grid.view(), {}}, 800);
+  const auto brightness = [&](double x) { return colorAt(picture, {x, 0.5}).g; };
+  for (const double floor : {0.5, 3.5, 5.5, 7.5, 9.5}) EXPECT_GT(brightness(floor), 240) << floor;
+  EXPECT_LT(brightness(1.5), 220);
+  EXPECT_LT(brightness(8.5), 220);
+}
+
 TEST(EpisodePlanPicture, LeavesOutMarksThatAreNowhere) {
   const auto grid = hall();
   const double nan = std::nan("");

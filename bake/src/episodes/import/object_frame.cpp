@@ -43,12 +43,8 @@ Rotation ofUnitLength(const Rotation& rotation) {
 }
 
 Quat narrow(const Rotation& rotation) {
-  constexpr double kSteps = 1099511627776.0;  // 2^40
-  // The sum makes 0 of -0.
-  const auto round = [](double part) {
-    return static_cast<float>(std::nearbyint(part * kSteps) / kSteps + 0.0);
-  };
-  return {round(rotation[1]), round(rotation[2]), round(rotation[3]), round(rotation[0])};
+  return {static_cast<float>(rotation[1]), static_cast<float>(rotation[2]),
+          static_cast<float>(rotation[3]), static_cast<float>(rotation[0])};
 }
 
 Pose narrow(const std::array<double, 3>& point, const Rotation& rotation) {

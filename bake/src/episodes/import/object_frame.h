@@ -23,8 +23,8 @@ using Rotation = std::array<double, 4>;
 /// is: what was exported from a pack comes back as the same floats.
 [[nodiscard]] Rotation ofUnitLength(const Rotation& rotation);
 
-/// Rounded to multiples of 2^-40 (1e-12), then to floats: so the rounding of a turn to another
-/// frame and back cannot show in parts that are nearly 0.
+/// As floats. What the rounding of a turn to another frame and back leaves in parts that are nearly
+/// 0, the writer of packs takes away.
 [[nodiscard]] Quat narrow(const Rotation& rotation);
 
 /// The same as a pose at `point`, meters.
