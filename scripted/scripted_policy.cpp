@@ -289,6 +289,7 @@ class ScriptedPolicy::Impl {
 
 Result<ScriptedPolicy> ScriptedPolicy::create(const World& world,
                                               const SimulationOptions& options) {
+  RETURN_IF_ERROR(checkOptions(options));
   if (options.task.kind == TaskKind::kNone) {
     return fail(ErrorCode::kUnsupported, "scripted policy",
                 "the task is none, which has nothing to plan for; use rearrange or mobile pick");

@@ -30,6 +30,17 @@ std::vector<PlacedObject> placed(const EpisodeTrace& trace, const ComparisonWorl
   return objects;
 }
 
+/// Whether the engine knows where everything is: what is pressed into other things may get lost.
+bool isKnown(const FollowedState& state) {
+  const auto is_finite = [](const Pose& pose) {
+    const auto& [x, y, z] = pose.translation;
+    const auto& [i, j, k, w] = pose.rotation;
+    return std::isfinite(x + y + z + i + j + k + w);
+  };
+  return is_finite(state.world_from_root) && std::ranges::all_of(state.objects, is_finite) &&
+         std::ranges::all_of(state.joint_positions, [](float p) { return std::isfinite(p); });
+}
+
 /// One episode in both worlds.
 class Comparison {
  public:
@@ -80,7 +91,10 @@ class Comparison {
       }
       const DrivenStep driven = driver.step(actions);
       if (driven.grasped) was_held_[*driven.grasped] = true;
-      lane_.follow(actions, reading.read(there, driven, objects_.size()));
+      const FollowedState now = reading.read(there, driven, objects_.size());
+      // Nothing can follow from there: the episode ends without a success.
+      if (!isKnown(now)) break;
+      lane_.follow(actions, now);
       if (watch) watch(lane_.simulator(), actions);
       compare(n, there, driver);
     }

@@ -104,7 +104,7 @@ class About:
     images: dict[str, tuple[int, ...]]
     """Shapes of an env's rgb and depth, of one, or of none."""
     motions: int
-    """Continuous numbers of an action; grasp and terminate are behind them."""
+    """Continuous numbers of an action; hand and terminate are behind them."""
     made_with: dict[str, Any]
     """All else that they depend on."""
 

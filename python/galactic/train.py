@@ -196,7 +196,10 @@ def _launched(run: Run, folder: pathlib.Path, command: Sequence[str]) -> int:
     if code == INTERRUPTED and not checkpoints.complete() and not (folder / BEST).exists():
         put(sys.stderr, f"galactic.train: interrupted before anything was saved in {folder}\n")
     elif code == INTERRUPTED and checkpoints.complete() == before:
-        put(sys.stderr, f"galactic.train: interrupted; nothing more was saved in {folder}\n")
+        put(
+            sys.stderr,
+            f"galactic.train: interrupted; no further checkpoint was saved in {folder}\n",
+        )
     return code
 
 

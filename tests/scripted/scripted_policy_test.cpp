@@ -316,6 +316,15 @@ TEST(ScriptedPolicy, KeepsItsWorld) {
   EXPECT_EQ(policy.trouble(0), ScriptedTrouble::kNone);
 }
 
+TEST(ScriptedPolicy, IsNotMadeOfOptionsOutOfTheirRanges) {
+  const ScriptedWorld made = tableWorld(1.7F);
+  SimulationOptions options = optionsOf(1);
+  options.placement.attempts = 4'000'000'000;
+  const auto policy = ScriptedPolicy::create(made.world(), options);
+  ASSERT_FALSE(policy.has_value());
+  EXPECT_EQ(policy.error().code, ErrorCode::kInvalidInput);
+}
+
 TEST(ScriptedPolicy, RefusesToTellOfEnvsThatItDoesNotHave) {
   const ScriptedWorld made = tableWorld(1.7F);
   const ScriptedPolicy policy =

@@ -147,9 +147,7 @@ Result<std::unique_ptr<Policy>> makeLearnedPolicy(const OpenedPolicy& policy, co
                                           .first_env = simulation.rank * simulation.envs,
                                           .threads = simulation.threads}));
   std::unique_ptr<PolicyEyes> eyes;
-  if (Result<void> drawn = checkNoise(policy, options.drawing); !drawn) {
-    return tl::unexpected<Error>(drawn.error());
-  }
+  RETURN_IF_ERROR(checkNoise(policy, options.drawing));
   if (policy.needs.image) {
     ASSIGN_OR_RETURN(auto made, PolicyEyes::create(*policy.needs.image, world, simulator, options));
     eyes = std::move(made);

@@ -153,9 +153,7 @@ Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path& pat
                                                 const RecordingSubject& subject) {
   ASSIGN_OR_RETURN(AtomicFile file, AtomicFile::create(path));
   RecordingWriter writer(std::move(file), subject);
-  if (Result<void> written = writer.writeFront(); !written) {
-    return tl::unexpected<Error>(written.error());
-  }
+  RETURN_IF_ERROR(writer.writeFront());
   return writer;
 }
 

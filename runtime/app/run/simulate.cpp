@@ -282,7 +282,7 @@ Result<RunReport> simulate(const RunOptions& options, const OpenedWorld& opened,
   if (!options.record.empty()) {
     RETURN_IF_ERROR(run.record(world));
   }
-  if (Result<void> done = run.go(stop); !done) return tl::unexpected<Error>(done.error());
+  RETURN_IF_ERROR(run.go(stop));
   report.threads = simulator.threadCount();
   report.phases = simulator.phaseTimes();
   report.sampled_steps = (report.steps + kSampleEvery - 1) / kSampleEvery;

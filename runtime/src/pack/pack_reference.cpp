@@ -74,7 +74,7 @@ Result<std::vector<PackReference>> packReferences(const PackFile& world) {
 
 Result<std::vector<OptionText>> taskOptions(const PackFile& world) {
   ASSIGN_OR_RETURN(const auto content, contentOf(world));
-  const auto* stored = (content)->task();
+  const auto* stored = content->task();
   if (stored == nullptr) return {};
   // What was verified before passes; a trusted pack may hold anything.
   RETURN_IF_ERROR(detail::checkOptions(*stored, "task", world.where() + ": world"));
@@ -108,7 +108,7 @@ Result<PackFile> openReference(const PackFile& world, const PackReference& refer
   if (!pack) return pack;
   RETURN_IF_ERROR(checkLinked(*pack, reference, world.where(), trust));
   if (trust == Trust::kTrusted) return pack;
-  ASSIGN_OR_RETURN(const auto verified, PackFile::view(pack->bytes(), pack->where(), trust));
+  RETURN_IF_ERROR(PackFile::view(pack->bytes(), pack->where(), trust));
   return pack;
 }
 

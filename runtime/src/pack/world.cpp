@@ -311,7 +311,7 @@ Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
   detail::forEachPart(detail::threadCount(0), opened.size(), [&](std::size_t n) {
     // The first one that fails is told of, whichever thread is ahead.
     if (n > failed) return;
-    opened[n] = openReference(world, (references)[n], trust);
+    opened[n] = openReference(world, references[n], trust);
     if (*opened[n]) return;
     for (std::size_t known = failed; n < known && !failed.compare_exchange_weak(known, n);) {
     }
@@ -330,7 +330,7 @@ Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
 Result<void> checkTogether(std::vector<PackFile> packs) {
   ASSIGN_OR_RETURN(const Parts parts, sortByKind(packs));
   if (!parts.robot || !parts.episodes) return checkAllRadii(packs, parts);
-  ASSIGN_OR_RETURN(const World world, World::from(std::move(packs)));
+  RETURN_IF_ERROR(World::from(std::move(packs)));
   return {};
 }
 

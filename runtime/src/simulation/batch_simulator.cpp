@@ -105,6 +105,7 @@ class BatchSimulator::Impl {
 
   void follow(std::span<const float> actions, std::span<const FollowedState> states) {
     constexpr const char* kCall = "BatchSimulator::follow";
+    requireIdle(kCall);
     detail::checkLength(kCall, "states", states.size(), envCount());
     for (std::size_t env = 0; env < states.size(); ++env) checkFollowed(kCall, env, states[env]);
     prepare(kCall, actions, {});
@@ -487,7 +488,9 @@ EnvMoment BatchSimulator::envMoment(std::size_t env) const noexcept {
 }
 
 EpisodeNoise BatchSimulator::episodeNoise(std::size_t env) const {
-  detail::checkIndex("BatchSimulator::episodeNoise", "env", env, envCount());
+  constexpr const char* kCall = "BatchSimulator::episodeNoise";
+  impl_->requireIdle(kCall);
+  detail::checkIndex(kCall, "env", env, envCount());
   return simulation::episodeNoiseIn(impl_->model(), envMoment(env));
 }
 

@@ -35,8 +35,8 @@ Result<RenderMeshes> requiredMeshes(const PackFile& pack, const SharedTextures& 
     return fail(ErrorCode::kInvalidInput, pack.where(),
                 "was baked without render meshes, which drawing needs; bake it again with them");
   }
-  if (!(meshes)->missing_textures.empty()) {
-    const MissingTexture& missing = (meshes)->missing_textures.front();
+  if (!meshes->missing_textures.empty()) {
+    const MissingTexture& missing = meshes->missing_textures.front();
     return fail(
         ErrorCode::kInvalidInput, pack.where(),
         fmt::format("shares the texture \"{}\" ({:016x}{:016x}), which is in no pack of the "

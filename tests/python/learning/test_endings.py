@@ -133,7 +133,7 @@ def test_ctrl_c_where_something_was_saved_before_is_not_told_so(
     run = Run(pathlib.Path("none.pack"), None, preset("quick"))
     assert train._launched(run, tmp_path, []) == 130
     said = capsys.readouterr().err.splitlines()[-1]
-    assert said == f"galactic.train: interrupted; nothing more was saved in {tmp_path}"
+    assert said == f"galactic.train: interrupted; no further checkpoint was saved in {tmp_path}"
 
 
 def test_ctrl_c_before_all_ranks_have_started_reaches_all_of_them(

@@ -133,6 +133,8 @@ TEST_F(BatchCalls, ThatWouldMeetAHalfStepAreRefused) {
   refused([&] { static_cast<void>(simulator_.saveState()); }, "saveState");
   refused([&] { static_cast<void>(simulator_.restoreState(state)); }, "restoreState");
   refused([&] { static_cast<void>(simulator_.envState(0)); }, "envState");
+  refused([&] { simulator_.follow(actions_, {}); }, "follow");
+  refused([&] { static_cast<void>(simulator_.episodeNoise(0)); }, "episodeNoise");
   refused([&] { static_cast<void>(simulator_.statistics()); }, "statistics");
   refused([&] { static_cast<void>(simulator_.statistics(0)); }, "statistics");
   refused([&] { simulator_.samplePhases(1); }, "samplePhases");

@@ -1,7 +1,7 @@
 """The distribution of an action: Gaussian motions and two yes-or-no decisions.
 
 An action is a row of `motions + 2` numbers: the changes of the joints, forward and turn, which are
-continuous in [-1, 1], then grasp and terminate, each 0 or 1 (paper, appendix A). torch.distributions
+continuous in [-1, 1], then hand and terminate, each 0 or 1 (paper, appendix A). torch.distributions
 would do the same at several times the cost: it checks its arguments and wraps every call.
 """
 
@@ -32,7 +32,7 @@ class ActionDistribution(NamedTuple):
 
     mean: Tensor  # [..., motions], in (-1, 1)
     log_std: Tensor  # [..., motions]
-    logits: Tensor  # [..., 2]: log-odds of grasp and terminate
+    logits: Tensor  # [..., 2]: log-odds of hand and terminate
     decides_terminate: bool
 
     def sample(self, noise: Tensor) -> Tensor:

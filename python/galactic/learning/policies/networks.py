@@ -18,7 +18,7 @@ A policy without `rnn` (class FeedForwardPolicy) has two encoders, `encoder` for
 memory, if there is one, is the encoder's.
 
 Rows of `action.linear`: a mean for each motion (before tanh), a log-std for each, then two logits (no,
-yes) each for grasp and terminate.
+yes) each for hand and terminate.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ class Environments(Protocol):
 
     An episode that ends is followed by the next one in the same step: the observation after it is the
     first of the next episode. Actions are rows of `motions` continuous numbers, which the environments
-    clamp to [-1, 1], then grasp and terminate, each 0 or 1.
+    clamp to [-1, 1], then hand and terminate, each 0 or 1.
     """
 
     count: int

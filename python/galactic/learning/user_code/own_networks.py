@@ -41,7 +41,7 @@ class Seen(NamedTuple):
     images: Mapping[str, tuple[int, ...]]
     """Of one picture, by name: `rgb` is (height, width, 3), `depth` (height, width)."""
     actions: int
-    """A, numbers of Inputs.previous: the motions, then grasp and terminate."""
+    """A, numbers of Inputs.previous: the motions, then hand and terminate."""
 
     @property
     def channels(self) -> int:

@@ -25,9 +25,7 @@ Result<std::unique_ptr<GlEngine>> GlEngine::make(const RenderLibrary& library,
                                                  const GlTuning& tuning,
                                                  const LibraryLoads& loads) {
   ASSIGN_OR_RETURN(const DeviceWish wish, parseDeviceWish(options.device));
-  if (const Result<void> there = checkLibraries(loads); !there) {
-    return tl::unexpected<Error>(there.error());
-  }
+  RETURN_IF_ERROR(checkLibraries(loads));
   ASSIGN_OR_RETURN(EglContext context, openContext(wish, options.backend == RenderBackend::kGl));
   const CurrentContext current(context);
   if (!current.holds()) return tl::unexpected<Error>(lostContext(current));

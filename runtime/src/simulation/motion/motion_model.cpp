@@ -266,7 +266,7 @@ Result<MotionModel> makeMotionModel(const Robot& robot,
   for (const Attached& link : links) {
     model.links.push_back(fixedFrame(link.node, link.node_from_link));
   }
-  const Attached& hand = (links)[robot.endEffector()->link];
+  const Attached& hand = links[robot.endEffector()->link];
   model.grip =
       fixedFrame(hand.node, hand.node_from_link * Pose{robot.endEffector()->grasp_point, {}});
   addSpheres(robot, links, model);

@@ -98,8 +98,8 @@ void followChunk(const ChunkStep& step, std::span<const float> actions,
   // A release places bodies anew, so all candidates are taken by now.
   for (std::size_t e = 0; e < kChunk; ++e) {
     if (!is_followed(e)) continue;
-    const FollowedState& state = states[step.first + e];
     const std::size_t n = step.first + e;
+    const FollowedState& state = states[n];
     restObjects(step.model, step.state, n, state.objects, step.state.env(n).held);
     followHand(step, e, state);
   }
