@@ -270,7 +270,9 @@ class _Followed:
     def _gru(self, node: fx.Node) -> tuple[int, str]:
         given = [*node.args, *node.kwargs.values()]
         names = dict(zip(("rnn", "inputs", "hidden", "starts"), node.args), **node.kwargs)
-        ahead = [one for one in self._tracer.graph.nodes if one.op == "placeholder"][1:]
+        nodes = self._tracer.graph.nodes
+        # What forward() is given behind the inputs.
+        ahead = [one for one in nodes if not one.op.startswith(("call", "get", "output"))][1:]
         rnn, x = self.of(names["rnn"]), self.of(names["inputs"])
         if len(given) != 4 or [names["hidden"], names["starts"]] != ahead:
             raise ExportError(
