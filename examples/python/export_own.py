@@ -25,11 +25,11 @@ class Actor(nn.Module):
 
 world, pack = sys.argv[1:]
 homes = galactic.VectorEnv(world, 64, task="pick", bump=True)
-actor = Actor(*homes.single_observation_space.shape, len(homes.world.actions) - 2)
+actor = Actor(homes.single_observation_space.shape[0], len(homes.world.actions) - 2)
 # Here it would learn. The hand is open or closed, by the log-odds that it closes; nobody terminates.
 export_module(pack, actor, homes, discrete=[(0, 1), (0,)])
 
 policy = galactic.LearnedPolicy(pack, 64)
 observations, _ = homes.reset()
-observations, rewards, *_ = homes.step(policy.act(observations))
+rewards = homes.step(policy.act(observations))[1]
 print(f"{policy.name}: paid {rewards.mean():.3f} in the first step")
