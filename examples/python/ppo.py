@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import torch
 import galactic
+from galactic.learning import ActionParameters, export_module
 from torch import nn
 from torch.distributions import Bernoulli, Normal
 
@@ -77,6 +78,19 @@ class Agent(nn.Module):
         self.variance += share * (spread - self.variance) + share * (1 - share) * shift**2
         self.mean += share * shift
         self.count.copy_(total)
+
+
+class Actor(nn.Module):
+    """What a policy pack plays of the agent."""
+
+    def __init__(self, agent):
+        super().__init__()
+        self.agent = agent
+
+    def forward(self, inputs):
+        found = self.agent.actor(self.agent.features(inputs.state))
+        hand_logits = found[..., -1:]
+        return ActionParameters(torch.tanh(found[..., :-1]), self.agent.log_std, (hand_logits,))
 
 
 class Policy:
@@ -251,6 +265,7 @@ if __name__ == "__main__":
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--output", default="ppo.pt", help="where the policy is kept")
     parser.add_argument("--play", metavar="FILE", help="play this policy, and train none")
+    parser.add_argument("--pack", metavar="FILE", help="also write it as a policy pack")
     given = parser.parse_args()
     if given.play:
         kept = torch.load(given.play)
@@ -258,6 +273,10 @@ if __name__ == "__main__":
         agent.load_state_dict(kept["agent"])
     else:
         agent = train(given.world, int(given.steps), given.seed, given.output)
+    if given.pack:
+        homes = galactic.VectorEnv(given.world, 1, **TASK)
+        # The hand closes or does not, and nobody terminates.
+        export_module(given.pack, Actor(agent), homes, discrete=((0, 1), (0,)))
     torch.manual_seed(given.seed)
     played = given.unseen or given.world
     sampled, likeliest = (play(agent, played, likeliest=one) for one in (False, True))

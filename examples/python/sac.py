@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import torch
 import galactic
+from galactic.learning import ActionParameters, export_module
 from torch import nn
 from torch.distributions import Normal
 
@@ -63,6 +64,18 @@ class Agent(nn.Module):
 
     def likeliest(self, features):
         return torch.tanh(self.policy(features).chunk(2, -1)[0])
+
+
+class Actor(nn.Module):
+    """What a policy pack plays of the agent: its likeliest actions, as a pack draws from no Gaussians that are
+    squashed."""
+
+    def __init__(self, agent):
+        super().__init__()
+        self.agent = agent
+
+    def forward(self, inputs):
+        return ActionParameters(self.agent.likeliest(self.agent.features(inputs.state)))
 
 
 def perceptron(inputs, width, outputs):
@@ -222,6 +235,7 @@ if __name__ == "__main__":
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--output", default="sac.pt", help="where the policy is kept")
     parser.add_argument("--play", metavar="FILE", help="play this policy, and train none")
+    parser.add_argument("--pack", metavar="FILE", help="also write it as a policy pack")
     given = parser.parse_args()
     if given.play:
         kept = torch.load(given.play)
@@ -229,6 +243,10 @@ if __name__ == "__main__":
         agent.load_state_dict(kept["agent"])
     else:
         agent = train(given.world, int(given.steps), given.seed, given.output)
+    if given.pack:
+        homes = galactic.VectorEnv(given.world, 1, **TASK)
+        # Nobody terminates.
+        export_module(given.pack, Actor(agent), homes, discrete=((0,),))
     torch.manual_seed(given.seed)
     played = given.unseen or given.world
     sampled, likeliest = (play(agent, played, likeliest=one) for one in (False, True))

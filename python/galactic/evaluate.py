@@ -162,7 +162,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     _require_uses(options)
     # Playing may take long.
     _require_outputs(options)
-    saved = checkpoint.load_with(options.network, options.policy)
+    saved = checkpoint.read_policy(options.policy, options.network)
     pack = dynamics.packed(options.policy, options.network) if options.dynamics else b""
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)

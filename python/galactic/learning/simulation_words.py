@@ -11,7 +11,7 @@ from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_fields import ends_of
 
 # What a VectorEnv takes beside options of the simulation, and what it gives its simulators itself.
-_CHOSEN_BY_TRAINER = {
+CHOSEN_BY_TRAINER = {
     *set(inspect.signature(galactic.VectorEnv).parameters) - {"task"},
     "envs",
     "auto_reset",
@@ -34,7 +34,7 @@ def simulation_keywords(text: str) -> dict[str, Any]:
         keyword = simulation_keyword(word)
         if not keyword:
             raise SettingsError(f'--simulation: found "{word}", expected NAME=VALUE or NAME')
-        if keyword in _CHOSEN_BY_TRAINER:
+        if keyword in CHOSEN_BY_TRAINER:
             raise SettingsError(
                 f"{keyword} is not for --simulation; the trainer chooses it (see --envs, --seed)"
             )

@@ -17,6 +17,8 @@ import galactic
 from programs import HELD_OUT, WORLD, needs_worlds
 
 pytestmark = needs_worlds
+SEEN = torch.randn(64, 33, generator=torch.Generator().manual_seed(1))
+"""Made-up observations."""
 EXAMPLES = pathlib.Path(__file__).parents[3] / "examples" / "python"
 
 
@@ -38,7 +40,15 @@ def test_ppo_trains_and_plays_what_it_kept(tmp_path: pathlib.Path) -> None:
     kept = torch.load(file)
     assert kept["steps"] == steps and kept["seed"] == 1
     assert kept["agent"]["count"] == steps
-    assert output_of("ppo.py", HELD_OUT, "--play", file).splitlines() == [result]
+    pack = tmp_path / "pick.pack"
+    assert output_of("ppo.py", HELD_OUT, "--play", file, "--pack", pack).splitlines() == [result]
+    agent = ppo().Agent(**kept["sizes"])
+    agent.load_state_dict(kept["agent"])
+    with torch.no_grad():
+        wanted = agent.policy(agent.features(SEEN)).act(likeliest=True)
+    played = galactic.LearnedPolicy(pack, len(SEEN), deterministic=True).act(SEEN.numpy())
+    np.testing.assert_allclose(played, wanted, atol=1e-4)
+    assert galactic.LearnedPolicy(pack, 1).options == ppo().TASK
 
 
 def test_sac_trains_and_plays_what_it_kept(tmp_path: pathlib.Path) -> None:
@@ -47,12 +57,27 @@ def test_sac_trains_and_plays_what_it_kept(tmp_path: pathlib.Path) -> None:
     *progress, result = printed.splitlines()
     assert re.search(r"^ *53,760 steps, \S+ a second: \S+% solved, ", progress[-1])
     assert re.search(r"[\d.]+% by sampled actions, [\d.]+% by the likeliest$", result)
-    assert output_of("sac.py", HELD_OUT, "--play", file).splitlines() == [result]
+    pack = tmp_path / "pick.pack"
+    assert output_of("sac.py", HELD_OUT, "--play", file, "--pack", pack).splitlines() == [result]
+    kept = torch.load(file)
+    agent = example("sac.py").Agent(**kept["sizes"])
+    agent.load_state_dict(kept["agent"])
+    with torch.no_grad():
+        wanted = agent.likeliest(agent.features(SEEN))
+    for is_likeliest in (False, True):
+        player = galactic.LearnedPolicy(pack, len(SEEN), deterministic=is_likeliest)
+        played = player.act(SEEN.numpy())
+        np.testing.assert_allclose(played[:, :-1], wanted, atol=1e-4)
+        assert not played[:, -1].any()
 
 
 def ppo() -> ModuleType:
+    return example("ppo.py")
+
+
+def example(name: str) -> ModuleType:
     """The example as a module of its own."""
-    spec = importlib.util.spec_from_file_location("ppo_example", EXAMPLES / "ppo.py")
+    spec = importlib.util.spec_from_file_location(f"example_{name[:-3]}", EXAMPLES / name)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -103,6 +128,12 @@ def test_ppo_values_what_time_cuts_off_by_its_last_observation(
                     break
             assert found[step, env].item() == pytest.approx(wanted, abs=1e-4)
             assert returns[step, env].item() == pytest.approx(wanted + values[step, env], abs=1e-4)
+
+
+def test_a_network_of_ones_own_becomes_a_pack(tmp_path: pathlib.Path) -> None:
+    printed = output_of("export_own.py", WORLD, tmp_path / "own.pack")
+    assert re.fullmatch(r"own: paid \S+ in the first step\n", printed)
+    assert galactic.LearnedPolicy(tmp_path / "own.pack", 1).options == {"task": "pick", "bump": True}
 
 
 def test_a_script_demonstrates_and_is_cloned(tmp_path: pathlib.Path) -> None:

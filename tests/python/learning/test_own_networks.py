@@ -163,10 +163,10 @@ def test_a_module_is_another_file_than_the_one_that_a_policy_learned_with(
     (tmp_path / "own_module_a.py").write_text(NETWORKS, encoding="utf-8")
     (tmp_path / "own_module_b.py").write_text(NETWORKS + "# changed\n", encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
-    load = checkpoint.load_with
-    assert load("own_module_a:Net", tmp_path / "own.pt").network is not None
+    load = checkpoint.read_policy
+    assert load(tmp_path / "own.pt", "own_module_a:Net").network is not None
     with pytest.raises(NetworkError, match="own_module_b is another file than it was then; put it"):
-        load("own_module_b:Net", tmp_path / "own.pt")
+        load(tmp_path / "own.pt", "own_module_b:Net")
 
 
 @pytest.mark.parametrize("value", ["{[1]:2}", "(" * 300, "-" * 100_000 + "1"])

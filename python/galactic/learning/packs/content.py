@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import pathlib
-from typing import Any, Optional
+from typing import Any, Mapping, Optional
 
 import numpy as np
 
@@ -25,7 +25,6 @@ from galactic.learning.policies.sight import FARTHEST
 from galactic.learning.refusals import refusing
 from galactic.learning.saving import checkpoint
 from galactic.learning.setting_fields import typed
-from galactic.learning.settings import Settings
 from galactic.learning.simulation_words import simulation_keywords
 from galactic.learning.user_code import own_code
 from galactic.learning.user_code.own_networks import seen_by, some_inputs
@@ -36,7 +35,7 @@ def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robo
     """Reads the checkpoint `file` and writes the policy pack `output`. `network`: what --network names."""
     code = own_code.named(network, "--network").file if network is not None else None
     files.require_apart({"--out": output}, [file, *([code] if code else [])])
-    saved = checkpoint.load_with(network, file)
+    saved = checkpoint.read_policy(file, network)
     trained_with = {
         field.replace("_", "-"): typed(value) for field, value in saved.settings.to_dict().items()
     }
@@ -93,7 +92,7 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
             privileges, simulation_keywords(saved.settings.without_robot_noise().simulation)
         ),
         "observation": observation,
-        "image": _image(saved.settings) if saved.settings.sight else None,
+        "image": image_of(camera_options(saved.settings)) if saved.settings.sight else None,
         "layers": layers.list,
         **actions,
     }
@@ -128,14 +127,15 @@ def _limited(layers: Layers, limit: float, logits: int) -> int:
     return layers.times(0.5 * limit, layers.closeup(0.5 * limit, apart, 2), 2)
 
 
-def _image(settings: Settings) -> dict[str, Any]:
-    seen = camera_options(settings)
+def image_of(options: Mapping[str, Any]) -> dict[str, Any]:
+    """What a camera with these options of galactic.Renderer draws, as _core.write_policy_pack() wants it."""
+    seen = {**_CAMERA, **options}
     return {
         "width": seen["width"],
         "height": seen["height"],
         "color": seen["color"] is not None,
         "color_scale": 1.0 / 255.0,
-        "depth": "depth" in settings.sight,
+        "depth": seen["depth"],
         "depth_limit": FARTHEST,
         "depth_scale": 1.0 / FARTHEST,
         "camera": seen["camera"],
@@ -144,3 +144,17 @@ def _image(settings: Settings) -> dict[str, Any]:
         "rpy_degrees": seen["rpy_degrees"],
         "near": seen["near"],
     }
+
+
+# Where galactic.Renderer is not told otherwise.
+_CAMERA: Mapping[str, Any] = {
+    "width": 128,
+    "height": 128,
+    "color": "rgb",
+    "depth": True,
+    "camera": "head",
+    "fov_degrees": 0.0,
+    "position": (0.0, 0.0, 0.0),
+    "rpy_degrees": (0.0, 0.0, 0.0),
+    "near": 0.0,
+}

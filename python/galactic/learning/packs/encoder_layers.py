@@ -1,4 +1,4 @@
-"""An encoder as layers of a policy pack: ours by what they are made of, the user's as torch.fx follows them."""
+"""Modules as layers of a policy pack: our encoders by what they are made of, the user's as torch.fx follows them."""
 
 from __future__ import annotations
 
@@ -7,16 +7,26 @@ import math
 import operator
 import pathlib
 import traceback
-from typing import Any, Iterator, Optional
+from typing import (
+    Any,
+    Callable,
+    Iterator,
+    Mapping,
+    NamedTuple,
+    Optional,
+    Sequence,
+    TypeGuard,
+    Union,
+)
 
 import torch
-from torch import fx, nn
+from torch import Tensor, fx, nn
 from torch.nn import functional
 
 from galactic.learning.encoders import Encoder, Eyes, Inputs, ResNet, SimpleCNN, StateEncoder
 from galactic.learning.packs import layer_values
-from galactic.learning.packs.layers import ExportError, Layers, computes_as
-
+from galactic.learning.packs.layers import LARGEST, ExportError, Layers, computes_as
+from galactic.learning.sequences import run_gru
 
 SAME = 1e-3
 """Between features of a network and of its layers, as a share of the largest: sums in another order differ by
@@ -24,6 +34,11 @@ less, another network by more."""
 _RELU = (torch.relu, functional.relu, "relu")
 _TANH = (torch.tanh, functional.tanh, "tanh")
 _SUM = (operator.add, torch.add, "add")
+_DIFFERENCE = (operator.sub, torch.sub, "sub")
+_PRODUCT = (operator.mul, torch.mul, "mul")
+_RATIO = (operator.truediv, torch.div, "div")
+_CLAMP = (torch.clamp, "clamp")
+_CHUNK = (torch.chunk, "chunk")
 _JOIN = (torch.cat, torch.concat)
 
 
@@ -50,22 +65,34 @@ def _traced(layers: Layers, encoder: Encoder, seen: int) -> int:
             "the network has a memory of its own, and a policy pack has a GRU alone: train one without, with "
             "--recurrent"
         )
-    tracer = _Tracer(encoder)
+    features = followed(layers, encoder, seen)
+    if not isinstance(features, int):
+        raise ExportError("forward() returns something else than features of what is seen")
+    return features
+
+
+def followed(layers: Layers, module: nn.Module, seen: int, tried_with: Sequence[Any] = ()) -> Any:
+    """What forward() of a module of the user's returns, as torch.fx follows it: numbers of layers in the place of
+    what it makes of its inputs, tensors in the place of what is always the same, and AFTER in that of the memory
+    that run_gru() returns. `tried_with`: arguments of forward() by which sizes are found, which numbers that are
+    added to a value or multiply it need."""
+    _require_no_hooks(module)
+    tracer = _Tracer(module)
     fault = tracer.follow()
+    needed = tracer.needed()
     for node in tracer.graph.nodes:
-        if node.op == "call_module":
+        if node.op == "call_module" and (node in needed or fault is not None):
             with tracer.telling_line(node):
-                _require_layer(encoder.get_submodule(str(node.target)))
+                _require_layer(module.get_submodule(str(node.target)))
     if fault is not None:
         raise ExportError(tracer.told(fault)) from fault
-    values: dict[fx.Node, int] = {}
+    found = _Followed(layers, tracer, seen, tracer.measured(tried_with) if tried_with else {})
     for node in tracer.graph.nodes:
         if node.op == "output":
-            (made,) = node.all_input_nodes
-            return values[made]
-        if node.op.startswith(("call", "get")) and not _is_image(node):
+            return found.of(node.args[0])
+        if node in needed and node.op.startswith(("call", "get")) and not _is_image(node):
             with tracer.telling_line(node):
-                values[node] = _of_node(layers, encoder, node, values, seen)
+                found.values[node] = found.made_by(node)
     raise ExportError("forward() returns nothing")
 
 
@@ -74,63 +101,289 @@ def _require_layer(module: nn.Module) -> None:
     Layers().module(module.layers if isinstance(module, Eyes) else module, 0)
 
 
-def _of_node(layers: Layers, encoder: Encoder, node: fx.Node, values: dict[fx.Node, int],
-             seen: int) -> int:  # fmt: skip
-    """What one operation of a forward() makes of the values before it."""
-    if node.op == "call_module":
-        module = encoder.get_submodule(str(node.target))
+AFTER = "the memory after the last step"
+
+
+class _Part(NamedTuple):
+    """Neighbors of the last dimension, which are no layer before they are read."""
+
+    x: int
+    first: int
+    size: int
+
+
+class _Followed:
+    """Layers of what the nodes of a graph make: `values` has the number of a layer for each, or a tensor where it
+    is always the same."""
+
+    def __init__(self, layers: Layers, tracer: _Tracer, seen: int, sizes: Mapping[fx.Node, int]):
+        self.values: dict[fx.Node, Any] = {}
+        self._layers = layers
+        self._tracer = tracer
+        self._seen = seen
+        self._sizes = sizes
+
+    def of(self, argument: Any) -> Any:
+        """An argument of a node, with the values of nodes in their places."""
+        return fx.node.map_arg(argument, lambda node: self.values.get(node, node))
+
+    def made_by(self, node: fx.Node) -> Any:
+        """What one operation of a forward() makes of the values before it."""
+        if node.op == "call_module":
+            return self._by_module(node)
+        if node.op == "get_attr":
+            return self._tracer.attribute(str(node.target))
+        if node.target is getattr and node.args[1] == "state":
+            return self._seen
+        if node.target is getattr and node.args[1] == "previous":
+            return self._layers.add("previous_action")
+        if isinstance(node.target, type) and issubclass(node.target, tuple):
+            return node.target(*self.of(node.args), **self.of(node.kwargs))
+        if node.target is run_gru:
+            return self._gru(node)
+        read = [self.values.get(one) for one in node.all_input_nodes]
+        if read and all(isinstance(one, Tensor) for one in read):
+            return self._constant(node)
+        made = self._by_function(node)
+        if made is None:
+            raise self._unknown(node)
+        return made
+
+    def _by_module(self, node: fx.Node) -> int:
+        module = self._tracer.root.get_submodule(str(node.target))
         if isinstance(module, Eyes):
-            return layers.module(module.layers, layers.add("image"))
+            return self._layers.module(module.layers, self._layers.add("image"))
         (made,) = node.all_input_nodes if len(node.all_input_nodes) == 1 else (node,)
-        if made in values:
-            _require_unshared(node, made, getattr(module, "inplace", False))
-            return layers.module(module, values[made])
-    if node.target is getattr and node.args[1] == "state":
-        return seen
-    if node.target is getattr and node.args[1] == "previous":
-        return layers.add("previous_action")
-    given = node.args[0] if node.args else None
-    if isinstance(given, fx.Node) and given in values:
-        if node.target in (*_RELU, *_TANH) and {*node.kwargs} <= {"inplace"}:
+        if not _is_layer(self.values.get(made)):
+            raise self._unknown(node)
+        _require_unshared(node, made, getattr(module, "inplace", False))
+        return self._layers.module(module, self.values[made])
+
+    def _by_function(self, node: fx.Node) -> Any:
+        """None where no layer does it."""
+        layers = self._layers
+        given: Any = node.args[0] if node.args else None
+        x = self.of(given)
+        other = self.of(node.args[1]) if len(node.args) > 1 else None
+        if (
+            node.target in (*_RELU, *_TANH)
+            and {*node.kwargs} <= {"inplace"}
+            and _is_layer(x, given)
+        ):
             in_place = node.kwargs.get("inplace", False) or len(node.args) > 1
             _require_unshared(node, given, in_place)
-            return layers.add("relu" if node.target in _RELU else "tanh", values[given])
-        other = node.args[1] if len(node.args) > 1 else None
-        if node.target in _SUM and isinstance(other, fx.Node) and not node.kwargs:
-            return layers.add("sum", values[given], values[other])
-        columns = other[-1] if isinstance(other, tuple) and other[:1] == (...,) else None
-        if node.target is operator.getitem and _is_plain(columns):
-            size = columns.stop - columns.start
-            return layers.add("slice", values[given], first=columns.start, size=size)
-    if node.target in _JOIN and isinstance(given, (list, tuple)):
-        joined = [values[one] for one in given if isinstance(one, fx.Node) and one in values]
-        along = {*node.args[1:], *node.kwargs.values()}
-        if along == {-1} and len(joined) == len(given):
-            return layers.add("concatenate", *joined)
-    name = getattr(node.target, "__name__", node.target)
-    raise ExportError(
-        f"a policy pack has no layer for {name} in forward() ({node.format_node()}): it has the layers of "
-        "docs/policies.md, slices of the last dimension, torch.cat(..., -1), sums, ReLU and tanh; images are for "
-        "encoders.Eyes"
-    )
+            return layers.add("relu" if node.target in _RELU else "tanh", x)
+        if node.target in _CLAMP and _is_layer(x, given):
+            return self._clamp(x, *node.args[1:], **node.kwargs)
+        if node.target in (*_SUM, *_DIFFERENCE, *_PRODUCT, *_RATIO) and len(node.args) == 2:
+            return None if node.kwargs else self._arithmetic(node, x, other)
+        if node.target is operator.getitem and isinstance(x, tuple) and isinstance(other, int):
+            part = x[other]
+            return self._part(*part) if isinstance(part, _Part) else part
+        if node.target is operator.getitem and _is_layer(x, given) and isinstance(other, tuple):
+            return self._slice(x, self._sizes.get(given), *other)
+        if node.target in _CHUNK and _is_layer(x, given):
+            return self._chunks(x, self._sizes.get(given), *node.args[1:], **node.kwargs)
+        if node.target in _JOIN and isinstance(given, (list, tuple)):
+            along = {*node.args[1:], *node.kwargs.values()}
+            if along == {-1} and all(map(_is_layer, x, given)):
+                return layers.add("concatenate", *x)
+        return None
+
+    def _arithmetic(self, node: fx.Node, x: Any, other: Any) -> Optional[int]:
+        """Of two values, or of one and a constant on either side."""
+        one, two = node.args
+        if _is_layer(x, one) and _is_layer(other, two):
+            return self._layers.add("sum", x, other) if node.target in _SUM else None
+        is_first = _is_layer(x, one)
+        value, constant = (x, other) if is_first else (other, x)
+        variable = one if is_first else two
+        if not _is_layer(value, variable) or isinstance(constant, (bool, fx.Node)):
+            return None
+        if not isinstance(constant, (int, float, Tensor)):
+            return None
+        numbers = self._spread(constant, variable)
+        if numbers is None or (node.target in _RATIO and not is_first):
+            return None
+        zeros, ones = torch.zeros_like(numbers), torch.ones_like(numbers)
+        if node.target in _PRODUCT:
+            return self._layers.scaled(value, zeros, numbers)
+        if node.target in _RATIO:
+            return self._layers.scaled(value, zeros, 1.0 / numbers)
+        if node.target in _SUM:
+            return self._layers.scaled(value, -numbers, ones)
+        return self._layers.scaled(value, numbers, ones if is_first else -ones)
+
+    def _spread(self, constant: Union[float, Tensor], variable: Any) -> Optional[Tensor]:
+        """A constant as a number for each of a value's; None where it is none."""
+        numbers = torch.as_tensor(constant, dtype=torch.float32).detach()
+        size = self._sizes.get(variable, numbers.numel() if numbers.dim() else 0)
+        if not size or numbers.numel() not in (1, size) or numbers.shape[:-1].numel() != 1:
+            return None
+        return numbers.flatten().expand(size)
+
+    def _slice(self, x: int, size: Optional[int], *index: Any) -> Optional[int]:
+        """Some neighbors of the last dimension."""
+        columns = index[-1]
+        if index[:-1] != (...,) or not isinstance(columns, slice) or columns.step not in (None, 1):
+            return None
+        first, end = 0 if columns.start is None else columns.start, columns.stop
+        if not isinstance(first, int) or not isinstance(end, (int, type(None))):
+            return None
+        if size is not None:
+            first, end, _ = columns.indices(size)
+        if end is None or not 0 <= first < end:
+            return None
+        return self._part(x, first, end - first)
+
+    def _part(self, x: int, first: int, size: int) -> int:
+        return self._layers.add("slice", x, first=first, size=size)
+
+    def _chunks(
+        self, x: int, size: Optional[int], chunks: Any, dim: Any = 0
+    ) -> Optional[tuple[_Part, ...]]:
+        """Parts of the last dimension, all but the last of one size; `dim` is torch's name."""
+        if size is None or dim != -1 or not isinstance(chunks, int):
+            return None
+        width = -(-size // chunks)
+        firsts = range(0, size, width)
+        return tuple(_Part(x, first, min(width, size - first)) for first in firsts)
+
+    def _clamp(self, x: int, min: Any = None, max: Any = None) -> Optional[int]:
+        """Under the names that torch gives the limits."""
+        lower, upper = -LARGEST if min is None else min, LARGEST if max is None else max
+        if not isinstance(lower, (int, float)) or not isinstance(upper, (int, float)):
+            return None
+        return self._layers.add("clamp", x, lower=float(lower), upper=float(upper))
+
+    def _constant(self, node: fx.Node) -> Any:
+        """What is always the same, as torch has it."""
+        arguments, keywords = self.of(node.args), self.of(node.kwargs)
+        work: Callable[..., Any]
+        if node.op == "call_method":
+            arguments, work = arguments[1:], getattr(arguments[0], str(node.target))
+        elif callable(node.target):
+            work = node.target
+        with torch.no_grad():
+            return work(*arguments, **keywords)
+
+    def _gru(self, node: fx.Node) -> tuple[int, str]:
+        given = [*node.args, *node.kwargs.values()]
+        names = dict(zip(("rnn", "inputs", "hidden", "starts"), node.args), **node.kwargs)
+        nodes = self._tracer.graph.nodes
+        # What forward() is given behind the inputs.
+        ahead = [one for one in nodes if not one.op.startswith(("call", "get", "output"))][1:]
+        rnn, x = self.of(names["rnn"]), self.of(names["inputs"])
+        if len(given) != 4 or [names["hidden"], names["starts"]] != ahead:
+            raise ExportError(
+                "run_gru() gets something else than the memory and the starts that forward(inputs, memory, starts) "
+                "was given: pass them on as they are"
+            )
+        if not computes_as(rnn, nn.GRU) or not _is_layer(x, names["inputs"]):
+            raise self._unknown(node)
+        if any(layer["kind"] == "gru" for layer in self._layers.list):
+            raise ExportError("forward() runs more than one GRU: keep one")
+        return self._layers.gru(rnn, x), AFTER
+
+    def _unknown(self, node: fx.Node) -> ExportError:
+        name = getattr(node.target, "__name__", node.target)
+        return ExportError(
+            f"a policy pack has no layer for {name} in forward() ({node.format_node()}): it has the layers of "
+            "docs/policies.md, slices of the last dimension, torch.cat(..., -1), sums, products with constants, clamps, "
+            "ReLU and tanh; images are for encoders.Eyes"
+        )
+
+
+class _Proxy(fx.Proxy):
+    """Is unpacked as its tracer says. That of torch 1.13 looks at the byte code around it, which is another one since
+    Python 3.11."""
+
+    def __iter__(self) -> Iterator[Any]:
+        return self.tracer.iter(self)
 
 
 class _Tracer(fx.Tracer):
     """Follows a forward() down to the layers that Layers.module() is asked for."""
 
-    def __init__(self, encoder: Encoder) -> None:
-        super().__init__()
-        self._encoder = encoder
-        self._file = type(encoder).forward.__code__.co_filename
+    def __init__(self, module: nn.Module) -> None:
+        super().__init__(autowrap_functions=(run_gru,))
+        self._module = module
+        self._file = type(module).forward.__code__.co_filename
         self._lines: dict[fx.Node, int] = {}
+        self._constants: dict[str, Any] = {}
 
     def follow(self) -> Optional[Exception]:
         """Makes `graph`; what it was cut off by, where it was."""
+        before = {*vars(self._module)}
         try:
-            self.trace(self._encoder)
+            self.trace(self._module)
         except Exception as error:  # torch.fx raises whatever the code does with what it is given
             return error
+        finally:
+            # torch.fx leaves them in the module, which is the user's.
+            members = vars(self._module)
+            self._constants = {name: members.pop(name) for name in {*members} - before}
         return None
+
+    def needed(self) -> set[fx.Node]:
+        """The nodes that what forward() returns is made of, and what may change that in place: not those of a critic
+        beside the actor."""
+        needed: set[fx.Node] = set()
+        for node in reversed(self.graph.nodes):
+            if node.op == "output" or node in needed or self._is_in_place(node):
+                needed.update([node, *node.all_input_nodes])
+        return needed
+
+    def _is_in_place(self, node: fx.Node) -> bool:
+        if node.op == "call_module":
+            return bool(getattr(self._module.get_submodule(str(node.target)), "inplace", False))
+        name = str(getattr(node.target, "__name__", node.target))
+        is_named = name.endswith("_") and not name.endswith("__")
+        return is_named or bool(node.kwargs.get("inplace")) or node.target is operator.setitem
+
+    def attribute(self, target: str) -> Any:
+        """What a node get_attr reads: a copy of a tensor, as it may be changed in place, or a module."""
+        found: Any = self._constants.get(target, self._module)
+        if found is self._module:
+            for name in target.split("."):
+                found = getattr(found, name)
+        return found.detach().clone() if isinstance(found, Tensor) else found
+
+    def measured(self, arguments: Sequence[Any]) -> dict[fx.Node, int]:
+        """Of what each node makes of these arguments of forward(), the last dimension."""
+        sizes: dict[str, int] = {}
+
+        class Measuring(fx.Interpreter):
+            def run_node(self, n: fx.Node) -> Any:
+                made = super().run_node(n)
+                if isinstance(made, Tensor) and made.dim():
+                    sizes[n.name] = made.shape[-1]
+                return made
+
+        vars(self._module).update(self._constants)
+        try:
+            runnable = fx.GraphModule(self._module, self.graph)
+        finally:
+            for name in self._constants:
+                del vars(self._module)[name]
+        with torch.no_grad():
+            Measuring(runnable).run(*arguments)
+        return {node: sizes[node.name] for node in self.graph.nodes if node.name in sizes}
+
+    def proxy(self, node: fx.Node) -> fx.Proxy:
+        return _Proxy(node, self)
+
+    def iter(self, obj: fx.Proxy) -> Iterator[Any]:
+        if obj.node.target is run_gru:
+            return self._items(obj, 2)
+        chunks = obj.node.args[1] if obj.node.target in _CHUNK and len(obj.node.args) > 1 else None
+        return self._items(obj, chunks) if isinstance(chunks, int) else super().iter(obj)
+
+    def _items(self, obj: fx.Proxy, count: int) -> Iterator[Any]:
+        numbers = range(count)
+        return iter(
+            [self.create_proxy("call_function", operator.getitem, (obj, n), {}) for n in numbers]
+        )
 
     def is_leaf_module(self, m: nn.Module, module_qualified_name: str) -> bool:
         if isinstance(m, nn.Sequential):
@@ -173,20 +426,14 @@ class _Tracer(fx.Tracer):
         return f"line {line} of {pathlib.Path(self._file).name}"
 
 
+def _is_layer(value: Any, of: Any = None) -> TypeGuard[int]:
+    """Whether a value is the number of a layer, and no number that forward() itself has in the place `of` it."""
+    return isinstance(value, int) and (of is None or isinstance(of, fx.Node))
+
+
 def _is_image(node: fx.Node) -> bool:
     """Whether it reads a picture, which an export knows where Eyes do."""
     return node.target is getattr and node.args[1] in ("rgb", "depth")
-
-
-def _is_plain(columns: Any) -> bool:
-    """Whether it is a slice from one number to another."""
-    return (
-        isinstance(columns, slice)
-        and isinstance(columns.start, int)
-        and isinstance(columns.stop, int)
-        and 0 <= columns.start < columns.stop
-        and columns.step in (None, 1)
-    )
 
 
 def _require_no_hooks(encoder: nn.Module) -> None:

@@ -22,6 +22,8 @@ def value(layers: Sequence[dict[str, Any]], seen: int, inputs: Inputs) -> Tensor
         elif kind == "previous_action":
             assert inputs.previous is not None
             values[number] = inputs.previous.flatten(0, 1)
+        elif kind == "constant":
+            values[number] = torch.from_numpy(layer["values"]).expand(len(values[seen]), -1)
         else:
             values[number] = _made(kind, layer, [values[one] for one in layer["inputs"]])
     return values[len(layers) - 1].flatten(1)
@@ -46,6 +48,11 @@ def _made(kind: str, layer: dict[str, Any], given: list[Tensor]) -> Tensor:
         return torch.relu(x)
     if kind == "tanh":
         return torch.tanh(x)
+    if kind == "clamp":
+        return x.clamp(layer["lower"], layer["upper"])
+    if kind == "normalize":
+        normal = (x.flatten(1) - _tensor(layer["mean"])) * _tensor(layer["inverse_deviation"])
+        return normal.clamp(-layer["limit"], layer["limit"])
     if kind == "space_to_depth":
         return SpaceToDepth(layer["block"])(x)
     if kind == "sum":

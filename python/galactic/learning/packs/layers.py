@@ -14,6 +14,10 @@ from galactic.learning.policies.normalization import MOST
 from galactic.learning.refusals import CheckpointError
 
 
+LARGEST = float(np.finfo(np.float32).max)
+"""Limits nothing."""
+
+
 class ExportError(CheckpointError):
     """A module that no layer of a policy pack can express: names it and says what was expected."""
 
@@ -94,13 +98,12 @@ class Layers:
 
     def times(self, factor: float, x: int, size: int) -> int:
         """Value `x`, of `size` numbers, times a factor."""
-        return self.add(
-            "normalize",
-            x,
-            mean=np.zeros(size, np.float32),
-            inverse_deviation=np.full(size, factor, np.float32),
-            limit=float(np.finfo(np.float32).max),
-        )
+        return self.scaled(x, torch.zeros(size), torch.full((size,), factor))
+
+    def scaled(self, x: int, mean: torch.Tensor, factors: torch.Tensor) -> int:
+        """(x - mean) * factors, of as many numbers each."""
+        fields = {"mean": numbers_of(mean), "inverse_deviation": numbers_of(factors)}
+        return self.add("normalize", x, **fields, limit=LARGEST)
 
     def _convolution(self, module: nn.Conv2d, x: int) -> int:
         kernel, stride, padding = _edge(module.kernel_size), _edge(module.stride), module.padding

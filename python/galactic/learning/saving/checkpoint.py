@@ -22,7 +22,7 @@ import os
 import pathlib
 import shlex
 from dataclasses import dataclass, field
-from typing import Any, Mapping, Optional, Sequence
+from typing import Any, Mapping, Optional, Sequence, Union
 
 import torch
 from torch import Tensor
@@ -125,9 +125,15 @@ def load_policy(file: pathlib.Path, remedy: str = "", network: Optional[OwnNetwo
         return _policy_of(values, tensors["policy"], settings, network)
 
 
-def load_with(network: Optional[str], file: pathlib.Path) -> SavedPolicy:
-    """load_policy() with what --network names, if it is given. Raises SettingsError where it is of no use."""
-    named = own_network(network) if network is not None else None
+def read_policy(path: Union[str, pathlib.Path], network: Optional[str] = None) -> SavedPolicy:
+    """Reads best.pt or policy.pt of a run of galactic.train; `policy` of what it returns is a torch module, on the
+    processor, ready to act.
+
+    `network`, FILE.py:CLASS or MODULE:CLASS, is the class of a network of one's own, as --network names it: no file
+    runs code by itself. Raises CheckpointError for a file that is no policy, SettingsError where `network` is missing
+    or of no use, and galactic.Error where the file cannot be read.
+    """
+    file, named = pathlib.Path(path), own_network(network) if network is not None else None
     saved = load_policy(file, network=named)
     if named is not None and saved.network is None:
         raise SettingsError(

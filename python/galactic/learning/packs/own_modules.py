@@ -1,0 +1,360 @@
+"""Policy packs of modules of torch that were trained in a loop of the user's: docs/policies.md."""
+
+from __future__ import annotations
+
+import copy
+import pathlib
+import tempfile
+from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from galactic import _core
+from galactic.learning.encoders import Encoder, Inputs
+from galactic.learning.packs.content import image_of
+from galactic.learning.packs.encoder_layers import AFTER, SAME, followed
+from galactic.learning.packs.layers import ExportError, Layers, numbers_of
+from galactic.learning.policies.privileges import (
+    critic_columns,
+    of_own_tasks,
+    options_of_actor,
+    parts_of_actor,
+)
+from galactic.learning.simulation_words import CHOSEN_BY_TRAINER
+from galactic.learning.user_code.own_networks import Seen, some_inputs
+from galactic.vector_env import VectorEnv
+from galactic.vector_env_arguments import cameras_of
+
+NO_NOISE = -20.0
+"""The logarithm of a standard deviation that changes no action."""
+_STEPS, _ENVS = 4, 8
+"""Of the inputs that a pack is tried with."""
+
+
+class ActionParameters(NamedTuple):
+    """What the forward() of a module returns that export_module() makes a policy pack of: from what the actions of
+    T steps of n envs are drawn."""
+
+    mean: Optional[Tensor] = None
+    """[T, n, C] float32: of the first C actions, which are normally distributed; None: there are none."""
+    log_deviation: Optional[Tensor] = None
+    """[T, n, C], or [C] where it is always the same: natural logarithms of their standard deviations; None: the
+    means are the actions."""
+    logits: Sequence[Tensor] = ()
+    """Of each action behind them that has several values, [T, n, V] for its V values; or, for one of two values,
+    [T, n, 1]: the log-odds of the second one."""
+
+
+def export_module(path: Union[str, pathlib.Path], module: nn.Module, envs: VectorEnv, *,
+                  discrete: Sequence[Sequence[float]] = ((0.0, 1.0), (0.0, 1.0)),
+                  critic_only: Sequence[str] = (), name: str = "", robot: str = "",
+                  trained_with: Optional[Mapping[str, Any]] = None) -> None:  # fmt: skip
+    """Makes a policy pack of a module of torch, for galactic-run, galactic-dynamics and galactic.LearnedPolicy.
+
+    The pack is played on made-up inputs before it is written, and compared with the module; the file appears whole
+    or not at all. The module stays as it is, on its device.
+
+    Args:
+        path: the pack to write.
+        module: has forward(inputs) -> ActionParameters. `inputs` are galactic.learning.encoders.Inputs, of T steps of
+            n envs: `state` float32 [T, n, S], the flat observation; `rgb` uint8 [T, n, H, W, 3] and `depth` float32
+            [T, n, H, W], as far as `envs` draw them, which only encoders.Eyes may look at; and `previous` float32
+            [T, n, A], the actions before, limited to [-1, 1] and zero where an episode begins. forward() is followed
+            down to layers that a pack has (docs/policies.md). With a memory of M numbers for each env, the module
+            has an attribute `memory`, M, and forward(inputs, memory, starts) -> (ActionParameters, memory), `memory`
+            float32 [n, M] and `starts` bool [T, n], which it passes on to galactic.learning.sequences.run_gru().
+        envs: those that it was trained in, or of the same options: they tell what is observed, what is drawn and
+            which options of the simulation belong to it. Noise of robots and cameras is left out.
+        discrete: the values of each of the last actions, which have one of a few. One value alone: the action is
+            always that, and has no logits. The actions before them are continuous.
+        critic_only: parts of the observation that `inputs.state` is without, as a critic alone saw them.
+        name: of the policy; else the file's.
+        robot: name of the only robot that it may move, such as envs.world.robot; else any with as many actions.
+        trained_with: what the pack is to tell of the training, such as {"steps": 6_000_000}.
+
+    Raises ExportError where the module cannot become a pack, and says in which line; TypeError, ValueError and
+    SettingsError for what else cannot be; galactic.Error where the file cannot be written, or a weight is no number.
+    """
+    if not isinstance(envs, VectorEnv):
+        raise TypeError(
+            f"envs is a {type(envs).__name__}, expected a galactic.VectorEnv: no pack has what a wrapper does"
+        )
+    path, values = pathlib.Path(path), [[float(one) for one in of] for of in discrete]
+    exported = _Exported(_copied(module), envs, values, ",".join(critic_only))
+    content = exported.content(name or path.stem, robot)
+    exported.require_same(content)
+    _core.write_policy_pack(path, content, dict(trained_with or {}), "", b"")
+
+
+class _Exported:
+    """A module, and what it is tried with."""
+
+    def __init__(
+        self, module: nn.Module, envs: VectorEnv, values: list[list[float]], critic_only: str
+    ):
+        self._module = module
+        self._values = values
+        self._memory = int(getattr(module, "memory", 0))
+        self._actions = envs.simulators[0].action_count
+        self._motions = self._actions - len(values)
+        parts = [(part, at.stop - at.start) for part, at in envs.observation_parts.items()]
+        critic_columns(critic_only, parts)
+        self._observation = parts_of_actor(critic_only, parts)
+        own = of_own_tasks(self._observation)
+        if own:
+            raise ExportError(
+                f"the envs observe {', '.join(own)}, which their task gives in Python alone; leave it out with "
+                "critic_only, or play the policy in Python"
+            )
+        self._options = options_of_actor(critic_only, _options_of(envs))
+        self._image = _image_of(envs)
+        self._inputs = self._made_up()
+
+    def content(self, name: str, robot: str) -> dict[str, Any]:
+        """As _core.write_policy_pack() wants it."""
+        arguments = (self._step(0), self._no_memory(), torch.ones(1, _ENVS, dtype=torch.bool))
+        tried, _ = self._called(*arguments)
+        layers, expected = Layers(), 3 if self._memory else 1
+        made = followed(layers, self._module, layers.add("observation"), arguments[:expected])
+        if self._memory:
+            made, memory = made
+            if memory is not AFTER:
+                raise ExportError("forward() returns another memory than run_gru(): return that")
+        continuous = None
+        if self._motions:
+            deviation = _constant_deviations(self._motions, made.log_deviation)
+            continuous = {
+                "count": self._motions,
+                "mean": _number(layers, "mean", made.mean),
+                "log_deviation": _number(layers, "log_deviation", deviation),
+            }
+        logits, discrete = iter(zip(made.logits, tried.logits)), []
+        for values in self._values:
+            if len(values) == 1:
+                # A pack has no fewer values than two.
+                always = _number(layers, "logits", torch.zeros(2))
+                discrete.append({"logits": always, "values": 2 * values})
+                continue
+            of, shaped = next(logits)
+            number = _number(layers, "logits", of)
+            if shaped.shape[-1] == 1:
+                halves = np.array([[-0.5], [0.5]], np.float32)
+                number = layers.add("linear", number, outputs=2, weight=halves, bias=None)
+            discrete.append({"logits": number, "values": values})
+        sees = any(layer["kind"] == "image" for layer in layers.list)
+        return {
+            "name": name,
+            "robot": robot,
+            "options": self._options,
+            "observation": self._observation,
+            "image": self._image if sees else None,
+            "layers": layers.list,
+            "continuous": continuous,
+            "discrete": discrete,
+        }
+
+    def require_same(self, content: dict[str, Any]) -> None:
+        """Raises ExportError where a pack of this content does not what the module does."""
+        heads = [one["logits"] for one in content["discrete"]]
+        if self._motions:
+            heads = [content["continuous"]["mean"], content["continuous"]["log_deviation"], *heads]
+        layers = [*content["layers"], {"kind": "concatenate", "inputs": heads}]
+        total, count = (
+            2 * self._motions + sum(max(2, len(of)) for of in self._values),
+            self._actions,
+        )
+        # Packs whose actions are what the network says, as many numbers at a time as there are actions.
+        for first in sorted({*range(0, total - count, count), total - count}):
+            said = {"kind": "slice", "inputs": [len(layers) - 1], "first": first, "size": count}
+            everything = {"count": count, "mean": len(layers), "log_deviation": len(layers)}
+            self._compare({**content, "layers": [*layers, said], "continuous": everything, "discrete": []},
+                          slice(first, first + count))  # fmt: skip
+        self._compare(content, slice(0, self._motions))
+
+    def _compare(self, content: dict[str, Any], columns: slice) -> None:
+        """The first actions of a pack with these columns of what the module returns."""
+        with tempfile.TemporaryDirectory() as folder:
+            pack = pathlib.Path(folder) / "tried.pack"
+            _core.write_policy_pack(pack, content, {}, "", b"")
+            player = _core.LearnedPolicy(pack, _ENVS, deterministic=True, threads=1)
+        image = content["image"] or {"color": False, "depth": False}
+        memory, previous = self._no_memory(), torch.zeros(_ENVS, self._actions)
+        for step in range(_STEPS):
+            # Envs begin in turn, and all of them in the first step.
+            starts = (torch.arange(_ENVS) + step) % _STEPS == 0 if step else torch.ones(_ENVS) > 0
+            inputs = self._step(step)._replace(previous=(previous * ~starts[:, None])[None])
+            made, memory = self._called(inputs, memory, starts[None])
+            wanted = self._row(made)[:, columns]
+            played = player.act(
+                inputs.state[0].numpy(),
+                starts.numpy(),
+                inputs.rgb[0].numpy() if image["color"] and inputs.rgb is not None else None,
+                inputs.depth[0].numpy() if image["depth"] and inputs.depth is not None else None,
+            )
+            previous = torch.from_numpy(played).clamp(-1.0, 1.0)
+            apart = np.abs(played[:, : wanted.shape[1]] - wanted.numpy()).max(initial=0.0)
+            if not apart <= SAME * max(1.0, float(wanted.abs().max()) if wanted.numel() else 0.0):
+                raise ExportError(
+                    f"the layers that were found in forward() make other actions than it ({apart:.3g} apart on made-up "
+                    "inputs): write it of plain layers, none of which changes what another one reads"
+                )
+
+    def _called(
+        self, inputs: Inputs, memory: Tensor, starts: Tensor
+    ) -> tuple[ActionParameters, Tensor]:
+        """What the module makes of one step, checked, and the memory after it."""
+        arguments = (memory.clone(), starts.clone()) if self._memory else ()
+        try:
+            with torch.no_grad():
+                made = self._module(inputs, *arguments)
+        except Exception as error:  # of the user's code
+            said = " ".join(str(error).split()) or "nothing more"
+            raise ExportError(
+                f"forward() of {type(self._module).__name__} failed on made-up inputs: {type(error).__name__}: {said}"
+            ) from error
+        if self._memory:
+            if not isinstance(made, tuple) or isinstance(made, ActionParameters) or len(made) != 2:
+                raise ExportError(
+                    f"forward() returned a {type(made).__name__}, expected ActionParameters and the memory after the "
+                    f"last step: memory is {self._memory}"
+                )
+            made, memory = made
+            _require_shape("memory", memory, [_ENVS, self._memory], "as the attribute memory says")
+        if not isinstance(made, ActionParameters):
+            raise ExportError(
+                f"forward() returned a {type(made).__name__}, expected ActionParameters"
+            )
+        self._require_parameters(made)
+        return made, memory
+
+    def _require_parameters(self, made: ActionParameters) -> None:
+        """Raises ExportError where they are of other actions than those of the envs."""
+        several = [len(values) for values in self._values if len(values) > 1]
+        counts = f"the envs have {self._actions} actions, and `discrete` has the values of the last {len(self._values)}"
+        if self._motions:
+            shape = [1, _ENVS, self._motions]
+            _require_shape("mean", made.mean, shape, counts)
+            if made.log_deviation is not None:
+                is_constant = (
+                    isinstance(made.log_deviation, Tensor) and made.log_deviation.dim() == 1
+                )
+                shape = shape[-1:] if is_constant else shape
+                _require_shape("log_deviation", made.log_deviation, shape, counts)
+        elif made.mean is not None or made.log_deviation is not None:
+            raise ExportError(f"forward() returned mean or log_deviation, expected None: {counts}")
+        if not isinstance(made.logits, (list, tuple)) or len(made.logits) != len(several):
+            found = len(made.logits) if isinstance(made.logits, (list, tuple)) else "no tuple"
+            raise ExportError(
+                f"forward() returned logits of {found}, expected those of {len(several)} actions, as many as `discrete` "
+                "has with more values than one"
+            )
+        for logits, values in zip(made.logits, several):
+            is_odds = values == 2 and isinstance(logits, Tensor) and logits.shape[-1:] == (1,)
+            width = 1 if is_odds else values
+            _require_shape("logits", logits, [1, _ENVS, width], f"their action has {values} values")
+
+    def _row(self, made: ActionParameters) -> Tensor:
+        """All numbers of one step as a pack has them, [n, ...]."""
+        rows = []
+        if made.mean is not None:
+            deviation = _constant_deviations(self._motions, made.log_deviation)
+            rows = [made.mean, deviation.expand_as(made.mean)]
+        logits = iter(made.logits)
+        for values in self._values:
+            given = next(logits) if len(values) > 1 else torch.zeros(1, _ENVS, 2)
+            rows.append(
+                torch.cat([-0.5 * given, 0.5 * given], -1) if given.shape[-1] == 1 else given
+            )
+        return torch.cat([one.detach().float() for one in rows], -1)[0]
+
+    def _step(self, step: int) -> Inputs:
+        state, *others = self._inputs
+        at = slice(step, step + 1)
+        return Inputs(state[at], *(None if one is None else one[at] for one in others))
+
+    def _no_memory(self) -> Tensor:
+        return torch.zeros(_ENVS, self._memory)
+
+    def _made_up(self) -> Inputs:
+        images: dict[str, tuple[int, ...]] = {}
+        if self._image is not None:
+            edges = (self._image["height"], self._image["width"])
+            images = {"rgb": (*edges, 3)} if self._image["color"] else {}
+            images |= {"depth": edges} if self._image["depth"] else {}
+        state = sum(size for _, size in self._observation)
+        inputs = some_inputs(Encoder(), Seen(state, {}, images, self._actions), _STEPS, _ENVS)
+        previous = torch.zeros(_STEPS, _ENVS, self._actions)
+        # Rows of a state have both signs.
+        return inputs._replace(state=4.0 * inputs.state - 2.0, previous=previous)
+
+
+def _copied(module: nn.Module) -> nn.Module:
+    """As it acts, on the processor; torch.fx changes what it follows."""
+    if not isinstance(module, nn.Module):
+        raise TypeError(f"module is a {type(module).__name__}, expected a torch.nn.Module")
+    try:
+        return copy.deepcopy(module).cpu().eval()
+    except Exception as error:  # of what modules hold
+        raise ExportError(
+            f"{type(module).__name__} cannot be copied ({type(error).__name__}: {error}): keep in it what it acts with"
+        ) from error
+
+
+def _options_of(envs: VectorEnv) -> dict[str, Any]:
+    """Of the simulation, those that the envs were made with, beside the world's, but for noise."""
+    left_out = CHOSEN_BY_TRAINER.union(_core.Simulator.NOISE_OPTIONS)
+    of_world = envs.world.options
+    return {
+        name: value
+        for name, value in envs.simulators[0].options.items()
+        if name not in left_out and (name == "task" or value != of_world.get(name))
+    }
+
+
+def _image_of(envs: VectorEnv) -> Optional[dict[str, Any]]:
+    """What the envs draw."""
+    cameras = cameras_of(envs.images)
+    if len(cameras) > 1:
+        raise ExportError(
+            f"the envs draw images of the cameras {', '.join(cameras)}, and a policy pack has one: train with one"
+        )
+    for options in cameras.values():
+        image = image_of(options)
+        if options.get("color") == "rgba":
+            raise ExportError(
+                "the envs draw color='rgba', and a policy pack has 'rgb': train with that"
+            )
+        return image
+    return None
+
+
+def _constant_deviations(motions: int, given: Any) -> Any:
+    """The logarithms of deviations where they are always the same, and else what is given."""
+    if given is None:
+        return torch.full((motions,), NO_NOISE)
+    return given.flatten() if isinstance(given, Tensor) and given.dim() == 1 else given
+
+
+def _number(layers: Layers, what: str, made: Any) -> int:
+    """The layer of what a forward() returns."""
+    if isinstance(made, Tensor):
+        return layers.add("constant", values=numbers_of(made.flatten()))
+    if not isinstance(made, int):
+        raise ExportError(f"forward() returns {what} that no layer makes")
+    return made
+
+
+def _require_shape(name: str, found: Any, wanted: list[int], why: str) -> None:
+    is_one = isinstance(found, Tensor) and found.is_floating_point()
+    if not is_one or list(found.shape) != wanted:
+        kind = (
+            f"{found.dtype} {list(found.shape)}"
+            if isinstance(found, Tensor)
+            else type(found).__name__
+        )
+        raise ExportError(
+            f"forward() returned {name} of {kind.removeprefix('torch.')}, expected {wanted} on made-up inputs of one "
+            f"step of {_ENVS} envs: {why}"
+        )
