@@ -133,7 +133,10 @@ def test_ppo_values_what_time_cuts_off_by_its_last_observation(
 def test_a_network_of_ones_own_becomes_a_pack(tmp_path: pathlib.Path) -> None:
     printed = output_of("export_own.py", WORLD, tmp_path / "own.pack")
     assert re.fullmatch(r"own: paid \S+ in the first step\n", printed)
-    assert galactic.LearnedPolicy(tmp_path / "own.pack", 1).options == {"task": "pick", "bump": True}
+    assert galactic.LearnedPolicy(tmp_path / "own.pack", 1).options == {
+        "task": "pick",
+        "bump": True,
+    }
 
 
 def test_a_script_demonstrates_and_is_cloned(tmp_path: pathlib.Path) -> None:
