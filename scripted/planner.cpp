@@ -167,8 +167,8 @@ Plan Planner::pickFromHere(CurrentPlan& plan) {
 
 Plan Planner::planFromHere(const EnvState& state, const std::optional<ArmPath>& reaching,
                            const BasePlace& turned, PlanStep::Kind last) {
-  const Plan not_reached = troubled(last == PlanStep::Kind::kGrasp ? ScriptedTrouble::kNoGrasp
-                                                                   : ScriptedTrouble::kNoPlacement);
+  Plan not_reached = troubled(last == PlanStep::Kind::kGrasp ? ScriptedTrouble::kNoGrasp
+                                                             : ScriptedTrouble::kNoPlacement);
   if (!reaching) return not_reached;
   const BasePlace start = scene_.baseOf(state);
   if (turned.yaw == start.yaw) return planTo(start, {}, *reaching, last);

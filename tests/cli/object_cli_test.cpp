@@ -246,8 +246,8 @@ TEST_F(ObjectCli, ExplainsEveryRefusal) {
       {{"missing.obj", "--as", "object"}, 2, "missing.obj"},
       {{"empty", "--as", "object"}, 3, "empty: holds no mesh file; .glb"},
       {{"mug.obj", "--as", "object", "--radii", "0.05,0.02"},
-       3,
-       "mug.obj: radii[1]: 0.02 m comes after 0.05 m"},
+       1,
+       "--radii: has 0.02 m after 0.05 m; list each radius once, in ascending order"},
       {{"mug.obj", "--as", "object", "-o", "mug.obj"}, 3, "is also an input"},
   };
   const std::string before = content("mug.obj");

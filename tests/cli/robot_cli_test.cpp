@@ -309,7 +309,7 @@ TEST_F(RobotCli, ExplainsEveryRefusal) {
        3,
        "arm.urdf: hand-made spheres are given for the link 'bom', which the robot 'arm' does not "
        "have; did you mean 'boom'?"},
-      {{"arm.urdf", "--radii", "0.05,0.02"}, 3, "arm.urdf: radii[1]: 0.02 m comes after 0.05 m"},
+      {{"arm.urdf", "--radii", "0.05,0.02"}, 1, "--radii: has 0.02 m after 0.05 m; list each"},
       {{"nameless.urdf"}, 3, "nameless.urdf: the robot has no name"},
       {{"loop.urdf"}, 3, "loop.urdf"},
       {{"arm.urdf", "--recipe", "arm.toml", "-o", "arm.toml"}, 3, "is also an input"},
