@@ -33,7 +33,8 @@ struct FieldTolerance {
 using ToleranceOf = std::function<FieldTolerance(std::string_view keys)>;
 
 /// Compares two JSON values leaf by leaf. A list of objects that all have a "pack", a "name", a
-/// "region" or a "path", or each another "radius" or "scene", is compared by it and not by position.
+/// "region" or a "path", or each another "radius" or "scene", is compared by it and not by
+/// position.
 [[nodiscard]] std::vector<FieldDifference> compareFields(const Json& a, const Json& b,
                                                          const ToleranceOf& tolerance_of);
 

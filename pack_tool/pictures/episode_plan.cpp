@@ -336,7 +336,7 @@ Legend legendOf(std::span<const EpisodePlan> plans) {
   if (any([](const EpisodePlan& plan) { return plan.grid.has_value(); })) {
     legend.entries.push_back({"floor", kOpenFloor});
     legend.entries.push_back(
-        {"on furniture, or less than 2 m free", freeColor(double{kTableHeight})});
+        {"on furniture, or less than 2 m free", freeColor(static_cast<double>(kTableHeight))});
     legend.entries.push_back({"blocked", kMutedBlocked});
   }
   return legend;

@@ -37,8 +37,8 @@ Result<std::vector<PackReference>> packReferences(const PackFile&& world) = dele
 
 /// Opens the pack of `reference`, one of the list of `world`. Fails with the errors of
 /// PackFile::open, and with kInvalidInput when the file is missing or is not the one that was
-/// linked: another kind, another size, or another hash (not compared with Trust::kTrusted). One that
-/// was damaged fails as it does alone ("pack/hash"): linking again would not mend it.
+/// linked: another kind, another size, or another hash (not compared with Trust::kTrusted). One
+/// that was damaged fails as it does alone ("pack/hash"): linking again would not mend it.
 [[nodiscard]] Result<PackFile> openReference(const PackFile& world, const PackReference& reference,
                                              Trust trust = Trust::kVerify);
 

@@ -71,11 +71,11 @@ struct BakedObjectSet {
 /// The bytes of an episode pack's FlatBuffer, without the file header. The same episodes and
 /// provenance give the same bytes. The parts of rotations are rounded to multiples of 2^-48, which
 /// changes only those below 2^-25 (3e-8): exports can write these so that they read back exactly.
-/// Fails with kInvalidInput when the episodes are not as schema/episodes.fbs wants them (names empty
-/// or out of order, indices or ranges out of bounds, placements in another order than the episodes
-/// or of none of them, counts that do not agree, numbers that are not finite, rotations not of
-/// length 1); `where` names the element. Fails with kUnsupported when the pack would reach 2 GiB,
-/// the limit of one pack.
+/// Fails with kInvalidInput when the episodes are not as schema/episodes.fbs wants them (names
+/// empty or out of order, indices or ranges out of bounds, placements in another order than the
+/// episodes or of none of them, counts that do not agree, numbers that are not finite, rotations
+/// not of length 1); `where` names the element. Fails with kUnsupported when the pack would reach 2
+/// GiB, the limit of one pack.
 [[nodiscard]] Result<std::vector<std::byte>> encodeEpisodePack(const SourceEpisodes& episodes,
                                                                const Provenance& provenance);
 
