@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/stage_timer.h"
 #include "fit/hull_planes.h"
 #include "fit/stable_poses.h"
 #include "import/checks/asset_check.h"
 #include "sphere_set/authored_spheres.h"
 #include "support/counted.h"
+#include "support/stopwatch.h"
 
 namespace galactic::bake {
 namespace {
@@ -103,13 +103,13 @@ Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions
   object.warnings = asset.warnings;
   warnOfSize(mesh.bounds, object.warnings);
   {
-    const StageTimer timer(object.times.box);
+    const detail::Stopwatch timer(object.times.box);
     object.box = fitOrientedBox(mesh.vertices, options.box);
     if (options.authored) takeBox(*options.authored, object);
     object.hull_planes = fit::hullPlanes(mesh.vertices, object.box.box);
   }
   {
-    const StageTimer timer(object.times.stable_poses);
+    const detail::Stopwatch timer(object.times.stable_poses);
     object.stable_poses = findStablePoses(mesh);
   }
   SphereSetOptions sphere_options = options.spheres;
@@ -118,7 +118,7 @@ Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions
   }
   object.authored_spheres = options.authored && !options.authored->spheres.empty();
   {
-    const StageTimer timer(object.times.spheres);
+    const detail::Stopwatch timer(object.times.spheres);
     Result<SphereSet> spheres =
         object.authored_spheres ? authoredSphereSet(mesh, options.authored->spheres, sphere_options)
                                 : fitSphereSet(mesh, sphere_options);

@@ -11,13 +11,13 @@
 
 #include "asset/asset_parts.h"
 #include "asset/object_journal.h"
-#include "common/stage_timer.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/packs.h"
 #include "galactic/bake/parallel_for.h"
 #include "import/checks/asset_check.h"
 #include "recipe/collection_shape.h"
 #include "support/output_files.h"
+#include "support/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -65,7 +65,7 @@ Result<ObjectBakeOptions> optionsOf(const std::string& name, const ObjectTask& t
 
 Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedObject& finished) {
   auto asset = [&] {
-    const StageTimer timer(finished.import_seconds);
+    const detail::Stopwatch timer(finished.import_seconds);
     return importMesh(input.path, task.job.import);
   }();
   if (!asset) return tl::unexpected(asset.error());
@@ -83,7 +83,7 @@ Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedO
     return tl::unexpected(object.error());
   }
   finished.object = std::move(*object);
-  const StageTimer timer(finished.object.times.render);
+  const detail::Stopwatch timer(finished.object.times.render);
   ASSIGN_OR_RETURN(finished.object.render_meshes,
                    drawObject(*asset, task.job.draw, input.path, finished.object.warnings));
   return {};

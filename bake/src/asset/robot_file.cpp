@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "common/stage_timer.h"
 #include "galactic/bake/packs.h"
 #include "galactic/bake/robot_recipe.h"
 #include "recipe/collection_import.h"
+#include "support/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -57,7 +57,7 @@ Result<BakedRobot> bakeParts(const RobotJob& job, SourceRobot& robot, const Bake
   if (!baked) return baked;
   context.show(item, "render meshes", 0.9);
   auto meshes = [&] {
-    const StageTimer timer(baked->times.render);
+    const detail::Stopwatch timer(baked->times.render);
     return drawRobot(robot, job.draw, job.input, *baked);
   }();
   if (!meshes) return tl::unexpected(meshes.error());
@@ -86,7 +86,7 @@ Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
   const std::string item = job.input.filename().string();
   context.show(item, "import", 0);
   auto robot = [&] {
-    const StageTimer timer(outcome.import_seconds);
+    const detail::Stopwatch timer(outcome.import_seconds);
     return readRobotFile(job);
   }();
   if (!robot) return tl::unexpected(robot.error());
@@ -102,7 +102,7 @@ Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
   Made made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     context.show(item, "write", 1);
-    const StageTimer timer(outcome.write_seconds);
+    const detail::Stopwatch timer(outcome.write_seconds);
     ASSIGN_OR_RETURN(const auto bytes, writeRobotPack(context.output, outcome.robot,
                                                       provenanceOf(job, std::move(robot->files),
                                                                    outcome.robot.warnings)));

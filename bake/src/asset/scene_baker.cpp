@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "column_grid/way_out.h"
-#include "common/stage_timer.h"
 #include "galactic/scene.h"
 #include "support/out_of_memory.h"
+#include "support/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -184,7 +184,7 @@ class SceneBaker {
     ASSIGN_OR_RETURN(auto free, chooseRegions(raw.columns));
     BakedGrid baked;
     {
-      const StageTimer timer(times_.encode);
+      const detail::Stopwatch timer(times_.encode);
       baked.grid = encodeGrid(free.columns);
     }
     baked.components = std::move(free.components);
@@ -192,7 +192,7 @@ class SceneBaker {
     baked.raw_spans = raw.columns.spans.size();
     baked.merged_gaps = raw.merged_gaps;
     {
-      const StageTimer timer(times_.regions);
+      const detail::Stopwatch timer(times_.regions);
       warnings.add(baked, free.columns);
     }
     if (wantsCheck()) baked.cast_check = check(frame, raw.columns);
@@ -205,7 +205,7 @@ class SceneBaker {
 
  private:
   Result<ExactColumns> findColumns(const GridFrame& frame) {
-    const StageTimer timer(times_.columns);
+    const detail::Stopwatch timer(times_.columns);
     switch (options_.engine) {
       case Engine::kBullet:
         return ExactColumns{.columns = bulletColumns(mesh_, frame, options_.jobs)};
@@ -220,7 +220,7 @@ class SceneBaker {
   }
 
   Result<FreeSpace> chooseRegions(const Columns& columns) {
-    const StageTimer timer(times_.regions);
+    const detail::Stopwatch timer(times_.regions);
     return chooseFreeSpace(columns, options_.free_space, room_ ? &*room_ : nullptr);
   }
 
@@ -230,7 +230,7 @@ class SceneBaker {
   }
 
   CastCheck check(const GridFrame& frame, const Columns& columns) {
-    const StageTimer timer(times_.check);
+    const detail::Stopwatch timer(times_.check);
     if (!caster_) caster_.emplace(mesh_);
     CastCheckOptions check_options;
     check_options.columns = options_.check_columns;
@@ -265,7 +265,7 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
   }
   progress("clean", 0);
   Result<CleanMesh> cleaned = [&] {
-    const StageTimer timer(times.clean);
+    const detail::Stopwatch timer(times.clean);
     return placeAndClean(asset);
   }();
   if (!cleaned) return tl::unexpected(cleaned.error());

@@ -1,11 +1,11 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "common/stage_timer.h"
 #include "dataset/scene_dataset.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/packs.h"
 #include "import/checks/asset_check.h"
+#include "support/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -45,7 +45,7 @@ Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const P
     return scene;
   }
   progress("render meshes", 0.9);
-  const StageTimer timer(times.render);
+  const detail::Stopwatch timer(times.render);
   ASSIGN_OR_RETURN(auto meshes, drawScene(read.asset, job.draw, read.input, scene->warnings));
   scene->render_meshes = std::move(meshes);
   return scene;
@@ -67,7 +67,7 @@ Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   progress("import", 0);
   SceneOutcome outcome;
   auto read = [&] {
-    const StageTimer timer(outcome.times.import);
+    const detail::Stopwatch timer(outcome.times.import);
     return readScene(job, context.log);
   }();
   if (!read) return tl::unexpected(read.error());
@@ -85,7 +85,7 @@ Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   Made made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     progress("write", 1);
-    const StageTimer timer(outcome.times.write);
+    const detail::Stopwatch timer(outcome.times.write);
     ASSIGN_OR_RETURN(
         const auto bytes,
         writeScenePack(context.output, outcome.scene,

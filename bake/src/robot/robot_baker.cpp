@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "common/stage_timer.h"
 #include "import/affine.h"
 #include "robot/group_spheres.h"
 #include "robot/robot_parts.h"
 #include "sphere_set/prepared_fit.h"
 #include "support/nearest_name.h"
+#include "support/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -123,7 +123,7 @@ class RobotBaker {
     makeSurfaces();
     RETURN_IF_ERROR(makeSpheres());
     {
-      const StageTimer timer(baked_.times.self_collision);
+      const detail::Stopwatch timer(baked_.times.self_collision);
       baked_.pairs = classifyPairs(baked_, ignoredPairs());
     }
     if (recipe_ != nullptr) applyRecipe();
@@ -163,7 +163,7 @@ class RobotBaker {
   }
 
   Result<void> makeSpheres() {
-    const StageTimer timer(baked_.times.spheres);
+    const detail::Stopwatch timer(baked_.times.spheres);
     // Where a link has no collision geometry, what is seen of it stands in.
     std::vector<Surface> fitted;
     for (std::size_t n = 0; n < robot_.links.size(); ++n) {

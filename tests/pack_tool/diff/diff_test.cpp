@@ -219,16 +219,20 @@ struct Outcome {
   std::string out;
 };
 
-Outcome diffOf(const test::ScenePackFields& a, const test::ScenePackFields& b,
-               DiffOptions options = {}) {
-  const test::ScratchFolder folder;
-  options.a = test::writePack(folder, "a.pack", a);
-  options.b = test::writePack(folder, "b.pack", b);
+Outcome diff(const DiffOptions& options) {
   std::ostringstream out;
   std::ostringstream err;
   const int exit_code = runDiff(options, Console{out, err});
   EXPECT_EQ(err.str(), "");
   return {exit_code, out.str()};
+}
+
+Outcome diffOf(const test::ScenePackFields& a, const test::ScenePackFields& b,
+               DiffOptions options = {}) {
+  const test::ScratchFolder folder;
+  options.a = test::writePack(folder, "a.pack", a);
+  options.b = test::writePack(folder, "b.pack", b);
+  return diff(options);
 }
 
 TEST(DiffVerb, CallsTheSameBytesIdentical) {
@@ -309,17 +313,10 @@ TEST(DiffVerb, PairsThePacksOfAWorldThatWasRenamedAndTellsOfEachOnce) {
                     {.path = name + "/scenes/home.pack", .kind = "SCEN", .hash = {{hash, 2}}}};
     return folder.write(file, test::textOf(test::buildPack(fields)));
   };
-  const auto diff = [](const std::filesystem::path& a, const std::filesystem::path& b) -> Outcome {
-    std::ostringstream out;
-    std::ostringstream err;
-    const int exit_code = runDiff({.a = a, .b = b}, Console{out, err});
-    EXPECT_EQ(err.str(), "");
-    return {exit_code, out.str()};
-  };
   const std::filesystem::path before = worldOf("before.pack", "home", 1);
-  const Outcome same = diff(before, worldOf("again.pack", "again", 1));
+  const Outcome same = diff({.a = before, .b = worldOf("again.pack", "again", 1)});
   EXPECT_EQ(same.exit_code, kExitOk) << same.out;
-  const Outcome other = diff(before, worldOf("home.pack", "home", 3));
+  const Outcome other = diff({.a = before, .b = worldOf("home.pack", "home", 3)});
   EXPECT_EQ(other.exit_code, kExitDiffers);
   EXPECT_THAT(other.out, HasSubstr("packs.scenes/home.pack.xxh3_128"));
   EXPECT_THAT(other.out, testing::Not(HasSubstr("mug.pack")));
@@ -335,18 +332,11 @@ TEST(DiffVerb, PairsThePacksOfWorldsByTheirPathsBelowTheWorldsFolders) {
                     {.path = "scenes/shared.pack", .kind = "SCEN"}};
     return folder.write(name + ".pack", test::textOf(test::buildPack(fields)));
   };
-  const auto diff = [](const std::filesystem::path& a, const std::filesystem::path& b) -> Outcome {
-    std::ostringstream out;
-    std::ostringstream err;
-    const int exit_code = runDiff({.a = a, .b = b}, Console{out, err});
-    EXPECT_EQ(err.str(), "");
-    return {exit_code, out.str()};
-  };
   const std::filesystem::path home = worldOf("home", 1);
-  const Outcome same = diff(home, worldOf("again", 1));
+  const Outcome same = diff({.a = home, .b = worldOf("again", 1)});
   EXPECT_EQ(same.exit_code, kExitOk) << same.out;
   EXPECT_THAT(same.out, HasSubstr("\nequal\n"));
-  const Outcome other = diff(home, worldOf("other", 3));
+  const Outcome other = diff({.a = home, .b = worldOf("other", 3)});
   EXPECT_EQ(other.exit_code, kExitDiffers);
   EXPECT_THAT(other.out, HasSubstr("packs.scenes/home.pack.xxh3_128"));
   EXPECT_THAT(other.out, testing::Not(HasSubstr("mug.pack")));
