@@ -49,7 +49,8 @@ from galactic.env_states import EnvStates, Poses
 from galactic.episode_table import EpisodeTable
 from galactic.errors import Error
 from galactic.reached import reached
-from galactic.task import Outcome, Task, TaskEnvs
+from galactic.task import Outcome, Task
+from galactic.task_envs import TaskEnvs
 from galactic.vector_env import VectorEnv
 
 __all__ = [

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from galactic import spaces
 from galactic._core import EpisodeTally, ErrorCode, Renderer, Simulator, World
+from galactic.cameras import Cameras
 from galactic.env_states import EnvStates
 from galactic.errors import Error
 from galactic.step_events import StepEvents
@@ -66,17 +67,19 @@ class HalfBatch:
         # Envs wait where their episodes ended until that has been drawn, or a task has looked at it.
         self._renews = bool(cameras) or task is not None
         self.simulator = Simulator(world, **options, auto_reset=not self._renews)
-        self.renderers = {name: Renderer(self.simulator, **cameras[name]) for name in cameras}
-        self._image_shapes = {
-            _image_name(camera, image): shape
-            for camera, renderer in self.renderers.items()
-            for image, shape in renderer.shapes.items()
-        }
-        taken = [*self._image_shapes, *(_image_name(one, "world_from_camera") for one in cameras)]
+        self._cameras = Cameras(self.simulator, cameras, options["threads"])
+        taken = [*self._cameras.shapes, *self._cameras.places_of(np.empty(0, np.int64))]
         self._task = (
             None
             if task is None
-            else TaskRunner(task, world, self.simulator, is_evaluation=is_evaluation, taken=taken)
+            else TaskRunner(
+                task,
+                world,
+                self.simulator,
+                threads=options["threads"],
+                is_evaluation=is_evaluation,
+                taken=taken,
+            )
         )
         self._is_evaluation = is_evaluation
         self._progress = 1.0 if is_evaluation else 0.0
@@ -100,11 +103,12 @@ class HalfBatch:
         self._in_use = threading.Lock()
         # When the episodes began, by a clock that only goes forward.
         self._began = np.full(envs, time.perf_counter())
-        self._images = {
-            name: np.zeros((envs, *shape), dtype)
-            for name, (shape, dtype) in self._image_shapes.items()
-            if not copy
-        }
+        self._images = {} if copy else self._cameras.blank_images()
+
+    @property
+    def renderers(self) -> Mapping[str, Renderer]:
+        """What draws the images of each camera, by its name."""
+        return self._cameras.renderers
 
     @property
     def progress(self) -> float:
@@ -131,18 +135,20 @@ class HalfBatch:
     def observation_space(self) -> spaces.Space:
         """Of one env."""
         size = self.observation_size
-        if self._parts is None and not self.renderers:
+        if self._parts is None and not self._cameras.shapes:
             return _unbounded(size)
         parts = {"state": slice(0, size)} if self._parts is None else self._parts
         named = {name: _unbounded(part.stop - part.start) for name, part in parts.items()}
-        images = {name: _image(shape, dtype) for name, (shape, dtype) in self._image_shapes.items()}
+        images = {
+            name: _image(shape, dtype) for name, (shape, dtype) in self._cameras.shapes.items()
+        }
         return spaces.Dict({**named, **images})
 
     def landing_shapes(self) -> dict[str, tuple[tuple[int, ...], Any]]:
         """What step() can write to: shape, without the env's axis, and type."""
         return {
             "state": ((self.observation_size,), np.float32),
-            **self._image_shapes,
+            **self._cameras.shapes,
             "rewards": ((), np.float32),
             "terminations": ((), np.bool_),
             "truncations": ((), np.bool_),
@@ -193,7 +199,7 @@ class HalfBatch:
         """What all envs see now."""
         with self._alone():
             self.require_whole()
-            images = self._draw(out)
+            images = self._cameras.draw({**self._images, **(out or {})})
             return self._observed(self._landed("state", self._state_rows(), out), images)
 
     def save_state(self) -> dict[str, Array]:
@@ -321,12 +327,12 @@ class HalfBatch:
         rewards = self._landed("rewards", paid, out)
         if out is not None and "endings" in out:
             self._landed("endings", endings, out)
-        images = self._draw(out)
+        images = self._cameras.draw({**self._images, **(out or {})})
         infos = self._logged(~was_idle)
         if self._events is not None:
             infos |= self._events.infos(~was_idle)
         if len(ended):
-            more = {**self._measures(ended), **self._cameras(ended)}
+            more = {**self._measures(ended), **self._cameras.places_of(ended)}
             infos |= self._infos(ended, self._renew(ended, images), more)
         observations = self._observed(self._landed("state", self._state_rows(), out), images)
         return observations, rewards, terminations, truncations, infos
@@ -352,17 +358,6 @@ class HalfBatch:
         np.copyto(self._seen[name], values)
         return self._seen[name]
 
-    def _draw(self, out: Mapping[str, Array] | None) -> dict[str, Array]:
-        """The images of all envs: in the caller's arrays, kept ones, or new ones."""
-        given = {**self._images, **(out or {})}
-        images = {}
-        for camera, renderer in self.renderers.items():
-            names = {image: _image_name(camera, image) for image in renderer.shapes}
-            places = {image: given[name] for image, name in names.items() if name in given}
-            for image, drawn in renderer.render(places).items():
-                images[names[image]] = drawn
-        return images
-
     def _observed(self, state: Array, images: Mapping[str, Array]) -> Observations:
         if self._parts is None:
             return {"state": state, **images} if images else state
@@ -377,9 +372,7 @@ class HalfBatch:
             self._state_rows()[which], {name: all[which] for name, all in images.items()}
         )
         self._begin(which, np.full(len(which), Simulator.NEXT_EPISODE))
-        for camera, renderer in self.renderers.items():
-            for image, drawn in renderer.render(envs=which).items():
-                images[_image_name(camera, image)][which] = drawn
+        self._cameras.draw_again(images, which)
         return last
 
     def _begin(self, which: NDArray[np.int64], episodes: NDArray[np.int64]) -> None:
@@ -396,16 +389,6 @@ class HalfBatch:
         if self._task is not None:
             self._task.begin(which)
 
-    def _cameras(self, which: NDArray[np.int64]) -> dict[str, Array]:
-        """Where the images of the envs `which` were drawn from last, as Renderer.world_from_camera has
-        it; zeros for the others."""
-        places = {}
-        for camera, renderer in self.renderers.items():
-            place = np.zeros((self.simulator.num_envs, 4, 4), np.float32)
-            place[which] = renderer.world_from_camera[which]
-            places[_image_name(camera, "world_from_camera")] = place
-        return places
-
     def _measures(self, which: NDArray[np.int64]) -> dict[str, Array]:
         return {} if self._task is None else self._task.measure(which)
 
@@ -419,7 +402,9 @@ class HalfBatch:
     def blank_infos(self) -> dict[str, Any]:
         """The infos of a step in which episodes ended, but none of these envs'."""
         nobody = np.empty(0, np.int64)
-        return self._infos(nobody, None, {**self._measures(nobody), **self._cameras(nobody)})
+        return self._infos(
+            nobody, None, {**self._measures(nobody), **self._cameras.places_of(nobody)}
+        )
 
     def _infos(
         self, which: NDArray[np.int64], last: Observations, more: Mapping[str, Array]
@@ -451,10 +436,6 @@ class HalfBatch:
             },
             "_episode": ended,
         }
-
-
-def _image_name(camera: str, image: str) -> str:
-    return f"{camera}_{image}" if camera else image
 
 
 def _unbounded(size: int) -> spaces.Space:

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Mapping, Sequence
-from numbers import Integral
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from galactic._core import Simulator, World
 from galactic.env_states import EnvStates
-from galactic.hashing import hashed
+from galactic.task_envs import TaskEnvs
 
 
 class Outcome(NamedTuple):
@@ -37,139 +34,6 @@ class Placements(NamedTuple):
     """How many of these began where the world has them, as Simulator.set_states() refused the state."""
 
 
-class Draws:
-    """What the random numbers of n envs follow from, beside the seed."""
-
-    def __init__(self, numbers: NDArray[np.int64]) -> None:
-        self._numbers = numbers
-        self.begun = np.zeros(len(numbers), np.int64)
-        """(n,), how many episodes each env has begun of which nobody has named one."""
-        self.keys = np.zeros(len(numbers), np.int64)
-        """(n,), one for each episode that there may be."""
-        self.ages = np.zeros(len(numbers), np.int64)
-        """(n,), steps of the episode."""
-        self.begin_first()
-
-    @property
-    def are_drawn(self) -> NDArray[np.bool_]:
-        """bool (n,): where chance has chosen the episode, and nobody has named it."""
-        return self.keys >= 0
-
-    def begin_first(self) -> None:
-        """All envs begin their first episodes."""
-        self.begun[:] = -1
-        self.begin_next(np.arange(len(self._numbers)))
-
-    def begin_next(self, which: NDArray[np.int64]) -> None:
-        """The envs `which` are about to begin their next episodes."""
-        self.begun[which] += 1
-        self.keys[which] = (self._numbers[which] << 32) + self.begun[which]
-        self.ages[which] = 0
-
-    def restore(
-        self,
-        begun: NDArray[np.int64],
-        keys: NDArray[np.int64],
-        ages: NDArray[np.int64],
-        rows: NDArray[np.int64],
-    ) -> None:
-        """The envs `rows` are where others were that had these: as Simulator.restore_state() has it, with
-        random numbers of their own where nobody has named the episode."""
-        own = (self._numbers[rows] << 32) + begun
-        self.begun[rows], self.keys[rows], self.ages[rows] = (
-            begun,
-            np.where(keys < 0, keys, own),
-            ages,
-        )
-
-    def begin_named(self, which: NDArray[np.int64], episodes: NDArray[np.int64]) -> None:
-        """The envs `which` are about to begin these episodes of the world, which somebody has named."""
-        # No env has a number below 0.
-        self.keys[which] = -1 - episodes
-        self.ages[which] = 0
-
-
-class TaskEnvs:
-    """The n envs that a Task is about: all of a VectorEnv, or one of its halves.
-
-    Arrays show what is now, after the latest step or beginning. `observations`, `actions`, `rewards` and
-    `endings` are views, which have other contents after the next step: copy what you keep.
-    """
-
-    def __init__(self, world: World, simulator: Simulator, is_evaluation: bool = False) -> None:
-        self.world = world
-        self.simulator = simulator
-        """For what is not here; it must not be stepped or reset."""
-        self.num_envs = simulator.num_envs
-        options = simulator.options
-        first = options["rank"] * self.num_envs
-        self.numbers: NDArray[np.int64] = np.arange(first, first + self.num_envs)
-        """int64 (n,): numbers of the envs over all halves and ranks."""
-        self.seed: int = options["seed"]
-        self.steps = 0
-        """Steps since these envs were made, or reset with a seed; in an evaluation few, whatever came before."""
-        self.is_evaluation = is_evaluation
-        """Whether policies are judged by what happens here: in validations, in galactic.evaluate and its
-        pictures, and in a VectorEnv that was made so."""
-        self.progress = 1.0 if is_evaluation else 0.0
-        """How much of the training is over, from 0 to 1: for curricula. In galactic.train the share of --steps
-        that all ranks together have done, of a resumed run, too; in a VectorEnv its `progress`. 1 in
-        evaluations, which are about the task at its end, and in galactic.demonstrate."""
-        self._actions = np.zeros((self.num_envs, simulator.action_count), np.float32)
-        self.actions: NDArray[np.float32] = self._actions.view()
-        """float32 (n, action_count): those of the latest step, as they were given."""
-        self.actions.flags.writeable = False
-        self.draws = Draws(self.numbers)
-        self._states: EnvStates | None = None
-
-    @property
-    def observations(self) -> Mapping[str, NDArray[np.float32]]:
-        """What the simulator observes, by parts, each float32 (n, size): docs/simulation.md lists them."""
-        rows = self.simulator.observations
-        return {name: rows[:, part] for name, part in self.simulator.observation_parts.items()}
-
-    @property
-    def states(self) -> EnvStates:
-        """Where everything is: robots, objects, goals."""
-        if self._states is None:
-            self._states = self.simulator.env_states()
-        return self._states
-
-    @property
-    def rewards(self) -> NDArray[np.float32]:
-        """float32 (n,): what the simulation's own task paid for the latest step."""
-        return self.simulator.rewards
-
-    @property
-    def endings(self) -> NDArray[np.uint8]:
-        """uint8 (n,): how the simulation's own task ended episodes in it, as EpisodeEnd."""
-        return self.simulator.endings
-
-    def uniform(self, name: str, count: int = 1) -> NDArray[np.float64]:
-        """Random numbers in [0, 1), float64 (n, count). They depend on the seed, the env's number, how many
-        episodes it has begun, the steps of this one, and `name`, which says what they are for: the same
-        for any number of envs, halves and ranks, and in a resumed run. In an episode that the caller of
-        reset() has named, its index takes the place of the first two, so that evaluations of two policies
-        draw the same. Of one name there is one draw in a step; choose() draws for the next episode.
-        """
-        is_whole = isinstance(count, Integral) and not isinstance(count, bool)
-        if not is_whole or count < 0:
-            raise ValueError(f"count is {count!r}, expected how many numbers each env draws")
-        salt = self.seed ^ (zlib.crc32(name.encode()) << 32)
-        bits = hashed(salt & (2**64 - 1), self.draws.keys, self.draws.ages, count)
-        return (bits >> np.uint64(11)).astype(np.float64) * 2.0**-53
-
-    def take_actions(
-        self, actions: NDArray[np.float32] | float, rows: NDArray[np.int64] | slice = slice(None)
-    ) -> None:
-        """What `actions` of the envs `rows` is from now on: for who drives the task, not for tasks."""
-        self._actions[rows] = actions
-
-    def forget(self) -> None:
-        """What was known of the states is of before: the same."""
-        self._states = None
-
-
 class Task:
     """A task of one's own, over the simulation's: inherit from it, and give the class to a VectorEnv
     (`task=Reach`) or the trainer (`--task reach.py:Reach`).
@@ -191,6 +55,10 @@ class Task:
 
     options: Mapping[str, Any] = {}
     """Options of the simulation, as keywords of Simulator, that hold unless others are given."""
+
+    images: Mapping[str, Any] | None = None
+    """Cameras that the task looks through, as VectorEnv(images=...) has them: what they see is in
+    TaskEnvs.images, and no part of an observation."""
 
     parts: Mapping[str, int] = {}
     """Names and sizes of what observe() adds to the observation, in this order, behind all else."""

@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galactic._core import EpisodeEnd, Simulator, World
+from galactic.cameras import Cameras, options_of_cameras
 from galactic.env_states import EnvStates
 from galactic.sensors import ALWAYS, SENSORS
-from galactic.task import Outcome, Placements, Task, TaskEnvs
+from galactic.task import Outcome, Placements, Task
+from galactic.task_envs import TaskEnvs
 
 Array = NDArray[Any]
 
@@ -55,7 +57,8 @@ def require_options(task: Task) -> None:
 
 def options_of(task: Task, given: Mapping[str, Any]) -> dict[str, Any]:
     """The options of the simulation below, of which those that were given go before the task's."""
-    return {**task.options, **given, "task": task.base}
+    seen = {} if task.images is None else {"body_transforms": True}
+    return {**task.options, **given, **seen, "task": task.base}
 
 
 def has_raised(error: BaseException) -> bool:
@@ -72,12 +75,14 @@ class TaskRunner:
         world: World,
         simulator: Simulator,
         *,
+        threads: int,
         is_evaluation: bool = False,
         taken: Iterable[str] = (),
     ) -> None:
         self._task = task
-        self._envs = TaskEnvs(world, simulator, is_evaluation)
         self._name = type(task).__name__
+        cameras = options_of_cameras(f"{self._name}.images", task.images)
+        self._envs = TaskEnvs(world, simulator, Cameras(simulator, cameras, threads), is_evaluation)
         self._rewards = np.zeros(self._envs.num_envs, np.float32)
         self._endings = np.zeros(self._envs.num_envs, np.uint8)
         self.parts = _parts_of(task, self._name, simulator.observation_size, {*taken})
@@ -170,13 +175,15 @@ class TaskRunner:
         where the task says."""
         playing = which[~self._envs.simulator.idle[which]]
         if len(playing) and type(self._task).place is not Task.place:
-            self._envs.forget()
+            self._envs.forget(which)
             self._place(playing)
+        self._envs.forget(which)
         self._take_in(playing)
 
     def begin_chosen(self, which: NDArray[np.int64]) -> None:
         """Takes in that the envs `which` go on from states that the caller has chosen."""
         self._envs.draws.begin_next(which)
+        self._envs.forget(which)
         self._take_in(which)
 
     def _place(self, which: NDArray[np.int64]) -> None:
@@ -215,7 +222,6 @@ class TaskRunner:
             )
 
     def _take_in(self, beginning: NDArray[np.int64]) -> None:
-        self._envs.forget()
         if len(beginning):
             self._task.begin(self._envs, beginning)
             self._require_layout()

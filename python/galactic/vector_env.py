@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from galactic import saved_states, spaces
 from galactic._core import Renderer, Simulator, World
+from galactic.cameras import options_of_cameras
 from galactic.env_states import EnvStates, joined
 from galactic.half_batch import HalfBatch, Observations, StepResult
 from galactic.task import Placements, Task
@@ -19,7 +20,6 @@ from galactic.task_runner import made_by
 from galactic.turns import Row, Turns, batch_of, part_of, step_of_batch
 from galactic.vector_env_arguments import (
     Actions,
-    cameras_of,
     check_places,
     distinct_envs,
     env_numbers,
@@ -148,7 +148,7 @@ class VectorEnv(_Base):
         require(isinstance(copy, bool), "copy", copy, "True or False")
         require(isinstance(is_evaluation, bool), "is_evaluation", is_evaluation, "True or False")
         require(isinstance(events, bool), "events", events, "True or False")
-        cameras = cameras_of(images)
+        cameras = options_of_cameras("images", images)
         require(render_mode in (None, "rgb_array"), "render_mode", render_mode, '"rgb_array"')
         require_simulator_options(options)
         self._world = world if isinstance(world, World) else World(world)
@@ -165,7 +165,6 @@ class VectorEnv(_Base):
             options["task"] = task
         if cameras or render_mode is not None:
             options["body_transforms"] = True
-        cameras = {name: {"threads": threads, **camera} for name, camera in cameras.items()}
         # Half h of batch r is batch 2 r + h of twice as many: the same envs as undivided.
         self._halves = [
             HalfBatch(

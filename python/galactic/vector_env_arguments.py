@@ -56,22 +56,6 @@ def own_task_of(task: Any) -> Callable[[], Task] | None:
     return task if callable(task) else None
 
 
-def cameras_of(images: Any) -> dict[str, Mapping[str, Any]]:
-    """The cameras of VectorEnv(images=...) by name: "" for a single one, none for None."""
-    if images is None:
-        return {}
-    wanted = "options of galactic.Renderer, those of each camera by its name, or None for no images"
-    require(isinstance(images, Mapping), "images", images, wanted)
-    named = {name for name, value in images.items() if isinstance(value, Mapping)}
-    if not named:
-        return {"": images}
-    for name, value in images.items():
-        require(name in named, f"images[{name!r}]", value, "options, as the other cameras have")
-        is_name = isinstance(name, str) and name.isidentifier()
-        require(is_name, "a camera of images", name, "a name, such as hand")
-    return {name: {"camera": name, **value} for name, value in images.items()}
-
-
 def progress_of(value: Any, is_evaluation: bool) -> float:
     """VectorEnv.progress as it was set. ValueError for what it cannot be."""
     is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)

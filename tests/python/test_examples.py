@@ -44,6 +44,14 @@ def test_own_task(world_path):
     assert int(episodes) >= 32 * 4 and -3 < float(paid) < 3
 
 
+def test_find_target(world_path):
+    """In a small home, targets are in view, at some distance."""
+    printed = output_of("find_target.py", world_path)
+    found, ended = re.search(r"found (\d+) of (\d+) targets", printed).groups()
+    assert int(ended) > 200 and int(found) == int(ended)
+    assert 0.2 < float(re.search(r"at most (\S+) % of an image", printed).group(1)) < 20
+
+
 def test_point_nav(world_path):
     """In a small home, most goals are straight ahead."""
     arrived, ended = re.search(

@@ -12,6 +12,7 @@ import torch
 from torch import Tensor, nn
 
 from galactic import _core
+from galactic.cameras import options_of_cameras
 from galactic.learning.encoders import Encoder, Inputs
 from galactic.learning.packs.content import image_of
 from galactic.learning.packs.encoder_layers import AFTER, SAME, followed
@@ -25,7 +26,6 @@ from galactic.learning.policies.privileges import (
 from galactic.learning.simulation_words import CHOSEN_BY_TRAINER
 from galactic.learning.user_code.own_networks import Seen, some_inputs
 from galactic.vector_env import VectorEnv
-from galactic.vector_env_arguments import cameras_of
 
 NO_NOISE = -20.0
 """The logarithm of a standard deviation that changes no action."""
@@ -315,7 +315,7 @@ def _options_of(envs: VectorEnv) -> dict[str, Any]:
 
 def _image_of(envs: VectorEnv) -> Optional[dict[str, Any]]:
     """What the envs draw."""
-    cameras = cameras_of(envs.images)
+    cameras = options_of_cameras("images", envs.images)
     if len(cameras) > 1:
         raise ExportError(
             f"the envs draw images of the cameras {', '.join(cameras)}, and a policy pack has one: train with one"
