@@ -289,6 +289,24 @@ class LosesSteps(Averages):
         return features, torch.zeros_like(memory)
 
 
+class Recalls(Net):
+    # Its features are what its memory makes of them.
+    memory = 8
+
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.rnn = nn.GRU(8, 8)
+
+    def forward(self, inputs, memory, starts):
+        return run_gru(self.rnn, torch.tanh(self.layer(inputs.state)), memory, starts)
+
+
+class RecallsBeside(Recalls):
+    def forward(self, inputs, memory, starts):
+        recalled, memory = super().forward(inputs, memory, starts)
+        return torch.relu(recalled + self.layer(inputs.state)), memory
+
+
 class Attends(Net):
     def __init__(self, seen):
         super().__init__(seen)

@@ -60,15 +60,19 @@ def encoded(layers: Layers, encoder: Any, seen: int) -> int:
 
 def _traced(layers: Layers, encoder: Encoder, seen: int) -> int:
     """What an encoder of the user's does, as torch.fx follows its forward()."""
-    if encoder.memory:
-        raise ExportError(
-            "the network has a memory of its own, and a policy pack has a GRU alone: train one without, with "
-            "--recurrent"
-        )
-    features = followed(layers, encoder, seen)
+    made = followed(layers, encoder, seen)
+    features = beside_memory(made) if encoder.memory else made
     if not isinstance(features, int):
         raise ExportError("forward() returns something else than features of what is seen")
     return features
+
+
+def beside_memory(made: Any) -> Any:
+    """What a forward() that has a memory returns beside it, of what followed() found. Raises ExportError for a memory
+    that is none of a GRU, which is what a pack has."""
+    if not isinstance(made, tuple) or len(made) != 2 or made[1] is not AFTER:
+        raise ExportError("forward() returns another memory than run_gru(): return that")
+    return made[0]
 
 
 def followed(layers: Layers, module: nn.Module, seen: int, tried_with: Sequence[Any] = ()) -> Any:
@@ -463,11 +467,24 @@ def require_same(encoder: Encoder, inputs: Inputs, layers: Layers, seen: int) ->
     # Rows of a state have both signs.
     inputs = inputs._replace(state=4.0 * inputs.state - 2.0)
     with torch.no_grad():
-        found = layer_values.value(layers.list, seen, inputs)
-        wanted = encoder(inputs).flatten(0, 1)
+        if encoder.memory:
+            starts = _starts_in_turn(*inputs.state.shape[:2])
+            no_memory = torch.zeros(inputs.state.shape[1], encoder.memory)
+            wanted, _ = encoder(inputs, no_memory, starts.clone())
+        else:
+            starts, wanted = None, encoder(inputs)
+        found = layer_values.value(layers.list, seen, inputs, starts)
+        wanted = wanted.flatten(0, 1)
     apart = float((found - wanted).abs().max()) if found.shape == wanted.shape else math.inf
     if not apart <= SAME * max(1.0, float(wanted.abs().max())):
         raise ExportError(
             f"the layers that were found in forward() make other features than it ({apart:.3g} apart on made-up "
             "inputs): write it of plain layers, none of which changes what another one reads"
         )
+
+
+def _starts_in_turn(steps: int, envs: int) -> Tensor:
+    """Where episodes begin, bool [T, n]: all in the first step, and each env in a later one."""
+    starts = torch.arange(envs) % steps == torch.arange(steps)[:, None]
+    starts[0] = True
+    return starts

@@ -11,9 +11,12 @@ from torch.nn import functional
 from galactic.learning.encoders import Inputs, SpaceToDepth, images
 
 
-def value(layers: Sequence[dict[str, Any]], seen: int, inputs: Inputs) -> Tensor:
+def value(
+    layers: Sequence[dict[str, Any]], seen: int, inputs: Inputs, starts: Optional[Tensor] = None
+) -> Tensor:
     """Rows [T n, F] of the last of `layers` (Layers.list). Value `seen` is the state of the inputs; what is
-    before it is not computed. Raises ValueError for a layer that no encoder has."""
+    before it is not computed. `starts`: bool [T, n], where a GRU forgets what was before. Raises ValueError for a layer that no encoder has.
+    """
     values: dict[int, Tensor] = {seen: inputs.state.flatten(0, 1)}
     for number, layer in enumerate(layers[seen + 1 :], start=seen + 1):
         kind = layer["kind"]
@@ -24,9 +27,23 @@ def value(layers: Sequence[dict[str, Any]], seen: int, inputs: Inputs) -> Tensor
             values[number] = inputs.previous.flatten(0, 1)
         elif kind == "constant":
             values[number] = torch.from_numpy(layer["values"]).expand(len(values[seen]), -1)
+        elif kind == "gru" and starts is not None:
+            values[number] = _remembered(layer, values[layer["inputs"][0]], starts)
         else:
             values[number] = _made(kind, layer, [values[one] for one in layer["inputs"]])
     return values[len(layers) - 1].flatten(1)
+
+
+def _remembered(layer: dict[str, Any], x: Tensor, starts: Tensor) -> Tensor:
+    """What a GRU says in each step."""
+    names = ("input_weight", "state_weight", "input_bias", "state_bias")
+    parameters = [torch.from_numpy(layer[name]) for name in names]
+    memory = torch.zeros(starts.shape[1], layer["size"])
+    said = []
+    for rows, begun in zip(x.flatten(1).unflatten(0, starts.shape), starts):
+        memory = torch.gru_cell(rows, memory * ~begun[:, None], *parameters)
+        said.append(memory)
+    return torch.cat(said)
 
 
 def _made(kind: str, layer: dict[str, Any], given: list[Tensor]) -> Tensor:

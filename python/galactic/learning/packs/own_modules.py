@@ -15,7 +15,7 @@ from galactic import _core
 from galactic.cameras import options_of_cameras
 from galactic.learning.encoders import Encoder, Inputs
 from galactic.learning.packs.content import image_of
-from galactic.learning.packs.encoder_layers import AFTER, SAME, followed
+from galactic.learning.packs.encoder_layers import SAME, beside_memory, followed
 from galactic.learning.packs.layers import ExportError, Layers, numbers_of
 from galactic.learning.policies.privileges import (
     critic_columns,
@@ -119,9 +119,7 @@ class _Exported:
         layers, expected = Layers(), 3 if self._memory else 1
         made = followed(layers, self._module, layers.add("observation"), arguments[:expected])
         if self._memory:
-            made, memory = made
-            if memory is not AFTER:
-                raise ExportError("forward() returns another memory than run_gru(): return that")
+            made = beside_memory(made)
         continuous = None
         if self._motions:
             deviation = _constant_deviations(self._motions, made.log_deviation)
