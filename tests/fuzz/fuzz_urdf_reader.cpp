@@ -6,6 +6,7 @@
 #include <string>
 
 #include "finding.h"
+#include "urdf/mimics.h"
 #include "urdf/urdf_process.h"
 #include "urdf/urdf_reader.h"
 #include "urdf/urdf_tree.h"
@@ -43,7 +44,11 @@ void readRobot(const std::string& text) {
   if (const auto checked = checkJoints(*model, kWhere, warnings); !checked) {
     return expectGoodError(checked.error());
   }
-  const auto mimics = resolveMimics(*model, kWhere);
+  std::vector<JointMimic> stated;
+  for (const UrdfJoint& joint : model->joints) {
+    stated.push_back({joint.name, joint.type, joint.mimic, joint.multiplier, joint.offset});
+  }
+  const auto mimics = resolveMimics(stated, kWhere);
   if (!mimics) return expectGoodError(mimics.error());
   for (const auto& mimic : *mimics) {
     if (mimic && (*mimics)[mimic->joint]) reportFinding("a mimic of a joint that mimics");

@@ -11,11 +11,6 @@
 namespace galactic::bake {
 namespace {
 
-bool hasPosition(JointType type) {
-  return type == JointType::kRevolute || type == JointType::kContinuous ||
-         type == JointType::kPrismatic;
-}
-
 tl::unexpected<Error> invalid(const std::string& where, std::string message) {
   return fail(ErrorCode::kInvalidInput, where, std::move(message));
 }
@@ -27,7 +22,7 @@ class RecipeCheck {
       : recipe_(recipe), robot_(robot) {
     for (const SourceLink& link : robot.links) {
       links_.push_back(link.name);
-      if (!link.joint_name.empty() && hasPosition(link.joint_type) && !link.mimic) {
+      if (!link.joint_name.empty() && positionCount(link.joint_type) == 1 && !link.mimic) {
         joints_.push_back(link.joint_name);
       }
     }
@@ -74,7 +69,7 @@ Result<const SourceLink*> RecipeCheck::findJoint(const RecipeName& name) const {
                    fmt::format("joint '{}' mimics '{}' and cannot be set by itself; name that one",
                                name.name, robot_.links[found->mimic->link].joint_name));
   }
-  if (!hasPosition(found->joint_type)) {
+  if (positionCount(found->joint_type) != 1) {
     return invalid(name.where, fmt::format("joint '{}' is fixed, planar or floating and has no "
                                            "position to set; {}",
                                            name.name, suggestNames(name.name, joints_)));

@@ -159,11 +159,6 @@ Result<Collection> CollectionReader::read(const Json& root) {
   return std::move(collection_);
 }
 
-bool hasPosition(JointType type) {
-  return type == JointType::kRevolute || type == JointType::kContinuous ||
-         type == JointType::kPrismatic;
-}
-
 /// The links below the joints that have a position, in the order in which the published simulator
 /// numbers them.
 std::vector<std::size_t> dofOrder(const SourceRobot& robot) {
@@ -182,7 +177,7 @@ std::vector<std::size_t> dofOrder(const SourceRobot& robot) {
   while (!open.empty()) {
     const std::size_t link = open.back();
     open.pop_back();
-    if (link != 0 && hasPosition(robot.links[link].joint_type)) order.push_back(link);
+    if (link != 0 && positionCount(robot.links[link].joint_type) == 1) order.push_back(link);
     open.insert(open.end(), children[link].begin(), children[link].end());
   }
   return order;

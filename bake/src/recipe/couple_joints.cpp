@@ -5,7 +5,7 @@
 #include "galactic/bake/robot_recipe.h"
 #include "support/nearest_name.h"
 #include "support/try.h"
-#include "urdf/urdf_tree.h"
+#include "urdf/mimics.h"
 
 namespace galactic::bake {
 namespace {
@@ -24,34 +24,33 @@ Result<std::size_t> linkBelow(const RecipeName& joint, const SourceRobot& robot)
                           joint.name, suggestNames(joint.name, names)));
 }
 
-/// The joints of a robot as its URDF could state them, in the order of their links.
-UrdfModel jointsOf(const SourceRobot& robot) {
-  UrdfModel model;
+/// What the joints of a robot follow, in the order of their links.
+std::vector<JointMimic> mimicsOf(const SourceRobot& robot) {
+  std::vector<JointMimic> mimics;
   for (const SourceLink& link : robot.links) {
-    UrdfJoint& joint = model.joints.emplace_back();
-    joint.name = link.joint_name;
-    joint.type = link.joint_type;
+    JointMimic& mimic =
+        mimics.emplace_back(JointMimic{.joint = link.joint_name, .type = link.joint_type});
     if (!link.mimic) continue;
-    joint.mimic = robot.links[link.mimic->link].joint_name;
-    joint.multiplier = link.mimic->multiplier;
-    joint.offset = link.mimic->offset;
+    mimic.leader = robot.links[link.mimic->link].joint_name;
+    mimic.multiplier = link.mimic->multiplier;
+    mimic.offset = link.mimic->offset;
   }
-  return model;
+  return mimics;
 }
 
 }  // namespace
 
 Result<void> coupleJoints(const RobotRecipe& recipe, SourceRobot& robot) {
   if (recipe.mimics.empty()) return {};
-  UrdfModel model = jointsOf(robot);
-  for (const RecipeMimic& mimic : recipe.mimics) {
-    ASSIGN_OR_RETURN(const auto follower, linkBelow(mimic.joint, robot));
-    RETURN_IF_ERROR(linkBelow(mimic.leader, robot));
-    model.joints[follower].mimic = mimic.leader.name;
-    model.joints[follower].multiplier = mimic.multiplier;
-    model.joints[follower].offset = mimic.offset;
+  std::vector<JointMimic> stated = mimicsOf(robot);
+  for (const RecipeMimic& given : recipe.mimics) {
+    ASSIGN_OR_RETURN(const auto follower, linkBelow(given.joint, robot));
+    RETURN_IF_ERROR(linkBelow(given.leader, robot));
+    stated[follower].leader = given.leader.name;
+    stated[follower].multiplier = given.multiplier;
+    stated[follower].offset = given.offset;
   }
-  ASSIGN_OR_RETURN(const auto mimics, resolveMimics(model, recipe.source));
+  ASSIGN_OR_RETURN(const auto mimics, resolveMimics(stated, recipe.source));
   for (std::size_t n = 0; n < robot.links.size(); ++n) {
     if (!mimics[n]) continue;
     robot.links[n].mimic = Mimic{.link = static_cast<std::uint32_t>(mimics[n]->joint),

@@ -19,7 +19,10 @@ constexpr double kExampleTurn = 0.5;
 constexpr double kExampleSlide = 0.05;
 
 /// Meters, rounded to millimeters; never -0.
-double inMillimeters(double meters) { return std::round(meters * 1000) / 1000 + 0.0; }
+template <typename Real>
+Real inMillimeters(Real meters) {
+  return std::round(meters * 1000) / 1000 + Real(0);
+}
 
 /// A TOML string.
 std::string tomlText(std::string_view name) {
@@ -36,9 +39,6 @@ std::string tomlText(std::string_view name) {
   }
   return text + '"';
 }
-
-/// Rounded to whole millimeters, and never -0.
-float inMillimeters(float meters) { return std::round(meters * 1000) / 1000 + 0.0F; }
 
 /// Writes down what is guessed of a robot as its recipe.
 class RecipeDraft {

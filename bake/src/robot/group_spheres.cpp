@@ -15,11 +15,8 @@
 namespace galactic::bake {
 namespace {
 
-constexpr double kDefaultEps = 0.020;
-constexpr double kDefaultTau = 0.040;
 /// What a robot gets where nobody states a number, and more where gaps would be wide.
 constexpr std::uint32_t kUsualSpheres = 100;
-constexpr double kDefaultClipHeight = 0.020;
 
 /// What one group asks for.
 struct GroupPlan {
@@ -34,6 +31,11 @@ struct GroupPlan {
   [[nodiscard]] bool hasSurface() const { return !mesh.triangles.empty() && !clipped; }
 };
 
+/// What is asked for the robot as a whole, by the recipe or as is usual.
+RecipeSpheres spheresOf(const SphereTask& task) {
+  return task.recipe == nullptr ? RecipeSpheres() : task.recipe->spheres;
+}
+
 const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& link) {
   if (recipe == nullptr) return nullptr;
   const auto& rules = recipe->spheres.links;
@@ -47,12 +49,10 @@ const RecipeLinkSpheres* ruleOf(const RobotRecipe* recipe, const std::string& li
 class Planner {
  public:
   explicit Planner(const SphereTask& task) : task_(task) {
-    const RecipeSpheres* recipe = task.recipe == nullptr ? nullptr : &task.recipe->spheres;
-    eps_ = task.options.eps ? static_cast<double>(*task.options.eps)
-                            : (recipe == nullptr ? kDefaultEps : recipe->eps);
-    tau_ = task.options.tau ? static_cast<double>(*task.options.tau)
-                            : (recipe == nullptr ? kDefaultTau : recipe->tau);
-    clip_height_ = recipe == nullptr ? kDefaultClipHeight : recipe->clip_height;
+    const RecipeSpheres spheres = spheresOf(task);
+    eps_ = task.options.eps ? static_cast<double>(*task.options.eps) : spheres.eps;
+    tau_ = task.options.tau ? static_cast<double>(*task.options.tau) : spheres.tau;
+    clip_height_ = spheres.clip_height;
   }
 
   [[nodiscard]] GroupPlan plan(const RigidGroup& group) const {
@@ -163,9 +163,9 @@ class Planner {
   }
 
   const SphereTask& task_;
-  double eps_ = kDefaultEps;
-  double tau_ = kDefaultTau;
-  double clip_height_ = kDefaultClipHeight;
+  double eps_;
+  double tau_;
+  double clip_height_;
 };
 
 /// The fitter knows no links: says whose mesh it was.
@@ -202,7 +202,7 @@ struct SphereBudget {
 };
 
 SphereBudget budgetOf(const SphereTask& task, std::size_t by_hand) {
-  const RecipeSpheres spheres = task.recipe == nullptr ? RecipeSpheres() : task.recipe->spheres;
+  const RecipeSpheres spheres = spheresOf(task);
   const auto stated = task.options.max_spheres ? task.options.max_spheres : spheres.max_spheres;
   SphereBudget budget;
   if (!stated) budget.widest_gap = spheres.max_gap;

@@ -11,6 +11,7 @@
 
 #include "import/source_files.h"
 #include "support/try.h"
+#include "urdf/mimics.h"
 #include "urdf/urdf_frames.h"
 #include "urdf/urdf_geometry.h"
 #include "urdf/urdf_process.h"
@@ -25,6 +26,18 @@ namespace fs = std::filesystem;
 JointLimits assumedLimits(JointType type) {
   const double most = type == JointType::kRevolute ? std::numbers::pi : 1;
   return {-most, most};
+}
+
+std::vector<JointMimic> mimicsOf(const UrdfModel& model) {
+  std::vector<JointMimic> mimics;
+  for (const UrdfJoint& joint : model.joints) {
+    mimics.push_back({.joint = joint.name,
+                      .type = joint.type,
+                      .leader = joint.mimic,
+                      .multiplier = joint.multiplier,
+                      .offset = joint.offset});
+  }
+  return mimics;
 }
 
 /// Puts the joints of the model, in the runtime's frame, into the links of `robot`.
@@ -99,7 +112,7 @@ Result<SourceRobot> importUrdf(const fs::path& path, const UrdfImportOptions& op
   const std::string where = path.string();
   ASSIGN_OR_RETURN(const auto tree, orderTree(model, where));
   RETURN_IF_ERROR(checkJoints(model, where, robot.warnings));
-  ASSIGN_OR_RETURN(const auto mimics, resolveMimics(model, where));
+  ASSIGN_OR_RETURN(const auto mimics, resolveMimics(mimicsOf(model), where));
   robot.links.resize(tree.size());
   addJoints(model, tree, mimics, options.up, robot);
   GeometryBuilder geometry(path, options, robot);

@@ -216,58 +216,6 @@ Result<std::vector<TreeLink>> orderTree(const UrdfModel& model, const std::strin
   return Tree(model, where).order();
 }
 
-Result<std::vector<std::optional<ResolvedMimic>>> resolveMimics(const UrdfModel& model,
-                                                                const std::string& where) {
-  std::map<std::string_view, std::size_t> joint_of_name;
-  for (std::size_t i = 0; i < model.joints.size(); ++i) joint_of_name[model.joints[i].name] = i;
-  std::vector<std::optional<ResolvedMimic>> resolved(model.joints.size());
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    const UrdfJoint& joint = model.joints[i];
-    if (joint.mimic.empty()) continue;
-    const std::string place = jointPlace(where, joint);
-    // A joint's position is multiplier * (position of joint `at`) + offset all along.
-    ResolvedMimic mimic{.joint = i, .multiplier = 1, .offset = 0};
-    std::size_t steps = 0;
-    while (!model.joints[mimic.joint].mimic.empty()) {
-      const UrdfJoint& at = model.joints[mimic.joint];
-      const auto next = joint_of_name.find(at.mimic);
-      if (next == joint_of_name.end()) {
-        return invalid(
-            jointPlace(where, at),
-            fmt::format("it mimics joint '{}', which does not exist; correct the name", at.mimic));
-      }
-      if (++steps > model.joints.size()) {
-        return invalid(place,
-                       "it mimics itself in a circle of joints; one of them must move freely");
-      }
-      mimic.offset += mimic.multiplier * at.offset;
-      mimic.multiplier *= at.multiplier;
-      mimic.joint = next->second;
-    }
-    const UrdfJoint& leader = model.joints[mimic.joint];
-    const auto has_position = [](JointType type) {
-      return type == JointType::kRevolute || type == JointType::kContinuous ||
-             type == JointType::kPrismatic;
-    };
-    for (const UrdfJoint* end : {&joint, &leader}) {
-      if (has_position(end->type)) continue;
-      return invalid(place, fmt::format("it mimics '{}', and '{}' is a joint without a single "
-                                        "position (fixed, planar or floating); remove the <mimic>",
-                                        leader.name, end->name));
-    }
-    // Packs hold no larger ones: no joint follows another a thousand times faster.
-    constexpr double kMost = 1000;
-    if (!(std::abs(mimic.multiplier) <= kMost && std::abs(mimic.offset) <= kMost)) {
-      return invalid(place,
-                     fmt::format("the multiplier {} or offset {} of its <mimic> is not finite "
-                                 "or over {}; correct it",
-                                 mimic.multiplier, mimic.offset, kMost));
-    }
-    resolved[i] = mimic;
-  }
-  return resolved;
-}
-
 Result<void> checkJoints(UrdfModel& model, const std::string& where,
                          std::vector<std::string>& warnings) {
   for (UrdfJoint& joint : model.joints) {

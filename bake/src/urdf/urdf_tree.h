@@ -24,19 +24,6 @@ struct TreeLink {
 [[nodiscard]] Result<std::vector<TreeLink>> orderTree(const UrdfModel& model,
                                                       const std::string& where);
 
-/// A joint whose mimic chain is resolved.
-struct ResolvedMimic {
-  /// Index into UrdfModel::joints of a joint that mimics nothing.
-  std::size_t joint = 0;
-  double multiplier = 1;
-  double offset = 0;
-};
-
-/// One entry per joint; none where it mimics nothing. Fails with kInvalidInput on unknown or fixed
-/// joints and on circles.
-[[nodiscard]] Result<std::vector<std::optional<ResolvedMimic>>> resolveMimics(
-    const UrdfModel& model, const std::string& where);
-
 /// Checks the numbers of joints: finite, within bounds, limits in order, axes with a direction.
 /// Normalizes the axes; what is doubtful is added to `warnings`.
 [[nodiscard]] Result<void> checkJoints(UrdfModel& model, const std::string& where,
