@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -33,6 +35,7 @@ EpisodeMarks marksOf(const EpisodeSet& set, std::size_t number) {
   const Episode& episode = set.episodes()[number];
   EpisodeMarks marks{.number = number,
                      .start = groundOf(episode.base_position),
+                     .floor = episode.base_position.y,
                      .yaw = static_cast<double>(episode.base_yaw),
                      .target = {},
                      .goal = groundOf(episode.goal.translation),
@@ -82,6 +85,32 @@ Result<void> addScene(const PackFile& pack, const EpisodeChoice& choice, PlanByS
   ASSIGN_OR_RETURN(const auto grids, gridsOf(scene, pack.where(), choice.radius));
   plan.grid = grids.front();
   return {};
+}
+
+/// Adds a plan for each storey that episodes of `plan` begin in; one where there are none.
+void addStoreys(EpisodePlan plan, std::vector<EpisodePlan>& plans) {
+  // More than a step or the levels of one storey, less than a storey: meters between starts.
+  constexpr float kApart = 1.5F;
+  std::vector<EpisodeMarks> upwards = std::move(plan.episodes);
+  plan.episodes.clear();
+  std::ranges::stable_sort(upwards, {}, &EpisodeMarks::floor);
+  const std::size_t before = plans.size();
+  for (EpisodeMarks& marks : upwards) {
+    const bool is_first = plans.size() == before;
+    if (is_first || marks.floor - plans.back().episodes.back().floor > kApart) {
+      plans.push_back(plan);
+      plans.back().floor = marks.floor;
+    }
+    plans.back().episodes.push_back(std::move(marks));
+  }
+  if (plans.size() == before) plans.push_back(std::move(plan));
+  const std::span<EpisodePlan> storeys(plans.begin() + static_cast<std::ptrdiff_t>(before),
+                                       plans.end());
+  for (std::size_t n = 0; n < storeys.size(); ++n) {
+    storeys[n].storey = n + 1;
+    storeys[n].storeys = storeys.size();
+    std::ranges::sort(storeys[n].episodes, {}, &EpisodeMarks::number);
+  }
 }
 
 std::vector<std::string> namesOf(const PlanByScene& plans) {
@@ -144,7 +173,7 @@ Result<std::vector<EpisodePlan>> episodePlansOf(std::span<const PackFile* const>
   for (auto& [name, plan] : plans) {
     if (choice.scene && name != *choice.scene) continue;
     if (choice.episode && plan.episodes.empty()) continue;
-    chosen.push_back(std::move(plan));
+    addStoreys(std::move(plan), chosen);
   }
   if (!chosen.empty()) return chosen;
   return fail(ErrorCode::kInvalidInput, where,

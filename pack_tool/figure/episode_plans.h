@@ -21,11 +21,11 @@ struct EpisodeChoice {
   std::optional<float> radius = std::nullopt;
 };
 
-/// The scenes of `packs`, and those that only episodes name, by ascending names, with the episodes
-/// of the first episode pack, if there is one; packs of other kinds are passed over. Of scenes of
-/// one name the first counts. `where` names the packs in errors. Fails with kInvalidInput where
-/// there are neither scenes nor episodes, no scene or no episode as chosen, or no grid of the
-/// radius. The result looks into the packs.
+/// The scenes of `packs`, and those that only episodes name, by ascending names, storey by storey
+/// where episodes begin in several, with the episodes of the first episode pack, if there is one;
+/// packs of other kinds are passed over. Of scenes of one name the first counts. `where` names the
+/// packs in errors. Fails with kInvalidInput where there are neither scenes nor episodes, no scene
+/// or no episode as chosen, or no grid of the radius. The result looks into the packs.
 [[nodiscard]] Result<std::vector<pictures::EpisodePlan>> episodePlansOf(
     std::span<const PackFile* const> packs, const std::string& where,
     const EpisodeChoice& choice = {});

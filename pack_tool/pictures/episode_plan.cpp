@@ -210,7 +210,7 @@ class MarkPen {
 
 /// Heights of the floors, ascending, meters: of the commonest ground, and of others that are large.
 /// Houses may have split levels, or storeys beside each other on a slope; furniture is smaller.
-std::vector<float> floorsOf(std::span<const float> ground) {
+std::vector<float> floorsOf(std::span<const Span> ground) {
   constexpr float kBin = 0.1F;
   constexpr double kLarge = 0.2;
   struct Bin {
@@ -219,10 +219,10 @@ std::vector<float> floorsOf(std::span<const float> ground) {
   };
   std::map<long, Bin> bins;
   std::size_t most = 0;
-  for (const float height : ground) {
-    if (std::isnan(height)) continue;
-    Bin& bin = bins[std::lround(height / kBin)];
-    bin.sum += static_cast<double>(height);
+  for (const Span& span : ground) {
+    if (std::isnan(span.lo)) continue;
+    Bin& bin = bins[std::lround(span.lo / kBin)];
+    bin.sum += static_cast<double>(span.lo);
     most = std::max(most, ++bin.count);
   }
   std::vector<float> floors;
@@ -235,25 +235,28 @@ std::vector<float> floorsOf(std::span<const float> ground) {
   return floors;
 }
 
-/// The free height over each column, but no more than over a table where its ground is solid
-/// furniture: further above a floor than a base climbs.
-std::vector<float> heightsOverFloors(const ColumnGrid& grid) {
+/// The free height over each column of a storey, but no more than over a table where its ground is
+/// solid furniture: further above a floor than a base climbs.
+std::vector<float> heightsOverFloors(std::span<const Span> storey) {
   constexpr float kClimbed = 0.1F;
-  std::vector<float> heights = planValues(grid, PlanValue::kLowestHeight);
-  const std::vector<float> ground = lowestGround(grid);
-  const std::vector<float> floors = floorsOf(ground);
-  for (std::size_t n = 0; n < heights.size(); ++n) {
-    if (heights[n] == kBlockedValue) continue;
-    const auto above = std::ranges::upper_bound(floors, ground[n]);
-    const bool is_raised = above != floors.begin() && ground[n] - *std::prev(above) > kClimbed;
-    if (is_raised) heights[n] = std::min(heights[n], kTableHeight);
+  const std::vector<float> floors = floorsOf(storey);
+  std::vector<float> heights;
+  heights.reserve(storey.size());
+  for (const Span& span : storey) {
+    const auto above = std::ranges::upper_bound(floors, span.lo);
+    const bool is_raised = above != floors.begin() && span.lo - *std::prev(above) > kClimbed;
+    const float height = span.hi - span.lo;
+    heights.push_back(std::isnan(height) ? kBlockedValue
+                      : is_raised        ? std::min(height, kTableHeight)
+                                         : height);
   }
   return heights;
 }
 
 void drawGround(Image& image, const EpisodePlan& plan, const Plot& plot) {
   if (plan.grid) {
-    const PlanPanel panel{&*plan.grid, heightsOverFloors(*plan.grid), plot.rect};
+    const std::vector<Span> storey = storeySpans(*plan.grid, plan.floor);
+    const PlanPanel panel{&*plan.grid, heightsOverFloors(storey), plot.rect};
     paintColumns(image, panel, [](float value) {
       if (value == kBlockedValue) return kMutedBlocked;
       return freeColor(static_cast<double>(value));
@@ -310,6 +313,10 @@ std::string captionOf(const EpisodePlan& plan, const Plot& plot) {
   std::string caption = plan.episodes.size() == 1
                             ? fmt::format("episode {}", plan.episodes.front().number)
                             : counted(plan.episodes.size(), "episode");
+  if (plan.storeys > 1) {
+    caption += fmt::format(", storey {} of {}, at {:.1f} m", plan.storey, plan.storeys,
+                           plan.floor.value_or(0));
+  }
   if (!plan.grid) caption += ", the pack of its scene is not here";
   if (outside > 0) caption += fmt::format(", {} outside", counted(outside, "mark"));
   return caption;
@@ -373,7 +380,7 @@ Result<Image> drawEpisodeSheet(std::span<const EpisodePlan> plans, int view_size
   const Legend legend = legendOf(plans);
   // Name and caption above, the scale bar below.
   ASSIGN_OR_RETURN(auto sheet, Sheet::create({.count = plans.size(),
-                                              .things = "scenes",
+                                              .things = "plans",
                                               .view_size = view_size,
                                               .tile_width = view_size,
                                               .tile_height = view_size + 3 * kLine,

@@ -63,10 +63,24 @@ float valueOf(const std::vector<Span>& spans, PlanValue value, float edge) {
   return total;
 }
 
+/// A storey is this much of what is under its floor, such as the lower part of a split level, and
+/// this much above it, such as a cupboard: meters.
+constexpr float kBelowFloor = 1;
+constexpr float kAboveFloor = 2.2F;
+constexpr Span kNoSpan{std::numeric_limits<float>::quiet_NaN(),
+                       std::numeric_limits<float>::quiet_NaN()};
+
+Span storeySpan(const std::vector<Span>& spans, float floor) {
+  const auto found = std::ranges::find_if(spans, [floor](const Span& span) {
+    return span.lo >= floor - kBelowFloor && span.lo <= floor + kAboveFloor;
+  });
+  return found == spans.end() ? kNoSpan : *found;
+}
+
 /// `value_of(spans)` for each column, row by row along Z.
 template <class ValueOf>
-std::vector<float> valuesOf(const ColumnGrid& grid, const ValueOf& value_of) {
-  std::vector<float> values;
+auto valuesOf(const ColumnGrid& grid, const ValueOf& value_of) {
+  std::vector<decltype(value_of(std::vector<Span>()))> values;
   values.reserve(std::size_t{grid.columnsX()} * grid.columnsZ());
   std::vector<Span> spans;
   for (std::uint32_t k = 0; k < grid.columnsZ(); ++k) {
@@ -86,10 +100,10 @@ std::vector<float> planValues(const ColumnGrid& grid, PlanValue value) {
   });
 }
 
-std::vector<float> lowestGround(const ColumnGrid& grid) {
-  return valuesOf(grid, [&grid](const std::vector<Span>& spans) {
-    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-    return spans.empty() ? kNone : lowestOf(spans, grid.heights().lo).lo;
+std::vector<Span> storeySpans(const ColumnGrid& grid, std::optional<float> floor) {
+  return valuesOf(grid, [&grid, floor](const std::vector<Span>& spans) {
+    if (floor) return storeySpan(spans, *floor);
+    return spans.empty() ? kNoSpan : lowestOf(spans, grid.heights().lo);
   });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "galactic/column_grid.h"
@@ -23,8 +24,10 @@ struct PlanPanel {
 /// One for each column of `grid`, row by row along Z; kBlockedValue where there is no span.
 [[nodiscard]] std::vector<float> planValues(const ColumnGrid& grid, PlanValue value);
 
-/// Where the lowest span in the scene begins, meters, in the same order; NaN where there is none.
-[[nodiscard]] std::vector<float> lowestGround(const ColumnGrid& grid);
+/// What is free over the ground of one storey, in the same order: of each column the lowest span in
+/// the scene, or with a `floor`, the storey's height, meters, the lowest that begins about there;
+/// NaN where there is none.
+[[nodiscard]] std::vector<Span> storeySpans(const ColumnGrid& grid, std::optional<float> floor);
 
 /// Paints the columns of a grid over its plot. A pixel that shows several columns has the least of
 /// their values, and so is blocked where one of them is.

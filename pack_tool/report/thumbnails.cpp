@@ -108,10 +108,10 @@ Result<void> addEpisodes(std::span<const PackFile> packs, std::size_t number,
   for (std::size_t first = 0; first < all.size(); first += kMostPlansOnSheet) {
     const auto some = all.subspan(first, std::min(kMostPlansOnSheet, all.size() - first));
     ASSIGN_OR_RETURN(const auto image, pictures::drawEpisodeSheet(some, kPlanWidth));
-    const std::string caption =
-        some.size() == all.size() ? "starts, targets and goals"
-                                  : fmt::format("starts, targets and goals, scenes {} to {} of {}",
-                                                first + 1, first + some.size(), all.size());
+    const std::string caption = some.size() == all.size()
+                                    ? "starts, targets and goals"
+                                    : fmt::format("starts, targets and goals, plans {} to {} of {}",
+                                                  first + 1, first + some.size(), all.size());
     ASSIGN_OR_RETURN(auto thumbnail, encoded(caption, image));
     thumbnails.push_back(std::move(thumbnail));
   }

@@ -106,6 +106,31 @@ TEST(EpisodePlanPicture, ShowsSolidFurnitureInGrayAndFloorsOfAllLevelsLight) {
   EXPECT_LT(brightness(8.5), 220);
 }
 
+TEST(EpisodePlanPicture, ShowsTheStoreyOfItsEpisodes) {
+  GridBuilder builder(GridSpec{.heights = {-1, 7}, .columns_x = 10, .columns_z = 6});
+  for (std::uint32_t k = 0; k < 6; ++k) {
+    for (std::uint32_t i = 0; i < 10; ++i) builder.column(i, k, {{0, 2.5F}, {3, 5.5F}});
+  }
+  // A pillar downstairs, a table upstairs, and a hall that is as high as the house.
+  builder.column(1, 0, {{3, 5.5F}});
+  builder.column(3, 0, {{0, 2.5F}, {3.75F, 5.5F}}).column(5, 0, {{0, 5.5F}});
+  const auto grid = builder.build();
+  const auto brightness = [&](std::optional<float> floor, double x) {
+    const Picture picture = drawEpisodePlan({"house", grid.view(), {}, floor}, 800);
+    return colorAt(picture, {x, 0.5}).g;
+  };
+  for (const auto& floor : {std::optional<float>(0), std::optional<float>(0.1F)}) {
+    EXPECT_GT(brightness(floor, 0.5), 240);
+    EXPECT_LT(brightness(floor, 1.5), 120);
+    EXPECT_GT(brightness(floor, 3.5), 240);
+    EXPECT_GT(brightness(floor, 5.5), 240);
+  }
+  EXPECT_GT(brightness(3, 0.5), 240);
+  EXPECT_GT(brightness(3, 1.5), 240);
+  EXPECT_LT(brightness(3, 3.5), 220);
+  EXPECT_LT(brightness(3, 5.5), 120);
+}
+
 TEST(EpisodePlanPicture, LeavesOutMarksThatAreNowhere) {
   const auto grid = hall();
   const double nan = std::nan("");
@@ -175,7 +200,7 @@ TEST(EpisodeSheet, HasATileForEachSceneAndRefusesToBecomeHuge) {
   const auto huge = drawEpisodeSheet(std::vector<EpisodePlan>(10000), 2048);
   ASSERT_FALSE(huge.has_value());
   EXPECT_EQ(huge.error().code, ErrorCode::kUnsupported);
-  EXPECT_THAT(huge.error().message, HasSubstr("a sheet of 10000 scenes at 2048 pixels each"));
+  EXPECT_THAT(huge.error().message, HasSubstr("a sheet of 10000 plans at 2048 pixels each"));
 }
 
 /// A kitchen with two episodes, and a hall with none.
@@ -228,6 +253,37 @@ TEST_F(PacksOfPlans, BecomeAPlanForEachScene) {
   EXPECT_EQ(first.target.x, 1.5);
   EXPECT_EQ(first.goal.z, 1.5);
   EXPECT_EQ(first.others.size(), 2U);
+}
+
+TEST_F(PacksOfPlans, HaveOneForEachStoreyThatEpisodesBeginIn) {
+  packs_.pop_back();
+  test::EpisodePackFields episodes = test::smallEpisodes();
+  episodes.episodes.push_back(episodes.episodes[1]);
+  episodes.episodes[2].first_placement = 4;
+  episodes.placements.push_back(episodes.placements[3]);
+  episodes.start_positions.insert(episodes.start_positions.end(), {0.5F, 0.125F});
+  episodes.episodes[0].base_position.y = 4;
+  episodes.episodes[2].base_position.y = 1.5F;
+  write("storeys.pack", test::asText(test::buildPack(episodes).bytes()));
+  const auto all = plans({.scene = "kitchen"});
+  ASSERT_TRUE(all) << all.error().text();
+  ASSERT_EQ(all->size(), 2U);
+  const auto numbersOf = [](const EpisodePlan& plan) {
+    std::vector<std::size_t> numbers;
+    for (const EpisodeMarks& marks : plan.episodes) numbers.push_back(marks.number);
+    return numbers;
+  };
+  EXPECT_THAT(numbersOf((*all)[0]), ElementsAre(1, 2));
+  EXPECT_THAT(numbersOf((*all)[1]), ElementsAre(0));
+  EXPECT_EQ((*all)[0].floor, 1);
+  EXPECT_EQ((*all)[1].floor, 4);
+  EXPECT_EQ((*all)[1].storey, 2U);
+  EXPECT_EQ((*all)[1].storeys, 2U);
+  const auto upper = plans({.episode = 0});
+  ASSERT_TRUE(upper) << upper.error().text();
+  ASSERT_EQ(upper->size(), 1U);
+  EXPECT_EQ(upper->front().floor, 4);
+  EXPECT_EQ(upper->front().storeys, 1U);
 }
 
 TEST_F(PacksOfPlans, AreChosenByScenesEpisodesAndRadius) {
