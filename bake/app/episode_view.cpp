@@ -28,10 +28,11 @@ void printGeneration(const EpisodeGeneration& generation, Verbosity verbosity) {
   }
   if (verbosity != Verbosity::kVerbose) return;
   for (const GeneratedScene& scene : generation.scenes) {
-    fmt::print("  {}: {}; {}, {} on {}, {}{}\n", printable(scene.name),
+    fmt::print("  {}: {}; {} in {}, {} on {}, {}{}\n", printable(scene.name),
                counted(scene.episodes, "episode"), counted(scene.floor_places, "floor place"),
-               counted(scene.support_places, "support place"), counted(scene.surfaces, "surface"),
-               counted(scene.receptacles, "receptacle"), scene.has_mesh ? ", objects settled" : "");
+               counted(scene.floor_parts, "part"), counted(scene.support_places, "support place"),
+               counted(scene.surfaces, "surface"), counted(scene.receptacles, "receptacle"),
+               scene.has_mesh ? ", objects settled" : "");
   }
 }
 

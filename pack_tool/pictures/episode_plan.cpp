@@ -303,6 +303,11 @@ void drawNumbers(Image& image, const EpisodePlan& plan, const Plot& plot) {
   }
 }
 
+std::string nameOf(const EpisodePlan& plan) {
+  if (plan.storeys == 1) return printable(plan.scene);
+  return fmt::format("{}, storey {} of {}", printable(plan.scene), plan.storey, plan.storeys);
+}
+
 /// How many episodes there are, and what of them is not in sight.
 std::string captionOf(const EpisodePlan& plan, const Plot& plot) {
   std::ptrdiff_t outside = 0;
@@ -313,10 +318,7 @@ std::string captionOf(const EpisodePlan& plan, const Plot& plot) {
   std::string caption = plan.episodes.size() == 1
                             ? fmt::format("episode {}", plan.episodes.front().number)
                             : counted(plan.episodes.size(), "episode");
-  if (plan.storeys > 1) {
-    caption += fmt::format(", storey {} of {}, at {:.1f} m", plan.storey, plan.storeys,
-                           plan.floor.value_or(0));
-  }
+  if (plan.storeys > 1) caption += fmt::format(", at {:.1f} m", plan.floor.value_or(0));
   if (!plan.grid) caption += ", the pack of its scene is not here";
   if (outside > 0) caption += fmt::format(", {} outside", counted(outside, "mark"));
   return caption;
@@ -355,7 +357,7 @@ Picture drawEpisodePlan(const EpisodePlan& plan, int width) {
   Plot plot = fittingPlot(plan, width, kMostHeights * width);
   plot.rect.x = kMargin + kAxisLabelWidth;
   plot.rect.y = kMargin + 2 * kLine + kAxisNameHeight;
-  const std::string name = titleOf(plan.scene);
+  const std::string name = titleOf(nameOf(plan));
   std::string caption = captionOf(plan, plot);
   if (plan.grid) caption += fmt::format("; grid of radius {} m", plan.grid->radius());
   const Legend legend = legendOf({&plan, 1});
@@ -392,7 +394,7 @@ Result<Image> drawEpisodeSheet(std::span<const EpisodePlan> plans, int view_size
     Plot plot = fittingPlot(plan, view_size, view_size);
     plot.rect.x = tile.x + (view_size - plot.rect.width) / 2;
     plot.rect.y = tile.y + 2 * kLine;
-    drawText(sheet.image, {tile.x, tile.y}, shortened(printable(plan.scene), tile.width), kInk);
+    drawText(sheet.image, {tile.x, tile.y}, shortened(nameOf(plan), tile.width), kInk);
     drawText(sheet.image, {tile.x, tile.y + kLine}, shortened(captionOf(plan, plot), tile.width),
              kFaintInk);
     drawGround(sheet.image, plan, plot);

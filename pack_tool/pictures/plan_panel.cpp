@@ -1,6 +1,7 @@
 #include "pack_tool/pictures/plan_panel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -70,11 +71,15 @@ constexpr float kAboveFloor = 2.2F;
 constexpr Span kNoSpan{std::numeric_limits<float>::quiet_NaN(),
                        std::numeric_limits<float>::quiet_NaN()};
 
+/// The one that begins nearest to the floor.
 Span storeySpan(const std::vector<Span>& spans, float floor) {
-  const auto found = std::ranges::find_if(spans, [floor](const Span& span) {
-    return span.lo >= floor - kBelowFloor && span.lo <= floor + kAboveFloor;
-  });
-  return found == spans.end() ? kNoSpan : *found;
+  Span nearest = kNoSpan;
+  for (const Span& span : spans) {
+    if (span.lo < floor - kBelowFloor || span.lo > floor + kAboveFloor) continue;
+    const bool is_nearer = !(std::abs(nearest.lo - floor) <= std::abs(span.lo - floor));
+    if (is_nearer) nearest = span;
+  }
+  return nearest;
 }
 
 /// `value_of(spans)` for each column, row by row along Z.

@@ -25,7 +25,7 @@ struct PlanPanel {
 [[nodiscard]] std::vector<float> planValues(const ColumnGrid& grid, PlanValue value);
 
 /// What is free over the ground of one storey, in the same order: of each column the lowest span in
-/// the scene, or with a `floor`, the storey's height, meters, the lowest that begins about there;
+/// the scene, or with a `floor`, the storey's height, meters, the one that begins nearest to it;
 /// NaN where there is none.
 [[nodiscard]] std::vector<Span> storeySpans(const ColumnGrid& grid, std::optional<float> floor);
 

@@ -78,6 +78,7 @@ class Draft {
     if (!draw || !isReached(*draw)) return false;
     target_ = draw->object;
     target_surface_ = draw->place.surface_id;
+    target_part_ = draw->place.part;
     return true;
   }
 
@@ -129,6 +130,10 @@ class Draft {
     std::size_t tries = 0;
     for (std::size_t n = 0; n < kDistanceTries && tries < kStartTries; ++n) {
       const FloorPlace& place = places[random_.below(static_cast<std::uint32_t>(places.size()))];
+      if (place.part != target_part_) {
+        rejections_.add(EpisodeRejection::kOtherPart);
+        continue;
+      }
       const std::uint32_t heading = random_.below(kHeadings);
       base_yaw_ = yawOf(heading) + aside() * kTurn / static_cast<float>(kHeadings);
       base_position_ = home_.floor.position(place);
@@ -251,6 +256,7 @@ class Draft {
 
   /// Whether the target could be at the right distance, somewhere in the place's cell.
   bool mayHoldGoal(const SupportPlace& place) {
+    if (place.part != target_part_) return reject(EpisodeRejection::kOtherPart);
     if (home_.options.goal_on_other_support && place.surface_id == target_surface_) {
       return reject(EpisodeRejection::kSameSupport);
     }
@@ -274,7 +280,7 @@ class Draft {
 
   /// Remembers the position of the robot that reaches the object.
   bool isReached(const Draw& draw) {
-    auto spheres = findReach(home_, draw.object, draw.place.floor, random_);
+    auto spheres = findReach(home_, draw.object, draw.place, random_);
     if (!spheres) return reject(EpisodeRejection::kNotReached);
     reaching_.push_back(std::move(*spheres));
     return true;
@@ -328,6 +334,8 @@ class Draft {
   Wanted wanted_;
   PlacedObject target_;
   std::uint32_t target_surface_ = 0;
+  /// FloorPlace::part, in which the whole episode is played.
+  std::uint32_t target_part_ = 0;
   PlacedObject goal_;
   std::vector<PlacedObject> others_;
   /// The robot where it reaches target and goal.

@@ -27,10 +27,11 @@ Vec3 drawAim(const Footprint& box, float margin, Random& random) {
 }
 
 /// The place under the base that is on the floor wanted and can be left in this heading.
-const FloorPlace* standingPlace(const FloorMap& map, const Vec3& ground, float yaw) {
+const FloorPlace* standingPlace(const FloorMap& map, const Vec3& ground, float yaw,
+                                std::uint32_t part) {
   const std::uint32_t heading = nearestHeading(yaw);
   for (const FloorPlace& place : map.placesAt(ground.x, ground.z)) {
-    if (std::abs(place.height - ground.y) > kFloorRange) continue;
+    if (place.part != part || std::abs(place.height - ground.y) > kFloorRange) continue;
     if (((place.headings >> heading) & 1U) != 0) return &place;
   }
   return nullptr;
@@ -39,18 +40,18 @@ const FloorPlace* standingPlace(const FloorMap& map, const Vec3& ground, float y
 }  // namespace
 
 std::optional<std::vector<BodySphere>> findReach(const DraftHome& home, const PlacedObject& object,
-                                                 float floor_height, Random& random) {
+                                                 const SupportPlace& from, Random& random) {
   const float grasp = kGraspShare * home.robot.endEffector()->grasp_radius;
   for (std::size_t n = 0; n < kTries; ++n) {
     const Vec3 aim = drawAim(object.footprint, grasp, random);
     const float yaw = between(0, 2 * std::numbers::pi_v<float>, random);
-    const float height = aim.y - floor_height;
+    const float height = aim.y - from.floor;
     const auto samples = home.reach.between(height - kHeightRange, height + kHeightRange);
     if (samples.empty() || distanceToBox(object, aim) >= grasp) continue;
     const ArmSample& sample = samples[random.below(static_cast<std::uint32_t>(samples.size()))];
     const Vec3 offset = rotate(rotationOfYaw(yaw), sample.grasp_point);
-    Vec3 ground{aim.x - offset.x, floor_height, aim.z - offset.z};
-    const FloorPlace* place = standingPlace(home.floor, ground, yaw);
+    Vec3 ground{aim.x - offset.x, from.floor, aim.z - offset.z};
+    const FloorPlace* place = standingPlace(home.floor, ground, yaw, from.part);
     if (place == nullptr) continue;
     const auto base_height = home.floor.heightAt(ground.x, ground.z, place->height);
     if (!base_height) continue;

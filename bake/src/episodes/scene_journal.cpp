@@ -12,8 +12,8 @@ template <class Archive>
 void transferFields(Archive& archive, Is<GeneratedScene> auto& scene) {
   // 0 where there is none.
   float shortened_way = scene.shortened_way.value_or(0);
-  archive(scene.name, scene.floor_places, scene.support_places, scene.surfaces, scene.bumpy_places,
-          scene.receptacles, scene.has_mesh, shortened_way);
+  archive(scene.name, scene.floor_places, scene.floor_parts, scene.support_places, scene.surfaces,
+          scene.bumpy_places, scene.receptacles, scene.has_mesh, shortened_way);
   if constexpr (!std::is_const_v<std::remove_reference_t<decltype(scene)>>) {
     if (shortened_way > 0) scene.shortened_way = shortened_way;
   }

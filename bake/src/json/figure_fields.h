@@ -274,6 +274,7 @@ void listFields(V& v, GeneratedScene& scene) {
   v.field("name", scene.name);
   v.field("episodes", scene.episodes);
   v.field("floor_places", scene.floor_places);
+  v.field("floor_parts", scene.floor_parts);
   v.field("support_places", scene.support_places);
   v.field("surfaces", scene.surfaces);
   v.field("receptacles", scene.receptacles);

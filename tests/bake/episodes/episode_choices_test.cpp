@@ -359,6 +359,31 @@ TEST(GeneratedEpisodes, AreTheSameWithAnyThreadsAndAnyOrderOfPacks) {
   EXPECT_FALSE(bytesOf(generated(inputs, options).episodes) == bytes);
 }
 
+TEST(GeneratedEpisodes, StayInThePartOfTheFloorInWhichTheyBegin) {
+  MeshBuilder rooms = madeRoom(6, 3);
+  rooms.box({2.95F, 0, 0}, {3.05F, 1.5F, 3});
+  for (const float x : {0.2F, 5.1F}) {
+    rooms.box({x, 0.6F, 0.2F}, {x + 0.7F, kTop, 1});
+    rooms.box({x, 0.6F, 2}, {x + 0.7F, kTop, 2.7F});
+  }
+  const MadeWorld world(rooms.build(), stickRobot());
+  const auto made = generated({.packs = world.packs(), .details = {}}, optionsFor(60, 2));
+  ASSERT_EQ(made.scenes.size(), 1U);
+  EXPECT_EQ(made.scenes.front().floor_parts, 2U);
+  EXPECT_GT(made.rejections[EpisodeRejection::kOtherPart], 0U);
+  const SourceEpisodes& set = made.episodes;
+  std::array<int, 2> begun{};
+  for (const Episode& episode : set.episodes) {
+    const auto is_beyond = [](const Vec3& point) { return point.x > 3; };
+    const Vec3& target = set.placements[episode.first_placement + episode.target].pose.translation;
+    EXPECT_EQ(is_beyond(target), is_beyond(episode.base_position));
+    EXPECT_EQ(is_beyond(episode.goal.translation), is_beyond(episode.base_position));
+    ++begun[is_beyond(episode.base_position) ? 1 : 0];
+  }
+  EXPECT_GT(begun[0], 15);
+  EXPECT_GT(begun[1], 15);
+}
+
 TEST(GeneratedEpisodes, HaveTheirGoalsOnTheOtherTableWhereAsked) {
   const MadeWorld world(twoTables(), stickRobot());
   const EpisodeInputs inputs{world.packs(), {}};

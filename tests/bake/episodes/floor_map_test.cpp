@@ -144,7 +144,27 @@ TEST(FloorMap, HasTheHeadingsToWhichALongRobotCanTurnAndDrive) {
   EXPECT_TRUE(found == expected) << found.size() << " of " << expected.size();
 }
 
-TEST(FloorMap, KeepsTheLargerOfTwoRoomsThatTheRobotCannotDriveBetween) {
+TEST(FloorMap, HasAPartForEachLargeRoomThatTheRobotCannotLeave) {
+  for (const float middle : {1.9F, 2.6F}) {
+    MeshBuilder rooms = madeRoom(4, 2);
+    // It is no ceiling: what is free over it connects the rooms for spheres.
+    rooms.box({middle, 0, 0}, {middle + 0.1F, 1.5F, 2});
+    const MadeWorld world(rooms.build(), stickRobot());
+    const FloorMap map(world.scene(), world.robot());
+    ASSERT_EQ(map.parts(), 2U);
+    std::array<std::size_t, 2> counts{};
+    for (const FloorPlace& place : map.places()) {
+      ASSERT_LT(place.part, 2U);
+      const bool is_beyond = map.position(place).x > middle;
+      EXPECT_EQ(place.part == 0, is_beyond == (middle < 2)) << middle;
+      ++counts[place.part];
+    }
+    EXPECT_GT(counts[0], counts[1]);
+    EXPECT_GT(counts[1], 0U);
+  }
+}
+
+TEST(FloorMap, LeavesOutSmallRoomsThatTheRobotCannotLeave) {
   // The base's sphere is 0.24 m wide.
   const MadeWorld narrow(twoRooms(0.2F), stickRobot());
   EXPECT_EQ(roomsOn(FloorMap(narrow.scene(), narrow.robot())), (std::array{true, false}));
@@ -161,7 +181,8 @@ TEST(FloorMap, TakesStepsThatTheBaseTakesAndNoHigherOnes) {
     const bool has_step = std::any_of(
         map.places().begin(), map.places().end(),
         [step = step](const FloorPlace& place) { return std::abs(place.height - step) < 0.001F; });
-    EXPECT_EQ(has_step, climbs) << step;
+    EXPECT_TRUE(has_step) << step;
+    EXPECT_EQ(map.parts(), climbs ? 1U : 2U) << step;
   }
 }
 

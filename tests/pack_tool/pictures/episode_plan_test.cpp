@@ -114,6 +114,8 @@ TEST(EpisodePlanPicture, ShowsTheStoreyOfItsEpisodes) {
   // A pillar downstairs, a table upstairs, and a hall that is as high as the house.
   builder.column(1, 0, {{3, 5.5F}});
   builder.column(3, 0, {{0, 2.5F}, {3.75F, 5.5F}}).column(5, 0, {{0, 5.5F}});
+  // A cupboard downstairs.
+  builder.column(7, 0, {{2, 2.5F}, {3, 5.5F}});
   const auto grid = builder.build();
   const auto brightness = [&](std::optional<float> floor, double x) {
     const Picture picture = drawEpisodePlan({"house", grid.view(), {}, floor}, 800);
@@ -124,11 +126,13 @@ TEST(EpisodePlanPicture, ShowsTheStoreyOfItsEpisodes) {
     EXPECT_LT(brightness(floor, 1.5), 120);
     EXPECT_GT(brightness(floor, 3.5), 240);
     EXPECT_GT(brightness(floor, 5.5), 240);
+    EXPECT_LT(brightness(floor, 7.5), 220);
   }
   EXPECT_GT(brightness(3, 0.5), 240);
   EXPECT_GT(brightness(3, 1.5), 240);
   EXPECT_LT(brightness(3, 3.5), 220);
   EXPECT_LT(brightness(3, 5.5), 120);
+  EXPECT_GT(brightness(3, 7.5), 240);
 }
 
 TEST(EpisodePlanPicture, LeavesOutMarksThatAreNowhere) {

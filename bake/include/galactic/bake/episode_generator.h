@@ -25,6 +25,7 @@ namespace galactic::bake {
 /// Why something that was drawn for an episode was not taken. In the order of the tests.
 enum class EpisodeRejection : std::uint8_t {
   kDistance,           ///< The goal is nearer to the target or farther from it than asked.
+  kOtherPart,          ///< The goal or the start is where the robot cannot drive from the target.
   kSameSupport,        ///< The goal is on the target's surface, another was asked for.
   kNoRoom,             ///< The columns are not flat and free under and over the object.
   kUneven,             ///< Rays at the triangles found a gap, a slope or an edge under the object.
@@ -39,7 +40,7 @@ enum class EpisodeRejection : std::uint8_t {
   kReplayBlocked,      ///< The runtime does not start the episode: the robot penetrates something.
   kReplayMoved,        ///< In the first step of a run something moved that should not.
 };
-inline constexpr std::size_t kRejectionCount = 14;
+inline constexpr std::size_t kRejectionCount = 15;
 
 /// A short name, as in reports: "no_room".
 [[nodiscard]] std::string_view rejectionName(EpisodeRejection reason);
@@ -166,6 +167,8 @@ struct GeneratedScene {
   std::uint32_t skipped = 0;
   /// Columns with a floor on which the robot stands and drives.
   std::size_t floor_places = 0;
+  /// Parts of the floor, such as storeys: it drives in one of them in each episode.
+  std::size_t floor_parts = 0;
   /// Columns over a flat surface within reach, and how many surfaces they make.
   std::size_t support_places = 0;
   std::size_t surfaces = 0;

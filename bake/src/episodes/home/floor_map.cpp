@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -13,7 +14,6 @@
 namespace galactic::bake {
 namespace {
 
-constexpr std::uint32_t kNoPlace = 0xFFFFFFFF;
 /// A step that the run's base takes in both directions, meters.
 constexpr float kMostStep = std::min(GroundOptions{}.most_rise, GroundOptions{}.most_drop);
 
@@ -103,6 +103,34 @@ class FloorGraph {
   const std::vector<std::uint32_t>& first_;
   const ColumnGrid& grid_;
 };
+
+/// Places between which the robot can drive, by one of them.
+struct FloorPart {
+  std::uint32_t place = 0;
+  std::uint32_t heading = 0;
+  /// Headings of all places.
+  std::size_t size = 0;
+};
+
+/// The largest part, and those that are not much smaller: storeys, but no closets. The largest one
+/// first.
+std::vector<FloorPart> largeParts(const FloorGraph& graph, const std::vector<FloorPlace>& places) {
+  constexpr std::size_t kTimesSmaller = 5;
+  std::vector<FloorPart> parts;
+  Flood all(places.size());
+  for (std::uint32_t place = 0; place < places.size(); ++place) {
+    while (const auto left =
+               static_cast<std::uint16_t>(places[place].headings & ~all.seen[place])) {
+      const auto heading = static_cast<std::uint32_t>(std::countr_zero(left));
+      parts.push_back({place, heading, graph.fill(all, place, heading)});
+    }
+  }
+  std::ranges::stable_sort(parts, std::ranges::greater(), &FloorPart::size);
+  std::erase_if(parts, [most = parts.empty() ? 0 : parts.front().size](const FloorPart& part) {
+    return kTimesSmaller * part.size < most;
+  });
+  return parts;
+}
 
 /// The spheres of a body as the batched queries of grids want them, to be tested in many places.
 class BodyArrays {
@@ -205,7 +233,7 @@ FloorMap::FloorMap(const Scene& scene, const Robot& robot)
   }
   std::erase_if(places_, [](const FloorPlace& place) { return place.headings == 0; });
   indexColumns();
-  keepLargestPart();
+  keepLargeParts();
 }
 
 void FloorMap::addPlaces(std::uint32_t i, std::uint32_t k) {
@@ -216,7 +244,7 @@ void FloorMap::addPlaces(std::uint32_t i, std::uint32_t k) {
     const std::optional<float> floor = floorUnder(center);
     // Two spans of the large sphere may lie in one of the small one, over one floor.
     if (!floor || floor == last) continue;
-    places_.push_back({.i = i, .k = k, .height = *floor, .headings = 0});
+    places_.push_back({.i = i, .k = k, .height = *floor, .headings = 0, .part = 0});
     last = floor;
   }
 }
@@ -249,28 +277,24 @@ void FloorMap::indexColumns() {
   for (std::size_t column = 0; column < columns; ++column) first_[column + 1] += first_[column];
 }
 
-void FloorMap::keepLargestPart() {
+void FloorMap::keepLargeParts() {
   const FloorGraph graph(places_, first_, grid_);
-  Flood all(places_.size());
-  std::size_t most = 0;
-  std::uint32_t seed_place = kNoPlace;
-  std::uint32_t seed_heading = 0;
-  for (std::uint32_t place = 0; place < places_.size(); ++place) {
-    while (const auto left =
-               static_cast<std::uint16_t>(places_[place].headings & ~all.seen[place])) {
-      const auto heading = static_cast<std::uint32_t>(std::countr_zero(left));
-      const std::size_t reached = graph.fill(all, place, heading);
-      if (reached <= most) continue;
-      most = reached;
-      seed_place = place;
-      seed_heading = heading;
+  std::vector<FloorPart> parts = largeParts(graph, places_);
+  std::vector<Flood> floods;
+  for (const FloorPart& part : parts) {
+    graph.fill(floods.emplace_back(places_.size()), part.place, part.heading);
+  }
+  std::vector<FloorPlace> kept;
+  for (std::size_t n = 0; n < places_.size(); ++n) {
+    for (std::uint32_t part = 0; part < parts.size(); ++part) {
+      FloorPlace place = places_[n];
+      place.headings = floods[part].seen[n];
+      place.part = part;
+      if (place.headings != 0) kept.push_back(place);
     }
   }
-  if (seed_place == kNoPlace) return;
-  Flood largest(places_.size());
-  graph.fill(largest, seed_place, seed_heading);
-  for (std::size_t n = 0; n < places_.size(); ++n) places_[n].headings = largest.seen[n];
-  std::erase_if(places_, [](const FloorPlace& place) { return place.headings == 0; });
+  places_ = std::move(kept);
+  parts_ = parts.size();
   indexColumns();
 }
 

@@ -23,11 +23,14 @@ struct FloorPlace {
   /// Meters.
   float height = 0;
   /// Bit n: the robot in its start pose is free in heading n, and can drive here from anywhere else
-  /// on the map.
+  /// in the same part of the map.
   std::uint16_t headings = 0;
+  /// Number of the part; 0 is the largest.
+  std::uint32_t part = 0;
 };
 
-/// Where the robot can stand and drive: the largest connected part of the floor.
+/// Where the robot can stand and drive: the large connected parts of the floor, such as storeys.
+/// The robot cannot drive from one to another.
 class FloorMap {
  public:
   /// Takes the floor from the columns of the largest radius and tests all spheres of the robot in
@@ -36,10 +39,13 @@ class FloorMap {
   /// connected with their neighbors. Empty when the robot stands nowhere.
   FloorMap(const Scene& scene, const Robot& robot);
 
-  /// Row by row, the lower place of a column first; each with at least one heading.
+  /// Row by row, the lower place of a column first; each with at least one heading. A place that
+  /// headings of several parts share is one of each.
   [[nodiscard]] const std::vector<FloorPlace>& places() const { return places_; }
   /// Places with a floor at which the robot was tried.
   [[nodiscard]] std::size_t tried() const { return tried_; }
+  /// Parts that the robot can drive in.
+  [[nodiscard]] std::size_t parts() const { return parts_; }
 
   /// Point on the floor at the center of the place's column, meters.
   [[nodiscard]] Vec3 position(const FloorPlace& place) const;
@@ -57,7 +63,7 @@ class FloorMap {
   void addPlaces(std::uint32_t i, std::uint32_t k);
   [[nodiscard]] std::optional<float> floorUnder(const Vec3& free_center) const;
   void indexColumns();
-  void keepLargestPart();
+  void keepLargeParts();
 
   ColumnGrid grid_;
   /// Of the smallest radius.
@@ -66,6 +72,7 @@ class FloorMap {
   /// Index of each column's first place, and the number of places at the end.
   std::vector<std::uint32_t> first_;
   std::size_t tried_ = 0;
+  std::size_t parts_ = 0;
 };
 
 /// The heading that is nearest to a yaw in radians.

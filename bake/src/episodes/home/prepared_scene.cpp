@@ -45,8 +45,9 @@ std::string adviceFor(const RejectionCounts& rejections, float flatness) {
         "{}, or ask for other heights or smaller objects",
         flatness, kScanFlatness);
   }
-  const bool reached =
-      rejections[EpisodeRejection::kDistance] > 0 || rejections[EpisodeRejection::kSameSupport] > 0;
+  const bool reached = rejections[EpisodeRejection::kDistance] > 0 ||
+                       rejections[EpisodeRejection::kSameSupport] > 0 ||
+                       rejections[EpisodeRejection::kOtherPart] > 0;
   if (reached || rejections[EpisodeRejection::kNotReached] == 0) {
     return "ask for other distances, other heights or smaller objects";
   }
@@ -211,6 +212,7 @@ GeneratedScene PreparedScene::summary() const {
           .episodes = 0,
           .skipped = 0,
           .floor_places = floor_.places().size(),
+          .floor_parts = floor_.parts(),
           .support_places = supports_.places().size(),
           .surfaces = supports_.surfaceCount(),
           .bumpy_places = unusable_.empty() ? bumpyPlaces() : 0,

@@ -44,18 +44,18 @@ class ReachTest {
     std::sort(floor_heights_.begin(), floor_heights_.end());
   }
 
-  /// The height of a floor from which the arm reaches `point`, and over which `point` is between
-  /// the heights; the first one in a fixed order.
-  [[nodiscard]] std::optional<float> floorFor(const Vec3& point) const {
-    if (!isOverAnyFloor(point)) return std::nullopt;
+  /// A floor from which the arm reaches `point`, and over which `point` is between the heights; the
+  /// first one in a fixed order. Null where there is none.
+  [[nodiscard]] const FloorPlace* floorFor(const Vec3& point) const {
+    if (!isOverAnyFloor(point)) return nullptr;
     for (const Way& way : ways_) {
       for (const FloorPlace& place : floor_.placesAt(point.x + way.dx, point.z + way.dz)) {
         const float height = point.y - place.height;
         if (height < heights_.least || height > heights_.most) continue;
-        if (reach_.covers(way.length, height)) return place.height;
+        if (reach_.covers(way.length, height)) return &place;
       }
     }
-    return std::nullopt;
+    return nullptr;
   }
 
  private:
@@ -260,9 +260,10 @@ SupportPlaces::SupportPlaces(const Scene& scene, const Reachable& from,
   for (SupportPlace& place : flatPlaces()) {
     const Vec3 point{place.x, place.surface, place.z};
     if (!isAllowed(point)) continue;
-    const std::optional<float> floor = test.floorFor(point);
-    if (!floor) continue;
-    place.floor = *floor;
+    const FloorPlace* floor = test.floorFor(point);
+    if (floor == nullptr) continue;
+    place.floor = floor->height;
+    place.part = floor->part;
     if (choice_ == SupportChoice::kBoth && isInReceptacle(point)) {
       in_receptacles_.push_back(static_cast<std::uint32_t>(places_.size()));
     }
@@ -283,7 +284,7 @@ std::vector<SupportPlace> SupportPlaces::flatPlaces() const {
       const Vec3 center = columnCenter(grid, i, k);
       for (const float height : surfaces.heights(i)) {
         if (!surfaces.isFlatAround(i, height, flatness_)) continue;
-        flat.push_back({.x = center.x, .z = center.z, .surface = height, .floor = 0});
+        flat.push_back({.x = center.x, .z = center.z, .surface = height});
         labels.add(i, flat);
       }
     }

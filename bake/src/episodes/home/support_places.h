@@ -26,8 +26,9 @@ struct SupportPlace {
   float z = 0;
   /// Height of the surface, meters.
   float surface = 0;
-  /// Height of the floor from which it is reached, meters.
+  /// Height of the floor from which it is reached, meters, and FloorPlace::part.
   float floor = 0;
+  std::uint32_t part = 0;
   /// Number of the flat surface that it belongs to: neighboring columns of one height.
   std::uint32_t surface_id = 0;
 };
