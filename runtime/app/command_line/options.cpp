@@ -155,6 +155,11 @@ std::string withoutEffect(const CLI::App& app, const SimulationOptions& simulati
               {},
               task.drop_fails,
               "applies to what safe drop overlooks only; add --safe-drop"},
+      Details{"--terminate-after",
+              {},
+              !task.needs_terminate || task.kind != TaskKind::kRearrange,
+              "applies to a task that ends with the terminate action only: rearrange without "
+              "--no-terminate"},
       Details{"--slide-", "--slide-attempts", simulation.slide.attempts == 0,
               "applies to robots that slide, and sliding is off; leave it out"},
       Details{"--place-", "--place-attempts", simulation.placement.attempts == 0,

@@ -106,6 +106,8 @@ struct TaskOptions {
   /// Success needs the terminate action, and terminating elsewhere is a failure. Off: success is
   /// judged at each release, and the action is ignored ("no terminate action").
   bool needs_terminate = true;
+  /// In so many first steps of an episode the terminate action does nothing.
+  std::uint32_t terminate_after = 0;
   /// Releases away from the goal and grasps of another object end the episode as a failure. Off:
   /// they do nothing ("safe drop": a release away from the goal is not carried out).
   bool drop_fails = true;

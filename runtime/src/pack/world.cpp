@@ -215,6 +215,27 @@ tl::unexpected<Error> unknown(const PackFile& episodes, const NameList& list, st
               std::move(message), list.error_name);
 }
 
+/// The failure of the first of the `names` from `n` on that are not among `known`, which are called
+/// `things`; tells of the others, too.
+template <class Names, class Known>
+tl::unexpected<Error> lacking(const PackFile& episodes, const NameList& list, const Names& names,
+                              std::size_t n, const Known& known, std::string_view things) {
+  constexpr std::size_t kMostTold = 10;
+  std::vector<std::string> more;
+  for (std::size_t other = n + 1; other < names.size(); ++other) {
+    if (!known.contains(names[other])) more.push_back(fmt::format("\"{}\"", names[other]));
+  }
+  const std::size_t untold = more.size() - std::min(more.size(), kMostTold);
+  more.resize(more.size() - untold);
+  const std::string others =
+      more.empty() ? "; add its pack"
+                   : fmt::format(", nor {}{}; add their packs", fmt::join(more, ", "),
+                                 untold > 0 ? fmt::format(" and {} more", untold) : "");
+  return unknown(episodes, list, n,
+                 fmt::format("is \"{}\", which the world, with {}, does not have{}", names[n],
+                             counted(known.size(), things), others));
+}
+
 /// For each of the episode set's scenes its place among the sorted scenes.
 Result<std::vector<std::uint32_t>> findScenes(const Parts& parts) {
   const auto& names = parts.episodes->content.sceneNames();
@@ -223,9 +244,7 @@ Result<std::vector<std::uint32_t>> findScenes(const Parts& parts) {
   for (std::size_t n = 0; n < names.size(); ++n) {
     const auto found = parts.scenes.find(names[n]);
     if (found == parts.scenes.end()) {
-      return unknown(*parts.episodes->pack, kSceneNames, n,
-                     fmt::format("is \"{}\", which the world, with {}, does not have; add its pack",
-                                 names[n], counted(parts.scenes.size(), "scene")));
+      return lacking(*parts.episodes->pack, kSceneNames, names, n, parts.scenes, "scene");
     }
     indices.push_back(static_cast<std::uint32_t>(std::distance(parts.scenes.begin(), found)));
   }
@@ -239,9 +258,7 @@ Result<std::vector<ObjectModel>> findObjects(const Parts& parts) {
   for (std::size_t n = 0; n < names.size(); ++n) {
     const auto found = parts.objects.find(names[n]);
     if (found == parts.objects.end()) {
-      return unknown(*parts.episodes->pack, kObjectNames, n,
-                     fmt::format("is \"{}\", which the world, with {}, does not have; add its pack",
-                                 names[n], counted(parts.objects.size(), "object")));
+      return lacking(*parts.episodes->pack, kObjectNames, names, n, parts.objects, "object");
     }
     objects.push_back(found->second.content);
   }

@@ -99,6 +99,8 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
          "Largest distance between target and goal that is a success, meters");
   v.flag("no-terminate", Switch{t.needs_terminate, false},
          "Judge success at each release; the terminate action does nothing");
+  v.whole("terminate-after", t.terminate_after, Within<std::uint32_t>{0, 1U << 30U},
+          "First steps of an episode in which the terminate action does nothing");
   v.flag("safe-drop", Switch{t.drop_fails, false},
          "Ignore releases away from the goal, instead of counting them as failures");
   v.flag("no-distractors", Switch{t.distractors, false}, "Leave out all objects except the target");

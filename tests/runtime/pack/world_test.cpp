@@ -385,6 +385,13 @@ TEST(World, RefusesEpisodesOfWhatIsNotThere) {
                      "tidy.pack: episode_set.objects[1]",
                      "is \"pan\", which the world, with 2 objects, does not have; add its pack");
   expectRefusedWorld(
+      [](WorldFields& f) {
+        f.episodes.objects[0] = "jug";
+        f.episodes.objects[1] = "pan";
+      },
+      "tidy.pack: episode_set.objects[0]",
+      "is \"jug\", which the world, with 2 objects, does not have, nor \"pan\"; add their packs");
+  expectRefusedWorld(
       [](WorldFields& f) { f.episodes.robot = "fetch"; }, "tidy.pack: episode_set.robot",
       "is \"fetch\", the robot in helper.pack is \"helper\"; give the robot that the "
       "episodes were made for");

@@ -252,6 +252,17 @@ TEST(Rearrange, IsJudgedAtTheReleaseWithoutTerminate) {
   EXPECT_TRUE(elsewhere.failed());
 }
 
+TEST(Rearrange, IsNotTerminatedInTheFirstStepsWhereAsked) {
+  constexpr std::uint32_t kFirst = 3;
+  Player player({.terminate_after = kFirst});
+  for (std::uint32_t n = 0; n < kFirst; ++n) {
+    player.terminate();
+    EXPECT_FALSE(player.done()) << n;
+  }
+  player.terminate();
+  EXPECT_TRUE(player.failed());
+}
+
 TEST(Rearrange, PaysThePickOnceInAnEpisode) {
   Player player({.pick_reward = 1000});
   int paid = 0;

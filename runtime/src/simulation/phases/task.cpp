@@ -18,7 +18,8 @@ bool holdsAnother(const Env& env) { return env.held >= 0 && !holdsTarget(env); }
 
 EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transport) {
   const bool is_there = transport < task.success_distance && !holdsTarget(env);
-  if (task.needs_terminate && env.events.terminates) {
+  const bool may_terminate = task.needs_terminate && env.step > task.terminate_after;
+  if (may_terminate && env.events.terminates) {
     return is_there ? EpisodeEnd::kSuccess : EpisodeEnd::kWrongTerminate;
   }
   if (!task.needs_terminate && env.events.released_target && is_there) return EpisodeEnd::kSuccess;

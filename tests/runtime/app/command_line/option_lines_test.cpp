@@ -63,6 +63,7 @@ SimulationOptions unusualOptions() {
                   .success_distance = 0.15F,
                   .most_steps = 0,
                   .needs_terminate = false,
+                  .terminate_after = 5,
                   .drop_fails = false,
                   .distractors = false,
                   .observes_current_target = true};

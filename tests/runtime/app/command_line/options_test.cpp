@@ -120,6 +120,9 @@ TEST(RunCommandLine, FindsWhatHasNoEffect) {
             "--geodesic-weight X");
   EXPECT_EQ(without_effect({"--geodesic-megabytes", "5", "--geodesic"}), "");
   EXPECT_EQ(without_effect({"--geodesic-megabytes", "5", "--geodesic-weight", "0.5"}), "");
+  EXPECT_EQ(without_effect({"--terminate-after", "5", "--task", "rearrange"}), "");
+  EXPECT_NE(without_effect({"--terminate-after", "5", "--task", "pick"}), "");
+  EXPECT_NE(without_effect({"--terminate-after", "5", "--no-terminate"}), "");
   for (const char* off : {"--slide=off", "--slide-attempts=0"}) {
     EXPECT_EQ(without_effect({off}), "") << off;
     EXPECT_EQ(without_effect({off, "--slide-step", "0.1"}),
