@@ -80,6 +80,8 @@ struct EpisodeComparison {
   std::uint32_t steps = 0;
   /// Of the dynamics world, by the simulation's rules; kNone where the recorded actions ran out.
   EpisodeEnd end_there = EpisodeEnd::kNone;
+  /// Those after which the engine knew where everything was: it may lose what is pressed into other
+  /// things, even in the first one, and then the episode ends without a success.
   std::uint32_t steps_there = 0;
   /// Success there that is still one two seconds later.
   bool success_settled = false;

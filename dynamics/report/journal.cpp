@@ -131,11 +131,13 @@ EpisodeComparison comparisonOf(const Json& json) {
   return c;
 }
 
-/// Whether everything that it refers to is there: links of the robot and steps of its own.
+/// Whether everything that it refers to is there: links of the robot and steps of its own, with the
+/// gaps after those that both worlds made.
 bool isSound(const EpisodeComparison& c, std::size_t links) {
   const auto has_link = [links](const auto& missed) { return std::get<0>(missed.first) < links; };
-  return !c.base_gap.empty() && c.grip_gap.size() == c.base_gap.size() &&
-         c.parted.value_or(0) < c.grip_gap.size() && std::ranges::all_of(c.missed, has_link) &&
+  const std::size_t steps = std::min(c.steps, c.steps_there);
+  return c.base_gap.size() == steps && c.grip_gap.size() == steps &&
+         (!c.parted || *c.parted < steps) && std::ranges::all_of(c.missed, has_link) &&
          (!c.deepest || (std::get<0>(c.deepest->key) < links && c.deepest->step < c.steps)) &&
          std::ranges::all_of(c.rests, [&c](const Rest& rest) { return rest.step < c.steps; });
 }

@@ -65,39 +65,36 @@ Ranking rank(const std::vector<EpisodeComparison>& episodes) {
   return ranking;
 }
 
-/// Number of the last step.
-std::uint32_t lastOf(const RunTrack& track) {
-  return static_cast<std::uint32_t>(track.steps()) - 1;
-}
+std::uint32_t lastFrame(const RunTrack& track) { return static_cast<std::uint32_t>(track.steps()); }
 
-/// After which step the robot of a track stands most as it does after a step of another one: by
-/// where its root is, a point ahead of it, and its joints.
-std::uint32_t likestStep(const RunTrack& track, const RunTrack& other, std::uint32_t step) {
+/// In which frame after a step the robot of a track stands most as it does in a frame of another
+/// one: by where its root is, a point ahead of it, and its joints. The start where there is no
+/// step.
+std::uint32_t likestFrame(const RunTrack& track, const RunTrack& other, std::uint32_t frame) {
   constexpr Vec3 kAhead{0.5F, 0, 0};
   // Meters for a radian, as a joint moves a hand.
   constexpr float kReach = 0.5F;
   const std::size_t positions = track.positionCount();
-  // The first frame is of the start.
   const auto root_of = [](const RunTrack& one, std::size_t at) -> const Pose& {
-    return one.envs().front().world_from_root[at + 1];
+    return one.envs().front().world_from_root[at];
   };
   const auto joints_of = [positions](const RunTrack& one, std::size_t at) {
-    return std::span(one.envs().front().joints).subspan((at + 1) * positions, positions);
+    return std::span(one.envs().front().joints).subspan(at * positions, positions);
   };
   const auto distance = [&](std::uint32_t at) {
     const Pose& a = root_of(track, at);
-    const Pose& b = root_of(other, step);
+    const Pose& b = root_of(other, frame);
     const Vec3 away = a.translation - b.translation;
     const Vec3 ahead = a * kAhead - b * kAhead;
     float sum = dot(away, away) + dot(ahead, ahead);
     for (std::size_t n = 0; n < positions; ++n) {
-      const float turned = kReach * (joints_of(track, at)[n] - joints_of(other, step)[n]);
+      const float turned = kReach * (joints_of(track, at)[n] - joints_of(other, frame)[n]);
       sum += turned * turned;
     }
     return sum;
   };
-  std::uint32_t best = 0;
-  for (std::uint32_t at = 1; at <= lastOf(track); ++at) {
+  std::uint32_t best = std::min(1U, lastFrame(track));
+  for (std::uint32_t at = best + 1; at <= lastFrame(track); ++at) {
     if (distance(at) < distance(best)) best = at;
   }
   return best;
@@ -129,9 +126,9 @@ MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
                     const BothTracks& tracks) {
   const auto& [here, there, is_closed] = tracks;
   const std::string what = fmt::format("{}, {:.3f} m", nameOf(moment.kind), moment.meters);
-  MomentSides sides{.step_here = std::min(moment.step, lastOf(here)),
+  MomentSides sides{.frame_here = std::min(moment.step + 1, lastFrame(here)),
                     .said_here = what,
-                    .step_there = std::min(moment.step, lastOf(there)),
+                    .frame_there = std::min(moment.step + 1, lastFrame(there)),
                     .said_there = {},
                     .rest = {}};
   if (moment.kind == MomentKind::kMoved) {
@@ -140,19 +137,20 @@ MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
     sides.said_there = "dynamics, 2 s later, " + what;
     sides.rest = rest->world_from_object;
   } else if (is_closed && moment.kind == MomentKind::kLost) {
-    sides.step_here = lastOf(here);
+    sides.frame_here = lastFrame(here);
     sides.said_here = nameOf(episode.end);
-    sides.step_there = lastOf(there);
+    sides.frame_there = lastFrame(there);
     sides.said_there = fmt::format("{}, {}", nameOf(episode.end_there), what);
   } else if (is_closed) {
-    sides.step_there = likestStep(there, here, sides.step_here);
+    sides.frame_there = likestFrame(there, here, sides.frame_here);
     sides.said_there = "most like it";
   }
-  const auto stepped = [](std::string_view world, std::uint32_t step, const std::string& said) {
-    return fmt::format("{}, step {}{}{}", world, step + 1, said.empty() ? "" : ", ", said);
+  const auto timed = [](std::string_view world, std::uint32_t frame, const std::string& said) {
+    const std::string when = frame == 0 ? "start" : fmt::format("step {}", frame);
+    return fmt::format("{}, {}{}{}", world, when, said.empty() ? "" : ", ", said);
   };
-  sides.said_here = stepped("simulation", sides.step_here, sides.said_here);
-  if (!sides.rest) sides.said_there = stepped("dynamics", sides.step_there, sides.said_there);
+  sides.said_here = timed("simulation", sides.frame_here, sides.said_here);
+  if (!sides.rest) sides.said_there = timed("dynamics", sides.frame_there, sides.said_there);
   return sides;
 }
 

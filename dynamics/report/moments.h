@@ -67,11 +67,12 @@ struct BothTracks {
   bool is_closed = false;
 };
 
-/// What a moment looks like in both worlds: after which steps, and what is to be said of it.
+/// What a moment looks like in both worlds: in which frames of their tracks, and what is to be said
+/// of it.
 struct MomentSides {
-  std::uint32_t step_here = 0;
+  std::uint32_t frame_here = 0;
   std::string said_here;
-  std::uint32_t step_there = 0;
+  std::uint32_t frame_there = 0;
   std::string said_there;
   /// Of an object that was let go, where it is in the dynamics two seconds later: all else is as in
   /// the simulation, and the robot is gone.
@@ -81,7 +82,7 @@ struct MomentSides {
 /// In a replay both are seen after the same step. In a closed loop the same step says nothing:
 /// where a success is lost, both ends are seen, and else the dynamics when the robot stands there
 /// most as it does in the simulation. What an object did that was let go is seen two seconds later.
-/// Where an episode ends before, its end is seen.
+/// Where an episode ends before, its end is seen, and its start where it has no step.
 [[nodiscard]] MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
                                   const BothTracks& tracks);
 

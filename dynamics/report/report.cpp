@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "dynamics/episodes/robot_driver.h"
@@ -101,6 +103,16 @@ Json gapsOf(const Sums& sums) {
   return gaps;
 }
 
+/// None where the dynamics made no step.
+std::optional<float> lastOf(std::span<const float> gaps) {
+  return gaps.empty() ? std::nullopt : std::optional(gaps.back());
+}
+
+template <class T>
+Json jsonOf(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json jsonOf(const EpisodeComparison& episode) {
   Json rests = Json::array();
   for (const Rest& rest : episode.rests) {
@@ -120,8 +132,8 @@ Json jsonOf(const EpisodeComparison& episode) {
           {"success_settled", episode.success_settled},
           {"picked_there", episode.picked_there},
           {"parted", parted},
-          {"last_base_gap", episode.base_gap.back()},
-          {"last_grip_gap", episode.grip_gap.back()},
+          {"last_base_gap", jsonOf(lastOf(episode.base_gap))},
+          {"last_grip_gap", jsonOf(lastOf(episode.grip_gap))},
           {"missed_steps", episode.missed_steps},
           {"disturbed", episode.disturbed},
           {"rests", rests}};

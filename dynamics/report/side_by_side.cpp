@@ -32,27 +32,26 @@ constexpr std::size_t kWithoutMoments = 4;
 /// What one world looks like while an episode is played in it.
 class Onlooker {
  public:
-  /// `best`: takes a still after each step; null without pictures.
+  /// `best`: takes a still of each frame; null without pictures.
   Onlooker(const World& world, BestView* best) : world_(world), best_(best) {}
 
   void look(const BatchSimulator& simulator, std::span<const float> actions) {
     if (actions.empty()) {
       track_.emplace(world_, simulator, 1);
-      return;
+    } else {
+      track_->add(simulator, actions);
     }
-    track_->add(simulator, actions);
     if (best_ != nullptr) stills_.push_back(best_->take(simulator));
   }
 
   [[nodiscard]] const RunTrack& track() const { return *track_; }
-  /// After a step.
-  [[nodiscard]] const Still& still(std::uint32_t step) const { return stills_[step]; }
+  [[nodiscard]] const Still& still(std::uint32_t frame) const { return stills_[frame]; }
 
  private:
   const World& world_;
   BestView* best_;
   std::optional<RunTrack> track_;
-  /// By step.
+  /// By frame.
   std::vector<Still> stills_;
 };
 
@@ -196,11 +195,11 @@ class SideBySide {
     const PictureSubject subject = subjectOf(moment, episode, trace, parts_.worlds.world.robot());
     const MomentSides sides =
         sidesOf(moment, episode, {here.track(), there.track(), parts_.is_closed});
-    const std::array stills{here.still(sides.step_here),
+    const std::array stills{here.still(sides.frame_here),
                             sides.rest
-                                ? BestView::withoutRobot(here.still(sides.step_here),
+                                ? BestView::withoutRobot(here.still(sides.frame_here),
                                                          subject.objects.front(), *sides.rest)
-                                : there.still(sides.step_there)};
+                                : there.still(sides.frame_there)};
     const auto cameras = best_->camerasFor({&stills[0], &stills[1]}, subject);
     const std::array captions{
         fmt::format("{}. episode {}, {}", n + 1, episode.episode, sides.said_here),

@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <string>
 
 #include "dynamics/episodes/robot_driver.h"
 #include "dynamics/episodes/trace.h"
@@ -320,6 +322,32 @@ TEST(AClosedLoop, HasPatienceWithMotors) {
     EXPECT_GT(played.steps_there, played.steps) << "it waited";
     // It looks at its own targets: each joint is asked for once what the plan wants.
     EXPECT_LT(4 * played.steps_there, 9 * played.steps) << episode;
+  }
+}
+
+TEST(AnEpisode, EndsWithoutASuccessWhereTheEngineLosesTheRobotInItsFirstStep) {
+  const RecordedRun run(smallHomeWorld(), driveAhead());
+  SimulationOptions options = run.options();
+  options.task.most_steps = 300;
+  dynamics::Sources sources = run.sources({{{1, 0, 1}, {2, 0.7F, 2}}});
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (dynamics::LinkPart& link : sources.robot.links) {
+    link.inertia = {.mass = kInfinite, .center = {}, .moments = {kInfinite, kInfinite, kInfinite}};
+  }
+  const auto lane = EpisodeLane::create(run.world(), options, dynamics::ClosedLoop{}).value();
+  const auto trace = traceOf(0, *lane).value();
+  for (const bool is_closed : {false, true}) {
+    const EpisodeComparison played =
+        compareEpisode(trace, *lane, {run.world(), options, sources, {}}, is_closed).value();
+    EXPECT_EQ(played.end, EpisodeEnd::kSuccess);
+    EXPECT_EQ(played.end_there, EpisodeEnd::kNone);
+    EXPECT_EQ(played.steps_there, 0U);
+    EXPECT_TRUE(played.base_gap.empty());
+    EXPECT_TRUE(played.grip_gap.empty());
+    EXPECT_FALSE(played.picked_there);
+    EXPECT_FALSE(played.success_settled);
+    const std::string report = dynamics::reportJson({{played}, {}}, run.world(), {});
+    EXPECT_THAT(report, testing::HasSubstr("\"last_grip_gap\": null,"));
   }
 }
 

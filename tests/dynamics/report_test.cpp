@@ -61,6 +61,16 @@ EpisodeComparison made(std::uint32_t episode) {
   return one;
 }
 
+/// As where the engine does not know after the first step where everything is.
+void loseInFirstStep(EpisodeComparison& one) {
+  one.end_there = EpisodeEnd::kNone;
+  one.steps_there = 0;
+  one.parted.reset();
+  one.base_gap.clear();
+  one.grip_gap.clear();
+  one.tracking_sum = one.tracking_worst = 0;
+}
+
 void expectSame(const EpisodeComparison& found, const EpisodeComparison& wanted) {
   EXPECT_EQ(found.env, wanted.env);
   EXPECT_EQ(found.episode, wanted.episode);
@@ -126,9 +136,12 @@ TEST(AJournalOfComparisons, TakesNoOtherRecords) {
 }
 
 TEST(AJournalOfComparisons, TakesNoRecordsOfWhatIsNotThere) {
+  // The first two are sound: as they are, and without a step in the dynamics.
+  constexpr std::size_t kSound = 2;
   using Change = void (*)(EpisodeComparison&);
   const std::vector<Change> changes{
       [](EpisodeComparison&) {},
+      [](EpisodeComparison& one) { loseInFirstStep(one); },
       [](EpisodeComparison& one) {
         one.missed[{5, Thing::kScene, MissCause::kColumnCell}] = 1;
       },
@@ -137,10 +150,18 @@ TEST(AJournalOfComparisons, TakesNoRecordsOfWhatIsNotThere) {
       [](EpisodeComparison& one) { one.rests[0].step = 4; },
       [](EpisodeComparison& one) { one.parted = 3; },
       [](EpisodeComparison& one) { one.grip_gap.pop_back(); },
+      [](EpisodeComparison& one) { one.base_gap.pop_back(); },
       [](EpisodeComparison& one) {
-        one.parted.reset();
-        one.base_gap.clear();
-        one.grip_gap.clear();
+        one.base_gap.push_back(0);
+        one.grip_gap.push_back(0);
+      },
+      [](EpisodeComparison& one) {
+        loseInFirstStep(one);
+        one.steps_there = 3;
+      },
+      [](EpisodeComparison& one) {
+        loseInFirstStep(one);
+        one.parted = 0;
       },
   };
   for (std::size_t n = 0; n < changes.size(); ++n) {
@@ -149,7 +170,7 @@ TEST(AJournalOfComparisons, TakesNoRecordsOfWhatIsNotThere) {
     EpisodeComparison one = made(1);
     changes[n](one);
     ASSERT_TRUE(openJournal(file).add(0, one));
-    EXPECT_EQ(openJournal(file).done().size(), n == 0 ? 1U : 0U) << n;
+    EXPECT_EQ(openJournal(file).done().size(), n < kSound ? 1U : 0U) << n;
   }
 }
 
@@ -232,7 +253,19 @@ TEST(AMoment, IsToldWithTheStepsOfBothWorlds) {
     EXPECT_EQ(told(moved),
               "simulation, step 4, let go | dynamics, 2 s later, object moved, 0.500 m");
     EXPECT_EQ(moved.rest, episode.rests[0].world_from_object);
-    EXPECT_EQ(moved.step_here, 3U);
+    EXPECT_EQ(moved.frame_here, 4U);
+  }
+}
+
+TEST(AMoment, IsToldWithTheStartOfTheDynamicsWhereTheyMadeNoStep) {
+  const SmallHome home;
+  const RunTrack here = drivenTrack(home.world(), 12, 0);
+  const RunTrack there = drivenTrack(home.world(), 0, 0);
+  for (const bool is_closed : {false, true}) {
+    const auto sides = sidesOf({.kind = MomentKind::kMissed, .step = 7, .meters = 0.5F}, made(0),
+                               {here, there, is_closed});
+    EXPECT_EQ(sides.said_there, is_closed ? "dynamics, start, most like it" : "dynamics, start");
+    EXPECT_EQ(sides.frame_there, 0U);
   }
 }
 
@@ -326,6 +359,22 @@ TEST(AReport, CountsStepsFromOneAsTextsDo) {
   EXPECT_THAT(json, HasSubstr("\"parted\": 3,"));
   EXPECT_THAT(json, HasSubstr("\"step\": 4,")) << "of what was let go";
   EXPECT_THAT(json, Not(HasSubstr("\"step\": 2")));
+}
+
+TEST(AReport, TellsNoGapsWhereTheDynamicsMadeNoStep) {
+  const ScratchFolder folder;
+  const World world = smallHome(folder);
+  dynamics::Comparisons comparisons{.episodes = {made(0)}, .worst = {}};
+  const std::string plain = dynamics::reportJson(comparisons, world, {});
+  EXPECT_THAT(plain, HasSubstr("\"last_grip_gap\": 0.69999"));
+  loseInFirstStep(comparisons.episodes.front());
+  comparisons.worst = worstMoments(comparisons.episodes, 10, true);
+  const std::string json = dynamics::reportJson(comparisons, world, {});
+  EXPECT_THAT(json, HasSubstr("\"steps_there\": 0,"));
+  EXPECT_THAT(json, HasSubstr("\"last_base_gap\": null,"));
+  EXPECT_THAT(json, HasSubstr("\"last_grip_gap\": null,"));
+  EXPECT_THAT(json, HasSubstr("\"divergence\": [],"));
+  EXPECT_THAT(dynamics::reportTable(comparisons, world, {}), HasSubstr("1, 4, 0\n"));
 }
 
 TEST(AReport, TellsNoFiguresOfWhatWasNotLetGo) {
