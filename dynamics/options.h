@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "dynamics/sources/body_ranges.h"
 #include "dynamics/world.h"
 #include "galactic/option_text.h"
 #include "support/option_table.h"
@@ -28,7 +29,7 @@ void visitOptions(WorldOptions& o, Visitor& v) {
   v.choice("arm", o.arm, kArmDriveNames, "What moves the arm");
   v.choice("base", o.base, kBaseDriveNames,
            "How the base goes where it is asked to: at once, or as its speeds follow");
-  v.real("friction", o.friction, Within<double>{0, 10},
+  v.real("friction", o.friction, kFrictions,
          "Of surfaces that say nothing; that of a pair is the product");
 }
 template <class Visitor>

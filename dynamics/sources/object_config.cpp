@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <system_error>
 
+#include "dynamics/sources/body_ranges.h"
 #include "json_reader.h"
 #include "support/try.h"
 
@@ -27,15 +27,15 @@ std::string textOf(const Json& json) {
   return json.is_object() ? "an object" : json.dump();
 }
 
-/// A number of at least `least`; none, with a warning, where it is anything else.
-std::optional<double> numberOf(const Json& json, const char* key, double least,
+/// A number within the range; none, with a warning, where it is anything else.
+std::optional<double> numberOf(const Json& json, const char* key, const Within<double>& range,
                                ObjectConfig& config) {
   const auto found = json.find(key);
   if (found == json.end()) return std::nullopt;
-  const double value = found->is_number() ? found->get<double>() : std::nan("");
-  if (std::isfinite(value) && value >= least) return value;
-  config.warnings.push_back(fmt::format("has no usable '{}' in {}: found {}; the default counts",
-                                        key, config.file.filename().string(), textOf(*found)));
+  if (found->is_number() && contains(range, found->get<double>())) return found->get<double>();
+  config.warnings.push_back(
+      fmt::format("has no usable '{}' in '{}': found {}, {}; the default counts", key,
+                  config.file.filename().string(), textOf(*found), expectedText(range)));
   return std::nullopt;
 }
 
@@ -83,9 +83,8 @@ Result<ObjectConfig> readObjectConfig(const std::filesystem::path& file) {
   }
   ObjectConfig config;
   config.file = file;
-  constexpr double kLeastMass = 1e-6;
-  config.mass = numberOf(json, "mass", kLeastMass, config);
-  config.friction = numberOf(json, "friction_coefficient", 0, config);
+  config.mass = numberOf(json, "mass", kMasses, config);
+  config.friction = numberOf(json, "friction_coefficient", kFrictions, config);
   const auto joins = json.find("join_collision_meshes");
   config.joins_meshes = joins != json.end() && joins->is_boolean() && joins->get<bool>();
   readCollisionAsset(json, config);

@@ -12,9 +12,9 @@ namespace galactic::dynamics {
 /// What a Habitat object configuration (`NAME.object_config.json`) says of a body.
 struct ObjectConfig {
   std::filesystem::path file;
-  /// Kilograms, > 0.
+  /// Kilograms, one of kMasses.
   std::optional<double> mass;
-  /// Of its surface, 0 or more.
+  /// Of its surface, one of kFrictions.
   std::optional<double> friction;
   /// A mesh whose parts are convex pieces; empty: none is given.
   std::filesystem::path collision_asset;
@@ -30,9 +30,9 @@ struct ObjectConfig {
 [[nodiscard]] std::optional<std::filesystem::path> findObjectConfig(
     const std::filesystem::path& mesh, std::string_view name);
 
-/// Reads one. Values that no body has become warnings. Fails with kIo, and with kInvalidInput where
-/// the file is no JSON object, is larger than 1 MiB or, as far as the bake's reader of JSON says
-/// so, nested too deeply.
+/// Reads one. Values that no body has (body_ranges.h) become warnings. Fails with kIo, and with
+/// kInvalidInput where the file is no JSON object, is larger than 1 MiB or, as far as the bake's
+/// reader of JSON says so, nested too deeply.
 [[nodiscard]] Result<ObjectConfig> readObjectConfig(const std::filesystem::path& file);
 
 }  // namespace galactic::dynamics

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "dynamics/sources/body_ranges.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
@@ -49,12 +50,16 @@ std::array<double, 6> momentsOfBox(double mass, const Box& box) {
   return {mass / 12 * (yy + zz), mass / 12 * (xx + zz), mass / 12 * (xx + yy), 0, 0, 0};
 }
 
-Inertia inertiaOfBox(double mass, const Box& box) {
-  Inertia inertia{.mass = mass, .center = {}, .moments = momentsOfBox(mass, box)};
+std::array<double, 3> middleOf(const Box& box) {
+  std::array<double, 3> middle{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    inertia.center[axis] = (box.least[axis] + box.most[axis]) / 2;
+    middle[axis] = (box.least[axis] + box.most[axis]) / 2;
   }
-  return inertia;
+  return middle;
+}
+
+Inertia inertiaOfBox(double mass, const Box& box) {
+  return {.mass = mass, .center = middleOf(box), .moments = momentsOfBox(mass, box)};
 }
 
 /// The eigenvalues of a symmetric 3 x 3 matrix (Smith 1961), ascending.
@@ -82,9 +87,11 @@ std::array<double, 3> eigenvaluesOf(const std::array<double, 6>& m) {
 }
 
 bool canBeMoments(const std::array<double, 6>& moments) {
-  if (!std::ranges::all_of(moments, [](double m) { return std::isfinite(m); })) return false;
+  const auto is_small = [](double m) { return std::abs(m) <= kMoments.most; };
+  if (!std::ranges::all_of(moments, is_small)) return false;
   const std::array<double, 3> principal = eigenvaluesOf(moments);
-  return principal[0] > 0 && principal[2] <= (principal[0] + principal[1]) * (1 + kMomentSlack);
+  return contains(kMoments, principal[0]) && contains(kMoments, principal[2]) &&
+         principal[2] <= (principal[0] + principal[1]) * (1 + kMomentSlack);
 }
 
 /// (x, y, z) becomes (x, z, -y), as importUrdf has it.
@@ -97,23 +104,40 @@ Inertia yUp(const bake::LinkInertial& stated) {
 /// What the URDF says of a link, or what stands in for it; nothing for a bare frame.
 class LinkInertias {
  public:
-  LinkInertias(const RobotDefaults& defaults, std::vector<std::string>& warnings)
-      : defaults_(defaults), warnings_(warnings) {}
+  /// `file`: the URDF's name, for warnings.
+  LinkInertias(std::string_view file, const RobotDefaults& defaults,
+               std::vector<std::string>& warnings)
+      : file_(file), defaults_(defaults), warnings_(warnings) {}
 
   /// `stated` may be null.
   std::optional<Inertia> of(std::string_view link, const bake::LinkInertial* stated,
                             const std::vector<HullPoints>& hulls) {
     const std::optional<Box> box = boxAround(hulls);
     if (stated == nullptr) return without(link, box, "has no <inertial>");
-    if (!(stated->mass > 0) || !std::isfinite(stated->mass)) {
-      return without(link, box, fmt::format("has a mass of {}", stated->mass));
+    if (!contains(kMasses, stated->mass)) {
+      const std::string why = fmt::format("has a mass of {:g} kg in '{}', {}", stated->mass, file_,
+                                          expectedText(kMasses));
+      // Many files give bare frames a mass of 0.
+      if (!box && stated->mass != 0) {
+        warnings_.push_back(fmt::format("link '{}' {}; it has none now", link, why));
+      }
+      return without(link, box, why);
     }
+    const Box solid = thickened(box.value_or(smallBox()));
     Inertia inertia = yUp(*stated);
+    if (!std::ranges::all_of(inertia.center, [](double c) { return contains(kCenters, c); })) {
+      inertia.center = middleOf(solid);
+      warnings_.push_back(
+          fmt::format("link '{}' has a center of mass in '{}' that is farther than {:g} m from its "
+                      "origin along an axis; that of a box around its shape counts",
+                      link, file_, kCenters.most));
+    }
     if (canBeMoments(stated->moments)) return inertia;
-    inertia.moments = momentsOfBox(stated->mass, box.value_or(smallBox()));
-    warnings_.push_back(fmt::format(
-        "link '{}' has moments of inertia that no body has; those of a box around its shape count",
-        link));
+    inertia.moments = momentsOfBox(stated->mass, solid);
+    warnings_.push_back(
+        fmt::format("link '{}' has moments of inertia in '{}' that no body has; those of a box "
+                    "around its shape count",
+                    link, file_));
     return inertia;
   }
 
@@ -130,6 +154,16 @@ class LinkInertias {
     return {{-half, -half, -half}, {half, half, half}};
   }
 
+  /// Flat boxes turn about some axis without a moment.
+  [[nodiscard]] Box thickened(Box box) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double lack = std::max(defaults_.least_size / 5 - box.size(axis), 0.0);
+      box.least[axis] -= lack / 2;
+      box.most[axis] += lack / 2;
+    }
+    return box;
+  }
+
   std::optional<Inertia> without(std::string_view link, const std::optional<Box>& box,
                                  std::string_view why) {
     if (!box) return std::nullopt;
@@ -137,15 +171,10 @@ class LinkInertias {
     const double mass = std::max(defaults_.density * volume, defaults_.least_mass);
     warnings_.push_back(
         fmt::format("link '{}' {}; {:.3g} kg count, by the box around its shape", link, why, mass));
-    Box solid = *box;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double lack = std::max(defaults_.least_size / 5 - solid.size(axis), 0.0);
-      solid.least[axis] -= lack / 2;
-      solid.most[axis] += lack / 2;
-    }
-    return inertiaOfBox(mass, solid);
+    return inertiaOfBox(mass, thickened(*box));
   }
 
+  std::string_view file_;
   const RobotDefaults& defaults_;
   std::vector<std::string>& warnings_;
 };
@@ -255,7 +284,7 @@ Result<RobotParts> robotParts(const RobotSource& source, const Robot& robot,
   for (const bake::LinkInertial& one : source.inertials) stated.emplace(one.link, &one);
   RobotParts parts;
   parts.body_of_link = groupLinks(robot);
-  LinkInertias inertias(defaults, parts.warnings);
+  LinkInertias inertias(source.file, defaults, parts.warnings);
   for (std::size_t i = 0; i < robot.links().size(); ++i) {
     const auto found = by_name.find(robot.linkName(i));
     if (found == by_name.end()) {

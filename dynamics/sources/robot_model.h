@@ -55,6 +55,8 @@ struct RobotDefaults {
 
 /// A URDF: what a bake reads of it, and its masses (Z up).
 struct RobotSource {
+  /// Its name, for warnings.
+  std::string file;
   bake::SourceRobot robot;
   std::vector<bake::LinkInertial> inertials;
 };
@@ -62,9 +64,9 @@ struct RobotSource {
 /// Matches the links of a pack with those of the URDF by their names. Shapes are the convex hulls
 /// of each collision element (of the visuals where a link has none), one per mesh in its file.
 ///
-/// An <inertial> counts when its mass is positive and its moments can be those of a body: all
-/// principal ones positive, none greater than the sum of the other two. Else the mass is that of
-/// `defaults`, or the moments are those of the box around the shape, and there is a warning.
+/// An <inertial> counts when its numbers can be those of a body (body_ranges.h), and none of its
+/// principal moments is greater than the sum of the other two. Else the mass is that of `defaults`,
+/// or the center or the moments are those of the box around the shape, and there is a warning.
 /// Fails with kInvalidInput where the URDF has no link of a name in the pack.
 [[nodiscard]] Result<RobotParts> robotParts(const RobotSource& source, const Robot& robot,
                                             const RobotDefaults& defaults = {});

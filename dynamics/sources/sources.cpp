@@ -91,8 +91,9 @@ class SourceReader {
                              .files = robot.files,
                              .named = {job.recipe, job.spheres}}));
     ASSIGN_OR_RETURN(auto inertials, bake::readInertials(job.input));
-    ASSIGN_OR_RETURN(sources_.robot,
-                     robotParts({std::move(robot), std::move(inertials)}, world_.robot()));
+    ASSIGN_OR_RETURN(sources_.robot, robotParts({job.input.filename().string(), std::move(robot),
+                                                 std::move(inertials)},
+                                                world_.robot()));
     sources_.robot_shape = makeRobotShape(sources_.robot);
     for (const std::string& warning : sources_.robot.warnings) {
       sources_.warnings.push_back(warning);

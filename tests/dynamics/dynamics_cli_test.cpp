@@ -283,6 +283,34 @@ TEST_F(DynamicsCli, TakesTheHullOfTheMeshWhereNoPieceHasFourCorners) {
   }
 }
 
+TEST_F(DynamicsCli, WarnsOfMassesAndFrictionsThatNoBodyHas) {
+  const std::string data = copyOfSample("heavy");
+  write("heavy/objects/mug.object_config.json", R"({"mass": 1e30, "friction_coefficient": 1e300})");
+  std::string urdf = fileContent(path("heavy/robot/porter.urdf"));
+  const std::string base = "<link name=\"base_link\">";
+  urdf.insert(urdf.find(base) + base.size(),
+              R"(<inertial><mass value="1e300"/>)"
+              R"(<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)");
+  write("heavy/robot/porter.urdf", urdf);
+  const std::vector<std::string> words{"--recording", "home.rec", "--report", "heavy.json"};
+  ASSERT_EQ(run(words).exit_code, 0);
+  const json plain = report("heavy.json");
+  const ProgramRun done = run(words, data);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const json found = report("heavy.json");
+  EXPECT_EQ(found["each"], plain["each"]);
+  const std::string warnings = found["warnings"].dump();
+  EXPECT_THAT(
+      warnings,
+      HasSubstr("object 'mug' has no usable 'mass' in 'mug.object_config.json': found 1e+30, "
+                "expected 1e-06 to 1e+06; the default counts"));
+  EXPECT_THAT(warnings,
+              HasSubstr("has no usable 'friction_coefficient' in 'mug.object_config.json': "
+                        "found 1e+300, expected 0 to 10; the default counts"));
+  EXPECT_THAT(warnings, HasSubstr("link 'base_link' has a mass of 1e+300 kg in 'porter.urdf', "
+                                  "expected 1e-06 to 1e+06; 23.6 kg count"));
+}
+
 TEST_F(DynamicsCli, RefusesCollisionAssetsThatAreFarTooLarge) {
   const std::string data = copyOfSample("large");
   // Whose sums are no numbers any more.

@@ -212,7 +212,7 @@ TEST(APendulum, SwingsWithThePeriodOfItsUrdfsInertia) {
   const ScratchFolder folder;
   const auto path = folder.write("pendulum.urdf", kUrdf);
   const MadeRobot robot(pendulumFields());
-  const dynamics::RobotSource source{bake::importUrdf(path).value(),
+  const dynamics::RobotSource source{"pendulum.urdf", bake::importUrdf(path).value(),
                                      bake::readInertials(path).value()};
   const dynamics::RobotParts parts = dynamics::robotParts(source, *robot).value();
   EXPECT_TRUE(parts.warnings.empty());

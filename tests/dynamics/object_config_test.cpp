@@ -48,9 +48,10 @@ TEST(AnObjectConfig, TellsMassFrictionAndPieces) {
 
 TEST(AnObjectConfig, WithValuesThatNoBodyHasWarns) {
   const ScratchFolder folder;
-  for (const char* text : {R"({"mass": 0})", R"({"mass": -1})", R"({"mass": "heavy"})",
-                           R"({"friction_coefficient": -0.1})", R"({"mass": null})",
-                           R"({"collision_asset": "none.glb"})"}) {
+  for (const char* text :
+       {R"({"mass": 0})", R"({"mass": -1})", R"({"mass": "heavy"})",
+        R"({"friction_coefficient": -0.1})", R"({"mass": null})", R"({"mass": 1e30})",
+        R"({"friction_coefficient": 1e300})", R"({"collision_asset": "none.glb"})"}) {
     const ObjectConfig config =
         readObjectConfig(folder.write("cup.object_config.json", text)).value();
     EXPECT_FALSE(config.mass) << text;
@@ -59,6 +60,29 @@ TEST(AnObjectConfig, WithValuesThatNoBodyHasWarns) {
     ASSERT_EQ(config.warnings.size(), 1U) << text;
     EXPECT_THAT(config.warnings.front(), testing::AnyOf(HasSubstr("default"), HasSubstr("hull")));
   }
+}
+
+TEST(AnObjectConfig, MayHoldTheEndsOfTheRangesAndNothingBeyond) {
+  const ScratchFolder folder;
+  const auto read = [&](const char* text) {
+    return readObjectConfig(folder.write("cup.object_config.json", text)).value();
+  };
+  const ObjectConfig light = read(R"({"mass": 1e-6, "friction_coefficient": 0})");
+  EXPECT_EQ(light.mass, 1e-6);
+  EXPECT_EQ(light.friction, 0);
+  const ObjectConfig heavy = read(R"({"mass": 1000000, "friction_coefficient": 10})");
+  EXPECT_EQ(heavy.mass, 1e6);
+  EXPECT_EQ(heavy.friction, 10);
+  const ObjectConfig beyond = read(R"({"mass": 1000001, "friction_coefficient": 10.1})");
+  EXPECT_FALSE(beyond.mass);
+  EXPECT_FALSE(beyond.friction);
+  EXPECT_THAT(
+      beyond.warnings,
+      testing::ElementsAre("has no usable 'mass' in 'cup.object_config.json': found 1000001, "
+                           "expected 1e-06 to 1e+06; the default counts",
+                           "has no usable 'friction_coefficient' in "
+                           "'cup.object_config.json': found 10.1, expected 0 to 10; the "
+                           "default counts"));
 }
 
 TEST(AnObjectConfig, MayBeNestedDeeply) {
@@ -76,7 +100,7 @@ TEST(AnObjectConfig, MayBeNestedDeeply) {
     }
     EXPECT_FALSE(config->mass) << key;
     for (const std::string& warning : config->warnings) {
-      EXPECT_THAT(warning, HasSubstr("found a list; the default counts"));
+      EXPECT_THAT(warning, HasSubstr("found a list, expected "));
     }
   }
 }

@@ -27,7 +27,7 @@ dynamics::RobotSource sourceWith(const std::string& inertial) {
       R"(</link><joint name="swing" type="continuous"><parent link="base"/><child link="arm"/>)"
       R"(<origin xyz="0 0 1"/><axis xyz="0 0 1"/></joint></robot>)";
   const auto path = folder.write("r.urdf", text);
-  return {bake::importUrdf(path).value(), bake::readInertials(path).value()};
+  return {"r.urdf", bake::importUrdf(path).value(), bake::readInertials(path).value()};
 }
 
 RobotPackFields packFields() {
@@ -72,6 +72,9 @@ TEST(ALinkWithoutMass, GetsOneByItsShapeAndAWarning) {
   for (
       const char* inertial :
       {"",
+       R"(<inertial><mass value="1e300"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)",
+       R"(<inertial><mass value="1.1e6"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)",
+       R"(<inertial><mass value="0.9e-6"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)",
        R"(<inertial><mass value="0"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)",
        R"(<inertial><mass value="-3"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)"}) {
     const dynamics::RobotParts parts = partsWith(inertial);
@@ -89,13 +92,61 @@ TEST(MomentsThatNoBodyHas, AreThoseOfTheBoxAroundTheShape) {
   for (const char* moments : {R"(ixx="1" iyy="1" izz="5" ixy="0" ixz="0" iyz="0")",
                               R"(ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0")",
                               R"(ixx="-1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0")",
-                              R"(ixx="1" iyy="1" izz="1" ixy="2" ixz="0" iyz="0")"}) {
+                              R"(ixx="1" iyy="1" izz="1" ixy="2" ixz="0" iyz="0")",
+                              R"(ixx="1e-16" iyy="1e-16" izz="1e-16" ixy="0" ixz="0" iyz="0")",
+                              R"(ixx="1e13" iyy="1e13" izz="1e13" ixy="0" ixz="0" iyz="0")",
+                              R"(ixx="1e308" iyy="1e308" izz="1e308" ixy="1" ixz="0" iyz="0")"}) {
     const dynamics::RobotParts parts = partsWith(R"(<inertial><mass value="6"/><inertia )" +
                                                  std::string(moments) + "/></inertial>");
-    EXPECT_THAT(parts.warnings, ElementsAre(HasSubstr("moments of inertia that no body has")))
+    EXPECT_THAT(parts.warnings,
+                ElementsAre(HasSubstr("moments of inertia in 'r.urdf' that no body has")))
         << moments;
     EXPECT_NEAR(parts.links[1].inertia->moments[1], 0.5 * (1 + 0.01), 1e-6);
     EXPECT_EQ(parts.links[1].inertia->mass, 6);
+  }
+}
+
+TEST(AMassThatNoBodyHas, IsNamedWithItsFileAndLink) {
+  const dynamics::RobotParts parts = partsWith(
+      R"(<inertial><mass value="1e300"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)");
+  EXPECT_THAT(
+      parts.warnings,
+      ElementsAre("link 'arm' has a mass of 1e+300 kg in 'r.urdf', expected 1e-06 to 1e+06; "
+                  "6 kg count, by the box around its shape"));
+}
+
+TEST(AMassThatNoBodyHas, IsNotTakenByAFrameEither) {
+  const auto warnings_of = [](double mass) {
+    dynamics::RobotSource source = sourceWith("");
+    source.robot.links[1].collisions.clear();
+    source.inertials.push_back(
+        {.link = "arm", .mass = mass, .center = {}, .moments = {1, 1, 1, 0, 0, 0}});
+    const MadeRobot robot(packFields());
+    const dynamics::RobotParts parts = dynamics::robotParts(source, *robot).value();
+    EXPECT_EQ(parts.links[1].inertia->mass, 0.1) << mass;
+    return parts.warnings;
+  };
+  const std::string moves = "link 'arm' moves and has neither mass nor shape; 0.1 kg count";
+  EXPECT_THAT(warnings_of(0), ElementsAre(moves));
+  EXPECT_THAT(warnings_of(1e30),
+              ElementsAre("link 'arm' has a mass of 1e+30 kg in 'r.urdf', expected 1e-06 to 1e+06; "
+                          "it has none now",
+                          moves));
+}
+
+TEST(ACenterOfMassFarAway, IsThatOfTheBoxAroundTheShape) {
+  for (const char* center : {"1e300 0 0", "0 -801 0"}) {
+    const dynamics::RobotParts parts = partsWith(
+        R"(<inertial><origin xyz=")" + std::string(center) +
+        R"("/><mass value="6"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)");
+    EXPECT_THAT(
+        parts.warnings,
+        ElementsAre(HasSubstr("link 'arm' has a center of mass in 'r.urdf' that is farther")));
+    const dynamics::Inertia& arm = *parts.links[1].inertia;
+    EXPECT_NEAR(arm.center[0], 0.5, 1e-6);
+    EXPECT_NEAR(arm.center[1], 0, 1e-6);
+    EXPECT_EQ(arm.mass, 6);
+    EXPECT_EQ(arm.moments[0], 1);
   }
 }
 
