@@ -150,7 +150,7 @@ std::string faultOf(const CLI::App& app, const Command& command) {
     return "--deterministic applies to learned policies only; add --policy FILE.pack";
   }
   for (const char* option : {"--seed", "--set"}) {
-    if (!command.isClosedLoop() && app.count(option) > 0) {
+    if (command.mode() == ComparisonMode::kReplay && app.count(option) > 0) {
       return fmt::format("{} applies to a closed loop only: a recording has its own", option);
     }
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamics/episodes/comparison.h"
 #include "dynamics/options.h"
 #include "dynamics/report/side_by_side.h"
 
@@ -27,7 +28,9 @@ struct Command {
   bool is_quiet = false;
   WorldOptions world;
 
-  [[nodiscard]] bool isClosedLoop() const { return !policy.empty(); }
+  [[nodiscard]] ComparisonMode mode() const {
+    return policy.empty() ? ComparisonMode::kReplay : ComparisonMode::kClosedLoop;
+  }
   /// The pack of a learned policy; empty for others.
   [[nodiscard]] std::filesystem::path policyFile() const;
 };

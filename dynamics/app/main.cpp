@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "command_line.h"
 #include "comparisons.h"
+#include "dynamics/episodes/episode_source.h"
 #include "dynamics/report/journal.h"
 #include "dynamics/report/moments.h"
 #include "dynamics/report/report.h"
@@ -19,6 +21,7 @@
 #include "dynamics/sources/sources.h"
 #include "galactic/bake/assets.h"
 #include "galactic/bake/source_asset.h"
+#include "run/recording.h"
 #include "support/atomic_file.h"
 #include "support/exception_error.h"
 #include "support/output_files.h"
@@ -79,41 +82,44 @@ Result<void> noteContent(const std::filesystem::path& path, std::string name, ba
   return {};
 }
 
+Result<std::unique_ptr<EpisodeSource>> openEpisodes(const Command& command, const World& world) {
+  if (command.mode() == ComparisonMode::kReplay) {
+    return recordedEpisodes(command.recording, world, command.episodes);
+  }
+  return playedEpisodes(command.policyFile(), command.loop, world, command.episodes);
+}
+
 /// None where no report is wanted. What it is kept of is all that decides the comparisons: the
 /// options, the content of what was read besides the packs, and this program, another build of
 /// which may play otherwise.
 Result<std::optional<ComparisonJournal>> openJournal(const Command& command,
-                                                     const EpisodePlan& plan, const World& world,
+                                                     const EpisodeSource& episodes,
+                                                     const World& world,
                                                      const ReportSubject& subject,
                                                      bake::ReadLog read) {
   if (command.report.empty()) return std::nullopt;
   RETURN_IF_ERROR(noteContent("/proc/self/exe", "galactic-dynamics", read));
   const std::filesystem::path played =
-      command.isClosedLoop() ? command.policyFile() : command.recording;
+      command.mode() == ComparisonMode::kReplay ? command.recording : command.policyFile();
   if (!played.empty()) RETURN_IF_ERROR(noteContent(played, "played", read));
   std::string text = "galactic-dynamics " GALACTIC_VERSION " " + command.recipe.string();
   for (const OptionText& option : optionsOf(subject)) {
     text += fmt::format(" {}={}", option.name, option.value);
   }
-  text += fmt::format(" {} {}", plan.describe(), digestOf(read));
+  text += fmt::format(" {} episodes", episodes.count());
+  for (const OptionText& option : listOptions(episodes.options())) {
+    text += fmt::format(" {}={}", option.name, option.value);
+  }
+  for (const PackStamp& stamp : stampsOf(world)) {
+    text += fmt::format(" {:016x}", stamp.payload_xxh64);
+  }
+  text += " " + digestOf(read);
   return ComparisonJournal::open(journalFile(command), text, world.robot().links().size());
 }
 
-Result<void> showBoth(const Command& command, const EpisodePlan& plan,
-                      const Comparisons& comparisons, const ComparisonWorlds& worlds,
-                      const ReportSubject& subject) {
-  if (command.shown.view.empty() && command.shown.pictures.empty()) return {};
-  ASSIGN_OR_RETURN(const auto here, plan.makeLane());
-  ASSIGN_OR_RETURN(const auto there, plan.makeLane());
-  ASSIGN_OR_RETURN(
-      const auto notes,
-      writeSideBySide({.comparisons = comparisons,
-                       .worlds = worlds,
-                       .here = *here,
-                       .there = *there,
-                       .is_closed = plan.isClosedLoop(),
-                       .trace_of = [&](std::size_t n) { return plan.trace(n, *here); }},
-                      subject, command.shown));
+Result<void> showBoth(const SideBySideParts& parts, const SideBySideFiles& files) {
+  if (files.view.empty() && files.pictures.empty()) return {};
+  ASSIGN_OR_RETURN(const auto notes, writeSideBySide(parts, files));
   // Also for those who want errors only: they may take an older file for that of this run.
   for (const std::string& one : notes) {
     printToStderr(fmt::format("galactic-dynamics: {}\n", printable(one)));
@@ -136,29 +142,32 @@ Result<int> run(const Command& command) {
   ASSIGN_OR_RETURN(const auto sources,
                    readSources({.recipe = command.recipe, .data = command.data}, world));
   RETURN_IF_ERROR(tryOutputs(command, world, sources.log));
-  ASSIGN_OR_RETURN(const auto plan, EpisodePlan::create(command, world));
+  ASSIGN_OR_RETURN(const auto episodes, openEpisodes(command, world));
   // The report holds all of them.
   for (const std::string& warning : oneOfEachKind(sources.warnings, "--report lists them")) {
     if (command.is_quiet) break;
     printToStderr(fmt::format("galactic-dynamics: warning: {}\n", printable(warning)));
   }
-  const ReportSubject subject{.recording = command.recording.filename().string(),
-                              .policy = std::filesystem::path(command.policy).filename().string(),
+  const std::filesystem::path played = command.mode() == ComparisonMode::kReplay
+                                           ? command.recording
+                                           : std::filesystem::path(command.policy);
+  const ReportSubject subject{.mode = command.mode(),
+                              .played = played.filename().string(),
                               .world = command.world,
                               .loop = command.loop,
                               .warnings = sources.warnings};
-  ASSIGN_OR_RETURN(auto journal, openJournal(command, *plan, world, subject, sources.log));
-  const ComparisonWorlds worlds{world, plan->options(), sources, command.world};
+  ASSIGN_OR_RETURN(auto journal, openJournal(command, *episodes, world, subject, sources.log));
+  const ComparisonWorlds worlds{world, episodes->options(), sources, command.world};
   Comparisons comparisons;
   ASSIGN_OR_RETURN(comparisons.episodes,
-                   compareAll(*plan, worlds, command, journal ? &*journal : nullptr));
-  if (comparisons.episodes.size() < plan->count()) {
-    return endInterrupted(command, comparisons.episodes.size(), plan->count());
+                   compareAll(*episodes, worlds, command, journal ? &*journal : nullptr));
+  if (comparisons.episodes.size() < episodes->count()) {
+    return endInterrupted(command, comparisons.episodes.size(), episodes->count());
   }
   constexpr std::size_t kWorst = 10;
-  comparisons.worst = worstMoments(comparisons.episodes, kWorst, !plan->isClosedLoop());
+  comparisons.worst = worstMoments(comparisons.episodes, kWorst, command.mode());
   if (!command.is_quiet) fmt::print("{}", reportTable(comparisons, world, subject));
-  RETURN_IF_ERROR(showBoth(command, *plan, comparisons, worlds, subject));
+  RETURN_IF_ERROR(showBoth({comparisons, worlds, *episodes, subject}, command.shown));
   if (command.report.empty()) return kExitOk;
   const std::string json = reportJson(comparisons, world, subject);
   RETURN_IF_ERROR(writeFileAtomically(command.report, {std::as_bytes(std::span(json))}));

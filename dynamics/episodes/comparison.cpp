@@ -13,6 +13,8 @@ namespace {
 
 /// Control steps of two seconds.
 constexpr int kRestSteps = 60;
+/// Of an episode that no task ends.
+constexpr std::size_t kMostPolicySteps = 10'000;
 
 float lengthOf(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
@@ -58,9 +60,9 @@ class Comparison {
     result_.steps = static_cast<std::uint32_t>(trace.steps.size());
   }
 
-  Result<EpisodeComparison> run(bool is_closed, const StepWatcher& watch) {
+  Result<EpisodeComparison> run(const ActionSource& actions_of, const StepWatcher& watch) {
     Inspection(trace_, worlds_.world, worlds_.simulation, scene_, objects_, setup()).run(result_);
-    RETURN_IF_ERROR(playThere(is_closed, watch));
+    RETURN_IF_ERROR(playThere(actions_of, watch));
     restAll();
     return std::move(result_);
   }
@@ -74,21 +76,16 @@ class Comparison {
             .positions = trace_.start_positions};
   }
 
-  Result<void> playThere(bool is_closed, const StepWatcher& watch) {
+  Result<void> playThere(const ActionSource& actions_of, const StepWatcher& watch) {
     DynamicsWorld there(scene_, objects_, worlds_.options);
     there.addRobot(setup());
     RobotDriver driver(worlds_.world.robot(), there, worlds_.simulation);
     WorldReading reading;
     lane_.begin(trace_.episode, worlds_.options.arm);
     if (watch) watch(lane_.simulator(), {});
-    const std::size_t most = is_closed ? kMostStepsThere : trace_.steps.size();
-    for (std::size_t n = 0; n < most && !lane_.isDone(); ++n) {
-      std::span<const float> actions;
-      if (is_closed) {
-        ASSIGN_OR_RETURN(actions, lane_.act());
-      } else {
-        actions = trace_.steps[n].actions;
-      }
+    for (std::size_t n = 0; !lane_.isDone(); ++n) {
+      ASSIGN_OR_RETURN(const auto actions, actions_of(n));
+      if (actions.empty()) break;
       const DrivenStep driven = driver.step(actions);
       if (driven.grasped) was_held_[*driven.grasped] = true;
       const FollowedState now = reading.read(there, driven, objects_.size());
@@ -183,19 +180,35 @@ std::uint32_t EpisodeComparison::inventedSteps() const {
   return sum;
 }
 
+ActionSource recordedActions(const EpisodeTrace& trace) {
+  return [&trace](std::size_t step) -> Result<std::span<const float>> {
+    if (step >= trace.steps.size()) return std::span<const float>();
+    return std::span<const float>(trace.steps[step].actions);
+  };
+}
+
+ActionSource policyActions(EpisodeLane& lane) {
+  return [&lane](std::size_t step) -> Result<std::span<const float>> {
+    if (step >= kMostPolicySteps) return std::span<const float>();
+    return lane.act();
+  };
+}
+
 Result<EpisodeComparison> compareEpisode(const EpisodeTrace& trace, EpisodeLane& lane,
-                                         const ComparisonWorlds& worlds, bool is_closed,
-                                         const StepWatcher& watch) {
-  return Comparison(trace, lane, worlds).run(is_closed, watch);
+                                         const ComparisonWorlds& worlds,
+                                         const ActionSource& actions, const StepWatcher& watch) {
+  return Comparison(trace, lane, worlds).run(actions, watch);
 }
 
 Result<EpisodeTrace> traceOf(std::uint32_t episode, EpisodeLane& lane) {
   lane.begin(episode, ArmDrive::kKinematic);
   const BatchSimulator& simulator = lane.simulator();
   EpisodeTrace trace = beginTrace(0, simulator.envState(0));
-  while (!lane.isDone() && trace.steps.size() < kMostStepsThere) {
+  const ActionSource actions_of = policyActions(lane);
+  while (!lane.isDone()) {
     const SimulationStatistics before = simulator.statistics(0);
-    ASSIGN_OR_RETURN(const auto actions, lane.act());
+    ASSIGN_OR_RETURN(const auto actions, actions_of(trace.steps.size()));
+    if (actions.empty()) break;
     lane.step(actions);
     extendTrace(trace, actions, simulator.envState(0), before, simulator.statistics(0));
   }

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -13,6 +14,7 @@
 #include "dynamics/episodes/trace.h"
 #include "dynamics/sources/sources.h"
 #include "dynamics/world.h"
+#include "galactic/error.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
 
@@ -118,8 +120,23 @@ struct EpisodeComparison {
 /// Meters.
 inline constexpr float kDisturbed = 0.02F;
 
-/// Steps of an episode there where neither task nor recording end it.
-inline constexpr std::uint32_t kMostStepsThere = 10'000;
+/// Whose actions the dynamics carry out.
+enum class ComparisonMode : std::uint8_t {
+  kReplay,      ///< Those of a recording, whatever becomes of them.
+  kClosedLoop,  ///< Those of a policy that observes the dynamics.
+};
+inline constexpr std::array<std::string_view, 2> kComparisonModeNames{"replay", "closed loop"};
+
+/// The actions of a step (from 0, in order), valid until the next call; empty after the last step.
+/// Fails as its policy does.
+using ActionSource = std::function<Result<std::span<const float>>(std::size_t step)>;
+
+/// Those of the trace, which must outlive them.
+[[nodiscard]] ActionSource recordedActions(const EpisodeTrace& trace);
+
+/// Those of the policy of the lane, which must outlive them; of 10,000 steps, so that an episode
+/// ends that the task does not end.
+[[nodiscard]] ActionSource policyActions(EpisodeLane& lane);
 
 /// What comparisons need besides an episode. All of it must outlive them.
 struct ComparisonWorlds {
@@ -133,12 +150,12 @@ struct ComparisonWorlds {
 using StepWatcher =
     std::function<void(const BatchSimulator& there, std::span<const float> actions)>;
 
-/// Plays an episode in a dynamics world that starts as the simulation did: the actions of the trace
-/// or, where `is_closed`, those of the lane's policy, which observes the dynamics world. `lane`
-/// follows it. Deterministic. Fails as the policy does.
+/// Carries out actions in a dynamics world that starts as the episode did in the simulation, until
+/// the task or they end it. `lane` follows that world, so that its policy observes it.
+/// Deterministic. Fails as `actions` do.
 [[nodiscard]] Result<EpisodeComparison> compareEpisode(const EpisodeTrace& trace, EpisodeLane& lane,
                                                        const ComparisonWorlds& worlds,
-                                                       bool is_closed,
+                                                       const ActionSource& actions,
                                                        const StepWatcher& watch = {});
 
 /// Plays an episode with the lane's policy in the simulation alone. Fails as the policy does.

@@ -103,9 +103,11 @@ std::uint32_t likestFrame(const RunTrack& track, const RunTrack& other, std::uin
 }  // namespace
 
 std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes, std::size_t most,
-                                 bool is_replay) {
+                                 ComparisonMode mode) {
   Ranking ranking = rank(episodes);
-  if (!is_replay) ranking[static_cast<std::size_t>(MomentKind::kApart)].clear();
+  if (mode == ComparisonMode::kClosedLoop) {
+    ranking[static_cast<std::size_t>(MomentKind::kApart)].clear();
+  }
   std::vector<Moment> worst;
   for (std::size_t place = 0; place < episodes.size() && worst.size() < most; ++place) {
     for (const std::vector<Moment>& kind : ranking) {
@@ -123,8 +125,9 @@ MomentPlace placeOf(const Moment& moment, std::size_t steps_here, std::size_t st
 }
 
 MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
-                    const BothTracks& tracks) {
-  const auto& [here, there, is_closed] = tracks;
+                    const BothTracks& tracks, ComparisonMode mode) {
+  const auto& [here, there] = tracks;
+  const bool is_closed = mode == ComparisonMode::kClosedLoop;
   const std::string what = fmt::format("{}, {:.3f} m", nameOf(moment.kind), moment.meters);
   MomentSides sides{.frame_here = std::min(moment.step + 1, lastFrame(here)),
                     .said_here = what,

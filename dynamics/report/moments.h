@@ -38,11 +38,10 @@ struct Moment {
 };
 
 /// The worst moments, at most `most`: in turn the worst of each kind that is left, in the order of
-/// the kinds. Of each kind and episode there is one. Without `is_replay` the actions differ, and
-/// that the grips are apart means nothing. What is no more than kDisturbed apart or moved is no
-/// moment.
+/// the kinds. Of each kind and episode there is one. In a closed loop the actions differ, and that
+/// the grips are apart means nothing. What is no more than kDisturbed apart or moved is no moment.
 [[nodiscard]] std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes,
-                                               std::size_t most, bool is_replay);
+                                               std::size_t most, ComparisonMode mode);
 
 /// In which world a moment is seen, and after how many steps.
 struct MomentPlace {
@@ -63,8 +62,6 @@ struct MomentPlace {
 struct BothTracks {
   const RunTrack& here;
   const RunTrack& there;
-  /// Whether each world has actions of its own.
-  bool is_closed = false;
 };
 
 /// What a moment looks like in both worlds: in which frames of their tracks, and what is to be said
@@ -84,7 +81,7 @@ struct MomentSides {
 /// most as it does in the simulation. What an object did that was let go is seen two seconds later.
 /// Where an episode ends before, its end is seen, and its start where it has no step.
 [[nodiscard]] MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
-                                  const BothTracks& tracks);
+                                  const BothTracks& tracks, ComparisonMode mode);
 
 /// "episode 17, step 203: grips apart, 0.123 m".
 [[nodiscard]] std::string describe(const Moment& moment, const EpisodeComparison& episode,

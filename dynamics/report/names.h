@@ -16,6 +16,9 @@ namespace galactic::dynamics {
 [[nodiscard]] inline std::string_view nameOf(InventedCause cause) {
   return kInventedCauseNames[static_cast<std::size_t>(cause)];
 }
+[[nodiscard]] inline std::string_view nameOf(ComparisonMode mode) {
+  return kComparisonModeNames[static_cast<std::size_t>(mode)];
+}
 [[nodiscard]] inline std::string_view nameOf(ArmDrive arm) {
   return kArmDriveNames[static_cast<std::size_t>(arm)];
 }

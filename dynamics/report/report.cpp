@@ -165,7 +165,7 @@ std::string percent(const Share& share) {
 
 Sums sumsOf(const Comparisons& comparisons, const ReportSubject& subject) {
   Sums sums = sumOf(comparisons.episodes);
-  if (!subject.isReplay()) sums.gaps.clear();
+  if (subject.mode == ComparisonMode::kClosedLoop) sums.gaps.clear();
   return sums;
 }
 
@@ -242,8 +242,9 @@ Share wilson(std::uint32_t count, std::uint32_t of) {
 
 std::vector<OptionText> optionsOf(const ReportSubject& subject) {
   std::vector<OptionText> options = listOptions(subject.world);
-  if (!subject.isReplay())
+  if (subject.mode == ComparisonMode::kClosedLoop) {
     std::ranges::move(listOptions(subject.loop), std::back_inserter(options));
+  }
   return options;
 }
 
@@ -252,10 +253,9 @@ std::string reportJson(const Comparisons& comparisons, const World& world,
   const Sums sums = sumsOf(comparisons, subject);
   Json each = Json::array();
   for (const EpisodeComparison& episode : comparisons.episodes) each.push_back(jsonOf(episode));
-  const bool is_closed = !subject.isReplay();
   const Json report{
-      {"mode", is_closed ? "closed loop" : "replay"},
-      {is_closed ? "policy" : "recording", is_closed ? subject.policy : subject.recording},
+      {"mode", nameOf(subject.mode)},
+      {subject.mode == ComparisonMode::kReplay ? "recording" : "policy", subject.played},
       {"options", jsonOf(optionsOf(subject))},
       {"episodes", sums.episodes},
       {"steps", sums.steps},

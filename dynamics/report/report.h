@@ -22,16 +22,13 @@ struct Share {
 
 /// What a report is of.
 struct ReportSubject {
-  /// Name of the recording that was replayed; empty for a closed loop.
-  std::string recording;
-  /// Name of the policy of a closed loop; empty for a replay.
-  std::string policy;
+  ComparisonMode mode = ComparisonMode::kReplay;
+  /// Name of the recording that was replayed, or of the policy that closed the loop.
+  std::string played;
   WorldOptions world;
   /// Of a closed loop.
   LoopOptions loop;
   std::vector<std::string> warnings;
-
-  [[nodiscard]] bool isReplay() const { return policy.empty(); }
 };
 
 /// The options that decide what the report says: those of a closed loop where it is one.

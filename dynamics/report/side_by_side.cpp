@@ -94,8 +94,9 @@ PictureSubject subjectOf(const Moment& moment, const EpisodeComparison& episode,
 std::string factsOf(const ReportSubject& subject) {
   JsonWriter json;
   json.begin('{');
-  json.text("policy", subject.isReplay() ? "replay" : subject.policy);
-  if (subject.isReplay()) json.text("recording", subject.recording);
+  const bool is_replay = subject.mode == ComparisonMode::kReplay;
+  json.text("policy", is_replay ? "replay" : subject.played);
+  if (is_replay) json.text("recording", subject.played);
   json.text("arm", nameOf(subject.world.arm));
   json.text("base", nameOf(subject.world.base));
   json.end('}');
@@ -109,8 +110,10 @@ class SideBySide {
       : parts_(parts), files_(files) {}
 
   Result<void> play() {
+    ASSIGN_OR_RETURN(here_, parts_.episodes.makeLane());
+    ASSIGN_OR_RETURN(there_, parts_.episodes.makeLane());
     if (!files_.pictures.empty()) {
-      ASSIGN_OR_RETURN(best_, BestView::create(parts_.worlds.world, parts_.here.simulator()));
+      ASSIGN_OR_RETURN(best_, BestView::create(parts_.worlds.world, here_->simulator()));
     }
     std::map<std::size_t, std::vector<std::size_t>> moments;
     for (std::size_t n = 0; n < worst().size(); ++n) moments[worst()[n].comparison].push_back(n);
@@ -130,11 +133,11 @@ class SideBySide {
     return pictures::writePng(files_.pictures, contactSheet(cells, kColumns));
   }
 
-  [[nodiscard]] Result<void> writePage(const ReportSubject& subject) const {
+  [[nodiscard]] Result<void> writePage() const {
     ASSIGN_OR_RETURN(const auto assets, pageAssetsOf(*track_));
     ASSIGN_OR_RETURN(const auto page, viewPage(assets,
                                                {.track = &*track_,
-                                                .facts = factsOf(subject),
+                                                .facts = factsOf(parts_.subject),
                                                 .names = names_,
                                                 .twins = twins_,
                                                 .moments = page_moments_},
@@ -151,10 +154,10 @@ class SideBySide {
     BestView* const best = moments.empty() ? nullptr : best_.get();
     Onlooker here(world, best);
     Onlooker there(world, best);
-    ASSIGN_OR_RETURN(const auto trace, parts_.trace_of(comparison));
-    replayHere(trace, parts_.here, here);
+    ASSIGN_OR_RETURN(const auto trace, parts_.episodes.trace(comparison, *here_));
+    replayHere(trace, *here_, here);
     RETURN_IF_ERROR(
-        compareEpisode(trace, parts_.there, parts_.worlds, parts_.is_closed,
+        compareEpisode(trace, *there_, parts_.worlds, parts_.episodes.actions(trace, *there_),
                        [&](const BatchSimulator& simulator, std::span<const float> actions) {
                          there.look(simulator, actions);
                        }));
@@ -194,7 +197,7 @@ class SideBySide {
     const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
     const PictureSubject subject = subjectOf(moment, episode, trace, parts_.worlds.world.robot());
     const MomentSides sides =
-        sidesOf(moment, episode, {here.track(), there.track(), parts_.is_closed});
+        sidesOf(moment, episode, {here.track(), there.track()}, parts_.subject.mode);
     const std::array stills{here.still(sides.frame_here),
                             sides.rest
                                 ? BestView::withoutRobot(here.still(sides.frame_here),
@@ -212,6 +215,9 @@ class SideBySide {
 
   const SideBySideParts& parts_;
   const SideBySideFiles& files_;
+  /// Follow the two worlds.
+  std::unique_ptr<EpisodeLane> here_;
+  std::unique_ptr<EpisodeLane> there_;
   /// Null without pictures.
   std::unique_ptr<BestView> best_;
   std::optional<RunTrack> track_;
@@ -225,7 +231,6 @@ class SideBySide {
 }  // namespace
 
 Result<std::vector<std::string>> writeSideBySide(const SideBySideParts& parts,
-                                                 const ReportSubject& subject,
                                                  const SideBySideFiles& files) {
   SideBySideFiles possible = files;
   std::vector<std::string> notes;
@@ -240,7 +245,7 @@ Result<std::vector<std::string>> writeSideBySide(const SideBySideParts& parts,
   SideBySide both(parts, possible);
   RETURN_IF_ERROR(both.play());
   if (!possible.pictures.empty()) RETURN_IF_ERROR(both.writePictures());
-  if (!possible.view.empty()) RETURN_IF_ERROR(both.writePage(subject));
+  if (!possible.view.empty()) RETURN_IF_ERROR(both.writePage());
   return notes;
 }
 

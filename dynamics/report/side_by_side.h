@@ -1,11 +1,10 @@
 #pragma once
-#include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "dynamics/episodes/comparison.h"
+#include "dynamics/episodes/episode_source.h"
 #include "dynamics/report/report.h"
 #include "galactic/error.h"
 
@@ -23,19 +22,15 @@ struct SideBySideFiles {
 struct SideBySideParts {
   const Comparisons& comparisons;
   const ComparisonWorlds& worlds;
-  /// Follow the two worlds; `there` acts where the loop is closed.
-  EpisodeLane& here;
-  EpisodeLane& there;
-  bool is_closed = false;
-  /// The episode of a comparison in the simulation.
-  std::function<Result<EpisodeTrace>(std::size_t comparison)> trace_of;
+  /// Of which the comparisons are.
+  const EpisodeSource& episodes;
+  const ReportSubject& subject;
 };
 
 /// Plays the episodes of the worst moments again and writes what is wanted. Where there is no such
 /// moment, the page has the first episodes, and there are no pictures. Returns a sentence for each
 /// file that is not written. Fails with kIo and the errors of policies, pages and renderers.
 [[nodiscard]] Result<std::vector<std::string>> writeSideBySide(const SideBySideParts& parts,
-                                                               const ReportSubject& subject,
                                                                const SideBySideFiles& files);
 
 }  // namespace galactic::dynamics

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "dynamics/episodes/episode_source.h"
 #include "dynamics/episodes/robot_driver.h"
 #include "dynamics/episodes/trace.h"
 #include "dynamics/made_robot.h"
@@ -92,7 +93,8 @@ class RecordedRun {
                                           const dynamics::Sources& sources, ArmDrive arm) const {
     const dynamics::WorldOptions there{.arm = arm};
     const auto lane = EpisodeLane::create(world_, options_, std::nullopt).value();
-    return compareEpisode(trace, *lane, {world_, options_, sources, there}, false).value();
+    return compareEpisode(trace, *lane, {world_, options_, sources, there}, recordedActions(trace))
+        .value();
   }
   [[nodiscard]] EpisodeComparison first(const dynamics::Sources& sources, ArmDrive arm) const {
     return compare(traces().front(), sources, arm);
@@ -205,10 +207,13 @@ TEST(AReport, IsTheSameEachTime) {
   const auto report = [&] {
     dynamics::Comparisons all;
     all.episodes.push_back(run.first(sources, ArmDrive::kMotors));
-    all.worst = worstMoments(all.episodes, 10, true);
-    return dynamics::reportJson(
-        all, run.world(),
-        {.recording = "run.rec", .policy = {}, .world = {}, .loop = {}, .warnings = {}});
+    all.worst = worstMoments(all.episodes, 10, dynamics::ComparisonMode::kReplay);
+    return dynamics::reportJson(all, run.world(),
+                                {.mode = dynamics::ComparisonMode::kReplay,
+                                 .played = "run.rec",
+                                 .world = {},
+                                 .loop = {},
+                                 .warnings = {}});
   };
   EXPECT_EQ(report(), report());
 }
@@ -290,7 +295,9 @@ TEST(AClosedLoop, SolvesInTheDynamicsWhatItSolvesInTheSimulation) {
   const auto lane = EpisodeLane::create(run.world(), options, dynamics::ClosedLoop{}).value();
   const auto play = [&](std::uint32_t episode) {
     const auto trace = traceOf(episode, *lane).value();
-    return compareEpisode(trace, *lane, {run.world(), options, sources, there}, true).value();
+    return compareEpisode(trace, *lane, {run.world(), options, sources, there},
+                          policyActions(*lane))
+        .value();
   };
   const EpisodeComparison first = play(0);
   EXPECT_EQ(first.end, EpisodeEnd::kSuccess);
@@ -316,7 +323,8 @@ TEST(AClosedLoop, HasPatienceWithMotors) {
   for (const std::uint32_t episode : {0U, 1U}) {
     const auto trace = traceOf(episode, *lane).value();
     const EpisodeComparison played =
-        compareEpisode(trace, *lane, {run.world(), options, sources, there}, true).value();
+        compareEpisode(trace, *lane, {run.world(), options, sources, there}, policyActions(*lane))
+            .value();
     EXPECT_EQ(played.end, EpisodeEnd::kSuccess) << episode;
     EXPECT_EQ(played.end_there, EpisodeEnd::kSuccess) << episode;
     EXPECT_GT(played.steps_there, played.steps) << "it waited";
@@ -336,9 +344,9 @@ TEST(AnEpisode, EndsWithoutASuccessWhereTheEngineLosesTheRobotInItsFirstStep) {
   }
   const auto lane = EpisodeLane::create(run.world(), options, dynamics::ClosedLoop{}).value();
   const auto trace = traceOf(0, *lane).value();
-  for (const bool is_closed : {false, true}) {
+  for (const dynamics::ActionSource& actions : {recordedActions(trace), policyActions(*lane)}) {
     const EpisodeComparison played =
-        compareEpisode(trace, *lane, {run.world(), options, sources, {}}, is_closed).value();
+        compareEpisode(trace, *lane, {run.world(), options, sources, {}}, actions).value();
     EXPECT_EQ(played.end, EpisodeEnd::kSuccess);
     EXPECT_EQ(played.end_there, EpisodeEnd::kNone);
     EXPECT_EQ(played.steps_there, 0U);
@@ -349,6 +357,58 @@ TEST(AnEpisode, EndsWithoutASuccessWhereTheEngineLosesTheRobotInItsFirstStep) {
     const std::string report = dynamics::reportJson({{played}, {}}, run.world(), {});
     EXPECT_THAT(report, testing::HasSubstr("\"last_grip_gap\": null,"));
   }
+}
+
+/// The n-th episode of a source in both worlds.
+EpisodeComparison compareOf(const dynamics::EpisodeSource& episodes, std::size_t n,
+                            const RecordedRun& run, const dynamics::Sources& sources) {
+  const dynamics::WorldOptions there{.arm = ArmDrive::kKinematic};
+  const auto lane = episodes.makeLane().value();
+  const auto trace = episodes.trace(n, *lane).value();
+  return compareEpisode(trace, *lane, {run.world(), episodes.options(), sources, there},
+                        episodes.actions(trace, *lane))
+      .value();
+}
+
+TEST(RecordedEpisodes, AreReplayed) {
+  const RecordedRun run(emptyRoom({}), wander());
+  const dynamics::Sources sources = run.sources({});
+  const auto traces = run.traces();
+  EXPECT_EQ(dynamics::recordedEpisodes(run.recording(), run.world(), 0).value()->count(), 4U);
+  const auto episodes = dynamics::recordedEpisodes(run.recording(), run.world(), 3).value();
+  ASSERT_EQ(episodes->count(), 3U);
+  const EpisodeComparison last = compareOf(*episodes, 2, run, sources);
+  EXPECT_EQ(last.env, traces[2].env);
+  EXPECT_EQ(last.episode, traces[2].episode);
+  EXPECT_EQ(last.grip_gap, run.compare(traces[2], sources, ArmDrive::kKinematic).grip_gap);
+}
+
+TEST(RecordedEpisodes, LeaveAnEpisodeOpenWhereTheirActionsRunOut) {
+  const RecordedRun run(emptyRoom({}), wander());
+  dynamics::EpisodeTrace trace = run.traces().front();
+  constexpr std::size_t kShort = 10;
+  trace.steps.resize(kShort);
+  EXPECT_FALSE(recordedActions(trace)(kShort - 1)->empty());
+  EXPECT_TRUE(recordedActions(trace)(kShort)->empty());
+  const EpisodeComparison replay = run.compare(trace, run.sources({}), ArmDrive::kKinematic);
+  EXPECT_EQ(replay.steps_there, kShort);
+  EXPECT_EQ(replay.end_there, EpisodeEnd::kNone);
+}
+
+TEST(PlayedEpisodes, AreThoseOfThePolicyWithTheOptionsOfTheUser) {
+  const RecordedRun run(smallHomeWorld(), driveAhead());
+  const dynamics::Sources sources = run.sources({{{1, 0, 1}, {2, 0.7F, 2}}});
+  const dynamics::LoopOptions loop{.seed = 3, .task = {{"episode-steps", "300"}}};
+  const auto episodes = dynamics::playedEpisodes({}, loop, run.world(), 1).value();
+  ASSERT_EQ(episodes->count(), 1U);
+  EXPECT_EQ(episodes->options().task.most_steps, 300U);
+  EXPECT_EQ(episodes->options().seed, 3U);
+  const EpisodeComparison played = compareOf(*episodes, 0, run, sources);
+  EXPECT_EQ(played.end, EpisodeEnd::kSuccess);
+  EXPECT_EQ(played.end_there, EpisodeEnd::kSuccess);
+  const auto wrong = dynamics::playedEpisodes({}, {.task = {{"gravity", "1"}}}, run.world(), 1);
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().where, "--set");
 }
 
 TEST(ARecordingOfAnotherWorld, IsRefused) {
