@@ -16,9 +16,9 @@ std::optional<std::size_t> heldIn(const EnvState& state) {
 }
 
 /// The simulation of a recording, which stays where an episode ends until that has been looked at.
-class Retracing {
+class RecordingReplay {
  public:
-  Retracing(RecordingReader& recording, BatchSimulator& simulator)
+  RecordingReplay(RecordingReader& recording, BatchSimulator& simulator)
       : recording_(recording),
         simulator_(simulator),
         actions_(simulator.envCount() * simulator.actionCount()) {
@@ -132,12 +132,12 @@ Result<std::vector<EpisodeTrace>> tracesOf(RecordingReader& recording, const Wor
                 fmt::format("has {} actions per env, expected the robot's {}; record it again",
                             recording.subject().actions, simulator.actionCount()));
   }
-  Retracing retracing(recording, simulator);
+  RecordingReplay replay(recording, simulator);
   for (std::uint64_t n = 0; n < recording.steps(); ++n) {
-    RETURN_IF_ERROR(retracing.step(n));
-    if (most != 0 && retracing.finished() >= most) break;
+    RETURN_IF_ERROR(replay.step(n));
+    if (most != 0 && replay.finished() >= most) break;
   }
-  std::vector<EpisodeTrace> traces = retracing.take();
+  std::vector<EpisodeTrace> traces = replay.take();
   if (most != 0 && traces.size() > most) traces.resize(most);
   return traces;
 }

@@ -197,18 +197,17 @@ class SourceReader {
 
 }  // namespace
 
-Result<Sources> readSources(const SourceFiles& files, const World& world) {
+Result<Sources> readSources(const bake::RecipeSource& source, const World& world) {
   // Nothing is written there: the list wants a name for the world.
-  ASSIGN_OR_RETURN(const auto list,
-                   bake::jobsOfRecipe({.recipe = files.recipe, .data = files.data}, "world.pack"));
+  ASSIGN_OR_RETURN(const auto list, bake::jobsOfRecipe(source, "world.pack"));
   Sources sources;
   SourceReader reader(world, sources);
-  RETURN_IF_ERROR(noteContent(files.recipe, sources.log));
+  RETURN_IF_ERROR(noteContent(source.recipe, sources.log));
   for (const bake::PackJob& pack : list.assets) {
     for (const std::filesystem::path& file : bake::filesOf(pack.job)) sources.log.noteRead(file);
     RETURN_IF_ERROR(std::visit(reader, pack.job));
   }
-  RETURN_IF_ERROR(reader.finish(files.recipe));
+  RETURN_IF_ERROR(reader.finish(source.recipe));
   reader.warnOfDefaults();
   return sources;
 }

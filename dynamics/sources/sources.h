@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -8,18 +7,11 @@
 #include "dynamics/sources/robot_model.h"
 #include "dynamics/world.h"
 #include "galactic/bake/assets.h"
+#include "galactic/bake/job_lists.h"
 #include "galactic/error.h"
 #include "galactic/world.h"
 
 namespace galactic::dynamics {
-
-/// Where the sources of a world are told.
-struct SourceFiles {
-  /// The recipe that the world was baked from.
-  std::filesystem::path recipe;
-  /// Where its files are looked for that are not beside it; empty: nowhere else.
-  std::filesystem::path data{};
-};
 
 /// What a world's packs lack: triangles, hulls and masses, by the names in the packs. Shapes are
 /// immutable; worlds on several threads share them.
@@ -40,8 +32,9 @@ struct Sources {
 inline constexpr double kObjectMass = 0.5;
 
 /// Reads what the scenes, objects and the robot of `world` were baked from; of scenes and objects
-/// only those that episodes use. Fails with the errors of the recipe and the importers, and with
-/// kInvalidInput where the recipe makes no pack of something that the world has.
-[[nodiscard]] Result<Sources> readSources(const SourceFiles& files, const World& world);
+/// only those that its episodes use, whatever `source` says of episodes. Fails with the errors of
+/// the recipe and the importers, and with kInvalidInput where the recipe makes no pack of something
+/// that the world has.
+[[nodiscard]] Result<Sources> readSources(const bake::RecipeSource& source, const World& world);
 
 }  // namespace galactic::dynamics
