@@ -62,7 +62,7 @@ class Comparison {
 
   Result<EpisodeComparison> run(const ActionSource& actions_of, const StepWatcher& watch) {
     Inspection(trace_, worlds_.world, worlds_.simulation, scene_, objects_, setup()).run(result_);
-    RETURN_IF_ERROR(playThere(actions_of, watch));
+    RETURN_IF_ERROR(playDynamics(actions_of, watch));
     restAll();
     return std::move(result_);
   }
@@ -76,10 +76,10 @@ class Comparison {
             .positions = trace_.start_positions};
   }
 
-  Result<void> playThere(const ActionSource& actions_of, const StepWatcher& watch) {
-    DynamicsWorld there(scene_, objects_, worlds_.options);
-    there.addRobot(setup());
-    RobotDriver driver(worlds_.world.robot(), there, worlds_.simulation);
+  Result<void> playDynamics(const ActionSource& actions_of, const StepWatcher& watch) {
+    DynamicsWorld dynamics(scene_, objects_, worlds_.options);
+    dynamics.addRobot(setup());
+    RobotDriver driver(worlds_.world.robot(), dynamics, worlds_.simulation);
     WorldReading reading;
     lane_.begin(trace_.episode, worlds_.options.arm);
     if (watch) watch(lane_.simulator(), {});
@@ -88,20 +88,20 @@ class Comparison {
       if (actions.empty()) break;
       const DrivenStep driven = driver.step(actions);
       if (driven.grasped) was_held_[*driven.grasped] = true;
-      const FollowedState now = reading.read(there, driven, objects_.size());
-      // Nothing can follow from there: the episode ends without a success.
+      const FollowedState now = reading.read(dynamics, driven, objects_.size());
+      // Nothing can follow from that: the episode ends without a success.
       if (!isKnown(now)) break;
       lane_.follow(actions, now);
       if (watch) watch(lane_.simulator(), actions);
-      compare(n, there, driver);
+      compare(n, dynamics, driver);
     }
-    finish(there);
+    finish(dynamics);
     return {};
   }
 
-  void compare(std::size_t n, const DynamicsWorld& there, const RobotDriver& driver) {
-    ++result_.steps_there;
-    const std::vector<float> positions = there.positions();
+  void compare(std::size_t n, const DynamicsWorld& dynamics, const RobotDriver& driver) {
+    ++result_.steps_in_dynamics;
+    const std::vector<float> positions = dynamics.positions();
     const Robot& robot = worlds_.world.robot();
     for (const ControlledJoint& joint : robot.controlledJoints()) {
       const auto miss = static_cast<double>(
@@ -110,33 +110,34 @@ class Comparison {
       result_.tracking_worst = std::max(result_.tracking_worst, miss);
     }
     if (n >= trace_.steps.size()) return;
-    const TracedStep& here = trace_.steps[n];
-    const Vec3 base = there.worldFromRoot().translation - here.world_from_root.translation;
+    const TracedStep& simulated = trace_.steps[n];
+    const Vec3 base = dynamics.worldFromRoot().translation - simulated.world_from_root.translation;
     result_.base_gap.push_back(std::hypot(base.x, base.z));
-    const Pose grip = gripOf(robot, here.world_from_root, here.positions);
+    const Pose grip = gripOf(robot, simulated.world_from_root, simulated.positions);
     result_.grip_gap.push_back(lengthOf(driver.worldFromGrip().translation - grip.translation));
-    if (!result_.parted && here.held != there.held()) {
+    if (!result_.parted && simulated.held != dynamics.held()) {
       result_.parted = static_cast<std::uint32_t>(n);
     }
   }
 
-  /// What is there two seconds after the last step.
-  void finish(DynamicsWorld& there) {
-    result_.end_there = lane_.end();
-    result_.picked_there = was_held_[trace_.target];
-    for (int n = 0; n < kRestSteps; ++n) there.step();
-    result_.success_settled = result_.succeedsThere() && stillSucceeds(there);
+  /// How the episode ended, and what is left of that two seconds later.
+  void finish(DynamicsWorld& dynamics) {
+    result_.end_in_dynamics = lane_.end();
+    result_.picked_in_dynamics = was_held_[trace_.target];
+    for (int n = 0; n < kRestSteps; ++n) dynamics.step();
+    result_.success_settled = result_.succeedsInDynamics() && stillSucceeds(dynamics);
     for (std::size_t n = 0; n < objects_.size(); ++n) {
-      const Vec3 way = there.objectPose(n).translation - objects_[n].world_from_object.translation;
+      const Vec3 way =
+          dynamics.objectPose(n).translation - objects_[n].world_from_object.translation;
       if (!was_held_[n] && lengthOf(way) > kDisturbed) ++result_.disturbed;
     }
   }
 
-  [[nodiscard]] bool stillSucceeds(const DynamicsWorld& there) const {
+  [[nodiscard]] bool stillSucceeds(const DynamicsWorld& dynamics) const {
     const TaskOptions& task = worlds_.simulation.task;
-    const bool holds = there.held() == trace_.target;
+    const bool holds = dynamics.held() == trace_.target;
     if (task.kind == TaskKind::kMobilePick) return holds;
-    const Vec3 away = there.objectPose(trace_.target).translation - trace_.goal.translation;
+    const Vec3 away = dynamics.objectPose(trace_.target).translation - trace_.goal.translation;
     return !holds && lengthOf(away) < task.success_distance;
   }
 
@@ -146,13 +147,13 @@ class Comparison {
     std::vector<PlacedObject> objects = objects_;
     for (const TracedRelease& release : trace_.releases) {
       objects[release.object].world_from_object = release.world_from_object;
-      DynamicsWorld there(scene_, objects, worlds_.options);
+      DynamicsWorld dynamics(scene_, objects, worlds_.options);
       for (std::size_t n = 0; n < objects.size(); ++n) {
-        if (n != release.object) there.sleep(n);
+        if (n != release.object) dynamics.sleep(n);
       }
-      for (int n = 0; n < kRestSteps; ++n) there.step();
+      for (int n = 0; n < kRestSteps; ++n) dynamics.step();
       const Pose& put = release.world_from_object;
-      const Pose now = there.objectPose(release.object);
+      const Pose now = dynamics.objectPose(release.object);
       const Vec3 up = rotate(now.rotation * conjugate(put.rotation), {0, 1, 0});
       result_.rests.push_back({.displacement = lengthOf(now.translation - put.translation),
                                .lean = std::acos(std::clamp(up.y, -1.0F, 1.0F)),

@@ -74,28 +74,30 @@ struct DeepContact {
   MissKey key;
 };
 
-/// One episode in both worlds: here, in the simulation, and there, in the dynamics.
+/// One episode in both worlds, the simulation and the dynamics.
 struct EpisodeComparison {
   std::uint32_t env = 0;
   std::uint32_t episode = 0;
+  /// Of the simulation.
   EpisodeEnd end = EpisodeEnd::kNone;
   std::uint32_t steps = 0;
-  /// Of the dynamics world, by the simulation's rules; kNone where the recorded actions ran out.
-  EpisodeEnd end_there = EpisodeEnd::kNone;
+  /// Of the dynamics, by the simulation's rules; kNone where the recorded actions ran out.
+  EpisodeEnd end_in_dynamics = EpisodeEnd::kNone;
   /// Those after which the engine knew where everything was: it may lose what is pressed into other
   /// things, even in the first one, and then the episode ends without a success.
-  std::uint32_t steps_there = 0;
-  /// Success there that is still one two seconds later.
+  std::uint32_t steps_in_dynamics = 0;
+  /// Success in the dynamics that is still one two seconds later.
   bool success_settled = false;
-  /// Whether the hand there held the target at some time.
-  bool picked_there = false;
+  /// Whether the hand held the target at some time.
+  bool picked_in_dynamics = false;
   /// The first step after which the hands do not hold the same.
   std::optional<std::uint32_t> parted;
   /// After each step that both made: how far the roots are apart on the ground, and the grips;
   /// meters.
   std::vector<float> base_gap;
   std::vector<float> grip_gap;
-  /// Over all steps there and controlled joints: position against its target, radians or meters.
+  /// Over all steps of the dynamics and controlled joints: position against its target, radians or
+  /// meters.
   double tracking_sum = 0;
   double tracking_worst = 0;
   /// Steps in which a link of the robot, where the simulation has it, is deeper than kTolerance in
@@ -108,12 +110,13 @@ struct EpisodeComparison {
   /// and those of them in which the pose that the action asked for touches nothing.
   std::uint32_t hindered = 0;
   std::map<InventedCause, std::uint32_t> invented;
-  /// Objects that the hand never held there and that are more than kDisturbed from their place.
+  /// Objects that the hand never held in the dynamics and that are more than kDisturbed from their
+  /// place.
   std::uint32_t disturbed = 0;
   std::vector<Rest> rests;
 
-  [[nodiscard]] bool succeedsHere() const { return end == EpisodeEnd::kSuccess; }
-  [[nodiscard]] bool succeedsThere() const { return end_there == EpisodeEnd::kSuccess; }
+  [[nodiscard]] bool succeedsInSimulation() const { return end == EpisodeEnd::kSuccess; }
+  [[nodiscard]] bool succeedsInDynamics() const { return end_in_dynamics == EpisodeEnd::kSuccess; }
   [[nodiscard]] std::uint32_t inventedSteps() const;
 };
 
@@ -146,9 +149,10 @@ struct ComparisonWorlds {
   const WorldOptions& options;
 };
 
-/// Told after the start of an episode there, without actions, and after each of its steps.
+/// Told after the start of an episode in the dynamics, without actions, and after each of its
+/// steps. `follower`: of the lane that follows them.
 using StepWatcher =
-    std::function<void(const BatchSimulator& there, std::span<const float> actions)>;
+    std::function<void(const BatchSimulator& follower, std::span<const float> actions)>;
 
 /// Carries out actions in a dynamics world that starts as the episode did in the simulation, until
 /// the task or they end it. `lane` follows that world, so that its policy observes it.

@@ -25,7 +25,7 @@ struct ClosedLoop {
 };
 
 /// One env of the simulation, which plays one episode after the other, or follows a dynamics world:
-/// then it says what a policy observes there and how the task ends. What happens in an episode
+/// then it says what a policy observes in it and how the task ends. What happens in an episode
 /// depends on (world, options, episode) only, not on those before. Not safe to use from several
 /// threads at once; stays in one place.
 class EpisodeLane {

@@ -20,7 +20,7 @@
 namespace galactic::dynamics {
 namespace {
 
-/// What moves things here is off by itself; noise of motion would be lost, and delay.
+/// What moves things in the dynamics is off by itself; noise of motion would be lost, and delay.
 Result<void> requireExactMotions(const SimulationOptions& options, const std::string& where,
                                  const std::string& remedy) {
   const RobotNoise& noise = options.noise;

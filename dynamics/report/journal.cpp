@@ -70,10 +70,10 @@ Json jsonOf(const EpisodeComparison& c) {
         {rest.displacement, rest.lean, rest.drop, rest.step, jsonOf(rest.world_from_object)});
   }
   return {{"of", {c.env, c.episode}},
-          {"here", {static_cast<int>(c.end), c.steps}},
-          {"there", {static_cast<int>(c.end_there), c.steps_there}},
+          {"simulation", {static_cast<int>(c.end), c.steps}},
+          {"dynamics", {static_cast<int>(c.end_in_dynamics), c.steps_in_dynamics}},
           {"settled", c.success_settled},
-          {"picked", c.picked_there},
+          {"picked", c.picked_in_dynamics},
           {"parted", jsonOf(c.parted)},
           {"base", c.base_gap},
           {"grip", c.grip_gap},
@@ -106,12 +106,12 @@ EpisodeComparison comparisonOf(const Json& json) {
   EpisodeComparison c;
   c.env = json.at("of").at(0).get<std::uint32_t>();
   c.episode = json.at("of").at(1).get<std::uint32_t>();
-  c.end = endOf(json.at("here").at(0));
-  c.steps = json.at("here").at(1).get<std::uint32_t>();
-  c.end_there = endOf(json.at("there").at(0));
-  c.steps_there = json.at("there").at(1).get<std::uint32_t>();
+  c.end = endOf(json.at("simulation").at(0));
+  c.steps = json.at("simulation").at(1).get<std::uint32_t>();
+  c.end_in_dynamics = endOf(json.at("dynamics").at(0));
+  c.steps_in_dynamics = json.at("dynamics").at(1).get<std::uint32_t>();
   c.success_settled = json.at("settled").get<bool>();
-  c.picked_there = json.at("picked").get<bool>();
+  c.picked_in_dynamics = json.at("picked").get<bool>();
   if (const Json& parted = json.at("parted"); !parted.is_null()) {
     c.parted = parted.get<std::uint32_t>();
   }
@@ -135,7 +135,7 @@ EpisodeComparison comparisonOf(const Json& json) {
 /// gaps after those that both worlds made.
 bool isSound(const EpisodeComparison& c, std::size_t links) {
   const auto has_link = [links](const auto& missed) { return std::get<0>(missed.first) < links; };
-  const std::size_t steps = std::min(c.steps, c.steps_there);
+  const std::size_t steps = std::min(c.steps, c.steps_in_dynamics);
   return c.base_gap.size() == steps && c.grip_gap.size() == steps &&
          (!c.parted || *c.parted < steps) && std::ranges::all_of(c.missed, has_link) &&
          (!c.deepest || (std::get<0>(c.deepest->key) < links && c.deepest->step < c.steps)) &&

@@ -12,7 +12,7 @@ namespace galactic::dynamics {
 namespace {
 
 std::optional<Moment> lostIn(const EpisodeComparison& episode) {
-  if (!episode.succeedsHere() || episode.succeedsThere() || episode.grip_gap.empty()) {
+  if (!episode.succeedsInSimulation() || episode.succeedsInDynamics() || episode.grip_gap.empty()) {
     return std::nullopt;
   }
   const auto last = static_cast<std::uint32_t>(episode.grip_gap.size()) - 1;
@@ -117,43 +117,41 @@ std::vector<Moment> worstMoments(const std::vector<EpisodeComparison>& episodes,
   return worst;
 }
 
-MomentPlace placeOf(const Moment& moment, std::size_t steps_here, std::size_t steps_there) {
+MomentPlace placeOf(const Moment& moment, std::size_t steps, std::size_t steps_in_dynamics) {
   const bool is_simulation =
       moment.kind == MomentKind::kMissed || moment.kind == MomentKind::kMoved;
-  const auto last = static_cast<std::uint32_t>(is_simulation ? steps_here : steps_there);
+  const auto last = static_cast<std::uint32_t>(is_simulation ? steps : steps_in_dynamics);
   return {is_simulation, std::min(moment.step + 1, last)};
 }
 
 MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,
                     const BothTracks& tracks, ComparisonMode mode) {
-  const auto& [here, there] = tracks;
+  const auto& [simulated, dynamic] = tracks;
   const bool is_closed = mode == ComparisonMode::kClosedLoop;
   const std::string what = fmt::format("{}, {:.3f} m", nameOf(moment.kind), moment.meters);
-  MomentSides sides{.frame_here = std::min(moment.step + 1, lastFrame(here)),
-                    .said_here = what,
-                    .frame_there = std::min(moment.step + 1, lastFrame(there)),
-                    .said_there = {},
+  MomentSides sides{.simulated = {std::min(moment.step + 1, lastFrame(simulated)), what},
+                    .dynamic = {std::min(moment.step + 1, lastFrame(dynamic)), {}},
                     .rest = {}};
   if (moment.kind == MomentKind::kMoved) {
     const auto rest = std::ranges::find(episode.rests, moment.step, &Rest::step);
-    sides.said_here = "let go";
-    sides.said_there = "dynamics, 2 s later, " + what;
+    sides.simulated.said = "let go";
+    sides.dynamic.said = "dynamics, 2 s later, " + what;
     sides.rest = rest->world_from_object;
   } else if (is_closed && moment.kind == MomentKind::kLost) {
-    sides.frame_here = lastFrame(here);
-    sides.said_here = nameOf(episode.end);
-    sides.frame_there = lastFrame(there);
-    sides.said_there = fmt::format("{}, {}", nameOf(episode.end_there), what);
+    sides.simulated.frame = lastFrame(simulated);
+    sides.simulated.said = nameOf(episode.end);
+    sides.dynamic.frame = lastFrame(dynamic);
+    sides.dynamic.said = fmt::format("{}, {}", nameOf(episode.end_in_dynamics), what);
   } else if (is_closed) {
-    sides.frame_there = likestFrame(there, here, sides.frame_here);
-    sides.said_there = "most like it";
+    sides.dynamic.frame = likestFrame(dynamic, simulated, sides.simulated.frame);
+    sides.dynamic.said = "most like it";
   }
-  const auto timed = [](std::string_view world, std::uint32_t frame, const std::string& said) {
-    const std::string when = frame == 0 ? "start" : fmt::format("step {}", frame);
-    return fmt::format("{}, {}{}{}", world, when, said.empty() ? "" : ", ", said);
+  const auto timed = [](std::string_view world, const MomentSide& side) {
+    const std::string when = side.frame == 0 ? "start" : fmt::format("step {}", side.frame);
+    return fmt::format("{}, {}{}{}", world, when, side.said.empty() ? "" : ", ", side.said);
   };
-  sides.said_here = timed("simulation", sides.frame_here, sides.said_here);
-  if (!sides.rest) sides.said_there = timed("dynamics", sides.frame_there, sides.said_there);
+  sides.simulated.said = timed("simulation", sides.simulated);
+  if (!sides.rest) sides.dynamic.said = timed("dynamics", sides.dynamic);
   return sides;
 }
 

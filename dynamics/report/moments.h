@@ -15,8 +15,8 @@ namespace galactic::dynamics {
 
 /// What went wrong at a moment.
 enum class MomentKind : std::uint8_t {
-  /// The episode succeeds here and not there; the hands begin to hold different things, or where
-  /// they never do, the episode ends. Meters: between the grips.
+  /// The episode succeeds in the simulation alone; the hands begin to hold different things, or
+  /// where they never do, the episode ends. Meters: between the grips.
   kLost,
   /// The deepest contact that the simulation does not see. Meters: how deep.
   kMissed,
@@ -52,32 +52,34 @@ struct MomentPlace {
 };
 
 /// Contacts and releases are looked for in the simulation: their steps are its steps. All else is
-/// seen in the dynamics, which in a closed loop takes steps of its own. `steps_here`,
-/// `steps_there`: of the episode in the simulation and in the dynamics; where it ends before, its
-/// end is seen.
-[[nodiscard]] MomentPlace placeOf(const Moment& moment, std::size_t steps_here,
-                                  std::size_t steps_there);
+/// seen in the dynamics, which in a closed loop takes steps of its own. `steps`,
+/// `steps_in_dynamics`: of the episode in both worlds; where it ends before, its end is seen.
+[[nodiscard]] MomentPlace placeOf(const Moment& moment, std::size_t steps,
+                                  std::size_t steps_in_dynamics);
 
 /// An episode in both worlds, each the first env of its track.
 struct BothTracks {
-  const RunTrack& here;
-  const RunTrack& there;
+  const RunTrack& simulated;
+  const RunTrack& dynamic;
 };
 
-/// What a moment looks like in both worlds: in which frames of their tracks, and what is to be said
-/// of it.
+/// What a moment looks like in one of them: in which frame of its track, and what is to be said of
+/// it.
+struct MomentSide {
+  std::uint32_t frame = 0;
+  std::string said;
+};
+
 struct MomentSides {
-  std::uint32_t frame_here = 0;
-  std::string said_here;
-  std::uint32_t frame_there = 0;
-  std::string said_there;
+  MomentSide simulated;
+  MomentSide dynamic;
   /// Of an object that was let go, where it is in the dynamics two seconds later: all else is as in
   /// the simulation, and the robot is gone.
   std::optional<Pose> rest;
 };
 
 /// In a replay both are seen after the same step. In a closed loop the same step says nothing:
-/// where a success is lost, both ends are seen, and else the dynamics when the robot stands there
+/// where a success is lost, both ends are seen, and else the dynamics when the robot stands
 /// most as it does in the simulation. What an object did that was let go is seen two seconds later.
 /// Where an episode ends before, its end is seen, and its start where it has no step.
 [[nodiscard]] MomentSides sidesOf(const Moment& moment, const EpisodeComparison& episode,

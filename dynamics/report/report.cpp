@@ -41,8 +41,8 @@ Json jsonOf(const std::vector<OptionText>& options) {
 Json successOf(const Sums& sums) {
   const Outcomes& outcomes = sums.outcomes;
   const auto share = [&](std::uint32_t count) { return jsonOf(wilson(count, sums.episodes)); };
-  return {{"simulation", share(outcomes.here)},
-          {"dynamics", share(outcomes.there)},
+  return {{"simulation", share(outcomes.in_simulation)},
+          {"dynamics", share(outcomes.in_dynamics)},
           {"dynamics_after_2_s", share(outcomes.settled)},
           {"both", share(outcomes.both)},
           {"picked_in_dynamics", share(outcomes.picked)},
@@ -127,10 +127,10 @@ Json jsonOf(const EpisodeComparison& episode) {
           {"episode", episode.episode},
           {"steps", episode.steps},
           {"end", nameOf(episode.end)},
-          {"steps_there", episode.steps_there},
-          {"end_there", nameOf(episode.end_there)},
+          {"steps_in_dynamics", episode.steps_in_dynamics},
+          {"end_in_dynamics", nameOf(episode.end_in_dynamics)},
           {"success_settled", episode.success_settled},
-          {"picked_there", episode.picked_there},
+          {"picked_in_dynamics", episode.picked_in_dynamics},
           {"parted", parted},
           {"last_base_gap", jsonOf(lastOf(episode.base_gap))},
           {"last_grip_gap", jsonOf(lastOf(episode.grip_gap))},
@@ -153,7 +153,7 @@ Json worstOf(const Comparisons& comparisons, const World& world) {
 }
 
 double meanTracking(const Sums& sums, const World& world) {
-  const double count = static_cast<double>(sums.steps_there) *
+  const double count = static_cast<double>(sums.steps_in_dynamics) *
                        static_cast<double>(world.robot().controlledJoints().size());
   return count == 0 ? 0 : sums.tracking_sum / count;
 }
@@ -192,8 +192,8 @@ class Table {
 void addSuccess(const Sums& sums, Table& table) {
   const Outcomes& outcomes = sums.outcomes;
   const auto share = [&](std::uint32_t count) { return percent(wilson(count, sums.episodes)); };
-  table.line("success in the simulation", share(outcomes.here));
-  table.line("success in the dynamics", share(outcomes.there));
+  table.line("success in the simulation", share(outcomes.in_simulation));
+  table.line("success in the dynamics", share(outcomes.in_dynamics));
   table.line("  and still after 2 s", share(outcomes.settled));
   table.line("target picked in the dynamics", share(outcomes.picked));
   table.line("successes lost before, after picking",
@@ -259,7 +259,7 @@ std::string reportJson(const Comparisons& comparisons, const World& world,
       {"options", jsonOf(optionsOf(subject))},
       {"episodes", sums.episodes},
       {"steps", sums.steps},
-      {"steps_in_dynamics", sums.steps_there},
+      {"steps_in_dynamics", sums.steps_in_dynamics},
       {"success", successOf(sums)},
       {"tracking_error", {{"mean", meanTracking(sums, world)}, {"worst", sums.tracking_worst}}},
       {"divergence", gapsOf(sums)},
@@ -276,8 +276,8 @@ std::string reportTable(const Comparisons& comparisons, const World& world,
                         const ReportSubject& subject) {
   const Sums sums = sumsOf(comparisons, subject);
   Table table;
-  table.line("episodes, steps, steps there",
-             fmt::format("{}, {}, {}", sums.episodes, sums.steps, sums.steps_there));
+  table.line("episodes, steps in both worlds",
+             fmt::format("{}, {}, {}", sums.episodes, sums.steps, sums.steps_in_dynamics));
   addSuccess(sums, table);
   table.line("joint error, mean and worst",
              fmt::format("{:.4f}, {:.3f}", meanTracking(sums, world), sums.tracking_worst));

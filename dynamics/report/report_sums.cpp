@@ -24,15 +24,15 @@ void addRests(const EpisodeComparison& episode, Sums& sums) {
 }
 
 void addOutcome(const EpisodeComparison& episode, Outcomes& outcomes) {
-  const bool here = episode.succeedsHere();
-  const bool there = episode.succeedsThere();
-  outcomes.here += here ? 1U : 0U;
-  outcomes.there += there ? 1U : 0U;
+  const bool in_simulation = episode.succeedsInSimulation();
+  const bool in_dynamics = episode.succeedsInDynamics();
+  outcomes.in_simulation += in_simulation ? 1U : 0U;
+  outcomes.in_dynamics += in_dynamics ? 1U : 0U;
   outcomes.settled += episode.success_settled ? 1U : 0U;
-  outcomes.both += here && there ? 1U : 0U;
-  outcomes.picked += episode.picked_there ? 1U : 0U;
-  if (!here || there) return;
-  ++(episode.picked_there ? outcomes.lost_later : outcomes.lost_picking);
+  outcomes.both += in_simulation && in_dynamics ? 1U : 0U;
+  outcomes.picked += episode.picked_in_dynamics ? 1U : 0U;
+  if (!in_simulation || in_dynamics) return;
+  ++(episode.picked_in_dynamics ? outcomes.lost_later : outcomes.lost_picking);
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ Sums sumOf(const std::vector<EpisodeComparison>& episodes) {
     addOutcome(episode, sums.outcomes);
     sums.disturbed += episode.disturbed;
     sums.steps += episode.steps;
-    sums.steps_there += episode.steps_there;
+    sums.steps_in_dynamics += episode.steps_in_dynamics;
     sums.missed_steps += episode.missed_steps;
     sums.hindered += episode.hindered;
     for (const auto& [cause, count] : episode.invented) sums.invented[cause] += count;

@@ -22,14 +22,14 @@ struct Gap {
 
 /// Of all episodes, by what became of the target in both worlds.
 struct Outcomes {
-  std::uint32_t here = 0;
-  std::uint32_t there = 0;
+  std::uint32_t in_simulation = 0;
+  std::uint32_t in_dynamics = 0;
   std::uint32_t settled = 0;
   std::uint32_t both = 0;
-  /// Target in the hand there at some time.
+  /// Target in the hand at some time, in the dynamics.
   std::uint32_t picked = 0;
-  /// Of the successes here that are none there: the hand there never held the target; it did, and
-  /// the target is elsewhere at the end.
+  /// Of the successes in the simulation that are none in the dynamics: the hand never held the
+  /// target there; it did, and the target is elsewhere at the end.
   std::uint32_t lost_picking = 0;
   std::uint32_t lost_later = 0;
 };
@@ -40,7 +40,7 @@ struct Sums {
   Outcomes outcomes;
   std::uint32_t disturbed = 0;
   std::uint64_t steps = 0;
-  std::uint64_t steps_there = 0;
+  std::uint64_t steps_in_dynamics = 0;
   std::uint64_t missed_steps = 0;
   std::uint64_t hindered = 0;
   std::map<InventedCause, std::uint64_t> invented;

@@ -56,7 +56,7 @@ class Onlooker {
 };
 
 /// Lets a lane follow what the simulation did.
-void replayHere(const EpisodeTrace& trace, EpisodeLane& lane, Onlooker& onlooker) {
+void replaySimulation(const EpisodeTrace& trace, EpisodeLane& lane, Onlooker& onlooker) {
   lane.begin(trace.episode, ArmDrive::kKinematic);
   onlooker.look(lane.simulator(), {});
   for (std::size_t n = 0; n < trace.steps.size(); ++n) {
@@ -110,10 +110,10 @@ class SideBySide {
       : parts_(parts), files_(files) {}
 
   Result<void> play() {
-    ASSIGN_OR_RETURN(here_, parts_.episodes.makeLane());
-    ASSIGN_OR_RETURN(there_, parts_.episodes.makeLane());
+    ASSIGN_OR_RETURN(simulated_lane_, parts_.episodes.makeLane());
+    ASSIGN_OR_RETURN(dynamic_lane_, parts_.episodes.makeLane());
     if (!files_.pictures.empty()) {
-      ASSIGN_OR_RETURN(best_, BestView::create(parts_.worlds.world, here_->simulator()));
+      ASSIGN_OR_RETURN(best_, BestView::create(parts_.worlds.world, simulated_lane_->simulator()));
     }
     std::map<std::size_t, std::vector<std::size_t>> moments;
     for (std::size_t n = 0; n < worst().size(); ++n) moments[worst()[n].comparison].push_back(n);
@@ -152,30 +152,30 @@ class SideBySide {
   Result<void> play(std::size_t comparison, const std::vector<std::size_t>& moments) {
     const World& world = parts_.worlds.world;
     BestView* const best = moments.empty() ? nullptr : best_.get();
-    Onlooker here(world, best);
-    Onlooker there(world, best);
-    ASSIGN_OR_RETURN(const auto trace, parts_.episodes.trace(comparison, *here_));
-    replayHere(trace, *here_, here);
-    RETURN_IF_ERROR(
-        compareEpisode(trace, *there_, parts_.worlds, parts_.episodes.actions(trace, *there_),
-                       [&](const BatchSimulator& simulator, std::span<const float> actions) {
-                         there.look(simulator, actions);
-                       }));
-    keep(here.track(), there.track(), trace.episode);
+    Onlooker simulated(world, best);
+    Onlooker dynamic(world, best);
+    ASSIGN_OR_RETURN(const auto trace, parts_.episodes.trace(comparison, *simulated_lane_));
+    replaySimulation(trace, *simulated_lane_, simulated);
+    RETURN_IF_ERROR(compareEpisode(
+        trace, *dynamic_lane_, parts_.worlds, parts_.episodes.actions(trace, *dynamic_lane_),
+        [&](const BatchSimulator& simulator, std::span<const float> actions) {
+          dynamic.look(simulator, actions);
+        }));
+    keep(simulated.track(), dynamic.track(), trace.episode);
     for (const std::size_t n : moments) {
-      keep(n, here.track(), there.track());
-      if (best != nullptr) draw(n, trace, here, there);
+      keep(n, simulated.track(), dynamic.track());
+      if (best != nullptr) draw(n, trace, simulated, dynamic);
     }
     return {};
   }
 
-  void keep(const RunTrack& here, const RunTrack& there, std::uint32_t episode) {
+  void keep(const RunTrack& simulated, const RunTrack& dynamic, std::uint32_t episode) {
     if (track_) {
-      track_->append(here);
+      track_->append(simulated);
     } else {
-      track_.emplace(here);
+      track_.emplace(simulated);
     }
-    track_->append(there);
+    track_->append(dynamic);
     const auto first = static_cast<std::uint32_t>(names_.size());
     names_.push_back(fmt::format("Episode {}: simulation", episode));
     names_.push_back(fmt::format("Episode {}: dynamics", episode));
@@ -183,30 +183,31 @@ class SideBySide {
   }
 
   /// Points the page at a moment of the two envs that it has last.
-  void keep(std::size_t n, const RunTrack& here, const RunTrack& there) {
+  void keep(std::size_t n, const RunTrack& simulated, const RunTrack& dynamic) {
     const Moment& moment = worst()[n];
     const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
-    const MomentPlace place = placeOf(moment, here.steps(), there.steps());
+    const MomentPlace place = placeOf(moment, simulated.steps(), dynamic.steps());
     page_moments_.push_back({.env = names_.size() - (place.is_simulation ? 2 : 1),
                              .frame = place.frame,
                              .text = describe(moment, episode, parts_.worlds.world)});
   }
 
-  void draw(std::size_t n, const EpisodeTrace& trace, const Onlooker& here, const Onlooker& there) {
+  void draw(std::size_t n, const EpisodeTrace& trace, const Onlooker& simulated,
+            const Onlooker& dynamic) {
     const Moment& moment = worst()[n];
     const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
     const PictureSubject subject = subjectOf(moment, episode, trace, parts_.worlds.world.robot());
     const MomentSides sides =
-        sidesOf(moment, episode, {here.track(), there.track()}, parts_.subject.mode);
-    const std::array stills{here.still(sides.frame_here),
+        sidesOf(moment, episode, {simulated.track(), dynamic.track()}, parts_.subject.mode);
+    const std::array stills{simulated.still(sides.simulated.frame),
                             sides.rest
-                                ? BestView::withoutRobot(here.still(sides.frame_here),
+                                ? BestView::withoutRobot(simulated.still(sides.simulated.frame),
                                                          subject.objects.front(), *sides.rest)
-                                : there.still(sides.frame_there)};
+                                : dynamic.still(sides.dynamic.frame)};
     const auto cameras = best_->camerasFor({&stills[0], &stills[1]}, subject);
     const std::array captions{
-        fmt::format("{}. episode {}, {}", n + 1, episode.episode, sides.said_here),
-        sides.said_there};
+        fmt::format("{}. episode {}, {}", n + 1, episode.episode, sides.simulated.said),
+        sides.dynamic.said};
     for (std::size_t side = 0; side < stills.size(); ++side) {
       cells_[2 * n + side] = {colorPicture(best_->draw(stills[side], cameras[side])),
                               captions[side]};
@@ -216,8 +217,8 @@ class SideBySide {
   const SideBySideParts& parts_;
   const SideBySideFiles& files_;
   /// Follow the two worlds.
-  std::unique_ptr<EpisodeLane> here_;
-  std::unique_ptr<EpisodeLane> there_;
+  std::unique_ptr<EpisodeLane> simulated_lane_;
+  std::unique_ptr<EpisodeLane> dynamic_lane_;
   /// Null without pictures.
   std::unique_ptr<BestView> best_;
   std::optional<RunTrack> track_;

@@ -91,9 +91,10 @@ class RecordedRun {
   /// Replays an episode.
   [[nodiscard]] EpisodeComparison compare(const dynamics::EpisodeTrace& trace,
                                           const dynamics::Sources& sources, ArmDrive arm) const {
-    const dynamics::WorldOptions there{.arm = arm};
+    const dynamics::WorldOptions world_options{.arm = arm};
     const auto lane = EpisodeLane::create(world_, options_, std::nullopt).value();
-    return compareEpisode(trace, *lane, {world_, options_, sources, there}, recordedActions(trace))
+    return compareEpisode(trace, *lane, {world_, options_, sources, world_options},
+                          recordedActions(trace))
         .value();
   }
   [[nodiscard]] EpisodeComparison first(const dynamics::Sources& sources, ArmDrive arm) const {
@@ -160,8 +161,8 @@ TEST(BothWorlds, AgreeInAnEmptyRoomWithAKinematicArm) {
     EXPECT_EQ(replay.disturbed, 0U);
     EXPECT_EQ(replay.tracking_worst, 0);
     EXPECT_EQ(replay.end, EpisodeEnd::kTimeOut);
-    EXPECT_EQ(replay.end_there, EpisodeEnd::kTimeOut);
-    EXPECT_EQ(replay.steps_there, kSteps);
+    EXPECT_EQ(replay.end_in_dynamics, EpisodeEnd::kTimeOut);
+    EXPECT_EQ(replay.steps_in_dynamics, kSteps);
     EXPECT_FALSE(replay.parted);
   }
 }
@@ -184,7 +185,7 @@ TEST(AWallThatTheSimulationDoesNotKnow, IsMissed) {
       replay.missed.contains({0, dynamics::Thing::kScene, dynamics::MissCause::kColumnCell}));
   ASSERT_TRUE(replay.deepest);
   EXPECT_GT(replay.deepest->depth, 0.05F);
-  // There the wall stops the base, here it goes on.
+  // In the dynamics the wall stops the base, in the simulation it goes on.
   EXPECT_GT(replay.base_gap.back(), 0.1F);
 }
 
@@ -291,25 +292,25 @@ TEST(AClosedLoop, SolvesInTheDynamicsWhatItSolvesInTheSimulation) {
   SimulationOptions options = run.options();
   options.task.most_steps = 300;
   const dynamics::Sources sources = run.sources({{{1, 0, 1}, {2, 0.7F, 2}}});
-  const dynamics::WorldOptions there{.arm = ArmDrive::kKinematic};
+  const dynamics::WorldOptions world_options{.arm = ArmDrive::kKinematic};
   const auto lane = EpisodeLane::create(run.world(), options, dynamics::ClosedLoop{}).value();
   const auto play = [&](std::uint32_t episode) {
     const auto trace = traceOf(episode, *lane).value();
-    return compareEpisode(trace, *lane, {run.world(), options, sources, there},
+    return compareEpisode(trace, *lane, {run.world(), options, sources, world_options},
                           policyActions(*lane))
         .value();
   };
   const EpisodeComparison first = play(0);
   EXPECT_EQ(first.end, EpisodeEnd::kSuccess);
-  EXPECT_EQ(first.end_there, EpisodeEnd::kSuccess);
-  EXPECT_TRUE(first.picked_there);
+  EXPECT_EQ(first.end_in_dynamics, EpisodeEnd::kSuccess);
+  EXPECT_TRUE(first.picked_in_dynamics);
   EXPECT_TRUE(first.success_settled);
   EXPECT_EQ(first.rests.size(), 1U);
   // What a lane did before changes nothing.
   static_cast<void>(play(1));
   const EpisodeComparison again = play(0);
   EXPECT_EQ(again.grip_gap, first.grip_gap);
-  EXPECT_EQ(again.steps_there, first.steps_there);
+  EXPECT_EQ(again.steps_in_dynamics, first.steps_in_dynamics);
 }
 
 TEST(AClosedLoop, HasPatienceWithMotors) {
@@ -318,18 +319,19 @@ TEST(AClosedLoop, HasPatienceWithMotors) {
   options.task.most_steps = 500;
   const dynamics::Sources sources = run.sources({{{1, 0, 1}, {2, 0.7F, 2}}});
   // A third of the usual gain: joints lag behind by several actions.
-  const dynamics::WorldOptions there{.position_gain = 0.1};
+  const dynamics::WorldOptions world_options{.position_gain = 0.1};
   const auto lane = EpisodeLane::create(run.world(), options, dynamics::ClosedLoop{}).value();
   for (const std::uint32_t episode : {0U, 1U}) {
     const auto trace = traceOf(episode, *lane).value();
     const EpisodeComparison played =
-        compareEpisode(trace, *lane, {run.world(), options, sources, there}, policyActions(*lane))
+        compareEpisode(trace, *lane, {run.world(), options, sources, world_options},
+                       policyActions(*lane))
             .value();
     EXPECT_EQ(played.end, EpisodeEnd::kSuccess) << episode;
-    EXPECT_EQ(played.end_there, EpisodeEnd::kSuccess) << episode;
-    EXPECT_GT(played.steps_there, played.steps) << "it waited";
+    EXPECT_EQ(played.end_in_dynamics, EpisodeEnd::kSuccess) << episode;
+    EXPECT_GT(played.steps_in_dynamics, played.steps) << "it waited";
     // It looks at its own targets: each joint is asked for once what the plan wants.
-    EXPECT_LT(4 * played.steps_there, 9 * played.steps) << episode;
+    EXPECT_LT(4 * played.steps_in_dynamics, 9 * played.steps) << episode;
   }
 }
 
@@ -348,11 +350,11 @@ TEST(AnEpisode, EndsWithoutASuccessWhereTheEngineLosesTheRobotInItsFirstStep) {
     const EpisodeComparison played =
         compareEpisode(trace, *lane, {run.world(), options, sources, {}}, actions).value();
     EXPECT_EQ(played.end, EpisodeEnd::kSuccess);
-    EXPECT_EQ(played.end_there, EpisodeEnd::kNone);
-    EXPECT_EQ(played.steps_there, 0U);
+    EXPECT_EQ(played.end_in_dynamics, EpisodeEnd::kNone);
+    EXPECT_EQ(played.steps_in_dynamics, 0U);
     EXPECT_TRUE(played.base_gap.empty());
     EXPECT_TRUE(played.grip_gap.empty());
-    EXPECT_FALSE(played.picked_there);
+    EXPECT_FALSE(played.picked_in_dynamics);
     EXPECT_FALSE(played.success_settled);
     const std::string report = dynamics::reportJson({{played}, {}}, run.world(), {});
     EXPECT_THAT(report, testing::HasSubstr("\"last_grip_gap\": null,"));
@@ -362,10 +364,10 @@ TEST(AnEpisode, EndsWithoutASuccessWhereTheEngineLosesTheRobotInItsFirstStep) {
 /// The n-th episode of a source in both worlds.
 EpisodeComparison compareOf(const dynamics::EpisodeSource& episodes, std::size_t n,
                             const RecordedRun& run, const dynamics::Sources& sources) {
-  const dynamics::WorldOptions there{.arm = ArmDrive::kKinematic};
+  const dynamics::WorldOptions world_options{.arm = ArmDrive::kKinematic};
   const auto lane = episodes.makeLane().value();
   const auto trace = episodes.trace(n, *lane).value();
-  return compareEpisode(trace, *lane, {run.world(), episodes.options(), sources, there},
+  return compareEpisode(trace, *lane, {run.world(), episodes.options(), sources, world_options},
                         episodes.actions(trace, *lane))
       .value();
 }
@@ -391,8 +393,8 @@ TEST(RecordedEpisodes, LeaveAnEpisodeOpenWhereTheirActionsRunOut) {
   EXPECT_FALSE(recordedActions(trace)(kShort - 1)->empty());
   EXPECT_TRUE(recordedActions(trace)(kShort)->empty());
   const EpisodeComparison replay = run.compare(trace, run.sources({}), ArmDrive::kKinematic);
-  EXPECT_EQ(replay.steps_there, kShort);
-  EXPECT_EQ(replay.end_there, EpisodeEnd::kNone);
+  EXPECT_EQ(replay.steps_in_dynamics, kShort);
+  EXPECT_EQ(replay.end_in_dynamics, EpisodeEnd::kNone);
 }
 
 TEST(PlayedEpisodes, AreThoseOfThePolicyWithTheOptionsOfTheUser) {
@@ -405,7 +407,7 @@ TEST(PlayedEpisodes, AreThoseOfThePolicyWithTheOptionsOfTheUser) {
   EXPECT_EQ(episodes->options().seed, 3U);
   const EpisodeComparison played = compareOf(*episodes, 0, run, sources);
   EXPECT_EQ(played.end, EpisodeEnd::kSuccess);
-  EXPECT_EQ(played.end_there, EpisodeEnd::kSuccess);
+  EXPECT_EQ(played.end_in_dynamics, EpisodeEnd::kSuccess);
   const auto wrong = dynamics::playedEpisodes({}, {.task = {{"gravity", "1"}}}, run.world(), 1);
   ASSERT_FALSE(wrong);
   EXPECT_EQ(wrong.error().where, "--set");

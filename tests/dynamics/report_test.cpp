@@ -39,9 +39,9 @@ EpisodeComparison made(std::uint32_t episode) {
   one.env = 3;
   one.episode = episode;
   one.end = EpisodeEnd::kSuccess;
-  one.end_there = EpisodeEnd::kTimeOut;
+  one.end_in_dynamics = EpisodeEnd::kTimeOut;
   one.steps = 4;
-  one.steps_there = 3;
+  one.steps_in_dynamics = 3;
   one.parted = 2;
   one.base_gap = {0, 0.1F, 0.3F};
   one.grip_gap = {0.0625F, 1.0F / 3, 0.7F};
@@ -64,8 +64,8 @@ EpisodeComparison made(std::uint32_t episode) {
 
 /// As where the engine does not know after the first step where everything is.
 void loseInFirstStep(EpisodeComparison& one) {
-  one.end_there = EpisodeEnd::kNone;
-  one.steps_there = 0;
+  one.end_in_dynamics = EpisodeEnd::kNone;
+  one.steps_in_dynamics = 0;
   one.parted.reset();
   one.base_gap.clear();
   one.grip_gap.clear();
@@ -76,9 +76,9 @@ void expectSame(const EpisodeComparison& found, const EpisodeComparison& wanted)
   EXPECT_EQ(found.env, wanted.env);
   EXPECT_EQ(found.episode, wanted.episode);
   EXPECT_EQ(found.end, wanted.end);
-  EXPECT_EQ(found.end_there, wanted.end_there);
+  EXPECT_EQ(found.end_in_dynamics, wanted.end_in_dynamics);
   EXPECT_EQ(found.steps, wanted.steps);
-  EXPECT_EQ(found.steps_there, wanted.steps_there);
+  EXPECT_EQ(found.steps_in_dynamics, wanted.steps_in_dynamics);
   EXPECT_EQ(found.parted, wanted.parted);
   EXPECT_EQ(found.base_gap, wanted.base_gap);
   EXPECT_EQ(found.grip_gap, wanted.grip_gap);
@@ -127,10 +127,15 @@ TEST(AJournalOfComparisons, TakesNoOtherRecords) {
   ASSERT_TRUE(journal.add(0, made(1)));
   const auto plain = Journal::open(file, "these").value();
   std::string wrong(plain->records().front());
-  wrong.replace(wrong.find("\"there\":[5"), 10, "\"there\":[9");
+  const std::string ended = "\"dynamics\":[5";
+  wrong.replace(wrong.find(ended), ended.size(), "\"dynamics\":[9");
+  std::string older(plain->records().front());
+  older.replace(older.find("\"dynamics\""), 10, "\"there\"");
+  older.replace(older.find("\"simulation\""), 12, "\"here\"");
   plain->remove();
   const auto other = Journal::open(file, "these").value();
   ASSERT_TRUE(other->add(wrong));
+  ASSERT_TRUE(other->add(older));
   ASSERT_TRUE(other->add("{}"));
   ASSERT_TRUE(other->add("no JSON"));
   EXPECT_TRUE(openJournal(file).done().empty());
@@ -158,7 +163,7 @@ TEST(AJournalOfComparisons, TakesNoRecordsOfWhatIsNotThere) {
       },
       [](EpisodeComparison& one) {
         loseInFirstStep(one);
-        one.steps_there = 3;
+        one.steps_in_dynamics = 3;
       },
       [](EpisodeComparison& one) {
         loseInFirstStep(one);
@@ -203,7 +208,7 @@ TEST(TheWorstMoments, AreOfEachKindInTurn) {
 
 TEST(TheWorstMoments, AreWorthALook) {
   std::vector<EpisodeComparison> episodes{made(0)};
-  episodes[0].end_there = EpisodeEnd::kSuccess;
+  episodes[0].end_in_dynamics = EpisodeEnd::kSuccess;
   episodes[0].deepest.reset();
   EXPECT_EQ(worstMoments(episodes, 6, ComparisonMode::kReplay).size(), 2U);
   // Two centimeters are nothing to look at.
@@ -230,23 +235,24 @@ RunTrack drivenTrack(const World& world, std::uint32_t steps, std::uint32_t wait
 TEST(AMoment, IsToldWithTheStepsOfBothWorlds) {
   const SmallHome home;
   const World& world = home.world();
-  const RunTrack here = drivenTrack(world, 12, 0);
-  const RunTrack there = drivenTrack(world, 20, 5);
+  const RunTrack simulated = drivenTrack(world, 12, 0);
+  const RunTrack dynamic = drivenTrack(world, 20, 5);
   const EpisodeComparison episode = made(0);
   const auto sides = [&](MomentKind kind, std::uint32_t step, ComparisonMode mode) {
-    return sidesOf({.kind = kind, .step = step, .meters = 0.5F}, episode, {here, there}, mode);
+    return sidesOf({.kind = kind, .step = step, .meters = 0.5F}, episode, {simulated, dynamic},
+                   mode);
   };
   const auto told = [](const dynamics::MomentSides& one) {
-    return one.said_here + " | " + one.said_there;
+    return one.simulated.said + " | " + one.dynamic.said;
   };
   EXPECT_EQ(told(sides(MomentKind::kMissed, 7, ComparisonMode::kReplay)),
             "simulation, step 8, contact missed, 0.500 m | dynamics, step 8");
-  // Here it ends before.
+  // The simulation ends before.
   EXPECT_EQ(told(sides(MomentKind::kLost, 15, ComparisonMode::kReplay)),
             "simulation, step 12, success lost, 0.500 m | dynamics, step 16");
   EXPECT_EQ(told(sides(MomentKind::kLost, 7, ComparisonMode::kClosedLoop)),
             "simulation, step 12, success | dynamics, step 20, time out, success lost, 0.500 m");
-  // The robot there comes by five steps later.
+  // In the dynamics the robot comes by five steps later.
   EXPECT_EQ(told(sides(MomentKind::kMissed, 7, ComparisonMode::kClosedLoop)),
             "simulation, step 8, contact missed, 0.500 m | dynamics, step 13, most like it");
   for (const ComparisonMode mode : {ComparisonMode::kReplay, ComparisonMode::kClosedLoop}) {
@@ -254,19 +260,19 @@ TEST(AMoment, IsToldWithTheStepsOfBothWorlds) {
     EXPECT_EQ(told(moved),
               "simulation, step 4, let go | dynamics, 2 s later, object moved, 0.500 m");
     EXPECT_EQ(moved.rest, episode.rests[0].world_from_object);
-    EXPECT_EQ(moved.frame_here, 4U);
+    EXPECT_EQ(moved.simulated.frame, 4U);
   }
 }
 
 TEST(AMoment, IsToldWithTheStartOfTheDynamicsWhereTheyMadeNoStep) {
   const SmallHome home;
-  const RunTrack here = drivenTrack(home.world(), 12, 0);
-  const RunTrack there = drivenTrack(home.world(), 0, 0);
+  const RunTrack simulated = drivenTrack(home.world(), 12, 0);
+  const RunTrack dynamic = drivenTrack(home.world(), 0, 0);
   for (const ComparisonMode mode : {ComparisonMode::kReplay, ComparisonMode::kClosedLoop}) {
     const auto sides = sidesOf({.kind = MomentKind::kMissed, .step = 7, .meters = 0.5F}, made(0),
-                               {here, there}, mode);
-    EXPECT_THAT(sides.said_there, testing::StartsWith("dynamics, start"));
-    EXPECT_EQ(sides.frame_there, 0U);
+                               {simulated, dynamic}, mode);
+    EXPECT_THAT(sides.dynamic.said, testing::StartsWith("dynamics, start"));
+    EXPECT_EQ(sides.dynamic.frame, 0U);
   }
 }
 
@@ -278,17 +284,17 @@ TEST(AMoment, IsSeenInTheWorldWhoseStepItIs) {
   EXPECT_EQ(place(MomentKind::kMissed, 300), (MomentPlace{true, 301}));
   EXPECT_EQ(place(MomentKind::kMoved, 399), (MomentPlace{true, 400}));
   EXPECT_EQ(place(MomentKind::kLost, 20), (MomentPlace{false, 21}));
-  // It ended there before.
+  // The dynamics ended before.
   EXPECT_EQ(place(MomentKind::kLost, 300), (MomentPlace{false, 60}));
   EXPECT_EQ(place(MomentKind::kApart, 59), (MomentPlace{false, 60}));
 }
 
 TEST(Sums, TellWhyContactsAreMissedAndWhereSuccessIsLost) {
   std::vector<EpisodeComparison> episodes{made(0), made(1)};
-  episodes[1].picked_there = true;
+  episodes[1].picked_in_dynamics = true;
   const dynamics::Sums sums = dynamics::sumOf(episodes);
-  EXPECT_EQ(sums.outcomes.here, 2U);
-  EXPECT_EQ(sums.outcomes.there, 0U);
+  EXPECT_EQ(sums.outcomes.in_simulation, 2U);
+  EXPECT_EQ(sums.outcomes.in_dynamics, 0U);
   EXPECT_EQ(sums.outcomes.lost_picking, 1U);
   EXPECT_EQ(sums.outcomes.lost_later, 1U);
   EXPECT_EQ(sums.missedByCause().at(MissCause::kColumnCell), 4U);
@@ -372,7 +378,7 @@ TEST(AReport, TellsNoGapsWhereTheDynamicsMadeNoStep) {
   loseInFirstStep(comparisons.episodes.front());
   comparisons.worst = worstMoments(comparisons.episodes, 10, ComparisonMode::kReplay);
   const std::string json = dynamics::reportJson(comparisons, world, {});
-  EXPECT_THAT(json, HasSubstr("\"steps_there\": 0,"));
+  EXPECT_THAT(json, HasSubstr("\"steps_in_dynamics\": 0,"));
   EXPECT_THAT(json, HasSubstr("\"last_base_gap\": null,"));
   EXPECT_THAT(json, HasSubstr("\"last_grip_gap\": null,"));
   EXPECT_THAT(json, HasSubstr("\"divergence\": [],"));

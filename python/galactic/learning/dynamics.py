@@ -111,7 +111,7 @@ def told(report: dict[str, Any]) -> dict[str, float]:
     """What of a report stands beside the summary of an evaluation."""
     success = report["success"]
     return {
-        "success_there": success["dynamics"]["share"],
-        "after_2_s": success["dynamics_after_2_s"]["share"],
-        "picked_there": success["picked_in_dynamics"]["share"],
+        "success_in_dynamics": success["dynamics"]["share"],
+        "dynamics_after_2_s": success["dynamics_after_2_s"]["share"],
+        "picked_in_dynamics": success["picked_in_dynamics"]["share"],
     }

@@ -65,7 +65,11 @@ def test_the_tool_is_asked_for_what_was_asked_for(tool: pathlib.Path) -> None:
     said = " ".join(report["words"])
     for wanted in ("--arm kinematic", "--data d", "--deterministic", "--seed 7", "--episodes 20"):
         assert wanted in said, (tool, said)
-    assert dynamics.told(report) == {"success_there": 0.5, "after_2_s": 0.25, "picked_there": 0.75}
+    assert dynamics.told(report) == {
+        "success_in_dynamics": 0.5,
+        "dynamics_after_2_s": 0.25,
+        "picked_in_dynamics": 0.75,
+    }
     # It has no noise of motion, and refuses a world that has some.
     assert said.endswith("--set motion-noise=0 --set motion-bias=0 --set action-delay=0")
     plain = " ".join(dynamics.play(run_of())["words"])
@@ -86,7 +90,7 @@ def test_a_world_with_noise_of_motion_is_played_without_it(
     words = [str(policy), str(HELD_OUT), "--episodes", "4", "--dynamics", "world.toml"]
     assert evaluate.main(words) == 0
     plain = capfd.readouterr()
-    assert plain.err == "" and "success_there 0.5\n" in plain.out
+    assert plain.err == "" and "success_in_dynamics 0.5\n" in plain.out
     assert "success    0.0 % (0.0 to 49.0) of 4 episodes\n" in plain.out
 
     def homes_of(world: galactic.World, settings: Settings, *rest: object, **more: object) -> Homes:
@@ -101,7 +105,7 @@ def test_a_world_with_noise_of_motion_is_played_without_it(
         "galactic.evaluate: --dynamics: robots there move without the noise and delay of the world's task "
         "(motion-bias=0.25)\n"
     )
-    assert "success_there 0.5\n" in noisy.out and noisy.out != plain.out
+    assert "success_in_dynamics 0.5\n" in noisy.out and noisy.out != plain.out
     assert evaluate.main(words[:-2]) == 0
     assert capfd.readouterr().err == ""
 
