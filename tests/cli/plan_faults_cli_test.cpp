@@ -497,6 +497,17 @@ TEST_F(PlanFaults, GoesOnAfterAnErrorWhereTheUserWants) {
   EXPECT_TRUE(has("out/home.pack"));
 }
 
+TEST_F(PlanFaults, FailsNoSceneForTheMeshOfWhatMovesInIt) {
+  write("data/meshes/objects/mug.glb", "no mesh");
+  addScene("c", "flat", R"({"template_name": "mug", "motion_type": "DYNAMIC"})");
+  const ProgramRun goes_on = bake("out", {"--scenes", "c", "--keep-going"});
+  EXPECT_EQ(goes_on.exit_code, 3);
+  EXPECT_THAT(packsThatAre("failed"), testing::ElementsAre("objects/mug.pack"));
+  EXPECT_THAT(packsThatAre("baked"), testing::ElementsAre("scenes/c.pack"));
+  const ProgramRun looks = bake("out", {"--scenes", "c", "--dry-run"});
+  EXPECT_THAT(looks.out, HasSubstr("missing:\n  objects/mug.pack: " + path("data").string()));
+}
+
 TEST_F(PlanFaults, GoesOnWithoutScenesWhoseFilesAreBroken) {
   write("data/scenes/b.scene_instance.json", "{\"stage_instance\": ");
   const ProgramRun stops = bake("out", {"--missing", "skip"});

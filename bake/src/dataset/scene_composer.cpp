@@ -136,8 +136,8 @@ Result<std::shared_ptr<const SourceAsset>> SceneComposer::load(const fs::path& m
   return asset;
 }
 
-Result<Affine> SceneComposer::placement(const SceneItem& item, const TemplateAttributes& attributes,
-                                        const fs::path& mesh) {
+Affine SceneComposer::placement(const SceneItem& item, const TemplateAttributes& attributes,
+                                const SourceAsset& asset) const {
   const Affine object_from_asset = objectFromAsset(attributes, item.scale);
   const Affine world_from_object = worldFromObject(item);
   if (item.origin.value_or(default_origin_) == TranslationOrigin::kAssetOrigin) {
@@ -149,9 +149,7 @@ Result<Affine> SceneComposer::placement(const SceneItem& item, const TemplateAtt
       center[axis] = (*attributes.center_of_mass)[axis] * attributes.scale[axis] * item.scale[axis];
     }
   } else {
-    const auto asset = load(mesh);
-    if (!asset) return tl::unexpected(asset.error());
-    center = boxCenter(**asset, object_from_asset);
+    center = boxCenter(asset, object_from_asset);
   }
   const Affine centered = translationBy({-center[0], -center[1], -center[2]});
   return compose(world_from_object, compose(centered, object_from_asset));
@@ -205,15 +203,8 @@ Result<void> SceneComposer::placeObject(const SceneItem& item) {
   const auto attributes = attributesOf(*entry, TemplateKind::kObject);
   if (!attributes) return tl::unexpected(attributes.error());
   ASSIGN_OR_RETURN(const auto mesh, meshOf(*entry, **attributes, TemplateKind::kObject));
-  if (mesh.empty()) return {};
-  ASSIGN_OR_RETURN(const auto world_from_mesh, placement(item, **attributes, mesh));
-  if (item.motion == MotionType::kDynamic) {
-    result_.movable.push_back({.name = entry->name,
-                               .mesh = mesh,
-                               .object_from_mesh = objectFromAsset(**attributes, item.scale),
-                               .world_from_mesh = world_from_mesh});
-    return {};
-  }
+  // What moves is no part of the scene: its mesh is read for a pack of its own.
+  if (mesh.empty() || item.motion == MotionType::kDynamic) return {};
   RETURN_IF_ERROR(checkDistance(item, fmt::format("object '{}'", entry->name)));
   if (!(*attributes)->collidable) {
     warnOnce(
@@ -221,6 +212,7 @@ Result<void> SceneComposer::placeObject(const SceneItem& item) {
   }
   const auto asset = load(mesh);
   if (!asset) return tl::unexpected(asset.error());
+  const Affine world_from_mesh = placement(item, **attributes, **asset);
   const std::string name = nextName(entry->name);
   addMesh(mesh, **asset, world_from_mesh, name);
   addReceptacles((*attributes)->receptacles, item.receptacles,

@@ -44,9 +44,8 @@ class SceneComposer {
   /// Loads a mesh and notes its files and warnings.
   [[nodiscard]] Result<std::shared_ptr<const SourceAsset>> load(const std::filesystem::path& mesh);
   /// World frame from the asset's.
-  [[nodiscard]] Result<Affine> placement(const SceneItem& item,
-                                         const TemplateAttributes& attributes,
-                                         const std::filesystem::path& mesh);
+  [[nodiscard]] Affine placement(const SceneItem& item, const TemplateAttributes& attributes,
+                                 const SourceAsset& asset) const;
   /// Of what is placed too far away for any grid; the grids know no names.
   [[nodiscard]] Result<void> checkDistance(const SceneItem& item, const std::string& what) const;
   void addMesh(const std::filesystem::path& mesh, const SourceAsset& asset,

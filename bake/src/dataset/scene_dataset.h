@@ -32,8 +32,6 @@ struct DatasetObject {
   std::filesystem::path mesh;
   /// The template's axes and scale and the instance's scale.
   Affine object_from_mesh{};
-  /// World frame from the mesh's own frame, the template's and the instance's scale included.
-  Affine world_from_mesh{};
 };
 
 /// What a scene instance names, found out without reading a mesh.
@@ -41,28 +39,30 @@ struct SceneSurvey {
   bool has_stage = true;
   /// As in ComposedScene.
   std::vector<std::string> missing;
+  /// What the instance calls dynamic, in its order.
   std::vector<DatasetObject> movable;
-  /// Of its stage and objects, each once, as far as they are there; not those in URDFs.
+  /// Those that the scene is composed of, each once, as far as they are there: of its stage and of
+  /// the objects that do not move; not those in URDFs.
   std::vector<std::filesystem::path> meshes;
-  /// Size of all meshes that it places, with those in URDFs and with buffers and images of glTF,
-  /// each once.
+  /// Size of all meshes that the scene is composed of, with those in URDFs and with buffers and
+  /// images of glTF, each once.
   std::uint64_t bytes = 0;
 };
 
-/// A scene instance put together.
+/// A scene instance put together. Of its movable objects it holds nothing: they are packs of their
+/// own.
 struct ComposedScene {
   /// Everything that does not move, in the world frame. Its instances are named as Habitat names
   /// them: the stage after its template, the others "TEMPLATE_:0000", "TEMPLATE_:0001" and so on.
   /// Paths of textures are relative to the dataset's folder. `files` lists all that was read for it
   /// (configurations, meshes, textures), by path relative to the dataset's folder.
   SourceAsset scene;
-  /// What the instance calls dynamic, in its order.
-  std::vector<DatasetObject> movable;
   /// Where the dataset says that things may be put, world frame: the boxes of the scene, of its
   /// stage and of everything that does not move and is upright. Named "INSTANCE|RECEPTACLE", those
   /// of scene and stage "RECEPTACLE".
   std::vector<SupportRegion> receptacles;
-  /// One sentence for each thing that the instance names and the dataset lacks; it is left out.
+  /// One sentence for each thing that the instance names and the dataset lacks, movable or not; it
+  /// is left out.
   std::vector<std::string> missing;
   /// Files that were looked for and are not there, relative to the dataset's folder: the result may
   /// change when one of them appears.

@@ -49,20 +49,20 @@ Result<bool> SceneSurveyor::surveyMesh(TemplateKind kind, const SceneItem& item)
   const TemplateAttributes& attributes = known.attributes;
   ASSIGN_OR_RETURN(const auto mesh, meshFileOf(*known.entry, attributes));
   RETURN_IF_ERROR(index_.checkReach(mesh, placeOf(*known.entry)));
-  if (!hasFile(mesh)) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(mesh, ignored)) {
     noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun,
                             known.entry->name, nameRelativeTo(index_.config, mesh)));
     return false;
   }
-  if (std::ranges::find(survey_.meshes, mesh) == survey_.meshes.end()) {
-    survey_.meshes.push_back(mesh);
-  }
   if (kind == TemplateKind::kObject && item.motion == MotionType::kDynamic) {
-    const Affine object_from_mesh = objectFromAsset(attributes, item.scale);
     survey_.movable.push_back({.name = known.entry->name,
                                .mesh = mesh,
-                               .object_from_mesh = object_from_mesh,
-                               .world_from_mesh = {}});
+                               .object_from_mesh = objectFromAsset(attributes, item.scale)});
+    return true;
+  }
+  if (hasFile(mesh) && std::ranges::find(survey_.meshes, mesh) == survey_.meshes.end()) {
+    survey_.meshes.push_back(mesh);
   }
   return true;
 }

@@ -61,21 +61,26 @@ std::string listOf(const auto& values) {
   return "[" + list + "]";
 }
 
-/// Where the corners of the mesh come to lie, one point after the other.
-std::vector<Point> expected(const Template& of, const Item& item) {
+/// The corners of the mesh in the frame of the object, one point after the other.
+std::vector<Point> expectedInObject(const Template& of, const Item& item) {
   const Point right = cross(of.front, of.up);
-  const auto in_object = [&](const Point& p) {
-    const Point framed{dot(right, p), dot(of.up, p), -dot(of.front, p)};
-    return scaled(framed * of.scale * item.scale, item.uniform);
-  };
   std::vector<Point> points;
+  for (const Point& p : boxCorners()) {
+    const Point framed{dot(right, p), dot(of.up, p), -dot(of.front, p)};
+    points.push_back(scaled(framed * of.scale * item.scale, item.uniform));
+  }
+  return points;
+}
+
+/// Where they come to lie.
+std::vector<Point> expected(const Template& of, const Item& item) {
+  std::vector<Point> points = expectedInObject(of, item);
   Point low{1e9, 1e9, 1e9};
   Point high{-1e9, -1e9, -1e9};
-  for (const Point& corner : boxCorners()) {
-    points.push_back(in_object(corner));
+  for (const Point& p : points) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], points.back()[axis]);
-      high[axis] = std::max(high[axis], points.back()[axis]);
+      low[axis] = std::min(low[axis], p[axis]);
+      high[axis] = std::max(high[axis], p[axis]);
     }
   }
   Point center = scaled(low + high, 0.5);
@@ -151,15 +156,17 @@ class RandomScene {
   std::vector<Item> items_;
 };
 
-/// The corners as `world_from_mesh` places them.
-std::vector<Point> cornersBy(const bake::Affine& m) {
-  std::vector<Point> corners = boxCorners();
-  for (Point& p : corners) {
-    p = {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3],
-         m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
-         m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
+/// That `m` takes the corners of the mesh to `wanted`, one by one and not only as a set.
+void expectCorners(const bake::Affine& m, const std::vector<Point>& wanted) {
+  const std::vector<Point> corners = boxCorners();
+  ASSERT_EQ(corners.size(), wanted.size());
+  for (std::size_t n = 0; n < corners.size(); ++n) {
+    const Point& p = corners[n];
+    const Point found{m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3],
+                      m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
+                      m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
+    EXPECT_LT(farthestCorner({found}, {wanted[n]}), kTolerance);
   }
-  return corners;
 }
 
 TEST(Placement, OfRandomInstancesIsThatOfTheirPoints) {
@@ -172,6 +179,8 @@ TEST(Placement, OfRandomInstancesIsThatOfTheirPoints) {
   bake::MeshLibrary meshes(bake::datasetMeshOptions());
   const auto scene = dataset->compose("random", meshes);
   ASSERT_TRUE(scene) << scene.error().text();
+  const auto survey = dataset->survey("random");
+  ASSERT_TRUE(survey) << survey.error().text();
   std::size_t fixed = 0;
   std::size_t movable = 0;
   std::size_t origins = 0;
@@ -182,29 +191,22 @@ TEST(Placement, OfRandomInstancesIsThatOfTheirPoints) {
     const Template& of = random.templates()[item.of];
     origins += item.asset_origin ? 1U : 0U;
     computed_centers += of.center_of_mass ? 0U : 1U;
-    const std::vector<Point> wanted = expected(of, item);
     if (item.moves) {
-      ASSERT_LT(movable, scene->movable.size());
-      const auto& object = scene->movable[movable++];
+      ASSERT_LT(movable, survey->movable.size());
+      const bake::DatasetObject& object = survey->movable[movable++];
       EXPECT_EQ(object.name, of.name);
-      const std::vector<Point> found = cornersBy(object.world_from_mesh);
-      // Corner by corner, not only as a set.
-      for (std::size_t corner = 0; corner < found.size(); ++corner) {
-        EXPECT_LT(farthestCorner({found[corner]}, {wanted[corner]}), kTolerance);
-      }
+      expectCorners(object.object_from_mesh, expectedInObject(of, item));
     } else {
       ASSERT_LT(fixed, scene->scene.instances.size());
       const auto& instance = scene->scene.instances[fixed++];
       EXPECT_THAT(instance.name, testing::StartsWith(of.name + "_:"));
+      const std::vector<Point> wanted = expected(of, item);
       EXPECT_LT(farthestCorner(placedVertices(scene->scene, instance), wanted), kTolerance);
-      const std::vector<Point> found = cornersBy(instance.world_from_mesh);
-      for (std::size_t corner = 0; corner < found.size(); ++corner) {
-        EXPECT_LT(farthestCorner({found[corner]}, {wanted[corner]}), kTolerance);
-      }
+      expectCorners(instance.world_from_mesh, wanted);
     }
   }
   EXPECT_EQ(fixed, scene->scene.instances.size());
-  EXPECT_EQ(movable, scene->movable.size());
+  EXPECT_EQ(movable, survey->movable.size());
   for (const std::size_t count : {movable, origins, computed_centers}) {
     EXPECT_GT(count, kCount / 10);
     EXPECT_LT(count, 9 * kCount / 10);

@@ -224,7 +224,6 @@ TEST(Receptacles, OfAnInstanceAreStatedOverThoseOfItsTemplate) {
                           "table_:0001|receptacle_aabb_c"));
   EXPECT_EQ(scene.receptacles[1].world_from_region.translation.y, 2.F);
   EXPECT_EQ(scene.receptacles[3].world_from_region.translation.y, 3.F);
-  EXPECT_EQ(scene.movable.size(), 1U);
 }
 
 struct Fault {

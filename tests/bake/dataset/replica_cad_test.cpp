@@ -59,7 +59,9 @@ TEST_F(ReplicaCad, ComposesAllScenesAndKnowsWhichHaveTheirStage) {
     ASSERT_TRUE(scene) << scene.error().text();
     EXPECT_EQ(scene->has_stage, name.starts_with(kScenesWithStage));
     with_stage += scene->has_stage ? 1U : 0U;
-    movable += scene->movable.size();
+    const auto survey = dataset_->survey(name);
+    ASSERT_TRUE(survey) << survey.error().text();
+    movable += survey->movable.size();
     const auto mesh = placeAndClean(scene->scene);
     if (!mesh && scene->scene.instances.empty()) continue;
     ASSERT_TRUE(mesh) << mesh.error().message;

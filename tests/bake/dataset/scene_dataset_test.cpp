@@ -108,24 +108,36 @@ TEST(SceneDataset, KnowsItsScenesAndWarnsOfWhatItsPathsMiss) {
                   "left out"));
 }
 
-TEST(SceneDataset, PlacesWhatDoesNotMoveAndListsWhatDoes) {
+TEST(SceneDataset, PlacesWhatDoesNotMove) {
   const ComposedScene scene = composed(SmallDataset());
   std::vector<std::string> names;
   for (const SourceInstance& instance : scene.scene.instances) names.push_back(instance.name);
   EXPECT_THAT(names,
               ElementsAre("room", "table_:0000", "table_:0001", "crate_:0000", "high_table_:0000",
                           "made_here_:0000", "cupboard_:0000", "cupboard_:0000"));
-  ASSERT_EQ(scene.movable.size(), 2U);
-  EXPECT_EQ(scene.movable[0].name, "cup");
-  EXPECT_EQ(scene.movable[0].mesh.filename(), "box.obj");
-  EXPECT_TRUE(scene.movable[0].mesh.is_absolute());
-  EXPECT_EQ(scene.movable[1].name, "shelf") << "Habitat takes what states no motion for dynamic";
   EXPECT_TRUE(scene.has_stage);
   EXPECT_EQ(scene.scene.name, "a_home");
 }
 
+TEST(SceneDataset, ReadsNoMeshOfWhatMoves) {
+  const SmallDataset small;
+  small.write("meshes/cut.glb", "glTF");
+  small.write("configs/objects/small/mug.object_config.json",
+              R"({"render_asset": "../../../meshes/cut.glb"})");
+  small.writeScene("one", R"({"stage_instance": {"template_name": "room"}, "object_instances": [
+      {"template_name": "mug", "motion_type": "DYNAMIC"}, {"template_name": "mug"},
+      {"template_name": "cup", "motion_type": "DYNAMIC"}]})");
+  const ComposedScene scene = composed(small, "one");
+  EXPECT_EQ(scene.scene.instances.size(), 1U);
+  EXPECT_THAT(scene.scene.warnings, testing::IsEmpty());
+  for (const bake::SourceFile& file : scene.scene.files) {
+    EXPECT_THAT(file.name, testing::Not(testing::AnyOf("meshes/cut.glb", "meshes/box.obj")));
+  }
+}
+
 TEST(SceneDataset, PlacesTheCenterOfMassOrTheOriginOfTheAsset) {
-  const ComposedScene scene = composed(SmallDataset());
+  const SmallDataset small;
+  const ComposedScene scene = composed(small);
   // A quarter turn about Y takes (x, y, z) to (z, y, -x).
   EXPECT_LT(errorOf(scene.scene, "table_:0000", changedCorners([](const auto& p) {
                       return std::array{p[2] - 2 + 1, p[1] - 0.5, -(p[0] - 0.25) + 2};
@@ -136,9 +148,14 @@ TEST(SceneDataset, PlacesTheCenterOfMassOrTheOriginOfTheAsset) {
                     })),
             kTolerance)
       << "the dataset's default is asset_local";
-  // The layer moved the cup's center of mass.
-  const bake::Affine cup{1, 0, 0, -1, 0, 1, 0, 0, 0, 0, 1, -1};
-  EXPECT_EQ(scene.movable[0].world_from_mesh, cup);
+  small.writeScene("cup", R"({"stage_instance": {"template_name": "NONE"}, "object_instances": [
+      {"template_name": "cup", "motion_type": "STATIC", "translation": [0, 1, 0],
+       "translation_origin": "com"}]})");
+  EXPECT_LT(errorOf(composed(small, "cup").scene, "cup_:0000", changedCorners([](const auto& p) {
+                      return std::array{p[0] - 1, p[1], p[2] - 1};
+                    })),
+            kTolerance)
+      << "the layer moves the cup's center of mass";
 }
 
 TEST(SceneDataset, AppliesScalesAndFrames) {
@@ -151,9 +168,6 @@ TEST(SceneDataset, AppliesScalesAndFrames) {
                       return std::array{p[0], 3 * p[1], p[2]};
                     })),
             kTolerance);
-  // Z up: (x, y, z) becomes (x, z, -y), then the scale.
-  const bake::Affine shelf{0.5, 0, 0, 0, 0, 0, 2, 0, 0, -1.5, 0, 0};
-  EXPECT_EQ(scene.movable[1].world_from_mesh, shelf);
 }
 
 TEST(SceneDataset, LeavesTheStageWhereItIsAsHabitatDoes) {
