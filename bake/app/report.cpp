@@ -42,7 +42,7 @@ Json failureOf(const PackOutcome& pack, const BakeFailure& failure, const JobLis
     json["input"] = failure.input.string();
   }
   json["code"] = static_cast<int>(failure.error.code);
-  json["where"] = failure.error.where;
+  json["where"] = placeOf(failure.error);
   json["message"] = withFlags(failure.error.message);
   return json;
 }

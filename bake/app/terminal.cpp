@@ -42,9 +42,12 @@ std::vector<std::string> withFlags(std::vector<std::string> messages) {
   return messages;
 }
 
+std::string placeOf(const Error& error) {
+  return isOption(error.where) ? "--" + error.where : withFlags(error.where);
+}
+
 void printError(const Error& error) {
-  const std::string where = isOption(error.where) ? "--" + error.where : error.where;
-  printToStderr(fmt::format("galactic-bake: {}: {}\n", printable(where),
+  printToStderr(fmt::format("galactic-bake: {}: {}\n", printable(placeOf(error)),
                             printable(withFlags(error.message))));
 }
 

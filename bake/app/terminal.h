@@ -13,7 +13,11 @@ namespace galactic::bake {
 [[nodiscard]] std::string withFlags(std::string_view message);
 [[nodiscard]] std::vector<std::string> withFlags(std::vector<std::string> messages);
 
-/// One line on stderr: program, place, message. A place that is an option's name gets its dashes.
+/// Where an error is: the file and in it the option that the library names, or an option alone,
+/// with flags.
+[[nodiscard]] std::string placeOf(const Error& error);
+
+/// One line on stderr: program, place, message, with flags.
 void printError(const Error& error);
 
 /// The same; the exit code.

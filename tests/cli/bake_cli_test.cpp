@@ -90,6 +90,19 @@ TEST_F(BakeCli, StopsAtTheFirstErrorUnlessToldToKeepGoing) {
   EXPECT_EQ(report["failed"][0]["code"], 3);
 }
 
+TEST_F(BakeCli, SaysForWhichInputAnOptionIsWrong) {
+  write("hall.obj", content("room.obj"));
+  const ProgramRun bake = run({"room.obj", "hall.obj", "-o", "packs", "--scale", "150", "--spacing",
+                               "0.01", "--keep-going", "--report", "report.json"});
+  EXPECT_EQ(bake.exit_code, 3);
+  EXPECT_THAT(bake.err, HasSubstr("galactic-bake: room.obj: --spacing: 0.01 m over a scene of "));
+  EXPECT_THAT(bake.err, HasSubstr("galactic-bake: hall.obj: --spacing: 0.01 m over a scene of "));
+  const json report = json::parse(content("report.json"));
+  ASSERT_EQ(report["failed"].size(), 2U);
+  EXPECT_EQ(report["failed"][0]["where"], "room.obj: --spacing");
+  EXPECT_EQ(report["failed"][1]["where"], "hall.obj: --spacing");
+}
+
 TEST_F(BakeCli, ReadsOptionsFromAConfigFile) {
   write("bake.toml", "radii = [0.05, 0.12]\nspacing = 0.04\ncoverage = \"cell\"\n");
   const ProgramRun bake = run({"room.obj", "--config", "bake.toml", "--report", "report.json"});
@@ -385,11 +398,19 @@ TEST_F(BakeCli, ExplainsEveryRefusal) {
       {{"missing.obj"}, 2, "missing.obj"},
       {{"room.obj", "--config", "missing.toml"}, 2, "missing.toml"},
       {{"room.obj", "-o", "/dev/null"}, 3, "--out: is \"/dev/null\", expected NAME.pack"},
-      {{"room.obj", "--radii", "0.01"}, 3, "--radii: radius 0.01 m is under half the spacing"},
+      {{"room.obj", "--radii", "0.01"},
+       3,
+       "room.obj: --radii: radius 0.01 m is under half the spacing"},
+      {{"room.obj", "--radii", "9"}, 3, "room.obj: --radii: has the radius 9 m, and the whole"},
+      {{"room.obj", "--scale", "150", "--spacing", "0.01"},
+       3,
+       "room.obj: --spacing: 0.01 m over a scene of "},
       {{"room.obj", "--radii", "0.12,0.05"}, 1, "in ascending order"},
       {{"room.obj", "--spacing", "0"}, 1, "--spacing: found 0, expected a number above 0"},
-      {{"room.obj", "--coverage", "cell", "--engine", "embree"}, 3, "--coverage: cell works with"},
-      {{"room.obj", "--inside", "9,9,9"}, 3, "is outside the scene"},
+      {{"room.obj", "--coverage", "cell", "--engine", "embree"},
+       3,
+       "room.obj: --coverage: cell works with"},
+      {{"room.obj", "--inside", "9,9,9"}, 3, "room.obj: --inside: (9, 9, 9) is outside the scene"},
   };
   for (const Refusal& refusal : refusals) {
     SCOPED_TRACE(testing::PrintToString(refusal.arguments));

@@ -84,7 +84,7 @@ Result<TriangleRays> allOccluders(std::span<const PlacedMesh> meshes, unsigned j
   }
   auto occluders = TriangleRays::build(std::move(all.positions), std::move(all.triangles), jobs);
   if (!occluders) {
-    return fail(ErrorCode::kUnsupported, "lighting",
+    return fail(ErrorCode::kUnsupported, "`lighting`",
                 "could not build its scene, for lack of memory; bake with `lighting` none");
   }
   return *std::move(occluders);

@@ -15,7 +15,8 @@ namespace galactic::bake {
 
 // What the bakes of whole assets have in common.
 
-/// The place of an error in `file`, from the place that a baker named, which knows no files.
+/// The place of an error in `file`, from the place that a baker named, which knows no files: an
+/// option in backquotes, an element, or nothing.
 [[nodiscard]] std::string inFile(const std::filesystem::path& file, const std::string& where);
 
 /// Adds the description of each of `files` that is not empty.

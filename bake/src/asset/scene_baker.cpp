@@ -26,7 +26,7 @@ constexpr float kGreatestRadius = 10;
 
 Result<void> checkRadii(const std::vector<float>& radii) {
   const auto invalid = [](std::string message) {
-    return fail(ErrorCode::kInvalidInput, "radii", std::move(message));
+    return fail(ErrorCode::kInvalidInput, "`radii`", std::move(message));
   };
   if (radii.empty() || radii.size() > kMostRadii) {
     return invalid(fmt::format("has {} radii, expected 1 to {}", radii.size(), kMostRadii));
@@ -53,7 +53,7 @@ Result<void> checkFits(const std::vector<float>& radii, const Bounds& bounds) {
   const Vec3 size{bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y,
                   bounds.max.z - bounds.min.z};
   if (radii.back() <= std::max({size.x, size.y, size.z})) return {};
-  return fail(ErrorCode::kInvalidInput, "radii",
+  return fail(ErrorCode::kInvalidInput, "`radii`",
               fmt::format("has the radius {} m, and the whole scene is {:.3g} x {:.3g} x {:.3g} m; "
                           "millimeters? Give meters, or check the scene's unit (`scale`)",
                           radii.back(), size.x, size.y, size.z));
@@ -260,7 +260,7 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
                              StageTimes& times, const Progress& progress) {
   RETURN_IF_ERROR(checkRadii(options.radii));
   if (options.coverage == Coverage::kCell && options.engine != Engine::kExact) {
-    return fail(ErrorCode::kInvalidInput, "coverage",
+    return fail(ErrorCode::kInvalidInput, "`coverage`",
                 "cell works with `engine` exact only: sphere casts know single lines");
   }
   progress("clean", 0);

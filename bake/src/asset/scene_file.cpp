@@ -40,8 +40,7 @@ Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const P
                              StageTimes& times) {
   auto scene = bakeScene(read.asset, job.grids, times, progress);
   if (!scene) {
-    // Errors of the geometry name no file: the bakers know none.
-    if (scene.error().where.empty()) scene.error().where = read.input.string();
+    scene.error().where = inFile(read.input, scene.error().where);
     return scene;
   }
   progress("render meshes", 0.9);

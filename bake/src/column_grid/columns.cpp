@@ -38,11 +38,11 @@ Bounds sceneBounds(const GridFrame& frame) {
 
 Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacing) {
   if (!(spacing >= kLeastSpacing) || !std::isfinite(spacing)) {
-    return fail(ErrorCode::kInvalidInput, "spacing",
+    return fail(ErrorCode::kInvalidInput, "`spacing`",
                 fmt::format("is {} m, expected at least {} m", spacing, kLeastSpacing));
   }
   if (!std::isfinite(radius) || !(radius >= spacing / 2)) {
-    return fail(ErrorCode::kInvalidInput, "radii",
+    return fail(ErrorCode::kInvalidInput, "`radii`",
                 fmt::format("radius {} m is under half the spacing of {} m: neighboring columns "
                             "could lie on both sides of a closed wall and the room would leak; "
                             "use a spacing of at most {} m",
@@ -56,7 +56,7 @@ Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacin
   const double padded_cells = (x.count + kTileColumnsX) * (z.count + kTileColumnsZ);
   if (!(padded_cells <= static_cast<double>(kMaxCells))) {
     return fail(
-        ErrorCode::kInvalidInput, "spacing",
+        ErrorCode::kInvalidInput, "`spacing`",
         fmt::format("{} m over a scene of {:.1f} x {:.1f} m needs {:.0f} columns, a grid has "
                     "at most {}; use a wider spacing, or check the scene's unit (`scale`)",
                     spacing, x.count * h, z.count * h, x.count * z.count, kMaxCells));

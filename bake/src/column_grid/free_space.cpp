@@ -177,7 +177,7 @@ bool isRather(const Component& first, const Component& second) {
 
 tl::unexpected<Error> seedFailure(const Vec3& seed, const GridFrame& frame,
                                   const std::string& finding) {
-  return fail(ErrorCode::kInvalidInput, "inside",
+  return fail(ErrorCode::kInvalidInput, "`inside`",
               fmt::format("({}, {}, {}) is {} for radius {} m; give a point where a sphere of that "
                           "radius fits, in meters with y up",
                           seed.x, seed.y, seed.z, finding, frame.radius));

@@ -82,7 +82,7 @@ void intersectTriangle(const RTCIntersectFunctionNArguments* arguments) {
 /// Embree fails only when memory runs out or when it is not made for this processor.
 tl::unexpected<Error> embreeFailure(RTCDevice device) {
   const bool out_of_memory = rtcGetDeviceError(device) == RTC_ERROR_OUT_OF_MEMORY;
-  return fail(ErrorCode::kInternal, "engine",
+  return fail(ErrorCode::kInternal, "`engine`",
               out_of_memory ? "ran out of memory building its scene; use `engine` exact"
                             : "could not build its scene; use `engine` exact");
 }

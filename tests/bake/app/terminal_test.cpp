@@ -1,4 +1,4 @@
-// Warnings of one kind are grouped where they are printed.
+// Warnings of one kind are grouped where they are printed, and places of errors have flags.
 #include "terminal.h"
 
 #include <fmt/format.h>
@@ -44,6 +44,18 @@ TEST(WarningLines, ThatDifferInAWordStaySingle) {
                                           "link 'a: it is cut off"};
   EXPECT_THAT(warningLines(warnings, Verbosity::kNormal), ElementsAreArray(warnings));
   EXPECT_TRUE(warningLines({}, Verbosity::kNormal).empty());
+}
+
+TEST(Places, OfErrorsHaveFlags) {
+  const auto placeOf = [](std::string where) {
+    return bake::placeOf(
+        {.code = ErrorCode::kInvalidInput, .where = std::move(where), .message = {}});
+  };
+  EXPECT_EQ(placeOf("home.glb: `spacing`"), "home.glb: --spacing");
+  EXPECT_EQ(placeOf("`spacing`"), "--spacing");
+  EXPECT_EQ(placeOf("scenes"), "--scenes");
+  EXPECT_EQ(placeOf("world.toml:7: spacing"), "world.toml:7: spacing") << "as the recipe says it";
+  EXPECT_EQ(placeOf("it`s.glb: `hall`"), "it`s.glb: `hall`");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(SceneBaker, RefusesRadiiThatMakeNoWorkingSet) {
   for (const auto& [radii, message] : cases) {
     const Error error = errorOf({.radii = radii});
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-    EXPECT_EQ(error.where, "radii");
+    EXPECT_EQ(error.where, "`radii`");
     EXPECT_EQ(error.message, message);
   }
 }
@@ -64,7 +64,7 @@ TEST(SceneBaker, RefusesARadiusLargerThanTheScene) {
       test::sourceAssetOf(test::MeshBuilder().box({0, 0, 0}, {1, 2, 0.5F}).build());
   const auto refused = bake(block, {.radii = {0.05F, 2.1F}});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().where, "radii");
+  EXPECT_EQ(refused.error().where, "`radii`");
   EXPECT_EQ(refused.error().message,
             "has the radius 2.1 m, and the whole scene is 1 x 2 x 0.5 m; millimeters? Give meters, "
             "or check the scene's unit (`scale`)");
@@ -75,7 +75,7 @@ TEST(SceneBaker, RefusesARadiusLargerThanTheScene) {
 TEST(SceneBaker, RefusesARadiusUnderHalfTheSpacing) {
   const Error error = errorOf({.radii = {0.02F, 0.05F}, .spacing = 0.05F});
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(error.where, "radii");
+  EXPECT_EQ(error.where, "`radii`");
   EXPECT_THAT(error.message, testing::StartsWith("radius 0.02 m is under half the spacing"));
 }
 
@@ -83,7 +83,7 @@ TEST(SceneBaker, RefusesCellCoverageFromSphereCasts) {
   for (const Engine engine : {Engine::kBullet, Engine::kEmbree}) {
     const Error error = errorOf({.engine = engine, .coverage = Coverage::kCell});
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-    EXPECT_EQ(error.where, "coverage");
+    EXPECT_EQ(error.where, "`coverage`");
     EXPECT_EQ(error.message, "cell works with `engine` exact only: sphere casts know single lines");
   }
 }
@@ -92,7 +92,7 @@ TEST(SceneBaker, RefusesASeedThatIsNotFree) {
   SceneBakeOptions options;
   options.free_space.seeds = {{-50, 1, 1}};
   const Error error = errorOf(options);
-  EXPECT_EQ(error.where, "inside");
+  EXPECT_EQ(error.where, "`inside`");
   EXPECT_THAT(error.message,
               testing::StartsWith("(-50, 1, 1) is outside the scene for radius 0.015"));
 }

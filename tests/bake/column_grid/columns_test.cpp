@@ -70,7 +70,7 @@ Error errorOf(const Bounds& bounds, float radius, float spacing) {
 TEST(GridFrame, RefusesARadiusUnderHalfTheSpacingAndSaysWhy) {
   const Error error = errorOf(kRoom, 0.01F, 0.03F);
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(error.where, "radii");
+  EXPECT_EQ(error.where, "`radii`");
   EXPECT_EQ(error.message,
             "radius 0.01 m is under half the spacing of 0.03 m: neighboring columns could lie on "
             "both sides of a closed wall and the room would leak; use a spacing of at most 0.02 m");
@@ -84,7 +84,7 @@ TEST(GridFrame, RefusesASpacingThatIsNoLength) {
   for (const float spacing : {0.0F, -0.03F, kNan, kInfinity}) {
     const Error error = errorOf(kRoom, 0.05F, spacing);
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-    EXPECT_EQ(error.where, "spacing");
+    EXPECT_EQ(error.where, "`spacing`");
   }
   EXPECT_EQ(errorOf(kRoom, 0.05F, -0.5F).message, "is -0.5 m, expected at least 1e-05 m");
   EXPECT_EQ(errorOf(kRoom, 0.05F, 9e-6F).message, "is 9e-06 m, expected at least 1e-05 m");
@@ -94,7 +94,7 @@ TEST(GridFrame, RefusesARadiusThatIsNoLength) {
   for (const float radius : {0.0F, -0.05F, kNan, kInfinity}) {
     const Error error = errorOf(kRoom, radius, 0.03F);
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-    EXPECT_EQ(error.where, "radii");
+    EXPECT_EQ(error.where, "`radii`");
   }
 }
 
@@ -102,7 +102,7 @@ TEST(GridFrame, RefusesMoreColumnsThanAGridMayHave) {
   const Bounds wide{{-400, 0, -300}, {400, 3, 300}};
   const Error error = errorOf(wide, 0.05F, 0.03F);
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(error.where, "spacing");
+  EXPECT_EQ(error.where, "`spacing`");
   EXPECT_EQ(error.message,
             "0.03 m over a scene of 800.2 x 600.2 m needs 533620038 columns, a grid has at most "
             "134217728; use a wider spacing, or check the scene's unit (`scale`)");
@@ -111,9 +111,9 @@ TEST(GridFrame, RefusesMoreColumnsThanAGridMayHave) {
 
 TEST(GridFrame, RefusesAbsurdBoundsWithoutOverflow) {
   const Bounds absurd{{-3e38F, 0, -3e38F}, {3e38F, 1, 3e38F}};
-  EXPECT_EQ(errorOf(absurd, 0.05F, 0.03F).where, "spacing");
-  EXPECT_EQ(errorOf({{kNan, 0, 0}, {1, 1, 1}}, 0.05F, 0.03F).where, "spacing");
-  EXPECT_EQ(errorOf({{0, 0, 0}, {kInfinity, 1, 1}}, 0.05F, 0.03F).where, "spacing");
+  EXPECT_EQ(errorOf(absurd, 0.05F, 0.03F).where, "`spacing`");
+  EXPECT_EQ(errorOf({{kNan, 0, 0}, {1, 1, 1}}, 0.05F, 0.03F).where, "`spacing`");
+  EXPECT_EQ(errorOf({{0, 0, 0}, {kInfinity, 1, 1}}, 0.05F, 0.03F).where, "`spacing`");
 }
 
 TEST(GridFrame, HasNoMoreCellsThanTheLayoutAllowsOnceTilesAreFilledUp) {

@@ -310,7 +310,7 @@ TEST(FreeSpace, RefusesASeedInsideAnObstacleAndNamesTheFreeHeights) {
   const Columns columns = columnsOf(addRoom(builder, {0, 0, 0}, {3, 2.6F, 2}).build(), 0.05F);
   const Error error = seedError(columns, {1.5F, 0.02F, 1});
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(error.where, "inside");
+  EXPECT_EQ(error.where, "`inside`");
   EXPECT_EQ(error.message,
             "(1.5, 0.02, 1) is blocked (free there: -0.160 to -0.150 m, 0.050 to 2.550 m, "
             "2.750 to 2.760 m) for radius 0.05 m; give a point where a sphere of that radius fits, "

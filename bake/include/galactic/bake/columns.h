@@ -39,7 +39,8 @@ struct GridFrame {
 
 /// The frame for a scene: its bounds padded by the radius and one cell in the plane (so that the
 /// border columns touch nothing), and by the radius and 1 cm in height. Fails with kInvalidInput on
-/// a radius under half the spacing, and on more cells than a grid may have.
+/// a radius under half the spacing, and on more cells than a grid may have; the error's `where` is
+/// the option in backquotes.
 [[nodiscard]] Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacing);
 
 /// Free spans of all columns, ascending and disjoint in each column, row by row (i fastest).

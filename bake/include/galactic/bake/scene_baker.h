@@ -71,8 +71,9 @@ struct BakedScene {
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 /// Bakes all column grids of one scene. Adds the time of its stages to `times`. Fails with
-/// kInvalidInput on options or geometry that cannot give a grid. The result depends on neither the
-/// number of jobs nor the processor.
+/// kInvalidInput on options or geometry that cannot give a grid; where an option is the cause, the
+/// error's `where` is its name in backquotes. The result depends on neither the number of jobs nor
+/// the processor.
 [[nodiscard]] Result<BakedScene> bakeScene(const SourceAsset& asset,
                                            const SceneBakeOptions& options, StageTimes& times,
                                            const Progress& progress);
