@@ -3,8 +3,8 @@
 
     check_style.py [ROOT]
 
-Too long files, words of unfinished code, code switched off with the preprocessor, and paths of one
-machine.
+Too long files, words of unfinished code, code switched off with the preprocessor, paths of one
+machine, and flags of the command line in messages of the library, which name options in backquotes.
 """
 
 import pathlib
@@ -26,6 +26,13 @@ EXEMPT_FROM_WORDS = pathlib.PurePosixPath("tests/layering")
 SWITCHED_OFF = re.compile(r"^\s*#\s*if\s+(0|false)\b")
 # Folders under which no path is the same on two machines; examples live in /home/me.
 LOCAL_PATH = re.compile(r"(?<![\w.$}/*])/(home(?!/me/)|work|tmp|root|Users|mnt|srv)/")
+# Programs make flags of the options that the library names; recipes and other programs have none.
+LIBRARY = ("bake/src", "bake/include")
+# A whole command may stand in a text.
+FLAG = re.compile(r"(?<!galactic-bake )(?<![\w-])--[a-z]")
+# In turn: comments, quotes that begin nothing, raw strings, strings.
+COMMENT_OR_LITERAL = re.compile(r"""//[^\n]*|/\*.*?\*/|'\\?"'|R"([^(\s]*)\((?P<raw>.*?)\)\1"|"""
+                                r'''"(?P<plain>(?:[^"\\\n]|\\.)*)"''', re.DOTALL)
 
 
 def forbidden_words() -> re.Pattern:
@@ -50,9 +57,23 @@ def check_lines(path: pathlib.PurePath, lines: list[str], words: re.Pattern) -> 
     return offences
 
 
+def check_flags(path: pathlib.PurePath, text: str) -> list[str]:
+    offences = []
+    for found in COMMENT_OR_LITERAL.finditer(text):
+        literal = found["plain"] or found["raw"] or ""
+        if FLAG.search(literal):
+            number = text.count("\n", 0, found.start()) + 1
+            offences.append(f'{path}:{number}: the library says "{literal}"; it names options as '
+                            "`option`, and programs make flags of them")
+    return offences
+
+
 def check_file(root: pathlib.Path, path: pathlib.Path, words: re.Pattern) -> list[str]:
-    lines = (root / path).read_text(encoding="utf-8", errors="replace").splitlines()
+    text = (root / path).read_text(encoding="utf-8", errors="replace")
+    lines = text.splitlines()
     offences = check_lines(pathlib.PurePosixPath(path), lines, words)
+    if path.suffix in (".h", ".cpp", ".inl") and any(path.is_relative_to(part) for part in LIBRARY):
+        offences += check_flags(path, text)
     if path.suffix in CODE and len(lines) > MAX_LINES:
         offences.append(f"{path}: {len(lines)} lines, expected at most {MAX_LINES} (450 is good); "
                         "split it by concern")

@@ -246,6 +246,20 @@ class StyleTest(PlantedTree):
         self.assertEqual(len(self.offences("a.cpp", "int x;\n" * 801)), 1)
         self.assertEqual(self.offences("a.cpp", "int x;\n" * 800), [])
 
+    def test_refuses_flags_in_messages_of_the_library(self):
+        for text in ('fail("use a wider spacing (--spacing)");', 'x = {1, "Without --inside: how"};',
+                     'R"(one\n--two)";', 'a("//", "--two");', "b('\"', \"--two\");",
+                     'c("\\"", "(-j, --memory)");'):
+            with self.subTest(text):
+                self.assertEqual(len(self.offences("bake/src/a.cpp", text + "\n")), 1)
+
+    def test_accepts_flags_elsewhere(self):
+        for path, text in (("bake/app/a.cpp", 'fail("--spacing");'),
+                           ("bake/src/a.cpp", '// "--spacing"\n/* "--a" */ b("`spacing`, a--b, ---x");'),
+                           ("bake/src/b.h", 'a("see `galactic-bake --print-recipe`"); // --list')):
+            with self.subTest(text):
+                self.assertEqual(self.offences(path, text + "\n"), [])
+
     def test_leaves_build_folders_alone(self):
         self.assertEqual(self.offences("build/release/a.cpp", "// TODO\n"), [])
 

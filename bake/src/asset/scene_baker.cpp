@@ -179,7 +179,7 @@ class SceneBaker {
     ASSIGN_OR_RETURN(const auto frame, makeGridFrame(mesh_.bounds, radius, options_.spacing));
     RETURN_IF_ERROR(checkMemory(kBytesPerColumn * static_cast<double>(frame.columnCount()),
                                 fmt::format("{} columns", frame.columnCount()),
-                                "use a wider spacing (--spacing)"));
+                                "use a wider `spacing`"));
     ASSIGN_OR_RETURN(const auto raw, findColumns(frame));
     ASSIGN_OR_RETURN(auto free, chooseRegions(raw.columns));
     BakedGrid baked;

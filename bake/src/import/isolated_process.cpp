@@ -319,7 +319,7 @@ int reapChild(pid_t child) {
   throw ErrorException(
       {ErrorCode::kUnsupported, "a process that reads files",
        "was killed from outside, as the system does where memory runs out; free some, or bake less "
-       "at once (-j, --memory), and give the command again"});
+       "at once (`threads`, `memory`), and give the command again"});
 }
 
 std::optional<ProcessFailure> judgeExit(int status) {

@@ -76,7 +76,7 @@ void visitGrids(SceneBakeOptions& options, OptionVisitor& v) {
   v.option({"keep", "room|all", "What to store: the room, or all free spans"},
            choice(keep, kKeepNames));
   v.option(
-      {"keep-components", "N", "Without --inside: how many of the largest free parts are the room"},
+      {"keep-components", "N", "Without `inside`: how many of the largest free parts are the room"},
       whole(components, {1, 1'000'000}));
   v.option({"inside", "X,Y,Z", "A point of the room, meters, y up (may be repeated)"},
            points(seeds));
