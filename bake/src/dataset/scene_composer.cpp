@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "dataset/config/placement.h"
@@ -19,11 +19,6 @@ namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool isFile(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
 
 /// A box, cylinder or sphere as an asset of one mesh.
 SourceAsset primitiveAsset(const LinkShape& shape) {
@@ -82,46 +77,14 @@ std::string SceneComposer::nextName(const std::string& template_name) {
   return fmt::format("{}_:{:04d}", template_name, placed_[template_name]++);
 }
 
-const DatasetTemplate* SceneComposer::lookUp(TemplateKind kind, const SceneItem& item) {
-  const DatasetBlock& block = index_.block(kind);
-  const TemplateKindNames& names = namesOf(kind);
-  const FoundTemplate found = block.templates.find(item.template_name);
-  if (found.found == nullptr) {
-    noteMissing(
-        fmt::format("{} '{}' is in none of the dataset's paths", names.noun, item.template_name));
-    for (const SearchedFolder& searched : block.searched) {
-      noteAbsent(index_.folder / searched.folder / (item.template_name + searched.ending));
-    }
-  } else if (found.ambiguous) {
-    warnOnce(fmt::format("{} '{}' may be several; '{}' is taken, the first", names.noun,
-                         item.template_name, found.found->handle));
+Result<void> SceneComposer::noteItem(const PlacedItem& placed) {
+  if (!placed.warning.empty()) warnOnce(placed.warning);
+  if (placed.entry != nullptr && !placed.entry->config.empty()) {
+    RETURN_IF_ERROR(merger_.noteFile(placed.entry->config));
   }
-  return found.found;
-}
-
-Result<SceneComposer::Attributes> SceneComposer::attributesOf(const DatasetTemplate& entry,
-                                                              TemplateKind kind) {
-  const std::string key = fmt::format("{}:{}", static_cast<unsigned>(kind), entry.handle);
-  const auto known = attributes_.find(key);
-  if (known != attributes_.end()) return known->second;
-  ASSIGN_OR_RETURN(auto read, readAttributes(entry, index_.block(kind), kind));
-  if (!entry.config.empty()) {
-    RETURN_IF_ERROR(merger_.noteFile(entry.config));
-  }
-  auto attributes = std::make_shared<const TemplateAttributes>(std::move(read));
-  attributes_.emplace(key, attributes);
-  return attributes;
-}
-
-Result<fs::path> SceneComposer::meshOf(const DatasetTemplate& entry,
-                                       const TemplateAttributes& attributes, TemplateKind kind) {
-  ASSIGN_OR_RETURN(auto mesh, meshFileOf(entry, attributes));
-  RETURN_IF_ERROR(index_.checkReach(mesh, placeOf(entry)));
-  if (isFile(mesh)) return mesh;
-  noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kind).noun, entry.name,
-                          relative(mesh)));
-  noteAbsent(mesh);
-  return fs::path();
+  if (!placed.missing.empty()) noteMissing(placed.missing);
+  for (const fs::path& file : placed.absent) noteAbsent(file);
+  return {};
 }
 
 Result<std::shared_ptr<const SourceAsset>> SceneComposer::load(const fs::path& mesh) {
@@ -172,50 +135,51 @@ void SceneComposer::addMesh(const fs::path& mesh, const SourceAsset& asset,
   merger_.place(first, asset, world_from_asset, name);
 }
 
-Result<void> SceneComposer::placeStage(const SceneItem& item) {
-  result_.has_stage = false;
-  const DatasetTemplate* entry = lookUp(TemplateKind::kStage, item);
-  if (entry == nullptr) return {};
-  const auto attributes = attributesOf(*entry, TemplateKind::kStage);
-  if (!attributes) return tl::unexpected(attributes.error());
-  ASSIGN_OR_RETURN(const auto mesh, meshOf(*entry, **attributes, TemplateKind::kStage));
-  if (mesh.empty()) return {};
-  const auto asset = load(mesh);
+Result<void> SceneComposer::place(const PlacedItem& placed) {
+  switch (placed.kind) {
+    case TemplateKind::kStage:
+      return placeStage(placed);
+    case TemplateKind::kArticulated:
+      return placeArticulated(placed);
+    case TemplateKind::kObject:
+    case TemplateKind::kScene:
+      break;
+  }
+  return placeObject(placed);
+}
+
+Result<void> SceneComposer::placeStage(const PlacedItem& placed) {
+  const SceneItem& item = *placed.item;
+  const auto asset = load(placed.file);
   if (!asset) return tl::unexpected(asset.error());
   const SceneItem unmoved;
   if (item.translation != unmoved.translation || item.rotation != unmoved.rotation ||
       item.scale != unmoved.scale) {
     warnOnce("the scene moves, turns or scales its stage; as in Habitat, it stays as it is");
   }
-  addMesh(mesh, **asset, objectFromAsset(**attributes, unmoved.scale), entry->name);
-  result_.has_stage = true;
+  TemplateAttributes attributes = *placed.attributes;
+  addMesh(placed.file, **asset, objectFromAsset(attributes, unmoved.scale), placed.entry->name);
   // As in Habitat, a stage's boxes are turned with it and not scaled.
-  TemplateAttributes unscaled = **attributes;
-  unscaled.scale = unmoved.scale;
-  addReceptacles((*attributes)->receptacles, item.receptacles,
-                 {.world_from_parent = objectFromAsset(unscaled, unmoved.scale)});
+  attributes.scale = unmoved.scale;
+  addReceptacles(attributes.receptacles, item.receptacles,
+                 {.world_from_parent = objectFromAsset(attributes, unmoved.scale)});
   return {};
 }
 
-Result<void> SceneComposer::placeObject(const SceneItem& item) {
-  const DatasetTemplate* entry = lookUp(TemplateKind::kObject, item);
-  if (entry == nullptr) return {};
-  const auto attributes = attributesOf(*entry, TemplateKind::kObject);
-  if (!attributes) return tl::unexpected(attributes.error());
-  ASSIGN_OR_RETURN(const auto mesh, meshOf(*entry, **attributes, TemplateKind::kObject));
-  // What moves is no part of the scene: its mesh is read for a pack of its own.
-  if (mesh.empty() || item.motion == MotionType::kDynamic) return {};
-  RETURN_IF_ERROR(checkDistance(item, fmt::format("object '{}'", entry->name)));
-  if (!(*attributes)->collidable) {
+Result<void> SceneComposer::placeObject(const PlacedItem& placed) {
+  const auto& [item, attributes] = std::tie(*placed.item, *placed.attributes);
+  const std::string& template_name = placed.entry->name;
+  RETURN_IF_ERROR(checkDistance(item, fmt::format("object '{}'", template_name)));
+  if (!attributes.collidable) {
     warnOnce(
-        fmt::format("object '{}' collides with nothing in Habitat; here it does", entry->name));
+        fmt::format("object '{}' collides with nothing in Habitat; here it does", template_name));
   }
-  const auto asset = load(mesh);
+  const auto asset = load(placed.file);
   if (!asset) return tl::unexpected(asset.error());
-  const Affine world_from_mesh = placement(item, **attributes, **asset);
-  const std::string name = nextName(entry->name);
-  addMesh(mesh, **asset, world_from_mesh, name);
-  addReceptacles((*attributes)->receptacles, item.receptacles,
+  const Affine world_from_mesh = placement(item, attributes, **asset);
+  const std::string name = nextName(template_name);
+  addMesh(placed.file, **asset, world_from_mesh, name);
+  addReceptacles(attributes.receptacles, item.receptacles,
                  {.kind = ReceptacleParent::Kind::kObject,
                   .name = name,
                   .world_from_parent = world_from_mesh});
@@ -247,21 +211,11 @@ void SceneComposer::placeLinks(const ReceptacleParent& placed, const SourceRobot
   }
 }
 
-Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
-  constexpr TemplateKind kKind = TemplateKind::kArticulated;
-  const DatasetTemplate* entry = lookUp(kKind, item);
-  if (entry == nullptr) return {};
-  const auto attributes = attributesOf(*entry, kKind);
-  if (!attributes) return tl::unexpected(attributes.error());
-  const fs::path urdf = urdfOf(*entry, **attributes);
-  if (auto near = index_.checkReach(urdf, placeOf(*entry)); !near) return near;
-  if (!isFile(urdf)) {
-    noteMissing(fmt::format("{} '{}': its URDF '{}' is missing", namesOf(kKind).noun, entry->name,
-                            relative(urdf)));
-    noteAbsent(urdf);
-    return {};
-  }
-  RETURN_IF_ERROR(checkDistance(item, fmt::format("{} '{}'", namesOf(kKind).noun, entry->name)));
+Result<void> SceneComposer::placeArticulated(const PlacedItem& placed) {
+  const auto& [item, attributes, urdf] = std::tie(*placed.item, *placed.attributes, placed.file);
+  const std::string& template_name = placed.entry->name;
+  const std::string what = fmt::format("{} '{}'", namesOf(placed.kind).noun, template_name);
+  RETURN_IF_ERROR(checkDistance(item, what));
   const auto furniture = meshes_.loadFurniture(urdf);
   if (!furniture) return tl::unexpected(furniture.error());
   const fs::path folder = urdf.parent_path();
@@ -274,25 +228,24 @@ Result<void> SceneComposer::placeArticulated(const SceneItem& item) {
   }
   noteWarnings(urdf, (*furniture)->warnings);
   for (const std::string& reference : (*furniture)->missing) {
-    noteMissing(fmt::format("{} '{}': its mesh '{}' is missing", namesOf(kKind).noun, entry->name,
-                            reference));
+    noteMissing(fmt::format("{}: its mesh '{}' is missing", what, reference));
   }
   // Neither the center of mass nor a frame: Habitat takes a URDF's root as it is.
   Affine root_from_urdf = kIdentityAffine;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    root_from_urdf[5 * axis] = (*attributes)->scale[axis] * item.scale[axis];
+    root_from_urdf[5 * axis] = attributes.scale[axis] * item.scale[axis];
   }
   const Affine world_from_root = compose(worldFromObject(item), root_from_urdf);
   const std::vector<Affine> root_from_link = restPose(**furniture, item.joint_positions);
-  ReceptacleParent placed{.kind = ReceptacleParent::Kind::kFurniture,
-                          .name = nextName(entry->name)};
-  placed.links.reserve(root_from_link.size());
+  ReceptacleParent parent{.kind = ReceptacleParent::Kind::kFurniture,
+                          .name = nextName(template_name)};
+  parent.links.reserve(root_from_link.size());
   for (std::size_t n = 0; n < root_from_link.size(); ++n) {
-    placed.links.push_back(
+    parent.links.push_back(
         {(*furniture)->links[n].name, compose(world_from_root, root_from_link[n])});
   }
-  placeLinks(placed, **furniture, urdf);
-  addReceptacles((*attributes)->receptacles, item.receptacles, placed);
+  placeLinks(parent, **furniture, urdf);
+  addReceptacles(attributes.receptacles, item.receptacles, parent);
   return {};
 }
 
@@ -306,7 +259,7 @@ void SceneComposer::addReceptacles(ReceptacleTexts stated, const ReceptacleTexts
   std::ranges::move(placed.regions, std::back_inserter(result_.receptacles));
 }
 
-Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneInstance& instance,
+Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneLayout& layout,
                                          const std::vector<fs::path>& read) {
   SourceAsset& scene = result_.scene;
   scene.name = name;
@@ -315,18 +268,15 @@ Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneIns
   for (const fs::path& file : read) {
     RETURN_IF_ERROR(merger_.noteFile(file));
   }
+  const SceneInstance& instance = *layout.instance;
   default_origin_ = instance.origin;
-  if (instance.stage) {
-    RETURN_IF_ERROR(placeStage(*instance.stage));
-  } else {
-    result_.has_stage = false;
-    warnOnce("the scene says that it has no stage");
-  }
-  for (const SceneItem& item : instance.objects) {
-    RETURN_IF_ERROR(placeObject(item));
-  }
-  for (const SceneItem& item : instance.articulated) {
-    RETURN_IF_ERROR(placeArticulated(item));
+  result_.has_stage = layout.hasStage();
+  if (!instance.stage) warnOnce("the scene says that it has no stage");
+  for (const PlacedItem& placed : layout.items) {
+    RETURN_IF_ERROR(noteItem(placed));
+    // What moves is no part of the scene: its mesh is read for a pack of its own.
+    if (placed.file.empty() || placed.moves()) continue;
+    RETURN_IF_ERROR(place(placed));
   }
   addReceptacles(instance.receptacles, {}, {.world_from_parent = kIdentityAffine});
   merger_.finish();

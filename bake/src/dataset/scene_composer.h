@@ -7,10 +7,9 @@
 #include "dataset/asset_merger.h"
 #include "dataset/config/dataset_index.h"
 #include "dataset/config/receptacles.h"
-#include "dataset/config/scene_instance.h"
-#include "dataset/config/template_attributes.h"
 #include "dataset/mesh_library.h"
 #include "dataset/scene_dataset.h"
+#include "dataset/scene_layout.h"
 
 namespace galactic::bake {
 
@@ -19,28 +18,23 @@ class SceneComposer {
  public:
   SceneComposer(const DatasetIndex& index, MeshLibrary& meshes);
 
-  /// What `instance` places. Files that were read for it already are in `read`.
-  [[nodiscard]] Result<ComposedScene> run(const std::string& name, const SceneInstance& instance,
+  /// What `layout` places. Files that were read for it already are in `read`.
+  [[nodiscard]] Result<ComposedScene> run(const std::string& name, const SceneLayout& layout,
                                           const std::vector<std::filesystem::path>& read);
 
  private:
-  using Attributes = std::shared_ptr<const TemplateAttributes>;
-
-  [[nodiscard]] Result<void> placeStage(const SceneItem& item);
-  [[nodiscard]] Result<void> placeObject(const SceneItem& item);
-  [[nodiscard]] Result<void> placeArticulated(const SceneItem& item);
+  /// Notes what is known of it before its mesh or URDF is read.
+  [[nodiscard]] Result<void> noteItem(const PlacedItem& placed);
+  /// Places what is there.
+  [[nodiscard]] Result<void> place(const PlacedItem& placed);
+  [[nodiscard]] Result<void> placeStage(const PlacedItem& placed);
+  [[nodiscard]] Result<void> placeObject(const PlacedItem& placed);
+  [[nodiscard]] Result<void> placeArticulated(const PlacedItem& placed);
   void placeLinks(const ReceptacleParent& placed, const SourceRobot& furniture,
                   const std::filesystem::path& urdf);
   /// Those that a template states, and over them those of its instance.
   void addReceptacles(ReceptacleTexts stated, const ReceptacleTexts& over,
                       const ReceptacleParent& parent);
-  /// Null where the dataset has none; then it is noted as missing.
-  const DatasetTemplate* lookUp(TemplateKind kind, const SceneItem& item);
-  [[nodiscard]] Result<Attributes> attributesOf(const DatasetTemplate& entry, TemplateKind kind);
-  /// The mesh of a stage or object; empty where it is not there, then it is noted as missing.
-  [[nodiscard]] Result<std::filesystem::path> meshOf(const DatasetTemplate& entry,
-                                                     const TemplateAttributes& attributes,
-                                                     TemplateKind kind);
   /// Loads a mesh and notes its files and warnings.
   [[nodiscard]] Result<std::shared_ptr<const SourceAsset>> load(const std::filesystem::path& mesh);
   /// World frame from the asset's.
@@ -66,7 +60,6 @@ class SceneComposer {
   TranslationOrigin default_origin_ = TranslationOrigin::kCenterOfMass;
   ComposedScene result_;
   AssetMerger merger_;
-  std::map<std::string, Attributes> attributes_;
   std::map<std::string, unsigned> placed_;
   /// Sentence to number of times; their order is that of result_.missing.
   std::map<std::string, unsigned> missing_;

@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "dataset/config/dataset_index.h"
+#include "dataset/config/placement.h"
 #include "dataset/config/scene_instance.h"
 #include "dataset/config/template_attributes.h"
 #include "dataset/scene_composer.h"
-#include "dataset/scene_surveyor.h"
+#include "dataset/scene_layout.h"
 #include "galactic/bake/source_asset.h"
 #include "support/nearest_name.h"
 #include "support/try.h"
+#include "urdf/named_files.h"
 
 namespace galactic::bake {
 
@@ -59,6 +63,38 @@ std::map<std::string, const DatasetTemplate*, std::less<>> namesIn(const Templat
     }
   }
   return names;
+}
+
+/// Adds the size of `file` and of the files that it names, each the first time.
+void addBytes(const fs::path& file, std::set<fs::path>& seen, std::uint64_t& bytes) {
+  std::error_code problem;
+  const std::uintmax_t more = fs::file_size(file, problem);
+  if (problem || !seen.insert(file).second) return;
+  bytes += more;
+  for (const fs::path& named : namedFiles(file, {})) addBytes(named, seen, bytes);
+}
+
+SceneSurvey surveyOf(const SceneLayout& layout) {
+  SceneSurvey survey;
+  survey.has_stage = layout.hasStage();
+  std::set<std::string_view> missing;
+  std::set<fs::path> meshes;
+  std::set<fs::path> seen;
+  for (const PlacedItem& placed : layout.items) {
+    if (!placed.missing.empty()) {
+      if (missing.insert(placed.missing).second) survey.missing.push_back(placed.missing);
+    } else if (placed.moves()) {
+      survey.movable.push_back(
+          {.name = placed.entry->name,
+           .mesh = placed.file,
+           .object_from_mesh = objectFromAsset(*placed.attributes, placed.item->scale)});
+    } else {
+      addBytes(placed.file, seen, survey.bytes);
+      const bool is_mesh = placed.kind != TemplateKind::kArticulated;
+      if (is_mesh && meshes.insert(placed.file).second) survey.meshes.push_back(placed.file);
+    }
+  }
+  return survey;
 }
 
 /// A scene of nothing but the stage.
@@ -130,7 +166,8 @@ Result<SceneSurvey> SceneDataset::survey(std::string_view scene) const {
   const auto entry = state_->find(scene);
   if (!entry) return tl::unexpected(entry.error());
   ASSIGN_OR_RETURN(const auto instance, state_->instanceOf(**entry));
-  return SceneSurveyor(state_->index).run(instance);
+  ASSIGN_OR_RETURN(const auto layout, layOutScene(state_->index, instance));
+  return surveyOf(layout);
 }
 
 Result<ComposedScene> SceneDataset::compose(std::string_view scene, MeshLibrary& meshes) const {
@@ -141,7 +178,8 @@ Result<ComposedScene> SceneDataset::compose(std::string_view scene, MeshLibrary&
   if (state_->kind == TemplateKind::kScene && !(*entry)->config.empty()) {
     read.push_back((*entry)->config);
   }
-  return SceneComposer(state_->index, meshes).run(std::string(scene), instance, read);
+  ASSIGN_OR_RETURN(const auto layout, layOutScene(state_->index, instance));
+  return SceneComposer(state_->index, meshes).run(std::string(scene), layout, read);
 }
 
 }  // namespace galactic::bake
