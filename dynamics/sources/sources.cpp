@@ -23,10 +23,6 @@ namespace {
 
 using Names = std::set<std::string, std::less<>>;
 
-std::string nameOr(const std::string& name, const std::filesystem::path& input) {
-  return name.empty() ? input.stem().string() : name;
-}
-
 Result<void> noteContent(const std::filesystem::path& file, bake::ReadLog& log) {
   ASSIGN_OR_RETURN(auto content, bake::describeFile(file));
   log.noteRead(file.parent_path(), {std::move(content)});
@@ -63,7 +59,7 @@ class SourceReader {
   }
 
   Result<void> operator()(const bake::SceneJob& job) {
-    const std::string name = nameOr(job.name, job.input);
+    const std::string name = bake::nameOf(job);
     if (!scenes_.contains(name)) return {};
     ASSIGN_OR_RETURN(const auto asset, bake::readSceneFile(job));
     sources_.log.noteRead(job.input.parent_path(), asset.files);

@@ -12,10 +12,9 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "galactic/bake/mesh_import.h"
+#include "asset/scene_source.h"
 #include "galactic/bake/packs.h"
 #include "galactic/bake/source_asset.h"
-#include "galactic/bake/triangle_mesh.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
 #include "support/journal.h"
@@ -90,17 +89,9 @@ Result<void> addGeometry(const EpisodeGenerationJob& job, ReadLog& log, OpenPack
 /// The mesh of `geometry` for a scene; nothing where there is none.
 Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_view scene) {
   if (job.details) return job.details(scene);
-  SceneDetails details;
   const auto file = job.geometry.find(std::string(scene));
-  if (file == job.geometry.end()) return details;
-  ASSIGN_OR_RETURN(const auto asset, importMesh(file->second));
-  auto clean = placeAndClean(asset);
-  if (!clean) {
-    const Error& error = clean.error();
-    return fail(error.code, inFile(file->second, error.where), error.message);
-  }
-  details.mesh = std::move(clean->mesh);
-  return details;
+  if (file == job.geometry.end()) return SceneDetails{};
+  return readSceneDetails({.input = file->second});
 }
 
 /// `files`: sorted. What only scenes know decides, too, and stands in the records.

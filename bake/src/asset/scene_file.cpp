@@ -1,40 +1,13 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "dataset/scene_dataset.h"
-#include "galactic/bake/mesh_import.h"
+#include "asset/scene_source.h"
 #include "galactic/bake/packs.h"
-#include "import/checks/asset_check.h"
 #include "support/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {
 namespace {
-
-/// A scene that was read, ready to be baked.
-struct ReadScene {
-  /// For messages; names of textures are relative to its folder.
-  std::filesystem::path input;
-  SourceAsset asset;
-};
-
-Result<ReadScene> readInstance(const InstancedScene& scene, ReadLog& log) {
-  const std::filesystem::path& folder = scene.dataset->folder();
-  ASSIGN_OR_RETURN(auto composed, scene.dataset->compose(scene.name, *scene.meshes));
-  log.noteAbsent(folder, composed.absent_files);
-  if (!composed.is_settled) log.noteUnsettled();
-  std::vector<std::string>& warnings = composed.scene.warnings;
-  warnings.insert(warnings.end(), composed.missing.begin(), composed.missing.end());
-  return ReadScene{folder / scene.name, std::move(composed.scene)};
-}
-
-Result<ReadScene> readScene(const SceneJob& job, ReadLog& log) {
-  if (job.instance) return readInstance(*job.instance, log);
-  ASSIGN_OR_RETURN(auto asset, importMesh(job.input, job.import));
-  if (!job.import.scale) RETURN_IF_ERROR(checkHeight(asset, job.input.string()));
-  log.noteAbsent(job.input.parent_path(), asset.absent_files);
-  return ReadScene{job.input, std::move(asset)};
-}
 
 Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const Progress& progress,
                              StageTimes& times) {
@@ -51,12 +24,6 @@ Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const P
 }
 
 }  // namespace
-
-Result<SourceAsset> readSceneFile(const SceneJob& job) {
-  ReadLog log;
-  ASSIGN_OR_RETURN(auto scene, readScene(job, log));
-  return std::move(scene.asset);
-}
 
 Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   const std::string item = job.instance ? job.instance->name : job.input.filename().string();

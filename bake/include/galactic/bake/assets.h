@@ -153,6 +153,9 @@ struct Made {
 /// with kInvalidInput where the output is a file that was read; `where` names the file.
 [[nodiscard]] Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context);
 
+/// The name of a scene in its pack.
+[[nodiscard]] std::string nameOf(const SceneJob& job);
+
 /// Reads the meshes of a scene as bakeSceneFile does.
 [[nodiscard]] Result<SourceAsset> readSceneFile(const SceneJob& job);
 

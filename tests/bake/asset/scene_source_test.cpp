@@ -1,0 +1,82 @@
+// Scenes as they are read: for their bakes, and for episodes in them.
+#include "asset/scene_source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "bake/dataset/small_dataset.h"
+
+namespace galactic::test::scene_source_test {
+namespace {
+
+namespace fs = std::filesystem;
+using bake::ReadLog;
+using bake::SceneJob;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+SceneJob jobOfInstance(const SmallDataset& small, const std::string& name) {
+  auto dataset = bake::SceneDataset::read(small.config());
+  EXPECT_TRUE(dataset) << dataset.error().text();
+  SceneJob job{.input = small.config()};
+  job.instance =
+      bake::InstancedScene{std::make_shared<const bake::SceneDataset>(std::move(*dataset)),
+                           std::make_shared<bake::MeshLibrary>(bake::datasetMeshOptions()), name};
+  return job;
+}
+
+TEST(SceneSource, IsCalledAsItsJobSaysOrAfterItsFileOrInstance) {
+  EXPECT_EQ(bake::nameOf(SceneJob{.input = "in/home.glb"}), "home");
+  EXPECT_EQ(bake::nameOf(SceneJob{.input = "in/home.glb", .name = "flat"}), "flat");
+  EXPECT_EQ(bake::nameOf(jobOfInstance(SmallDataset(), "a_home")), "a_home");
+}
+
+TEST(SceneSource, OfAFileIsItsMesh) {
+  const SmallDataset small;
+  const SceneJob job{.input = small.folder() / "meshes/box.obj"};
+  ReadLog log;
+  const auto read = bake::readScene(job, log);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->input, job.input);
+  EXPECT_EQ(read->asset.name, "box");
+  const auto details = bake::readSceneDetails(job);
+  ASSERT_TRUE(details) << details.error().text();
+  EXPECT_THAT(details->mesh.triangles, SizeIs(12));
+  EXPECT_THAT(details->receptacles, IsEmpty());
+}
+
+TEST(SceneSource, OfAnInstanceIsPutTogether) {
+  const SmallDataset small;
+  small.writeScene("one", R"({"stage_instance": {"template_name": "room"}, "object_instances": [
+      {"template_name": "ghost", "motion_type": "STATIC"}],
+      "user_defined": {"receptacle_aabb_floor": {"position": [0, 0, 0], "scale": [1, 1, 1]}}})");
+  const SceneJob job = jobOfInstance(small, "one");
+  ReadLog log;
+  const auto read = bake::readScene(job, log);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->input, small.folder() / "one");
+  EXPECT_THAT(read->asset.warnings,
+              Contains("object 'ghost': its mesh 'meshes/ghost.glb' is missing"));
+  EXPECT_THAT(log.absent(), Contains(small.folder() / "meshes/ghost.glb"));
+  const auto details = bake::readSceneDetails(job);
+  ASSERT_TRUE(details) << details.error().text();
+  EXPECT_THAT(details->mesh.triangles, Not(IsEmpty()));
+  EXPECT_THAT(details->receptacles, SizeIs(1));
+}
+
+TEST(SceneSource, NamesItsInputWhereItsTrianglesAreNone) {
+  const SmallDataset small;
+  const fs::path flat = small.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  const auto details = bake::readSceneDetails({.input = flat});
+  ASSERT_FALSE(details);
+  EXPECT_THAT(details.error().where, testing::StartsWith(flat.string() + ": "));
+  EXPECT_THAT(details.error().message, HasSubstr("degenerate"));
+}
+
+}  // namespace
+}  // namespace galactic::test::scene_source_test
