@@ -9,6 +9,7 @@
 #include "galactic/bake/source_asset.h"
 #include "galactic/pack.h"
 #include "support/content_hash.h"
+#include "support/exception_error.h"
 #include "support/output_files.h"
 #include "support/try.h"
 
@@ -45,6 +46,13 @@ std::string hashText(const SourceFile& file) {
 
 std::string inFile(const fs::path& file, const std::string& where) {
   return where.empty() ? file.string() : file.string() + ": " + where;
+}
+
+Error errorOfExceptionAt(const fs::path& input) {
+  Error error = errorOfException();
+  // Of a file that cannot be read or written, the place is that file.
+  if (error.code != ErrorCode::kIo) error.where = inFile(input, error.where);
+  return error;
 }
 
 Result<void> addSources(const std::vector<fs::path>& files, std::vector<SourceFile>& sources) {

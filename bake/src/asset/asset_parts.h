@@ -19,6 +19,10 @@ namespace galactic::bake {
 /// option in backquotes, an element, or nothing.
 [[nodiscard]] std::string inFile(const std::filesystem::path& file, const std::string& where);
 
+/// What is said of the exception that is being handled, which ended the work on `input`: that
+/// memory ran out, that a reader was killed, or a bug. Called in a catch block.
+[[nodiscard]] Error errorOfExceptionAt(const std::filesystem::path& input);
+
 /// Adds the description of each of `files` that is not empty.
 [[nodiscard]] Result<void> addSources(const std::vector<std::filesystem::path>& files,
                                       std::vector<SourceFile>& sources);

@@ -89,14 +89,18 @@ Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedO
   return {};
 }
 
-/// Bakes it, unless that was done before.
+/// Bakes it, unless that was done before. What one object throws ends no other.
 Result<void> finishOne(const ObjectInput& input, const ObjectTask& task, FinishedObject& finished) {
-  if (auto known = task.journal.recall(input)) {
-    finished = std::move(*known);
-    return {};
+  try {
+    if (auto known = task.journal.recall(input)) {
+      finished = std::move(*known);
+      return {};
+    }
+    RETURN_IF_ERROR(bakeOne(input, task, finished));
+    return task.journal.add(input, finished);
+  } catch (...) {
+    return tl::unexpected(errorOfExceptionAt(input.path));
   }
-  RETURN_IF_ERROR(bakeOne(input, task, finished));
-  return task.journal.add(input, finished);
 }
 
 std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, const ObjectTask& set,

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "asset/asset_parts.h"
 #include "cache/cache_entry.h"
 #include "galactic/bake/source_asset.h"
 #include "support/output_files.h"
@@ -178,16 +179,23 @@ class Making {
 
 /// Where an input stands in messages of an error.
 fs::path inputOf(const PackJob& pack) {
+  const auto* scene = std::get_if<SceneJob>(&pack.job);
+  // The scenes of a dataset have its file in common.
+  if (scene != nullptr && scene->instance) {
+    return scene->input.parent_path() / scene->instance->name;
+  }
   const std::vector<fs::path> files = filesOf(pack.job);
   return files.empty() ? pack.output : files.front();
 }
 
-/// Exceptions of one pack, whose reader was killed for example, are no other's.
-Result<void> makeOrSay(Making& making, unsigned jobs) {
+/// What `bake` returns, or what it throws as an error at `where`: what one pack throws, whose
+/// reader was killed or whose memory ran out, ends no other.
+template <class Bake>
+auto resultOf(const fs::path& where, const Bake& bake) -> decltype(bake()) {
   try {
-    return making.make(jobs);
-  } catch (const ErrorException& failure) {
-    return tl::unexpected(failure.error());
+    return bake();
+  } catch (...) {
+    return tl::unexpected(errorOfExceptionAt(where));
   }
 }
 
@@ -197,7 +205,7 @@ PackOutcome makePack(const PackJob& pack, unsigned jobs, const BuildTools& tools
   const auto start = std::chrono::steady_clock::now();
   tools.observer.begin(pack);
   Making making(pack, tools);
-  auto done = makeOrSay(making, jobs);
+  auto done = resultOf(inputOf(pack), [&] { return making.make(jobs); });
   PackOutcome& outcome = making.outcome();
   // What was interrupted is still to be done.
   if (!done && done.error().code != ErrorCode::kInterrupted) {
@@ -214,7 +222,7 @@ PackOutcome makeWorld(const PackJob& world, std::vector<LinkedPack>& linked,
                       const BuildTools& tools) {
   PackOutcome outcome{.name = world.name};
   BakeContext context{.output = world.output, .log = outcome.log};
-  auto made = bake(world.job, context);
+  auto made = resultOf(world.output, [&] { return bake(world.job, context); });
   if (made) {
     outcome.state = PackState::kBaked;
     linked = std::get<WorldOutcome>(made->outcome).packs;
