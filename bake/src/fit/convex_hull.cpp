@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engines/bullet_memory.h"
 #include "fit/rectangle_calipers.h"
 
 namespace galactic::bake::fit {

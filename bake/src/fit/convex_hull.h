@@ -47,7 +47,8 @@ inline constexpr double kFloatNoise = 2.5e-7;
 
 /// The convex hull of `points` (meters, finite, at least one), by Bullet's exact integer hull
 /// (Preparata and Hong) of the points rounded to a grid. What fills no volume is a point, a line or
-/// a plane, found without Bullet. Deterministic: a function of the points in their order.
+/// a plane, found without Bullet. Deterministic: a function of the points in their order. Takes
+/// up to 600 bytes a point, and throws std::bad_alloc where they are not there.
 [[nodiscard]] ConvexHull convexHull(std::span<const Vec3> points);
 
 /// Faces of a hull that lie in one plane, but for the hull's rounding: indices of faces.

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "bake/engines/engine_scenes.h"
 #include "galactic/bake/column_engines.h"
+#include "support/limited_memory.h"
+#include "support/sanitized.h"
 
 namespace galactic::bake::bullet_columns_test {
 namespace {
@@ -15,6 +18,23 @@ constexpr std::uint32_t kSeed = 23;
 
 std::vector<Span> columnAt(const TriangleMesh& mesh, const GridFrame& frame) {
   return BulletColumnCaster(mesh).column(frame, {1, 1});
+}
+
+TEST(BulletColumns, ThrowWhereMemoryRunsOutAndDoNotCrash) {
+  if (test::kIsSanitized) GTEST_SKIP() << "sanitizers map terabytes";
+  const TriangleMesh mesh = test::randomSoup(kSeed, 200'000);
+  int thrown = 0;
+  for (std::uint64_t megabytes = 1;; megabytes += 3) {
+    ASSERT_LT(megabytes, 1024U) << "is never enough";
+    try {
+      const test::LimitedMemory limit(megabytes << 20U);
+      const BulletColumnCaster caster(mesh);
+      break;
+    } catch (const std::bad_alloc&) {
+      ++thrown;
+    }
+  }
+  EXPECT_GE(thrown, 3) << "there was memory from the beginning";
 }
 
 TEST(BulletColumns, DoNotDependOnTheNumberOfThreads) {

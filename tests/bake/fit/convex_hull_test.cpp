@@ -5,11 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <new>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "fit_shapes.h"
+#include "support/limited_memory.h"
+#include "support/sanitized.h"
 
 namespace galactic::bake::fit::convex_hull_test {
 namespace {
@@ -22,6 +27,37 @@ double extentOf(const ConvexHull& hull) {
     extent = std::max(extent, norm(corner.rounded - hull.corners[0].rounded));
   }
   return extent;
+}
+
+/// As many different points as a large scan has.
+std::vector<Vec3> pointsOnABall() {
+  std::mt19937 random(kSeed);
+  std::normal_distribution<float> normal;
+  std::vector<Vec3> points(100'000);
+  for (Vec3& point : points) {
+    const Vec3 p{normal(random), normal(random), normal(random)};
+    point = p * (1 / std::sqrt(dot(p, p)));
+  }
+  return points;
+}
+
+TEST(ConvexHull, ThrowsWhereMemoryRunsOutAndDoesNotCrash) {
+  if (test::kIsSanitized) GTEST_SKIP() << "sanitizers map terabytes";
+  const std::vector<Vec3> points = pointsOnABall();
+  int thrown = 0;
+  for (std::uint64_t megabytes = 1;; megabytes += 3) {
+    ASSERT_LT(megabytes, 1024U) << "is never enough";
+    try {
+      const test::LimitedMemory limit(megabytes << 20U);
+      const ConvexHull hull = convexHull(points);
+      EXPECT_EQ(hull.shape, HullShape::kSolid);
+      EXPECT_GT(hull.corners.size(), points.size() / 2);
+      break;
+    } catch (const std::bad_alloc&) {
+      ++thrown;
+    }
+  }
+  EXPECT_GE(thrown, 5) << "there was memory from the beginning";
 }
 
 TEST(ConvexHull, HoldsAllPointsAndClosesAroundThem) {
