@@ -35,7 +35,8 @@ struct ManyPacksOptions {
   std::filesystem::path cache{};
   bool no_cache = false;
   Shard shard{};
-  /// Bytes that bakes at the same time may take together; the default is 3/4 of the machine's.
+  /// Bytes that bakes, and scenes in which episodes are drawn, may take at the same time; 0: 3/4 of
+  /// the machine's.
   std::uint64_t memory = 0;
 };
 

@@ -130,9 +130,10 @@ void visitOptions(ManyPacksOptions& options, OptionVisitor& v) {
             "Bake only part I of N, and link no world; afterwards the same command without "
             "--shard links what the parts made"},
            std::make_unique<ShardField>(shard));
-  v.option(
-      {"memory", "GIB", "GiB that bakes at the same time may take (default: 3/4 of the machine's)"},
-      std::make_unique<GibibyteField>(memory));
+  v.option({"memory", "GIB",
+            "GiB that bakes, and scenes with episodes, may take at the same time (default: 3/4 of "
+            "the machine's)"},
+           std::make_unique<GibibyteField>(memory));
 }
 
 void visitOptions(DatasetCommand& command, OptionVisitor& v) {

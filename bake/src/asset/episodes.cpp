@@ -174,7 +174,7 @@ Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context)
     return std::tie(file.name, file.bytes, file.hash_high, file.hash_low);
   });
   ASSIGN_OR_RETURN(const auto journal, openJournal(job, opened.files, context));
-  EpisodeInputs inputs{.journal = journal.get(), .stops = context.stops};
+  EpisodeInputs inputs{.journal = journal.get(), .stops = context.stops, .memory = context.memory};
   inputs.packs.reserve(opened.packs.size());
   for (const PackFile& pack : opened.packs) inputs.packs.push_back(&pack);
   if (job.details || !job.geometry.empty()) {

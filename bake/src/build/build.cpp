@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "build/make_pack.h"
-#include "build/memory_budget.h"
+#include "common/memory_budget.h"
 #include "galactic/bake/parallel_for.h"
 #include "support/part_files.h"
 
@@ -16,14 +16,6 @@ namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What a bake takes, as measured on meshes of 0.1 to 60 MB: geometry, textures and grids, and the
-/// pack twice while it is checked.
-std::uint64_t memoryOf(const PackJob& pack) {
-  constexpr std::uint64_t kAtLeast = std::uint64_t{64} << 20U;
-  constexpr std::uint64_t kPerByte = 13;
-  return kAtLeast + kPerByte * pack.source_bytes;
-}
 
 /// How long a bake takes, for comparison only. A robot takes longest, however small its meshes.
 std::uint64_t effortOf(const PackJob& pack) {
@@ -105,7 +97,7 @@ class Build {
     parallelFor(at_once, order.size(), [&](std::size_t k) {
       const PackJob& pack = list_.assets[order[k]];
       if (!goesOn()) return;
-      const MemoryBudget::Share share(budget_, memoryOf(pack));
+      const MemoryBudget::Share share(budget_, memoryFor(pack.source_bytes));
       outcome_.packs[order[k]] = makeOne(pack, jobs);
     });
   }
@@ -174,6 +166,7 @@ class Build {
             .cache = cache_ ? &*cache_ : nullptr,
             .digests = digests_,
             .textures = textures_,
+            .memory = budget_,
             .options = options_};
   }
   [[nodiscard]] bool goesOn() { return !observer_.stops() && (!failed_ || options_.keep_going); }

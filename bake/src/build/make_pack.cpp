@@ -142,7 +142,8 @@ class Making {
                        double fraction) { tools_.observer.show(item, stage, fraction); },
         .stops = [this] { return tools_.observer.stops(); },
         .dry_run = tools_.options.mode != BuildMode::kBake,
-        .keep_going = tools_.options.keep_going};
+        .keep_going = tools_.options.keep_going,
+        .memory = &tools_.memory};
     ASSIGN_OR_RETURN(auto made, bake(job, context));
     if (const auto* objects = std::get_if<ObjectSetOutcome>(&made.outcome)) {
       outcome_.failures = objects->failures;

@@ -13,6 +13,7 @@ struct BuildTools {
   const BakeCache* cache = nullptr;
   FileDigests& digests;
   TextureChecks& textures;
+  MemoryBudget& memory;
   const BuildOptions& options;
 };
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
+#include "common/memory_budget.h"
 #include "episodes/episode_batch.h"
 #include "galactic/bake/parallel_for.h"
 #include "support/try.h"
@@ -75,13 +77,29 @@ Result<SceneDetails> detailsOf(const EpisodeInputs& inputs, const SceneOfPack& s
 
 void GenerationRound::run(std::vector<SceneTask>& tasks) {
   const unsigned jobs = std::max(1U, context_.options.jobs);
-  const auto for_scenes = static_cast<unsigned>(std::min<std::size_t>(jobs, tasks.size()));
+  const unsigned for_scenes = std::min(jobs, scenesAtOnce(tasks));
   parallelFor(for_scenes, tasks.size(),
               [&](std::size_t n) { runIn(tasks[n], std::max(1U, jobs / for_scenes)); });
 }
 
+/// How many scenes fit into memory together: more threads would wait for their turn instead of
+/// drawing in the scenes of others.
+unsigned GenerationRound::scenesAtOnce(std::span<const SceneTask> tasks) const {
+  std::uint64_t fitting = tasks.size();
+  if (inputs_.memory != nullptr) {
+    std::uint64_t all = 0;
+    for (const SceneTask& task : tasks) all += memoryFor(task.scene->source_bytes);
+    fitting = std::min(fitting, inputs_.memory->bytes() / (all / tasks.size()));
+  }
+  return static_cast<unsigned>(std::max<std::uint64_t>(1, fitting));
+}
+
 /// Looks at the scene, draws its episodes with `jobs` threads, and forgets the scene.
 void GenerationRound::runIn(SceneTask& task, unsigned jobs) {
+  std::optional<MemoryBudget::Share> share;
+  if (inputs_.memory != nullptr) {
+    share.emplace(*inputs_.memory, memoryFor(task.scene->source_bytes));
+  }
   if (stops()) return;
   auto details = detailsOf(inputs_, *task.scene);
   if (!details) {

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstddef>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ class GenerationRound {
  private:
   class SceneWork;
 
+  [[nodiscard]] unsigned scenesAtOnce(std::span<const SceneTask> tasks) const;
   [[nodiscard]] Result<void> draw(SceneTask& task, SceneWork& work, unsigned jobs);
   void runIn(SceneTask& task, unsigned jobs);
   /// Whether to begin nothing more, as somebody asks for it or what is done cannot be kept.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "galactic/render_meshes.h"
+#include "galactic/schema/pack_generated.h"
 #include "layout/render_layout.h"
 #include "support/counted.h"
 #include "support/try.h"
@@ -64,6 +65,14 @@ Result<void> sortByName(std::vector<T>& items, std::string_view kind, const Name
               fmt::format("two {} have this name; give {} of different names", kind, kind));
 }
 
+std::uint64_t sourceBytes(const PackFile& pack) {
+  std::uint64_t bytes = 0;
+  const auto* sources = pack.root().provenance()->sources();
+  if (sources == nullptr) return bytes;
+  for (const schema::SourceFile* file : *sources) bytes += file->bytes();
+  return bytes;
+}
+
 /// The corners of everything that is drawn of one object, in its frame.
 std::vector<Vec3> drawnPoints(const RenderMeshes& meshes, std::uint32_t model_number) {
   const RenderModel& model = meshes.models[model_number];
@@ -103,7 +112,7 @@ Result<void> GenerationWorld::add(const PackFile& pack) {
   switch (pack.kind()) {
     case PackKind::kScene: {
       ASSIGN_OR_RETURN(auto scene, Scene::from(pack));
-      scenes_.push_back({&pack, std::move(scene)});
+      scenes_.push_back({&pack, std::move(scene), sourceBytes(pack)});
       return {};
     }
     case PackKind::kObjects:

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ namespace galactic::bake {
 struct SceneOfPack {
   const PackFile* pack = nullptr;
   Scene scene;
+  /// Of the files that it was baked from.
+  std::uint64_t source_bytes = 0;
 };
 
 /// The packs of a generation, opened, by name: nothing depends on the order in which they came.

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,10 @@ inline MeshBuilder madeRoom(float width, float depth, float height = 2.5F) {
   return room;
 }
 
+/// `source_bytes`: of the file that the pack says it was baked from.
 inline MemoryPack scenePackOf(const bake::TriangleMesh& mesh, const std::string& name = "room",
-                              const std::vector<float>& radii = madeRadii()) {
+                              const std::vector<float>& radii = madeRadii(),
+                              std::uint64_t source_bytes = 1234) {
   bake::SceneBakeOptions options;
   options.radii = radii;
   options.check_columns = 0;
@@ -35,8 +38,9 @@ inline MemoryPack scenePackOf(const bake::TriangleMesh& mesh, const std::string&
   const auto silent = [](std::string_view, double) {};
   const auto scene =
       MemoryPack::opened(bake::bakeScene(sourceAssetOf(mesh, name), options, times, silent));
-  return {PackKind::kScene, MemoryPack::opened(bake::encodeScenePack(scene, testProvenance(name))),
-          name};
+  bake::Provenance provenance = testProvenance(name);
+  provenance.sources.front().bytes = source_bytes;
+  return {PackKind::kScene, MemoryPack::opened(bake::encodeScenePack(scene, provenance)), name};
 }
 
 /// A cube of 8 cm that stands on its bottom only.

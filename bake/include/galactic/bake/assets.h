@@ -68,6 +68,8 @@ struct BakeContext {
   bool dry_run = false;
   /// Whether a pack of several objects holds those that succeeded when others fail.
   bool keep_going = false;
+  /// What scenes may take that are prepared for episodes at the same time; null: as much as it is.
+  MemoryBudget* memory = nullptr;
 };
 
 /// What became of one scene.

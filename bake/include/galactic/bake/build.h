@@ -85,7 +85,8 @@ struct BuildOptions {
   std::optional<std::filesystem::path> cache{};
   /// Without the episodes and the world where there are several shards.
   Shard shard{};
-  /// Bytes that bakes at the same time may take together, as far as that can be foreseen.
+  /// Bytes that bakes, and scenes in which episodes are drawn, may take at the same time, as far as
+  /// that can be foreseen.
   std::uint64_t memory = std::numeric_limits<std::uint64_t>::max();
 };
 

@@ -22,6 +22,8 @@ class Journal;
 
 namespace galactic::bake {
 
+class MemoryBudget;
+
 /// Why something that was drawn for an episode was not taken. In the order of the tests.
 enum class EpisodeRejection : std::uint8_t {
   kDistance,           ///< The goal is nearer to the target or farther from it than asked.
@@ -139,7 +141,8 @@ struct EpisodeGeneratorOptions {
   float most_skipped = 0.1F;
   SupportChoice supports = SupportChoice::kBoth;
   SceneSplit split{};
-  /// Threads; the result does not depend on it. Each has one scene prepared at a time.
+  /// Threads; the result does not depend on it. Each has one scene prepared at a time, as far as
+  /// EpisodeInputs::memory goes.
   unsigned jobs = 1;
 };
 
@@ -154,6 +157,10 @@ struct EpisodeInputs {
   Journal* journal = nullptr;
   /// Asked now and then, from several threads, whether to end early; empty: never.
   std::function<bool()> stops{};
+  /// What scenes may take that are prepared at the same time, with their details, as far as that
+  /// can be foreseen from the sizes of the files that their packs were made of. Null: as much as
+  /// it is. One scene at a time is prepared in any case.
+  MemoryBudget* memory = nullptr;
 };
 
 /// Scanned surfaces bend by that, meters.
