@@ -92,8 +92,12 @@ using ParsedCommand = std::variant<BakeCommand, int>;
 /// Whether it is an option of the command line that no recipe takes.
 [[nodiscard]] bool isOfCommandLine(std::string_view name);
 
-/// The packs that the command makes. Single files give a job each, or one for all; a dataset or
-/// recipe gives many.
-[[nodiscard]] Result<JobList> jobsOf(const BakeCommand& command);
+/// The packs that a command of a single kind makes of its files: one of each, or one of all. Fails
+/// with kInvalidInput, kIo and kUnsupported on files of which no such pack can be made.
+[[nodiscard]] Result<std::vector<PackJob>> packsOf(const BakeCommand& command);
+
+/// What a command that makesWorld() makes of datasets or of a recipe. Fails as jobsOfDatasets and
+/// jobsOfRecipe do.
+[[nodiscard]] Result<WorldPlan> planOf(const BakeCommand& command);
 
 }  // namespace galactic::bake

@@ -26,18 +26,16 @@ void FileFollower::show(std::string_view item, std::string_view stage, double fr
   line_.show(item, stage, fraction);
 }
 
-void FileFollower::end(const PackJob& /*pack*/, const PackOutcome& outcome) {
+void FileFollower::end(const PackOutcome& pack) {
   const std::lock_guard lock(mutex_);
   line_.clear();
-  for (const BakeFailure& failure : outcome.failures) printError(failure.error);
-  if (outcome.isThere() && verbosity_ >= Verbosity::kNormal) {
-    printTable(*outcome.figures, verbosity_);
-  }
+  printFailures(pack);
+  if (pack.isThere() && verbosity_ >= Verbosity::kNormal) printTable(*pack.figures, verbosity_);
 }
 
-void WorldFollower::begin(const PackJob& pack) {
+void WorldFollower::begin(std::string_view pack) {
   const std::lock_guard lock(mutex_);
-  running_.insert(pack.name);
+  running_.emplace(pack);
   forgetStage();
   redraw();
 }
@@ -55,20 +53,18 @@ void WorldFollower::show(std::string_view /*item*/, std::string_view stage, doub
   sayThatItGoesOn();
 }
 
-void WorldFollower::end(const PackJob& pack, const PackOutcome& outcome) {
+void WorldFollower::end(const PackOutcome& pack) {
   const std::lock_guard lock(mutex_);
-  const bool is_world = std::holds_alternative<WorldJob>(pack.job);
   running_.erase(pack.name);
   forgetStage();
   line_.clear();
-  for (const BakeFailure& failure : outcome.failures) printError(failure.error);
-  if (is_world || outcome.state == PackState::kPlanned) return;
+  printFailures(pack);
+  if (pack.state == PackState::kPlanned) return;
   ++done_;
-  if (outcome.state == PackState::kBaked) ++baked_;
-  const bool is_news = outcome.state == PackState::kBaked || verbosity_ == Verbosity::kVerbose;
-  if (verbosity_ >= Verbosity::kNormal && is_news && outcome.failures.empty()) {
-    print(fmt::format("{} {} in {:.1f} s", printable(pack.name), nameOf(outcome.state),
-                      outcome.seconds));
+  if (pack.state == PackState::kBaked) ++baked_;
+  const bool is_news = pack.state == PackState::kBaked || verbosity_ == Verbosity::kVerbose;
+  if (verbosity_ >= Verbosity::kNormal && is_news && pack.failures.empty()) {
+    print(fmt::format("{} {} in {:.1f} s", printable(pack.name), nameOf(pack.state), pack.seconds));
   }
   redraw();
 }

@@ -1,9 +1,11 @@
 #pragma once
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "command.h"
 #include "galactic/bake/build.h"
@@ -19,7 +21,7 @@ class FileFollower final : public BuildObserver {
       : verbosity_(command.run.verbosity), line_(command.saysMore()) {}
 
   void show(std::string_view item, std::string_view stage, double fraction) override;
-  void end(const PackJob& pack, const PackOutcome& outcome) override;
+  void end(const PackOutcome& pack) override;
 
  private:
   std::mutex mutex_;
@@ -36,10 +38,10 @@ class WorldFollower final : public BuildObserver {
   WorldFollower(const BakeCommand& command, std::size_t count)
       : verbosity_(command.run.verbosity), count_(count), line_(command.saysMore()) {}
 
-  void begin(const PackJob& pack) override;
+  void begin(std::string_view pack) override;
   /// What is done inside a pack is shown while it is the only one at work, as episodes always are.
   void show(std::string_view item, std::string_view stage, double fraction) override;
-  void end(const PackJob& pack, const PackOutcome& outcome) override;
+  void end(const PackOutcome& pack) override;
   [[nodiscard]] bool stops() override { return stop_.came(); }
 
  private:
@@ -62,7 +64,7 @@ class WorldFollower final : public BuildObserver {
   Clock::time_point start_ = Clock::now();
   /// When the last line that stays was printed.
   Clock::time_point printed_ = start_;
-  std::set<std::string> running_;
+  std::set<std::string, std::less<>> running_;
   /// Of the only pack at work: what is done, and how much of it is; else nothing.
   std::string stage_;
   double fraction_ = 0;

@@ -98,8 +98,8 @@ Result<void> checkInputs(const BakeCommand& command, const Job& job) {
   return {};
 }
 
-JobList jobsOfFiles(const BakeCommand& command, const Job& job) {
-  JobList list;
+std::vector<PackJob> packsOfFiles(const BakeCommand& command, const Job& job) {
+  std::vector<PackJob> packs;
   const fs::path& out = command.run.out;
   const bool is_one = makesOnePack(job) || command.inputs.size() == 1;
   const auto add = [&](const fs::path& first, const std::vector<fs::path>& inputs) {
@@ -109,14 +109,14 @@ JobList jobsOfFiles(const BakeCommand& command, const Job& job) {
     PackJob pack{.name = name.string(), .job = job, .output = name};
     if (!out.empty()) pack.output = is_folder ? out / name : out;
     setInputs(pack.job, inputs);
-    list.assets.push_back(std::move(pack));
+    packs.push_back(std::move(pack));
   };
   if (makesOnePack(job)) {
     add(command.inputs.front(), command.inputs);
   } else {
     for (const fs::path& input : command.inputs) add(input, {input});
   }
-  return list;
+  return packs;
 }
 
 /// "home" of home.scene_dataset_config.json, of home.toml and of the folder home.
@@ -136,11 +136,13 @@ fs::path worldPack(const BakeCommand& command) {
 
 }  // namespace
 
-Result<JobList> jobsOf(const BakeCommand& command) {
-  if (const auto* job = std::get_if<Job>(&command.what)) {
-    RETURN_IF_ERROR(checkInputs(command, *job));
-    return jobsOfFiles(command, *job);
-  }
+Result<std::vector<PackJob>> packsOf(const BakeCommand& command) {
+  const Job& job = std::get<Job>(command.what);
+  RETURN_IF_ERROR(checkInputs(command, job));
+  return packsOfFiles(command, job);
+}
+
+Result<WorldPlan> planOf(const BakeCommand& command) {
   const fs::path world = worldPack(command);
   if (const auto* recipe = std::get_if<RecipeCommand>(&command.what)) {
     return jobsOfRecipe({.recipe = command.inputs.front(),

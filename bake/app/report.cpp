@@ -18,33 +18,21 @@
 namespace galactic::bake {
 namespace {
 
-/// The entries of a pack that was made, now or before. What is kept of it may have been made for
-/// another folder.
-Json entriesOf(const PackOutcome& pack, const JobList& list) {
-  Json entries =
-      reportEntries(*pack.figures, [](const std::string& sentence) { return withFlags(sentence); });
-  if (!list.world) return entries;
-  Json named = Json::array();
-  for (const Json& entry : entries) {
-    Json one{{"pack", pack.name}};
-    one.update(entry);
-    one["output"] = (list.folder / pack.name).string();
-    named.push_back(std::move(one));
-  }
-  return named;
+/// An object that begins with this member.
+Json named(const char* key, std::string value, const Json& rest) {
+  Json json{{key, std::move(value)}};
+  json.update(rest);
+  return json;
 }
 
-Json failureOf(const PackOutcome& pack, const BakeFailure& failure, const JobList& list) {
-  Json json;
-  if (list.world) {
-    json["pack"] = pack.name;
-  } else {
-    json["input"] = failure.input.string();
-  }
-  json["code"] = static_cast<int>(failure.error.code);
-  json["where"] = placeOf(failure.error);
-  json["message"] = withFlags(failure.error.message);
-  return json;
+Json entriesOf(const PackFigures& figures) {
+  return reportEntries(figures, [](const std::string& sentence) { return withFlags(sentence); });
+}
+
+Json errorOf(const BakeFailure& failure) {
+  return {{"code", static_cast<int>(failure.error.code)},
+          {"where", placeOf(failure.error)},
+          {"message", withFlags(failure.error.message)}};
 }
 
 /// The options of a job that have a value, by name: numbers and switches as such, files without
@@ -75,27 +63,15 @@ class OptionValues final : public OptionVisitor {
   }
 };
 
-/// What was asked for, one for each pack.
-Json jobsOf(const JobList& list) {
-  Json jobs = Json::array();
-  const auto add = [&](const PackJob& pack) {
-    Job job = pack.job;
-    OptionValues values;
-    visitOptions(job, values);
-    Json one;
-    if (list.world) {
-      one["pack"] = pack.name;
-    } else {
-      one["output"] = pack.output.string();
-    }
-    one["as"] = kindOf(job);
-    one["options"] = std::move(values.json);
-    jobs.push_back(std::move(one));
-  };
-  for (const PackJob& pack : list.assets) add(pack);
-  if (list.episodes) add(*list.episodes);
-  return jobs;
+/// What was asked of a pack.
+Json askedOf(Job job) {
+  OptionValues values;
+  visitOptions(job, values);
+  return {{"as", kindOf(job)}, {"options", std::move(values.json)}};
 }
+
+/// What every report begins with.
+Json reportHead() { return {{"tool", "galactic-bake"}, {"version", GALACTIC_VERSION}}; }
 
 /// How this run came to it.
 Json progressOf(const PackOutcome& pack) {
@@ -112,19 +88,36 @@ Json scenesOf(const std::vector<LeftOut>& scenes) {
   return json;
 }
 
-void addWorld(const JobList& list, const BuildOutcome& outcome, Json& json) {
-  json["left_out"] = scenesOf(list.left_out);
-  json["warnings"] = withFlags(list.warnings);
-  // Not where there are none: reports of before stay as they were.
-  for (const OptionText& option : std::get<WorldJob>(list.world->job).task) {
-    json["task"][option.name] = option.value;
+/// What was asked of the world's packs, what was baked now or before, and what failed.
+void addPacks(const WorldPlan& plan, const BuildOutcome& outcome, Json& json) {
+  json["jobs"] = Json::array();
+  for (const PackJob& pack : plan.assets) {
+    json["jobs"].push_back(named("pack", pack.name, askedOf(pack.job)));
   }
-  json["linked"] = Json::array();
-  for (const LinkedPack& pack : outcome.linked) json["linked"].push_back(jsonOf(pack));
+  if (plan.episodes) {
+    json["jobs"].push_back(named("pack", plan.episodes->name, askedOf(plan.episodes->job)));
+  }
+  json["baked"] = Json::array();
+  json["failed"] = Json::array();
+  for (const PackOutcome& pack : outcome.packs) {
+    for (const Json& entry : pack.figures ? entriesOf(*pack.figures) : Json::array()) {
+      Json one = named("pack", pack.name, entry);
+      // What is kept of it may have been made for another folder.
+      one["output"] = (plan.folder / pack.name).string();
+      json["baked"].push_back(std::move(one));
+    }
+    for (const BakeFailure& failure : pack.failures) {
+      json["failed"].push_back(named("pack", pack.name, errorOf(failure)));
+    }
+  }
+}
+
+/// How this run went.
+Json runOf(const BuildOutcome& outcome) {
   Json run{{"seconds", outcome.seconds}, {"stopped", outcome.stopped}};
   run["packs"] = Json::array();
   for (const PackOutcome& pack : outcome.packs) run["packs"].push_back(progressOf(pack));
-  json["run"] = std::move(run);
+  return run;
 }
 
 /// Sentences, and of which packs they are said: many scenes lack the same things.
@@ -167,11 +160,11 @@ void printEpisodes(const BuildOutcome& outcome, Verbosity verbosity) {
   }
 }
 
-void printWorld(const JobList& list, const BuildOutcome& outcome) {
+void printWorld(const WorldPlan& plan, const BuildOutcome& outcome) {
   std::uint64_t bytes = 0;
   for (const LinkedPack& pack : outcome.linked) bytes += pack.bytes;
   fmt::print("{}, {:.2f} MB -> {}\n", counted(outcome.linked.size(), "pack"),
-             static_cast<double>(bytes) / 1e6, list.world->output.string());
+             static_cast<double>(bytes) / 1e6, plan.world.output.string());
 }
 
 }  // namespace
@@ -192,21 +185,38 @@ const char* nameOf(PackState state) {
   return "planned";
 }
 
-Json reportOf(const JobList& list, const BuildOutcome& outcome) {
-  Json json{{"tool", "galactic-bake"}, {"version", GALACTIC_VERSION}};
-  if (list.world) json["output"] = list.world->output.string();
-  json["jobs"] = jobsOf(list);
+Json reportOf(std::span<const PackJob> packs, const BuildOutcome& outcome) {
+  Json json = reportHead();
+  json["jobs"] = Json::array();
+  for (const PackJob& pack : packs) {
+    json["jobs"].push_back(named("output", pack.output.string(), askedOf(pack.job)));
+  }
   json["baked"] = Json::array();
   json["failed"] = Json::array();
   for (const PackOutcome& pack : outcome.packs) {
-    if (pack.figures) {
-      for (Json& entry : entriesOf(pack, list)) json["baked"].push_back(std::move(entry));
+    for (const Json& entry : pack.figures ? entriesOf(*pack.figures) : Json::array()) {
+      json["baked"].push_back(entry);
     }
     for (const BakeFailure& failure : pack.failures) {
-      json["failed"].push_back(failureOf(pack, failure, list));
+      json["failed"].push_back(named("input", failure.input.string(), errorOf(failure)));
     }
   }
-  if (list.world) addWorld(list, outcome, json);
+  return json;
+}
+
+Json reportOf(const WorldPlan& plan, const BuildOutcome& outcome) {
+  Json json = reportHead();
+  json["output"] = plan.world.output.string();
+  addPacks(plan, outcome, json);
+  json["left_out"] = scenesOf(plan.left_out);
+  json["warnings"] = withFlags(plan.warnings);
+  // Not where there are none: reports of before stay as they were.
+  for (const OptionText& option : std::get<WorldJob>(plan.world.job).task) {
+    json["task"][option.name] = option.value;
+  }
+  json["linked"] = Json::array();
+  for (const LinkedPack& pack : outcome.linked) json["linked"].push_back(jsonOf(pack));
+  json["run"] = runOf(outcome);
   return json;
 }
 
@@ -215,15 +225,15 @@ Result<void> writeReport(const std::filesystem::path& path, const Json& report) 
   return writeFileAtomically(path, {std::as_bytes(std::span(text))});
 }
 
-void printWorldTable(const JobList& list, const BuildOutcome& outcome, Verbosity verbosity) {
+void printWorldTable(const WorldPlan& plan, const BuildOutcome& outcome, Verbosity verbosity) {
   printEpisodes(outcome, verbosity);
-  if (!list.left_out.empty()) {
-    fmt::print("{} left out:\n", counted(list.left_out.size(), "scene"));
-    print(reasonsOf(list.left_out));
+  if (!plan.left_out.empty()) {
+    fmt::print("{} left out:\n", counted(plan.left_out.size(), "scene"));
+    print(reasonsOf(plan.left_out));
   }
   const Sentences warnings = warningsOf(outcome);
-  if (!warnings.empty() || !list.warnings.empty()) fmt::print("warnings:\n");
-  for (const std::string& warning : list.warnings) {
+  if (!warnings.empty() || !plan.warnings.empty()) fmt::print("warnings:\n");
+  for (const std::string& warning : plan.warnings) {
     fmt::print("  {}\n", printable(withFlags(warning)));
   }
   print(warnings);
@@ -233,7 +243,7 @@ void printWorldTable(const JobList& list, const BuildOutcome& outcome, Verbosity
     if (outcome.count(state) > 0) fmt::print(", {} {}", outcome.count(state), nameOf(state));
   }
   fmt::print("; {:.2f} s\n", outcome.seconds);
-  if (!outcome.linked.empty()) printWorld(list, outcome);
+  if (!outcome.linked.empty()) printWorld(plan, outcome);
   if (outcome.stopped) fmt::print("stopped; the same command goes on from here\n");
 }
 

@@ -56,6 +56,10 @@ int refuse(const Error& error) {
   return static_cast<int>(error.code);
 }
 
+void printFailures(const PackOutcome& pack) {
+  for (const BakeFailure& failure : pack.failures) printError(failure.error);
+}
+
 std::vector<std::string> warningLines(const std::vector<std::string>& warnings,
                                       Verbosity verbosity) {
   if (verbosity == Verbosity::kVerbose) return warnings;

@@ -23,6 +23,9 @@ void printError(const Error& error);
 /// The same; the exit code.
 [[nodiscard]] int refuse(const Error& error);
 
+/// The same of all that failed in a pack.
+void printFailures(const PackOutcome& pack);
+
 /// One line for each warning, or for many of a kind (the same sentence but for names in quotes and
 /// numbers) the first of them and how many more there are; all of them where `verbosity` is
 /// kVerbose. In the order of the first of each kind.

@@ -245,8 +245,8 @@ Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
   return {};
 }
 
-Result<JobList> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
-                               const std::filesystem::path& world) {
+Result<WorldPlan> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
+                                 const std::filesystem::path& world) {
   PackList packs(world);
   for (const DatasetJobs& dataset : datasets) {
     RETURN_IF_ERROR(addDataset(dataset, packs));

@@ -99,14 +99,14 @@ class Search {
 
 }  // namespace
 
-std::vector<LeftOut> findMissing(const JobList& list, unsigned threads) {
-  std::vector<LeftOut> all(list.assets.size());
+std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads) {
+  std::vector<LeftOut> all(plan.assets.size());
   parallelFor(threads, all.size(), [&](std::size_t n) {
-    all[n] = {list.assets[n].name, Search().in(list.assets[n].job)};
+    all[n] = {plan.assets[n].name, Search().in(plan.assets[n].job)};
   });
   // What is generated is made in packs that are not there yet.
-  if (list.episodes && !std::holds_alternative<EpisodeGenerationJob>(list.episodes->job)) {
-    all.push_back({list.episodes->name, Search().in(list.episodes->job)});
+  if (plan.episodes && !std::holds_alternative<EpisodeGenerationJob>(plan.episodes->job)) {
+    all.push_back({plan.episodes->name, Search().in(plan.episodes->job)});
   }
   std::erase_if(all, [](const LeftOut& one) { return one.reasons.empty(); });
   return all;

@@ -62,13 +62,13 @@ fs::path texturesOf(const PackJob& pack) {
   return scene == nullptr ? fs::path() : scene->draw.shared_textures;
 }
 
-TexturePlaces placesOf(const std::string& hash, const PackJob& pack, const BuildTools& tools) {
+TexturePlaces placesOf(const std::string& hash, const PackJob& pack, BuildTools& tools) {
   const std::string name = hash + ".pack";
   return {.used = texturesOf(pack) / name, .kept = tools.cache->folder() / "textures" / name};
 }
 
 /// Whether the texture packs are there, or put there, that a bake of before shared.
-bool hasTextures(const PackJob& pack, const PackFigures& figures, const BuildTools& tools) {
+bool hasTextures(const PackJob& pack, const PackFigures& figures, BuildTools& tools) {
   const std::vector<std::string> textures = sharedTexturesOf(figures);
   if (textures.empty()) return true;
   if (!makeFolders(texturesOf(pack))) return false;
@@ -80,8 +80,7 @@ bool hasTextures(const PackJob& pack, const PackFigures& figures, const BuildToo
 }
 
 /// Keeps what a bake shared, for worlds in other folders.
-Result<void> keepTextures(const PackJob& pack, const PackFigures& figures,
-                          const BuildTools& tools) {
+Result<void> keepTextures(const PackJob& pack, const PackFigures& figures, BuildTools& tools) {
   for (const std::string& hash : sharedTexturesOf(figures)) {
     const auto [used, kept] = placesOf(hash, pack, tools);
     RETURN_IF_ERROR(makeFolders(kept.parent_path()));
@@ -94,19 +93,13 @@ Result<void> keepTextures(const PackJob& pack, const PackFigures& figures,
 /// A pack on its way from its job to its outcome.
 class Making {
  public:
-  Making(const PackJob& pack, const BuildTools& tools) : pack_(pack), tools_(tools) {
+  Making(const PackJob& pack, BuildTools& tools) : pack_(pack), tools_(tools) {
     outcome_.name = pack.name;
   }
 
   Result<void> make(unsigned jobs) {
-    if (tools_.options.mode == BuildMode::kBake) {
-      // A single pack is written where its folder is.
-      const bool is_planned = !pack_.folder.empty();
-      if (is_planned) {
-        RETURN_IF_ERROR(makeFolders(pack_.output.parent_path()));
-      }
-    }
-    if (tools_.cache == nullptr) return bakeAnew(jobs);
+    if (!tools_.dry_run) RETURN_IF_ERROR(makeFolders(pack_.output.parent_path()));
+    if (!tools_.cache) return bakeAnew(jobs);
     ASSIGN_OR_RETURN(const auto program, programDigest(tools_.digests));
     key_ =
         fmt::format("{}program {}\npack {}\n", keyOf(pack_.job, pack_.folder), program, pack_.name);
@@ -132,7 +125,7 @@ class Making {
     Job job = pack_.job;
     setThreads(job, jobs);
     // Before they are read: should one change meanwhile, the pack is found to be old the next time.
-    if (tools_.cache != nullptr) {
+    if (tools_.cache) {
       for (const fs::path& file : filesOf(job)) (void)tools_.digests.of(file);
     }
     BakeContext context{
@@ -141,13 +134,13 @@ class Making {
         .show = [this](std::string_view item, std::string_view stage,
                        double fraction) { tools_.observer.show(item, stage, fraction); },
         .stops = [this] { return tools_.observer.stops(); },
-        .dry_run = tools_.options.mode != BuildMode::kBake,
-        .keep_going = tools_.options.keep_going,
+        .dry_run = tools_.dry_run,
+        .keep_going = tools_.keep_going,
         .memory = &tools_.memory};
     ASSIGN_OR_RETURN(auto made, bake(job, context));
     if (const auto* objects = std::get_if<ObjectSetOutcome>(&made.outcome)) {
       outcome_.failures = objects->failures;
-      const bool is_made = tools_.options.keep_going && !objects->objects.empty();
+      const bool is_made = tools_.keep_going && !objects->objects.empty();
       if (!objects->failures.empty() && !is_made) {
         outcome_.state = PackState::kFailed;
         return {};
@@ -156,7 +149,7 @@ class Making {
     outcome_.state = PackState::kBaked;
     outcome_.figures = figuresOf(made);
     const bool is_kept = outcome_.failures.empty() && outcome_.log.isSettled();
-    if (tools_.cache == nullptr || !is_kept) return {};
+    if (!tools_.cache || !is_kept) return {};
     // The pack is there all the same.
     if (const auto kept = keep(); !kept) {
       outcome_.warnings.push_back("is not in the cache and will be baked again: " +
@@ -173,7 +166,7 @@ class Making {
   }
 
   const PackJob& pack_;
-  const BuildTools& tools_;
+  BuildTools& tools_;
   PackOutcome outcome_;
   std::string key_;
 };
@@ -202,9 +195,9 @@ auto resultOf(const fs::path& where, const Bake& bake) -> decltype(bake()) {
 
 }  // namespace
 
-PackOutcome makePack(const PackJob& pack, unsigned jobs, const BuildTools& tools) {
+PackOutcome makePack(const PackJob& pack, unsigned jobs, BuildTools& tools) {
   const auto start = std::chrono::steady_clock::now();
-  tools.observer.begin(pack);
+  tools.observer.begin(pack.name);
   Making making(pack, tools);
   auto done = resultOf(inputOf(pack), [&] { return making.make(jobs); });
   PackOutcome& outcome = making.outcome();
@@ -215,12 +208,11 @@ PackOutcome makePack(const PackJob& pack, unsigned jobs, const BuildTools& tools
     outcome.failures.push_back({inputOf(pack), std::move(done.error())});
   }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  tools.observer.end(pack, outcome);
+  tools.observer.end(outcome);
   return std::move(outcome);
 }
 
-PackOutcome makeWorld(const PackJob& world, std::vector<LinkedPack>& linked,
-                      const BuildTools& tools) {
+PackOutcome makeWorld(const PackJob& world, std::vector<LinkedPack>& linked) {
   PackOutcome outcome{.name = world.name};
   BakeContext context{.output = world.output, .log = outcome.log};
   auto made = resultOf(world.output, [&] { return bake(world.job, context); });
@@ -234,7 +226,6 @@ PackOutcome makeWorld(const PackJob& world, std::vector<LinkedPack>& linked,
     if (made.error().where.empty()) made.error().where = world.output.string();
     outcome.failures.push_back({world.output, std::move(made.error())});
   }
-  tools.observer.end(world, outcome);
   return outcome;
 }
 

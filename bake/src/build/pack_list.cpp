@@ -43,77 +43,78 @@ std::string inputOf(const PackJob& pack) { return filesOf(pack.job).front().stri
 }  // namespace
 
 PackList::PackList(const fs::path& world) {
-  list_.world = PackJob{.name = world.filename().string(), .job = WorldJob{}, .output = world};
-  list_.folder = world;
-  list_.folder.replace_extension();
+  plan_.world.name = world.filename().string();
+  plan_.world.output = world;
+  plan_.folder = world;
+  plan_.folder.replace_extension();
 }
 
 PackJob& PackList::add(const std::string& name, Job job, const fs::path& input) {
   const std::string file = name + ".pack";
   const std::uint64_t bytes = bytesWithNamedFiles(input, importOptionsOf(job));
-  list_.assets.push_back({.name = file,
+  plan_.assets.push_back({.name = file,
                           .job = std::move(job),
-                          .output = list_.folder / file,
+                          .output = plan_.folder / file,
                           .folder = folderOf(input),
                           .source_bytes = bytes});
-  return list_.assets.back();
+  return plan_.assets.back();
 }
 
 void PackList::setEpisodes(EpisodeImportJob job) {
   const fs::path folder = folderOf(job.input);
-  list_.episodes = PackJob{.name = "episodes.pack",
+  plan_.episodes = PackJob{.name = "episodes.pack",
                            .job = std::move(job),
-                           .output = list_.folder / "episodes.pack",
+                           .output = plan_.folder / "episodes.pack",
                            .folder = folder};
 }
 
 void PackList::setEpisodes(EpisodeGenerationJob job) {
-  const fs::path output = list_.folder / "episodes.pack";
-  list_.episodes = PackJob{
+  const fs::path output = plan_.folder / "episodes.pack";
+  plan_.episodes = PackJob{
       .name = "episodes.pack", .job = std::move(job), .output = output, .folder = folderOf(output)};
 }
 
 void PackList::setTask(std::vector<OptionText> task) {
-  std::get<WorldJob>(list_.world->job).task = std::move(task);
+  std::get<WorldJob>(plan_.world.job).task = std::move(task);
 }
 
 Result<void> PackList::checkScenes() const {
   const auto is_scene = [](const PackJob& pack) {
     return std::holds_alternative<SceneJob>(pack.job);
   };
-  if (std::ranges::any_of(list_.assets, is_scene)) return {};
-  if (!list_.broken.empty()) return tl::unexpected(list_.broken.front().failure.error);
+  if (std::ranges::any_of(plan_.assets, is_scene)) return {};
+  if (!plan_.broken.empty()) return tl::unexpected(plan_.broken.front().failure.error);
   std::string why;
-  if (!list_.left_out.empty()) {
-    const LeftOut& first = list_.left_out.front();
-    const std::size_t count = list_.left_out.size();
+  if (!plan_.left_out.empty()) {
+    const LeftOut& first = plan_.left_out.front();
+    const std::size_t count = plan_.left_out.size();
     why = fmt::format(", {} {} left out: {}: {}", count, count == 1 ? "is" : "are", first.name,
                       first.reasons.front());
   }
-  return fail(ErrorCode::kInvalidInput, list_.world->output.string(),
+  return fail(ErrorCode::kInvalidInput, plan_.world.output.string(),
               fmt::format("would have no scene{}; a world has at least one", why));
 }
 
 Result<void> PackList::checkFolder() const {
-  const fs::path folder = list_.folder.lexically_normal();
-  for (const PackJob& pack : list_.assets) {
+  const fs::path folder = plan_.folder.lexically_normal();
+  for (const PackJob& pack : plan_.assets) {
     const fs::path below = pack.output.lexically_normal().lexically_relative(folder);
     if (!below.empty() && *below.begin() != "..") continue;
     return fail(ErrorCode::kInvalidInput, inputOf(pack),
                 fmt::format("would be {}, outside of {}, where the world's packs go; rename it",
-                            pack.output.string(), list_.folder.string()));
+                            pack.output.string(), plan_.folder.string()));
   }
   return {};
 }
 
 Result<void> PackList::checkInputFolders() const {
   const auto refuse = [this](const std::string& whose) {
-    return fail(ErrorCode::kInvalidInput, list_.world->output.string(),
+    return fail(ErrorCode::kInvalidInput, plan_.world.output.string(),
                 fmt::format("its packs would be written into {}, {}; name another world with `out` "
                             "OTHER.pack",
-                            list_.folder.string(), whose));
+                            plan_.folder.string(), whose));
   };
-  const fs::path packs = canonicalPath(list_.folder);
+  const fs::path packs = canonicalPath(plan_.folder);
   for (const fs::path& folder : input_folders_) {
     if (liesWithin(packs, canonicalPath(folder))) {
       return refuse("which is the folder of scans " + folder.string() + " or inside it");
@@ -121,7 +122,7 @@ Result<void> PackList::checkInputFolders() const {
   }
   // Many packs have their input in the same folder.
   std::set<fs::path> seen;
-  for (const PackJob& pack : list_.assets) {
+  for (const PackJob& pack : plan_.assets) {
     if (!seen.insert(pack.folder).second) continue;
     if (liesWithin(canonicalPath(pack.folder), packs)) {
       return refuse("where the input " + inputOf(pack) + " is");
@@ -132,7 +133,7 @@ Result<void> PackList::checkInputFolders() const {
 
 Result<void> PackList::checkRadii() const {
   const PackJob* first = nullptr;
-  for (const PackJob& pack : list_.assets) {
+  for (const PackJob& pack : plan_.assets) {
     const std::vector<float>* radii = radiiOf(pack.job);
     if (radii == nullptr) continue;
     if (first == nullptr) first = &pack;
@@ -148,7 +149,7 @@ Result<void> PackList::checkRadii() const {
 
 Result<void> PackList::checkForEpisodes() const {
   // What it lacks may be in what is broken.
-  if (!list_.broken.empty()) return {};
+  if (!plan_.broken.empty()) return {};
   const auto lacks = [](const char* what) {
     return fail(ErrorCode::kInvalidInput, "",
                 fmt::format("episodes are generated for a robot and objects, and there is no {}; "
@@ -160,44 +161,44 @@ Result<void> PackList::checkForEpisodes() const {
   };
   const auto is_object = [](const Job& job) { return std::holds_alternative<ObjectJob>(job); };
   const auto is_robot = [](const Job& job) { return std::holds_alternative<RobotJob>(job); };
-  if (std::ranges::none_of(list_.assets, job_is(is_object))) return lacks("[[objects]]");
-  const auto robot = std::ranges::find_if(list_.assets, job_is(is_robot));
-  if (robot == list_.assets.end()) return lacks("[robot]");
+  if (std::ranges::none_of(plan_.assets, job_is(is_object))) return lacks("[[objects]]");
+  const auto robot = std::ranges::find_if(plan_.assets, job_is(is_robot));
+  if (robot == plan_.assets.end()) return lacks("[robot]");
   if (std::get<RobotJob>(robot->job).recipe.empty()) return lacks("[robot] with a recipe");
   return {};
 }
 
 void PackList::warn(const std::string& warning) {
-  if (std::ranges::find(list_.warnings, warning) != list_.warnings.end()) return;
-  list_.warnings.push_back(warning);
+  if (std::ranges::find(plan_.warnings, warning) != plan_.warnings.end()) return;
+  plan_.warnings.push_back(warning);
 }
 
 const PackJob* PackList::find(const std::string& name) const {
-  const auto found = std::ranges::find(list_.assets, name + ".pack", &PackJob::name);
-  return found == list_.assets.end() ? nullptr : &*found;
+  const auto found = std::ranges::find(plan_.assets, name + ".pack", &PackJob::name);
+  return found == plan_.assets.end() ? nullptr : &*found;
 }
 
 void PackList::completeEpisodes() {
-  if (!list_.episodes) return;
-  auto* generation = std::get_if<EpisodeGenerationJob>(&list_.episodes->job);
+  if (!plan_.episodes) return;
+  auto* generation = std::get_if<EpisodeGenerationJob>(&plan_.episodes->job);
   if (generation == nullptr) return;
-  for (const PackJob& pack : list_.assets) generation->packs.push_back(pack.output);
-  generation->details = sceneDetails(list_.assets);
+  for (const PackJob& pack : plan_.assets) generation->packs.push_back(pack.output);
+  generation->details = sceneDetails(plan_.assets);
 }
 
-Result<JobList> PackList::finish() {
+Result<WorldPlan> PackList::finish() {
   RETURN_IF_ERROR(checkScenes());
   RETURN_IF_ERROR(checkFolder());
   RETURN_IF_ERROR(checkInputFolders());
-  std::ranges::sort(list_.assets, {}, &PackJob::name);
-  const auto twice = std::ranges::adjacent_find(list_.assets, {}, &PackJob::name);
-  if (twice != list_.assets.end()) {
+  std::ranges::sort(plan_.assets, {}, &PackJob::name);
+  const auto twice = std::ranges::adjacent_find(plan_.assets, {}, &PackJob::name);
+  if (twice != plan_.assets.end()) {
     return fail(ErrorCode::kInvalidInput, inputOf(*std::next(twice)),
                 fmt::format("would be {}, as {} is; rename one of them or leave it out",
                             twice->name, inputOf(*twice)));
   }
   completeEpisodes();
-  return std::move(list_);
+  return std::move(plan_);
 }
 
 }  // namespace galactic::bake

@@ -20,14 +20,14 @@ class PackList {
   /// In the packs of scenes, objects and robot.
   void setEpisodes(EpisodeGenerationJob job);
   void setTask(std::vector<OptionText> task);
-  void leaveOut(LeftOut scene) { list_.left_out.push_back(std::move(scene)); }
-  void addBroken(BrokenScene scene) { list_.broken.push_back(std::move(scene)); }
+  void leaveOut(LeftOut scene) { plan_.left_out.push_back(std::move(scene)); }
+  void addBroken(BrokenScene scene) { plan_.broken.push_back(std::move(scene)); }
   /// A folder that is an input as a whole: no pack may be written into it.
   void keepOutOf(const std::filesystem::path& folder) { input_folders_.push_back(folder); }
   /// Says each sentence once.
   void warn(const std::string& warning);
   /// Where the packs go.
-  [[nodiscard]] const std::filesystem::path& folder() const { return list_.folder; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return plan_.folder; }
   /// The pack of this name; null where there is none.
   [[nodiscard]] const PackJob* find(const std::string& name) const;
   /// Fails with kInvalidInput where the packs would not have the same radii, and not fit together.
@@ -36,9 +36,10 @@ class PackList {
   /// and a robot with a recipe.
   [[nodiscard]] Result<void> checkForEpisodes() const;
 
-  /// The list, sorted. Fails with kInvalidInput where two packs have one name, where one would lie
-  /// outside of the world's folder, where no scene is left, and where that folder is an input's.
-  [[nodiscard]] Result<JobList> finish();
+  /// The plan, its assets sorted. Fails with kInvalidInput where two packs have one name, where one
+  /// would lie outside of the world's folder, where no scene is left, and where that folder is an
+  /// input's.
+  [[nodiscard]] Result<WorldPlan> finish();
 
  private:
   [[nodiscard]] Result<void> checkScenes() const;
@@ -47,7 +48,7 @@ class PackList {
   [[nodiscard]] Result<void> checkInputFolders() const;
   void completeEpisodes();
 
-  JobList list_;
+  WorldPlan plan_;
   std::vector<std::filesystem::path> input_folders_;
 };
 

@@ -171,7 +171,7 @@ class RecipeJobs {
 
 }  // namespace
 
-Result<JobList> jobsOfRecipe(const RecipeSource& source, const fs::path& world) {
+Result<WorldPlan> jobsOfRecipe(const RecipeSource& source, const fs::path& world) {
   ASSIGN_OR_RETURN(const auto recipe, readWorldRecipe(source.recipe));
   PackList packs(world);
   packs.setTask(recipe.task);

@@ -222,21 +222,21 @@ TEST(CommandLine, SuggestsTheNearestOption) {
   EXPECT_THAT(parse({"room.glb", "--radi", "0.1"}).said, HasSubstr("did you mean '--radii'?"));
 }
 
-/// The keys of all jobs of a command.
+/// The keys of all packs of a recipe's world.
 std::set<std::string> keysOf(const Parsed& parsed) {
   std::set<std::string> keys;
   if (parsed.isRefused()) return keys;
-  const auto list = jobsOf(std::get<BakeCommand>(parsed.command));
-  EXPECT_TRUE(list.has_value()) << list.error().text();
-  if (!list) return keys;
-  for (const PackJob& pack : list->assets) keys.insert(keyOf(pack.job, pack.folder));
+  const auto plan = planOf(std::get<BakeCommand>(parsed.command));
+  EXPECT_TRUE(plan.has_value()) << plan.error().text();
+  if (!plan) return keys;
+  for (const PackJob& pack : plan->assets) keys.insert(keyOf(pack.job, pack.folder));
   return keys;
 }
 
 /// The options of the generated episodes of a recipe, with these arguments.
-const EpisodeGeneratorOptions* episodesOf(const JobList& list) {
+const EpisodeGeneratorOptions* episodesOf(const WorldPlan& plan) {
   const auto* job =
-      list.episodes ? std::get_if<EpisodeGenerationJob>(&list.episodes->job) : nullptr;
+      plan.episodes ? std::get_if<EpisodeGenerationJob>(&plan.episodes->job) : nullptr;
   return job == nullptr ? nullptr : &job->generate;
 }
 
@@ -251,25 +251,25 @@ TEST(Recipes, MakeSeveralWorldsThatDifferInTheirEpisodes) {
   const std::string recipe =
       folder.write("home.toml", head + "[episodes]\ncount = 1000\nseed = 101\nflatness = 0.01\n")
           .string();
-  const auto list = jobsOf(*commandFrom({recipe, "--seed", "303", "--count", "100"}));
-  ASSERT_TRUE(list) << list.error().text();
-  const EpisodeGeneratorOptions* validation = episodesOf(*list);
+  const auto plan = planOf(*commandFrom({recipe, "--seed", "303", "--count", "100"}));
+  ASSERT_TRUE(plan) << plan.error().text();
+  const EpisodeGeneratorOptions* validation = episodesOf(*plan);
   ASSERT_NE(validation, nullptr);
   EXPECT_EQ(validation->episodes, 100U);
   EXPECT_EQ(validation->seed, 303U);
   EXPECT_EQ(validation->flatness, 0.01F);
-  const auto same = jobsOf(*commandFrom({recipe}));
+  const auto same = planOf(*commandFrom({recipe}));
   ASSERT_TRUE(same) << same.error().text();
   EXPECT_EQ(episodesOf(*same)->episodes, 1000U);
   EXPECT_EQ(episodesOf(*same)->seed, 101U);
   // Everything but the episodes has the same keys in the cache.
-  EXPECT_EQ(list->assets.size(), same->assets.size());
-  for (std::size_t n = 0; n < list->assets.size(); ++n) {
-    EXPECT_EQ(keyOf(list->assets[n].job, ""), keyOf(same->assets[n].job, ""));
+  EXPECT_EQ(plan->assets.size(), same->assets.size());
+  for (std::size_t n = 0; n < plan->assets.size(); ++n) {
+    EXPECT_EQ(keyOf(plan->assets[n].job, ""), keyOf(same->assets[n].job, ""));
   }
 
   const auto without =
-      jobsOf(*commandFrom({folder.write("none.toml", head).string(), "--seed", "3"}));
+      planOf(*commandFrom({folder.write("none.toml", head).string(), "--seed", "3"}));
   ASSERT_FALSE(without);
   EXPECT_EQ(without.error().text(),
             "seed: is about episodes that are generated, and the recipe has none; leave it out, or "
@@ -285,10 +285,10 @@ TEST(Recipes, TakeNoOptionsOfTheCommandLine) {
     for (const char* table : {"", "[bake]\n"}) {
       const std::string text =
           fmt::format("[[scenes]]\nfiles = \"a.glb\"\n{}{} = \"1\"\n", table, option.name);
-      const auto list = jobsOf(*commandFrom({folder.write("w.toml", text).string()}));
-      ASSERT_FALSE(list.has_value()) << option.name;
-      EXPECT_THAT(list.error().where, testing::EndsWith(": " + option.name));
-      EXPECT_EQ(list.error().message,
+      const auto plan = planOf(*commandFrom({folder.write("w.toml", text).string()}));
+      ASSERT_FALSE(plan.has_value()) << option.name;
+      EXPECT_THAT(plan.error().where, testing::EndsWith(": " + option.name));
+      EXPECT_EQ(plan.error().message,
                 "belongs on the command line, not into a recipe; leave it out");
       ++refused;
     }

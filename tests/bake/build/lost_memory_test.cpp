@@ -14,6 +14,7 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 #include "galactic/bake/build.h"
 #include "support/mesh_files.h"
@@ -38,7 +39,7 @@ class ThrowingObserver final : public bake::BuildObserver {
   void show(std::string_view item, std::string_view stage, double /*fraction*/) override {
     if (item == "big.obj" && stage == "render meshes") fault_();
   }
-  void end(const PackJob& /*pack*/, const bake::PackOutcome& /*outcome*/) override { ++ended; }
+  void end(const bake::PackOutcome& /*pack*/) override { ++ended; }
 
   std::atomic<int> ended{0};
 
@@ -66,13 +67,13 @@ class ABuildWithoutMemory : public testing::Test {
     job.import.scale = 1;
     job.grids.radii = {0.05F};
     job.grids.check_columns = 0;
-    list_.assets.push_back(
+    packs_.push_back(
         {.name = name + ".pack", .job = job, .output = folder_.path() / (name + ".pack")});
   }
 
   [[nodiscard]] BuildOutcome buildWith(const std::function<void()>& fault) const {
     ThrowingObserver observer(fault);
-    BuildOutcome outcome = build(list_, {.at_once = 1, .keep_going = true}, observer);
+    BuildOutcome outcome = bake::build(packs_, {.keep_going = true}, observer);
     EXPECT_EQ(observer.ended, 2) << "somebody was not told";
     return outcome;
   }
@@ -88,7 +89,7 @@ class ABuildWithoutMemory : public testing::Test {
   }
 
   ScratchFolder folder_;
-  bake::JobList list_;
+  std::vector<PackJob> packs_;
 };
 
 TEST_F(ABuildWithoutMemory, GoesOnWithTheNextPackAndNamesTheInput) {

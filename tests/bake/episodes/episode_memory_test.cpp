@@ -86,14 +86,17 @@ class EpisodeMemory : public testing::Test {
           folder.write(pack->where() + ".pack",
                        {reinterpret_cast<const char*>(content.data()), content.size()}));
     }
-    bake::JobList list;
-    list.episodes = {.name = "episodes.pack",
+    bake::WorldPlan plan;
+    plan.world.output = folder.path() / "world.pack";
+    plan.folder = folder.path();
+    plan.episodes = {.name = "episodes.pack",
                      .job = std::move(job),
                      .output = folder.path() / "episodes.pack",
                      .folder = folder.path()};
     bake::BuildObserver observer;
-    const auto made = bake::build(list, {.jobs = 2, .memory = bytes}, observer);
-    EXPECT_EQ(made.firstError(), nullptr) << made.firstError()->text();
+    const auto made = bake::build(plan, {.jobs = 2, .memory = bytes}, observer);
+    ASSERT_EQ(made.packs.size(), 1U);
+    EXPECT_TRUE(made.packs.front().isThere());
   }
 
   static constexpr std::uint64_t kLarge = 100'000'000;

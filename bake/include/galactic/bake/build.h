@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,9 +15,9 @@
 
 namespace galactic::bake {
 
-// A build makes a list of packs: of single files, of a dataset or of a recipe. Packs that were made
-// before come from a cache; the bytes of all of them depend on neither threads nor shards nor the
-// cache.
+// A build makes single packs, or all of a world: of datasets or of a recipe. Of a world, packs that
+// were made before come from a cache; the bytes of all of them depend on neither threads nor shards
+// nor the cache.
 
 /// One pack that is to be made.
 struct PackJob {
@@ -24,10 +25,10 @@ struct PackJob {
   std::string name;
   Job job;
   std::filesystem::path output;
-  /// Names of files that the pack depends on begin here.
+  /// Of a world's pack: names of files that it depends on begin here.
   std::filesystem::path folder{};
-  /// Size of its main input and of the files that this one names, as far as that is told quickly:
-  /// the large ones are baked first.
+  /// Of a world's pack: size of its main input and of the files that this one names, as far as that
+  /// is told quickly: the large ones are baked first.
   std::uint64_t source_bytes = 0;
 };
 
@@ -44,18 +45,18 @@ struct BrokenScene {
   BakeFailure failure;
 };
 
-/// Everything that one build makes.
-struct JobList {
+/// Everything that is made for one world.
+struct WorldPlan {
+  /// Lists all others: a WorldJob, whose packs follow from what is made.
+  PackJob world{.name = {}, .job = WorldJob{}, .output = {}};
+  /// Where the others go.
+  std::filesystem::path folder;
   /// None of them needs another.
   std::vector<PackJob> assets;
   /// Those of which no job can be made.
   std::vector<BrokenScene> broken;
   /// Made in the assets' packs, or imported.
   std::optional<PackJob> episodes;
-  /// Lists them all.
-  std::optional<PackJob> world;
-  /// Where the packs of a world go; empty where there is none.
-  std::filesystem::path folder;
   std::vector<LeftOut> left_out;
   /// One sentence each.
   std::vector<std::string> warnings;
@@ -67,19 +68,19 @@ struct Shard {
   std::size_t count = 1;
 };
 
-enum class BuildMode {
-  kBake,
-  kTry,   ///< Everything is baked and nothing written.
-  kList,  ///< Nothing is baked.
+struct BuildOptions {
+  /// Threads.
+  unsigned jobs = 1;
+  /// Whether to begin the next pack after an error.
+  bool keep_going = false;
+  /// Whether everything is baked and nothing written.
+  bool dry_run = false;
 };
 
-struct BuildOptions {
-  BuildMode mode = BuildMode::kBake;
+struct WorldBuildOptions {
   /// Threads, of all bakes together.
   unsigned jobs = 1;
-  /// Most packs that are baked at the same time.
-  std::size_t at_once = std::numeric_limits<std::size_t>::max();
-  /// Whether to begin the next pack after an error.
+  /// Whether to begin the next pack after an error, and to link the world without those that fail.
   bool keep_going = false;
   /// Folder of bakes that were done before; none: nothing is remembered.
   std::optional<std::filesystem::path> cache{};
@@ -91,7 +92,7 @@ struct BuildOptions {
 };
 
 enum class PackState {
-  kPlanned,    ///< Nothing became of it: a list, or the build was stopped.
+  kPlanned,    ///< Nothing became of it: a plan, or the build was stopped.
   kBaked,      ///< Made now.
   kUnchanged,  ///< Made before.
   kElsewhere,  ///< It belongs to another shard.
@@ -103,7 +104,7 @@ struct PackOutcome {
   PackState state = PackState::kPlanned;
   /// Of a pack that was made, now or before: the cache keeps them.
   std::optional<PackFigures> figures{};
-  /// With BuildOptions::keep_going a set of objects may be made and have failures.
+  /// Where a build keeps going, a set of objects may be made and have failures.
   std::vector<BakeFailure> failures{};
   /// Of this run; those of the pack are in its figures.
   std::vector<std::string> warnings{};
@@ -117,7 +118,8 @@ struct PackOutcome {
 };
 
 struct BuildOutcome {
-  /// The assets in their order, then what is broken, then the episodes.
+  /// In their order; of a world the assets, then what is broken, then the episodes, unless they are
+  /// left to another run.
   std::vector<PackOutcome> packs;
   /// Where a world was linked, or could not be.
   std::optional<PackOutcome> world;
@@ -139,20 +141,30 @@ class BuildObserver {
   BuildObserver(const BuildObserver&) = delete;
   BuildObserver& operator=(const BuildObserver&) = delete;
 
-  virtual void begin(const PackJob& /*pack*/) {}
+  virtual void begin(std::string_view /*pack*/) {}
   virtual void show(std::string_view /*item*/, std::string_view /*stage*/, double /*fraction*/) {}
-  virtual void end(const PackJob& /*pack*/, const PackOutcome& /*outcome*/) {}
+  /// Also of what is broken, which never began.
+  virtual void end(const PackOutcome& /*pack*/) {}
   /// Whether to begin nothing more.
   [[nodiscard]] virtual bool stops() { return false; }
 };
 
-/// What the packs of the list name and what is not there: inputs, meshes that a scene of a dataset
-/// places, textures, meshes of robots. Reads the meshes, on `threads` threads, and bakes nothing.
-/// In the order of the list; packs that miss nothing are left out.
-[[nodiscard]] std::vector<LeftOut> findMissing(const JobList& list, unsigned threads);
-
-/// Makes the packs of the list. Clears away what killed builds of the same packs have left.
-[[nodiscard]] BuildOutcome build(const JobList& list, const BuildOptions& options,
+/// Makes the packs, one after the other. Clears away what killed builds of them have left.
+[[nodiscard]] BuildOutcome build(std::span<const PackJob> packs, const BuildOptions& options,
                                  BuildObserver& observer);
+
+/// Makes the packs of a world, several at a time, and then the world, of which the observer is not
+/// told. Clears away what killed builds of it have left.
+[[nodiscard]] BuildOutcome build(const WorldPlan& plan, const WorldBuildOptions& options,
+                                 BuildObserver& observer);
+
+/// What a build of a world begins with: what is planned, what belongs to another shard, and what is
+/// broken.
+[[nodiscard]] BuildOutcome plannedOutcome(const WorldPlan& plan, const Shard& shard);
+
+/// What the packs of a world name and what is not there: inputs, meshes that a scene of a dataset
+/// places, textures, meshes of robots. Reads the meshes, on `threads` threads, and bakes nothing.
+/// In the order of the plan; packs that miss nothing are left out.
+[[nodiscard]] std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads);
 
 }  // namespace galactic::bake

@@ -47,8 +47,8 @@ void visitOptions(DatasetJobs& dataset, OptionVisitor& visitor);
 /// into a folder beside it, with its name. Reads the datasets' lists, no mesh. Fails with
 /// kInvalidInput where two packs would have one name, or something is missing and that is to be an
 /// error.
-[[nodiscard]] Result<JobList> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
-                                             const std::filesystem::path& world);
+[[nodiscard]] Result<WorldPlan> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
+                                               const std::filesystem::path& world);
 
 /// What may be said of the episodes of a recipe instead of what the recipe says, so that it makes
 /// several worlds that differ in their episodes.
@@ -69,8 +69,8 @@ struct RecipeSource {
 
 /// Everything that is baked for a recipe. Fails as jobsOfDatasets does, and with kIo and
 /// kInvalidInput, naming the recipe's line, on what cannot be read or found.
-[[nodiscard]] Result<JobList> jobsOfRecipe(const RecipeSource& source,
-                                           const std::filesystem::path& world);
+[[nodiscard]] Result<WorldPlan> jobsOfRecipe(const RecipeSource& source,
+                                             const std::filesystem::path& world);
 
 /// Options that contradict each other, or say nothing without others, as far as a job or the given
 /// options show it. Fails with kInvalidInput.

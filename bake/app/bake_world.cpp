@@ -1,0 +1,148 @@
+#include "bake_world.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "followers.h"
+#include "outputs.h"
+#include "support/output_files.h"
+#include "support/stopwatch.h"
+#include "support/try.h"
+#include "terminal.h"
+
+namespace galactic::bake {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<void> checkOutputs(const BakeCommand& command, const WorldPlan& plan) {
+  OutputPacks packs{.named = {plan.world.output}};
+  for (const PackJob& pack : plan.assets) packs.inside.push_back(pack.output);
+  if (plan.episodes) packs.inside.push_back(plan.episodes->output);
+  return checkOutputs(command, plan.assets, packs);
+}
+
+/// Where bakes that were done before are; none where nothing is remembered.
+std::optional<fs::path> cacheOf(const BakeCommand& command, const WorldPlan& plan) {
+  if (command.many.no_cache) return std::nullopt;
+  return command.many.cache.empty() ? plan.folder / ".cache" : command.many.cache;
+}
+
+Result<void> tryCache(const fs::path& folder) {
+  auto tried = makeFolders(folder);
+  if (tried) tried = tryFile(folder / "entry");
+  if (!tried) tried.error().message += "; give another `cache`";
+  return tried;
+}
+
+/// A bake may take hours: files that cannot be written are found out before it. Makes the folders
+/// of the packs and of the cache.
+Result<void> tryOutputs(const BakeCommand& command, const WorldPlan& plan) {
+  const auto cache = cacheOf(command, plan);
+  // A cache elsewhere first: if it is refused, no empty folder of packs is left.
+  const bool is_elsewhere = !command.many.cache.empty();
+  if (cache && is_elsewhere) RETURN_IF_ERROR(tryCache(*cache));
+  RETURN_IF_ERROR(makeFolders(plan.folder));
+  RETURN_IF_ERROR(tryFile(plan.world.output));
+  if (cache && !is_elsewhere) RETURN_IF_ERROR(tryCache(*cache));
+  return tryReport(command);
+}
+
+/// Three quarters of what the machine has.
+std::uint64_t mostOfMemory() {
+  const auto pages = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
+  const auto page_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return pages / 4 * 3 * page_bytes;
+}
+
+BuildOutcome buildPlanned(const BakeCommand& command, const WorldPlan& plan) {
+  const ManyPacksOptions& many = command.many;
+  const WorldBuildOptions options{.jobs = command.run.jobs,
+                                  .keep_going = command.run.keep_going,
+                                  .cache = cacheOf(command, plan),
+                                  .shard = many.shard,
+                                  .memory = many.memory > 0 ? many.memory : mostOfMemory()};
+  const BuildOutcome planned = plannedOutcome(plan, many.shard);
+  WorldFollower follower(command, planned.packs.size() - planned.count(PackState::kElsewhere));
+  return build(plan, options, follower);
+}
+
+/// Of the packs that would be baked and of the scenes that would be left out.
+std::vector<LeftOut> whatIsMissing(const WorldPlan& plan, unsigned threads) {
+  std::vector<LeftOut> missing = findMissing(plan, threads);
+  missing.insert(missing.begin(), plan.left_out.begin(), plan.left_out.end());
+  for (const BrokenScene& scene : plan.broken) {
+    const Error& error = scene.failure.error;
+    missing.push_back({scene.name, {error.text()}});
+  }
+  return missing;
+}
+
+/// What a dry run ends with, so that a script knows before it bakes.
+Error incomplete(const WorldPlan& plan, const std::vector<LeftOut>& missing) {
+  const LeftOut& first = missing.front();
+  return {ErrorCode::kInvalidInput, plan.world.output.string(),
+          fmt::format("something is missing in {} of {}: {}: {}; add it, or bake without it",
+                      missing.size(), plan.assets.size() + plan.left_out.size(), first.name,
+                      first.reasons.front())};
+}
+
+/// Makes it; `seconds`: how long planning took.
+int buildWorld(const BakeCommand& command, const WorldPlan& plan, double seconds) {
+  // Found before anything was begun.
+  if (!plan.broken.empty() && !command.run.keep_going) {
+    return refuse(plan.broken.front().failure.error);
+  }
+  if (auto checked = checkOutputs(command, plan); !checked) return refuse(checked.error());
+  if (auto tried = tryOutputs(command, plan); !tried) return refuse(tried.error());
+  BuildOutcome outcome = buildPlanned(command, plan);
+  if (outcome.world && !outcome.world->isThere()) {
+    printFailures(*outcome.world);
+    return exitCodeOf(outcome);
+  }
+  outcome.seconds += seconds;
+  if (command.saysMore()) printWorldTable(plan, outcome, command.run.verbosity);
+  return endWith(command, outcome, reportOf(plan, outcome), exitCodeOf(outcome));
+}
+
+/// Says what would be made, and what is missing for it.
+int listWorld(const BakeCommand& command, const WorldPlan& plan, double seconds) {
+  if (auto checked = checkOutputs(command, plan); !checked) return refuse(checked.error());
+  if (auto tried = tryReport(command); !tried) return refuse(tried.error());
+  BuildOutcome outcome = plannedOutcome(plan, command.many.shard);
+  for (const PackOutcome& pack : outcome.packs) printFailures(pack);
+  std::vector<LeftOut> missing;
+  {
+    const detail::Stopwatch timer(outcome.seconds);
+    missing = whatIsMissing(plan, command.run.jobs);
+  }
+  outcome.seconds += seconds;
+  if (command.saysMore()) {
+    printWorldTable(plan, outcome, command.run.verbosity);
+    printMissing(missing);
+  }
+  Json report = reportOf(plan, outcome);
+  report["missing"] = missingReport(missing);
+  const int exit_code = missing.empty() ? kExitOk : refuse(incomplete(plan, missing));
+  return endWith(command, outcome, report, exit_code);
+}
+
+}  // namespace
+
+int bakeWorld(const BakeCommand& command) {
+  // Reading recipe and dataset takes longer than a small build.
+  double seconds = 0;
+  const auto plan = [&] {
+    const detail::Stopwatch timer(seconds);
+    return planOf(command);
+  }();
+  if (!plan) return refuse(plan.error());
+  return command.run.dry_run ? listWorld(command, *plan, seconds)
+                             : buildWorld(command, *plan, seconds);
+}
+
+}  // namespace galactic::bake
