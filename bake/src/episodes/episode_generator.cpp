@@ -9,8 +9,8 @@
 
 #include "common/random.h"
 #include "episodes/drawn_episode.h"
+#include "episodes/episode_drawing.h"
 #include "episodes/generation_options.h"
-#include "episodes/generation_round.h"
 #include "episodes/scene_journal.h"
 #include "support/try.h"
 
@@ -18,10 +18,9 @@ namespace galactic::bake {
 namespace {
 
 /// Why an episode was skipped, and what may help.
-std::string whySkipped(const DrawnEpisode& episode, const SceneTask& task,
+std::string whySkipped(const DrawnEpisode& episode, const GeneratedScene& scene,
                        const EpisodeGeneratorOptions& options) {
   const auto ended = [&](DraftEnd end) { return episode.ends[static_cast<std::size_t>(end)]; };
-  const GeneratedScene& scene = task.summary;
   return fmt::format(
       "episode {} found no place in any of {} drafts: {} ended at the target, {} at a "
       "goal {} away{}, {} at {} to {} other objects, {} at the robot's start, {} "
@@ -37,12 +36,11 @@ std::string whySkipped(const DrawnEpisode& episode, const SceneTask& task,
 }
 
 /// Takes the scenes that turned out to be unusable out of `scenes`.
-void takeOutUnusable(const std::vector<SceneTask>& tasks, std::vector<const SceneOfPack*>& scenes,
-                     std::vector<UnusableScene>& left_out) {
-  for (const SceneTask& task : tasks) {
-    if (task.unusable.empty()) continue;
-    std::erase(scenes, task.scene);
-    left_out.push_back({std::string(task.scene->scene.name()), task.unusable});
+void takeOut(std::vector<UnusableScene> unusable, std::vector<const SceneOfPack*>& scenes,
+             std::vector<UnusableScene>& left_out) {
+  for (UnusableScene& scene : unusable) {
+    std::erase_if(scenes, [&](const SceneOfPack* one) { return one->scene.name() == scene.name; });
+    left_out.push_back(std::move(scene));
   }
 }
 
@@ -78,28 +76,28 @@ Result<std::vector<const SceneOfPack*>> scenesOf(const GenerationWorld& world,
 }
 
 /// Deals the episodes to the scenes, one after the other.
-std::vector<SceneTask> dealEpisodes(std::span<const SceneOfPack* const> scenes,
-                                    const EpisodeGeneratorOptions& options) {
-  std::vector<SceneTask> tasks(std::min<std::size_t>(scenes.size(), options.episodes));
-  for (std::size_t n = 0; n < tasks.size(); ++n) {
-    tasks[n].scene = scenes[n];
-    tasks[n].episodes.reserve(options.episodes / tasks.size() + 1);
+std::vector<DealtScene> dealEpisodes(std::span<const SceneOfPack* const> scenes,
+                                     const EpisodeGeneratorOptions& options) {
+  std::vector<DealtScene> deal(std::min<std::size_t>(scenes.size(), options.episodes));
+  for (std::size_t n = 0; n < deal.size(); ++n) {
+    deal[n].scene = scenes[n];
+    deal[n].episodes.reserve(options.episodes / deal.size() + 1);
   }
   Random seeds(options.seed);
   for (std::size_t n = 0; n < options.episodes; ++n) {
-    tasks[n % tasks.size()].episodes.push_back({.number = n, .seed = seeds.next()});
+    deal[n % deal.size()].episodes.push_back({.number = n, .seed = seeds.next()});
   }
-  return tasks;
+  return deal;
 }
 
 /// Sees that no more episodes were skipped than may be.
-Result<void> checkSkipped(std::span<const SceneTask> tasks,
+Result<void> checkSkipped(std::span<const DrawnScene> scenes,
                           const EpisodeGeneratorOptions& options) {
   std::size_t skipped = 0;
-  const SceneTask* worst = &tasks.front();
-  for (const SceneTask& task : tasks) {
-    skipped += task.summary.skipped;
-    if (task.summary.skipped > worst->summary.skipped) worst = &task;
+  const DrawnScene* worst = &scenes.front();
+  for (const DrawnScene& scene : scenes) {
+    skipped += scene.summary.skipped;
+    if (scene.summary.skipped > worst->summary.skipped) worst = &scene;
   }
   const auto most = static_cast<double>(options.most_skipped) * options.episodes;
   if (static_cast<double>(skipped) <= most && skipped < options.episodes) return {};
@@ -109,7 +107,7 @@ Result<void> checkSkipped(std::span<const SceneTask> tasks,
       fmt::format("{} of {} episodes found no place, a share of {} may be skipped; {} of them in "
                   "this scene: {}",
                   skipped, options.episodes, options.most_skipped, worst->summary.skipped,
-                  whySkipped(*first, *worst, options)));
+                  whySkipped(*first, worst->summary, options)));
 }
 
 /// Takes out of `scenes` those that an interrupted generation has found to be unusable, so that no
@@ -136,71 +134,44 @@ Result<void> takeOutKnown(const EpisodeInputs& inputs, const SceneJournal& journ
   return {};
 }
 
-/// Of scenes of which one failed.
-Error firstFailureOf(std::span<const SceneTask> tasks) {
-  return std::ranges::find_if(tasks, [](const SceneTask& task) { return !task.drawn; })
-      ->drawn.error();
-}
-
-Error interrupted(std::span<const SceneTask> tasks) {
-  std::size_t drawn = 0;
-  std::size_t all = 0;
-  for (const SceneTask& task : tasks) {
-    all += task.episodes.size();
-    drawn += static_cast<std::size_t>(std::ranges::count_if(
-        task.episodes, [](const DrawnEpisode& episode) { return episode.drafts > 0; }));
-  }
-  return {ErrorCode::kInterrupted, "episodes",
-          fmt::format("interrupted after {} of {} episodes", drawn, all)};
-}
-
 /// Deals the episodes to the scenes and draws them, until no scene is left that turns out to be
 /// unusable: how they are dealt depends on the usable ones only.
-Result<std::vector<SceneTask>> drawInUsable(const EpisodeInputs& inputs,
-                                            const GenerationContext& context,
-                                            const EpisodeProgress& progress,
-                                            std::vector<const SceneOfPack*>& scenes,
-                                            std::vector<UnusableScene>& left_out) {
+Result<std::vector<DrawnScene>> drawInUsable(const EpisodeInputs& inputs,
+                                             const GenerationContext& context,
+                                             const EpisodeProgress& progress,
+                                             std::vector<const SceneOfPack*>& scenes,
+                                             std::vector<UnusableScene>& left_out) {
   const SceneJournal journal(inputs.journal, context.world.objects().size());
   RETURN_IF_ERROR(takeOutKnown(inputs, journal, scenes, left_out));
   while (!scenes.empty()) {
-    std::vector<SceneTask> tasks = dealEpisodes(scenes, context.options);
-    GenerationRound round(inputs, context, journal, progress);
-    round.run(tasks);
-    for (const SceneTask& task : tasks) {
-      if (!task.prepared) return tl::unexpected(task.prepared.error());
+    EpisodeDrawing drawing(inputs, context, journal, progress);
+    ASSIGN_OR_RETURN(auto outcome, drawing.run(dealEpisodes(scenes, context.options)));
+    if (auto* drawn = std::get_if<std::vector<DrawnScene>>(&outcome)) {
+      RETURN_IF_ERROR(checkSkipped(*drawn, context.options));
+      return std::move(*drawn);
     }
-    if (round.hasFailed()) return tl::unexpected(firstFailureOf(tasks));
-    if (round.isStopped()) return tl::unexpected(interrupted(tasks));
-    const std::size_t before = left_out.size();
-    takeOutUnusable(tasks, scenes, left_out);
-    // What was drawn beside an unusable scene, and how far it came, is no matter.
-    if (left_out.size() > before) continue;
-    for (const SceneTask& task : tasks) {
-      if (!task.drawn) return tl::unexpected(task.drawn.error());
-    }
-    RETURN_IF_ERROR(checkSkipped(tasks, context.options));
-    return tasks;
+    takeOut(std::get<std::vector<UnusableScene>>(std::move(outcome)), scenes, left_out);
   }
   std::ranges::sort(left_out, {}, &UnusableScene::name);
   return tl::unexpected(noScene(left_out));
 }
 
+/// `drawn`: in the first of `scenes`.
 GeneratedEpisodes gather(const GenerationWorld& world, std::span<const SceneOfPack* const> scenes,
-                         std::span<const SceneTask> tasks, std::uint32_t least_objects) {
+                         std::span<const DrawnScene> drawn, std::uint32_t least_objects) {
   GeneratedEpisodes generated;
   generated.episodes = emptySet(world, scenes);
   std::size_t count = 0;
-  generated.scenes.reserve(tasks.size());
-  for (const SceneTask& task : tasks) {
-    generated.scenes.push_back(task.summary);
-    generated.skipped += task.summary.skipped;
-    count += task.episodes.size();
+  generated.scenes.reserve(drawn.size());
+  for (const DrawnScene& scene : drawn) {
+    generated.scenes.push_back(scene.summary);
+    generated.skipped += scene.summary.skipped;
+    count += scene.episodes.size();
   }
   generated.episodes.episodes.reserve(count - generated.skipped);
   for (std::size_t n = 0; n < count; ++n) {
-    const std::size_t scene = n % tasks.size();
-    const DrawnEpisode& episode = tasks[scene].episodes[n / tasks.size()];
+    const std::size_t scene = n % drawn.size();
+    const DrawnEpisode& episode = drawn[scene].episodes[n / drawn.size()];
     generated.rejections.add(episode.rejections);
     if (episode.is_skipped) continue;
     append(episode, static_cast<std::uint32_t>(scene), generated.episodes);
@@ -274,8 +245,8 @@ Result<GeneratedEpisodes> generateEpisodes(const EpisodeInputs& inputs,
   const ArmReach reach(world.robot());
   const GenerationContext context{world, reach, bodies, options};
   std::vector<UnusableScene> left_out;
-  ASSIGN_OR_RETURN(const auto tasks, drawInUsable(inputs, context, progress, scenes, left_out));
-  GeneratedEpisodes generated = gather(world, scenes, tasks, options.objects.least);
+  ASSIGN_OR_RETURN(const auto drawn, drawInUsable(inputs, context, progress, scenes, left_out));
+  GeneratedEpisodes generated = gather(world, scenes, drawn, options.objects.least);
   std::ranges::sort(left_out, {}, &UnusableScene::name);
   generated.left_out = std::move(left_out);
   warn(options, generated);

@@ -220,6 +220,31 @@ TEST_F(EpisodeJournal, EndsTheDrawingWhereNothingCanBeKept) {
   EXPECT_EQ(looks, 1) << "of two scenes";
 }
 
+TEST_F(EpisodeJournal, TellsOfErrorsBeforeAStopAndOfAStopBeforeUnusableScenes) {
+  // Attic, kitchen, room; the first is of no use, and then somebody asks to stop.
+  const MemoryPack attic = scenePackOf(madeRoom(3, 3).build(), "attic");
+  inputs_.packs.push_back(&attic.pack());
+  std::atomic<bool> stops{false};
+  inputs_.details = [&stops](std::string_view scene) -> Result<SceneDetails> {
+    if (scene != "attic") return SceneDetails{.mesh = twoTables(), .receptacles = {}};
+    stops = true;
+    return SceneDetails{.mesh = madeRoom(3, 3).build(), .receptacles = {}};
+  };
+  inputs_.stops = [&stops] { return stops.load(); };
+  const auto stopped = bake::generateEpisodes(inputs_, options_);
+  ASSERT_FALSE(stopped.has_value());
+  EXPECT_EQ(stopped.error().message, "interrupted after 0 of 150 episodes");
+  // The same where it cannot be read.
+  inputs_.details = [&stops](std::string_view) -> Result<SceneDetails> {
+    stops = true;
+    return fail(ErrorCode::kInvalidInput, "attic", "is odd");
+  };
+  stops = false;
+  const auto failed = bake::generateEpisodes(inputs_, options_);
+  ASSERT_FALSE(failed.has_value());
+  EXPECT_EQ(failed.error().text(), "attic: is odd");
+}
+
 TEST(ASceneJournal, TakesNoEpisodesThatCannotBe) {
   const ScratchFolder folder;
   const auto file = folder.path() / "x.partial";
