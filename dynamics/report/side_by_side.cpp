@@ -29,13 +29,13 @@ namespace {
 /// Episodes on a page that has no moments.
 constexpr std::size_t kWithoutMoments = 4;
 
-/// What one world looks like while an episode is played in it.
-class Onlooker {
+/// Keeps what one world looks like while an episode is played in it.
+class RunRecorder {
  public:
   /// `best`: takes a still of each frame; null without pictures.
-  Onlooker(const World& world, BestView* best) : world_(world), best_(best) {}
+  RunRecorder(const World& world, BestView* best) : world_(world), best_(best) {}
 
-  void look(const BatchSimulator& simulator, std::span<const float> actions) {
+  void record(const BatchSimulator& simulator, std::span<const float> actions) {
     if (actions.empty()) {
       track_.emplace(world_, simulator, 1);
     } else {
@@ -56,9 +56,9 @@ class Onlooker {
 };
 
 /// Lets a lane follow what the simulation did.
-void replaySimulation(const EpisodeTrace& trace, EpisodeLane& lane, Onlooker& onlooker) {
+void replaySimulation(const EpisodeTrace& trace, EpisodeLane& lane, RunRecorder& recorder) {
   lane.begin(trace.episode, ArmDrive::kKinematic);
-  onlooker.look(lane.simulator(), {});
+  recorder.record(lane.simulator(), {});
   for (std::size_t n = 0; n < trace.steps.size(); ++n) {
     const TracedStep& step = trace.steps[n];
     const std::vector<Pose> objects = objectsAfter(trace, n);
@@ -67,7 +67,7 @@ void replaySimulation(const EpisodeTrace& trace, EpisodeLane& lane, Onlooker& on
                                .objects = objects,
                                .held = step.held ? static_cast<std::int32_t>(*step.held) : -1,
                                .was_hindered = step.was_refused});
-    onlooker.look(lane.simulator(), step.actions);
+    recorder.record(lane.simulator(), step.actions);
   }
 }
 
@@ -152,14 +152,14 @@ class SideBySide {
   Result<void> play(std::size_t comparison, const std::vector<std::size_t>& moments) {
     const World& world = parts_.worlds.world;
     BestView* const best = moments.empty() ? nullptr : best_.get();
-    Onlooker simulated(world, best);
-    Onlooker dynamic(world, best);
+    RunRecorder simulated(world, best);
+    RunRecorder dynamic(world, best);
     ASSIGN_OR_RETURN(const auto trace, parts_.episodes.trace(comparison, *simulated_lane_));
     replaySimulation(trace, *simulated_lane_, simulated);
     RETURN_IF_ERROR(compareEpisode(
         trace, *dynamic_lane_, parts_.worlds, parts_.episodes.actions(trace, *dynamic_lane_),
         [&](const BatchSimulator& simulator, std::span<const float> actions) {
-          dynamic.look(simulator, actions);
+          dynamic.record(simulator, actions);
         }));
     keep(simulated.track(), dynamic.track(), trace.episode);
     for (const std::size_t n : moments) {
@@ -192,8 +192,8 @@ class SideBySide {
                              .text = describe(moment, episode, parts_.worlds.world)});
   }
 
-  void draw(std::size_t n, const EpisodeTrace& trace, const Onlooker& simulated,
-            const Onlooker& dynamic) {
+  void draw(std::size_t n, const EpisodeTrace& trace, const RunRecorder& simulated,
+            const RunRecorder& dynamic) {
     const Moment& moment = worst()[n];
     const EpisodeComparison& episode = parts_.comparisons.episodes[moment.comparison];
     const PictureSubject subject = subjectOf(moment, episode, trace, parts_.worlds.world.robot());

@@ -35,12 +35,12 @@ Result<void> ReadLog::checkNotRead(const std::filesystem::path& output) const {
   return {};
 }
 
-Result<Made> linkWorld(const WorldJob& job, BakeContext& context) {
+Result<BakedPack> linkWorld(const WorldJob& job, BakeContext& context) {
   const auto start = std::chrono::steady_clock::now();
   context.show(context.output.filename().string(), "verify", 0);
   ASSIGN_OR_RETURN(auto packs, linkPacks(job.packs, context.output.parent_path()));
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
-  Made made{.outcome = {}, .output = context.output};
+  BakedPack made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     std::vector<SourceFile> sources;
     sources.reserve(packs.size());
@@ -58,7 +58,7 @@ Result<Made> linkWorld(const WorldJob& job, BakeContext& context) {
   return made;
 }
 
-Result<Made> bake(const Job& job, BakeContext& context) {
+Result<BakedPack> bake(const Job& job, BakeContext& context) {
   for (const std::filesystem::path& file : filesOf(job)) context.log.noteRead(file);
   return std::visit(
       Overload{[&](const SceneJob& one) { return bakeSceneFile(one, context); },

@@ -30,10 +30,10 @@ double secondsSince(Clock::time_point start) {
 }
 
 /// Writes what the outcome holds.
-Result<Made> finish(EpisodeOutcome outcome, const Job& job, std::vector<SourceFile> sources,
-                    const BakeContext& context) {
+Result<BakedPack> finish(EpisodeOutcome outcome, const Job& job, std::vector<SourceFile> sources,
+                         const BakeContext& context) {
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
-  Made made{.outcome = {}, .output = context.output};
+  BakedPack made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     const auto bytes =
         writeEpisodePack(context.output, outcome.episodes,
@@ -115,8 +115,8 @@ Result<GeneratedEpisodes> generate(const EpisodeGenerationJob& job, const Episod
 }
 
 /// Generates them, lets a sample of them be played, and writes them.
-Result<Made> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInputs& inputs,
-                          std::vector<SourceFile> files, const BakeContext& context) {
+Result<BakedPack> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInputs& inputs,
+                               std::vector<SourceFile> files, const BakeContext& context) {
   const auto start = Clock::now();
   ASSIGN_OR_RETURN(auto generated, generate(job, inputs, context));
   // As one that is exported and imported again is called.
@@ -152,7 +152,7 @@ Result<EpisodeImportOptions> importOptions(const EpisodeImportJob& job) {
 
 }  // namespace
 
-Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
+Result<BakedPack> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
   const auto start = Clock::now();
   context.show(job.input.filename().string(), "import", 0);
   ASSIGN_OR_RETURN(const auto options, importOptions(job));
@@ -165,7 +165,7 @@ Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
                 job, std::move(sources), context);
 }
 
-Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context) {
+Result<BakedPack> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context) {
   ASSIGN_OR_RETURN(auto opened, openPacks(job.packs));
   RETURN_IF_ERROR(addGeometry(job, context.log, opened));
   // The bytes of the pack do not depend on the order of the inputs, of which several may have one

@@ -194,7 +194,7 @@ Overload(T...) -> Overload<T...>;
 
 }  // namespace
 
-PackFigures figuresOf(const Made& made) {
+PackFigures figuresOf(const BakedPack& made) {
   PackFigures figures{.output = made.output.string(), .pack_bytes = made.pack_bytes, .of = {}};
   std::visit([&](const auto& outcome) { figures.of = figuresOf(outcome); }, made.outcome);
   return figures;

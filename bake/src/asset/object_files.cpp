@@ -183,7 +183,7 @@ Result<std::uint64_t> writePack(ObjectSetOutcome& outcome, std::vector<SourceFil
 
 }  // namespace
 
-Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
+Result<BakedPack> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
   ObjectSetOutcome outcome;
   const auto start = std::chrono::steady_clock::now();
   outcome.radii = job.shape.spheres.radii;
@@ -209,7 +209,7 @@ Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
   if (goes_on && ended < inputs.size()) {
     return tl::unexpected(interrupted(ended, inputs.size()));
   }
-  Made made{.outcome = {}, .output = context.output};
+  BakedPack made{.outcome = {}, .output = context.output};
   if (goes_on && !outcome.objects.empty()) {
     ASSIGN_OR_RETURN(const auto bytes, writePack(outcome, std::move(sources), job, context));
     made.pack_bytes = bytes;

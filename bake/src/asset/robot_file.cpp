@@ -80,7 +80,7 @@ Result<SourceRobot> readRobotFile(const RobotJob& job) {
   return importUrdf(job.input, urdfOptionsOf(job));
 }
 
-Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
+Result<BakedPack> bakeRobotFile(const RobotJob& job, BakeContext& context) {
   RobotOutcome outcome;
   const auto start = std::chrono::steady_clock::now();
   const std::string item = job.input.filename().string();
@@ -99,7 +99,7 @@ Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context) {
   ASSIGN_OR_RETURN(auto baked, bakeParts(job, *robot, context));
   outcome.robot = std::move(baked);
   RETURN_IF_ERROR(addSources({job.recipe, job.spheres}, robot->files));
-  Made made{.outcome = {}, .output = context.output};
+  BakedPack made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     context.show(item, "write", 1);
     const detail::Stopwatch timer(outcome.write_seconds);

@@ -25,7 +25,7 @@ Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const P
 
 }  // namespace
 
-Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context) {
+Result<BakedPack> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   const std::string item = job.instance ? job.instance->name : job.input.filename().string();
   const auto progress = [&](std::string_view stage, double fraction) {
     context.show(item, stage, fraction);
@@ -48,7 +48,7 @@ Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context) {
     RETURN_IF_ERROR(
         shareTextures(outcome.scene.render_meshes->materials, job.draw, context.dry_run));
   }
-  Made made{.outcome = {}, .output = context.output};
+  BakedPack made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     progress("write", 1);
     const detail::Stopwatch timer(outcome.times.write);

@@ -23,9 +23,9 @@ bool isThere(const fs::path& path) {
 std::string sentenceOf(const Error& error) { return error.text(); }
 
 /// What a job lacks, kind by kind.
-class Search {
+class MissingFiles {
  public:
-  std::vector<std::string> in(const Job& job) {
+  std::vector<std::string> of(const Job& job) {
     for (const fs::path& file : filesOf(job)) {
       if (!isThere(file)) add(fmt::format("{} is not there", file.string()));
     }
@@ -102,11 +102,11 @@ class Search {
 std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads) {
   std::vector<LeftOut> all(plan.assets.size());
   parallelFor(threads, all.size(), [&](std::size_t n) {
-    all[n] = {plan.assets[n].name, Search().in(plan.assets[n].job)};
+    all[n] = {plan.assets[n].name, MissingFiles().of(plan.assets[n].job)};
   });
   // What is generated is made in packs that are not there yet.
   if (plan.episodes && !std::holds_alternative<EpisodeGenerationJob>(plan.episodes->job)) {
-    all.push_back({plan.episodes->name, Search().in(plan.episodes->job)});
+    all.push_back({plan.episodes->name, MissingFiles().of(plan.episodes->job)});
   }
   std::erase_if(all, [](const LeftOut& one) { return one.reasons.empty(); });
   return all;

@@ -91,9 +91,9 @@ Result<void> keepTextures(const PackJob& pack, const PackFigures& figures, Build
 }
 
 /// A pack on its way from its job to its outcome.
-class Making {
+class PackBuild {
  public:
-  Making(const PackJob& pack, BuildTools& tools) : pack_(pack), tools_(tools) {
+  PackBuild(const PackJob& pack, BuildTools& tools) : pack_(pack), tools_(tools) {
     outcome_.name = pack.name;
   }
 
@@ -198,9 +198,9 @@ auto resultOf(const fs::path& where, const Bake& bake) -> decltype(bake()) {
 PackOutcome makePack(const PackJob& pack, unsigned jobs, BuildTools& tools) {
   const auto start = std::chrono::steady_clock::now();
   tools.observer.begin(pack.name);
-  Making making(pack, tools);
-  auto done = resultOf(inputOf(pack), [&] { return making.make(jobs); });
-  PackOutcome& outcome = making.outcome();
+  PackBuild build(pack, tools);
+  auto done = resultOf(inputOf(pack), [&] { return build.make(jobs); });
+  PackOutcome& outcome = build.outcome();
   // What was interrupted is still to be done.
   if (!done && done.error().code != ErrorCode::kInterrupted) {
     outcome.state = PackState::kFailed;

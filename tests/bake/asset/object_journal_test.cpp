@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using bake::BakedPack;
 using bake::FinishedObject;
-using bake::Made;
 using bake::ObjectJournal;
 using bake::ObjectSetOutcome;
 using testing::ElementsAre;

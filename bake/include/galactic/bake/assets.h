@@ -143,7 +143,7 @@ struct WorldOutcome {
 };
 
 /// A pack that was made, and everything that is known of it.
-struct Made {
+struct BakedPack {
   std::variant<SceneOutcome, ObjectSetOutcome, RobotOutcome, EpisodeOutcome, WorldOutcome> outcome;
   std::filesystem::path output;
   /// Size of the pack; 0 for a dry run.
@@ -153,7 +153,7 @@ struct Made {
 /// Bakes one scene, its render meshes and textures into its pack. What an instance of a dataset
 /// lacks is left out, with a warning. Fails with the errors of importer, bakers and writer, and
 /// with kInvalidInput where the output is a file that was read; `where` names the file.
-[[nodiscard]] Result<Made> bakeSceneFile(const SceneJob& job, BakeContext& context);
+[[nodiscard]] Result<BakedPack> bakeSceneFile(const SceneJob& job, BakeContext& context);
 
 /// The name of a scene in its pack.
 [[nodiscard]] std::string nameOf(const SceneJob& job);
@@ -163,27 +163,27 @@ struct Made {
 
 /// Bakes all objects of a job into one pack. An object that fails is in the outcome's failures; it
 /// is the result's error where no object is left, or where there is no pack for another reason.
-[[nodiscard]] Result<Made> bakeObjectFiles(const ObjectJob& job, BakeContext& context);
+[[nodiscard]] Result<BakedPack> bakeObjectFiles(const ObjectJob& job, BakeContext& context);
 
 /// Bakes one URDF with its recipe and meshes into its pack.
-[[nodiscard]] Result<Made> bakeRobotFile(const RobotJob& job, BakeContext& context);
+[[nodiscard]] Result<BakedPack> bakeRobotFile(const RobotJob& job, BakeContext& context);
 
 /// Reads a URDF as bakeRobotFile does.
 [[nodiscard]] Result<SourceRobot> readRobotFile(const RobotJob& job);
 
 /// Imports a published set of episodes into a pack.
-[[nodiscard]] Result<Made> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context);
+[[nodiscard]] Result<BakedPack> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context);
 
 /// Generates episodes in packs and lets the scripted policy play a sample of them. What is drawn
 /// stands in OUTPUT.partial until the pack is written: a bake that was interrupted or killed goes
 /// on from there.
-[[nodiscard]] Result<Made> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context);
+[[nodiscard]] Result<BakedPack> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context);
 
 /// Lists packs in a world pack, after seeing that together they make a world.
-[[nodiscard]] Result<Made> linkWorld(const WorldJob& job, BakeContext& context);
+[[nodiscard]] Result<BakedPack> linkWorld(const WorldJob& job, BakeContext& context);
 
 /// Whichever the job is. Notes the files that the job names as read.
-[[nodiscard]] Result<Made> bake(const Job& job, BakeContext& context);
+[[nodiscard]] Result<BakedPack> bake(const Job& job, BakeContext& context);
 
 /// One mesh file that becomes an object.
 struct ObjectInput {

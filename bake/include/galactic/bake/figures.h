@@ -177,7 +177,7 @@ struct PackFigures {
   std::variant<SceneFigures, ObjectSetFigures, RobotFigures, EpisodeFigures, WorldFigures> of{};
 };
 
-[[nodiscard]] PackFigures figuresOf(const Made& made);
+[[nodiscard]] PackFigures figuresOf(const BakedPack& made);
 
 /// What the user should look at, one sentence each.
 [[nodiscard]] std::vector<std::string> warningsOf(const PackFigures& figures);
