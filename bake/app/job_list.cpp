@@ -4,22 +4,13 @@
 #include <system_error>
 
 #include "command.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool isFolder(const fs::path& path) {
-  std::error_code unknown;
-  return fs::is_directory(path, unknown);
-}
-
-bool isThere(const fs::path& path) {
-  std::error_code unknown;
-  return fs::exists(path, unknown);
-}
 
 /// The path without dots, and without the slash at its end.
 fs::path wholePath(const fs::path& path) {

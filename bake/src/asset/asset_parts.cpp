@@ -32,8 +32,8 @@ Result<OptionalMeshes> drawFrom(Result<RenderSource> source, const DrawOptions& 
   return OptionalMeshes(std::move(*meshes));
 }
 
-/// Whether the pack is there and whole: its name tells what is in it.
-bool isThere(const fs::path& pack) {
+/// Its name tells what is in it.
+bool isWholeTexture(const fs::path& pack) {
   const auto opened = PackFile::open(pack);
   return opened && opened->kind() == PackKind::kTexture;
 }
@@ -113,7 +113,7 @@ Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options
   provenance.options.clear();
   for (const BakedTexture& texture : materials.textures) {
     const fs::path pack = folder / (textureHash(texture) + ".pack");
-    if (isThere(pack)) continue;
+    if (isWholeTexture(pack)) continue;
     // Its source is the first asset that shows it, which may differ: a name of its own.
     BakedTexture named = texture;
     named.name = textureHash(texture);

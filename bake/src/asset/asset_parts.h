@@ -4,12 +4,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "galactic/bake/assets.h"
 #include "galactic/bake/urdf_import.h"
 #include "render/render_source.h"
 #include "support/journal.h"
+#include "support/stopwatch.h"
 
 namespace galactic::bake {
 
@@ -22,6 +24,18 @@ namespace galactic::bake {
 /// What is said of the exception that is being handled, which ended the work on `input`: that
 /// memory ran out, that a reader was killed, or a bug. Called in a catch block.
 [[nodiscard]] Error errorOfExceptionAt(const std::filesystem::path& input);
+
+/// What `bake` makes, whose Outcome says how long that took.
+template <class Outcome, class Bake>
+[[nodiscard]] Result<BakedPack> timed(const Bake& bake) {
+  double seconds = 0;
+  Result<BakedPack> made = [&] {
+    const detail::Stopwatch timer(seconds);
+    return bake();
+  }();
+  if (made) std::get<Outcome>(made->outcome).seconds = seconds;
+  return made;
+}
 
 /// Adds the description of each of `files` that is not empty.
 [[nodiscard]] Result<void> addSources(const std::vector<std::filesystem::path>& files,

@@ -1,8 +1,10 @@
 #include "galactic/bake/assets.h"
 
-#include <chrono>
 #include <utility>
+#include <vector>
 
+#include "asset/asset_parts.h"
+#include "common/overload.h"
 #include "galactic/bake/packs.h"
 #include "support/output_files.h"
 #include "support/try.h"
@@ -10,12 +12,25 @@
 namespace galactic::bake {
 namespace {
 
-template <class... T>
-struct Overload : T... {
-  using T::operator()...;
-};
-template <class... T>
-Overload(T...) -> Overload<T...>;
+Result<BakedPack> makeWorldPack(const WorldJob& job, const BakeContext& context) {
+  context.show(context.output.filename().string(), "verify", 0);
+  WorldOutcome outcome;
+  ASSIGN_OR_RETURN(outcome.packs, linkPacks(job.packs, context.output.parent_path()));
+  RETURN_IF_ERROR(context.log.checkNotRead(context.output));
+  BakedPack made{.outcome = {}, .output = context.output};
+  if (!context.dry_run) {
+    std::vector<SourceFile> sources;
+    sources.reserve(outcome.packs.size());
+    for (const LinkedPack& pack : outcome.packs) {
+      sources.push_back({pack.path, pack.bytes, pack.hash_low, pack.hash_high});
+    }
+    ASSIGN_OR_RETURN(made.pack_bytes,
+                     writeWorldPack(context.output, outcome.packs,
+                                    provenanceOf(job, std::move(sources), {}), job.task));
+  }
+  made.outcome = std::move(outcome);
+  return made;
+}
 
 }  // namespace
 
@@ -36,26 +51,7 @@ Result<void> ReadLog::checkNotRead(const std::filesystem::path& output) const {
 }
 
 Result<BakedPack> linkWorld(const WorldJob& job, BakeContext& context) {
-  const auto start = std::chrono::steady_clock::now();
-  context.show(context.output.filename().string(), "verify", 0);
-  ASSIGN_OR_RETURN(auto packs, linkPacks(job.packs, context.output.parent_path()));
-  RETURN_IF_ERROR(context.log.checkNotRead(context.output));
-  BakedPack made{.outcome = {}, .output = context.output};
-  if (!context.dry_run) {
-    std::vector<SourceFile> sources;
-    sources.reserve(packs.size());
-    for (const LinkedPack& pack : packs) {
-      sources.push_back({pack.path, pack.bytes, pack.hash_low, pack.hash_high});
-    }
-    ASSIGN_OR_RETURN(
-        const auto bytes,
-        writeWorldPack(context.output, packs, provenanceOf(job, std::move(sources), {}), job.task));
-    made.pack_bytes = bytes;
-  }
-  made.outcome =
-      WorldOutcome{std::move(packs),
-                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
-  return made;
+  return timed<WorldOutcome>([&] { return makeWorldPack(job, context); });
 }
 
 Result<BakedPack> bake(const Job& job, BakeContext& context) {

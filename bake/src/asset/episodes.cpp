@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <set>
@@ -22,12 +21,6 @@
 
 namespace galactic::bake {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Writes what the outcome holds.
 Result<BakedPack> finish(EpisodeOutcome outcome, const Job& job, std::vector<SourceFile> sources,
@@ -117,7 +110,6 @@ Result<GeneratedEpisodes> generate(const EpisodeGenerationJob& job, const Episod
 /// Generates them, lets a sample of them be played, and writes them.
 Result<BakedPack> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInputs& inputs,
                                std::vector<SourceFile> files, const BakeContext& context) {
-  const auto start = Clock::now();
   ASSIGN_OR_RETURN(auto generated, generate(job, inputs, context));
   // As one that is exported and imported again is called.
   generated.episodes.name = context.output.stem().string();
@@ -129,8 +121,7 @@ Result<BakedPack> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInp
                  .episodes = std::move(generated.episodes),
                  .generation = EpisodeGeneration{generated.rejections, std::move(generated.scenes),
                                                  std::move(generated.left_out), std::move(sample),
-                                                 generated.skipped, generated.with_fewer_objects},
-                 .seconds = secondsSince(start)},
+                                                 generated.skipped, generated.with_fewer_objects}},
                 job, std::move(files), context);
 }
 
@@ -150,22 +141,17 @@ Result<EpisodeImportOptions> importOptions(const EpisodeImportJob& job) {
   return options;
 }
 
-}  // namespace
-
-Result<BakedPack> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
-  const auto start = Clock::now();
+Result<BakedPack> importEpisodes(const EpisodeImportJob& job, const BakeContext& context) {
   context.show(job.input.filename().string(), "import", 0);
   ASSIGN_OR_RETURN(const auto options, importOptions(job));
   ASSIGN_OR_RETURN(auto episodes, readEpisodeFile(job.input, options));
   std::vector<SourceFile> sources;
   RETURN_IF_ERROR(addSources({job.input, job.only, job.object_pack}, sources));
-  return finish({.input = job.input.string(),
-                 .episodes = std::move(episodes),
-                 .seconds = secondsSince(start)},
-                job, std::move(sources), context);
+  return finish({.input = job.input.string(), .episodes = std::move(episodes)}, job,
+                std::move(sources), context);
 }
 
-Result<BakedPack> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context) {
+Result<BakedPack> generateInPacks(const EpisodeGenerationJob& job, const BakeContext& context) {
   ASSIGN_OR_RETURN(auto opened, openPacks(job.packs));
   RETURN_IF_ERROR(addGeometry(job, context.log, opened));
   // The bytes of the pack do not depend on the order of the inputs, of which several may have one
@@ -183,6 +169,16 @@ Result<BakedPack> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& con
   auto made = makeEpisodes(job, inputs, std::move(opened.files), context);
   if (journal && made) journal->remove();
   return made;
+}
+
+}  // namespace
+
+Result<BakedPack> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
+  return timed<EpisodeOutcome>([&] { return importEpisodes(job, context); });
+}
+
+Result<BakedPack> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context) {
+  return timed<EpisodeOutcome>([&] { return generateInPacks(job, context); });
 }
 
 }  // namespace galactic::bake

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <utility>
 
+#include "common/overload.h"
+
 namespace galactic::bake {
 namespace {
 
@@ -184,13 +186,6 @@ std::vector<std::string> solveWarnings(const std::optional<EpisodeGeneration>& g
 }
 
 WorldFigures figuresOf(const WorldOutcome& outcome) { return {outcome.packs, outcome.seconds}; }
-
-template <class... T>
-struct Overload : T... {
-  using T::operator()...;
-};
-template <class... T>
-Overload(T...) -> Overload<T...>;
 
 }  // namespace
 

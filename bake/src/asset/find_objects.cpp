@@ -10,6 +10,7 @@
 
 #include "common/folder_entries.h"
 #include "galactic/bake/assets.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -224,8 +225,7 @@ Result<FoundObjects> findObjects(const std::vector<fs::path>& inputs) {
   FoundObjects found;
   std::vector<ObjectInput>& objects = found.objects;
   for (const fs::path& input : inputs) {
-    std::error_code unknown;
-    if (!fs::is_directory(input, unknown)) {
+    if (!isFolder(input)) {
       // However many inputs there are: the name that it has in a folder that is searched.
       objects.push_back(standsForFolder(input) ? modelOf(input).input
                                                : ObjectInput{input, input.stem().string()});

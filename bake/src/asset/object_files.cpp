@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -181,11 +180,8 @@ Result<std::uint64_t> writePack(ObjectSetOutcome& outcome, std::vector<SourceFil
   return bytes;
 }
 
-}  // namespace
-
-Result<BakedPack> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
+Result<BakedPack> makeObjectPack(const ObjectJob& job, const BakeContext& context) {
   ObjectSetOutcome outcome;
-  const auto start = std::chrono::steady_clock::now();
   outcome.radii = job.shape.spheres.radii;
   ASSIGN_OR_RETURN(auto found, findObjects(job.inputs));
   std::vector<ObjectInput>& inputs = found.objects;
@@ -215,9 +211,14 @@ Result<BakedPack> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
     made.pack_bytes = bytes;
     journal.remove();
   }
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   made.outcome = std::move(outcome);
   return made;
+}
+
+}  // namespace
+
+Result<BakedPack> bakeObjectFiles(const ObjectJob& job, BakeContext& context) {
+  return timed<ObjectSetOutcome>([&] { return makeObjectPack(job, context); });
 }
 
 }  // namespace galactic::bake

@@ -1,4 +1,3 @@
-#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -65,24 +64,8 @@ Result<BakedRobot> bakeParts(const RobotJob& job, SourceRobot& robot, const Bake
   return baked;
 }
 
-}  // namespace
-
-UrdfImportOptions urdfOptionsOf(const RobotJob& job) {
-  UrdfImportOptions import;
-  import.allow_outside = job.allow_outside;
-  import.packages = job.packages;
-  import.search_roots = rosPackagePath();
-  import.allow_missing = job.allow_missing;
-  return import;
-}
-
-Result<SourceRobot> readRobotFile(const RobotJob& job) {
-  return importUrdf(job.input, urdfOptionsOf(job));
-}
-
-Result<BakedPack> bakeRobotFile(const RobotJob& job, BakeContext& context) {
+Result<BakedPack> makeRobotPack(const RobotJob& job, const BakeContext& context) {
   RobotOutcome outcome;
-  const auto start = std::chrono::steady_clock::now();
   const std::string item = job.input.filename().string();
   context.show(item, "import", 0);
   auto robot = [&] {
@@ -108,9 +91,27 @@ Result<BakedPack> bakeRobotFile(const RobotJob& job, BakeContext& context) {
                                                                    outcome.robot.warnings)));
     made.pack_bytes = bytes;
   }
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   made.outcome = std::move(outcome);
   return made;
+}
+
+}  // namespace
+
+UrdfImportOptions urdfOptionsOf(const RobotJob& job) {
+  UrdfImportOptions import;
+  import.allow_outside = job.allow_outside;
+  import.packages = job.packages;
+  import.search_roots = rosPackagePath();
+  import.allow_missing = job.allow_missing;
+  return import;
+}
+
+Result<SourceRobot> readRobotFile(const RobotJob& job) {
+  return importUrdf(job.input, urdfOptionsOf(job));
+}
+
+Result<BakedPack> bakeRobotFile(const RobotJob& job, BakeContext& context) {
+  return timed<RobotOutcome>([&] { return makeRobotPack(job, context); });
 }
 
 }  // namespace galactic::bake

@@ -15,6 +15,7 @@
 #include "dataset/scene_files.h"
 #include "json/json_reader.h"
 #include "recipe/world_recipe.h"
+#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -23,11 +24,6 @@ namespace {
 constexpr std::array<Named<MissingPolicy>, 3> kMissingNames{{{"fail", MissingPolicy::kFail},
                                                              {"skip", MissingPolicy::kSkip},
                                                              {"without", MissingPolicy::kWithout}}};
-
-bool isFolder(const std::filesystem::path& path) {
-  std::error_code unknown;
-  return std::filesystem::is_directory(path, unknown);
-}
 
 /// The configuration of a dataset that composes scenes, the first by name, beside the files of a
 /// folder. One that only says how to read scans has no scenes of its own.

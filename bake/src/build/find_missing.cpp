@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "dataset/mesh_library.h"
@@ -9,16 +8,12 @@
 #include "galactic/bake/build.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/parallel_for.h"
+#include "support/output_files.h"
 
 namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool isThere(const fs::path& path) {
-  std::error_code unknown;
-  return fs::exists(path, unknown);
-}
 
 std::string sentenceOf(const Error& error) { return error.text(); }
 

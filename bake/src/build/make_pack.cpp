@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <system_error>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "cache/cache_entry.h"
 #include "galactic/bake/source_asset.h"
 #include "support/output_files.h"
+#include "support/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -196,10 +196,12 @@ auto resultOf(const fs::path& where, const Bake& bake) -> decltype(bake()) {
 }  // namespace
 
 PackOutcome makePack(const PackJob& pack, unsigned jobs, BuildTools& tools) {
-  const auto start = std::chrono::steady_clock::now();
   tools.observer.begin(pack.name);
   PackBuild build(pack, tools);
-  auto done = resultOf(inputOf(pack), [&] { return build.make(jobs); });
+  auto done = resultOf(inputOf(pack), [&] {
+    const detail::Stopwatch timer(build.outcome().seconds);
+    return build.make(jobs);
+  });
   PackOutcome& outcome = build.outcome();
   // What was interrupted is still to be done.
   if (!done && done.error().code != ErrorCode::kInterrupted) {
@@ -207,7 +209,6 @@ PackOutcome makePack(const PackJob& pack, unsigned jobs, BuildTools& tools) {
     outcome.figures.reset();
     outcome.failures.push_back({inputOf(pack), std::move(done.error())});
   }
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   tools.observer.end(outcome);
   return std::move(outcome);
 }

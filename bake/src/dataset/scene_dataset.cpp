@@ -41,7 +41,8 @@ std::string innerPath(std::string_view handle) {
   std::string path;
   for (const fs::path& part : fs::path(handle).relative_path()) {
     if (part.empty() || part == "." || part == "..") continue;
-    path += (path.empty() ? "" : "/") + part.string();
+    if (!path.empty()) path += '/';
+    path += part.string();
   }
   return path;
 }

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/overload.h"
 #include "dataset/scene_dataset.h"
 #include "galactic/bake/urdf_import.h"
 
@@ -13,13 +14,6 @@ namespace galactic::bake {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class... T>
-struct Overload : T... {
-  using T::operator()...;
-};
-template <class... T>
-Overload(T...) -> Overload<T...>;
 
 fs::path relativeTo(const fs::path& folder, const fs::path& file) {
   std::error_code problem;

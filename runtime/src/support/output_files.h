@@ -8,6 +8,11 @@
 
 namespace galactic {
 
+/// Whether there is anything of this name, or a folder, links followed; no where that is not to be
+/// found out.
+[[nodiscard]] bool isThere(const std::filesystem::path& path);
+[[nodiscard]] bool isFolder(const std::filesystem::path& path);
+
 /// Whether two names lead to one file: links are followed, "a" and "./a" are the same, also where
 /// there is no file yet.
 [[nodiscard]] bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
