@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "engines/bullet_memory.h"
+#include "bullet_memory.h"
 #include "galactic/bake/triangle_mesh.h"
 
 namespace galactic::bake {
