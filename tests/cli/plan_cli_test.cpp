@@ -8,6 +8,7 @@
 #include "support/build_paths.h"
 #include "support/file_content.h"
 #include "support/habitat_text.h"
+#include "support/image_files.h"
 #include "support/mesh_files.h"
 #include "support/recipe_text.h"
 
@@ -24,6 +25,22 @@ using testing::Not;
 using testing::SizeIs;
 
 using PlanCli = PlanFolder;
+
+/// Names a material in looks.mtl.
+std::string texturedCube(double size) {
+  std::string text = "mtllib looks.mtl\nvt 0 0\nusemtl looks\n";
+  for (unsigned n = 0; n < 8; ++n) {
+    text += fmt::format("v {} {} {}\n", (n & 1U) * size, (n >> 1U & 1U) * size, (n >> 2U) * size);
+  }
+  for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
+    text += "f ";
+    for (const char c : std::string_view(face)) {
+      text += c == ' ' ? std::string(" ") : fmt::format("{}/1", c);
+    }
+    text += "\n";
+  }
+  return text;
+}
 
 TEST_F(PlanCli, BakesADatasetIntoPacksAndAWorld) {
   const ProgramRun first = bake("out");
@@ -111,23 +128,40 @@ TEST_F(PlanCli, BakesASceneAnewWhenWhatItLackedAppears) {
   EXPECT_THAT(run.out, Not(HasSubstr("lamp")));
 }
 
+TEST_F(PlanCli, DrawsAndKeepsScenesOfOneNameInSeveralFolders) {
+  write("data/home.scene_dataset_config.json",
+        R"({"stages": {"paths": {".json": ["stages"]}},
+            "scene_instances": {"paths": {".json": ["scenes/*/"]}}})");
+  write("data/stages/cube.stage_config.json", R"({"render_asset": "../meshes/cube.obj"})");
+  write("data/meshes/cube.obj", texturedCube(4));
+  write("data/meshes/looks.mtl", "newmtl looks\nmap_Kd paint.png\n");
+  write("data/meshes/paint.png",
+        test::pngFile({2, 1, {255, 0, 0, 0, 255, 0}}, {.color_type = PNG_COLOR_TYPE_RGB}));
+  addScene("one/x", "cube", "");
+  addScene("two/x", "cube", "");
+  const ProgramRun first = bake("out");
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(first.out, Not(HasSubstr("is missing")));
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("scenes/one_x.pack", "scenes/two_x.pack"));
+  const auto world = PackFile::open(path("out/home.pack"));
+  ASSERT_TRUE(world) << world.error().text();
+  const auto listed = packReferences(*world);
+  ASSERT_TRUE(listed);
+  EXPECT_THAT(*listed, SizeIs(3)) << "with their texture";
+  for (const char* scene : {"out/home/scenes/one_x.pack", "out/home/scenes/two_x.pack"}) {
+    const ProgramRun drawn =
+        runProgram(builtProgram("galactic-pack"), path(""),
+                   {"picture", scene, "--what", "mesh", "--size", "64", "-o", "x.png"});
+    EXPECT_EQ(drawn.exit_code, 0);
+    EXPECT_EQ(drawn.err, "") << "no texture is drawn as a flat color";
+  }
+  ASSERT_EQ(bake("out").exit_code, 0);
+  EXPECT_THAT(packsThatAre("unchanged"), ElementsAre("scenes/one_x.pack", "scenes/two_x.pack"));
+}
+
 TEST_F(PlanCli, BakesMeshesAndRobotsAnewWhenWhatTheyNameAppears) {
-  const auto cube = [](double size) {
-    std::string text = "mtllib looks.mtl\nvt 0 0\nusemtl looks\n";
-    for (unsigned n = 0; n < 8; ++n) {
-      text += fmt::format("v {} {} {}\n", (n & 1U) * size, (n >> 1U & 1U) * size, (n >> 2U) * size);
-    }
-    for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
-      text += "f ";
-      for (const char c : std::string_view(face)) {
-        text += c == ' ' ? std::string(" ") : fmt::format("{}/1", c);
-      }
-      text += "\n";
-    }
-    return text;
-  };
-  write("room/room.obj", cube(2));
-  write("thing/thing.obj", cube(0.1));
+  write("room/room.obj", texturedCube(2));
+  write("thing/thing.obj", texturedCube(0.1));
   write("thing/looks.mtl", "newmtl looks\nmap_Kd paint.png\n");
   write("robot/robot.urdf", R"(<robot name="r"><link name="base">
       <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>
@@ -147,7 +181,7 @@ TEST_F(PlanCli, BakesMeshesAndRobotsAnewWhenWhatTheyNameAppears) {
   EXPECT_THAT(packsThatAre("baked"), SizeIs(3));
   bakeAll();
   EXPECT_THAT(packsThatAre("baked"), ElementsAre("robot.pack")) << "nobody knows what it lacks";
-  write("robot/broken.obj", cube(0.2));
+  write("robot/broken.obj", texturedCube(0.2));
   bakeAll();
   bakeAll();
   EXPECT_THAT(packsThatAre("unchanged"), SizeIs(3));
@@ -157,7 +191,7 @@ TEST_F(PlanCli, BakesMeshesAndRobotsAnewWhenWhatTheyNameAppears) {
   write("thing/paint.png", "any");
   bakeAll();
   EXPECT_THAT(packsThatAre("baked"), ElementsAre("objects/thing.pack"));
-  write("robot/part.obj", cube(0.2));
+  write("robot/part.obj", texturedCube(0.2));
   bakeAll();
   EXPECT_THAT(packsThatAre("baked"), ElementsAre("robot.pack"));
 }

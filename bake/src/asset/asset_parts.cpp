@@ -80,11 +80,11 @@ Result<std::unique_ptr<Journal>> openJournal(const Job& job, std::span<const Sou
   return Journal::open(path, fmt::format("{} {}", kindOf(job), hashText(all)));
 }
 
-Result<OptionalMeshes> drawScene(const SourceAsset& scene, const DrawOptions& options,
-                                 const fs::path& input, std::vector<std::string>& warnings) {
+Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,
+                                 std::vector<std::string>& warnings) {
   if (!options.wanted) return std::nullopt;
-  return drawFrom(sceneRenderSource(scene, input.parent_path(), options.textures), options, input,
-                  warnings);
+  return drawFrom(sceneRenderSource(scene.asset, scene.folder, options.textures), options,
+                  scene.input, warnings);
 }
 
 Result<OptionalMeshes> drawObject(const SourceAsset& object, const DrawOptions& options,

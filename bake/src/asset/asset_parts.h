@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "asset/scene_source.h"
 #include "galactic/bake/assets.h"
 #include "galactic/bake/urdf_import.h"
 #include "render/render_source.h"
@@ -56,8 +57,7 @@ using OptionalMeshes = std::optional<BakedRenderMeshes>;
 
 /// Bake what is drawn of an asset that was read from `input`, and add the warnings. Errors name the
 /// input.
-[[nodiscard]] Result<OptionalMeshes> drawScene(const SourceAsset& scene, const DrawOptions& options,
-                                               const std::filesystem::path& input,
+[[nodiscard]] Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,
                                                std::vector<std::string>& warnings);
 [[nodiscard]] Result<OptionalMeshes> drawObject(const SourceAsset& object,
                                                 const DrawOptions& options,

@@ -18,7 +18,7 @@ Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const P
   }
   progress("render meshes", 0.9);
   const detail::Stopwatch timer(times.render);
-  ASSIGN_OR_RETURN(auto meshes, drawScene(read.asset, job.draw, read.input, scene->warnings));
+  ASSIGN_OR_RETURN(auto meshes, drawScene(read, job.draw, scene->warnings));
   scene->render_meshes = std::move(meshes);
   return scene;
 }
@@ -40,7 +40,7 @@ Result<BakedPack> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   outcome.input = read->input;
   outcome.convention = read->asset.convention;
   if (!job.name.empty()) read->asset.name = job.name;
-  context.log.noteRead(read->input.parent_path(), read->asset.files);
+  context.log.noteRead(read->folder, read->asset.files);
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
   ASSIGN_OR_RETURN(auto scene, bakeParts(*read, job, progress, outcome.times));
   outcome.scene = std::move(scene);

@@ -42,7 +42,9 @@ Result<ReadScene> readScene(const SceneJob& job, ReadLog& log) {
   log.noteAbsent(folder, read.absent_files);
   if (!read.is_settled) log.noteUnsettled();
   asset.warnings.insert(asset.warnings.end(), read.missing.begin(), read.missing.end());
-  return ReadScene{job.instance ? folder / job.instance->name : job.input, std::move(asset)};
+  return ReadScene{.input = job.instance ? folder / job.instance->name : job.input,
+                   .folder = folder,
+                   .asset = std::move(asset)};
 }
 
 Result<SceneDetails> readSceneDetails(const SceneJob& job) {

@@ -9,8 +9,10 @@ namespace galactic::bake {
 
 /// A scene that was read, ready to be baked.
 struct ReadScene {
-  /// For messages; names of textures are relative to its folder.
+  /// For messages.
   std::filesystem::path input;
+  /// Names of files, textures among them, are relative to it.
+  std::filesystem::path folder;
   SourceAsset asset;
 };
 

@@ -14,6 +14,7 @@
 #include "dataset/config/template_attributes.h"
 #include "dataset/scene_composer.h"
 #include "dataset/scene_layout.h"
+#include "dataset/unique_names.h"
 #include "galactic/bake/source_asset.h"
 #include "support/nearest_name.h"
 #include "support/try.h"
@@ -36,33 +37,26 @@ struct SceneDataset::State {
 
 namespace {
 
-/// A handle without what leads out of a folder: it becomes the path of a pack.
-std::string innerPath(std::string_view handle) {
-  std::string path;
-  for (const fs::path& part : fs::path(handle).relative_path()) {
-    if (part.empty() || part == "." || part == "..") continue;
-    if (!path.empty()) path += '/';
-    path += part.string();
+/// The folders of a template's handle without what leads out of them, and its name.
+std::vector<std::string> partsOf(const DatasetTemplate& entry) {
+  std::vector<std::string> parts;
+  for (const fs::path& part : fs::path(entry.handle).relative_path().parent_path()) {
+    if (!part.empty() && part != "." && part != "..") parts.push_back(part.string());
   }
-  return path;
+  parts.push_back(entry.name);
+  return parts;
 }
 
-/// Names for the templates of a list: their own, or their handles where several have the same, and
-/// a number where those do not tell them apart.
-std::map<std::string, const DatasetTemplate*, std::less<>> namesIn(const TemplateList& list,
-                                                                   std::string_view suffix) {
-  std::map<std::string_view, unsigned> count;
-  for (const auto& [handle, entry] : list.all()) ++count[entry.name];
+/// Names for the templates of a list, which become files: packs find their textures beside the
+/// folder that they lie in.
+std::map<std::string, const DatasetTemplate*, std::less<>> namesIn(const TemplateList& list) {
+  std::vector<std::vector<std::string>> paths;
+  paths.reserve(list.all().size());
+  for (const auto& [handle, entry] : list.all()) paths.push_back(partsOf(entry));
+  std::vector<std::string> unique = uniqueNames(paths);
   std::map<std::string, const DatasetTemplate*, std::less<>> names;
-  for (const auto& [handle, entry] : list.all()) {
-    std::string_view whole = handle;
-    if (whole.ends_with(suffix)) whole.remove_suffix(suffix.size());
-    const std::string base = count[entry.name] > 1 ? innerPath(whole) : entry.name;
-    std::string name = base;
-    for (unsigned number = 2; !names.try_emplace(name, &entry).second; ++number) {
-      name = fmt::format("{}_{}", base, number);
-    }
-  }
+  std::size_t next = 0;
+  for (const auto& [handle, entry] : list.all()) names.emplace(std::move(unique[next++]), &entry);
   return names;
 }
 
@@ -126,7 +120,7 @@ Result<SceneDataset> SceneDataset::read(const fs::path& config, const DatasetRea
   if (state->index.block(TemplateKind::kScene).templates.all().empty()) {
     state->kind = TemplateKind::kStage;
   }
-  state->by_name = namesIn(state->index.block(state->kind).templates, namesOf(state->kind).suffix);
+  state->by_name = namesIn(state->index.block(state->kind).templates);
   state->names.reserve(state->by_name.size());
   for (const auto& [name, entry] : state->by_name) state->names.push_back(name);
   if (state->names.empty()) {

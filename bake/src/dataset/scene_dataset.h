@@ -89,7 +89,7 @@ class SceneDataset {
   SceneDataset& operator=(const SceneDataset&) = delete;
 
   /// Names of the scene instances, ascending; of a dataset that has none, of its stages, each of
-  /// which is then a scene.
+  /// which is then a scene. Folders tell namesakes apart, as in uniqueNames().
   [[nodiscard]] const std::vector<std::string>& scenes() const;
   /// The folder of the configuration: names of files are relative to it.
   [[nodiscard]] const std::filesystem::path& folder() const;

@@ -1,18 +1,15 @@
 #include "dataset/scene_files.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
-#include <set>
-#include <span>
 #include <string_view>
 #include <utility>
 
 #include "common/folder_entries.h"
 #include "common/lower_case.h"
 #include "dataset/config/dataset_paths.h"
+#include "dataset/unique_names.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -84,36 +81,6 @@ std::vector<std::string> partsOf(const fs::path& scene) {
   return parts;
 }
 
-/// The last `count` parts as one name.
-std::string lastOf(const std::vector<std::string>& parts, std::size_t count) {
-  const std::size_t first = parts.size() - std::min(count, parts.size());
-  return fmt::format("{}", fmt::join(std::span(parts).subspan(first), "_"));
-}
-
-/// Gives each file a name of its own, with as few folders before it as that takes.
-void nameAll(const std::vector<std::vector<std::string>>& parts, std::vector<SceneFile>& files) {
-  std::set<std::string> taken;
-  for (std::size_t count = 1; count <= kDeepest + 1; ++count) {
-    std::map<std::string, unsigned> users;
-    for (const auto& one : parts) ++users[lastOf(one, count)];
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      const std::string name = lastOf(parts[i], count);
-      if (!files[i].name.empty() || users[name] != 1 || !taken.insert(name).second) continue;
-      files[i].name = name;
-    }
-  }
-  // SCENE.glb beside SCENE/SCENE.glb: a number tells them apart.
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!files[i].name.empty()) continue;
-    const std::string whole = lastOf(parts[i], parts[i].size());
-    std::string name = whole;
-    for (unsigned number = 2; !taken.insert(name).second; ++number) {
-      name = fmt::format("{}_{}", whole, number);
-    }
-    files[i].name = std::move(name);
-  }
-}
-
 }  // namespace
 
 Result<std::vector<SceneFile>> findSceneFiles(const fs::path& folder) {
@@ -142,7 +109,8 @@ Result<std::vector<SceneFile>> findSceneFiles(const fs::path& folder) {
     std::error_code ignored;
     if (fs::is_regular_file(attributes, ignored)) file.attributes = attributes;
   }
-  nameAll(parts, files);
+  std::vector<std::string> names = uniqueNames(parts);
+  for (std::size_t n = 0; n < files.size(); ++n) files[n].name = std::move(names[n]);
   return files;
 }
 

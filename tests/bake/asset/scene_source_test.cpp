@@ -69,6 +69,24 @@ TEST(SceneSource, OfAnInstanceIsPutTogether) {
   EXPECT_THAT(details->receptacles, SizeIs(1));
 }
 
+TEST(SceneSource, OfInstancesOfOneNameHasItsFilesBelowTheDataset) {
+  const SmallDataset small;
+  small.write("home.scene_dataset_config.json",
+              R"({"stages": {"paths": {".json": ["configs/stages"]}},
+                  "scene_instances": {"paths": {".json": ["scenes/*/"]}}})");
+  for (const char* name : {"one/x", "two/x"}) {
+    small.writeScene(name, R"({"stage_instance": {"template_name": "room"}})");
+  }
+  ReadLog log;
+  const auto read = bake::readScene(jobOfInstance(small, "two_x"), log);
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->input, small.folder() / "two_x");
+  EXPECT_EQ(read->folder, small.folder());
+  for (const bake::SourceFile& file : read->asset.files) {
+    EXPECT_TRUE(fs::exists(read->folder / file.name)) << file.name;
+  }
+}
+
 TEST(SceneSource, NamesItsInputWhereItsTrianglesAreNone) {
   const SmallDataset small;
   const fs::path flat = small.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");

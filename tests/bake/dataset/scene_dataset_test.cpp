@@ -53,15 +53,25 @@ std::vector<std::string> namesOfScenes(const std::vector<std::string>& handles) 
 
 std::string textOf(const Error& error) { return error.text(); }
 
-TEST(SceneNames, AreHandlesWhereSeveralHaveTheSame) {
+TEST(SceneNames, HaveAsManyFoldersAsTellThemApart) {
   EXPECT_THAT(namesOfScenes({"a/x", "b/y"}), ElementsAre("x", "y"));
-  EXPECT_THAT(namesOfScenes({"a/x", "b/x", "b/y"}), ElementsAre("a/x", "b/x", "y"));
+  EXPECT_THAT(namesOfScenes({"a/x", "b/x", "b/y"}), ElementsAre("a_x", "b_x", "y"));
+  EXPECT_THAT(namesOfScenes({"a/c/x", "b/c/x", "b/d/x"}), ElementsAre("a_c_x", "b_c_x", "d_x"));
+  EXPECT_THAT(namesOfScenes({"1/2/3/4/5/6/7/8/x", "0/2/3/4/5/6/7/8/x"}),
+              ElementsAre("0_2_3_4_5_6_7_8_x", "1_2_3_4_5_6_7_8_x"));
+}
+
+TEST(SceneNames, DifferAlsoWhereFoldersAndNamesAreJoinedAlike) {
+  // What is called so keeps its name.
+  EXPECT_THAT(namesOfScenes({"a/x", "b/x", "b/a_x"}), ElementsAre("a_x", "a_x_2", "b_x"));
+  EXPECT_THAT(namesOfScenes({"a/b_x", "a_b/x", "c/b_x", "c/x"}),
+              ElementsAre("a_b_x", "a_b_x_2", "c_b_x", "c_x"));
 }
 
 TEST(SceneNames, LeadOutOfNoFolder) {
   EXPECT_THAT(namesOfScenes({"../../../evil/x", "b/./x", "/home/me/x"}),
-              ElementsAre("b/x", "evil/x", "home/me/x"));
-  EXPECT_THAT(namesOfScenes({"../x", "../../x", "a/x"}), ElementsAre("a/x", "x", "x_2"));
+              ElementsAre("b_x", "evil_x", "me_x"));
+  EXPECT_THAT(namesOfScenes({"../x", "../../x", "a/x"}), ElementsAre("a_x", "x", "x_2"));
 }
 
 ComposedScene composed(const SmallDataset& small, const std::string& name = "a_home") {
