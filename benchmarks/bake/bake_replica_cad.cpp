@@ -125,7 +125,7 @@ int bakeAll(const std::filesystem::path& dataset, const std::filesystem::path& o
     const Provenance provenance{.tool = "bake_replica_cad",
                                 .tool_version = "0.1.0",
                                 .options = {},
-                                .sources = asset->files,
+                                .sources = asset->read.files,
                                 .warnings = scene->warnings};
     const auto written = writeScenePack(out / (asset->name + ".pack"), *scene, provenance);
     if (!written) {

@@ -20,7 +20,7 @@
 #include "dynamics/sources/pack_sources.h"
 #include "dynamics/sources/sources.h"
 #include "galactic/bake/assets.h"
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "run/recording.h"
 #include "support/atomic_file.h"
 #include "support/exception_error.h"
@@ -78,7 +78,7 @@ Result<void> tryOutputs(const Command& command, const World& world, const bake::
 Result<void> noteContent(const std::filesystem::path& path, std::string name, bake::ReadLog& read) {
   ASSIGN_OR_RETURN(auto file, bake::describeFile(path));
   file.name = std::move(name);
-  read.noteRead({}, {std::move(file)});
+  read.note({}, {.files = {std::move(file)}});
   return {};
 }
 

@@ -8,7 +8,6 @@
 
 #include "galactic/object_set.h"
 #include "galactic/schema/pack_generated.h"
-#include "support/content_hash.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
@@ -27,10 +26,6 @@ std::vector<SourceFile> sourcesOf(const PackFile& pack) {
   return sources;
 }
 
-bool isSame(const SourceFile& a, const SourceFile& b) {
-  return a.bytes == b.bytes && a.hash_low == b.hash_low && a.hash_high == b.hash_high;
-}
-
 /// Several objects share a pack, which names the files of each below the object's name.
 std::string prefixOf(PackKind kind, std::string_view name) {
   return kind == PackKind::kObjects ? std::string(name) + "/" : std::string();
@@ -40,8 +35,6 @@ std::string_view nounOf(PackKind kind) {
   if (kind == PackKind::kObjects) return "object";
   return kind == PackKind::kRobot ? "robot" : "scene";
 }
-
-std::string hexOf(const SourceFile& file) { return detail::hexOf({file.hash_low, file.hash_high}); }
 
 }  // namespace
 
@@ -86,10 +79,10 @@ Result<std::vector<std::string>> PackSources::differences(const AssetSources& no
   const auto compare = [&](const SourceFile& file, const std::string& prefix) {
     const auto named = std::ranges::find(*listed, prefix + file.name, &SourceFile::name);
     const bool is_listed = named != listed->end();
-    const bool is_same =
-        is_listed ? isSame(*named, file) : std::ranges::any_of(*listed, [&](const SourceFile& one) {
-          return isSame(one, file);
-        });
+    const bool is_same = is_listed ? sameContent(*named, file)
+                                   : std::ranges::any_of(*listed, [&](const SourceFile& one) {
+                                       return sameContent(one, file);
+                                     });
     if (is_same) return;
     const std::string what = is_listed
                                  ? fmt::format("from another '{}' than is there now", file.name)

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "galactic/bake/assets.h"
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "galactic/pack_header.h"
 #include "galactic/world.h"
 

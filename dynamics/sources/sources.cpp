@@ -25,7 +25,7 @@ using Names = std::set<std::string, std::less<>>;
 
 Result<void> noteContent(const std::filesystem::path& file, bake::ReadLog& log) {
   ASSIGN_OR_RETURN(auto content, bake::describeFile(file));
-  log.noteRead(file.parent_path(), {std::move(content)});
+  log.note(file.parent_path(), {.files = {std::move(content)}});
   return {};
 }
 
@@ -62,8 +62,8 @@ class SourceReader {
     const std::string name = bake::nameOf(job);
     if (!scenes_.contains(name)) return {};
     ASSIGN_OR_RETURN(const auto asset, bake::readSceneFile(job));
-    sources_.log.noteRead(job.input.parent_path(), asset.files);
-    RETURN_IF_ERROR(compare({.kind = PackKind::kScene, .name = name, .files = asset.files}));
+    sources_.log.note(job.input.parent_path(), asset.read);
+    RETURN_IF_ERROR(compare({.kind = PackKind::kScene, .name = name, .files = asset.read.files}));
     ASSIGN_OR_RETURN(const auto clean, bake::placeAndClean(asset));
     sources_.scenes.emplace(name, makeSceneShape(clean.mesh));
     return {};
@@ -81,10 +81,10 @@ class SourceReader {
   }
   Result<void> operator()(const bake::RobotJob& job) {
     ASSIGN_OR_RETURN(auto robot, bake::readRobotFile(job));
-    sources_.log.noteRead(job.input.parent_path(), robot.files);
+    sources_.log.note(job.input.parent_path(), robot.read);
     RETURN_IF_ERROR(compare({.kind = PackKind::kRobot,
                              .name = world_.robot().name(),
-                             .files = robot.files,
+                             .files = robot.read.files,
                              .named = {job.recipe, job.spheres}}));
     ASSIGN_OR_RETURN(auto inertials, bake::readInertials(job.input));
     ASSIGN_OR_RETURN(sources_.robot, robotParts({job.input.filename().string(), std::move(robot),
@@ -149,7 +149,7 @@ class SourceReader {
                       name, config.collision_asset.filename().string()));
     }
     ASSIGN_OR_RETURN(const auto asset, readMesh(mesh, job));
-    RETURN_IF_ERROR(compareObject(name, asset.files, job));
+    RETURN_IF_ERROR(compareObject(name, asset.read.files, job));
     object.hulls = {cornersOf(asset)};
     RETURN_IF_ERROR(checkExtents(object.hulls, mesh.string()));
     return object;
@@ -157,7 +157,7 @@ class SourceReader {
   Result<bake::SourceAsset> readMesh(const std::filesystem::path& mesh,
                                      const bake::ObjectJob& job) {
     ASSIGN_OR_RETURN(auto asset, bake::importMesh(mesh, job.import));
-    sources_.log.noteRead(mesh.parent_path(), asset.files);
+    sources_.log.note(mesh.parent_path(), asset.read);
     return asset;
   }
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "support/homes/small_home.h"
 #include "support/scratch_folder.h"
 
@@ -85,7 +85,7 @@ TEST_F(SourcesOfPacks, SayNothingOfWhatNoPackHolds) {
 TEST(ADigestOfSources, ChangesWithEachContentAndPath) {
   const auto digest = [](const std::vector<std::pair<std::string_view, SourceFile>>& files) {
     bake::ReadLog log;
-    for (const auto& [folder, file] : files) log.noteRead(folder, {file});
+    for (const auto& [folder, file] : files) log.note(folder, {.files = {file}});
     return digestOf(log);
   };
   SourceFile other = kListed;

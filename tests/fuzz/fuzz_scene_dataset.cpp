@@ -29,8 +29,9 @@ void checkScene(const ComposedScene& composed) {
     if (instance.name.empty()) reportFinding("an instance without a name");
     checkFinite(instance.world_from_mesh);
   }
-  for (std::size_t i = 1; i < scene.files.size(); ++i) {
-    if (scene.files[i - 1].name >= scene.files[i].name) reportFinding("files out of order");
+  for (std::size_t i = 1; i < scene.read.files.size(); ++i) {
+    if (scene.read.files[i - 1].name >= scene.read.files[i].name)
+      reportFinding("files out of order");
   }
 }
 

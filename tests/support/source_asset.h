@@ -18,7 +18,7 @@ inline bake::SourceAsset sourceAssetOf(const bake::TriangleMesh& mesh,
   source.triangles = mesh.triangles;
   asset.materials.emplace_back();
   asset.instances.push_back({name, 0, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}});
-  asset.files.push_back({name + ".glb", 1234, 0x0123456789abcdefU, 0xfedcba9876543210U});
+  asset.read.files.push_back({name + ".glb", 1234, 0x0123456789abcdefU, 0xfedcba9876543210U});
   return asset;
 }
 

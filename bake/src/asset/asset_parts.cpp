@@ -8,7 +8,6 @@
 #include "galactic/bake/packs.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/pack.h"
-#include "support/content_hash.h"
 #include "support/exception_error.h"
 #include "support/output_files.h"
 #include "support/try.h"
@@ -36,10 +35,6 @@ Result<OptionalMeshes> drawFrom(Result<RenderSource> source, const DrawOptions& 
 bool isWholeTexture(const fs::path& pack) {
   const auto opened = PackFile::open(pack);
   return opened && opened->kind() == PackKind::kTexture;
-}
-
-std::string hashText(const SourceFile& file) {
-  return detail::hexOf({file.hash_low, file.hash_high});
 }
 
 }  // namespace
@@ -71,13 +66,13 @@ Result<std::unique_ptr<Journal>> openJournal(const Job& job, std::span<const Sou
   if (context.dry_run || !is_possible) return std::unique_ptr<Journal>();
   RETURN_IF_ERROR(context.log.checkNotRead(path));
   ASSIGN_OR_RETURN(const SourceFile program, describeFile("/proc/self/exe"));
-  std::string parts = hashText(program) + "\n";
+  std::string parts = hexOf(program) + "\n";
   for (const auto& [name, value] : contentOptions(job)) {
     parts += fmt::format("{}={}\n", name, value);
   }
-  for (const SourceFile& file : files) parts += hashText(file) + "\n";
+  for (const SourceFile& file : files) parts += hexOf(file) + "\n";
   const SourceFile all = describeBytes({}, std::as_bytes(std::span(parts)));
-  return Journal::open(path, fmt::format("{} {}", kindOf(job), hashText(all)));
+  return Journal::open(path, fmt::format("{} {}", kindOf(job), hexOf(all)));
 }
 
 Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,

@@ -34,13 +34,10 @@ Result<BakedPack> makeWorldPack(const WorldJob& job, const BakeContext& context)
 
 }  // namespace
 
-void ReadLog::noteRead(const std::filesystem::path& folder, const std::vector<SourceFile>& files) {
-  for (const SourceFile& file : files) read_.push_back({folder / file.name, file});
-}
-
-void ReadLog::noteAbsent(const std::filesystem::path& folder,
-                         const std::vector<std::string>& files) {
-  for (const std::string& file : files) absent_.push_back(folder / file);
+void ReadLog::note(const std::filesystem::path& folder, const ReadFiles& read) {
+  for (const SourceFile& file : read.files) read_.push_back({folder / file.name, file});
+  for (const std::string& name : read.absent) absent_.push_back(folder / name);
+  is_settled_ = is_settled_ && read.is_settled;
 }
 
 Result<void> ReadLog::checkNotRead(const std::filesystem::path& output) const {

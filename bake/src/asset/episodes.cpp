@@ -13,7 +13,7 @@
 #include "asset/asset_parts.h"
 #include "asset/scene_source.h"
 #include "galactic/bake/packs.h"
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
 #include "support/journal.h"

@@ -72,8 +72,7 @@ Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedO
   if (!asset->unit_is_stated && !task.job.import.transform) {
     RETURN_IF_ERROR(checkObjectSize(*asset, input.path.string()));
   }
-  finished.files = asset->files;
-  finished.absent_files = asset->absent_files;
+  finished.read = asset->read;
   asset->name = input.name;
   ASSIGN_OR_RETURN(const auto options, optionsOf(input.name, task, asset->warnings));
   auto object = bakeObject(*asset, options);
@@ -147,13 +146,12 @@ void collect(const std::vector<ObjectInput>& inputs, std::vector<ObjectWork> wor
   for (std::size_t n = 0; n < work.size(); ++n) {
     if (!work[n].done) continue;
     FinishedObject& finished = work[n].finished;
-    log.noteRead(inputs[n].path.parent_path(), finished.files);
-    log.noteAbsent(inputs[n].path.parent_path(), finished.absent_files);
+    log.note(inputs[n].path.parent_path(), finished.read);
     if (!*work[n].done) {
       outcome.failures.push_back({inputs[n].path, work[n].done->error()});
       continue;
     }
-    for (SourceFile& file : finished.files) {
+    for (SourceFile& file : finished.read.files) {
       // Never absolute.
       file.name = inputs[n].name + "/" + file.name;
       sources.push_back(std::move(file));

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <system_error>
 #include <type_traits>
 #include <utility>
 
+#include "cache/file_digests.h"
 #include "import/asset_transfer.h"
 #include "import/transfer_archive.h"
 
@@ -66,7 +66,7 @@ void transferFields(Archive& archive, Is<BakedObject> auto& object) {
 
 template <class Archive>
 void transferFields(Archive& archive, Is<FinishedObject> auto& finished) {
-  archive(finished.files, finished.absent_files, finished.import_seconds, finished.object);
+  archive(finished.read, finished.import_seconds, finished.object);
 }
 
 namespace {
@@ -107,21 +107,6 @@ bool isSound(const BakedObject& object, std::size_t radii) {
          (!object.render_meshes || isSound(*object.render_meshes));
 }
 
-/// Whether the files still hold what was read, and what was absent still is.
-bool isCurrent(const FinishedObject& finished, const std::filesystem::path& folder) {
-  const auto is_same = [&](const SourceFile& read) {
-    const auto now = describeFile(folder / read.name);
-    return now && now->bytes == read.bytes && now->hash_low == read.hash_low &&
-           now->hash_high == read.hash_high;
-  };
-  const auto is_absent = [&](const std::string& name) {
-    std::error_code none;
-    return !std::filesystem::exists(folder / name, none);
-  };
-  return std::ranges::all_of(finished.files, is_same) &&
-         std::ranges::all_of(finished.absent_files, is_absent);
-}
-
 }  // namespace
 
 ObjectJournal::ObjectJournal(std::unique_ptr<Journal> journal, std::size_t radii)
@@ -145,7 +130,7 @@ std::optional<FinishedObject> ObjectJournal::recall(const ObjectInput& input) co
   reader(name, file, finished);
   const bool is_it = reader.good() && reader.atEnd() && finished.object.name == input.name &&
                      file == input.path.filename() && isSound(finished.object, radii_) &&
-                     isCurrent(finished, input.path.parent_path());
+                     FileDigests().areAsRead(finished.read, input.path.parent_path());
   if (!is_it) return std::nullopt;
   return finished;
 }

@@ -9,7 +9,7 @@
 
 #include "galactic/bake/assets.h"
 #include "galactic/bake/object_baker.h"
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "support/journal.h"
 
 namespace galactic::bake {
@@ -17,8 +17,7 @@ namespace galactic::bake {
 /// An object that was baked, and what was read for it.
 struct FinishedObject {
   /// By their names below the folder of its mesh.
-  std::vector<SourceFile> files;
-  std::vector<std::string> absent_files;
+  ReadFiles read;
   double import_seconds = 0;
   BakedObject object;
 };

@@ -75,20 +75,19 @@ Result<BakedPack> makeRobotPack(const RobotJob& job, const BakeContext& context)
   if (!robot) return tl::unexpected(robot.error());
   outcome.input = job.input;
   outcome.resolutions = robot->resolutions;
-  context.log.noteRead(job.input.parent_path(), robot->files);
-  context.log.noteAbsent(job.input.parent_path(), robot->absent_files);
-  if (!robot->is_settled) context.log.noteUnsettled();
+  context.log.note(job.input.parent_path(), robot->read);
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
   ASSIGN_OR_RETURN(auto baked, bakeParts(job, *robot, context));
   outcome.robot = std::move(baked);
-  RETURN_IF_ERROR(addSources({job.recipe, job.spheres}, robot->files));
+  RETURN_IF_ERROR(addSources({job.recipe, job.spheres}, robot->read.files));
   BakedPack made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {
     context.show(item, "write", 1);
     const detail::Stopwatch timer(outcome.write_seconds);
-    ASSIGN_OR_RETURN(const auto bytes, writeRobotPack(context.output, outcome.robot,
-                                                      provenanceOf(job, std::move(robot->files),
-                                                                   outcome.robot.warnings)));
+    ASSIGN_OR_RETURN(
+        const auto bytes,
+        writeRobotPack(context.output, outcome.robot,
+                       provenanceOf(job, std::move(robot->read.files), outcome.robot.warnings)));
     made.pack_bytes = bytes;
   }
   made.outcome = std::move(outcome);

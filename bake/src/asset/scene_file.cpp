@@ -40,7 +40,6 @@ Result<BakedPack> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   outcome.input = read->input;
   outcome.convention = read->asset.convention;
   if (!job.name.empty()) read->asset.name = job.name;
-  context.log.noteRead(read->folder, read->asset.files);
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
   ASSIGN_OR_RETURN(auto scene, bakeParts(*read, job, progress, outcome.times));
   outcome.scene = std::move(scene);
@@ -52,10 +51,10 @@ Result<BakedPack> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   if (!context.dry_run) {
     progress("write", 1);
     const detail::Stopwatch timer(outcome.times.write);
-    ASSIGN_OR_RETURN(
-        const auto bytes,
-        writeScenePack(context.output, outcome.scene,
-                       provenanceOf(job, std::move(read->asset.files), outcome.scene.warnings)));
+    ASSIGN_OR_RETURN(const auto bytes,
+                     writeScenePack(context.output, outcome.scene,
+                                    provenanceOf(job, std::move(read->asset.read.files),
+                                                 outcome.scene.warnings)));
     made.pack_bytes = bytes;
   }
   made.outcome = std::move(outcome);

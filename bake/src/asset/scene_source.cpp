@@ -20,7 +20,6 @@ Result<ComposedScene> readMeshes(const SceneJob& job) {
     return job.instance->dataset->compose(job.instance->name, *job.instance->meshes);
   ASSIGN_OR_RETURN(auto asset, importMesh(job.input, job.import));
   ComposedScene read;
-  read.absent_files = asset.absent_files;
   read.scene = std::move(asset);
   return read;
 }
@@ -39,8 +38,7 @@ Result<ReadScene> readScene(const SceneJob& job, ReadLog& log) {
     RETURN_IF_ERROR(checkHeight(asset, job.input.string()));
   }
   const fs::path folder = job.instance ? job.instance->dataset->folder() : job.input.parent_path();
-  log.noteAbsent(folder, read.absent_files);
-  if (!read.is_settled) log.noteUnsettled();
+  log.note(folder, asset.read);
   asset.warnings.insert(asset.warnings.end(), read.missing.begin(), read.missing.end());
   return ReadScene{.input = job.instance ? folder / job.instance->name : job.input,
                    .folder = folder,

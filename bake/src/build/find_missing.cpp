@@ -55,7 +55,7 @@ class MissingFiles {
     }
     for (const std::string& mesh : robot->unreadable) add(fmt::format("{}: {}", urdf, mesh));
     for (const SourceAsset& mesh : robot->meshes) {
-      addLooks(mesh, job.input.parent_path() / mesh.files.front().name);
+      addLooks(mesh, job.input.parent_path() / mesh.read.files.front().name);
     }
   }
   template <class Other>

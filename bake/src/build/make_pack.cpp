@@ -8,7 +8,7 @@
 
 #include "asset/asset_parts.h"
 #include "cache/cache_entry.h"
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "support/output_files.h"
 #include "support/stopwatch.h"
 #include "support/try.h"
@@ -30,25 +30,23 @@ std::string relativeName(const fs::path& file, const fs::path& folder) {
 }
 
 /// What the bake read, for the cache: with the content that the readers saw.
-Result<BakeInputs> inputsOf(const ReadLog& log, const PackJob& pack, FileDigests& digests) {
-  BakeInputs inputs;
-  inputs.folder = pack.folder;
+Result<ReadFiles> readFilesOf(const ReadLog& log, const PackJob& pack, FileDigests& digests) {
+  ReadFiles read;
   for (const ReadFile& file : log.files()) {
     ASSIGN_OR_RETURN(auto digest,
                      file.content ? Result<SourceFile>(*file.content) : digests.of(file.path));
     digest.name = relativeName(file.path, pack.folder);
-    inputs.files.push_back(std::move(digest));
+    read.files.push_back(std::move(digest));
   }
-  std::ranges::sort(inputs.files, {}, &SourceFile::name);
+  std::ranges::sort(read.files, {}, &SourceFile::name);
   const auto same_name = [](const SourceFile& a, const SourceFile& b) { return a.name == b.name; };
-  inputs.files.erase(std::unique(inputs.files.begin(), inputs.files.end(), same_name),
-                     inputs.files.end());
+  read.files.erase(std::unique(read.files.begin(), read.files.end(), same_name), read.files.end());
   for (const fs::path& file : log.absent()) {
-    inputs.absent.push_back(relativeName(file, pack.folder));
+    read.absent.push_back(relativeName(file, pack.folder));
   }
-  std::ranges::sort(inputs.absent);
-  inputs.absent.erase(std::unique(inputs.absent.begin(), inputs.absent.end()), inputs.absent.end());
-  return inputs;
+  std::ranges::sort(read.absent);
+  read.absent.erase(std::unique(read.absent.begin(), read.absent.end()), read.absent.end());
+  return read;
 }
 
 /// Where a texture pack that scenes share is kept.
@@ -159,10 +157,9 @@ class PackBuild {
   }
 
   Result<void> keep() {
-    ASSIGN_OR_RETURN(auto inputs, inputsOf(outcome_.log, pack_, tools_.digests));
-    inputs.key = key_;
+    ASSIGN_OR_RETURN(auto read, readFilesOf(outcome_.log, pack_, tools_.digests));
     RETURN_IF_ERROR(keepTextures(pack_, *outcome_.figures, tools_));
-    return tools_.cache->store(inputs, pack_.output, *outcome_.figures);
+    return tools_.cache->store({key_, std::move(read)}, pack_.output, *outcome_.figures);
   }
 
   const PackJob& pack_;

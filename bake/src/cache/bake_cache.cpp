@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "cache/cache_entry.h"
-#include "galactic/bake/source_asset.h"
 #include "support/atomic_file.h"
 #include "support/output_files.h"
 #include "support/try.h"
@@ -42,17 +41,6 @@ std::vector<fs::path> entriesIn(const fs::path& folder) {
   return paths;
 }
 
-bool holds(const BakeInputs& inputs, const fs::path& folder, FileDigests& digests) {
-  std::error_code problem;
-  const auto is_there = [&](const std::string& name) { return fs::exists(folder / name, problem); };
-  const auto is_same = [&](const SourceFile& file) {
-    const auto now = digests.of(folder / file.name);
-    return now && sameContent(*now, file);
-  };
-  return std::none_of(inputs.absent.begin(), inputs.absent.end(), is_there) &&
-         std::all_of(inputs.files.begin(), inputs.files.end(), is_same);
-}
-
 fs::path packBeside(const fs::path& entry) {
   fs::path pack = entry;
   return pack.replace_extension(".pack");
@@ -79,7 +67,9 @@ std::optional<CachedBake> BakeCache::find(const std::string& key, const fs::path
                                           FileDigests& digests) const {
   for (const fs::path& path : entriesIn(folder_ / hexOf(key))) {
     auto entry = readCacheEntry(path);
-    if (!entry || entry->inputs.key != key || !holds(entry->inputs, folder, digests)) continue;
+    if (!entry || entry->inputs.key != key || !digests.areAsRead(entry->inputs.read, folder)) {
+      continue;
+    }
     CachedBake found{packBeside(path), entry->pack, std::move(entry->figures)};
     if (isIntact(found.pack, found.digest)) return found;
   }

@@ -6,7 +6,7 @@
 
 #include "cache/file_digests.h"
 #include "galactic/bake/build.h"
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
@@ -15,12 +15,8 @@ namespace galactic::bake {
 struct BakeInputs {
   /// Everything but files that decides the result: tool and format version, kind, options, names.
   std::string key;
-  /// Files are named relative to it, so that a moved dataset is found again.
-  std::filesystem::path folder;
-  /// Files that were read, relative to `folder`, with their content.
-  std::vector<SourceFile> files;
-  /// Files that were looked for and are not there, relative to `folder`.
-  std::vector<std::string> absent;
+  /// Relative to the folder of the bake, so that a moved dataset is found again. Settled.
+  ReadFiles read;
 };
 
 /// A bake that was done before.

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "json/figure_json.h"
-#include "support/content_hash.h"
 #include "support/mapped_file.h"
 
 namespace galactic::bake {
@@ -41,11 +40,11 @@ std::optional<CacheEntry> decode(const Json& json) {
   if (json.at("version") != kEntryVersion) return std::nullopt;
   CacheEntry entry;
   entry.inputs.key = json.at("key").get<std::string>();
-  entry.inputs.absent = json.at("absent").get<std::vector<std::string>>();
+  entry.inputs.read.absent = json.at("absent").get<std::vector<std::string>>();
   const Json& files = json.at("files");
-  entry.inputs.files.resize(files.size());
+  entry.inputs.read.files.resize(files.size());
   for (std::size_t n = 0; n < files.size(); ++n) {
-    if (!read(files[n], entry.inputs.files[n])) return std::nullopt;
+    if (!read(files[n], entry.inputs.read.files[n])) return std::nullopt;
   }
   if (!read(json.at("pack"), entry.pack)) return std::nullopt;
   if (!readFigures(json.at("figures"), entry.figures)) return std::nullopt;
@@ -54,13 +53,11 @@ std::optional<CacheEntry> decode(const Json& json) {
 
 }  // namespace
 
-std::string hexOf(const SourceFile& file) { return detail::hexOf({file.hash_low, file.hash_high}); }
-
 std::string encodeCacheEntry(const CacheEntry& entry) {
   Json files = Json::array();
-  for (const SourceFile& file : entry.inputs.files) files.push_back(jsonOf(file));
+  for (const SourceFile& file : entry.inputs.read.files) files.push_back(jsonOf(file));
   const Json json{{"version", kEntryVersion},   {"key", entry.inputs.key},
-                  {"files", std::move(files)},  {"absent", entry.inputs.absent},
+                  {"files", std::move(files)},  {"absent", entry.inputs.read.absent},
                   {"pack", jsonOf(entry.pack)}, {"figures", jsonOf(entry.figures)}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

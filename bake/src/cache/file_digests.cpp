@@ -1,9 +1,8 @@
 #include "cache/file_digests.h"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
-
-#include "galactic/bake/source_asset.h"
 
 namespace galactic::bake {
 namespace {
@@ -29,6 +28,18 @@ Result<SourceFile> FileDigests::of(const std::filesystem::path& file) {
   if (digest) digest->name = file.generic_string();
   const std::lock_guard lock(mutex_);
   return known_.try_emplace(key, std::move(digest)).first->second;
+}
+
+bool FileDigests::areAsRead(const ReadFiles& read, const std::filesystem::path& folder) {
+  const auto is_absent = [&](const std::string& name) {
+    std::error_code problem;
+    return !std::filesystem::exists(folder / name, problem);
+  };
+  const auto is_same = [&](const SourceFile& file) {
+    const auto now = of(folder / file.name);
+    return now && sameContent(*now, file);
+  };
+  return std::ranges::all_of(read.absent, is_absent) && std::ranges::all_of(read.files, is_same);
 }
 
 }  // namespace galactic::bake

@@ -3,7 +3,7 @@
 #include <map>
 #include <mutex>
 
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
@@ -14,6 +14,9 @@ class FileDigests {
  public:
   /// Its name is the path as given. Fails with kIo where the file cannot be read, each time.
   [[nodiscard]] Result<SourceFile> of(const std::filesystem::path& file);
+
+  /// Whether the files below `folder` hold what was read, and what was absent still is.
+  [[nodiscard]] bool areAsRead(const ReadFiles& read, const std::filesystem::path& folder);
 
  private:
   std::mutex mutex_;

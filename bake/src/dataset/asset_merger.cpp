@@ -98,9 +98,9 @@ Result<void> AssetMerger::noteFile(const fs::path& path) {
 }
 
 void AssetMerger::finish() {
-  into_.files.clear();
-  into_.files.reserve(files_.size());
-  for (const auto& [name, file] : files_) into_.files.push_back(file);
+  into_.read.files.clear();
+  into_.read.files.reserve(files_.size());
+  for (const auto& [name, file] : files_) into_.read.files.push_back(file);
 }
 
 }  // namespace galactic::bake

@@ -50,6 +50,12 @@ void SceneComposer::noteMissing(const std::string& sentence) {
 
 void SceneComposer::noteAbsent(const fs::path& file) { absent_.insert(relative(file)); }
 
+void SceneComposer::noteRead(const fs::path& folder, const ReadFiles& read) {
+  for (const SourceFile& file : read.files) merger_.noteFile(folder / file.name, file);
+  for (const std::string& name : read.absent) noteAbsent(folder / name);
+  if (!read.is_settled) result_.scene.read.is_settled = false;
+}
+
 void SceneComposer::noteLooks(const fs::path& file, const std::vector<std::string>& missing) {
   for (const std::string& sentence : missing) {
     std::string told = fmt::format("{}: {}", relative(file), sentence);
@@ -90,10 +96,7 @@ Result<void> SceneComposer::noteItem(const PlacedItem& placed) {
 Result<std::shared_ptr<const SourceAsset>> SceneComposer::load(const fs::path& mesh) {
   auto asset = meshes_.load(mesh);
   if (!asset) return asset;
-  for (const SourceFile& file : (*asset)->files) {
-    merger_.noteFile(mesh.parent_path() / file.name, file);
-  }
-  for (const std::string& file : (*asset)->absent_files) noteAbsent(mesh.parent_path() / file);
+  noteRead(mesh.parent_path(), (*asset)->read);
   noteLooks(mesh, (*asset)->missing);
   noteWarnings(mesh, (*asset)->warnings);
   return asset;
@@ -196,7 +199,8 @@ void SceneComposer::placeLinks(const ReceptacleParent& placed, const SourceRobot
       const LinkShape& shape = shapes[visual];
       if (const auto* mesh = std::get_if<MeshShape>(&shape.geometry); mesh != nullptr) {
         const SourceAsset& asset = furniture.meshes[mesh->mesh];
-        const std::string file = asset.files.empty() ? asset.name : asset.files.front().name;
+        const std::string file =
+            asset.read.files.empty() ? asset.name : asset.read.files.front().name;
         // Its points are turned otherwise than those of the same file as an object.
         const std::string key = "URDF " + (urdf.parent_path() / file).lexically_normal().string();
         const std::uint32_t first = merger_.take(key, asset, urdf.parent_path(), shape.color);
@@ -219,12 +223,10 @@ Result<void> SceneComposer::placeArticulated(const PlacedItem& placed) {
   const auto furniture = meshes_.loadFurniture(urdf);
   if (!furniture) return tl::unexpected(furniture.error());
   const fs::path folder = urdf.parent_path();
-  for (const SourceFile& file : (*furniture)->files) merger_.noteFile(folder / file.name, file);
-  for (const std::string& file : (*furniture)->absent_files) noteAbsent(folder / file);
-  if (!(*furniture)->is_settled) result_.is_settled = false;
+  noteRead(folder, (*furniture)->read);
   noteLooks(urdf, (*furniture)->unreadable);
   for (const SourceAsset& mesh : (*furniture)->meshes) {
-    noteLooks(folder / mesh.files.front().name, mesh.missing);
+    noteLooks(folder / mesh.read.files.front().name, mesh.missing);
   }
   noteWarnings(urdf, (*furniture)->warnings);
   for (const std::string& reference : (*furniture)->missing) {
@@ -280,7 +282,7 @@ Result<ComposedScene> SceneComposer::run(const std::string& name, const SceneLay
   }
   addReceptacles(instance.receptacles, {}, {.world_from_parent = kIdentityAffine});
   merger_.finish();
-  result_.absent_files.assign(absent_.begin(), absent_.end());
+  scene.read.absent.assign(absent_.begin(), absent_.end());
   for (std::string& sentence : result_.missing) {
     const unsigned times = missing_.at(sentence);
     if (times > 1) sentence += fmt::format(" ({} times)", times);

@@ -48,6 +48,7 @@ class SceneComposer {
   std::string nextName(const std::string& template_name);
   void noteMissing(const std::string& sentence);
   void noteAbsent(const std::filesystem::path& file);
+  void noteRead(const std::filesystem::path& folder, const ReadFiles& read);
   /// What `file` names and lacks, one sentence each, without which the scene is composed as well.
   void noteLooks(const std::filesystem::path& file, const std::vector<std::string>& missing);
   void warnOnce(const std::string& warning);

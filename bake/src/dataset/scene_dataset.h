@@ -54,8 +54,9 @@ struct SceneSurvey {
 struct ComposedScene {
   /// Everything that does not move, in the world frame. Its instances are named as Habitat names
   /// them: the stage after its template, the others "TEMPLATE_:0000", "TEMPLATE_:0001" and so on.
-  /// Paths of textures are relative to the dataset's folder. `files` lists all that was read for it
-  /// (configurations, meshes, textures), by path relative to the dataset's folder.
+  /// Paths of textures are relative to the dataset's folder. `read` lists all that was read for it
+  /// (configurations, meshes, textures), by path relative to the dataset's folder; as
+  /// SourceRobot::read, it is unsettled where some furniture is.
   SourceAsset scene;
   /// Where the dataset says that things may be put, world frame: the boxes of the scene, of its
   /// stage and of everything that does not move and is upright. Named "INSTANCE|RECEPTACLE", those
@@ -64,11 +65,6 @@ struct ComposedScene {
   /// One sentence for each thing that the instance names and the dataset lacks, movable or not; it
   /// is left out.
   std::vector<std::string> missing;
-  /// Files that were looked for and are not there, relative to the dataset's folder: the result may
-  /// change when one of them appears.
-  std::vector<std::string> absent_files;
-  /// As SourceRobot::is_settled, of all furniture.
-  bool is_settled = true;
   /// Whether the stage is there. Without it there is no floor.
   bool has_stage = true;
 };

@@ -29,8 +29,8 @@ void transferFields(Archive& archive, Is<EmbeddedTexture> auto& texture) {
 template <class Archive>
 void transferRest(Archive& archive, auto& asset) {
   archive(asset.name, asset.format, asset.convention, asset.meters_per_unit, asset.unit_is_stated,
-          asset.instances, asset.materials, asset.textures, asset.files, asset.absent_files,
-          asset.missing_materials, asset.missing, asset.warnings);
+          asset.instances, asset.materials, asset.textures, asset.read, asset.missing_materials,
+          asset.missing, asset.warnings);
 }
 
 namespace {

@@ -13,6 +13,11 @@ void transferFields(Archive& archive, Is<SourceFile> auto& file) {
   archive(file.name, file.bytes, file.hash_low, file.hash_high);
 }
 
+template <class Archive>
+void transferFields(Archive& archive, Is<ReadFiles> auto& read) {
+  archive(read.files, read.absent, read.is_settled);
+}
+
 /// Writes a SourceAsset as bytes for another process of this same program: meshes one by one (so
 /// that the sender can free each when it is sent), then the rest; or an error.
 class AssetSender {

@@ -384,10 +384,10 @@ Result<void> SceneReader::convertMeshes(const SceneLooks& looks) {
 
 void SceneReader::nameFiles() {
   for (const std::string& file : asked_.opened) {
-    asset_.files.push_back({.name = nameRelativeTo(path_, file)});
+    asset_.read.files.push_back({.name = nameRelativeTo(path_, file)});
   }
   for (const std::filesystem::path& file : asked_.search.absent()) {
-    asset_.absent_files.push_back(nameRelativeTo(path_, file));
+    asset_.read.absent.push_back(nameRelativeTo(path_, file));
   }
   // The OBJ reader looks for a namesake of the OBJ when the named MTL is missing: one warning each.
   std::filesystem::path namesake = path_;

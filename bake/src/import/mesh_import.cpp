@@ -163,7 +163,7 @@ Result<SourceAsset> importMesh(const fs::path& path, const MeshImportOptions& op
   if (!asset) return asset;
   RETURN_IF_ERROR(checkAsset(*asset, path.string()));
   findTextures(*asset, path, options.allow_outside ? Reach::kAnywhere : Reach::kNear);
-  RETURN_IF_ERROR(hashFiles(*asset, path));
+  RETURN_IF_ERROR(hashFiles(asset->read.files, path));
   warnAboutSize(*asset, options.smallest_size);
   return asset;
 }

@@ -16,6 +16,7 @@
 
 #include "common/lfs_pointer.h"
 #include "galactic/bake/source_asset.h"
+#include "support/content_hash.h"
 #include "support/mapped_file.h"
 #include "support/try.h"
 
@@ -108,7 +109,7 @@ bool paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearc
       std::any_of(asset.meshes.begin(), asset.meshes.end(),
                   [](const SourceMesh& mesh) { return !mesh.uvs.empty(); });
   // An MTL that was read, whatever its name, states what colors there are.
-  const bool has_mtl = asset.files.size() > 1;
+  const bool has_mtl = asset.read.files.size() > 1;
   if (!is_obj || has_mtl || !has_coordinates) return false;
   const auto namesake = namesakeOf(main_input, search);
   if (!namesake) return false;
@@ -118,7 +119,7 @@ bool paintWithNamesake(SourceAsset& asset, const fs::path& main_input, FileSearc
     // What the reader takes for a color that nobody states is no factor.
     material.base_color = {1, 1, 1, material.base_color[3]};
   }
-  asset.files.push_back({.name = name});
+  asset.read.files.push_back({.name = name});
   if (asset.missing_materials.empty()) {
     asset.warnings.push_back(
         fmt::format("it has no MTL that names a texture: '{}' is drawn on all of it", name));
@@ -188,6 +189,8 @@ SourceFile describeBytes(std::string name, std::span<const std::byte> bytes) {
           .hash_high = hash.high64};
 }
 
+std::string hexOf(const SourceFile& file) { return detail::hexOf({file.hash_low, file.hash_high}); }
+
 Result<SourceFile> describeFile(const fs::path& path) {
   SourceFile file{.name = path.filename().generic_string()};
   RETURN_IF_ERROR(hashFile(file, path));
@@ -219,7 +222,7 @@ void findTextures(SourceAsset& asset, const fs::path& main_input, Reach reach) {
     }
     if (entry->second) {
       material.base_color_texture = nameRelativeTo(main_input, *entry->second);
-      if (is_new) asset.files.push_back({.name = material.base_color_texture});
+      if (is_new) asset.read.files.push_back({.name = material.base_color_texture});
     } else {
       material.base_color_texture.clear();
       if (!is_new) continue;
@@ -236,16 +239,15 @@ void findTextures(SourceAsset& asset, const fs::path& main_input, Reach reach) {
         fmt::format("material file '{}' is missing: its materials get default colors", file));
   }
   for (const fs::path& file : search.absent()) {
-    asset.absent_files.push_back(nameRelativeTo(main_input, file));
+    asset.read.absent.push_back(nameRelativeTo(main_input, file));
   }
 }
 
-Result<void> hashFiles(SourceAsset& asset, const fs::path& main_input) {
+Result<void> hashFiles(std::vector<SourceFile>& files, const fs::path& main_input) {
   const std::string main_name = nameRelativeTo(main_input, main_input);
   const auto order = [&](const SourceFile& file) {
     return std::pair(file.name != main_name, std::string_view(file.name));
   };
-  auto& files = asset.files;
   std::sort(files.begin(), files.end(),
             [&](const SourceFile& a, const SourceFile& b) { return order(a) < order(b); });
   const auto same = [](const SourceFile& a, const SourceFile& b) { return a.name == b.name; };

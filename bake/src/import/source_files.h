@@ -45,16 +45,17 @@ class FileSearch {
 [[nodiscard]] bool isBelow(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 /// Looks for the textures that the materials name, relative to the folder of `main_input`: found
-/// ones join `asset.files` and their materials get the path that was found; of missing ones the
-/// materials get none, with one warning each, which joins `asset.missing`, too. Every place where
-/// one is not joins `asset.absent_files`. Knows %20, backslashes, file:// and absolute paths of
-/// another machine (then the file's name beside the main input counts, as it does for files out of
-/// reach). Where the only texture that is named is missing, or an OBJ has no MTL, an image of the
-/// mesh's own name, or "texture", takes its place, with a warning.
+/// ones join `asset.read.files` and their materials get the path that was found; of missing ones
+/// the materials get none, with one warning each, which joins `asset.missing`, too. Every place
+/// where one is not joins `asset.read.absent`. Knows %20, backslashes, file:// and absolute paths
+/// of another machine (then the file's name beside the main input counts, as it does for files out
+/// of reach). Where the only texture that is named is missing, or an OBJ has no MTL, an image of
+/// the mesh's own name, or "texture", takes its place, with a warning.
 void findTextures(SourceAsset& asset, const std::filesystem::path& main_input, Reach reach);
 
-/// Sorts `asset.files`, main input first, and fills in sizes and XXH3-128 hashes. Fails with kIo
-/// when a file can no longer be read.
-[[nodiscard]] Result<void> hashFiles(SourceAsset& asset, const std::filesystem::path& main_input);
+/// Sorts `files`, main input first, leaves each once and fills in sizes and XXH3-128 hashes. Fails
+/// with kIo when a file can no longer be read.
+[[nodiscard]] Result<void> hashFiles(std::vector<SourceFile>& files,
+                                     const std::filesystem::path& main_input);
 
 }  // namespace galactic::bake

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 
 namespace galactic::bake {
 namespace {

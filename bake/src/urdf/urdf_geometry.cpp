@@ -134,8 +134,8 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
   auto asset = importMesh(file, mesh_options);
   if (!asset) {
     if (asset.error().code == ErrorCode::kInternal) return tl::unexpected(asset.error());
-    robot_.is_settled = false;
-    if (describeFile(file)) robot_.files.push_back({.name = nameRelativeTo(urdf_, file)});
+    robot_.read.is_settled = false;
+    if (describeFile(file)) robot_.read.files.push_back({.name = nameRelativeTo(urdf_, file)});
     std::string failure =
         fmt::format("mesh '{}' does not load: {}", nameRelativeTo(urdf_, asset.error().where),
                     asset.error().message);
@@ -143,12 +143,12 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
     return LoadedMesh{.index = {}, .failure = std::move(failure)};
   }
   const fs::path folder = file.parent_path();
-  for (SourceFile& source : asset->files) {
+  for (SourceFile& source : asset->read.files) {
     source.name = nameRelativeTo(urdf_, folder / source.name);
-    robot_.files.push_back(source);
+    robot_.read.files.push_back(source);
   }
-  for (const std::string& absent : asset->absent_files) {
-    robot_.absent_files.push_back(nameRelativeTo(urdf_, folder / absent));
+  for (const std::string& absent : asset->read.absent) {
+    robot_.read.absent.push_back(nameRelativeTo(urdf_, folder / absent));
   }
   for (SourceMaterial& material : asset->materials) {
     std::string& texture = material.base_color_texture;
@@ -266,12 +266,12 @@ Result<std::vector<GeometryBuilder::LostShape>> GeometryBuilder::addList(const U
 }
 
 void GeometryBuilder::noteSearch() {
-  if (resolver_.hasSearched()) robot_.is_settled = false;
+  if (resolver_.hasSearched()) robot_.read.is_settled = false;
   for (const fs::path& file : resolver_.packageFiles()) {
-    robot_.files.push_back({.name = nameRelativeTo(urdf_, file)});
+    robot_.read.files.push_back({.name = nameRelativeTo(urdf_, file)});
   }
   for (const fs::path& absent : resolver_.search().absent()) {
-    robot_.absent_files.push_back(nameRelativeTo(urdf_, absent));
+    robot_.read.absent.push_back(nameRelativeTo(urdf_, absent));
   }
 }
 

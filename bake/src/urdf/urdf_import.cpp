@@ -78,12 +78,8 @@ void addJoints(const UrdfModel& model, const std::vector<TreeLink>& tree,
 
 /// Sorts and hashes the URDF and the files that its meshes named.
 Result<void> finishFiles(SourceRobot& robot, const fs::path& path) {
-  SourceAsset list;
-  list.files = std::move(robot.files);
-  list.files.push_back({.name = nameRelativeTo(path, path)});
-  if (auto hashed = hashFiles(list, path); !hashed) return hashed;
-  robot.files = std::move(list.files);
-  return {};
+  robot.read.files.push_back({.name = nameRelativeTo(path, path)});
+  return hashFiles(robot.read.files, path);
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ TEST(SceneSource, OfInstancesOfOneNameHasItsFilesBelowTheDataset) {
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->input, small.folder() / "two_x");
   EXPECT_EQ(read->folder, small.folder());
-  for (const bake::SourceFile& file : read->asset.files) {
+  for (const bake::SourceFile& file : read->asset.read.files) {
     EXPECT_TRUE(fs::exists(read->folder / file.name)) << file.name;
   }
 }

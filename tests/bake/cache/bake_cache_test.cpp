@@ -51,14 +51,13 @@ class Cache : public testing::Test {
     FileDigests digests;
     BakeInputs inputs;
     inputs.key = key;
-    inputs.folder = at("data");
     for (const char* name : {"room.mtl", "room.obj"}) {
       auto digest = digests.of(at("data") / name);
       EXPECT_TRUE(digest.has_value());
       digest->name = name;
-      inputs.files.push_back(*digest);
+      inputs.read.files.push_back(*digest);
     }
-    inputs.absent = {"room.png"};
+    inputs.read.absent = {"room.png"};
     return inputs;
   }
   void store(const std::string& name = "home") const { store(inputs(), name); }

@@ -6,7 +6,7 @@
 
 #include <thread>
 
-#include "galactic/bake/source_asset.h"
+#include "galactic/bake/read_files.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::file_digests_test {
@@ -14,11 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using bake::FileDigests;
-using bake::SourceFile;
-
-bool same(const SourceFile& a, const SourceFile& b) {
-  return a.bytes == b.bytes && a.hash_low == b.hash_low && a.hash_high == b.hash_high;
-}
 
 TEST(FileDigests, AreThoseOfTheContentUnderThePathAsGiven) {
   const ScratchFolder folder;
@@ -28,7 +23,7 @@ TEST(FileDigests, AreThoseOfTheContentUnderThePathAsGiven) {
   const auto wanted = bake::describeFile(file);
   ASSERT_TRUE(found.has_value());
   ASSERT_TRUE(wanted.has_value());
-  EXPECT_TRUE(same(*found, *wanted));
+  EXPECT_TRUE(sameContent(*found, *wanted));
   EXPECT_EQ(found->name, file.generic_string());
 }
 
@@ -43,10 +38,10 @@ TEST(FileDigests, TellWhatAFileHeldWhenItWasFirstLookedAt) {
   for (const fs::path& spelling : {file, folder.path() / "./a.txt", folder.path() / "b/../a.txt"}) {
     const auto again = digests.of(spelling);
     ASSERT_TRUE(again.has_value());
-    EXPECT_TRUE(same(*again, *first)) << spelling;
+    EXPECT_TRUE(sameContent(*again, *first)) << spelling;
   }
   FileDigests fresh;
-  EXPECT_FALSE(same(*fresh.of(file), *first));
+  EXPECT_FALSE(sameContent(*fresh.of(file), *first));
 }
 
 TEST(FileDigests, RefuseWhatCannotBeReadEachTime) {
@@ -57,6 +52,27 @@ TEST(FileDigests, RefuseWhatCannotBeReadEachTime) {
     ASSERT_FALSE(missing.has_value());
     EXPECT_EQ(missing.error().code, ErrorCode::kIo);
   }
+}
+
+TEST(FileDigests, TellWhetherFilesAreAsTheyWereRead) {
+  const ScratchFolder folder;
+  const auto areAsRead = [&](const bake::ReadFiles& read) {
+    return FileDigests().areAsRead(read, folder.path());
+  };
+  bake::ReadFiles read{.files = {*bake::describeFile(folder.write("in/a.txt", "some text"))},
+                       .absent = {"in/b.txt"}};
+  EXPECT_FALSE(areAsRead(read)) << "names are relative to the folder";
+  read.files.front().name = "in/a.txt";
+  EXPECT_TRUE(areAsRead(read));
+  static_cast<void>(folder.write("in/a.txt", "same size"));
+  EXPECT_FALSE(areAsRead(read));
+  static_cast<void>(folder.write("in/a.txt", "some text"));
+  EXPECT_TRUE(areAsRead(read));
+  static_cast<void>(folder.write("in/b.txt", ""));
+  EXPECT_FALSE(areAsRead(read));
+  fs::remove_all(folder.path() / "in");
+  EXPECT_FALSE(areAsRead(read));
+  EXPECT_TRUE(areAsRead({}));
 }
 
 TEST(FileDigests, AreTheSameForAllThreads) {

@@ -140,7 +140,7 @@ TEST(SceneDataset, ReadsNoMeshOfWhatMoves) {
   const ComposedScene scene = composed(small, "one");
   EXPECT_EQ(scene.scene.instances.size(), 1U);
   EXPECT_THAT(scene.scene.warnings, testing::IsEmpty());
-  for (const bake::SourceFile& file : scene.scene.files) {
+  for (const bake::SourceFile& file : scene.scene.read.files) {
     EXPECT_THAT(file.name, testing::Not(testing::AnyOf("meshes/cut.glb", "meshes/box.obj")));
   }
 }
@@ -255,7 +255,7 @@ TEST(SceneDataset, SaysWhatLacksAndWhereItWasLookedFor) {
                           "object 'lamp' is in none of the dataset's paths",
                           "articulated object 'cupboard': its mesh 'handle.glb' is missing"));
   // A URDF's mesh is looked for in all folders above it, too.
-  EXPECT_THAT(scene.absent_files,
+  EXPECT_THAT(scene.scene.read.absent,
               IsSupersetOf({"configs/objects/big/lamp.object_config.json",
                             "configs/objects/small/lamp.object_config.json", "meshes/ghost.glb",
                             "urdf/cupboard/handle.glb", "urdf/handle.glb", "handle.glb"}));
@@ -264,7 +264,7 @@ TEST(SceneDataset, SaysWhatLacksAndWhereItWasLookedFor) {
 TEST(SceneDataset, ListsEveryFileThatWasReadOnce) {
   const ComposedScene scene = composed(SmallDataset());
   std::vector<std::string> names;
-  for (const bake::SourceFile& file : scene.scene.files) {
+  for (const bake::SourceFile& file : scene.scene.read.files) {
     names.push_back(file.name);
     EXPECT_GT(file.bytes, 0U) << file.name;
     EXPECT_NE(file.hash_low, 0U) << file.name;
@@ -434,7 +434,7 @@ TEST(SceneDataset, DoesNotDependOnTheOrderOfScenesOrOnTheLibrary) {
     for (const auto& mesh : scene->scene.meshes) {
       text += fmt::format("{} {} {}\n", mesh.name, mesh.positions.size(), mesh.material);
     }
-    for (const auto& file : scene->scene.files) {
+    for (const auto& file : scene->scene.read.files) {
       text += fmt::format("{} {} {}\n", file.name, file.hash_low, file.hash_high);
     }
     return text;

@@ -43,8 +43,8 @@ SourceAsset exampleRest() {
                              .alpha_mode = AlphaMode::kMask,
                              .alpha_cutoff = 0.25F});
   asset.textures.push_back({.format = "png", .bytes = {1, 2, 3}});
-  asset.files.push_back({.name = "room.glb", .bytes = 5, .hash_low = 6, .hash_high = 7});
-  asset.absent_files = {"room.mtl"};
+  asset.read.files.push_back({.name = "room.glb", .bytes = 5, .hash_low = 6, .hash_high = 7});
+  asset.read.absent = {"room.mtl"};
   asset.missing = {"second"};
   asset.warnings = {"first", "second"};
   return asset;
@@ -97,12 +97,12 @@ TEST(AssetTransfer, DeliversEveryField) {
   ASSERT_EQ(asset->textures.size(), 1U);
   EXPECT_EQ(asset->textures[0].format, "png");
   EXPECT_EQ(asset->textures[0].bytes, expected.textures[0].bytes);
-  ASSERT_EQ(asset->files.size(), 1U);
-  EXPECT_EQ(asset->files[0].name, "room.glb");
-  EXPECT_EQ(asset->files[0].bytes, 5U);
-  EXPECT_EQ(asset->files[0].hash_low, 6U);
-  EXPECT_EQ(asset->files[0].hash_high, 7U);
-  EXPECT_EQ(asset->absent_files, expected.absent_files);
+  ASSERT_EQ(asset->read.files.size(), 1U);
+  EXPECT_EQ(asset->read.files[0].name, "room.glb");
+  EXPECT_EQ(asset->read.files[0].bytes, 5U);
+  EXPECT_EQ(asset->read.files[0].hash_low, 6U);
+  EXPECT_EQ(asset->read.files[0].hash_high, 7U);
+  EXPECT_EQ(asset->read.absent, expected.read.absent);
   EXPECT_EQ(asset->missing, expected.missing);
   EXPECT_EQ(asset->warnings, expected.warnings);
 }

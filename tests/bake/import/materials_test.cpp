@@ -227,7 +227,7 @@ bake::SourceMaterial materialOf(const ScratchFolder& folder, const std::string& 
   // Whatever is drawn is among the files, with its hash.
   for (const SourceMaterial& material : asset->materials) {
     const std::string& name = material.base_color_texture;
-    const bool is_listed = std::any_of(asset->files.begin(), asset->files.end(),
+    const bool is_listed = std::any_of(asset->read.files.begin(), asset->read.files.end(),
                                        [&](const auto& file) { return file.name == name; });
     EXPECT_TRUE(name.empty() || is_listed) << name;
   }
@@ -286,7 +286,7 @@ TEST(ObjMaterials, AreFoundWhateverEndsTheLineThatNamesThem) {
       const bool is_red = std::string_view(name) == "colors.mtl";
       EXPECT_THAT(asset->materials[asset->meshes[0].material].base_color,
                   ElementsAre(is_red ? 1.F : 0.F, is_red ? 0.F : 1.F, 0.F, 1.F));
-      EXPECT_EQ(asset->files.size(), 2U);
+      EXPECT_EQ(asset->read.files.size(), 2U);
     }
   }
   // An MTL of any name says what there is to be drawn.
@@ -330,7 +330,7 @@ TEST(NamedFiles, OutsideOfTheMeshesFolderAreReadOnlyWhenAllowed) {
   const auto mesh = folder.write("a/b/c/model.obj", obj);
   const auto refused = importMesh(mesh);
   ASSERT_TRUE(refused.has_value());
-  EXPECT_EQ(refused->files.size(), 1U);
+  EXPECT_EQ(refused->read.files.size(), 1U);
   EXPECT_THAT(refused->warnings, testing::Contains(testing::HasSubstr(
                                      "'../../../far/lost.mtl' lies outside the folder "
                                      "of the mesh and is not read")));
@@ -338,7 +338,7 @@ TEST(NamedFiles, OutsideOfTheMeshesFolderAreReadOnlyWhenAllowed) {
   options.allow_outside = true;
   const auto allowed = importMesh(mesh, options);
   ASSERT_TRUE(allowed.has_value());
-  EXPECT_EQ(allowed->files.size(), 2U);
+  EXPECT_EQ(allowed->read.files.size(), 2U);
 
   // Textures may lie beside the folder, not farther off.
   (void)folder.write("a/b/c/model.mtl", "newmtl m\nmap_Kd ../../../far/image.png\n");
@@ -377,7 +377,7 @@ TEST(NamedFiles, ThatArePipesOrDevicesAreNotWaitedFor) {
   const auto obj = importMesh(
       folder.write("model.obj", objWithCoordinates("mtllib model.mtl\nusemtl m\n")), options);
   ASSERT_TRUE(obj.has_value()) << obj.error().message;
-  EXPECT_EQ(obj->files.size(), 1U);
+  EXPECT_EQ(obj->read.files.size(), 1U);
   GltfPieces pieces;
   pieces.buffer_uri = R"("uri":"a.bin",)";
   EXPECT_FALSE(importMesh(folder.write("a.gltf", gltfFile(unevenBox(), pieces)), options));
@@ -385,7 +385,7 @@ TEST(NamedFiles, ThatArePipesOrDevicesAreNotWaitedFor) {
   const auto zero = importMesh(
       folder.write("zero.obj", objWithCoordinates("mtllib /dev/zero\nusemtl m\n")), options);
   ASSERT_TRUE(zero.has_value()) << zero.error().message;
-  EXPECT_EQ(zero->files.size(), 1U);
+  EXPECT_EQ(zero->read.files.size(), 1U);
 }
 
 /// How the first vertex of a triangle is drawn that its file colors like this: 0xAABBGGRR.

@@ -214,14 +214,14 @@ TEST(SceneGraph, ListsTheFilesItReadWithSizesAndHashes) {
   const std::string obj = "mtllib room.mtl\nv 0 0 0\nv 3 0 0\nv 0 0 3\nusemtl oak\nf 1 2 3\n";
   const auto asset = importMesh(folder.write("meshes/room.obj", obj));
   ASSERT_TRUE(asset.has_value()) << asset.error().message;
-  ASSERT_EQ(asset->files.size(), 3U);
-  EXPECT_EQ(asset->files[0].name, "room.obj") << "the main input comes first";
-  EXPECT_EQ(asset->files[1].name, "../a.png");
-  EXPECT_EQ(asset->files[2].name, "room.mtl");
-  EXPECT_EQ(asset->files[0].bytes, obj.size());
+  ASSERT_EQ(asset->read.files.size(), 3U);
+  EXPECT_EQ(asset->read.files[0].name, "room.obj") << "the main input comes first";
+  EXPECT_EQ(asset->read.files[1].name, "../a.png");
+  EXPECT_EQ(asset->read.files[2].name, "room.mtl");
+  EXPECT_EQ(asset->read.files[0].bytes, obj.size());
   const XXH128_hash_t hash = XXH3_128bits("picture", 7);
-  EXPECT_EQ(asset->files[1].hash_low, hash.low64);
-  EXPECT_EQ(asset->files[1].hash_high, hash.high64);
+  EXPECT_EQ(asset->read.files[1].hash_low, hash.low64);
+  EXPECT_EQ(asset->read.files[1].hash_high, hash.high64);
 }
 
 /// A triangle of which a morph target moves the second corner by (1, 2, 3), with weights.
@@ -275,8 +275,8 @@ TEST(SceneGraph, NamesTheBufferOfAGltfAmongItsFiles) {
                                                       .buffer_uri = R"("uri":"box%201.bin",)",
                                                       .more = {}})));
   ASSERT_TRUE(asset.has_value()) << asset.error().message;
-  ASSERT_EQ(asset->files.size(), 2U);
-  EXPECT_EQ(asset->files[1].name, "box 1.bin");
+  ASSERT_EQ(asset->read.files.size(), 2U);
+  EXPECT_EQ(asset->read.files[1].name, "box 1.bin");
 }
 
 TEST(SceneGraph, IgnoresPointsAndLinesWithAWarning) {

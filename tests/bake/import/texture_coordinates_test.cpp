@@ -207,9 +207,9 @@ TEST(TextureCoordinates, AreFoundInBuffersOfAllKinds) {
   ASSERT_TRUE(beside.has_value()) << beside.error().message;
   expectDrawn(drawn(*beside), kCorners);
   // What only the reader gets is no file of the asset.
-  ASSERT_EQ(beside->files.size(), 2U);
-  EXPECT_EQ(beside->files[0].name, "a.gltf");
-  EXPECT_EQ(beside->files[1].name, "my buffer.bin");
+  ASSERT_EQ(beside->read.files.size(), 2U);
+  EXPECT_EQ(beside->read.files[0].name, "a.gltf");
+  EXPECT_EQ(beside->read.files[1].name, "my buffer.bin");
 
   const std::string data =
       "AAAAAAAAAAAAAAAAAAAQQQAAAAAAAAAAAAAAAAAAEEEAAAAAAAAAAAAAAAAAAAAAAAAAAP//AAAAAP//iVBORw0K"

@@ -89,10 +89,10 @@ TEST(UrdfMeshes, AreLoadedOncePerFile) {
                         jointText("j", "fixed", "a,b")));
   ASSERT_TRUE(robot.has_value()) << robot.error().message;
   EXPECT_EQ(robot->meshes.size(), 1U);
-  ASSERT_EQ(robot->files.size(), 2U);
-  EXPECT_EQ(robot->files[0].name, "r.urdf");
-  EXPECT_EQ(robot->files[1].name, "box.stl");
-  for (const bake::SourceFile& file : robot->files) EXPECT_NE(file.hash_low, 0U);
+  ASSERT_EQ(robot->read.files.size(), 2U);
+  EXPECT_EQ(robot->read.files[0].name, "r.urdf");
+  EXPECT_EQ(robot->read.files[1].name, "box.stl");
+  for (const bake::SourceFile& file : robot->read.files) EXPECT_NE(file.hash_low, 0U);
 }
 
 TEST(UrdfMeshes, OfDoubtfulSizeDrawAQuestionAboutTheUnit) {
@@ -202,7 +202,7 @@ TEST(UrdfMissingGeometry, IncludesMeshesThatDoNotLoad) {
   ASSERT_EQ(robot->warnings.size(), 1U);
   EXPECT_THAT(robot->warnings[0],
               testing::StartsWith("link 'a' collision 1: mesh 'lost.stl' does not load: "));
-  EXPECT_FALSE(robot->is_settled) << "it may lack another file";
+  EXPECT_FALSE(robot->read.is_settled) << "it may lack another file";
   EXPECT_FALSE(importText(folder, linkWith(kLostCollision)).has_value());
 }
 

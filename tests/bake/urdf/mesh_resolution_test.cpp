@@ -197,7 +197,7 @@ TEST_F(MeshReferences, MakePackageFilesSourcesOfTheRobot) {
       "ws/r.urdf", robotText(linkText("a", "<mesh filename=\"package://arm/m.stl\"/>"))));
   ASSERT_TRUE(robot.has_value()) << robot.error().message;
   std::vector<std::string> names;
-  for (const bake::SourceFile& file : robot->files) names.push_back(file.name);
+  for (const bake::SourceFile& file : robot->read.files) names.push_back(file.name);
   EXPECT_THAT(names, testing::ElementsAre("r.urdf", "arm/m.stl", "package.xml"));
 }
 

@@ -77,7 +77,7 @@ TEST_P(RealRobots, LoadWithTheExpectedCounts) {
   EXPECT_EQ(robot->meshes.size(), GetParam().meshes);
   EXPECT_EQ(robot->warnings.size(), GetParam().warnings);
   for (const std::string& warning : robot->warnings) std::printf("%s\n", warning.c_str());
-  for (const bake::SourceFile& file : robot->files) {
+  for (const bake::SourceFile& file : robot->read.files) {
     EXPECT_FALSE(std::filesystem::path(file.name).is_absolute());
   }
 }

@@ -45,7 +45,7 @@ BakedScene bake(const TriangleMesh& mesh, const SceneBakeOptions& options = {}) 
 Provenance provenance() {
   return {.tool_version = "1.2.3",
           .options = {{"radii", "0.015,0.05,0.12"}, {"spacing", "0.03"}},
-          .sources = test::sourceAssetOf(roomWithBalcony(2)).files,
+          .sources = test::sourceAssetOf(roomWithBalcony(2)).read.files,
           .warnings = {"the texture is missing"}};
 }
 

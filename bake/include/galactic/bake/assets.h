@@ -30,14 +30,10 @@ struct ReadFile {
 class ReadLog {
  public:
   void noteRead(const std::filesystem::path& file) { read_.push_back({file, std::nullopt}); }
-  /// `files` by their names below `folder`.
-  void noteRead(const std::filesystem::path& folder, const std::vector<SourceFile>& files);
+  /// By their names below `folder`.
+  void note(const std::filesystem::path& folder, const ReadFiles& read);
   /// Remembers a file that was looked for and is not there.
   void noteAbsent(const std::filesystem::path& file) { absent_.push_back(file); }
-  /// `files` by their names below `folder`.
-  void noteAbsent(const std::filesystem::path& folder, const std::vector<std::string>& files);
-  /// Remembers that more than these files decides what was read.
-  void noteUnsettled() { is_settled_ = false; }
 
   [[nodiscard]] const std::vector<ReadFile>& files() const { return read_; }
   [[nodiscard]] const std::vector<std::filesystem::path>& absent() const { return absent_; }

@@ -2,13 +2,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "galactic/error.h"
+#include "galactic/bake/read_files.h"
 #include "galactic/pose.h"
 
 namespace galactic::bake {
@@ -68,15 +66,6 @@ struct SourceInstance {
   Affine world_from_mesh{};
 };
 
-/// One file that was read.
-struct SourceFile {
-  /// Relative to the folder of the main input.
-  std::string name;
-  std::uint64_t bytes = 0;
-  std::uint64_t hash_low = 0;
-  std::uint64_t hash_high = 0;
-};
-
 /// What an importer hands to the bakers: neutral, in the world frame (Y up, meters).
 struct SourceAsset {
   /// Main input's file name without its extension.
@@ -93,11 +82,9 @@ struct SourceAsset {
   std::vector<SourceInstance> instances;
   std::vector<SourceMaterial> materials;
   std::vector<EmbeddedTexture> textures;
-  std::vector<SourceFile> files;
-  /// What was looked for and is not there, relative to the folder of the main input: once it is
-  /// there, another asset may be read.
-  std::vector<std::string> absent_files;
-  /// Files of materials that are named and missing, likewise.
+  /// Names are relative to the folder of the main input.
+  ReadFiles read;
+  /// Files of materials that are named and missing, relative to the folder of the main input.
   std::vector<std::string> missing_materials;
   /// One sentence for each texture and file of materials that is named and missing: what is drawn
   /// instead. They are among the warnings, too.
@@ -116,12 +103,5 @@ struct Provenance {
   std::vector<SourceFile> sources;
   std::vector<std::string> warnings;
 };
-
-/// Size and XXH3-128 hash of the file at `path`, for a pack's provenance. Its name is the file's
-/// own: the path would tell of the machine. Fails with kIo where it cannot be read.
-[[nodiscard]] Result<SourceFile> describeFile(const std::filesystem::path& path);
-
-/// The same of a file that is in memory.
-[[nodiscard]] SourceFile describeBytes(std::string name, std::span<const std::byte> bytes);
 
 }  // namespace galactic::bake

@@ -80,13 +80,9 @@ struct SourceRobot {
   /// Each mesh file once.
   std::vector<SourceAsset> meshes;
   /// The URDF, every mesh file, also those that do not load, and every package.xml that decided
-  /// where meshes are.
-  std::vector<SourceFile> files;
-  /// Files and folders that were looked for and are not there, relative to the URDF's folder.
-  std::vector<std::string> absent_files;
-  /// Whether `files` and `absent_files` are all that decides it. They are not where a mesh does not
-  /// load, which may lack another file, nor where a package was searched for in many folders.
-  bool is_settled = true;
+  /// where meshes are; relative to the URDF's folder. Unsettled where a mesh does not load, which
+  /// may lack another file, and where a package was searched for in many folders.
+  ReadFiles read;
   /// One sentence each.
   std::vector<std::string> warnings;
   /// References to meshes that were not found, as the URDF has them.
