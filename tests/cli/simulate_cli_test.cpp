@@ -105,6 +105,21 @@ TEST_F(SimulateCli, EndsWithATable) {
   EXPECT_THAT(result.err, IsEmpty());
 }
 
+TEST_F(SimulateCli, TellsInHowManyEpisodesTheTargetWasPicked) {
+  const std::vector<std::string> solved{"--envs",   "3",        "--steps", "150",
+                                        "--policy", "scripted", "--order", "partition"};
+  EXPECT_THAT(run(solved).out, HasSubstr("\n  episodes      3 of 3 ended: 3 successes, 0 failures, "
+                                         "0 out of time; 3 picked\n"));
+  EXPECT_EQ(reportOf(solved)["episodes"]["picked"], 3);
+  EXPECT_THAT(
+      run({"--envs", "3", "--steps", "20", "--policy", "zero", "--episode-steps", "20"}).out,
+      HasSubstr("\n  episodes      3 ended: 0 successes, 0 failures, 3 out of time; "
+                "0 picked\n"));
+  // Where nothing is asked of the target, nobody wants to know.
+  EXPECT_THAT(run({"--envs", "3", "--steps", "20", "--task", "none", "--episode-steps", "20"}).out,
+              HasSubstr("\n  episodes      3 ended: 0 successes, 0 failures, 3 out of time\n"));
+}
+
 TEST_F(SimulateCli, GivesNoMeansOfEpisodesWhereNoneEnded) {
   const ProgramRun result = run({"--envs", "2", "--steps", "1"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -149,6 +164,8 @@ TEST_F(SimulateCli, ReportsAsJson) {
   EXPECT_EQ(episodes["ended"].get<int>(), episodes["successes"].get<int>() +
                                               episodes["failures"].get<int>() +
                                               episodes["out_of_time"].get<int>());
+  // Who has the target in the hand has solved this task.
+  EXPECT_EQ(episodes["picked"], episodes["successes"]);
   EXPECT_TRUE(episodes["mean_return"].is_number());
   EXPECT_LE(episodes["mean_steps"].get<double>(), 20);
   EXPECT_FALSE(report.contains("first_difference"));

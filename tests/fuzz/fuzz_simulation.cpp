@@ -101,6 +101,7 @@ void checkBatch(const BatchSimulator& simulator, std::uint64_t given) {
     checkEnv(simulator.envState(env));
     if (simulator.successes()[env] > simulator.dones()[env])
       reportFinding("a success that is no end");
+    if (simulator.picks()[env] > simulator.dones()[env]) reportFinding("a pick that is no end's");
     const galactic::EpisodeEnd end = simulator.endings()[env];
     const bool says_done = galactic::isTermination(end) || galactic::isTruncation(end);
     if (says_done != (simulator.dones()[env] != 0)) reportFinding("an end without a reason");
@@ -109,6 +110,7 @@ void checkBatch(const BatchSimulator& simulator, std::uint64_t given) {
   if (seen.refused + seen.slid > seen.steps) reportFinding("more steps refused and slid than done");
   if (seen.drops + seen.restored > seen.grasps + given) reportFinding("more released than grasped");
   if (seen.successes + seen.failures > seen.episodes) reportFinding("more ends than episodes");
+  if (seen.picks > seen.episodes) reportFinding("more picks than episodes");
 }
 
 }  // namespace

@@ -60,10 +60,13 @@ std::string episodeLines(const RunReport& report) {
   const std::size_t playable = report.world_episodes - report.skipped.size();
   const bool is_once = report.options.simulation.order == EpisodeOrder::kPartition;
   const std::string of_all = is_once ? fmt::format(" of {}", playable) : "";
+  // Without a task, nothing is asked of the target.
+  const bool is_asked = report.options.simulation.task.kind != TaskKind::kNone;
+  const std::string picked = is_asked ? fmt::format("; {} picked", sum.picks) : "";
   std::string text = line(
-      "episodes", fmt::format("{}{} ended: {}, {}, {} out of time", sum.episodes, of_all,
+      "episodes", fmt::format("{}{} ended: {}, {}, {} out of time{}", sum.episodes, of_all,
                               counted(sum.successes, "success"), counted(sum.failures, "failure"),
-                              sum.episodes - sum.successes - sum.failures));
+                              sum.episodes - sum.successes - sum.failures, picked));
   // Without an episode that ended there is no mean.
   if (episodes.ended == 0) return text;
   return text +

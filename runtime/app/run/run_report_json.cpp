@@ -169,6 +169,7 @@ void writeCounts(JsonWriter& json, const RunReport& report) {
   json.number("successes", sum.successes);
   json.number("failures", sum.failures);
   json.number("out_of_time", sum.episodes - sum.successes - sum.failures);
+  json.number("picked", sum.picks);
   // Without an ended episode there is no mean: null.
   json.number("mean_return", report.episodes.returns / ended);
   json.number("mean_steps", static_cast<double>(report.episodes.steps) / ended);

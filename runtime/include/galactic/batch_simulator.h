@@ -78,6 +78,8 @@ struct SimulationStatistics {
   std::uint64_t episodes = 0;
   std::uint64_t successes = 0;
   std::uint64_t failures = 0;
+  /// Episodes that ended and in which the target had been in the hand.
+  std::uint64_t picks = 0;
   /// Action values that were not a number and were taken as zero.
   std::uint64_t nan_actions = 0;
   /// Sum of the rewards of all steps.
@@ -97,6 +99,7 @@ constexpr void visitStatistics(Visit&& visit) {
   visit("episodes", &SimulationStatistics::episodes);
   visit("successes", &SimulationStatistics::successes);
   visit("failures", &SimulationStatistics::failures);
+  visit("picks", &SimulationStatistics::picks);
   visit("nan_actions", &SimulationStatistics::nan_actions);
   visit("reward", &SimulationStatistics::reward);
 }
@@ -144,6 +147,9 @@ struct EnvObjects {
   /// Index into `objects`; -1 when nothing is held.
   std::int32_t held = -1;
   Pose world_from_held;
+  /// Whether the target has been in the hand in this episode; see BatchSimulator::picks() for one
+  /// that has ended.
+  bool has_picked = false;
   /// Where the target is to be.
   Pose goal;
 };
@@ -338,6 +344,9 @@ class BatchSimulator {
   [[nodiscard]] std::span<const std::uint8_t> successes() const;
   /// How it ended; kNone where it goes on or the caller reset it. Shape: envs.
   [[nodiscard]] std::span<const EpisodeEnd> endings() const;
+  /// 1 where it ended and the target had been in the hand at any time of it, whatever the task.
+  /// Shape: envs.
+  [[nodiscard]] std::span<const std::uint8_t> picks() const;
 
   /// 1 where an env has played its share of the episodes (EpisodeOrder::kPartition), or waits where
   /// its episode ended (without SimulationOptions::auto_reset): from the step after on, it ignores

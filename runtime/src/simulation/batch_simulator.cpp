@@ -300,6 +300,7 @@ class BatchSimulator::Impl {
     chosen.env.reward_sum = state_.env(env).reward_sum;
     chosen.reward = state_.rewards()[env];
     chosen.ending = state_.endings()[env];
+    chosen.had_picked = state_.picks()[env] != 0;
     if (chosen.ending == EpisodeEnd::kNone) return;
     const std::span<const float> last = state_.finalObservation(env);
     chosen.final_observation.assign(last.begin(), last.end());
@@ -440,6 +441,9 @@ std::span<const std::uint8_t> BatchSimulator::successes() const {
 std::span<const EpisodeEnd> BatchSimulator::endings() const {
   return impl_->state().endings().first(envCount());
 }
+std::span<const std::uint8_t> BatchSimulator::picks() const {
+  return impl_->state().picks().first(envCount());
+}
 
 std::span<const std::uint8_t> BatchSimulator::idle() const {
   return impl_->state().idle().first(envCount());
@@ -469,6 +473,7 @@ SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
           .episodes = counters.episodes,
           .successes = counters.successes,
           .failures = counters.failures,
+          .picks = counters.picks,
           .nan_actions = counters.nan_actions,
           .reward = impl_->state().env(env).reward_sum};
 }

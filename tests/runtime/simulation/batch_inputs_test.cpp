@@ -303,6 +303,7 @@ TEST(Resets, AreWaitedForWhereAnEpisodeEndedAndNothingCountsMeanwhile) {
     ASSERT_EQ(std::ranges::count(simulator.dones(), 0), kEnvs);
     ASSERT_EQ(std::ranges::count(simulator.successes(), 0), kEnvs);
     ASSERT_EQ(std::ranges::count(simulator.endings(), EpisodeEnd::kNone), kEnvs);
+    ASSERT_EQ(std::ranges::count(simulator.picks(), 0), kEnvs);
     ASSERT_EQ(std::ranges::count(simulator.rewards(), 0.0F), kEnvs);
   }
   EXPECT_TRUE(std::ranges::equal(simulator.observations(), seen));

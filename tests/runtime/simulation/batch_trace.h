@@ -95,6 +95,7 @@ class BatchTrace {
     addAll(hash, std::span(&reward, 1));
     mixIn(hash, simulator.dones()[env] * 2U + simulator.successes()[env]);
     mixIn(hash, static_cast<std::uint32_t>(simulator.endings()[env]));
+    mixIn(hash, simulator.picks()[env]);
     if (!simulator.bodyTransforms().empty()) {
       const std::size_t bodies = simulator.bodyCount();
       for (const RigidTransform& body : simulator.bodyTransforms().subspan(env * bodies, bodies)) {

@@ -106,6 +106,7 @@ TEST(AFollower, ObservesAndJudgesWhatTheStepsThatItFollowsDo) {
     }
     for (std::size_t env = 0; env < pair.leader().envCount(); ++env) {
       ASSERT_EQ(pair.follower().endings()[env], pair.leader().endings()[env]) << "step " << n;
+      ASSERT_EQ(pair.follower().picks()[env], pair.leader().picks()[env]) << "step " << n;
       constexpr float kWeights = 20;
       ASSERT_NEAR(pair.follower().rewards()[env], pair.leader().rewards()[env],
                   kWeights * kTolerance);
@@ -122,6 +123,8 @@ TEST(AFollower, ObservesAndJudgesWhatTheStepsThatItFollowsDo) {
   EXPECT_EQ(found.drops, wanted.drops + wanted.restored);
   EXPECT_EQ(found.successes, wanted.successes);
   EXPECT_GT(found.successes, 5U);
+  EXPECT_EQ(found.picks, wanted.picks);
+  EXPECT_GT(found.picks, found.successes);
   EXPECT_EQ(found.refused, wanted.refused);
 }
 

@@ -31,6 +31,7 @@ struct Tally {
   int late = 0;
   std::array<int, kEpisodeEnds> endings{};
   int grasps = 0;
+  int picks = 0;
 };
 
 /// One case: which task, and which outcomes are to be seen in 10 to 90 % of its episodes.
@@ -164,9 +165,12 @@ TEST_P(TaskRules, AreThoseOfThePaper) {
           std::span<const float>(actions).subspan(env * kSmallHomeActions, kSmallHomeActions);
       const Judgement wanted = oracles[env].judge(before[env], after, row);
       ASSERT_NO_FATAL_FAILURE(check(twins, env, after, wanted));
+      ASSERT_EQ(twins.batch().picks()[env] != 0, wanted.done && oracles[env].hasPicked());
+      ASSERT_EQ(twins.hasPicked(env), oracles[env].hasPicked());
       reward += wanted.reward;
       tally_.grasps += before[env].held < 0 && after.held >= 0 ? 1 : 0;
       if (!wanted.done) continue;
+      tally_.picks += oracles[env].hasPicked() ? 1 : 0;
       oracles[env].begin();
       actors[env].begin();
     }
@@ -180,19 +184,22 @@ TEST_P(TaskRules, AreThoseOfThePaper) {
   EXPECT_EQ(sum.episodes, static_cast<std::uint64_t>(tally_.ended));
   EXPECT_EQ(sum.successes, static_cast<std::uint64_t>(tally_.successes));
   EXPECT_EQ(sum.failures, static_cast<std::uint64_t>(tally_.failures));
+  EXPECT_EQ(sum.picks, static_cast<std::uint64_t>(tally_.picks));
   EXPECT_EQ(sum.grasps, static_cast<std::uint64_t>(tally_.grasps));
   EXPECT_GT(sum.nan_actions, 0U);
   EXPECT_NEAR(sum.reward, reward, kRewardTolerance * kSteps);
   EXPECT_GT(tally_.grasps, kSteps / 10);
   EXPECT_GT(tally_.ended, kSteps / 4);
+  expectSeen(true, tally_.picks);
   expectSeen(GetParam().sees_success, tally_.successes);
   expectSeen(GetParam().sees_failure, tally_.failures);
   expectSeen(GetParam().sees_late, tally_.late);
   for (const EpisodeEnd mistake : GetParam().mistakes) {
     EXPECT_GE(tally_.endings[static_cast<std::size_t>(mistake)], 5) << static_cast<int>(mistake);
   }
-  std::printf("seed %u: %d episodes, %d successes, %d failures, %d late, %d grasps\n", kSeed,
-              tally_.ended, tally_.successes, tally_.failures, tally_.late, tally_.grasps);
+  std::printf("seed %u: %d episodes, %d successes, %d failures, %d late, %d grasps, %d picks\n",
+              kSeed, tally_.ended, tally_.successes, tally_.failures, tally_.late, tally_.grasps,
+              tally_.picks);
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, TaskRules, testing::ValuesIn(cases()),

@@ -1,4 +1,5 @@
 // The rules of the task one by one, played by hand in the small home.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,6 +13,8 @@
 
 namespace galactic::test::task_test {
 namespace {
+
+using testing::ElementsAre;
 
 /// Sums of some hundred rewards in floats.
 constexpr double kReturnTolerance = 1e-4;
@@ -33,6 +36,7 @@ class Player {
   [[nodiscard]] float reward() const { return simulator_.rewards()[0]; }
   [[nodiscard]] bool done() const { return simulator_.dones()[0] != 0; }
   [[nodiscard]] bool success() const { return simulator_.successes()[0] != 0; }
+  [[nodiscard]] bool hasPicked() const { return simulator_.envObjects(0).has_picked; }
   [[nodiscard]] SimulationStatistics sum() const { return simulator_.statistics(); }
   [[nodiscard]] bool holdsTarget() const {
     return state().held == static_cast<std::int32_t>(state().target);
@@ -281,6 +285,89 @@ TEST(Rearrange, PaysThePickOnceInAnEpisode) {
   fetch_and_release();
   EXPECT_EQ(player.sum().grasps, 2U);
   EXPECT_EQ(paid, 1);
+}
+
+TEST(Picks, TellAtTheEndOfAnEpisodeThatTheTargetHadBeenInTheHand) {
+  Player player({.most_steps = kPatience});
+  player.fetchTarget();
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(0)) << "it goes on";
+  player.carryToGoal();
+  player.release();
+  EXPECT_TRUE(player.hasPicked());
+  while (!player.done()) player.wait();
+  EXPECT_THAT(player.simulator().endings(), ElementsAre(EpisodeEnd::kTimeOut));
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(1));
+  EXPECT_FALSE(player.hasPicked()) << "the next episode has begun";
+  EXPECT_EQ(player.sum().picks, 1U);
+  player.wait();
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(0));
+  while (!player.done()) player.wait();
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(0));
+  EXPECT_EQ(player.sum().episodes, 2U);
+  EXPECT_EQ(player.sum().picks, 1U);
+}
+
+TEST(Picks, AreNoneOfOtherObjects) {
+  Player player({});
+  player.fetchObject(kOther);
+  ASSERT_TRUE(player.failed());
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(0));
+}
+
+TEST(Picks, StayUntilTheNextStepWhereTheCallerBeginsEpisodes) {
+  SimulationOptions options;
+  options.auto_reset = false;
+  Player player({}, options);
+  player.fetchTarget();
+  player.carryAway();
+  player.release();
+  ASSERT_TRUE(player.failed());
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(1));
+  EXPECT_TRUE(player.hasPicked());
+  player.simulator().reset(std::vector{BatchSimulator::kNextEpisode});
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(1));
+  EXPECT_FALSE(player.hasPicked());
+  player.terminate();
+  ASSERT_TRUE(player.done());
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(0));
+  EXPECT_EQ(player.sum().picks, 1U);
+  EXPECT_EQ(player.sum().episodes, 2U);
+}
+
+TEST(Picks, AreLostWhereTheEnvWaits) {
+  SimulationOptions options;
+  options.auto_reset = false;
+  Player player({.kind = TaskKind::kMobilePick}, options);
+  player.fetchTarget();
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(1));
+  player.wait();
+  EXPECT_THAT(player.simulator().idle(), ElementsAre(1));
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(0));
+  EXPECT_TRUE(player.hasPicked());
+  EXPECT_EQ(player.sum().picks, 1U);
+}
+
+TEST(Picks, AreThoseOfEpisodesThatBeginInTheHandToo) {
+  Player holding({});
+  holding.fetchTarget();
+  Player player({});
+  const std::vector<EnvState> states{holding.state()};
+  ASSERT_TRUE(player.simulator().setStates(std::vector{0U}, states));
+  EXPECT_TRUE(player.hasPicked());
+  player.terminate();
+  ASSERT_TRUE(player.done());
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(1));
+}
+
+TEST(Picks, AreNoneWhereTheCallerChoosesTheNextEpisodeInTheStep) {
+  Player player({});
+  player.fetchTarget();
+  const std::int32_t wanted = 3;
+  SmallHomeRow row{};
+  row[kTerminate] = 1;
+  player.simulator().step(row, std::span(&wanted, 1));
+  EXPECT_THAT(player.simulator().picks(), ElementsAre(0));
+  EXPECT_EQ(player.sum().picks, 0U);
 }
 
 TEST(MobilePick, IsASuccessWhenTheTargetIsInTheHand) {

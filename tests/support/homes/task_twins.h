@@ -37,6 +37,10 @@ class TaskTwins {
   /// After a step, before renew(): the state in which the step left the env.
   [[nodiscard]] EnvState after(std::size_t env) const { return twins_[env].envState(0); }
 
+  [[nodiscard]] bool hasPicked(std::size_t env) const {
+    return twins_[env].envObjects(0).has_picked;
+  }
+
   void step(std::span<const float> actions) {
     batch_.step(actions);
     for (std::size_t env = 0; env < twins_.size(); ++env) {

@@ -90,6 +90,9 @@ class TaskOracle {
     return result;
   }
 
+  /// Whether the target has been in the hand in this episode.
+  [[nodiscard]] bool hasPicked() const { return has_picked_; }
+
   [[nodiscard]] static double reachOf(const EnvState& s) {
     return distance(s.world_from_grip.translation, s.objects[s.target].translation);
   }

@@ -143,11 +143,13 @@ Measured measure(const ChunkStep& step) {
 struct Outcomes {
   std::array<float, kChunk> rewards{};
   std::array<EpisodeEnd, kChunk> endings{};
+  std::array<std::uint8_t, kChunk> picks{};
 };
 
 void put(const Outcomes& outcomes, BatchState& state, std::size_t first) {
   std::ranges::copy(outcomes.rewards, state.rewards().data() + first);
   std::ranges::copy(outcomes.endings, state.endings().data() + first);
+  std::ranges::copy(outcomes.picks, state.picks().data() + first);
   std::uint8_t* dones = state.dones().data() + first;
   std::uint8_t* successes = state.successes().data() + first;
   for (std::size_t e = 0; e < kChunk; ++e) {
@@ -156,10 +158,11 @@ void put(const Outcomes& outcomes, BatchState& state, std::size_t first) {
   }
 }
 
-void count(EpisodeEnd end, EnvCounters& counters) {
+void count(EpisodeEnd end, const Env& env, EnvCounters& counters) {
   ++counters.episodes;
   counters.successes += end == EpisodeEnd::kSuccess ? 1 : 0;
   counters.failures += isFailure(end) ? 1U : 0U;
+  counters.picks += env.has_picked ? 1U : 0U;
 }
 
 /// What the change of the way along the floor earns; the way becomes the last one.
@@ -206,7 +209,10 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     if (isFailure(end)) reward -= task.failure_penalty;
     env.reach = now.reach;
     env.transport = now.transport;
-    if (end != EpisodeEnd::kNone) count(end, step.state.counters(n));
+    if (end != EpisodeEnd::kNone) {
+      count(end, env, step.state.counters(n));
+      outcomes.picks[e] = env.has_picked ? 1 : 0;
+    }
     env.reward_sum += static_cast<double>(reward);
     outcomes.rewards[e] = reward;
     outcomes.endings[e] = end;

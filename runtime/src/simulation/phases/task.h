@@ -33,8 +33,8 @@ struct WayLeft {
 /// target and goal after the step, in meters.
 [[nodiscard]] EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept;
 
-/// Counts the step; rewards (paper, equation 1), dones, successes and endings of it. Envs of the
-/// batch that the caller resets (`resets`: empty, or a number with a start where so) get none:
+/// Counts the step; rewards (paper, equation 1), dones, successes, endings and picks of it. Envs of
+/// the batch that the caller resets (`resets`: empty, or a number with a start where so) get none:
 /// their episode is neither rewarded nor counted.
 void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept;
 

@@ -22,12 +22,14 @@ std::size_t rowCount(const Model& model) {
 std::size_t envBytes(const Model& model) {
   // What the alignment of an env's own vectors may cost.
   constexpr std::size_t kPadding = 96;
+  // Done, success, ending, pick and idle, beside the reward.
+  constexpr std::size_t kOutcomeBytes = 5;
   const std::size_t kept = model.keptSteps() * model.actionCount();
   const std::size_t floats = rowCount(model) + kept + 2 * model.observation_size + 1;
   return kPadding + sizeof(Env) + sizeof(EnvCounters) + sizeof(MoveCounters) + sizeof(Held) +
          sizeof(RestingObjects) + model.most_objects * (sizeof(RestingBox) + sizeof(Pose)) +
          (model.heldWords() + model.most_objects * model.bodyWords()) * sizeof(std::uint64_t) +
-         floats * sizeof(float) + 3 + model.bodyCount() * sizeof(RigidTransform);
+         floats * sizeof(float) + kOutcomeBytes + model.bodyCount() * sizeof(RigidTransform);
 }
 
 std::size_t boundsBytes(const Model& model) {
@@ -139,6 +141,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   dones_.resize(padded);
   successes_.resize(padded);
   endings_.resize(padded);
+  picks_.resize(padded);
   idle_.resize(padded);
   // A core that has less to read each step waits less for it than it takes to ask for it ahead.
   constexpr std::size_t kNear = std::size_t{1} << 20U;
@@ -168,6 +171,7 @@ void BatchState::prefetchChunk(std::size_t first) const noexcept {
   row(dones_);
   row(successes_);
   row(endings_);
+  row(picks_);
   row(idle_);
 }
 
@@ -184,7 +188,7 @@ std::size_t BatchState::bytes() const {
                       bytesOf(resting_) + bytesOf(objects_) + bytesOf(ignored_) +
                       bytesOf(leaving_) + bytesOf(rows_) + bytesOf(kept_actions_) +
                       2 * bytesOf(observations_) + bytesOf(bodies_) + bytesOf(rewards_) +
-                      4 * bytesOf(dones_);
+                      5 * bytesOf(dones_);
   for (const RestingObjects& resting : resting_) bytes += resting.bytes();
   return bytes;
 }

@@ -63,6 +63,8 @@ struct alignas(64) EnvCounters {
   std::uint64_t nan_actions = 0;
   /// Steps in which the env was idle.
   std::uint64_t idle_steps = 0;
+  /// Episodes that ended and in which the target had been in the hand.
+  std::uint32_t picks = 0;
   /// Whether the caller has named the episode that the env is in; else its turn had come.
   bool is_named = false;
 };
@@ -341,6 +343,9 @@ class BatchState {
   [[nodiscard]] std::span<const std::uint8_t> successes() const { return successes_; }
   [[nodiscard]] std::span<EpisodeEnd> endings() { return endings_; }
   [[nodiscard]] std::span<const EpisodeEnd> endings() const { return endings_; }
+  /// Env::has_picked where the last step ended an episode; 0 elsewhere.
+  [[nodiscard]] std::span<std::uint8_t> picks() { return picks_; }
+  [[nodiscard]] std::span<const std::uint8_t> picks() const { return picks_; }
   /// 1 where an env has had all its episodes, or waits for a reset; see BatchSimulator::idle().
   [[nodiscard]] std::span<std::uint8_t> idle() { return idle_; }
   [[nodiscard]] std::span<const std::uint8_t> idle() const { return idle_; }
@@ -350,6 +355,7 @@ class BatchState {
     dones_[n] = 0;
     successes_[n] = 0;
     endings_[n] = EpisodeEnd::kNone;
+    picks_[n] = 0;
   }
   [[nodiscard]] std::size_t bytes() const;
 
@@ -429,6 +435,7 @@ class BatchState {
   std::pmr::vector<std::uint8_t> dones_{&memory_};
   std::pmr::vector<std::uint8_t> successes_{&memory_};
   std::pmr::vector<EpisodeEnd> endings_{&memory_};
+  std::pmr::vector<std::uint8_t> picks_{&memory_};
   std::pmr::vector<std::uint8_t> idle_{&memory_};
 };
 

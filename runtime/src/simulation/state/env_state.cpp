@@ -37,6 +37,7 @@ EnvObjects envObjectsOf(const Model& model, const BatchState& state, std::size_t
                     .objects = state.objects(n).first(env.objects),
                     .held = env.held,
                     .world_from_held = {},
+                    .has_picked = env.has_picked,
                     .goal = {state.goal(n), model.episodeOf(env.start).goal.rotation}};
   if (env.held >= 0) result.world_from_held = state.heldPose(n);
   return result;

@@ -24,7 +24,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
-constexpr std::uint32_t kVersion = 8;
+constexpr std::uint32_t kVersion = 9;
+/// The one before, without EnvRecord::picks and what is behind it.
+constexpr std::uint32_t kVersionWithoutPicks = 8;
 constexpr const char* kWhere = "saved state";
 
 struct Header {
@@ -69,9 +71,12 @@ struct EnvRecord {
   std::uint16_t was_refused = 0;
   std::uint32_t is_idle = 0;
   std::uint32_t is_named = 0;
+  std::uint32_t picks = 0;
+  /// Of the episode that the last step ended.
+  std::uint32_t had_picked = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
-              sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 24 + 16 + sizeof(GripFrame) + 20);
+              sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 24 + 16 + sizeof(GripFrame) + 28);
 
 /// The options that two simulators must share for a state of one to mean something in the other.
 std::vector<OptionText> sharedOptions(const SimulationOptions& options) {
@@ -185,7 +190,9 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .has_picked = static_cast<std::uint16_t>(env.has_picked ? 1 : 0),
       .was_refused = static_cast<std::uint16_t>(env.refused ? 1 : 0),
       .is_idle = state.idle()[n],
-      .is_named = counters.is_named ? 1U : 0U});
+      .is_named = counters.is_named ? 1U : 0U,
+      .picks = counters.picks,
+      .had_picked = state.picks()[n]});
   for (std::size_t v = 0; v < model.variableCount(); ++v) out.add(state.variable(v, n));
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) out.add(state.lastAction(j, n));
   if (state.hasOdometry()) out.add(state.odometry(n).believed);
@@ -213,7 +220,8 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
   }
   if (record.ending >= kEpisodeEnds) return fmt::format("ended in way {}", record.ending);
   if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 ||
-      record.is_named > 1 || record.ordinal == 0 || record.turns > record.ordinal)
+      record.is_named > 1 || record.had_picked > (record.ending != 0 ? 1U : 0U) ||
+      record.ordinal == 0 || record.turns > record.ordinal)
     return "has a wrong flag or count";
   const bool is_held_plain = record.held < 0 || isPlain(record.grip_from_held);
   if (!isPlain(record.goal) || !isPlain(record.target_start) || !isPlain(record.base) ||
@@ -250,6 +258,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
                     .failures = failures,
                     .nan_actions = record.nan_actions,
                     .idle_steps = record.idle_steps,
+                    .picks = record.picks,
                     .is_named = record.is_named != 0};
   saved.moves = {.refused = refused, .slid = slid};
   saved.goal = record.goal;
@@ -259,6 +268,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   saved.grip = record.grip;
   saved.reward = record.reward;
   saved.ending = static_cast<EpisodeEnd>(record.ending);
+  saved.had_picked = record.had_picked != 0;
   return saved;
 }
 
@@ -290,9 +300,11 @@ tl::unexpected<Error> refused(std::string message) {
 }
 
 /// Env number `n` of the state.
-Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, Reader& in) {
+Result<SavedEnv> readEnv(const Model& model, const Header& header, std::size_t n, Reader& in) {
   EnvRecord record;
-  in.take(record);
+  const bool knows_picks = header.version != kVersionWithoutPicks;
+  in.take(std::as_writable_bytes(std::span(&record, 1))
+              .first(knows_picks ? sizeof(record) : offsetof(EnvRecord, picks)));
   if (in.isExhausted()) return refused("ends before its last env; it is damaged");
   const std::string fault = faultOf(model, record);
   if (!fault.empty()) return refused(fmt::format("env {} {}; it is damaged", n, fault));
@@ -304,7 +316,7 @@ Result<SavedEnv> readEnv(const Model& model, std::size_t bodies, std::size_t n, 
   saved.ignored = in.takeMany<std::uint64_t>(model.heldWords());
   saved.leaving = in.takeMany<std::uint64_t>(saved.env.objects * model.bodyWords());
   saved.objects = in.takeMany<Pose>(saved.env.objects);
-  saved.bodies = in.takeMany<RigidTransform>(bodies);
+  saved.bodies = in.takeMany<RigidTransform>(header.bodies);
   if (saved.ending != EpisodeEnd::kNone) {
     saved.final_observation = in.takeMany<float>(model.observation_size);
   }
@@ -382,7 +394,7 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
   if (in.isExhausted() || header.magic != kMagic) {
     return refused("is none; give what saving a state returned");
   }
-  if (header.version != kVersion) {
+  if (header.version != kVersion && header.version != kVersionWithoutPicks) {
     return fail(ErrorCode::kUnsupported, kWhere,
                 fmt::format("has format version {}, expected {}; use the version that saved it",
                             header.version, kVersion));
@@ -398,7 +410,7 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
   }
   SavedState saved{.seed = header.seed, .steps = header.steps, .envs = {}};
   for (std::uint32_t n = 0; n < header.envs; ++n) {
-    ASSIGN_OR_RETURN(SavedEnv env, readEnv(model, header.bodies, n, in));
+    ASSIGN_OR_RETURN(SavedEnv env, readEnv(model, header, n, in));
     saved.envs.push_back(std::move(env));
   }
   if (in.left() != 0) return refused("goes on behind its last env; it is damaged");
@@ -464,6 +476,7 @@ void restoreEnv(const Model& model, BatchState& state, std::size_t n, const Save
   state.endings()[n] = saved.ending;
   state.dones()[n] = saved.ending == EpisodeEnd::kNone ? 0 : 1;
   state.successes()[n] = saved.ending == EpisodeEnd::kSuccess ? 1 : 0;
+  state.picks()[n] = saved.had_picked ? 1 : 0;
   std::ranges::copy(saved.final_observation, state.finalObservation(n).begin());
   takeStock(model, state, n);
 }

@@ -36,6 +36,8 @@ struct SavedEnv {
   GripFrame grip{};
   float reward = 0;
   EpisodeEnd ending = EpisodeEnd::kNone;
+  /// Of the episode that the last step ended; `env` has that of the one under way.
+  bool had_picked = false;
   bool is_idle = false;
   std::vector<float> variables;
   std::vector<float> last_actions;
