@@ -133,6 +133,7 @@ class Statistics(TypedDict):
     episodes: int
     successes: int
     failures: int
+    picks: int
     nan_actions: int
     reward: float
 
@@ -192,6 +193,8 @@ class Simulator:
     def successes(self) -> NDArray[np.bool_]: ...  # (num_envs,)
     @property
     def endings(self) -> NDArray[np.uint8]: ...  # (num_envs,), of EpisodeEnd
+    @property
+    def picks(self) -> NDArray[np.bool_]: ...  # (num_envs,)
     @property
     def idle(self) -> NDArray[np.bool_]: ...  # (num_envs,)
     def episodes(self, envs: Iterable[int] | None = None) -> NDArray[np.int32]: ...

@@ -20,7 +20,7 @@ from galactic.task_envs import TaskEnvs
 
 Array = NDArray[Any]
 
-OF_EPISODES = ("episode", "ending", "success", "episode_index", "world_from_camera")
+OF_EPISODES = ("episode", "ending", "success", "picked", "episode_index", "world_from_camera")
 """What final_info says of every episode."""
 
 

@@ -60,9 +60,9 @@ class VectorEnv(_Base):
     observation is then the first of the next episode, and `infos` has
 
     - final_obs: object array (num_envs,), the last observation of each env whose episode ended,
-    - final_info: {"episode": {"r", "l"}, "ending", "success", "episode_index"}, arrays
-      (num_envs,): return and length of the episode, how it ended (EpisodeEnd), and which one of
-      the world's it was; with images also "world_from_camera", float32 (num_envs, 4, 4): where those
+    - final_info: {"episode": {"r", "l"}, "ending", "success", "picked", "episode_index"}, arrays
+      (num_envs,): return and length of the episode, how it ended (EpisodeEnd), whether the target had
+      been in the hand at any time of it, and which one of the world's it was; with images also "world_from_camera", float32 (num_envs, 4, 4): where those
       of final_obs were drawn from, as Renderer has it of the images of the step; and the `measures` of
       a task of one's own, float32 (num_envs,),
     - episode: the same {"r", "l"} again, and "t", the seconds that the episode took, as Gymnasium's

@@ -30,6 +30,13 @@ std::int32_t EpisodeTally::episodeOf(std::size_t env) const {
   return static_cast<std::int32_t>(simulator_.batch().envObjects(env).episode);
 }
 
+/// In the episode that the last step ended. A task of one's own may have ended one that goes on in
+/// the simulator, which is in it still.
+bool EpisodeTally::hadPicked(std::size_t env) const {
+  const BatchSimulator& batch = simulator_.batch();
+  return batch.dones()[env] != 0 ? batch.picks()[env] != 0 : batch.envObjects(env).has_picked;
+}
+
 py::tuple EpisodeTally::add(const py::object& rewards, const py::object& endings) {
   const Confinement::Use use = simulator_.readState();
   const std::size_t envs = returns_.size();
@@ -39,6 +46,7 @@ py::tuple EpisodeTally::add(const py::object& rewards, const py::object& endings
   py::array_t<bool> truncations = filled(envs, false);
   ended_.clear();
   endings_.clear();
+  picked_.clear();
   for (std::size_t env = 0; env < envs; ++env) {
     const std::uint8_t end = ends.data()[env];
     returns_[env] += static_cast<double>(paid.data()[env]);
@@ -47,6 +55,7 @@ py::tuple EpisodeTally::add(const py::object& rewards, const py::object& endings
     (isTruncation(EpisodeEnd{end}) ? truncations : terminations).mutable_data()[env] = true;
     ended_.push_back(env);
     endings_.push_back(end);
+    picked_.push_back(hadPicked(env));
   }
   py::array_t<std::int64_t> which(static_cast<py::ssize_t>(ended_.size()));
   std::copy(ended_.begin(), ended_.end(), which.mutable_data());
@@ -61,6 +70,7 @@ py::dict EpisodeTally::takeEnded() {
   py::array_t<std::int64_t> lengths = filled(envs, std::int64_t{0});
   py::array_t<std::uint8_t> endings = filled(envs, std::uint8_t{0});
   py::array_t<bool> successes = filled(envs, false);
+  py::array_t<bool> picked = filled(envs, false);
   py::array_t<std::int32_t> episodes = filled(envs, std::int32_t{-1});
   for (std::size_t n = 0; n < ended_.size(); ++n) {
     const std::size_t env = ended_[n];
@@ -69,6 +79,7 @@ py::dict EpisodeTally::takeEnded() {
     lengths.mutable_data()[env] = lengths_[env];
     endings.mutable_data()[env] = endings_[n];
     successes.mutable_data()[env] = endings_[n] == static_cast<std::uint8_t>(EpisodeEnd::kSuccess);
+    picked.mutable_data()[env] = picked_[n];
     episodes.mutable_data()[env] = episodes_[env];
     returns_[env] = 0;
     lengths_[env] = 0;
@@ -76,12 +87,14 @@ py::dict EpisodeTally::takeEnded() {
   }
   ended_.clear();
   endings_.clear();
+  picked_.clear();
   py::dict result;
   result["ended"] = ended;
   result["r"] = sums;
   result["l"] = lengths;
   result["ending"] = endings;
   result["success"] = successes;
+  result["picked"] = picked;
   result["episode_index"] = episodes;
   return result;
 }

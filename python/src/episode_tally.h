@@ -25,8 +25,9 @@ class EpisodeTally {
   [[nodiscard]] py::tuple add(const py::object& rewards, const py::object& endings);
 
   /// Of the episodes that the step taken in last ended, arrays (num_envs,) with zeros for all other
-  /// envs: "ended" bool, "r" float32, "l" int64, "ending" uint8, "success" bool, "episode_index"
-  /// int32 (-1). Their sums begin anew, with the episodes that the envs are in now.
+  /// envs: "ended" bool, "r" float32, "l" int64, "ending" uint8, "success" bool, "picked" bool
+  /// (whether the target had been in the hand), "episode_index" int32 (-1). Their sums begin anew,
+  /// with the episodes that the envs are in now.
   [[nodiscard]] py::dict takeEnded();
 
   /// The sums of the envs in `mask`, bool (num_envs,), begin anew; any env may be in another
@@ -41,14 +42,17 @@ class EpisodeTally {
 
  private:
   [[nodiscard]] std::int32_t episodeOf(std::size_t env) const;
+  [[nodiscard]] bool hadPicked(std::size_t env) const;
 
   Simulator& simulator_;
   std::vector<double> returns_;
   std::vector<std::int64_t> lengths_;
   std::vector<std::int32_t> episodes_;
-  /// Envs whose episodes the step taken in last ended, and how.
+  /// Envs whose episodes the step taken in last ended, how, and whether the target had been in the
+  /// hand.
   std::vector<std::size_t> ended_;
   std::vector<std::uint8_t> endings_;
+  std::vector<bool> picked_;
 };
 
 }  // namespace galactic::python

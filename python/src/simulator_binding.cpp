@@ -209,6 +209,11 @@ void bindResults(py::class_<Simulator>& type) {
       },
       "How it ended, as numbers of EpisodeEnd: uint8 (num_envs,), a view.");
   type.def_property_readonly(
+      "picks",
+      [](Self self) { return perEnv(self, of(self).batch().picks(), py::dtype::of<bool>()); },
+      "Where it ended and the target had been in the hand at any time of it: bool (num_envs,), a\n"
+      "view.");
+  type.def_property_readonly(
       "idle",
       [](Self self) { return perEnv(self, of(self).batch().idle(), py::dtype::of<bool>()); },
       "Where an env has had its share of the episodes (order='partition'), or waits where its\n"

@@ -63,6 +63,7 @@ def test_arrays_have_the_shapes_and_types_that_they_promise(simulator, draw_acti
         ("rewards", (ENVS,), np.float32),
         ("dones", (ENVS,), np.bool_),
         ("successes", (ENVS,), np.bool_),
+        ("picks", (ENVS,), np.bool_),
         ("endings", (ENVS,), np.uint8),
     ):
         array = getattr(simulator, name)
@@ -454,6 +455,37 @@ def test_endings_agree_with_dones_and_successes(world, draw_actions):
     figures = simulator.statistics()
     assert figures["steps"] == 64 * 300
     assert figures["episodes"] >= 64 * 7
+
+
+@pytest.mark.parametrize("task", ["rearrange", "none"])
+def test_picks_are_of_episodes_in_which_the_hand_had_the_target(world, draw_actions, task):
+    """Also where it has let go of it since, and the next episode has begun."""
+    options = {"safe_drop": task != "none", "episode_steps": 50, "seed": 2}
+    staying, renewing = (
+        Simulator(world, envs=64, threads=2, task=task, auto_reset=renews, **options)
+        for renews in (False, True)
+    )
+    states = staying.env_states()
+    states.hold(world, rows=slice(16))
+    given = staying.set_states(states)
+    np.testing.assert_array_equal(renewing.set_states(states), given)
+    held = given & (np.arange(64) < 16)
+    lost = 0
+    for _ in range(200):
+        actions = draw_actions(64, 8)
+        staying.step(actions)
+        renewing.step(actions)
+        states, dones = staying.env_states(), staying.dones
+        held |= states.held == states.target
+        np.testing.assert_array_equal(staying.picks, dones & held)
+        np.testing.assert_array_equal(renewing.picks, dones & held)
+        lost += (held & dones & (states.held != states.target)).sum()
+        held &= ~dones
+        staying.reset(np.where(dones, Simulator.NEXT_EPISODE, Simulator.STAYS))
+    figures = renewing.statistics()
+    assert 10 < figures["picks"] < figures["episodes"] - 10 and lost > 2
+    assert figures["picks"] == staying.statistics()["picks"]
+    assert renewing.counts()["picks"].sum() == figures["picks"]
 
 
 def test_states_have_frames_and_objects(simulator):

@@ -103,7 +103,7 @@ def test_environments_go_on_with_their_sums(world, draw_actions, halves):
     saved = first.save_state()
     second.restore_state(saved)
     np.testing.assert_array_equal(second.observe(), first.observe())
-    ends = 0
+    ends = picks = 0
     for _ in range(60):
         actions = draw_actions(12, 8)
         a, b = first.step(actions), second.step(actions)
@@ -114,6 +114,10 @@ def test_environments_go_on_with_their_sums(world, draw_actions, halves):
             ends += 1
             for name in ("r", "l"):
                 np.testing.assert_array_equal(a[4]["episode"][name], b[4]["episode"][name])
+            picked, other = (infos["final_info"]["picked"] for infos in (a[4], b[4]))
+            np.testing.assert_array_equal(picked, other)
+            picks += picked.sum()
+    assert picks
     assert ends > 2
     before = second.save_state()
     for bad in (b"", b"zip", before[:-30], saved[:50] + saved[60:]):

@@ -16,6 +16,7 @@ STATISTICS = {
     "episodes": np.int64,
     "successes": np.int64,
     "failures": np.int64,
+    "picks": np.int64,
     "nan_actions": np.int64,
     "reward": np.float64,
 }

@@ -98,6 +98,59 @@ def test_measures(world, halves):
     assert some > 5
 
 
+class HoldsNow(Approach):
+    """Episodes of even envs begin with the target in the hand; measures whether it has ever been there."""
+
+    measures = ("held",)
+
+    def prepare(self, envs):
+        super().prepare(envs)
+        self.memory["held"] = np.zeros(envs.num_envs, bool)
+
+    def place(self, envs, which, states):
+        rows = np.flatnonzero(envs.numbers[which] % 2 == 0)
+        states.hold(envs.world, rows=rows)
+        return states
+
+    def begin(self, envs, which):
+        super().begin(envs, which)
+        self.memory["held"][which] = (envs.states.held == envs.states.target)[which]
+
+    def step(self, envs):
+        self.memory["held"] |= envs.states.held == envs.states.target
+        return super().step(envs)
+
+    def measure(self, envs, which):
+        return {"held": self.memory["held"][which]}
+
+
+@pytest.mark.parametrize("base", ["none", "rearrange"])
+@pytest.mark.parametrize("halves", [1, 2])
+def test_picked(world, halves, base):
+    """Whoever ends an episode, the task or what is below, and whether or not the hand has let go since."""
+
+    class Below(HoldsNow):
+        pass
+
+    Below.base = base
+    env = VectorEnv(world, 16, task=Below, halves=halves, threads=1)
+    env.reset()
+    draw, found = drawing(), {}
+    for _ in range(80):
+        infos = env.step(draw(16, ACTIONS))[4]
+        if not infos:
+            continue
+        final, ended = infos["final_info"], infos["_final_info"]
+        assert final["picked"].dtype == bool
+        np.testing.assert_array_equal(final["picked"], final["held"] != 0)
+        np.testing.assert_array_equal(final["_picked"], ended)
+        assert not final["picked"][~ended].any()
+        for ending, picked in zip(final["ending"][ended], final["picked"][ended]):
+            found.setdefault(EpisodeEnd(ending), set()).add(bool(picked))
+    assert found[EpisodeEnd.SUCCESS] == found[EpisodeEnd.FAILURE] == {False, True}
+    assert (EpisodeEnd.WRONG_TERMINATE in found) == (base == "rearrange")
+
+
 @pytest.mark.parametrize("halves", [1, 2])
 def test_saved_states(world, halves):
     """Another env goes on from a state, bit for bit."""

@@ -58,6 +58,7 @@ def test_steps_are_those_of_the_simulator(world, draw_actions, halves, task):
         check_infos(infos, ended, simulator)
     assert ends[EpisodeEnd.TIME_OUT] > 20
     assert ends[EpisodeEnd.NONE] > 1000
+    assert 0 < plain.simulator.statistics()["picks"] < plain.simulator.statistics()["episodes"]
 
 
 def check_infos(infos, ended, simulator):
@@ -85,8 +86,9 @@ def check_infos(infos, ended, simulator):
         assert final["episode"]["l"][env] == length
         assert final["ending"][env] == simulator.endings[env]
         assert final["success"][env] == simulator.successes[env]
+        assert final["picked"][env] == simulator.picks[env]
         assert final["episode_index"][env] == episode
-    for name, nothing in {"ending": 0, "success": 0, "episode_index": -1}.items():
+    for name, nothing in {"ending": 0, "success": 0, "picked": 0, "episode_index": -1}.items():
         assert (final[name][~mask] == nothing).all()
 
 

@@ -155,9 +155,11 @@ class Homes:
             timeouts = self._timeouts(np.flatnonzero(truncated), infos["final_obs"])
         successes = self._landings[half]["endings"] == SUCCESS
         final = infos.get("final_info")
+        picks = final["picked"] if final else np.zeros_like(successes)
         measures = {name: final[name] for name in self.measures} if final else {}
         logs = {name: infos["log"][name] for name in self.logs}
-        return Step(rewards, terminated, truncated, successes, timeouts, measures, logs, infos)
+        ended = terminated, truncated, successes, picks
+        return Step(rewards, *ended, timeouts, measures, logs, infos)
 
     def begin_episodes(self, episodes: Mapping[int, int], into: Observation) -> None:
         """Begins an episode of the world, by its index, in some envs; the others stay. Writes what all

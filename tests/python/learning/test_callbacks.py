@@ -61,7 +61,7 @@ def test_a_callback_adds_to_the_curves_and_ends_the_run(tmp_path: pathlib.Path) 
             moment.stop("enough")
 
     settings = dataclasses.replace(SETTINGS, validate_every=2 * UPDATE)
-    episodes = EpisodeSums(2.0, 1.0, 3.0, 8.0)
+    episodes = EpisodeSums(2.0, 1.0, 1.0, 3.0, 8.0)
     trainer = make_trainer(tmp_path, settings, validation=lambda policy: episodes)
     trainer.callback = look
     trainer.begin()

@@ -35,7 +35,7 @@ def test_the_curves_begin_when_every_env_has_finished_an_episode(
     trainer.train()
     rows = curve(tmp_path)
     assert len(rows) == 8 and all(row["episodes"] > 0 for row in rows)
-    for name in ("success", "return", "length"):
+    for name in ("success", "picked", "return", "length"):
         # Of 45 steps, in rollouts of ten.
         assert [row[name] is None for row in rows] == [True] * 4 + [False] * 4, name
     # Four envs make 13 or 14 successes in a rollout, and twelve failed in the fifth.
@@ -47,7 +47,7 @@ def test_the_curves_have_what_a_task_measures(tmp_path: pathlib.Path, capsys: An
     are those of the task, whatever it calls them."""
 
     def validate(_: Any) -> EpisodeSums:
-        return EpisodeSums(4.0, 3.0, 20.0, 40.0, {"kl": 1.0, "validation_success": -2.0})
+        return EpisodeSums(4.0, 3.0, 4.0, 20.0, 40.0, {"kl": 1.0, "validation_success": -2.0})
 
     settings = dataclasses.replace(SETTINGS, validate_every=4 * UPDATE)
     trainer = make_trainer(tmp_path, settings, Measured, validation=validate)
@@ -69,11 +69,14 @@ def test_the_curves_have_what_a_task_measures(tmp_path: pathlib.Path, capsys: An
     for row in trained:
         assert row["measure_steps"] == row["length"]
         assert row["measure_validation_success"] == row["success"]
+        # All that this measures as "kl" are those that have closed the hand.
+        assert row["picked"] == row["measure_kl"] and row["validation_picked"] is None
         assert all(row[f"validation_measure_{name}"] is None for name in Measured.measures)
     assert any(row["measure_kl"] not in (row["success"], row["kl"], None) for row in trained)
     for row in validated:
         found = [row[f"validation_measure_{name}"] for name in Measured.measures]
         assert found == [0.25, -0.5, 0.0] and row["measure_steps"] is None
+        assert row["validation_picked"] == 1.0 and row["picked"] is None
     said = capsys.readouterr().err
     assert (
         "75.0 % (30.1 to 95.4) of 4 episodes, return 5.00, kl 0.25, validation_success -0.5, steps 0\n"
@@ -84,6 +87,7 @@ def test_the_curves_have_what_a_task_measures(tmp_path: pathlib.Path, capsys: An
     assert report["training"] == trainer.recent.figures() and "measure_kl" in report["training"]
     assert report["validation"] == {
         "success": 0.75,
+        "picked": 1.0,
         "return": 5.0,
         "length": 10.0,
         "measure_kl": 0.25,
@@ -124,7 +128,7 @@ def test_the_page_of_the_curves_draws_what_a_task_measures(tmp_path: pathlib.Pat
         return {chart["title"]: chart for chart in data["charts"]}
 
     plain, measured = charts(ReachAndGrasp), charts(Measured)
-    assert list(measured) == [*list(plain)[:3], *Measured.measures, *list(plain)[3:]]
+    assert list(measured) == [*list(plain)[:4], *Measured.measures, *list(plain)[4:]]
     assert measured["steps"]["lines"] == [
         ["measure_steps", "training", 0],
         ["validation_measure_steps", "validation", 0],

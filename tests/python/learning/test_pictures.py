@@ -30,7 +30,7 @@ needs_world = pytest.mark.skipif(
 
 
 def result(episode: int, success: bool) -> EpisodeResult:
-    return EpisodeResult(episode, success, "", 0.0, 1, 0.0, 0.0, 0, 0)
+    return EpisodeResult(episode, success, success, "", 0.0, 1, 0.0, 0.0, 0, 0)
 
 
 def policy_of(network: str, **more: Any) -> tuple[Settings, Homes, checkpoint.SavedPolicy]:

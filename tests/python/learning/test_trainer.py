@@ -18,6 +18,7 @@ from galactic import files
 from galactic.learning.policies.networks import PolicyShape
 from galactic.learning.ranks.distributed import Stragglers
 from galactic.learning.refusals import CheckpointError
+from galactic.learning.reports.curves import COLUMNS
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import load_policy, new_policy
 from galactic.learning.saving.run_folder import CheckpointFolder
@@ -250,10 +251,14 @@ GONE = "gone"
         (
             "trainer.pt",
             {"rows": [[1.0, 2.0]]},
-            r"rows\[0\]: found \[1.0, 2.0\], expected 21 numbers",
+            r"rows\[0\]: found \[1.0, 2.0\], expected 23 numbers",
         ),
-        ("trainer.pt", {"window": [[1, 2, 3, "4"]]}, r"window\[0\]: found \[1, 2, 3, '4'\], exp"),
-        ("trainer.pt", {"window": [4]}, r"window\[0\]: found 4, expected 4 numbers"),
+        (
+            "trainer.pt",
+            {"window": [[1, 2, 3, 4, "5"]]},
+            r"window\[0\]: found \[1, 2, 3, 4, '5'\], exp",
+        ),
+        ("trainer.pt", {"window": [4]}, r"window\[0\]: found 4, expected 5 numbers"),
         ("trainer.pt", {"measures": "kl"}, "measures: found 'kl', expected list"),
         ("trainer.pt", {"measures": [[]]}, r"is of a task that measured \[\], and"),
         ("trainer.pt", {"must_validate": 1}, "must_validate: found 1, expected bool"),
@@ -301,7 +306,7 @@ def test_a_checkpoint_of_before_there_were_teachers_is_taken_up(tmp_path: pathli
     file = resumed.checkpoints.latest() / "trainer.pt"
     values, tensors = checkpoint.load(file)
     width = len(values["rows"][0])
-    values["rows"] = [row[:-1] for row in values["rows"]]
+    values["rows"] = [row[: COLUMNS.index("teacher_kl")] for row in values["rows"]]
     checkpoint.save(file, values, tensors)
     resumed.resume()
     assert values["rows"] and [len(row) for row in resumed.reports.curves.rows] == [width] * 2
@@ -331,6 +336,41 @@ def test_a_checkpoint_of_before_there_were_measures_is_taken_up(tmp_path: pathli
     missing = known.count(None)
     assert 2 < missing < 8 and known[:missing] == [None] * missing
     assert known[missing:] == [row["length"] for row in rows[missing:]]
+
+
+@pytest.mark.parametrize("toy", [ReachAndGrasp, Measured])
+def test_a_checkpoint_of_before_there_were_picks_is_taken_up(
+    tmp_path: pathlib.Path, toy: Any
+) -> None:
+    """The share of them begins when it is known of all episodes that count."""
+    settings = dataclasses.replace(SETTINGS, checkpoint_every=UPDATE, window=250)
+    made = make_trainer(tmp_path, dataclasses.replace(settings, steps=2 * UPDATE), toy)
+    made.callback = lambda moment: moment.log("level", 1.0)
+    made.begin()
+    made.train()
+    file = made.checkpoints.latest() / "trainer.pt"
+    values, tensors = checkpoint.load(file)
+    at = COLUMNS.index("picked")
+    assert values["added_columns"] == ["callback_level"] and len(values["rows"]) == 2
+    values["rows"] = [[*row[:at], *row[at + 2 :]] for row in values["rows"]]
+    values["window"] = [[*row[:2], *row[3:]] for row in values["window"]]
+    checkpoint.save(file, values, tensors)
+    resumed = make_trainer(tmp_path, settings, toy)
+    resumed.resume()
+    # From a checkpoint of its own, too.
+    resumed.train(pause_at=3 * UPDATE)
+    again = make_trainer(tmp_path, settings, toy)
+    again.resume()
+    assert again.train()
+    rows = [row for row in curve(tmp_path) if row["policy_loss"] is not None]
+    assert len(rows) == 8 and all(row["length"] is not None for row in rows)
+    assert [row["callback_level"] for row in rows[:2]] == [1.0, 1.0]
+    known = [row["picked"] for row in rows]
+    missing = known.count(None)
+    assert 2 < missing < 8 and known[:missing] == [None] * missing
+    if toy is Measured:
+        assert [row["measure_steps"] for row in rows] == [row["length"] for row in rows]
+        assert known[missing:] == [row["measure_kl"] for row in rows[missing:]]
 
 
 def test_a_task_that_measures_something_else_is_another_run(tmp_path: pathlib.Path) -> None:

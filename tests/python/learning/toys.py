@@ -93,7 +93,7 @@ class ReachAndGrasp:
         self.episode[ended] += 1
         self._begin(ended)
         self._write(envs, into)
-        return Step(rewards, grasped, truncated, successes, timeouts)
+        return Step(rewards, grasped, truncated, successes, grasped, timeouts)
 
     def save(self) -> bytes:
         file = io.BytesIO()
@@ -182,11 +182,13 @@ class Remember(ReachAndGrasp):
         self.episode[which] += 1
         self._begin(which)
         self._write(envs, into)
-        return Step(successes.astype(np.float32), ended, np.zeros_like(ended), successes, None)
+        picks = ended & (actions[:, 2] > 0.5)
+        return Step(successes.astype(np.float32), ended, np.zeros_like(ended), successes, picks)
 
 
 class Uneven(ReachAndGrasp):
-    """Whatever is done, every fourth env succeeds in three steps, and the others fail in `limit`."""
+    """Whatever is done, every fourth env succeeds in three steps, and the others fail in `limit`; half of those
+    pick."""
 
     def __init__(self, count: int, limit: int = 45, **options: int):
         super().__init__(count, limit=limit, **options)
@@ -203,4 +205,5 @@ class Uneven(ReachAndGrasp):
         self.episode[which] += 1
         self._begin(which)
         self._write(envs, into)
-        return Step(successes.astype(np.float32), ended, np.zeros_like(ended), successes, None)
+        picks = ended & (self.envs[envs] % 2 == 0)
+        return Step(successes.astype(np.float32), ended, np.zeros_like(ended), successes, picks)

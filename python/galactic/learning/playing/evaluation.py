@@ -23,7 +23,7 @@ MOST_ENVS = 256
 
 @dataclass
 class EpisodeResult:
-    """One episode. `path`: meters that the base went over the floor, but for the last step; `straight`:
+    """One episode. `picked`: whether the target has been in the hand. `path`: meters that the base went over the floor, but for the last step; `straight`:
     the length of the straight lines from where it started to where it first held something, and on to
     where it was last seen: no path by these places is shorter. `refused`, `slid`: steps in which the
     robot stayed where it was, or was pushed clear, because it would have hit something. `measures`: what
@@ -31,6 +31,7 @@ class EpisodeResult:
 
     episode: int
     success: bool
+    picked: bool
     ending: str
     reward: float
     length: int
@@ -197,7 +198,7 @@ class Evaluator:
                 mean = result.logs.get(name, 0.0)
                 result.logs[name] = mean + (float(row[env]) - mean) / result.length
             if ended[env]:
-                result.success = bool(step.successes[env])
+                result.success, result.picked = bool(step.successes[env]), bool(step.picks[env])
                 result.ending = galactic.EpisodeEnd(self._homes.endings(0)[env]).name.lower()
                 result.measures = {name: float(row[env]) for name, row in step.measures.items()}
                 if details:
@@ -213,7 +214,7 @@ class _Played:
 
     def __init__(self, episode: int, place: Optional[np.ndarray] = None,
                  collisions: tuple[int, int] = (0, 0)):  # fmt: skip
-        self.result = EpisodeResult(episode, False, "", 0.0, 0, 0.0, 0.0, 0, 0)
+        self.result = EpisodeResult(episode, False, False, "", 0.0, 0, 0.0, 0.0, 0, 0)
         self._collisions = collisions
         self._place = place
         # Where the straight lines begin, and the length of those that are behind.
@@ -252,6 +253,7 @@ def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
     return EpisodeSums(
         float(len(results)),
         float(sum(result.success for result in results)),
+        float(sum(result.picked for result in results)),
         sum(result.reward for result in results),
         steps,
         {name: sum(result.measures[name] for result in results) for name in measures},
@@ -277,6 +279,7 @@ def summary(results: Sequence[EpisodeResult], world: "galactic.World") -> dict[s
         "episodes": len(results),
         "success": success,
         "success_interval": list(interval(success, len(results))),
+        "picked": sum(result.picked for result in results) / count,
         "return": sum(result.reward for result in results) / count,
         "length": steps / count,
         "spl": sum(result.path_ratio for result in results) / count,

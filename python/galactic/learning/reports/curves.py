@@ -38,13 +38,15 @@ COLUMNS = (
     "log_std",
     "learning_rate",
     "teacher_kl",
+    "picked",
+    "validation_picked",
 )
 """Steps, seconds and updates since the run began, over all its parts; sps: steps per second since the
 row before. Success, return and length: means of the latest episodes of training, from when every env
-has finished one; `validation_...`: of the episodes for validation, in rows that have them. Episodes: how
-many episodes that are. Log_std:
-the mean of the policy's, where they are parameters. Teacher_kl: the divergence from what the teacher
-would do, nats per step, while it counts. New columns come last: see Trainer."""
+has finished one, and so is picked, the share of those in which the target has been in the hand;
+`validation_...`: of the episodes for validation, in rows that have them. Episodes: how many episodes that are.
+Log_std: the mean of the policy's, where they are parameters. Teacher_kl: the divergence from what the teacher
+would do, nats per step, while it counts. New columns come last: see older.trainer_values()."""
 VALIDATION = "validation_"
 
 

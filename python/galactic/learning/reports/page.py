@@ -47,6 +47,7 @@ def _of_episodes(title: str, unit: str, column: str, axis: Sequence[float] = ())
 
 EPISODES = (
     _of_episodes("Success", "share of episodes", "success", (0.0, 0.1)),
+    _of_episodes("Target picked", "share of episodes", "picked", (0.0, 0.1)),
     _of_episodes("Return", "reward per episode", "return"),
     _of_episodes("Length", "steps per episode", "length", (0.0,)),
 )

@@ -228,6 +228,7 @@ class Collector:
         returns, lengths, sums = self._returns[envs], self._lengths[envs], self.episodes
         sums.episodes += float(ended.sum())
         sums.successes += float(result.successes[ended].sum())
+        sums.picks += float(result.picks[ended].sum())
         sums.returns += float(returns[ended].sum())
         sums.lengths += float(lengths[ended].sum())
         for name, values in result.measures.items():

@@ -32,6 +32,7 @@ class Step(NamedTuple):
     terminated: np.ndarray  # [n] bool: the task ended the episode, in success or failure
     truncated: np.ndarray  # [n] bool: time did
     successes: np.ndarray  # [n] bool: it ended in success
+    picks: np.ndarray  # [n] bool: it ended, and the target had been in the hand at any time of it
     timeouts: Optional[Timeouts] = None  # None: truncated is false everywhere
     # Where an episode ended, what there is to measure of it: [n] each, by the names of Environments.measures.
     measures: Mapping[str, np.ndarray] = {}

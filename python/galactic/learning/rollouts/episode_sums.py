@@ -27,12 +27,14 @@ class OwnNames(NamedTuple):
 
 @dataclass
 class EpisodeSums:
-    """Sums over some episodes. `measures`: of what a task of one's own says of them, by name; those that
+    """Sums over some episodes. `picks`: in how many of them the target had been in the hand; NaN is not
+    known. `measures`: of what a task of one's own says of them, by name; those that
     are not there are 0, and NaN is not known. `logs`: the same of what it says of each of `steps`, of these
     episodes or of others that are under way."""
 
     episodes: float = 0.0
     successes: float = 0.0
+    picks: float = 0.0
     returns: float = 0.0
     lengths: float = 0.0
     measures: dict[str, float] = field(default_factory=dict)
@@ -43,16 +45,16 @@ class EpisodeSums:
         """All of them in a row, of which of() makes the same, with what is named."""
         measured = [self.measures.get(name, 0.0) for name in names.measures]
         logged = [self.logs.get(name, 0.0) for name in names.logs]
-        row = [self.episodes, self.successes, self.returns, self.lengths, *measured]
+        row = [self.episodes, self.successes, self.picks, self.returns, self.lengths, *measured]
         return [*row, self.steps, *logged] if logged else row
 
     @classmethod
     def of(cls, numbers: Sequence[float], names: OwnNames) -> EpisodeSums:
-        episodes, successes, returns, lengths, *own = numbers
+        episodes, successes, picks, returns, lengths, *own = numbers
         measures = dict(zip(names.measures, own))
         steps, *logged = own[len(measures) :] or [0.0]
         logs = dict(zip(names.logs, logged))
-        return cls(episodes, successes, returns, lengths, measures, steps, logs)
+        return cls(episodes, successes, picks, returns, lengths, measures, steps, logs)
 
     @classmethod
     def total(cls, parts: Iterable[EpisodeSums], names: OwnNames) -> EpisodeSums:
@@ -66,6 +68,7 @@ class EpisodeSums:
             return {}
         sums = {
             "success": self.successes,
+            "picked": self.picks,
             "return": self.returns,
             "length": self.lengths,
             **{MEASURE + name: total for name, total in self.measures.items()},
@@ -97,7 +100,7 @@ class RecentEpisodes:
         return EpisodeSums.total(self._rollouts, self._names)
 
     def figures(self) -> dict[str, float]:
-        """Success, return, length and what the task measures, means over total(); none before every env
+        """Success, picked, return, length and what the task measures, means over total(); none before every env
         has finished an episode: those that are over first are the short ones, successes most of all.
         """
         return {} if self.waiting else self.total().means()

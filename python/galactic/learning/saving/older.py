@@ -4,6 +4,7 @@ no such thing passes as it is, for its reader to refuse."""
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Any, Mapping
 
 import torch
@@ -11,7 +12,8 @@ from torch import Tensor
 
 from galactic.demonstrations import About
 from galactic.learning.policies.networks import PolicyShape
-from galactic.learning.reports.curves import COLUMNS
+from galactic.learning.reports.curves import COLUMNS, columns_of
+from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames
 from galactic.learning.settings import CAMERA, Settings
 
 
@@ -42,7 +44,7 @@ def policy_values(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def trainer_values(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a trainer.pt, which once did not know who waits for an episode's end, nor of a paced rate, of
-    processor time, of what a task or a callback says, or of what a signal has put off."""
+    processor time, of what a task or a callback says, of what a signal has put off, or of picks."""
     values = {
         "waiting": 0,
         "rate_share": 1.0,
@@ -57,13 +59,38 @@ def trainer_values(values: Mapping[str, Any]) -> dict[str, Any]:
     }
     if isinstance(values.get("rows"), list):
         values["rows"] = [_row_with_teacher(row) for row in values["rows"]]
-    return values
+    return _with_picks(values)
 
 
 def _row_with_teacher(row: Any) -> Any:
     """Rows once ended before the teacher's column."""
     is_without = isinstance(row, list) and len(row) == COLUMNS.index("teacher_kl")
     return [*row, *[None] * (len(COLUMNS) - len(row))] if is_without else row
+
+
+def _with_picks(values: dict[str, Any]) -> dict[str, Any]:
+    """Nobody once counted in which episodes the target was picked: of those it is not known."""
+    measures, logs, added = (values[name] for name in ("measures", "logs", "added_columns"))
+    if not all(_are_names(one) for one in (measures, logs, added)):
+        return values
+    names = OwnNames(tuple(measures), tuple(logs))
+    columns, numbers = len(columns_of(names)) + len(added), len(EpisodeSums().numbers(names))
+    if isinstance(values.get("rows"), list):
+        at = COLUMNS.index("picked")
+        values["rows"] = [_with_gap(row, columns, at, [None, None]) for row in values["rows"]]
+    if isinstance(values.get("window"), list):
+        values["window"] = [_with_gap(row, numbers, 2, [math.nan]) for row in values["window"]]
+    return values
+
+
+def _are_names(values: Any) -> bool:
+    return isinstance(values, list) and all(isinstance(one, str) for one in values)
+
+
+def _with_gap(row: Any, width: int, at: int, gap: list[Any]) -> Any:
+    """A row of a table of that width, which has the gap at that place where it was without."""
+    is_without = isinstance(row, list) and len(row) == width - len(gap)
+    return [*row[:at], *gap, *row[at:]] if is_without else row
 
 
 def rank_tensors(tensors: Mapping[str, Any]) -> dict[str, Any]:
