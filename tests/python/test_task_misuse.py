@@ -250,6 +250,7 @@ def ends_odd(self, envs):
         (of(parts={"to door": 1}), ValueError, "Faulty.parts has 'to door'"),
         (of(parts={"door": 0}), ValueError, r"Faulty.parts\['door'\] is 0, expected how many"),
         (of(measures=("success",)), ValueError, "Faulty.measures has 'success', expected a name of its"),
+        (of(measures=("picked",)), ValueError, "Faulty.measures has 'picked', expected a name of its own"),
         (of(measures="gained"), ValueError, "Faulty.measures has 'g', expected a name of its own"),
         (of(parts={"bump": 1}), ValueError, "Faulty.parts has 'bump', expected a name of its own"),
         (of(measures=("env", "env")), ValueError, "Faulty.measures has a name twice"),
