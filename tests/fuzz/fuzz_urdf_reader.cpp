@@ -51,7 +51,7 @@ void readRobot(const std::string& text) {
   const auto mimics = resolveMimics(stated, kWhere);
   if (!mimics) return expectGoodError(mimics.error());
   for (const auto& mimic : *mimics) {
-    if (mimic && (*mimics)[mimic->joint]) reportFinding("a mimic of a joint that mimics");
+    if (mimic && (*mimics)[mimic->link]) reportFinding("a mimic of a joint that mimics");
   }
 }
 

@@ -51,12 +51,7 @@ Result<void> coupleJoints(const RobotRecipe& recipe, SourceRobot& robot) {
     stated[follower].offset = given.offset;
   }
   ASSIGN_OR_RETURN(const auto mimics, resolveMimics(stated, recipe.source));
-  for (std::size_t n = 0; n < robot.links.size(); ++n) {
-    if (!mimics[n]) continue;
-    robot.links[n].mimic = Mimic{.link = static_cast<std::uint32_t>(mimics[n]->joint),
-                                 .multiplier = mimics[n]->multiplier,
-                                 .offset = mimics[n]->offset};
-  }
+  for (std::size_t n = 0; n < robot.links.size(); ++n) robot.links[n].mimic = mimics[n];
   return {};
 }
 

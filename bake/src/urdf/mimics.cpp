@@ -18,15 +18,15 @@ class MimicChains {
  public:
   MimicChains(std::span<const JointMimic> joints, const std::string& where)
       : joints_(joints), where_(where) {
-    for (std::size_t i = 0; i < joints.size(); ++i) joint_of_name_[joints[i].joint] = i;
+    for (std::uint32_t i = 0; i < joints.size(); ++i) joint_of_name_[joints[i].joint] = i;
   }
 
   /// What the joint at last follows.
-  [[nodiscard]] Result<ResolvedMimic> resolve(std::size_t joint) const;
+  [[nodiscard]] Result<Mimic> resolve(std::size_t joint) const;
 
  private:
-  [[nodiscard]] Result<ResolvedMimic> followChain(std::size_t joint) const;
-  [[nodiscard]] Result<void> checkMimic(std::size_t joint, const ResolvedMimic& mimic) const;
+  [[nodiscard]] Result<Mimic> followChain(std::size_t joint) const;
+  [[nodiscard]] Result<void> checkMimic(std::size_t joint, const Mimic& mimic) const;
   [[nodiscard]] tl::unexpected<Error> invalid(const JointMimic& joint, std::string message) const {
     return fail(ErrorCode::kInvalidInput, fmt::format("{}: joint '{}'", where_, joint.joint),
                 std::move(message));
@@ -34,21 +34,21 @@ class MimicChains {
 
   std::span<const JointMimic> joints_;
   const std::string& where_;
-  std::map<std::string_view, std::size_t> joint_of_name_;
+  std::map<std::string_view, std::uint32_t> joint_of_name_;
 };
 
-Result<ResolvedMimic> MimicChains::resolve(std::size_t joint) const {
+Result<Mimic> MimicChains::resolve(std::size_t joint) const {
   ASSIGN_OR_RETURN(const auto mimic, followChain(joint));
   RETURN_IF_ERROR(checkMimic(joint, mimic));
   return mimic;
 }
 
-Result<ResolvedMimic> MimicChains::followChain(std::size_t joint) const {
-  // The joint's position is multiplier * (position of mimic.joint) + offset all along.
-  ResolvedMimic mimic{.joint = joint, .multiplier = 1, .offset = 0};
+Result<Mimic> MimicChains::followChain(std::size_t joint) const {
+  // The joint's position is multiplier * (position of mimic.link) + offset all along.
+  Mimic mimic{.link = static_cast<std::uint32_t>(joint), .multiplier = 1, .offset = 0};
   std::size_t steps = 0;
-  while (!joints_[mimic.joint].leader.empty()) {
-    const JointMimic& at = joints_[mimic.joint];
+  while (!joints_[mimic.link].leader.empty()) {
+    const JointMimic& at = joints_[mimic.link];
     const auto next = joint_of_name_.find(at.leader);
     if (next == joint_of_name_.end()) {
       return invalid(at, fmt::format("it mimics joint '{}', which does not exist; correct the name",
@@ -60,14 +60,14 @@ Result<ResolvedMimic> MimicChains::followChain(std::size_t joint) const {
     }
     mimic.offset += mimic.multiplier * at.offset;
     mimic.multiplier *= at.multiplier;
-    mimic.joint = next->second;
+    mimic.link = next->second;
   }
   return mimic;
 }
 
-Result<void> MimicChains::checkMimic(std::size_t joint, const ResolvedMimic& mimic) const {
+Result<void> MimicChains::checkMimic(std::size_t joint, const Mimic& mimic) const {
   const JointMimic& follower = joints_[joint];
-  const JointMimic& leader = joints_[mimic.joint];
+  const JointMimic& leader = joints_[mimic.link];
   for (const JointMimic* end : {&follower, &leader}) {
     if (positionCount(end->type) == 1) continue;
     return invalid(follower,
@@ -85,10 +85,10 @@ Result<void> MimicChains::checkMimic(std::size_t joint, const ResolvedMimic& mim
 
 }  // namespace
 
-Result<std::vector<std::optional<ResolvedMimic>>> resolveMimics(std::span<const JointMimic> joints,
-                                                                const std::string& where) {
+Result<std::vector<std::optional<Mimic>>> resolveMimics(std::span<const JointMimic> joints,
+                                                        const std::string& where) {
   const MimicChains chains(joints, where);
-  std::vector<std::optional<ResolvedMimic>> resolved(joints.size());
+  std::vector<std::optional<Mimic>> resolved(joints.size());
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (joints[i].leader.empty()) continue;
     ASSIGN_OR_RETURN(resolved[i], chains.resolve(i));

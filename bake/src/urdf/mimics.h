@@ -1,18 +1,18 @@
 #pragma once
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "galactic/bake/source_robot.h"
 #include "galactic/error.h"
 #include "galactic/kinematics.h"
 
 namespace galactic::bake {
 
-/// What is said of one of a robot's joints: that its position is multiplier * (that of the joint
-/// `leader`)
+/// What is said of the joint above one of a robot's links: that its position is multiplier * (that
+/// of the joint `leader`)
 /// + offset.
 struct JointMimic {
   std::string_view joint{};
@@ -24,18 +24,10 @@ struct JointMimic {
   double offset = 0;
 };
 
-/// A joint whose mimic chain is resolved.
-struct ResolvedMimic {
-  /// Index into all joints of one that mimics nothing.
-  std::size_t joint = 0;
-  double multiplier = 1;
-  double offset = 0;
-};
-
-/// One entry for each of all joints of a robot; none where it mimics nothing. Fails with
-/// kInvalidInput on unknown joints, on those without a single position, and on circles; `where`
-/// begins the place of errors.
-[[nodiscard]] Result<std::vector<std::optional<ResolvedMimic>>> resolveMimics(
+/// Chains of them resolved: one entry for each of all links of a robot, in their order; none where
+/// the joint above it mimics nothing. Fails with kInvalidInput on unknown joints, on those without
+/// a single position, and on circles; `where` begins the place of errors.
+[[nodiscard]] Result<std::vector<std::optional<Mimic>>> resolveMimics(
     std::span<const JointMimic> joints, const std::string& where);
 
 }  // namespace galactic::bake

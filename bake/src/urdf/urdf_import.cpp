@@ -28,29 +28,28 @@ JointLimits assumedLimits(JointType type) {
   return {-most, most};
 }
 
-std::vector<JointMimic> mimicsOf(const UrdfModel& model) {
+/// What the joints above the links follow.
+std::vector<JointMimic> mimicsOf(const UrdfModel& model, const std::vector<TreeLink>& tree) {
   std::vector<JointMimic> mimics;
-  for (const UrdfJoint& joint : model.joints) {
-    mimics.push_back({.joint = joint.name,
-                      .type = joint.type,
-                      .leader = joint.mimic,
-                      .multiplier = joint.multiplier,
-                      .offset = joint.offset});
+  for (const TreeLink& link : tree) {
+    JointMimic& mimic = mimics.emplace_back();
+    if (!link.joint) continue;
+    const UrdfJoint& joint = model.joints[*link.joint];
+    mimic = {.joint = joint.name,
+             .type = joint.type,
+             .leader = joint.mimic,
+             .multiplier = joint.multiplier,
+             .offset = joint.offset};
   }
   return mimics;
 }
 
 /// Puts the joints of the model, in the runtime's frame, into the links of `robot`.
 void addJoints(const UrdfModel& model, const std::vector<TreeLink>& tree,
-               const std::vector<std::optional<ResolvedMimic>>& mimics, UpAxis up,
-               SourceRobot& robot) {
+               const std::vector<std::optional<Mimic>>& mimics, UpAxis up, SourceRobot& robot) {
   const bool z_up = up == UpAxis::kZ;
   const Affine& up_from_urdf = z_up ? kYUpFromZUp : kIdentityAffine;
   const Affine& urdf_from_up = z_up ? kZUpFromYUp : kIdentityAffine;
-  std::vector<std::uint32_t> link_of_joint(model.joints.size());
-  for (std::size_t i = 0; i < tree.size(); ++i) {
-    if (tree[i].joint) link_of_joint[*tree[i].joint] = static_cast<std::uint32_t>(i);
-  }
   for (std::size_t i = 0; i < tree.size(); ++i) {
     SourceLink& link = robot.links[i];
     link.name = model.links[tree[i].link].name;
@@ -68,11 +67,7 @@ void addJoints(const UrdfModel& model, const std::vector<TreeLink>& tree,
       link.limits = assumedLimits(joint.type);
       link.limits_are_assumed = true;
     }
-    if (const auto& mimic = mimics[*tree[i].joint]) {
-      link.mimic = Mimic{.link = link_of_joint[mimic->joint],
-                         .multiplier = mimic->multiplier,
-                         .offset = mimic->offset};
-    }
+    link.mimic = mimics[i];
   }
 }
 
@@ -108,7 +103,7 @@ Result<SourceRobot> importUrdf(const fs::path& path, const UrdfImportOptions& op
   const std::string where = path.string();
   ASSIGN_OR_RETURN(const auto tree, orderTree(model, where));
   RETURN_IF_ERROR(checkJoints(model, where, robot.warnings));
-  ASSIGN_OR_RETURN(const auto mimics, resolveMimics(mimicsOf(model), where));
+  ASSIGN_OR_RETURN(const auto mimics, resolveMimics(mimicsOf(model, tree), where));
   robot.links.resize(tree.size());
   addJoints(model, tree, mimics, options.up, robot);
   GeometryBuilder geometry(path, options, robot);
