@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -80,6 +81,22 @@ class PlanFolder : public BakeFolder {
   [[nodiscard]] ProgramRun bake(const std::string& out,
                                 const std::vector<std::string>& more = {}) const {
     return run(datasetArguments(out, more));
+  }
+
+  /// The names of the texture packs below `out`, ascending.
+  [[nodiscard]] std::vector<std::string> textures(const std::string& out) const {
+    std::vector<std::string> names;
+    for (const auto& [name, content] : packsIn(out)) {
+      if (name.find("/textures/") != std::string::npos) names.push_back(out + "/" + name);
+    }
+    return names;
+  }
+  /// Damages the last byte of a file.
+  void damage(const std::string& name) {
+    std::string bytes = content(name);
+    bytes.back() = static_cast<char>(bytes.back() ^ 1);
+    std::filesystem::remove(path(name));
+    write(name, bytes);
   }
 
   [[nodiscard]] nlohmann::json report() const {
