@@ -4,6 +4,7 @@
 
 #include "engines/embree.h"
 #include "engines/triangle_rays.h"
+#include "support/out_of_memory.h"
 
 namespace galactic::bake {
 namespace {
@@ -46,6 +47,10 @@ TriangleRays& TriangleRays::operator=(TriangleRays&& other) noexcept = default;
 
 std::optional<TriangleRays> TriangleRays::build(std::vector<Vec3> positions,
                                                 std::vector<Triangle> triangles, unsigned jobs) {
+  // Embree ends the program where memory runs out while it and its threads begin: it is not begun
+  // with less. Bytes.
+  constexpr double kToBegin = 160e6;
+  if (!checkMemory(kToBegin, "rays", {})) return std::nullopt;
   auto built = std::make_unique<Scene>();
   const std::string settings = kInstructions + ("threads=" + std::to_string(std::max(1U, jobs)));
   built->device.reset(rtcNewDevice(settings.c_str()));
