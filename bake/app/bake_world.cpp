@@ -59,21 +59,23 @@ std::uint64_t mostOfMemory() {
   return pages / 4 * 3 * page_bytes;
 }
 
-BuildOutcome buildPlanned(const BakeCommand& command, const WorldPlan& plan) {
+BuildOutcome buildPlanned(const BakeCommand& command, const WorldPlan& plan,
+                          BakeLibraries& libraries) {
   const ManyPacksOptions& many = command.many;
-  const WorldBuildOptions options{.jobs = command.run.jobs,
+  const WorldBuildOptions options{.threads = command.run.threads,
                                   .keep_going = command.run.keep_going,
                                   .cache = cacheOf(command, plan),
                                   .shard = many.shard,
                                   .memory = many.memory > 0 ? many.memory : mostOfMemory()};
   const BuildOutcome planned = plannedOutcome(plan, many.shard);
   WorldFollower follower(command, planned.packs.size() - planned.count(PackState::kElsewhere));
-  return build(plan, options, follower);
+  return build(plan, options, follower, libraries);
 }
 
 /// Of the packs that would be baked and of the scenes that would be left out.
-std::vector<LeftOut> whatIsMissing(const WorldPlan& plan, unsigned threads) {
-  std::vector<LeftOut> missing = findMissing(plan, threads);
+std::vector<LeftOut> whatIsMissing(const WorldPlan& plan, unsigned threads,
+                                   BakeLibraries& libraries) {
+  std::vector<LeftOut> missing = findMissing(plan, threads, libraries);
   missing.insert(missing.begin(), plan.left_out.begin(), plan.left_out.end());
   for (const BrokenScene& scene : plan.broken) {
     const Error& error = scene.failure.error;
@@ -92,14 +94,15 @@ Error incomplete(const WorldPlan& plan, const std::vector<LeftOut>& missing) {
 }
 
 /// Makes it; `seconds`: how long planning took.
-int buildWorld(const BakeCommand& command, const WorldPlan& plan, double seconds) {
+int buildWorld(const BakeCommand& command, const WorldPlan& plan, BakeLibraries& libraries,
+               double seconds) {
   // Found before anything was begun.
   if (!plan.broken.empty() && !command.run.keep_going) {
     return refuse(plan.broken.front().failure.error);
   }
   if (auto checked = checkOutputs(command, plan); !checked) return refuse(checked.error());
   if (auto tried = tryOutputs(command, plan); !tried) return refuse(tried.error());
-  BuildOutcome outcome = buildPlanned(command, plan);
+  BuildOutcome outcome = buildPlanned(command, plan, libraries);
   if (outcome.world && !outcome.world->isThere()) {
     printFailures(*outcome.world);
     return exitCodeOf(outcome);
@@ -110,7 +113,8 @@ int buildWorld(const BakeCommand& command, const WorldPlan& plan, double seconds
 }
 
 /// Says what would be made, and what is missing for it.
-int listWorld(const BakeCommand& command, const WorldPlan& plan, double seconds) {
+int listWorld(const BakeCommand& command, const WorldPlan& plan, BakeLibraries& libraries,
+              double seconds) {
   if (auto checked = checkOutputs(command, plan); !checked) return refuse(checked.error());
   if (auto tried = tryReport(command); !tried) return refuse(tried.error());
   BuildOutcome outcome = plannedOutcome(plan, command.many.shard);
@@ -118,7 +122,7 @@ int listWorld(const BakeCommand& command, const WorldPlan& plan, double seconds)
   std::vector<LeftOut> missing;
   {
     const detail::Stopwatch timer(outcome.seconds);
-    missing = whatIsMissing(plan, command.run.jobs);
+    missing = whatIsMissing(plan, command.run.threads, libraries);
   }
   outcome.seconds += seconds;
   if (command.saysMore()) {
@@ -136,13 +140,14 @@ int listWorld(const BakeCommand& command, const WorldPlan& plan, double seconds)
 int bakeWorld(const BakeCommand& command) {
   // Reading recipe and dataset takes longer than a small build.
   double seconds = 0;
+  BakeLibraries libraries;
   const auto plan = [&] {
     const detail::Stopwatch timer(seconds);
-    return planOf(command);
+    return planOf(command, libraries);
   }();
   if (!plan) return refuse(plan.error());
-  return command.run.dry_run ? listWorld(command, *plan, seconds)
-                             : buildWorld(command, *plan, seconds);
+  return command.run.dry_run ? listWorld(command, *plan, libraries, seconds)
+                             : buildWorld(command, *plan, libraries, seconds);
 }
 
 }  // namespace galactic::bake

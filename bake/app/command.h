@@ -23,7 +23,7 @@ struct ToolOptions {
   /// A file for one pack, a folder for several; empty: NAME.pack in the current folder.
   std::filesystem::path out{};
   /// Threads; 0 until the command line is read: one per processor.
-  std::uint32_t jobs = 0;
+  std::uint32_t threads = 0;
   std::filesystem::path report{};
   bool dry_run = false;
   bool keep_going = false;
@@ -98,6 +98,6 @@ using ParsedCommand = std::variant<BakeCommand, int>;
 
 /// What a command that makesWorld() makes of datasets or of a recipe. Fails as jobsOfDatasets and
 /// jobsOfRecipe do.
-[[nodiscard]] Result<WorldPlan> planOf(const BakeCommand& command);
+[[nodiscard]] Result<WorldPlan> planOf(const BakeCommand& command, BakeLibraries& libraries);
 
 }  // namespace galactic::bake

@@ -183,8 +183,8 @@ class CommandLine {
     ASSIGN_OR_RETURN(auto target, chooseTarget(command.inputs));
     command.what = std::move(target);
     RETURN_IF_ERROR(readOptions(command));
-    if (command.run.jobs == 0) {
-      command.run.jobs = std::max(1U, std::thread::hardware_concurrency());
+    if (command.run.threads == 0) {
+      command.run.threads = std::max(1U, std::thread::hardware_concurrency());
     }
     return command;
   }

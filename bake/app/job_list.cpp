@@ -133,19 +133,19 @@ Result<std::vector<PackJob>> packsOf(const BakeCommand& command) {
   return packsOfFiles(command, job);
 }
 
-Result<WorldPlan> planOf(const BakeCommand& command) {
+Result<WorldPlan> planOf(const BakeCommand& command, BakeLibraries& libraries) {
   const fs::path world = worldPack(command);
   if (const auto* recipe = std::get_if<RecipeCommand>(&command.what)) {
     return jobsOfRecipe({.recipe = command.inputs.front(),
                          .data = recipe->data,
                          .episodes = recipe->episodes,
                          .is_of_command_line = isOfCommandLine},
-                        world);
+                        world, libraries);
   }
   std::vector<DatasetJobs> datasets(command.inputs.size(),
                                     std::get<DatasetCommand>(command.what).jobs);
   for (std::size_t n = 0; n < datasets.size(); ++n) datasets[n].input = command.inputs[n];
-  return jobsOfDatasets(datasets, world);
+  return jobsOfDatasets(datasets, world, libraries);
 }
 
 }  // namespace galactic::bake

@@ -39,11 +39,12 @@ int bakeFiles(const BakeCommand& command) {
   if (auto checked = checkOutputs(command, *jobs, packs); !checked) return refuse(checked.error());
   if (auto tried = tryOutputs(command, packs.named); !tried) return refuse(tried.error());
   FileFollower follower(command);
+  BakeLibraries libraries;
   const BuildOutcome outcome = build(*jobs,
-                                     {.jobs = command.run.jobs,
+                                     {.threads = command.run.threads,
                                       .keep_going = command.run.keep_going,
                                       .dry_run = command.run.dry_run},
-                                     follower);
+                                     follower, libraries);
   return endWith(command, outcome, reportOf(*jobs, outcome), exitCodeOf(outcome));
 }
 

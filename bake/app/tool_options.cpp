@@ -101,12 +101,12 @@ class VerbosityField final : public OptionField {
 }  // namespace
 
 void visitOptions(ToolOptions& options, OptionVisitor& v) {
-  auto& [verbosity, out, jobs, report, dry_run, keep_going] = options;
+  auto& [verbosity, out, threads, report, dry_run, keep_going] = options;
   v.group("Options");
   v.option({"out", "OUT", "Pack to write, or a folder for several packs (default: NAME.pack)"},
            path(out));
   v.option({"threads", "N", "Threads; the packs do not depend on it; 0: one per processor"},
-           whole(jobs, {0, 4096}));
+           whole(threads, {0, 4096}));
   v.option({"report", "FILE.json", "Write what was done as JSON"}, path(report));
   v.option({"dry-run", "",
             "Read and check the inputs, write no pack; exit code 3 when something is missing"},

@@ -1,7 +1,7 @@
 // Render meshes of mesh files and URDFs: triangles, clusters and bytes before and after, the error
 // that was measured, and seconds, as a markdown table.
 //
-//   bake_render [--error METERS] [--texture-size N] [--jobs N] FILE...
+//   bake_render [--error METERS] [--texture-size N] [--threads N] FILE...
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,6 +25,7 @@ struct Options {
   std::vector<std::filesystem::path> files;
   RenderBakeOptions meshes;
   TextureBakeOptions textures;
+  unsigned threads = 1;
 };
 
 /// A row of the table.
@@ -70,7 +71,7 @@ Result<Row> bakeRow(const MakeSource& make_source, const Options& options) {
   Row row;
   row.texture_seconds = secondsSince(start);
   start = std::chrono::steady_clock::now();
-  ASSIGN_OR_RETURN(const auto meshes, bakeRenderMeshes(*source, options.meshes));
+  ASSIGN_OR_RETURN(const auto meshes, bakeRenderMeshes(*source, options.meshes, options.threads));
   row.seconds = secondsSince(start);
   row.figures = meshes.statistics();
   row.textures = meshes.materials.textures.size();
@@ -82,12 +83,18 @@ Result<Row> bakeFile(const std::filesystem::path& file, const Options& options) 
     UrdfImportOptions import;
     import.allow_missing = true;
     ASSIGN_OR_RETURN(const auto robot, importUrdf(file, import));
-    return bakeRow([&] { return robotRenderSource(robot, file.parent_path(), options.textures); },
-                   options);
+    return bakeRow(
+        [&] {
+          return robotRenderSource(robot, file.parent_path(), options.textures, options.threads);
+        },
+        options);
   }
   ASSIGN_OR_RETURN(const auto asset, importMesh(file));
-  return bakeRow([&] { return sceneRenderSource(asset, file.parent_path(), options.textures); },
-                 options);
+  return bakeRow(
+      [&] {
+        return sceneRenderSource(asset, file.parent_path(), options.textures, options.threads);
+      },
+      options);
 }
 
 int run(const Options& options) {
@@ -119,9 +126,8 @@ int main(int argc, char** argv) {
   app.add_option("--error", options.meshes.error, "Of the surface, meters")->capture_default_str();
   app.add_option("--texture-size", options.textures.largest, "Longest edge, texels")
       ->capture_default_str();
-  app.add_option("-j,--jobs", options.meshes.jobs, "Threads")->capture_default_str();
+  app.add_option("-j,--threads", options.threads, "Threads")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  options.textures.jobs = options.meshes.jobs;
   try {
     return galactic::bake::run(options);
   } catch (const std::exception& error) {

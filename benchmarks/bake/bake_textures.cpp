@@ -45,14 +45,14 @@ std::vector<Input> importAll(const std::vector<std::string>& files) {
 }
 
 void bakeAll(const std::vector<Input>& inputs, const bake::TextureBakeOptions& options,
-             bool print_warnings) {
+             unsigned threads, bool print_warnings) {
   std::uint64_t source_bytes = 0;
   std::uint64_t bytes = 0;
   std::size_t textures = 0;
   const Stopwatch watch;
   for (const Input& input : inputs) {
-    const auto baked = bake::bakeMaterials(input.asset.materials, input.asset.textures,
-                                           input.path.parent_path(), options);
+    const auto baked = bake::bakeMaterials(
+        input.asset.materials, {input.asset.textures, input.path.parent_path()}, options, threads);
     if (!baked) {
       fmt::print("{}: {}\n", baked.error().where, baked.error().message);
       continue;
@@ -76,16 +76,16 @@ void bakeAll(const std::vector<Input>& inputs, const bake::TextureBakeOptions& o
 int main(int count, char** arguments) {
   CLI::App app("What the texture bake makes of mesh files");
   std::vector<std::string> files;
-  unsigned jobs = 1;
+  unsigned threads = 1;
   app.add_option("FILE", files, "Mesh files")->required();
-  app.add_option("--jobs", jobs, "Threads")->capture_default_str();
+  app.add_option("--threads", threads, "Threads")->capture_default_str();
   CLI11_PARSE(app, count, arguments);
   const std::vector<Input> inputs = importAll(files);
   fmt::print("{:>8} {:>6} {:>9} {:>11} {:>10} {:>8}\n", "largest", "format", "textures",
              "source MB", "texels MB", "seconds");
   for (const auto format : {galactic::TexelFormat::kRgba8, galactic::TexelFormat::kBc1}) {
     for (const std::uint32_t largest : {256U, 512U, 1024U}) {
-      bakeAll(inputs, {.largest = largest, .format = format, .jobs = jobs},
+      bakeAll(inputs, {.largest = largest, .format = format}, threads,
               largest == 256 && format == galactic::TexelFormat::kRgba8);
     }
   }

@@ -32,6 +32,7 @@ namespace {
 struct Request {
   std::vector<std::filesystem::path> meshes;
   SphereSetOptions options;
+  unsigned threads = 1;
   bool z_up = false;
   bool support = true;
   bool curve = false;
@@ -91,22 +92,23 @@ Result<std::vector<SphereSet>> makeSets(const TriangleMesh& mesh, const Request&
     SphereSet set;
     ASSIGN_OR_RETURN(auto shape, publishedShape(mesh.bounds, request.rule, options.radii));
     set.spheres = std::move(shape.spheres);
-    ASSIGN_OR_RETURN(const auto quality, measureSphereSet(mesh, set.spheres, options));
+    ASSIGN_OR_RETURN(const auto quality,
+                     measureSphereSet(mesh, set.spheres, options, request.threads));
     set.quality = quality;
     return std::vector{set};
   }
   if (request.curve) {
-    auto curve = SphereCurve::begin(mesh, options);
+    auto curve = SphereCurve::begin(mesh, options, request.threads);
     if (!curve) return tl::unexpected(curve.error());
     while (!curve->complete()) {
-      if (auto refined = curve->refine(options.jobs); !refined)
+      if (auto refined = curve->refine(request.threads); !refined)
         return tl::unexpected(refined.error());
     }
     std::vector<SphereSet> sets;
     for (std::size_t n = 0; n < curve->points().size(); ++n) sets.push_back(curve->take(n));
     return sets;
   }
-  ASSIGN_OR_RETURN(auto set, fitSphereSet(mesh, options));
+  ASSIGN_OR_RETURN(auto set, fitSphereSet(mesh, options, request.threads));
   return std::vector{set};
 }
 
@@ -153,7 +155,7 @@ int main(int argc, char** argv) {
     app.add_option("--tau", request.options.tau, "Largest protrusion, meters");
     app.add_option("--radii", request.options.radii, "Working set, meters, ascending");
     app.add_option("--max-spheres", request.options.max_spheres, "Most spheres; 0: no limit");
-    app.add_option("--jobs", request.options.jobs, "Threads");
+    app.add_option("--threads", request.threads, "Threads");
     app.add_flag("--z-up", request.z_up, "The files are Z up");
     app.add_flag("--support,!--no-support", request.support, "Nothing below the lowest point");
     app.add_flag("--curve", request.curve, "The whole trade-off curve");

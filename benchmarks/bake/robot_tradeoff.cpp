@@ -100,7 +100,8 @@ std::string inMillimeters(const LengthStatistics& lengths) {
 Result<void> printRow(const std::string& label, const SourceRobot& source,
                       const RobotRecipe* recipe, const RobotBakeOptions& options,
                       std::optional<float> ground) {
-  ASSIGN_OR_RETURN(const auto robot, bakeRobot(source, recipe, options));
+  ASSIGN_OR_RETURN(const auto robot, bakeRobot(source, recipe, options,
+                                               std::max(1U, std::thread::hardware_concurrency())));
   ASSIGN_OR_RETURN(const auto quality, Yardstick(robot, ground).measure());
   std::vector<std::size_t> counts(robot.radii.size());
   std::size_t all = 0;
@@ -122,7 +123,6 @@ Result<void> printTable(const Request& request) {
   import.allow_missing = true;
   ASSIGN_OR_RETURN(const auto source, importUrdf(request.urdf, import));
   RobotBakeOptions options;
-  options.jobs = std::max(1U, std::thread::hardware_concurrency());
   fmt::print(
       "| set | spheres | gap | protrusion | volume | seconds |\n|---|---|---|---|---|---|\n");
   if (!request.by_hand.empty()) {

@@ -52,7 +52,7 @@ struct Mode {
 
 Result<Mode> makeMode(const TriangleMesh& mesh, float radius, float spacing, Coverage coverage) {
   ASSIGN_OR_RETURN(const auto frame, makeGridFrame(mesh.bounds, radius, spacing));
-  const ExactColumns raw = exactColumns(mesh, frame, {.jobs = 2, .coverage = coverage});
+  const ExactColumns raw = exactColumns(mesh, frame, coverage, 2);
   ASSIGN_OR_RETURN(const auto free, chooseFreeSpace(raw.columns));
   return Mode{coverage, spacing, encodeGrid(free.columns)};
 }

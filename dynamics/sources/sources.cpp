@@ -47,8 +47,8 @@ Result<std::vector<bake::SourceFile>> filesOfMesh(const std::filesystem::path& m
 /// Reads the jobs of a recipe as far as a world needs them.
 class SourceReader {
  public:
-  SourceReader(const World& world, Sources& sources)
-      : world_(world), sources_(sources), packs_(world) {
+  SourceReader(const World& world, bake::BakeLibraries& libraries, Sources& sources)
+      : world_(world), libraries_(libraries), sources_(sources), packs_(world) {
     const EpisodeSet& set = world.episodes();
     for (const Episode& episode : set.episodes()) {
       scenes_.emplace(world.sceneOf(episode).name());
@@ -61,7 +61,7 @@ class SourceReader {
   Result<void> operator()(const bake::SceneJob& job) {
     const std::string name = bake::nameOf(job);
     if (!scenes_.contains(name)) return {};
-    ASSIGN_OR_RETURN(const auto asset, bake::readSceneFile(job));
+    ASSIGN_OR_RETURN(const auto asset, bake::readSceneFile(job, libraries_));
     sources_.log.note(job.input.parent_path(), asset.read);
     RETURN_IF_ERROR(compare({.kind = PackKind::kScene, .name = name, .files = asset.read.files}));
     ASSIGN_OR_RETURN(const auto clean, bake::placeAndClean(asset));
@@ -184,6 +184,7 @@ class SourceReader {
   }
 
   const World& world_;
+  bake::BakeLibraries& libraries_;
   Sources& sources_;
   PackSources packs_;
   Names scenes_;
@@ -195,9 +196,10 @@ class SourceReader {
 
 Result<Sources> readSources(const bake::RecipeSource& source, const World& world) {
   // Nothing is written there: the list wants a name for the world.
-  ASSIGN_OR_RETURN(const auto list, bake::jobsOfRecipe(source, "world.pack"));
+  bake::BakeLibraries libraries;
+  ASSIGN_OR_RETURN(const auto list, bake::jobsOfRecipe(source, "world.pack", libraries));
   Sources sources;
-  SourceReader reader(world, sources);
+  SourceReader reader(world, libraries, sources);
   RETURN_IF_ERROR(noteContent(source.recipe, sources.log));
   for (const bake::PackJob& pack : list.assets) {
     for (const std::filesystem::path& file : bake::filesOf(pack.job)) sources.log.noteRead(file);

@@ -55,12 +55,12 @@ TEST(GoldenPacks, AreMadeAgainByteForByte) {
 }
 
 TEST(GoldenPacks, OfTheCrateAndTheArmAreMadeAgainByteForByte) {
-  for (const char* jobs : {"1", "3"}) {
-    EXPECT_TRUE(bakeAgain({"crate.obj"}, {"--as", "object", "-j", jobs}) ==
+  for (const char* threads : {"1", "3"}) {
+    EXPECT_TRUE(bakeAgain({"crate.obj"}, {"--as", "object", "-j", threads}) ==
                 test::fileContent(goldenFolder() / "crate.pack"))
         << "the bytes of an object changed: if on purpose, see packs/golden/README.md";
     EXPECT_TRUE(bakeAgain({"arm.urdf", "arm.toml"},
-                          {"--recipe", "arm.toml", "--radii", "0.02,0.04", "-j", jobs}) ==
+                          {"--recipe", "arm.toml", "--radii", "0.02,0.04", "-j", threads}) ==
                 test::fileContent(goldenFolder() / "arm.pack"))
         << "the bytes of a robot changed: if on purpose, see packs/golden/README.md";
   }

@@ -65,7 +65,7 @@ PlacedMesh placed(const OccludingMesh& mesh) {
   return result;
 }
 
-Result<TriangleRays> allOccluders(std::span<const PlacedMesh> meshes, unsigned jobs) {
+Result<TriangleRays> allOccluders(std::span<const PlacedMesh> meshes, unsigned threads) {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   for (const PlacedMesh& mesh : meshes) {
@@ -82,7 +82,7 @@ Result<TriangleRays> allOccluders(std::span<const PlacedMesh> meshes, unsigned j
       all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
   }
-  auto occluders = TriangleRays::build(std::move(all.positions), std::move(all.triangles), jobs);
+  auto occluders = TriangleRays::build(std::move(all.positions), std::move(all.triangles), threads);
   if (!occluders) {
     return fail(ErrorCode::kUnsupported, "`lighting`",
                 "could not build its scene, for lack of memory; bake with `lighting` none");
@@ -173,12 +173,13 @@ float openPart(const TriangleRays& occluders, std::span<const Ray> rays) {
 
 }  // namespace
 
-Result<std::vector<std::vector<Openness>>> ambientOcclusion(
-    std::span<const OccludingMesh> meshes, const AmbientOcclusionOptions& options) {
+Result<std::vector<std::vector<Openness>>> ambientOcclusion(std::span<const OccludingMesh> meshes,
+                                                            const AmbientOcclusionOptions& options,
+                                                            unsigned threads) {
   RETURN_IF_ERROR(checkOptions(options));
   std::vector<PlacedMesh> world(meshes.size());
-  parallelFor(options.jobs, meshes.size(), [&](std::size_t m) { world[m] = placed(meshes[m]); });
-  ASSIGN_OR_RETURN(const auto occluders, allOccluders(world, options.jobs));
+  parallelFor(threads, meshes.size(), [&](std::size_t m) { world[m] = placed(meshes[m]); });
+  ASSIGN_OR_RETURN(const auto occluders, allOccluders(world, threads));
   const std::vector<PatternRay> pattern = rayPattern(options.rays);
 
   std::vector<std::vector<Openness>> openness(meshes.size());
@@ -187,7 +188,7 @@ Result<std::vector<std::vector<Openness>>> ambientOcclusion(
     const RayMaker maker(world[m], pattern, options);
     const std::size_t vertices = world[m].positions.size();
     openness[m].resize(vertices);
-    parallelFor(options.jobs, (vertices + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+    parallelFor(threads, (vertices + kChunk - 1) / kChunk, [&](std::size_t chunk) {
       std::vector<Ray> rays;
       rays.reserve(pattern.size());
       const std::size_t end = std::min(vertices, (chunk + 1) * kChunk);

@@ -37,8 +37,6 @@ struct AmbientOcclusionOptions {
   float least_distance = 0;
   /// What is farther away keeps no light away. Meters, > 0.
   float largest_distance = 1;
-  /// Threads. The result does not depend on them.
-  unsigned jobs = 1;
 };
 
 /// Factors of light at a vertex, 0 (dark) to 1 (open).
@@ -64,8 +62,10 @@ struct Openness {
 /// triangle of some area gets 1.
 ///
 /// Deterministic: fixed directions (Hammersley points), and Embree's instructions pinned. Fails
-/// with kInvalidInput when an option is out of range, kInternal when Embree does. Thread-safe.
+/// with kInvalidInput when an option is out of range, kInternal when Embree does. Thread-safe. The
+/// result does not depend on `threads`.
 [[nodiscard]] Result<std::vector<std::vector<Openness>>> ambientOcclusion(
-    std::span<const OccludingMesh> meshes, const AmbientOcclusionOptions& options);
+    std::span<const OccludingMesh> meshes, const AmbientOcclusionOptions& options,
+    unsigned threads = 1);
 
 }  // namespace galactic::bake

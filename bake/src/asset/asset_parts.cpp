@@ -5,9 +5,9 @@
 #include <climits>
 #include <utility>
 
+#include "asset/texture_packs.h"
 #include "galactic/bake/packs.h"
 #include "galactic/bake/source_asset.h"
-#include "galactic/pack.h"
 #include "support/exception_error.h"
 #include "support/output_files.h"
 #include "support/try.h"
@@ -18,23 +18,18 @@ namespace {
 namespace fs = std::filesystem;
 
 Result<OptionalMeshes> drawFrom(Result<RenderSource> source, const DrawOptions& options,
-                                const fs::path& input, std::vector<std::string>& warnings) {
+                                const fs::path& input, std::vector<std::string>& warnings,
+                                unsigned threads) {
   const auto located = [&](Error error) {
     error.where = inFile(input, error.where);
     return tl::unexpected(std::move(error));
   };
   if (!source) return located(source.error());
-  auto meshes = bakeRenderMeshes(*source, options.meshes);
+  auto meshes = bakeRenderMeshes(*source, options.meshes, threads);
   if (!meshes) return located(meshes.error());
   const std::vector<std::string>& more = meshes->materials.warnings;
   warnings.insert(warnings.end(), more.begin(), more.end());
   return OptionalMeshes(std::move(*meshes));
-}
-
-/// Its name tells what is in it.
-bool isWholeTexture(const fs::path& pack) {
-  const auto opened = PackFile::open(pack);
-  return opened && opened->kind() == PackKind::kTexture;
 }
 
 }  // namespace
@@ -76,43 +71,53 @@ Result<std::unique_ptr<Journal>> openJournal(const Job& job, std::span<const Sou
 }
 
 Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,
-                                 std::vector<std::string>& warnings) {
+                                 std::vector<std::string>& warnings, const BakeContext& context) {
   if (!options.wanted) return std::nullopt;
-  return drawFrom(sceneRenderSource(scene.asset, scene.folder, options.textures), options,
-                  scene.input, warnings);
+  // Scenes that share no textures would only fill the library.
+  TextureLibrary* const images =
+      options.shared_textures.empty() ? nullptr : &context.libraries.images();
+  return drawFrom(
+      sceneRenderSource(scene.asset, scene.folder, options.textures, context.threads, images),
+      options, scene.input, warnings, context.threads);
 }
 
 Result<OptionalMeshes> drawObject(const SourceAsset& object, const DrawOptions& options,
-                                  const fs::path& input, std::vector<std::string>& warnings) {
+                                  const fs::path& input, std::vector<std::string>& warnings,
+                                  const BakeContext& context) {
   if (!options.wanted) return std::nullopt;
-  return drawFrom(objectRenderSource(object, input.parent_path(), options.textures), options, input,
-                  warnings);
+  return drawFrom(
+      objectRenderSource(object, input.parent_path(), options.textures, context.threads), options,
+      input, warnings, context.threads);
 }
 
 Result<OptionalMeshes> drawRobot(const SourceRobot& robot, const DrawOptions& options,
-                                 const fs::path& input, BakedRobot& baked) {
+                                 const fs::path& input, BakedRobot& baked,
+                                 const BakeContext& context) {
   if (!options.wanted) return std::nullopt;
-  auto source = robotRenderSource(robot, input.parent_path(), options.textures);
+  auto source = robotRenderSource(robot, input.parent_path(), options.textures, context.threads);
   if (source) standInStartPose(*source, baked.kinematics);
-  return drawFrom(std::move(source), options, input, baked.warnings);
+  return drawFrom(std::move(source), options, input, baked.warnings, context.threads);
 }
 
-Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options, bool dry_run) {
+Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options,
+                           const BakeContext& context) {
   const fs::path& folder = options.shared_textures;
   if (folder.empty()) return {};
   materials.shared = true;
-  if (dry_run) return {};
+  if (context.dry_run) return {};
   RETURN_IF_ERROR(makeFolders(folder));
   // What a texture looks like says nothing of the asset that it was met in.
   Provenance provenance = provenanceOf(SceneJob{}, {}, {});
   provenance.options.clear();
   for (const BakedTexture& texture : materials.textures) {
-    const fs::path pack = folder / (textureHash(texture) + ".pack");
-    if (isWholeTexture(pack)) continue;
     // Its source is the first asset that shows it, which may differ: a name of its own.
     BakedTexture named = texture;
     named.name = textureHash(texture);
-    RETURN_IF_ERROR(writeTexturePack(pack, materials, named, provenance));
+    const fs::path pack = folder / (named.name + ".pack");
+    const auto write = [&] {
+      return writeTexturePack(pack, materials, named, provenance).map([](std::uint64_t) {});
+    };
+    RETURN_IF_ERROR(context.libraries.texturePacks().provide(pack, write));
   }
   return {};
 }

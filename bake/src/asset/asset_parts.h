@@ -58,19 +58,21 @@ using OptionalMeshes = std::optional<BakedRenderMeshes>;
 /// Bake what is drawn of an asset that was read from `input`, and add the warnings. Errors name the
 /// input.
 [[nodiscard]] Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,
-                                               std::vector<std::string>& warnings);
+                                               std::vector<std::string>& warnings,
+                                               const BakeContext& context);
 [[nodiscard]] Result<OptionalMeshes> drawObject(const SourceAsset& object,
                                                 const DrawOptions& options,
                                                 const std::filesystem::path& input,
-                                                std::vector<std::string>& warnings);
+                                                std::vector<std::string>& warnings,
+                                                const BakeContext& context);
 /// Links are lit in the start pose of `baked`, to which the warnings are added.
 [[nodiscard]] Result<OptionalMeshes> drawRobot(const SourceRobot& robot, const DrawOptions& options,
                                                const std::filesystem::path& input,
-                                               BakedRobot& baked);
+                                               BakedRobot& baked, const BakeContext& context);
 
 /// Where `options` share textures between packs, writes those of `materials` that are not there
 /// yet, each into a pack named by its content, and leaves their texels out of the asset's own pack.
 [[nodiscard]] Result<void> shareTextures(BakedMaterials& materials, const DrawOptions& options,
-                                         bool dry_run);
+                                         const BakeContext& context);
 
 }  // namespace galactic::bake

@@ -79,12 +79,18 @@ Result<void> addGeometry(const EpisodeGenerationJob& job, ReadLog& log, OpenPack
   return {};
 }
 
-/// The mesh of `geometry` for a scene; nothing where there is none.
-Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_view scene) {
-  if (job.details) return job.details(scene);
-  const auto file = job.geometry.find(std::string(scene));
+/// Of a scene that is made in the same build, the triangles and receptacles, read again from what
+/// its pack is made of: the pack holds neither, and may come from the cache. Of others, the mesh of
+/// `geometry`; nothing where there is none.
+Result<SceneDetails> readDetails(const EpisodeGenerationJob& job, std::string_view scene,
+                                 BakeLibraries& libraries) {
+  const std::string name(scene);
+  if (const auto made = job.scenes.find(name); made != job.scenes.end()) {
+    return readSceneDetails(made->second, libraries);
+  }
+  const auto file = job.geometry.find(name);
   if (file == job.geometry.end()) return SceneDetails{};
-  return readSceneDetails({.input = file->second});
+  return readSceneDetails({.input = file->second}, libraries);
 }
 
 /// `files`: sorted. What only scenes know decides, too, and stands in the records.
@@ -114,9 +120,8 @@ Result<BakedPack> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInp
   // As one that is exported and imported again is called.
   generated.episodes.name = context.output.stem().string();
   context.show("episodes", "solve", 1);
-  ASSIGN_OR_RETURN(auto sample,
-                   solveSample(inputs.packs, generated.episodes,
-                               {.most_episodes = job.solve, .jobs = job.generate.jobs}));
+  ASSIGN_OR_RETURN(auto sample, solveSample(inputs.packs, generated.episodes,
+                                            {.most_episodes = job.solve}, context.threads));
   return finish({.input = fmt::format("{} packs", job.packs.size()),
                  .episodes = std::move(generated.episodes),
                  .generation = EpisodeGeneration{generated.rejections, std::move(generated.scenes),
@@ -160,11 +165,16 @@ Result<BakedPack> generateInPacks(const EpisodeGenerationJob& job, const BakeCon
     return std::tie(file.name, file.bytes, file.hash_high, file.hash_low);
   });
   ASSIGN_OR_RETURN(const auto journal, openJournal(job, opened.files, context));
-  EpisodeInputs inputs{.journal = journal.get(), .stops = context.stops, .memory = context.memory};
+  EpisodeInputs inputs{.threads = context.threads,
+                       .journal = journal.get(),
+                       .stops = context.stops,
+                       .memory = context.memory};
   inputs.packs.reserve(opened.packs.size());
   for (const PackFile& pack : opened.packs) inputs.packs.push_back(&pack);
-  if (job.details || !job.geometry.empty()) {
-    inputs.details = [&job](std::string_view scene) { return readDetails(job, scene); };
+  if (!job.scenes.empty() || !job.geometry.empty()) {
+    inputs.details = [&](std::string_view scene) {
+      return readDetails(job, scene, context.libraries);
+    };
   }
   auto made = makeEpisodes(job, inputs, std::move(opened.files), context);
   if (journal && made) journal->remove();

@@ -91,7 +91,8 @@ void takeBox(const AuthoredShape& shape, BakedObject& object) {
 
 }  // namespace
 
-Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions& options) {
+Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions& options,
+                               unsigned threads) {
   Result<CleanMesh> cleaned = placeAndClean(asset);
   if (!cleaned) return tl::unexpected(cleaned.error());
   const TriangleMesh& mesh = cleaned->mesh;
@@ -120,8 +121,9 @@ Result<BakedObject> bakeObject(const SourceAsset& asset, const ObjectBakeOptions
   {
     const detail::Stopwatch timer(object.times.spheres);
     Result<SphereSet> spheres =
-        object.authored_spheres ? authoredSphereSet(mesh, options.authored->spheres, sphere_options)
-                                : fitSphereSet(mesh, sphere_options);
+        object.authored_spheres
+            ? authoredSphereSet(mesh, options.authored->spheres, sphere_options, threads)
+            : fitSphereSet(mesh, sphere_options, threads);
     if (!spheres) return tl::unexpected(spheres.error());
     object.spheres = std::move(*spheres);
   }

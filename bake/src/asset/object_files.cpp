@@ -36,6 +36,8 @@ struct ObjectTask {
   /// None where no collection is given.
   const std::optional<Collection>& collection;
   const ObjectJournal& journal;
+  /// With the threads of one object.
+  BakeContext context;
 };
 
 /// The options of one object: with the shape that a collection gives it.
@@ -75,15 +77,16 @@ Result<void> bakeOne(const ObjectInput& input, const ObjectTask& task, FinishedO
   finished.read = asset->read;
   asset->name = input.name;
   ASSIGN_OR_RETURN(const auto options, optionsOf(input.name, task, asset->warnings));
-  auto object = bakeObject(*asset, options);
+  auto object = bakeObject(*asset, options, task.context.threads);
   if (!object) {
     object.error().where = inFile(input.path, object.error().where);
     return tl::unexpected(object.error());
   }
   finished.object = std::move(*object);
   const detail::Stopwatch timer(finished.object.times.render);
-  ASSIGN_OR_RETURN(finished.object.render_meshes,
-                   drawObject(*asset, task.job.draw, input.path, finished.object.warnings));
+  ASSIGN_OR_RETURN(
+      finished.object.render_meshes,
+      drawObject(*asset, task.job.draw, input.path, finished.object.warnings, task.context));
   return {};
 }
 
@@ -101,19 +104,16 @@ Result<void> finishOne(const ObjectInput& input, const ObjectTask& task, Finishe
   }
 }
 
-std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, const ObjectTask& set,
+std::vector<ObjectWork> bakeAll(const std::vector<ObjectInput>& inputs, ObjectTask task,
                                 const BakeContext& context) {
   std::vector<ObjectWork> work(inputs.size());
   // Several objects at once, or one on all threads.
-  const unsigned jobs = set.job.shape.spheres.jobs;
-  const bool alone = inputs.size() < jobs;
-  Job each = set.job;
-  if (!alone) setThreads(each, 1);
-  const ObjectTask task{std::get<ObjectJob>(each), set.collection, set.journal};
+  const bool alone = inputs.size() < context.threads;
+  if (!alone) task.context.threads = 1;
   std::atomic<bool> stop{false};
   std::mutex progress;
   std::size_t done = 0;
-  parallelFor(alone ? 1 : jobs, inputs.size(), [&](std::size_t n) {
+  parallelFor(alone ? 1 : context.threads, inputs.size(), [&](std::size_t n) {
     if (stop || context.stops()) return;
     work[n].done = finishOne(inputs[n], task, work[n].finished);
     if (!*work[n].done && !context.keep_going) stop = true;
@@ -196,8 +196,8 @@ Result<BakedPack> makeObjectPack(const ObjectJob& job, const BakeContext& contex
     ASSIGN_OR_RETURN(kept, openJournal(Job(job), sources, context));
   }
   const ObjectJournal journal(std::move(kept), outcome.radii.size());
-  collect(inputs, bakeAll(inputs, {job, collection, journal}, context), context.log, outcome,
-          sources);
+  collect(inputs, bakeAll(inputs, {job, collection, journal, context}, context), context.log,
+          outcome, sources);
   const bool goes_on = outcome.failures.empty() || context.keep_going;
   const std::size_t ended = outcome.objects.size() + outcome.failures.size();
   if (goes_on && ended < inputs.size()) {

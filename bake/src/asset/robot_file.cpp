@@ -36,13 +36,13 @@ Result<std::optional<HandSpheres>> readSpheres(const std::filesystem::path& path
   return spheres;
 }
 
-Result<BakedRobot> bakeWithRecipe(const RobotJob& job, SourceRobot& robot) {
+Result<BakedRobot> bakeWithRecipe(const RobotJob& job, SourceRobot& robot, unsigned threads) {
   auto recipe = readRecipe(job.recipe, robot);
   if (!recipe) return tl::unexpected(recipe.error());
   ASSIGN_OR_RETURN(auto spheres, readSpheres(job.spheres, robot));
   RobotBakeOptions options = job.shape;
   options.hand_spheres = std::move(spheres);
-  auto baked = bakeRobot(robot, *recipe ? &**recipe : nullptr, options);
+  auto baked = bakeRobot(robot, *recipe ? &**recipe : nullptr, options, threads);
   if (!baked && !(*recipe && baked.error().where.starts_with((*recipe)->source))) {
     baked.error().where = inFile(job.input, baked.error().where);
   }
@@ -52,12 +52,12 @@ Result<BakedRobot> bakeWithRecipe(const RobotJob& job, SourceRobot& robot) {
 Result<BakedRobot> bakeParts(const RobotJob& job, SourceRobot& robot, const BakeContext& context) {
   const std::string item = job.input.filename().string();
   context.show(item, "spheres", 0.3);
-  auto baked = bakeWithRecipe(job, robot);
+  auto baked = bakeWithRecipe(job, robot, context.threads);
   if (!baked) return baked;
   context.show(item, "render meshes", 0.9);
   auto meshes = [&] {
     const detail::Stopwatch timer(baked->times.render);
-    return drawRobot(robot, job.draw, job.input, *baked);
+    return drawRobot(robot, job.draw, job.input, *baked, context);
   }();
   if (!meshes) return tl::unexpected(meshes.error());
   baked->render_meshes = std::move(*meshes);

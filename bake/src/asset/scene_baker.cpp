@@ -172,8 +172,9 @@ class RegionWarnings {
 
 class SceneBaker {
  public:
-  SceneBaker(const TriangleMesh& mesh, const SceneBakeOptions& options, StageTimes& times)
-      : mesh_(mesh), options_(options), times_(times) {}
+  SceneBaker(const TriangleMesh& mesh, const SceneBakeOptions& options, StageTimes& times,
+             unsigned threads)
+      : mesh_(mesh), options_(options), times_(times), threads_(threads) {}
 
   Result<BakedGrid> bakeGrid(float radius, RegionWarnings& warnings) {
     ASSIGN_OR_RETURN(const auto frame, makeGridFrame(mesh_.bounds, radius, options_.spacing));
@@ -208,15 +209,15 @@ class SceneBaker {
     const detail::Stopwatch timer(times_.columns);
     switch (options_.engine) {
       case Engine::kBullet:
-        return ExactColumns{.columns = bulletColumns(mesh_, frame, options_.jobs)};
+        return ExactColumns{.columns = bulletColumns(mesh_, frame, threads_)};
       case Engine::kEmbree:
-        return embreeColumns(mesh_, frame, options_.jobs).map([](Columns&& columns) {
+        return embreeColumns(mesh_, frame, threads_).map([](Columns&& columns) {
           return ExactColumns{.columns = std::move(columns)};
         });
       case Engine::kExact:
         break;
     }
-    return exactColumns(mesh_, frame, {.jobs = options_.jobs, .coverage = options_.coverage});
+    return exactColumns(mesh_, frame, options_.coverage, threads_);
   }
 
   Result<FreeSpace> chooseRegions(const Columns& columns) {
@@ -234,14 +235,13 @@ class SceneBaker {
     if (!caster_) caster_.emplace(mesh_);
     CastCheckOptions check_options;
     check_options.columns = options_.check_columns;
-    check_options.jobs = options_.jobs;
     if (options_.coverage == Coverage::kColumn) {
-      return checkWithCasts(mesh_, columns, *caster_, check_options);
+      return checkWithCasts(mesh_, columns, *caster_, check_options, threads_);
     }
     // Casts know single lines only: they check the center lines, and what is free over a cell has
     // to be free on its center line.
-    const ExactColumns lines = exactColumns(mesh_, frame, {.jobs = options_.jobs});
-    CastCheck check = checkWithCasts(mesh_, lines.columns, *caster_, check_options);
+    const ExactColumns lines = exactColumns(mesh_, frame, Coverage::kColumn, threads_);
+    CastCheck check = checkWithCasts(mesh_, lines.columns, *caster_, check_options, threads_);
     check.errors += freeBeyond(columns, lines.columns);
     return check;
   }
@@ -249,6 +249,7 @@ class SceneBaker {
   const TriangleMesh& mesh_;
   const SceneBakeOptions& options_;
   StageTimes& times_;
+  unsigned threads_;
   std::optional<BulletColumnCaster> caster_;
   /// Of the smallest radius: all others keep the same room.
   std::optional<Columns> room_;
@@ -257,7 +258,7 @@ class SceneBaker {
 }  // namespace
 
 Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& options,
-                             StageTimes& times, const Progress& progress) {
+                             StageTimes& times, const Progress& progress, unsigned threads) {
   RETURN_IF_ERROR(checkRadii(options.radii));
   if (options.coverage == Coverage::kCell && options.engine != Engine::kExact) {
     return fail(ErrorCode::kInvalidInput, "`coverage`",
@@ -278,7 +279,7 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
   scene.coverage = options.coverage;
   scene.warnings = asset.warnings;
 
-  SceneBaker baker(cleaned->mesh, options, times);
+  SceneBaker baker(cleaned->mesh, options, times, threads);
   RegionWarnings warnings(options);
   for (std::size_t i = 0; i < options.radii.size(); ++i) {
     progress(fmt::format("grid r={} m", options.radii[i]),

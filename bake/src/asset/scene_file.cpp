@@ -10,15 +10,15 @@ namespace galactic::bake {
 namespace {
 
 Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const Progress& progress,
-                             StageTimes& times) {
-  auto scene = bakeScene(read.asset, job.grids, times, progress);
+                             StageTimes& times, const BakeContext& context) {
+  auto scene = bakeScene(read.asset, job.grids, times, progress, context.threads);
   if (!scene) {
     scene.error().where = inFile(read.input, scene.error().where);
     return scene;
   }
   progress("render meshes", 0.9);
   const detail::Stopwatch timer(times.render);
-  ASSIGN_OR_RETURN(auto meshes, drawScene(read, job.draw, scene->warnings));
+  ASSIGN_OR_RETURN(auto meshes, drawScene(read, job.draw, scene->warnings, context));
   scene->render_meshes = std::move(meshes);
   return scene;
 }
@@ -34,18 +34,17 @@ Result<BakedPack> bakeSceneFile(const SceneJob& job, BakeContext& context) {
   SceneOutcome outcome;
   auto read = [&] {
     const detail::Stopwatch timer(outcome.times.import);
-    return readScene(job, context.log);
+    return readScene(job, context.log, context.libraries);
   }();
   if (!read) return tl::unexpected(read.error());
   outcome.input = read->input;
   outcome.convention = read->asset.convention;
   if (!job.name.empty()) read->asset.name = job.name;
   RETURN_IF_ERROR(context.log.checkNotRead(context.output));
-  ASSIGN_OR_RETURN(auto scene, bakeParts(*read, job, progress, outcome.times));
+  ASSIGN_OR_RETURN(auto scene, bakeParts(*read, job, progress, outcome.times, context));
   outcome.scene = std::move(scene);
   if (outcome.scene.render_meshes) {
-    RETURN_IF_ERROR(
-        shareTextures(outcome.scene.render_meshes->materials, job.draw, context.dry_run));
+    RETURN_IF_ERROR(shareTextures(outcome.scene.render_meshes->materials, job.draw, context));
   }
   BakedPack made{.outcome = {}, .output = context.output};
   if (!context.dry_run) {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
-#include "dataset/scene_dataset.h"
+#include "dataset/dataset_library.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "import/checks/asset_check.h"
@@ -14,10 +14,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Result<OpenDataset*> datasetOf(const SceneJob& job, BakeLibraries& libraries) {
+  return libraries.datasets().open(job.input, {job.import.allow_outside});
+}
+
+/// Where the names of its files begin.
+Result<fs::path> folderOf(const SceneJob& job, BakeLibraries& libraries) {
+  if (!job.instance) return job.input.parent_path();
+  ASSIGN_OR_RETURN(const OpenDataset* const dataset, datasetOf(job, libraries));
+  return dataset->scenes.folder();
+}
+
 /// A file's mesh as a scene composed of it alone.
-Result<ComposedScene> readMeshes(const SceneJob& job) {
-  if (job.instance)
-    return job.instance->dataset->compose(job.instance->name, *job.instance->meshes);
+Result<ComposedScene> readMeshes(const SceneJob& job, BakeLibraries& libraries) {
+  if (job.instance) {
+    ASSIGN_OR_RETURN(OpenDataset* const dataset, datasetOf(job, libraries));
+    return dataset->scenes.compose(job.instance->name, dataset->meshes);
+  }
   ASSIGN_OR_RETURN(auto asset, importMesh(job.input, job.import));
   ComposedScene read;
   read.scene = std::move(asset);
@@ -31,13 +44,13 @@ std::string nameOf(const SceneJob& job) {
   return job.instance ? job.instance->name : job.input.stem().string();
 }
 
-Result<ReadScene> readScene(const SceneJob& job, ReadLog& log) {
-  ASSIGN_OR_RETURN(auto read, readMeshes(job));
+Result<ReadScene> readScene(const SceneJob& job, ReadLog& log, BakeLibraries& libraries) {
+  ASSIGN_OR_RETURN(auto read, readMeshes(job, libraries));
   SourceAsset& asset = read.scene;
   if (!job.instance && !job.import.scale) {
     RETURN_IF_ERROR(checkHeight(asset, job.input.string()));
   }
-  const fs::path folder = job.instance ? job.instance->dataset->folder() : job.input.parent_path();
+  ASSIGN_OR_RETURN(const fs::path folder, folderOf(job, libraries));
   log.note(folder, asset.read);
   asset.warnings.insert(asset.warnings.end(), read.missing.begin(), read.missing.end());
   return ReadScene{.input = job.instance ? folder / job.instance->name : job.input,
@@ -45,8 +58,8 @@ Result<ReadScene> readScene(const SceneJob& job, ReadLog& log) {
                    .asset = std::move(asset)};
 }
 
-Result<SceneDetails> readSceneDetails(const SceneJob& job) {
-  ASSIGN_OR_RETURN(auto read, readMeshes(job));
+Result<SceneDetails> readSceneDetails(const SceneJob& job, BakeLibraries& libraries) {
+  ASSIGN_OR_RETURN(auto read, readMeshes(job, libraries));
   auto clean = placeAndClean(read.scene);
   if (!clean) {
     const Error& error = clean.error();
@@ -58,9 +71,9 @@ Result<SceneDetails> readSceneDetails(const SceneJob& job) {
   return details;
 }
 
-Result<SourceAsset> readSceneFile(const SceneJob& job) {
+Result<SourceAsset> readSceneFile(const SceneJob& job, BakeLibraries& libraries) {
   ReadLog log;
-  ASSIGN_OR_RETURN(auto scene, readScene(job, log));
+  ASSIGN_OR_RETURN(auto scene, readScene(job, log, libraries));
   return std::move(scene.asset);
 }
 

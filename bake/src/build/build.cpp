@@ -41,10 +41,12 @@ bool makesEpisodes(const WorldPlan& plan, const Shard& shard) {
 
 class WorldBuild {
  public:
-  WorldBuild(const WorldPlan& plan, const WorldBuildOptions& options, BuildObserver& observer)
+  WorldBuild(const WorldPlan& plan, const WorldBuildOptions& options, BuildObserver& observer,
+             BakeLibraries& libraries)
       : plan_(plan),
         options_(options),
         tools_{.observer = observer,
+               .libraries = libraries,
                .keep_going = options.keep_going,
                .memory = MemoryBudget(options.memory)},
         failed_(!plan.broken.empty()),
@@ -85,13 +87,14 @@ class WorldBuild {
     // The longest first.
     std::ranges::stable_sort(order, std::greater{},
                              [&](std::size_t n) { return effortOf(plan_.assets[n]); });
-    const auto at_once = static_cast<unsigned>(std::min<std::size_t>(options_.jobs, order.size()));
-    const unsigned jobs = (options_.jobs + at_once - 1) / at_once;
+    const auto at_once =
+        static_cast<unsigned>(std::min<std::size_t>(options_.threads, order.size()));
+    const unsigned threads = (options_.threads + at_once - 1) / at_once;
     parallelFor(at_once, order.size(), [&](std::size_t k) {
       const PackJob& pack = plan_.assets[order[k]];
       if (!goesOn()) return;
       const MemoryBudget::Share share(tools_.memory, memoryFor(pack.source_bytes));
-      outcome_.packs[order[k]] = makeOne(pack, jobs);
+      outcome_.packs[order[k]] = makeOne(pack, threads);
     });
   }
 
@@ -108,7 +111,7 @@ class WorldBuild {
       tools_.observer.end(outcome);
       return;
     }
-    outcome = makeOne(episodes, options_.jobs);
+    outcome = makeOne(episodes, options_.threads);
   }
 
   /// The name of an asset that failed; empty where none did.
@@ -130,8 +133,8 @@ class WorldBuild {
     return true;
   }
 
-  PackOutcome makeOne(const PackJob& pack, unsigned jobs) {
-    PackOutcome outcome = makePack(pack, jobs, tools_);
+  PackOutcome makeOne(const PackJob& pack, unsigned threads) {
+    PackOutcome outcome = makePack(pack, threads, tools_);
     if (!outcome.failures.empty()) failed_ = true;
     return outcome;
   }
@@ -150,7 +153,7 @@ class WorldBuild {
     }
     PackJob world = plan_.world;
     std::get<WorldJob>(world.job).packs.assign(packs.begin(), packs.end());
-    outcome_.world = makeWorld(world, outcome_.linked);
+    outcome_.world = makeWorld(world, tools_, outcome_.linked);
   }
 
   [[nodiscard]] bool goesOn() {
@@ -192,9 +195,11 @@ BuildOutcome plannedOutcome(const WorldPlan& plan, const Shard& shard) {
 }
 
 BuildOutcome build(std::span<const PackJob> packs, const BuildOptions& options,
-                   BuildObserver& observer) {
-  BuildTools tools{
-      .observer = observer, .keep_going = options.keep_going, .dry_run = options.dry_run};
+                   BuildObserver& observer, BakeLibraries& libraries) {
+  BuildTools tools{.observer = observer,
+                   .libraries = libraries,
+                   .keep_going = options.keep_going,
+                   .dry_run = options.dry_run};
   BuildOutcome outcome;
   for (const PackJob& pack : packs) {
     if (!options.dry_run) removeLeftovers(pack.output);
@@ -203,7 +208,7 @@ BuildOutcome build(std::span<const PackJob> packs, const BuildOptions& options,
   {
     const detail::Stopwatch timer(outcome.seconds);
     for (std::size_t n = 0; n < packs.size() && !observer.stops(); ++n) {
-      outcome.packs[n] = makePack(packs[n], options.jobs, tools);
+      outcome.packs[n] = makePack(packs[n], options.threads, tools);
       if (!outcome.packs[n].failures.empty() && !options.keep_going) break;
     }
   }
@@ -211,9 +216,9 @@ BuildOutcome build(std::span<const PackJob> packs, const BuildOptions& options,
   return outcome;
 }
 
-BuildOutcome build(const WorldPlan& plan, const WorldBuildOptions& options,
-                   BuildObserver& observer) {
-  return WorldBuild(plan, options, observer).run();
+BuildOutcome build(const WorldPlan& plan, const WorldBuildOptions& options, BuildObserver& observer,
+                   BakeLibraries& libraries) {
+  return WorldBuild(plan, options, observer, libraries).run();
 }
 
 }  // namespace galactic::bake

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -10,8 +9,7 @@
 
 #include "build/pack_list.h"
 #include "dataset/config/dataset_index.h"
-#include "dataset/mesh_library.h"
-#include "dataset/scene_dataset.h"
+#include "dataset/dataset_library.h"
 #include "dataset/scene_files.h"
 #include "json/json_reader.h"
 #include "recipe/world_recipe.h"
@@ -156,16 +154,9 @@ Result<void> addScans(const DatasetJobs& dataset, PackList& packs) {
   return {};
 }
 
-/// What the scenes of one dataset share.
-struct SharedParts {
-  std::shared_ptr<const SceneDataset> dataset;
-  std::shared_ptr<MeshLibrary> meshes;
-  std::shared_ptr<TextureLibrary> textures;
-};
-
 Result<void> addInstance(const std::string& name, const DatasetJobs& dataset,
-                         const SharedParts& shared, PackList& packs) {
-  auto survey = shared.dataset->survey(name);
+                         const SceneDataset& read, PackList& packs) {
+  auto survey = read.survey(name);
   if (!survey) return tl::unexpected(survey.error());
   const bool lacks = !survey->missing.empty();
   if (lacks && dataset.missing == MissingPolicy::kFail) {
@@ -181,9 +172,8 @@ Result<void> addInstance(const std::string& name, const DatasetJobs& dataset,
   }
   SceneJob job = dataset.scene;
   job.input = dataset.input;
-  job.instance = InstancedScene{shared.dataset, shared.meshes, name};
+  job.instance = InstancedScene{name, read.fingerprint()};
   job.name = name;
-  job.draw.textures.library = shared.textures;
   job.draw.shared_textures = packs.folder() / "textures";
   packs.add("scenes/" + name, std::move(job), dataset.input).source_bytes = survey->bytes;
   addObjects(*survey, dataset, packs);
@@ -216,7 +206,7 @@ Result<std::vector<std::string>> sceneNames(const DatasetJobs& dataset) {
   return wantedScenes(read.scenes(), dataset.scenes);
 }
 
-Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
+Result<void> addDataset(const DatasetJobs& dataset, BakeLibraries& libraries, PackList& packs) {
   if (isFolder(dataset.input)) return addScans(dataset, packs);
   const MeshImportOptions& import = dataset.scene.import;
   if (import.up || import.scale || import.transform) {
@@ -225,15 +215,13 @@ Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
         "says itself how its meshes stand; leave out `up`, `scale` and `transform`, or correct "
         "up, front and scale in the attributes of its stages and objects");
   }
-  ASSIGN_OR_RETURN(auto read,
-                   SceneDataset::read(dataset.input, {.allow_outside = import.allow_outside}));
-  const SharedParts shared{std::make_shared<const SceneDataset>(std::move(read)),
-                           std::make_shared<MeshLibrary>(meshOptionsOf(dataset)),
-                           std::make_shared<TextureLibrary>()};
-  ASSIGN_OR_RETURN(const auto names, wantedScenes(shared.dataset->scenes(), dataset.scenes));
-  for (const std::string& warning : shared.dataset->warnings()) packs.warn(warning);
+  ASSIGN_OR_RETURN(const OpenDataset* const open,
+                   libraries.datasets().open(dataset.input, {import.allow_outside}));
+  const SceneDataset& read = open->scenes;
+  ASSIGN_OR_RETURN(const auto names, wantedScenes(read.scenes(), dataset.scenes));
+  for (const std::string& warning : read.warnings()) packs.warn(warning);
   for (const std::string& name : names) {
-    auto added = addInstance(name, dataset, shared, packs);
+    auto added = addInstance(name, dataset, read, packs);
     if (!added) {
       packs.addBroken({"scenes/" + name + ".pack", {dataset.input, std::move(added.error())}});
     }
@@ -242,10 +230,10 @@ Result<void> addDataset(const DatasetJobs& dataset, PackList& packs) {
 }
 
 Result<WorldPlan> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
-                                 const std::filesystem::path& world) {
+                                 const std::filesystem::path& world, BakeLibraries& libraries) {
   PackList packs(world);
   for (const DatasetJobs& dataset : datasets) {
-    RETURN_IF_ERROR(addDataset(dataset, packs));
+    RETURN_IF_ERROR(addDataset(dataset, libraries, packs));
   }
   return packs.finish();
 }

@@ -3,8 +3,7 @@
 #include <set>
 #include <utility>
 
-#include "dataset/mesh_library.h"
-#include "dataset/scene_dataset.h"
+#include "dataset/dataset_library.h"
 #include "galactic/bake/build.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/parallel_for.h"
@@ -20,6 +19,8 @@ std::string sentenceOf(const Error& error) { return error.text(); }
 /// What a job lacks, kind by kind.
 class MissingFiles {
  public:
+  explicit MissingFiles(BakeLibraries& libraries) : libraries_(libraries) {}
+
   std::vector<std::string> of(const Job& job) {
     for (const fs::path& file : filesOf(job)) {
       if (!isThere(file)) add(fmt::format("{} is not there", file.string()));
@@ -31,11 +32,12 @@ class MissingFiles {
  private:
   void lookInto(const SceneJob& job) {
     if (!job.instance) return lookIntoMesh(job.input, job.import);
-    const InstancedScene& instance = *job.instance;
-    const auto composed = instance.dataset->compose(instance.name, *instance.meshes);
+    const auto dataset = libraries_.datasets().open(job.input, {job.import.allow_outside});
+    if (!dataset) return add(sentenceOf(dataset.error()));
+    const auto composed = (*dataset)->scenes.compose(job.instance->name, (*dataset)->meshes);
     if (!composed) {
       add(sentenceOf(composed.error()));
-      return lookForUnreadable(instance);
+      return lookForUnreadable(job.instance->name, **dataset);
     }
     for (const std::string& missing : composed->missing) add(missing);
     // These name their meshes themselves.
@@ -68,12 +70,12 @@ class MissingFiles {
   }
 
   /// What cannot be read ends the composition of a scene; behind the first there may be others.
-  void lookForUnreadable(const InstancedScene& scene) {
-    const auto survey = scene.dataset->survey(scene.name);
+  void lookForUnreadable(const std::string& scene, OpenDataset& dataset) {
+    const auto survey = dataset.scenes.survey(scene);
     if (!survey) return;
     for (const std::string& missing : survey->missing) add(missing);
     for (const fs::path& mesh : survey->meshes) {
-      if (const auto asset = scene.meshes->load(mesh); !asset) add(sentenceOf(asset.error()));
+      if (const auto asset = dataset.meshes.load(mesh); !asset) add(sentenceOf(asset.error()));
     }
   }
 
@@ -88,20 +90,22 @@ class MissingFiles {
     if (said_.insert(sentence).second) reasons_.push_back(std::move(sentence));
   }
 
+  BakeLibraries& libraries_;
   std::set<std::string> said_;
   std::vector<std::string> reasons_;
 };
 
 }  // namespace
 
-std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads) {
+std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads,
+                                 BakeLibraries& libraries) {
   std::vector<LeftOut> all(plan.assets.size());
   parallelFor(threads, all.size(), [&](std::size_t n) {
-    all[n] = {plan.assets[n].name, MissingFiles().of(plan.assets[n].job)};
+    all[n] = {plan.assets[n].name, MissingFiles(libraries).of(plan.assets[n].job)};
   });
   // What is generated is made in packs that are not there yet.
   if (plan.episodes && !std::holds_alternative<EpisodeGenerationJob>(plan.episodes->job)) {
-    all.push_back({plan.episodes->name, MissingFiles().of(plan.episodes->job)});
+    all.push_back({plan.episodes->name, MissingFiles(libraries).of(plan.episodes->job)});
   }
   std::erase_if(all, [](const LeftOut& one) { return one.reasons.empty(); });
   return all;

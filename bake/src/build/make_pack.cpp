@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "asset/asset_parts.h"
+#include "asset/texture_packs.h"
 #include "cache/cache_entry.h"
+#include "cache/file_digests.h"
 #include "galactic/bake/read_files.h"
 #include "support/output_files.h"
 #include "support/stopwatch.h"
@@ -70,20 +72,24 @@ bool hasTextures(const PackJob& pack, const PackFigures& figures, BuildTools& to
   const std::vector<std::string> textures = sharedTexturesOf(figures);
   if (textures.empty()) return true;
   if (!makeFolders(texturesOf(pack))) return false;
+  TexturePacks& packs = tools.libraries.texturePacks();
   return std::ranges::all_of(textures, [&](const std::string& hash) {
-    const auto [used, kept] = placesOf(hash, pack, tools);
-    if (tools.textures.isWhole(used)) return true;
-    return tools.textures.isWhole(kept) && linkOrCopy(kept, used).has_value();
+    const TexturePlaces places = placesOf(hash, pack, tools);
+    const auto take_kept = [&]() -> Result<void> {
+      if (packs.isWhole(places.kept)) return linkOrCopy(places.kept, places.used);
+      return fail(ErrorCode::kIo, places.kept.string(), "is not there, or broken");
+    };
+    return packs.provide(places.used, take_kept).has_value();
   });
 }
 
 /// Keeps what a bake shared, for worlds in other folders.
 Result<void> keepTextures(const PackJob& pack, const PackFigures& figures, BuildTools& tools) {
   for (const std::string& hash : sharedTexturesOf(figures)) {
-    const auto [used, kept] = placesOf(hash, pack, tools);
-    RETURN_IF_ERROR(makeFolders(kept.parent_path()));
-    if (tools.textures.isWhole(kept)) continue;
-    RETURN_IF_ERROR(linkOrCopy(used, kept));
+    const TexturePlaces places = placesOf(hash, pack, tools);
+    RETURN_IF_ERROR(makeFolders(places.kept.parent_path()));
+    RETURN_IF_ERROR(tools.libraries.texturePacks().provide(
+        places.kept, [&] { return linkOrCopy(places.used, places.kept); }));
   }
   return {};
 }
@@ -95,14 +101,14 @@ class PackBuild {
     outcome_.name = pack.name;
   }
 
-  Result<void> make(unsigned jobs) {
+  Result<void> make(unsigned threads) {
     if (!tools_.dry_run) RETURN_IF_ERROR(makeFolders(pack_.output.parent_path()));
-    if (!tools_.cache) return bakeAnew(jobs);
-    ASSIGN_OR_RETURN(const auto program, programDigest(tools_.digests));
+    if (!tools_.cache) return bakeAnew(threads);
+    ASSIGN_OR_RETURN(const auto program, programDigest(tools_.libraries.digests()));
     key_ =
         fmt::format("{}program {}\npack {}\n", keyOf(pack_.job, pack_.folder), program, pack_.name);
     ASSIGN_OR_RETURN(auto cached, takeFromCache());
-    return cached ? Result<void>{} : bakeAnew(jobs);
+    return cached ? Result<void>{} : bakeAnew(threads);
   }
 
   [[nodiscard]] PackOutcome& outcome() { return outcome_; }
@@ -110,7 +116,7 @@ class PackBuild {
  private:
   /// Whether the pack was made before; it is then put where it belongs.
   Result<bool> takeFromCache() {
-    auto found = tools_.cache->find(key_, pack_.folder, tools_.digests);
+    auto found = tools_.cache->find(key_, pack_.folder, tools_.libraries.digests());
     if (!found || !hasTextures(pack_, found->figures, tools_)) return false;
     RETURN_IF_ERROR(linkOrCopy(found->pack, pack_.output));
     outcome_.state = PackState::kUnchanged;
@@ -119,23 +125,23 @@ class PackBuild {
   }
 
   /// Bakes the pack and keeps it in the cache.
-  Result<void> bakeAnew(unsigned jobs) {
-    Job job = pack_.job;
-    setThreads(job, jobs);
+  Result<void> bakeAnew(unsigned threads) {
     // Before they are read: should one change meanwhile, the pack is found to be old the next time.
     if (tools_.cache) {
-      for (const fs::path& file : filesOf(job)) (void)tools_.digests.of(file);
+      for (const fs::path& file : filesOf(pack_.job)) (void)tools_.libraries.digests().of(file);
     }
     BakeContext context{
         .output = pack_.output,
         .log = outcome_.log,
+        .libraries = tools_.libraries,
+        .threads = threads,
         .show = [this](std::string_view item, std::string_view stage,
                        double fraction) { tools_.observer.show(item, stage, fraction); },
         .stops = [this] { return tools_.observer.stops(); },
         .dry_run = tools_.dry_run,
         .keep_going = tools_.keep_going,
         .memory = &tools_.memory};
-    ASSIGN_OR_RETURN(auto made, bake(job, context));
+    ASSIGN_OR_RETURN(auto made, bake(pack_.job, context));
     if (const auto* objects = std::get_if<ObjectSetOutcome>(&made.outcome)) {
       outcome_.failures = objects->failures;
       const bool is_made = tools_.keep_going && !objects->objects.empty();
@@ -157,7 +163,7 @@ class PackBuild {
   }
 
   Result<void> keep() {
-    ASSIGN_OR_RETURN(auto read, readFilesOf(outcome_.log, pack_, tools_.digests));
+    ASSIGN_OR_RETURN(auto read, readFilesOf(outcome_.log, pack_, tools_.libraries.digests()));
     RETURN_IF_ERROR(keepTextures(pack_, *outcome_.figures, tools_));
     return tools_.cache->store({key_, std::move(read)}, pack_.output, *outcome_.figures);
   }
@@ -192,12 +198,12 @@ auto resultOf(const fs::path& where, const Bake& bake) -> decltype(bake()) {
 
 }  // namespace
 
-PackOutcome makePack(const PackJob& pack, unsigned jobs, BuildTools& tools) {
+PackOutcome makePack(const PackJob& pack, unsigned threads, BuildTools& tools) {
   tools.observer.begin(pack.name);
   PackBuild build(pack, tools);
   auto done = resultOf(inputOf(pack), [&] {
     const detail::Stopwatch timer(build.outcome().seconds);
-    return build.make(jobs);
+    return build.make(threads);
   });
   PackOutcome& outcome = build.outcome();
   // What was interrupted is still to be done.
@@ -210,9 +216,9 @@ PackOutcome makePack(const PackJob& pack, unsigned jobs, BuildTools& tools) {
   return std::move(outcome);
 }
 
-PackOutcome makeWorld(const PackJob& world, std::vector<LinkedPack>& linked) {
+PackOutcome makeWorld(const PackJob& world, BuildTools& tools, std::vector<LinkedPack>& linked) {
   PackOutcome outcome{.name = world.name};
-  BakeContext context{.output = world.output, .log = outcome.log};
+  BakeContext context{.output = world.output, .log = outcome.log, .libraries = tools.libraries};
   auto made = resultOf(world.output, [&] { return bake(world.job, context); });
   if (made) {
     outcome.state = PackState::kBaked;

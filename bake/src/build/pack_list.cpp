@@ -182,8 +182,11 @@ void PackList::completeEpisodes() {
   if (!plan_.episodes) return;
   auto* generation = std::get_if<EpisodeGenerationJob>(&plan_.episodes->job);
   if (generation == nullptr) return;
-  for (const PackJob& pack : plan_.assets) generation->packs.push_back(pack.output);
-  generation->details = sceneDetails(plan_.assets);
+  for (const PackJob& pack : plan_.assets) {
+    generation->packs.push_back(pack.output);
+    const auto* scene = std::get_if<SceneJob>(&pack.job);
+    if (scene != nullptr) generation->scenes.emplace(nameOf(*scene), *scene);
+  }
 }
 
 Result<WorldPlan> PackList::finish() {

@@ -53,10 +53,7 @@ class PackList {
 };
 
 /// Adds a pack for each wanted scene of the dataset, and one for each movable object in them.
-[[nodiscard]] Result<void> addDataset(const DatasetJobs& dataset, PackList& packs);
-
-/// The triangles of the scenes among `assets`, and the receptacles of those of a dataset, read
-/// again from what their packs are made of: a pack holds neither, and may come from the cache.
-[[nodiscard]] SceneDetailSource sceneDetails(const std::vector<PackJob>& assets);
+[[nodiscard]] Result<void> addDataset(const DatasetJobs& dataset, BakeLibraries& libraries,
+                                      PackList& packs);
 
 }  // namespace galactic::bake

@@ -29,8 +29,13 @@ tl::unexpected<Error> located(Error error, const std::string& place) {
 /// Makes jobs of the tables of a recipe.
 class RecipeJobs {
  public:
-  RecipeJobs(const RecipeSource& source, const WorldRecipe& recipe, PackList& packs)
-      : source_(source), recipe_(recipe), packs_(packs), roots_(rootsOf(source)) {}
+  RecipeJobs(const RecipeSource& source, const WorldRecipe& recipe, BakeLibraries& libraries,
+             PackList& packs)
+      : source_(source),
+        recipe_(recipe),
+        libraries_(libraries),
+        packs_(packs),
+        roots_(rootsOf(source)) {}
 
   Result<void> add() {
     for (const RecipeAssets& assets : recipe_.scenes) {
@@ -62,7 +67,7 @@ class RecipeJobs {
         continue;
       }
       dataset.input = input;
-      auto added = addDataset(dataset, packs_);
+      auto added = addDataset(dataset, libraries_, packs_);
       if (!added && added.error().where == "scenes") return located(added.error(), assets.place);
       if (!added) return added;
     }
@@ -165,17 +170,19 @@ class RecipeJobs {
 
   const RecipeSource& source_;
   const WorldRecipe& recipe_;
+  BakeLibraries& libraries_;
   PackList& packs_;
   std::vector<fs::path> roots_;
 };
 
 }  // namespace
 
-Result<WorldPlan> jobsOfRecipe(const RecipeSource& source, const fs::path& world) {
+Result<WorldPlan> jobsOfRecipe(const RecipeSource& source, const fs::path& world,
+                               BakeLibraries& libraries) {
   ASSIGN_OR_RETURN(const auto recipe, readWorldRecipe(source.recipe));
   PackList packs(world);
   packs.setTask(recipe.task);
-  RETURN_IF_ERROR(RecipeJobs(source, recipe, packs).add());
+  RETURN_IF_ERROR(RecipeJobs(source, recipe, libraries, packs).add());
   return packs.finish();
 }
 

@@ -7,7 +7,7 @@
 namespace galactic::bake {
 
 ExactColumns assembleColumns(
-    const GridFrame& frame, unsigned jobs, std::uint32_t strip_count,
+    const GridFrame& frame, unsigned threads, std::uint32_t strip_count,
     const std::function<void(std::uint32_t index, ColumnStrip& strip)>& fill) {
   struct StripResult {
     std::vector<std::uint32_t> counts;
@@ -15,7 +15,7 @@ ExactColumns assembleColumns(
     std::uint64_t merged_gaps = 0;
   };
   std::vector<StripResult> strips(strip_count);
-  parallelFor(jobs, strip_count, [&](std::size_t task) {
+  parallelFor(threads, strip_count, [&](std::size_t task) {
     const auto index = static_cast<std::uint32_t>(task);
     const std::uint32_t first_row = index * kRowsPerStrip;
     ColumnStrip strip(frame, first_row, std::min(first_row + kRowsPerStrip, frame.columns_z));

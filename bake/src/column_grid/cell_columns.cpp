@@ -98,11 +98,11 @@ class CellScatter {
 
 }  // namespace
 
-ExactColumns cellColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned jobs) {
+ExactColumns cellColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned threads) {
   const double reach =
       static_cast<double>(frame.radius) + static_cast<double>(frame.spacing) + padInPlane(frame);
   const TriangleBins bins(mesh, frame, kRowsPerStrip, reach);
-  return assembleColumns(frame, jobs, bins.stripCount(),
+  return assembleColumns(frame, threads, bins.stripCount(),
                          [&](std::uint32_t index, ColumnStrip& strip) {
                            for (const std::uint32_t triangle : bins.triangles(index)) {
                              CellScatter(mesh, frame, triangle).scatterInto(strip);

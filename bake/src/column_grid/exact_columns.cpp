@@ -161,12 +161,12 @@ class MeshScatter {
 
 }  // namespace
 
-ExactColumns exactColumns(const TriangleMesh& mesh, const GridFrame& frame,
-                          const ExactOptions& options) {
-  if (options.coverage == Coverage::kCell) return cellColumns(mesh, frame, options.jobs);
+ExactColumns exactColumns(const TriangleMesh& mesh, const GridFrame& frame, Coverage coverage,
+                          unsigned threads) {
+  if (coverage == Coverage::kCell) return cellColumns(mesh, frame, threads);
   const TriangleBins bins(mesh, frame, kRowsPerStrip, static_cast<double>(frame.radius));
   const MeshScatter scatter(mesh, frame);
-  return assembleColumns(frame, options.jobs, bins.stripCount(),
+  return assembleColumns(frame, threads, bins.stripCount(),
                          [&](std::uint32_t index, ColumnStrip& strip) {
                            for (const std::uint32_t triangle : bins.triangles(index)) {
                              scatter(triangle, strip);

@@ -4,8 +4,9 @@
 
 namespace galactic::bake {
 
-void parallelFor(unsigned jobs, std::size_t count, const std::function<void(std::size_t)>& body) {
-  detail::forEachPart(jobs, count, body);
+void parallelFor(unsigned threads, std::size_t count,
+                 const std::function<void(std::size_t)>& body) {
+  detail::forEachPart(threads, count, body);
 }
 
 }  // namespace galactic::bake

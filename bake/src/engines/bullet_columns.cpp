@@ -213,9 +213,9 @@ std::vector<Span> BulletColumnCaster::column(const GridFrame& frame, ColumnIndex
   return ColumnSearch(*world_, frame, at).run();
 }
 
-Columns bulletColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned jobs) {
+Columns bulletColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned threads) {
   const auto shape = std::make_shared<const BulletMesh>(mesh);
-  return columnsByRows(frame, jobs, [&](std::uint32_t row) {
+  return columnsByRows(frame, threads, [&](std::uint32_t row) {
     SphereProbe probe(shape, {});
     RowSpans result;
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {

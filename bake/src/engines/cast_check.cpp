@@ -333,14 +333,15 @@ void add(const CastCheck& one, CastCheck& sum) {
 }  // namespace
 
 CastCheck checkWithCasts(const TriangleMesh& mesh, const Columns& columns,
-                         const BulletColumnCaster& caster, const CastCheckOptions& options) {
+                         const BulletColumnCaster& caster, const CastCheckOptions& options,
+                         unsigned threads) {
   const GridFrame& frame = columns.frame;
   const double tolerance = effectiveTolerance(frame.heights, options.tie_tolerance);
   // Further triangles cannot bring any point of a column within the radius and the tolerance.
   const double reach = static_cast<double>(frame.radius) + 2 * tolerance;
   const std::vector<SampledColumn> sample = sampleOf(mesh, columns, reach, options.columns);
   std::vector<CastCheck> checks(sample.size());
-  parallelFor(options.jobs, sample.size(), [&](std::size_t n) {
+  parallelFor(threads, sample.size(), [&](std::size_t n) {
     checks[n] = checkColumn(mesh, columns, sample[n], caster.another(), tolerance);
   });
   // In the order of the columns: sums of fractions depend on it.

@@ -4,10 +4,10 @@
 
 namespace galactic::bake {
 
-Columns columnsByRows(const GridFrame& frame, unsigned jobs,
+Columns columnsByRows(const GridFrame& frame, unsigned threads,
                       const std::function<RowSpans(std::uint32_t row)>& find_row) {
   std::vector<RowSpans> rows(frame.columns_z);
-  parallelFor(jobs, rows.size(),
+  parallelFor(threads, rows.size(),
               [&](std::size_t row) { rows[row] = find_row(static_cast<std::uint32_t>(row)); });
   Columns columns;
   columns.frame = frame;

@@ -14,9 +14,9 @@ struct RowSpans {
   std::vector<Span> spans;
 };
 
-/// Finds each row with `find_row` on `jobs` threads and joins them in the order of the rows, so
+/// Finds each row with `find_row` on `threads` threads and joins them in the order of the rows, so
 /// that the result does not depend on the number of threads. `find_row` must not throw.
-[[nodiscard]] Columns columnsByRows(const GridFrame& frame, unsigned jobs,
+[[nodiscard]] Columns columnsByRows(const GridFrame& frame, unsigned threads,
                                     const std::function<RowSpans(std::uint32_t row)>& find_row);
 
 }  // namespace galactic::bake

@@ -140,14 +140,14 @@ void trace(RTCScene scene, const GridFrame& frame, ColumnIndex at,
 
 }  // namespace
 
-Result<Columns> embreeColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned jobs) {
-  const std::string settings = "threads=" + std::to_string(std::max(1U, jobs));
+Result<Columns> embreeColumns(const TriangleMesh& mesh, const GridFrame& frame, unsigned threads) {
+  const std::string settings = "threads=" + std::to_string(std::max(1U, threads));
   const EmbreeDevice device(rtcNewDevice(settings.c_str()));
   if (!device) return embreeFailure(nullptr);
   DilatedMesh dilated{mesh, static_cast<double>(frame.radius)};
   const Result<EmbreeScene> scene = buildScene(device.get(), dilated);
   if (!scene) return tl::unexpected(scene.error());
-  return columnsByRows(frame, jobs, [&](std::uint32_t row) {
+  return columnsByRows(frame, threads, [&](std::uint32_t row) {
     RowSpans result;
     std::vector<BlockedInterval> blocked;
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {

@@ -46,13 +46,13 @@ TriangleRays::TriangleRays(TriangleRays&& other) noexcept = default;
 TriangleRays& TriangleRays::operator=(TriangleRays&& other) noexcept = default;
 
 std::optional<TriangleRays> TriangleRays::build(std::vector<Vec3> positions,
-                                                std::vector<Triangle> triangles, unsigned jobs) {
+                                                std::vector<Triangle> triangles, unsigned threads) {
   // Embree ends the program where memory runs out while it and its threads begin: it is not begun
   // with less. Bytes.
   constexpr double kToBegin = 160e6;
   if (!checkMemory(kToBegin, "rays", {})) return std::nullopt;
   auto built = std::make_unique<Scene>();
-  const std::string settings = kInstructions + ("threads=" + std::to_string(std::max(1U, jobs)));
+  const std::string settings = kInstructions + ("threads=" + std::to_string(std::max(1U, threads)));
   built->device.reset(rtcNewDevice(settings.c_str()));
   RTCDevice device = built->device.get();
   if (device == nullptr) return std::nullopt;

@@ -21,10 +21,10 @@ struct Ray {
 /// processors of one architecture. Implemented with Embree, in embree_rays.cpp.
 class TriangleRays {
  public:
-  /// `jobs`: threads that build. None where memory runs out.
+  /// `threads`: threads that build. None where memory runs out.
   [[nodiscard]] static std::optional<TriangleRays> build(std::vector<Vec3> positions,
                                                          std::vector<Triangle> triangles,
-                                                         unsigned jobs);
+                                                         unsigned threads);
 
   ~TriangleRays();
   TriangleRays(TriangleRays&& other) noexcept;

@@ -80,11 +80,11 @@ Result<SceneDetails> detailsOf(const EpisodeInputs& inputs, const SceneOfPack& s
 
 Result<EpisodeDrawing::Outcome> EpisodeDrawing::run(std::vector<DealtScene> deal) {
   for (const DealtScene& dealt : deal) all_ += dealt.episodes.size();
-  const unsigned jobs = std::max(1U, context_.options.jobs);
-  const unsigned for_scenes = std::min(jobs, scenesAtOnce(deal));
+  const unsigned threads = std::max(1U, inputs_.threads);
+  const unsigned for_scenes = std::min(threads, scenesAtOnce(deal));
   std::vector<SceneResult> results(deal.size());
   parallelFor(for_scenes, deal.size(), [&](std::size_t n) {
-    results[n] = runIn(std::move(deal[n]), std::max(1U, jobs / for_scenes));
+    results[n] = runIn(std::move(deal[n]), std::max(1U, threads / for_scenes));
   });
   return outcomeOf(std::move(results));
 }
@@ -101,7 +101,7 @@ unsigned EpisodeDrawing::scenesAtOnce(std::span<const DealtScene> deal) const {
   return static_cast<unsigned>(std::max<std::uint64_t>(1, fitting));
 }
 
-EpisodeDrawing::SceneResult EpisodeDrawing::runIn(DealtScene dealt, unsigned jobs) {
+EpisodeDrawing::SceneResult EpisodeDrawing::runIn(DealtScene dealt, unsigned threads) {
   std::optional<MemoryBudget::Share> share;
   if (inputs_.memory != nullptr) {
     share.emplace(*inputs_.memory, memoryFor(dealt.scene->source_bytes));
@@ -117,7 +117,7 @@ EpisodeDrawing::SceneResult EpisodeDrawing::runIn(DealtScene dealt, unsigned job
     return UnusableScene{name, look->unusable};
   }
   if (state_ != State::kDrawing) return {};
-  if (auto filled = fill(dealt.episodes, work, jobs); !filled) {
+  if (auto filled = fill(dealt.episodes, work, threads); !filled) {
     return Result<DrawnScene>(tl::unexpected(filled.error()));
   }
   GeneratedScene& summary = look->summary;
@@ -129,7 +129,7 @@ EpisodeDrawing::SceneResult EpisodeDrawing::runIn(DealtScene dealt, unsigned job
 }
 
 Result<void> EpisodeDrawing::fill(std::span<DrawnEpisode> episodes, SceneWork& work,
-                                  unsigned jobs) {
+                                  unsigned threads) {
   std::vector<std::span<DrawnEpisode>> open = batchesOf(episodes);
   std::erase_if(open, [&](std::span<DrawnEpisode> batch) {
     const bool is_drawn = journal_.recall(work.key(), batch);
@@ -140,7 +140,7 @@ Result<void> EpisodeDrawing::fill(std::span<DrawnEpisode> episodes, SceneWork& w
   ASSIGN_OR_RETURN(const PreparedScene* const prepared, work.prepared());
   const EpisodeBatch batch(context_, work.scene(), *prepared);
   std::vector<Result<void>> results(open.size());
-  parallelFor(jobs, open.size(), [&](std::size_t n) {
+  parallelFor(threads, open.size(), [&](std::size_t n) {
     if (stateNow() != State::kDrawing) return;
     results[n] = batch.fill(open[n]);
     if (!results[n]) return;

@@ -63,10 +63,11 @@ class EpisodeDrawing {
   };
 
   [[nodiscard]] unsigned scenesAtOnce(std::span<const DealtScene> deal) const;
-  /// Looks at the scene, draws its episodes with `jobs` threads, and forgets the scene.
-  [[nodiscard]] SceneResult runIn(DealtScene dealt, unsigned jobs);
+  /// Looks at the scene, draws its episodes with `threads` threads, and forgets the scene.
+  [[nodiscard]] SceneResult runIn(DealtScene dealt, unsigned threads);
   /// Draws those of the scene's episodes that were not drawn before.
-  [[nodiscard]] Result<void> fill(std::span<DrawnEpisode> episodes, SceneWork& work, unsigned jobs);
+  [[nodiscard]] Result<void> fill(std::span<DrawnEpisode> episodes, SceneWork& work,
+                                  unsigned threads);
   [[nodiscard]] Result<Outcome> outcomeOf(std::vector<SceneResult> results) const;
 
   void goOnTo(State state);

@@ -62,7 +62,7 @@ void visitReach(bool& allow_outside, OptionVisitor& v) {
 }
 
 void visitGrids(SceneBakeOptions& options, OptionVisitor& v) {
-  auto& [radii, spacing, engine, coverage, free_space, check_columns, jobs] = options;
+  auto& [radii, spacing, engine, coverage, free_space, check_columns] = options;
   auto& [keep, seeds, components] = free_space;
   v.group("Scenes");
   v.option({"spacing", "METERS", "Edge of a cell, meters; at most twice the least radius"},
@@ -82,7 +82,7 @@ void visitGrids(SceneBakeOptions& options, OptionVisitor& v) {
            points(seeds));
   v.option({"check-columns", "N", "Columns per grid to replay with sphere casts; 0: none"},
            whole(check_columns, {0, 1'000'000}));
-  v.internals(radii, jobs);
+  v.internals(radii);
 }
 
 void visitImport(MeshImportOptions& options, OptionVisitor& v) {
@@ -99,8 +99,8 @@ void visitImport(MeshImportOptions& options, OptionVisitor& v) {
 
 void visitDrawing(DrawOptions& options, OptionVisitor& v) {
   auto& [wanted, meshes, textures, shared_textures] = options;
-  auto& [error, lighting, mesh_jobs] = meshes;
-  auto& [largest, format, texture_jobs, library] = textures;
+  auto& [error, lighting] = meshes;
+  auto& [largest, format] = textures;
   v.group("Render meshes (scenes, objects, robots)");
   v.option({"no-render-meshes", "", "Leave out what is drawn: a pack for physics alone"},
            flag(wanted, false));
@@ -116,7 +116,7 @@ void visitDrawing(DrawOptions& options, OptionVisitor& v) {
             "What is shaded by its place and direction: all, what has no light of its own (auto), "
             "or nothing (none)"},
            choice(lighting, kLightingNames));
-  v.internals(mesh_jobs, texture_jobs, library, shared_textures);
+  v.internals(shared_textures);
 }
 
 /// The fields, of the struct of an object or of a robot, that spheres have in common.
@@ -155,7 +155,7 @@ void visitSpheres(SphereFields<Length, Count> fields, OptionVisitor& v) {
 
 void visitShape(ObjectBakeOptions& options, OptionVisitor& v) {
   auto& [box, spheres, keep_above_support, authored] = options;
-  auto& [radii, eps, tau, support, max_spheres, jobs] = spheres;
+  auto& [radii, eps, tau, support, max_spheres] = spheres;
   v.group("Objects");
   v.option({"obb", "yaw|min|aabb",
             "Box of an object: yaw keeps it upright, min has the least volume, aabb is "
@@ -164,14 +164,14 @@ void visitShape(ObjectBakeOptions& options, OptionVisitor& v) {
   v.option({"no-support", "", "Let an object's spheres reach below the face on which it rests"},
            flag(keep_above_support, false));
   visitSpheres(SphereFields<float, std::uint32_t>{eps, tau, max_spheres}, v);
-  v.internals(radii, support, jobs, authored);
+  v.internals(radii, support, authored);
 }
 
 void visitShape(RobotBakeOptions& options, OptionVisitor& v) {
-  auto& [radii, eps, tau, max_spheres, hand_spheres, jobs] = options;
+  auto& [radii, eps, tau, max_spheres, hand_spheres] = options;
   using Fields = SphereFields<std::optional<float>, std::optional<std::uint32_t>>;
   visitSpheres(Fields{eps, tau, max_spheres}, v);
-  v.internals(radii, hand_spheres, jobs);
+  v.internals(radii, hand_spheres);
 }
 
 void visitImport(EpisodeImportOptions& options, OptionVisitor& v) {
@@ -204,7 +204,7 @@ void visitSplit(SceneSplit& split, OptionVisitor& v) {
 
 void visitGeneration(EpisodeGeneratorOptions& options, OptionVisitor& v) {
   auto& [episodes, objects, seed, heights, flatness, target_to_goal, shorten_way, start_to_target,
-         goal_on_other_support, most_skipped, supports, split, jobs] = options;
+         goal_on_other_support, most_skipped, supports, split] = options;
   v.group("Episodes");
   v.option(
       {"seed", "N",
@@ -236,7 +236,7 @@ void visitGeneration(EpisodeGeneratorOptions& options, OptionVisitor& v) {
             "receptacles, or half of them in these where a scene has any"},
            choice(supports, kSupportNames));
   visitSplit(split, v);
-  v.internals(shorten_way, jobs);
+  v.internals(shorten_way);
 }
 
 }  // namespace
@@ -298,7 +298,7 @@ void visitOptions(EpisodeImportJob& job, OptionVisitor& v) {
 }
 
 void visitOptions(EpisodeGenerationJob& job, OptionVisitor& v) {
-  auto& [packs, generate, solve, geometry, details] = job;
+  auto& [packs, generate, solve, geometry, scenes] = job;
   visitGeneration(generate, v);
   v.option({"geometry", "SCENE=FILE",
             "Generate: the mesh a scene was baked from, to settle objects on (may be repeated)"},
@@ -307,7 +307,7 @@ void visitOptions(EpisodeGenerationJob& job, OptionVisitor& v) {
             "Generate: of how many episodes to say whether the scripted policy solves them; 0: "
             "none"},
            whole(solve, {0, 1'000'000}));
-  v.internals(packs, details);
+  v.internals(packs, scenes);
 }
 
 void visitOptions(WorldJob& job, OptionVisitor& v) {

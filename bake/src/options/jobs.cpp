@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/overload.h"
-#include "dataset/scene_dataset.h"
 #include "galactic/bake/urdf_import.h"
 
 namespace galactic::bake {
@@ -73,7 +72,7 @@ std::string internalsOf(const Job& job) {
       Overload{[](const SceneJob& one) {
                  if (!one.instance) return fmt::format("name={}\n", one.name);
                  return fmt::format("name={}\nscene {} {:016x}\n", one.name, one.instance->name,
-                                    one.instance->dataset->fingerprint());
+                                    one.instance->dataset_fingerprint);
                },
                [](const ObjectJob& one) {
                  return fmt::format("name={}\nsmallest={}\n", one.name, one.import.smallest_size);
@@ -87,11 +86,6 @@ std::string internalsOf(const Job& job) {
                },
                [](const auto&) { return std::string(); }},
       job);
-}
-
-void setThreads(DrawOptions& draw, unsigned count) {
-  draw.meshes.jobs = count;
-  draw.textures.jobs = count;
 }
 
 }  // namespace
@@ -120,23 +114,6 @@ std::vector<fs::path> filesOf(const Job& job) {
   visitOptions(copy, named);
   files.insert(files.end(), named.paths.begin(), named.paths.end());
   return files;
-}
-
-void setThreads(Job& job, unsigned count) {
-  std::visit(Overload{[&](SceneJob& one) {
-                        one.grids.jobs = count;
-                        setThreads(one.draw, count);
-                      },
-                      [&](ObjectJob& one) {
-                        one.shape.spheres.jobs = count;
-                        setThreads(one.draw, count);
-                      },
-                      [&](RobotJob& one) {
-                        one.shape.jobs = count;
-                        setThreads(one.draw, count);
-                      },
-                      [&](EpisodeGenerationJob& one) { one.generate.jobs = count; }, [](auto&) {}},
-             job);
 }
 
 std::vector<std::pair<std::string, std::string>> contentOptions(const Job& job) {

@@ -138,10 +138,10 @@ bool fits(const LatticeCluster& cluster) {
 /// The clusters on a lattice, or none when one of them spans too many steps.
 std::optional<std::vector<LatticeCluster>> cutOnLattice(std::span<const FinishedPiece> pieces,
                                                         const RenderSource& source, double step,
-                                                        unsigned jobs) {
+                                                        unsigned threads) {
   std::vector<Group> groups = groupTriangles(pieces, source, step);
   std::vector<std::vector<LatticeCluster>> cut(groups.size());
-  parallelFor(jobs, groups.size(), [&](std::size_t n) { cut[n] = cutGroup(groups[n]); });
+  parallelFor(threads, groups.size(), [&](std::size_t n) { cut[n] = cutGroup(groups[n]); });
   std::vector<LatticeCluster> clusters;
   for (std::vector<LatticeCluster>& of_group : cut) {
     for (LatticeCluster& cluster : of_group) {
@@ -194,13 +194,13 @@ void sortInSpace(std::vector<LatticeCluster>& clusters) {
 }  // namespace
 
 LatticeModel cutModel(std::span<const FinishedPiece> pieces, const RenderSource& source,
-                      unsigned jobs) {
+                      unsigned threads) {
   LatticeModel model;
   model.step = kFinestStep;
   const double largest = largestExtent(pieces);
   while (model.step * static_cast<double>(kMostSteps) < largest) model.step *= 2;
   while (true) {
-    if (auto clusters = cutOnLattice(pieces, source, model.step, jobs)) {
+    if (auto clusters = cutOnLattice(pieces, source, model.step, threads)) {
       model.clusters = std::move(*clusters);
       break;
     }

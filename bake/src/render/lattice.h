@@ -11,6 +11,6 @@ namespace galactic::bake {
 /// cluster spans at most 65,535 steps, and cuts them into clusters. Corners at one position come to
 /// one lattice point; triangles that lose their area there are dropped.
 [[nodiscard]] LatticeModel cutModel(std::span<const FinishedPiece> pieces,
-                                    const RenderSource& source, unsigned jobs);
+                                    const RenderSource& source, unsigned threads);
 
 }  // namespace galactic::bake

@@ -158,7 +158,7 @@ LitSides sidesOf(const Scene& scene, const FinishedPiece& piece, const Triangle&
 
 /// Openness of each point.
 Result<std::vector<Openness>> measure(const Scene& scene, const LightPoints& points,
-                                      const RenderBakeOptions& options) {
+                                      const RenderBakeOptions& options, unsigned threads) {
   constexpr std::size_t kKinds = 3;
   std::array<std::vector<Triangle>, kKinds> triangles;
   std::size_t number = 0;
@@ -178,8 +178,7 @@ Result<std::vector<Openness>> measure(const Scene& scene, const LightPoints& poi
   rays.rays = kRays;
   rays.dim = kDim;
   rays.least_distance = static_cast<float>(2 * options.error);
-  rays.jobs = options.jobs;
-  ASSIGN_OR_RETURN(auto measured, ambientOcclusion(meshes, rays));
+  ASSIGN_OR_RETURN(auto measured, ambientOcclusion(meshes, rays, threads));
   // A point belongs to one kind, but where kinds meet without an edge.
   std::vector<Openness> openness = std::move(measured[static_cast<std::size_t>(LitSides::kBoth)]);
   const auto& front = measured[static_cast<std::size_t>(LitSides::kFront)];
@@ -271,11 +270,12 @@ double lightByNormal(const std::array<double, 3>& normal) {
 }
 
 Result<void> lightPieces(std::vector<FinishedPiece>& pieces, const RenderPart& part,
-                         const RenderSource& source, const RenderBakeOptions& options) {
+                         const RenderSource& source, const RenderBakeOptions& options,
+                         unsigned threads) {
   const std::vector<bool> lit = litMaterials(source, options.lighting);
   const Scene scene{pieces, source, lit, joined(pieces)};
   const LightPoints points(scene.all.mesh);
-  ASSIGN_OR_RETURN(const auto openness, measure(scene, points, options));
+  ASSIGN_OR_RETURN(const auto openness, measure(scene, points, options, threads));
   std::vector<std::uint32_t> light;
   light.reserve(openness.size());
   for (std::size_t n = 0; n < openness.size(); ++n) {

@@ -51,13 +51,12 @@ std::uint32_t MaterialList::addColor(const std::array<float, 4>& color, bool two
   return entry->second;
 }
 
-Result<void> MaterialList::bake(const std::vector<EmbeddedTexture>& embedded,
-                                const std::filesystem::path& folder,
-                                const TextureBakeOptions& options) {
+Result<void> MaterialList::bake(const TextureFiles& files, const TextureBakeOptions& options,
+                                unsigned threads, TextureLibrary* library) {
   of_asset_.clear();
   const std::size_t first = source_.baked.materials.size();
-  ASSIGN_OR_RETURN(auto baked, bakeMaterials(std::span(source_.materials).subspan(first), embedded,
-                                             folder, options));
+  ASSIGN_OR_RETURN(auto baked, bakeMaterials(std::span(source_.materials).subspan(first), files,
+                                             options, threads, library));
   galactic::bake::append(source_.baked, baked);
   return {};
 }

@@ -25,10 +25,10 @@ class MaterialList {
   /// A plain color, linear RGBA.
   std::uint32_t addColor(const std::array<float, 4>& color, bool two_sided);
 
-  /// Bakes what was added since the last call; `embedded` are the images of the asset that it came
-  /// from.
-  Result<void> bake(const std::vector<EmbeddedTexture>& embedded,
-                    const std::filesystem::path& folder, const TextureBakeOptions& options);
+  /// Bakes what was added since the last call, as bakeMaterials does; `files`: the images of the
+  /// asset that it came from.
+  Result<void> bake(const TextureFiles& files, const TextureBakeOptions& options, unsigned threads,
+                    TextureLibrary* library);
 
  private:
   std::uint32_t append(SourceMaterial material);

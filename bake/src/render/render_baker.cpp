@@ -45,20 +45,20 @@ Result<void> checkSource(const RenderSource& source) {
 }
 
 Result<PartWork> bakePart(const RenderPart& part, const RenderSource& source,
-                          const RenderBakeOptions& options) {
+                          const RenderBakeOptions& options, unsigned threads) {
   ASSIGN_OR_RETURN(auto mesh, assemblePart(part, source));
   std::vector<PartMesh> pieces = connectedPieces(mesh);
   mesh = {};
   std::vector<FinishedPiece> finished(pieces.size());
-  parallelFor(options.jobs, pieces.size(), [&](std::size_t n) {
+  parallelFor(threads, pieces.size(), [&](std::size_t n) {
     finished[n] = finishPiece(std::move(pieces[n]), source, options.error);
   });
   const std::vector<bool> lit = litMaterials(source, options.lighting);
   if (std::find(lit.begin(), lit.end(), true) != lit.end()) {
-    RETURN_IF_ERROR(lightPieces(finished, part, source, options));
+    RETURN_IF_ERROR(lightPieces(finished, part, source, options, threads));
   }
   PartWork work;
-  work.model = cutModel(finished, source, options.jobs);
+  work.model = cutModel(finished, source, threads);
   work.figures.part = part.part;
   for (const PlacedMesh& placed : part.meshes) {
     work.figures.source_triangles += static_cast<std::uint32_t>(placed.mesh->triangles.size());
@@ -87,15 +87,14 @@ void countSource(const SourceMesh& mesh, BakedRenderMeshes& meshes) {
 }  // namespace
 
 Result<BakedRenderMeshes> bakeRenderMeshes(const RenderSource& source,
-                                           const RenderBakeOptions& options) {
+                                           const RenderBakeOptions& options, unsigned threads) {
   RETURN_IF_ERROR(checkSource(source));
   // Many parts at once, or the pieces of one.
-  const bool alone = source.parts.size() < options.jobs;
-  RenderBakeOptions part_options = options;
-  if (!alone) part_options.jobs = 1;
+  const bool alone = source.parts.size() < threads;
   std::vector<std::optional<Result<PartWork>>> work(source.parts.size());
-  parallelFor(alone ? 1 : options.jobs, work.size(),
-              [&](std::size_t n) { work[n] = bakePart(source.parts[n], source, part_options); });
+  parallelFor(alone ? 1 : threads, work.size(), [&](std::size_t n) {
+    work[n] = bakePart(source.parts[n], source, options, alone ? threads : 1);
+  });
   BakedRenderMeshes meshes;
   meshes.materials = source.baked;
   meshes.semantics = source.semantics;

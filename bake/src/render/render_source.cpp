@@ -61,19 +61,19 @@ class RobotPlacer {
   RobotPlacer(const SourceRobot& robot, RenderSource& source)
       : robot_(robot), source_(source), materials_(source) {}
 
-  Result<void> place(const fs::path& folder, const TextureBakeOptions& options) {
+  Result<void> place(const fs::path& folder, const TextureBakeOptions& options, unsigned threads,
+                     TextureLibrary* library) {
     placed_.resize(robot_.links.size());
     for (const SourceLink& link : robot_.links) source_.semantics.push_back(link.name);
     // Asset by asset: each has its own embedded images.
     for (std::uint32_t mesh = 0; mesh < robot_.meshes.size(); ++mesh) {
       for (std::size_t link = 0; link < robot_.links.size(); ++link) placeMesh(mesh, link);
       if (source_.materials.size() == source_.baked.materials.size()) continue;
-      if (auto baked = materials_.bake(robot_.meshes[mesh].textures, folder, options); !baked) {
-        return baked;
-      }
+      RETURN_IF_ERROR(
+          materials_.bake({robot_.meshes[mesh].textures, folder}, options, threads, library));
     }
     for (std::size_t link = 0; link < robot_.links.size(); ++link) placePrimitives(link);
-    if (auto baked = materials_.bake({}, folder, options); !baked) return baked;
+    RETURN_IF_ERROR(materials_.bake({.folder = folder}, options, threads, library));
     for (std::size_t link = 0; link < robot_.links.size(); ++link) {
       if (placed_[link].empty()) continue;
       source_.parts.push_back(
@@ -133,7 +133,8 @@ class RobotPlacer {
 }  // namespace
 
 Result<RenderSource> sceneRenderSource(const SourceAsset& scene, const fs::path& folder,
-                                       const TextureBakeOptions& options) {
+                                       const TextureBakeOptions& options, unsigned threads,
+                                       TextureLibrary* library) {
   RenderSource source;
   source.may_hold_light = true;
   SemanticNames semantics(source.semantics);
@@ -148,13 +149,14 @@ Result<RenderSource> sceneRenderSource(const SourceAsset& scene, const fs::path&
                            .semantic = semantics.numberOf(nameOf(scene, instance))});
   }
   if (source.semantics.empty()) source.semantics.push_back(scene.name);
-  RETURN_IF_ERROR(materials.bake(scene.textures, folder, options));
+  RETURN_IF_ERROR(materials.bake({scene.textures, folder}, options, threads, library));
   return source;
 }
 
 Result<RenderSource> objectRenderSource(const SourceAsset& object, const fs::path& folder,
-                                        const TextureBakeOptions& options) {
-  auto source = sceneRenderSource(object, folder, options);
+                                        const TextureBakeOptions& options, unsigned threads,
+                                        TextureLibrary* library) {
+  auto source = sceneRenderSource(object, folder, options, threads, library);
   if (!source) return source;
   source->may_hold_light = false;
   source->semantics.assign(1, object.name);
@@ -163,9 +165,10 @@ Result<RenderSource> objectRenderSource(const SourceAsset& object, const fs::pat
 }
 
 Result<RenderSource> robotRenderSource(const SourceRobot& robot, const fs::path& folder,
-                                       const TextureBakeOptions& options) {
+                                       const TextureBakeOptions& options, unsigned threads,
+                                       TextureLibrary* library) {
   RenderSource source;
-  RETURN_IF_ERROR(RobotPlacer(robot, source).place(folder, options));
+  RETURN_IF_ERROR(RobotPlacer(robot, source).place(folder, options, threads, library));
   return source;
 }
 

@@ -174,8 +174,9 @@ tl::unexpected<Error> ofLink(const std::string& link, Error error) {
   return tl::unexpected<Error>(std::move(error));
 }
 
-Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGroup& group,
+Result<void> takeByHand(const GroupPlan& plan, const SphereTask& task, BakedGroup& group,
                         std::vector<std::string>& warnings) {
+  const std::string& link = task.robot.links[group.link].name;
   SnappedSpheres snapped = snapRadii(plan.by_hand, plan.fit.radii);
   group.spheres.spheres = std::move(snapped.spheres);
   const double change = snapped.largest_change;
@@ -186,7 +187,8 @@ Result<void> takeByHand(const GroupPlan& plan, const std::string& link, BakedGro
         link, 1e3 * change));
   }
   if (!plan.hasSurface() || group.spheres.spheres.empty()) return {};
-  auto measured = authoredSphereSet(plan.mesh, std::move(group.spheres.spheres), plan.fit);
+  auto measured =
+      authoredSphereSet(plan.mesh, std::move(group.spheres.spheres), plan.fit, task.threads);
   if (!measured) return ofLink(link, measured.error());
   group.spheres = std::move(*measured);
   group.measured = true;
@@ -251,7 +253,7 @@ class BudgetedCurves {
   /// The sets that the budget takes, one per group; none where a group is not fitted.
   [[nodiscard]] std::vector<std::optional<SphereSet>> take() const {
     std::vector<std::optional<SphereSet>> sets(curves_.size());
-    parallelFor(task_.options.jobs, fitted_.size(), [&](std::size_t n) {
+    parallelFor(task_.threads, fitted_.size(), [&](std::size_t n) {
       const std::size_t group = fitted_[n];
       sets[group] = curves_[group]->take(chosen_[group]);
     });
@@ -283,11 +285,11 @@ class BudgetedCurves {
 
   Result<void> refine(const std::vector<std::size_t>& groups, const SphereBudget& budget) {
     std::vector<std::optional<Error>> errors(groups.size());
-    const unsigned jobs = task_.options.jobs;
-    const unsigned jobs_each =
-        std::max(1U, jobs / static_cast<unsigned>(std::min<std::size_t>(groups.size(), jobs)));
-    parallelFor(jobs, groups.size(), [&](std::size_t n) {
-      const auto refined = refineGroup(groups[n], budget.most == 0, jobs_each);
+    const unsigned threads = task_.threads;
+    const unsigned threads_each = std::max(
+        1U, threads / static_cast<unsigned>(std::min<std::size_t>(groups.size(), threads)));
+    parallelFor(threads, groups.size(), [&](std::size_t n) {
+      const auto refined = refineGroup(groups[n], budget.most == 0, threads_each);
       if (!refined) errors[n] = refined.error();
     });
     for (std::size_t n = 0; n < groups.size(); ++n) {
@@ -296,12 +298,13 @@ class BudgetedCurves {
     return {};
   }
 
-  Result<void> refineGroup(std::size_t group, bool unlimited, unsigned jobs) {
+  Result<void> refineGroup(std::size_t group, bool unlimited, unsigned threads) {
     if (!curves_[group]) {
-      ASSIGN_OR_RETURN(auto curve, SphereCurve::begin(plans_[group].mesh, plans_[group].fit));
+      ASSIGN_OR_RETURN(auto curve,
+                       SphereCurve::begin(plans_[group].mesh, plans_[group].fit, threads));
       curves_[group] = std::move(curve);
     }
-    auto refined = unlimited ? curves_[group]->finish(jobs) : curves_[group]->refine(jobs);
+    auto refined = unlimited ? curves_[group]->finish(threads) : curves_[group]->refine(threads);
     if (refined || !sphere_set::isNothingToCover(refined.error())) return refined;
     // What reaches above the clip height is too little to be sampled.
     curves_[group].reset();
@@ -343,8 +346,7 @@ Result<std::vector<BakedGroup>> makeGroupSpheres(const std::vector<RigidGroup>& 
   std::vector<std::optional<SphereSet>> sets = curves.take();
   for (std::size_t n = 0; n < plans.size(); ++n) {
     if (plans[n].authored) {
-      RETURN_IF_ERROR(
-          takeByHand(plans[n], task.robot.links[baked[n].link].name, baked[n], warnings));
+      RETURN_IF_ERROR(takeByHand(plans[n], task, baked[n], warnings));
     } else if (sets[n]) {
       baked[n].spheres = std::move(*sets[n]);
       baked[n].measured = true;

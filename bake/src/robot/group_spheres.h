@@ -43,6 +43,7 @@ struct SphereTask {
   const std::vector<Surface>& surfaces;
   /// Pose of each link at the start positions; the root stands at its height above the ground.
   const std::vector<Pose>& world_from_link;
+  unsigned threads = 1;
 };
 
 /// The spheres of each group: given by hand, or fitted within the robot's budget. Adds what the

@@ -107,8 +107,9 @@ Result<void> checkHandSpheres(const SourceRobot& robot, const RobotBakeOptions& 
 /// Builds a robot part by part.
 class RobotBaker {
  public:
-  RobotBaker(const SourceRobot& robot, const RobotRecipe* recipe, const RobotBakeOptions& options)
-      : robot_(robot), recipe_(recipe), options_(options) {}
+  RobotBaker(const SourceRobot& robot, const RobotRecipe* recipe, const RobotBakeOptions& options,
+             unsigned threads)
+      : robot_(robot), recipe_(recipe), options_(options), threads_(threads) {}
 
   Result<BakedRobot> bake() {
     baked_.name = recipe_ != nullptr && !recipe_->name.empty() ? recipe_->name : robot_.name;
@@ -172,7 +173,7 @@ class RobotBaker {
     }
     const std::vector<Pose> world_from_link = startPoses(fitted);
     const auto groups = findRigidGroups(robot_, recipe_, startTransforms(baked_.kinematics));
-    const SphereTask task{robot_, recipe_, options_, fitted, world_from_link};
+    const SphereTask task{robot_, recipe_, options_, fitted, world_from_link, threads_};
     ASSIGN_OR_RETURN(auto made, makeGroupSpheres(groups, task, baked_.warnings));
     baked_.groups = std::move(made);
     const bool any =
@@ -300,13 +301,14 @@ class RobotBaker {
   const SourceRobot& robot_;
   const RobotRecipe* recipe_;
   const RobotBakeOptions& options_;
+  unsigned threads_;
   BakedRobot baked_;
 };
 
 }  // namespace
 
 Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe,
-                             const RobotBakeOptions& options) {
+                             const RobotBakeOptions& options, unsigned threads) {
   if (recipe != nullptr) {
     RETURN_IF_ERROR(checkRecipe(*recipe, robot));
   }
@@ -315,11 +317,11 @@ Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe
     if (!checked) return tl::unexpected(checked.error());
   }
   if (recipe == nullptr || recipe->mimics.empty()) {
-    return RobotBaker(robot, recipe, options).bake();
+    return RobotBaker(robot, recipe, options, threads).bake();
   }
   SourceRobot coupled = robot;
   RETURN_IF_ERROR(coupleJoints(*recipe, coupled));
-  return RobotBaker(coupled, recipe, options).bake();
+  return RobotBaker(coupled, recipe, options, threads).bake();
 }
 
 }  // namespace galactic::bake

@@ -34,8 +34,8 @@ SnappedSpheres snapRadii(const std::vector<HandSphere>& by_hand, const std::vect
 }
 
 Result<SphereSet> authoredSphereSet(const TriangleMesh& mesh, std::vector<SetSphere> spheres,
-                                    const SphereSetOptions& options) {
-  ASSIGN_OR_RETURN(auto quality, measureSphereSet(mesh, spheres, options));
+                                    const SphereSetOptions& options, unsigned threads) {
+  ASSIGN_OR_RETURN(auto quality, measureSphereSet(mesh, spheres, options, threads));
   SphereSet set;
   set.spheres = std::move(spheres);
   set.quality = quality;

@@ -28,6 +28,7 @@ struct SnappedSpheres {
 /// own is here what was measured. Fails as measureSphereSet.
 [[nodiscard]] Result<SphereSet> authoredSphereSet(const TriangleMesh& mesh,
                                                   std::vector<SetSphere> spheres,
-                                                  const SphereSetOptions& options);
+                                                  const SphereSetOptions& options,
+                                                  unsigned threads);
 
 }  // namespace galactic::bake

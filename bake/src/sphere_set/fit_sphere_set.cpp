@@ -16,24 +16,26 @@ using sphere_set::Yardstick;
 namespace {
 
 /// Of the whole curve the set with the most spheres allowed.
-Result<SphereSet> fitWithin(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  auto curve = SphereCurve::begin(mesh, options);
+Result<SphereSet> fitWithin(const TriangleMesh& mesh, const SphereSetOptions& options,
+                            unsigned threads) {
+  auto curve = SphereCurve::begin(mesh, options, threads);
   if (!curve) return tl::unexpected(curve.error());
   while (!curve->complete()) {
-    RETURN_IF_ERROR(curve->refine(options.jobs));
+    RETURN_IF_ERROR(curve->refine(threads));
   }
   return curve->take(curve->points().size() - 1);
 }
 
 }  // namespace
 
-Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  ASSIGN_OR_RETURN(const auto prepared, sphere_set::prepareFit(mesh, options));
+Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions& options,
+                               unsigned threads) {
+  ASSIGN_OR_RETURN(const auto prepared, sphere_set::prepareFit(mesh, options, threads));
   sphere_set::SurfacePoints surface;
   const Cover cover = sphere_set::solveCover(prepared.task, {}, surface);
   if (cover.spheres.empty()) return sphere_set::nothingToCover();
   if (options.max_spheres > 0 && cover.spheres.size() > options.max_spheres) {
-    return fitWithin(mesh, options);
+    return fitWithin(mesh, options, threads);
   }
   const Yardstick yardstick(prepared.task);
   SphereSet set = finishedSet(prepared.task, yardstick, cover);
@@ -43,8 +45,8 @@ Result<SphereSet> fitSphereSet(const TriangleMesh& mesh, const SphereSetOptions&
 
 Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                           const std::vector<SetSphere>& spheres,
-                                          const SphereSetOptions& options) {
-  ASSIGN_OR_RETURN(const auto prepared, sphere_set::prepareFit(mesh, options));
+                                          const SphereSetOptions& options, unsigned threads) {
+  ASSIGN_OR_RETURN(const auto prepared, sphere_set::prepareFit(mesh, options, threads));
   if (spheres.empty()) {
     return fail(ErrorCode::kInvalidInput, "spheres", "is empty; give at least one sphere");
   }

@@ -16,7 +16,7 @@ struct FitTask {
   double eps = 0;
   double tau = 0;
   std::optional<HalfSpace> support;
-  unsigned jobs = 1;
+  unsigned threads = 1;
   /// Places where a sphere of one radius is tried, about and at most.
   double most_places = 30'000;
 };

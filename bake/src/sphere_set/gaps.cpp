@@ -41,7 +41,7 @@ std::vector<double> gapsOf(const FitTask& task, std::span<const Candidate> spher
   const bool is_many = spheres.size() > kFewSpheres;
   if (is_many) lowerNearSpheres(task, spheres, points, gaps);
   constexpr std::size_t kChunk = 1024;
-  parallelFor(task.jobs, (points.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+  parallelFor(task.threads, (points.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     const std::size_t end = std::min(points.size(), (chunk + 1) * kChunk);
     for (std::size_t at = chunk * kChunk; at < end; ++at) {
       if (is_many && gaps[at] <= kNearShare * task.eps) continue;

@@ -90,7 +90,7 @@ std::vector<std::vector<const Candidate*>> neighborsOf(const FitTask& task,
 LengthStatistics protrusionOf(const FitTask& task, std::span<const Candidate> spheres) {
   const auto neighbors = neighborsOf(task, spheres);
   std::vector<std::vector<Weighted>> parts(spheres.size());
-  parallelFor(task.jobs, spheres.size(), [&](std::size_t at) {
+  parallelFor(task.threads, spheres.size(), [&](std::size_t at) {
     const double radius = task.radii[spheres[at].radius_index];
     const double scaled = kLeastSpherePoints * radius / task.radii.front();
     const double count = std::clamp(scaled, kLeastSpherePoints, kMostSpherePoints);
@@ -129,7 +129,7 @@ double volumeRatioOf(const FitTask& task, std::span<const Candidate> spheres) {
     std::size_t spheres = 0;
   };
   std::vector<Counts> layers(along(size.z));
-  parallelFor(task.jobs, layers.size(), [&](std::size_t k) {
+  parallelFor(task.threads, layers.size(), [&](std::size_t k) {
     for (std::size_t j = 0; j < along(size.y); ++j) {
       for (std::size_t i = 0; i < along(size.x); ++i) {
         const Vec3d cell{static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5,

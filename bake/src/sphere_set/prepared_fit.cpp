@@ -18,12 +18,13 @@ bool comesFirst(const SetSphere& a, const SetSphere& b) {
 
 }  // namespace
 
-Result<PreparedFit> prepareFit(const TriangleMesh& mesh, const SphereSetOptions& options) {
+Result<PreparedFit> prepareFit(const TriangleMesh& mesh, const SphereSetOptions& options,
+                               unsigned threads) {
   RETURN_IF_ERROR(checkOptions(options));
   RETURN_IF_ERROR(checkMesh(mesh));
   PreparedFit prepared;
   prepared.solid = std::make_unique<const ExteriorSolid>(
-      mesh, static_cast<double>(options.radii.front()), options.jobs);
+      mesh, static_cast<double>(options.radii.front()), threads);
   if (!(prepared.solid->area() > 0)) {
     return fail(ErrorCode::kInvalidInput, "mesh",
                 "none of its surface can be reached from outside; give a surface with an area");
@@ -34,7 +35,7 @@ Result<PreparedFit> prepareFit(const TriangleMesh& mesh, const SphereSetOptions&
   task.eps = static_cast<double>(options.eps);
   task.tau = static_cast<double>(options.tau);
   task.support = options.support;
-  task.jobs = options.jobs;
+  task.threads = threads;
   return prepared;
 }
 

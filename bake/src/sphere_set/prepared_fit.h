@@ -18,7 +18,7 @@ struct PreparedFit {
 
 /// Fails with kInvalidInput and kUnsupported as fitSphereSet does.
 [[nodiscard]] Result<PreparedFit> prepareFit(const TriangleMesh& mesh,
-                                             const SphereSetOptions& options);
+                                             const SphereSetOptions& options, unsigned threads);
 
 /// Why there is nothing to fit to: the surface is beyond the support's plane.
 [[nodiscard]] tl::unexpected<Error> nothingToCover();

@@ -40,14 +40,14 @@ struct SourceResult {
 };
 
 /// Whether it is done; not where another thread bakes the image and is not waited for.
-bool bakeSource(const TextureSource& source, const TextureBakeOptions& options,
-                const TransferFunction& transfer, WhenBusy when_busy, SourceResult& result) {
+bool bakeSource(const TextureSource& source, const ImageBaker& baker, WhenBusy when_busy,
+                SourceResult& result) {
   result.fault = source.fault;
   if (!result.fault.empty()) return true;
   std::vector<Look> looks;
   looks.reserve(result.appearances.size());
   for (const auto& [look, appearance] : result.appearances) looks.push_back(look);
-  auto image = bakeRemembered(source.bytes, looks, options, transfer, when_busy);
+  auto image = baker.bake(source.bytes, looks, when_busy);
   if (!image) return false;
   BakedImage& baked = *image;
   if (!baked) {
@@ -63,14 +63,13 @@ bool bakeSource(const TextureSource& source, const TextureBakeOptions& options,
 
 /// Bakes all images. Those that other threads are at come last: scenes that are baked side by side
 /// show the same images in the same order.
-void bakeSources(std::span<const TextureSource> sources, const TextureBakeOptions& options,
+void bakeSources(std::span<const TextureSource> sources, const ImageBaker& baker, unsigned threads,
                  std::span<SourceResult> results) {
-  const TransferFunction transfer;
   std::vector<char> done(sources.size());
   for (const WhenBusy when_busy : {WhenBusy::kSkip, WhenBusy::kWait}) {
-    parallelFor(options.jobs, sources.size(), [&](std::size_t n) {
+    parallelFor(threads, sources.size(), [&](std::size_t n) {
       if (done[n] != 0) return;
-      done[n] = bakeSource(sources[n], options, transfer, when_busy, results[n]) ? 1 : 0;
+      done[n] = bakeSource(sources[n], baker, when_busy, results[n]) ? 1 : 0;
     });
   }
 }
@@ -122,18 +121,17 @@ class Collector {
 }  // namespace
 
 Result<BakedMaterials> bakeMaterials(std::span<const SourceMaterial> materials,
-                                     std::span<const EmbeddedTexture> embedded,
-                                     const std::filesystem::path& folder,
-                                     const TextureBakeOptions& options) {
+                                     const TextureFiles& files, const TextureBakeOptions& options,
+                                     unsigned threads, TextureLibrary* library) {
   RETURN_IF_ERROR(checkOptions(options));
-  const TextureSources textures = openTextures(materials, embedded, folder);
+  const TextureSources textures = openTextures(materials, files);
   std::vector<SourceResult> results(textures.sources.size());
   for (std::size_t m = 0; m < materials.size(); ++m) {
     if (const auto source = textures.of_material[m]) {
       results[*source].appearances.try_emplace(lookOf(materials[m]));
     }
   }
-  bakeSources(textures.sources, options, results);
+  bakeSources(textures.sources, ImageBaker(options, library), threads, results);
 
   BakedMaterials baked;
   std::uint64_t texel_bytes = 0;

@@ -75,22 +75,20 @@ struct TextureLibrary::State {
 TextureLibrary::TextureLibrary() : state_(std::make_unique<State>()) {}
 TextureLibrary::~TextureLibrary() = default;
 
-std::optional<BakedImage> bakeRemembered(std::span<const std::byte> file,
-                                         std::span<const Look> looks,
-                                         const TextureBakeOptions& options,
-                                         const TransferFunction& transfer, WhenBusy when_busy) {
-  if (!options.library) return bakeIsolated(file, looks, options, transfer);
-  TextureLibrary::State& library = options.library->state();
+std::optional<BakedImage> ImageBaker::bake(std::span<const std::byte> file,
+                                           std::span<const Look> looks, WhenBusy when_busy) const {
+  if (library_ == nullptr) return bakeIsolated(file, looks, options_, transfer_);
+  TextureLibrary::State& library = library_->state();
   const SourceFile content = describeBytes({}, file);
   const ImageKey key{content.hash_low,
                      content.hash_high,
-                     options.largest,
-                     options.format,
+                     options_.largest,
+                     options_.format,
                      {looks.begin(), looks.end()}};
   std::optional<BakedImage> baked;
   if (!library.claim(key, when_busy, baked)) return baked;
   try {
-    baked = bakeIsolated(file, looks, options, transfer);
+    baked = bakeIsolated(file, looks, options_, transfer_);
   } catch (...) {
     library.release(key, nullptr);
     throw;

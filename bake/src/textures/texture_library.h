@@ -15,12 +15,23 @@ using BakedImage = tl::expected<ImageAppearances, std::string>;
 /// What to do about an image that another thread is baking.
 enum class WhenBusy { kSkip, kWait };
 
-/// bakeIsolated, but once for all threads that have the same library in their options. None where
-/// another thread is baking the image and `when_busy` is kSkip.
-[[nodiscard]] std::optional<BakedImage> bakeRemembered(std::span<const std::byte> file,
-                                                       std::span<const Look> looks,
-                                                       const TextureBakeOptions& options,
-                                                       const TransferFunction& transfer,
-                                                       WhenBusy when_busy);
+/// Bakes the images of one asset. Thread-safe.
+class ImageBaker {
+ public:
+  /// `library`: null where no image is known from other assets. It and `options` outlive this.
+  ImageBaker(const TextureBakeOptions& options, TextureLibrary* library)
+      : options_(options), library_(library) {}
+
+  /// bakeIsolated, but once for all who have the same library. None where another thread is baking
+  /// the image and `when_busy` is kSkip.
+  [[nodiscard]] std::optional<BakedImage> bake(std::span<const std::byte> file,
+                                               std::span<const Look> looks,
+                                               WhenBusy when_busy) const;
+
+ private:
+  const TextureBakeOptions& options_;
+  TextureLibrary* library_;
+  TransferFunction transfer_;
+};
 
 }  // namespace galactic::bake

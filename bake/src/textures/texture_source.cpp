@@ -74,8 +74,7 @@ Content contentOf(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-TextureSources openTextures(std::span<const SourceMaterial> materials,
-                            std::span<const EmbeddedTexture> embedded, const fs::path& folder) {
+TextureSources openTextures(std::span<const SourceMaterial> materials, const TextureFiles& files) {
   TextureSources opened;
   opened.of_material.reserve(materials.size());
   std::map<std::string, std::size_t> by_name;
@@ -94,9 +93,9 @@ TextureSources openTextures(std::span<const SourceMaterial> materials,
                            .bytes = {},
                            .fault = {}};
       if (name.starts_with('*')) {
-        openEmbedded(source, name, embedded);
+        openEmbedded(source, name, files.embedded);
       } else {
-        openFile(source, folder / name);
+        openFile(source, files.folder / name);
       }
       const auto same = by_content.find(contentOf(source.bytes));
       if (source.fault.empty() && same != by_content.end()) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "galactic/bake/render_textures.h"
 #include "galactic/bake/source_asset.h"
 #include "support/mapped_file.h"
 
@@ -34,9 +35,8 @@ struct TextureSources {
   std::vector<std::optional<std::size_t>> of_material;
 };
 
-/// Opens what the materials name. `embedded` must outlive the result.
+/// Opens what the materials name. What is embedded must outlive the result.
 [[nodiscard]] TextureSources openTextures(std::span<const SourceMaterial> materials,
-                                          std::span<const EmbeddedTexture> embedded,
-                                          const std::filesystem::path& folder);
+                                          const TextureFiles& files);
 
 }  // namespace galactic::bake

@@ -182,9 +182,9 @@ TEST(AmbientOcclusion, LeavesVerticesWithoutAreaAlone) {
 
 TEST(AmbientOcclusion, DoesNotDependOnThreads) {
   const CornerOfThree corner;
-  const auto once = opennessOf(corner.placed(), {.rays = 16, .jobs = 1});
-  EXPECT_EQ(opennessOf(corner.placed(), {.rays = 16, .jobs = 2}), once);
-  EXPECT_EQ(opennessOf(corner.placed(), {.rays = 16, .jobs = 7}), once);
+  const auto once = opennessOf(corner.placed(), {.rays = 16});
+  EXPECT_EQ(opennessOf(corner.placed(), {.rays = 16}, 2), once);
+  EXPECT_EQ(opennessOf(corner.placed(), {.rays = 16}, 7), once);
 }
 
 TEST(AmbientOcclusion, RefusesOptionsOutOfRange) {

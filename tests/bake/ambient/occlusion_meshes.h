@@ -62,8 +62,8 @@ inline TestMesh box(const Vec3& half, bool inwards = false) {
 
 inline std::vector<std::vector<bake::Openness>> opennessOf(
     const std::vector<bake::OccludingMesh>& meshes,
-    const bake::AmbientOcclusionOptions& options = {}) {
-  auto result = bake::ambientOcclusion(meshes, options);
+    const bake::AmbientOcclusionOptions& options = {}, unsigned threads = 1) {
+  auto result = bake::ambientOcclusion(meshes, options, threads);
   EXPECT_TRUE(result.has_value()) << result.error().message;
   return result ? *std::move(result) : std::vector<std::vector<bake::Openness>>();
 }

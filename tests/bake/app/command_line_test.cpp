@@ -226,7 +226,8 @@ TEST(CommandLine, SuggestsTheNearestOption) {
 std::set<std::string> keysOf(const Parsed& parsed) {
   std::set<std::string> keys;
   if (parsed.isRefused()) return keys;
-  const auto plan = planOf(std::get<BakeCommand>(parsed.command));
+  BakeLibraries libraries;
+  const auto plan = planOf(std::get<BakeCommand>(parsed.command), libraries);
   EXPECT_TRUE(plan.has_value()) << plan.error().text();
   if (!plan) return keys;
   for (const PackJob& pack : plan->assets) keys.insert(keyOf(pack.job, pack.folder));
@@ -251,14 +252,15 @@ TEST(Recipes, MakeSeveralWorldsThatDifferInTheirEpisodes) {
   const std::string recipe =
       folder.write("home.toml", head + "[episodes]\ncount = 1000\nseed = 101\nflatness = 0.01\n")
           .string();
-  const auto plan = planOf(*commandFrom({recipe, "--seed", "303", "--count", "100"}));
+  BakeLibraries libraries;
+  const auto plan = planOf(*commandFrom({recipe, "--seed", "303", "--count", "100"}), libraries);
   ASSERT_TRUE(plan) << plan.error().text();
   const EpisodeGeneratorOptions* validation = episodesOf(*plan);
   ASSERT_NE(validation, nullptr);
   EXPECT_EQ(validation->episodes, 100U);
   EXPECT_EQ(validation->seed, 303U);
   EXPECT_EQ(validation->flatness, 0.01F);
-  const auto same = planOf(*commandFrom({recipe}));
+  const auto same = planOf(*commandFrom({recipe}), libraries);
   ASSERT_TRUE(same) << same.error().text();
   EXPECT_EQ(episodesOf(*same)->episodes, 1000U);
   EXPECT_EQ(episodesOf(*same)->seed, 101U);
@@ -269,7 +271,7 @@ TEST(Recipes, MakeSeveralWorldsThatDifferInTheirEpisodes) {
   }
 
   const auto without =
-      planOf(*commandFrom({folder.write("none.toml", head).string(), "--seed", "3"}));
+      planOf(*commandFrom({folder.write("none.toml", head).string(), "--seed", "3"}), libraries);
   ASSERT_FALSE(without);
   EXPECT_EQ(without.error().text(),
             "seed: is about episodes that are generated, and the recipe has none; leave it out, or "
@@ -277,6 +279,7 @@ TEST(Recipes, MakeSeveralWorldsThatDifferInTheirEpisodes) {
 }
 
 TEST(Recipes, TakeNoOptionsOfTheCommandLine) {
+  BakeLibraries libraries;
   const test::ScratchFolder folder;
   const auto mesh = folder.write("a.glb", "a mesh");
   ASSERT_FALSE(mesh.empty());
@@ -285,7 +288,7 @@ TEST(Recipes, TakeNoOptionsOfTheCommandLine) {
     for (const char* table : {"", "[bake]\n"}) {
       const std::string text =
           fmt::format("[[scenes]]\nfiles = \"a.glb\"\n{}{} = \"1\"\n", table, option.name);
-      const auto plan = planOf(*commandFrom({folder.write("w.toml", text).string()}));
+      const auto plan = planOf(*commandFrom({folder.write("w.toml", text).string()}), libraries);
       ASSERT_FALSE(plan.has_value()) << option.name;
       EXPECT_THAT(plan.error().where, testing::EndsWith(": " + option.name));
       EXPECT_EQ(plan.error().message,

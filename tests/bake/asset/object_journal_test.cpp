@@ -59,7 +59,8 @@ class AnObjectJournal : public testing::Test {
 
   [[nodiscard]] ObjectSetOutcome baked(const std::string& pack) const {
     bake::ReadLog log;
-    bake::BakeContext context{.output = folder_.path() / pack, .log = log};
+    bake::BakeLibraries libraries;
+    bake::BakeContext context{.output = folder_.path() / pack, .log = log, .libraries = libraries};
     auto made = bakeObjectFiles(job_, context);
     EXPECT_TRUE(made) << made.error().text();
     return made ? std::get<ObjectSetOutcome>(std::move(made->outcome)) : ObjectSetOutcome{};
@@ -105,8 +106,11 @@ TEST_F(AnObjectJournal, KeepsWhatIsDoneWhenASetIsToldToStop) {
   // Asked before each object: the first is baked, the second is not begun.
   int questions = 0;
   bake::ReadLog log;
+  bake::BakeLibraries libraries;
   bake::BakeContext context{
-      .output = file("out.pack"), .log = log, .stops = [&] { return questions++ > 0; }};
+      .output = file("out.pack"), .log = log, .libraries = libraries, .stops = [&] {
+        return questions++ > 0;
+      }};
   const auto stopped = bakeObjectFiles(job_, context);
   ASSERT_FALSE(stopped.has_value());
   EXPECT_EQ(stopped.error().code, ErrorCode::kInterrupted);

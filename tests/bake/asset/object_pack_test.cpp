@@ -25,21 +25,19 @@ bake::ObjectBakeOptions coarse() {
   return options;
 }
 
-bake::BakedObject bakeBox(const std::string& name, Vec3 size, unsigned jobs = 1) {
-  bake::ObjectBakeOptions options = coarse();
-  options.spheres.jobs = jobs;
-  auto object =
-      bakeObject(sourceAssetOf(MeshBuilder().box({0, 0, 0}, size).build(), name), options);
+bake::BakedObject bakeBox(const std::string& name, Vec3 size, unsigned threads = 1) {
+  auto object = bakeObject(sourceAssetOf(MeshBuilder().box({0, 0, 0}, size).build(), name),
+                           coarse(), threads);
   EXPECT_TRUE(object.has_value());
   return object ? std::move(*object) : bake::BakedObject{};
 }
 
-BakedObjectSet threeBoxes(unsigned jobs = 1) {
+BakedObjectSet threeBoxes(unsigned threads = 1) {
   BakedObjectSet set;
   set.radii = coarse().spheres.radii;
-  set.objects = {bakeBox("mug", {0.06F, 0.08F, 0.06F}, jobs),
-                 bakeBox("book", {0.1F, 0.02F, 0.07F}, jobs),
-                 bakeBox("Zebra", {0.05F, 0.05F, 0.05F}, jobs)};
+  set.objects = {bakeBox("mug", {0.06F, 0.08F, 0.06F}, threads),
+                 bakeBox("book", {0.1F, 0.02F, 0.07F}, threads),
+                 bakeBox("Zebra", {0.05F, 0.05F, 0.05F}, threads)};
   return set;
 }
 

@@ -22,9 +22,11 @@ namespace {
 constexpr std::uint32_t kSeed = 20250314;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-Result<BakedScene> bake(const SourceAsset& asset, const SceneBakeOptions& options) {
+Result<BakedScene> bake(const SourceAsset& asset, const SceneBakeOptions& options,
+                        unsigned threads = 1) {
   StageTimes times;
-  return bakeScene(asset, options, times, [](auto, auto) {});
+  return bakeScene(
+      asset, options, times, [](auto, auto) {}, threads);
 }
 
 SourceAsset room() { return test::sourceAssetOf(test::furnishedRoom(kSeed)); }
@@ -159,7 +161,7 @@ TEST(SceneBaker, IsNotContradictedByCastsInTheSampleApartment) {
   const std::filesystem::path path = test::sourceFolder() / "packs" / "sample" / "apartment.glb";
   const auto asset = importMesh(path);
   ASSERT_TRUE(asset) << asset.error().message;
-  const auto scene = bake(*asset, {.check_columns = 64, .jobs = 2});
+  const auto scene = bake(*asset, {.check_columns = 64}, 2);
   ASSERT_TRUE(scene) << scene.error().message;
   expectNoCastErrors(*scene, 64);
 }
@@ -170,7 +172,7 @@ TEST(SceneBaker, IsNotContradictedByCastsOnTheApartmentStage) {
   }
   const auto asset = importMesh(test::assetsFolder() / test::kApartmentStage);
   ASSERT_TRUE(asset) << asset.error().message;
-  const auto scene = bake(*asset, {.check_columns = 64, .jobs = 2});
+  const auto scene = bake(*asset, {.check_columns = 64}, 2);
   ASSERT_TRUE(scene) << scene.error().message;
   expectNoCastErrors(*scene, 64);
 }

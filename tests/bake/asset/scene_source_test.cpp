@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include "bake/dataset/small_dataset.h"
 
 namespace galactic::test::scene_source_test {
@@ -21,12 +19,8 @@ using testing::Not;
 using testing::SizeIs;
 
 SceneJob jobOfInstance(const SmallDataset& small, const std::string& name) {
-  auto dataset = bake::SceneDataset::read(small.config());
-  EXPECT_TRUE(dataset) << dataset.error().text();
   SceneJob job{.input = small.config()};
-  job.instance =
-      bake::InstancedScene{std::make_shared<const bake::SceneDataset>(std::move(*dataset)),
-                           std::make_shared<bake::MeshLibrary>(bake::datasetMeshOptions()), name};
+  job.instance = bake::InstancedScene{name};
   return job;
 }
 
@@ -40,11 +34,12 @@ TEST(SceneSource, OfAFileIsItsMesh) {
   const SmallDataset small;
   const SceneJob job{.input = small.folder() / "meshes/box.obj"};
   ReadLog log;
-  const auto read = bake::readScene(job, log);
+  bake::BakeLibraries libraries;
+  const auto read = bake::readScene(job, log, libraries);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->input, job.input);
   EXPECT_EQ(read->asset.name, "box");
-  const auto details = bake::readSceneDetails(job);
+  const auto details = bake::readSceneDetails(job, libraries);
   ASSERT_TRUE(details) << details.error().text();
   EXPECT_THAT(details->mesh.triangles, SizeIs(12));
   EXPECT_THAT(details->receptacles, IsEmpty());
@@ -57,13 +52,14 @@ TEST(SceneSource, OfAnInstanceIsPutTogether) {
       "user_defined": {"receptacle_aabb_floor": {"position": [0, 0, 0], "scale": [1, 1, 1]}}})");
   const SceneJob job = jobOfInstance(small, "one");
   ReadLog log;
-  const auto read = bake::readScene(job, log);
+  bake::BakeLibraries libraries;
+  const auto read = bake::readScene(job, log, libraries);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->input, small.folder() / "one");
   EXPECT_THAT(read->asset.warnings,
               Contains("object 'ghost': its mesh 'meshes/ghost.glb' is missing"));
   EXPECT_THAT(log.absent(), Contains(small.folder() / "meshes/ghost.glb"));
-  const auto details = bake::readSceneDetails(job);
+  const auto details = bake::readSceneDetails(job, libraries);
   ASSERT_TRUE(details) << details.error().text();
   EXPECT_THAT(details->mesh.triangles, Not(IsEmpty()));
   EXPECT_THAT(details->receptacles, SizeIs(1));
@@ -78,7 +74,8 @@ TEST(SceneSource, OfInstancesOfOneNameHasItsFilesBelowTheDataset) {
     small.writeScene(name, R"({"stage_instance": {"template_name": "room"}})");
   }
   ReadLog log;
-  const auto read = bake::readScene(jobOfInstance(small, "two_x"), log);
+  bake::BakeLibraries libraries;
+  const auto read = bake::readScene(jobOfInstance(small, "two_x"), log, libraries);
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->input, small.folder() / "two_x");
   EXPECT_EQ(read->folder, small.folder());
@@ -90,7 +87,8 @@ TEST(SceneSource, OfInstancesOfOneNameHasItsFilesBelowTheDataset) {
 TEST(SceneSource, NamesItsInputWhereItsTrianglesAreNone) {
   const SmallDataset small;
   const fs::path flat = small.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-  const auto details = bake::readSceneDetails({.input = flat});
+  bake::BakeLibraries libraries;
+  const auto details = bake::readSceneDetails({.input = flat}, libraries);
   ASSERT_FALSE(details);
   EXPECT_THAT(details.error().where, testing::StartsWith(flat.string() + ": "));
   EXPECT_THAT(details.error().message, HasSubstr("degenerate"));

@@ -73,7 +73,8 @@ class ABuildWithoutMemory : public testing::Test {
 
   [[nodiscard]] BuildOutcome buildWith(const std::function<void()>& fault) const {
     ThrowingObserver observer(fault);
-    BuildOutcome outcome = bake::build(packs_, {.keep_going = true}, observer);
+    bake::BakeLibraries libraries;
+    BuildOutcome outcome = bake::build(packs_, {.keep_going = true}, observer, libraries);
     EXPECT_EQ(observer.ended, 2) << "somebody was not told";
     return outcome;
   }
@@ -158,8 +159,11 @@ TEST_F(ABuildWithoutMemory, GoesOnWithTheNextObjectOfASet) {
   job.shape.spheres.eps = 0.02F;
   job.shape.spheres.tau = 0.03F;
   bake::ReadLog log;
-  bake::BakeContext context{
-      .output = folder_.path() / "things.pack", .log = log, .keep_going = true};
+  bake::BakeLibraries libraries;
+  bake::BakeContext context{.output = folder_.path() / "things.pack",
+                            .log = log,
+                            .libraries = libraries,
+                            .keep_going = true};
   const KillerOfAReader killer;
   const auto made = bakeObjectFiles(job, context);
   ASSERT_TRUE(killer.hasKilled());

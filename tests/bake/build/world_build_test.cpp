@@ -63,12 +63,13 @@ class AWorldBuild : public testing::Test {
   }
 
   ScratchFolder folder_;
+  bake::BakeLibraries libraries_;
   bake::WorldPlan plan_;
 };
 
 TEST_F(AWorldBuild, TellsOfBrokenScenesByTheirNames) {
   NotingObserver observer;
-  const BuildOutcome outcome = build(plan_, {.keep_going = true}, observer);
+  const BuildOutcome outcome = build(plan_, {.keep_going = true}, observer, libraries_);
   EXPECT_THAT(observer.begun, ElementsAre("one.pack", "three.pack", "two.pack", "episodes.pack"));
   EXPECT_THAT(observer.ended,
               ElementsAre("odd.pack", "one.pack", "three.pack", "two.pack", "episodes.pack"));
@@ -78,7 +79,7 @@ TEST_F(AWorldBuild, TellsOfBrokenScenesByTheirNames) {
 
 TEST_F(AWorldBuild, EndsAfterWhatIsBroken) {
   NotingObserver observer;
-  const BuildOutcome outcome = build(plan_, {}, observer);
+  const BuildOutcome outcome = build(plan_, {}, observer, libraries_);
   EXPECT_THAT(observer.begun, testing::IsEmpty());
   EXPECT_THAT(observer.ended, ElementsAre("odd.pack"));
   EXPECT_EQ(outcome.firstError()->text(), "odd.json: is odd");

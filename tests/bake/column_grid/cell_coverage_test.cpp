@@ -30,7 +30,7 @@ struct Answers {
 
 EncodedGrid bakeRoom(const TriangleMesh& mesh, float radius, Coverage coverage) {
   const GridFrame frame = makeGridFrame(mesh.bounds, radius, 0.03F).value();
-  const Columns columns = exactColumns(mesh, frame, {.jobs = 2, .coverage = coverage}).columns;
+  const Columns columns = exactColumns(mesh, frame, coverage, 2).columns;
   return encodeGrid(chooseFreeSpace(columns).value().columns);
 }
 
@@ -150,8 +150,7 @@ TEST(CellCoverage, IsNeverFalselyFreeOnASteepRampInAVeryWideScene) {
   const test::DistanceOracle oracle(ramp, kReach);
   for (const float radius : kRadii) {
     const GridFrame frame = makeGridFrame(mesh.bounds, radius, 0.03F).value();
-    const EncodedGrid grid =
-        encodeGrid(exactColumns(mesh, frame, {.jobs = 2, .coverage = Coverage::kCell}).columns);
+    const EncodedGrid grid = encodeGrid(exactColumns(mesh, frame, Coverage::kCell, 2).columns);
     const Answers answers = ask(grid, oracle, 200000, kSeed, ramp.bounds);
     EXPECT_EQ(answers.falsely_free, 0) << "deepest " << answers.deepest << " m";
     EXPECT_GT(answers.free, answers.asked / 10);
@@ -200,7 +199,7 @@ TEST(CellCoverage, IsNoFreerThanTheColumnAndAsFreeOverLevelGround) {
   const TriangleMesh mesh = test::MeshBuilder().box({-1, -0.5F, -1}, {1, 0, 1}).build();
   const GridFrame frame = makeGridFrame(mesh.bounds, 0.05F, 0.03F).value();
   const Columns lines = exactColumns(mesh, frame).columns;
-  const Columns cells = exactColumns(mesh, frame, {.coverage = Coverage::kCell}).columns;
+  const Columns cells = exactColumns(mesh, frame, Coverage::kCell).columns;
   int level = 0;
   for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {

@@ -234,10 +234,10 @@ TEST(ExactColumns, HaveTheSameBytesForAnyNumberOfJobs) {
   const TriangleMesh mesh = test::furnishedRoom(kSeed + 2);
   for (const Coverage coverage : {Coverage::kColumn, Coverage::kCell}) {
     const GridFrame frame = makeGridFrame(mesh.bounds, 0.05F, kSpacing).value();
-    const ExactColumns once = exactColumns(mesh, frame, {.jobs = 1, .coverage = coverage});
-    for (const unsigned jobs : {0U, 2U, 3U, 7U, 1000U}) {
-      SCOPED_TRACE(testing::Message() << jobs << " jobs");
-      const ExactColumns again = exactColumns(mesh, frame, {.jobs = jobs, .coverage = coverage});
+    const ExactColumns once = exactColumns(mesh, frame, coverage, 1);
+    for (const unsigned threads : {0U, 2U, 3U, 7U, 1000U}) {
+      SCOPED_TRACE(testing::Message() << threads << " threads");
+      const ExactColumns again = exactColumns(mesh, frame, coverage, threads);
       expectSameColumns(again.columns, once.columns);
       EXPECT_EQ(again.merged_gaps, once.merged_gaps);
     }

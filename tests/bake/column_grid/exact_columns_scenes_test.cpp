@@ -28,7 +28,7 @@ TEST_P(ExactColumnsOfARealScene, AgreeWithBruteForce) {
   const test::ColumnOracle oracle(*mesh, 0.13);
   for (const float radius : {0.015F, 0.05F, 0.12F}) {
     const GridFrame frame = makeGridFrame(mesh->bounds, radius, 0.03F).value();
-    const Columns columns = exactColumns(*mesh, frame, {.jobs = 2}).columns;
+    const Columns columns = exactColumns(*mesh, frame, Coverage::kColumn, 2).columns;
     const test::Comparison found = compareWithOracle(oracle, columns, scene.step);
     EXPECT_EQ(found.offence, "") << "radius " << radius;
     // Walls on round coordinates can stand at exactly the radius from whole rows of columns.

@@ -136,8 +136,9 @@ TEST(ExpectedBytes, OfARobotAreThoseOfItsMeshesToo) {
   small.write("world.toml",
               "[[scenes]]\nfiles = 'meshes/room.obj'\n[robot]\nfiles = 'robots/r.urdf'\n"
               "package = { arm = 'arm_description' }\n");
-  const auto list =
-      bake::jobsOfRecipe({.recipe = small.folder() / "world.toml"}, small.folder() / "world.pack");
+  bake::BakeLibraries libraries;
+  const auto list = bake::jobsOfRecipe({.recipe = small.folder() / "world.toml"},
+                                       small.folder() / "world.pack", libraries);
   ASSERT_TRUE(list) << list.error().text();
   ASSERT_EQ(list->assets.size(), 2U);
   EXPECT_EQ(list->assets[0].name, "robot.pack");

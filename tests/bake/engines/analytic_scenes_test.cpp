@@ -129,8 +129,8 @@ TEST_P(AnalyticScene, IsBlockedByNeedles) {
   expectSpans(freeAt(mesh, 0.2F, 0, 0.05F), {{kBottom, 0.95F}, {1.05F, kTop}});
 }
 
-Columns columnsByEmbree(const TriangleMesh& mesh, const GridFrame& frame, unsigned jobs) {
-  return embreeColumns(mesh, frame, jobs).value();
+Columns columnsByEmbree(const TriangleMesh& mesh, const GridFrame& frame, unsigned threads) {
+  return embreeColumns(mesh, frame, threads).value();
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -41,8 +41,8 @@ TEST(BulletColumns, DoNotDependOnTheNumberOfThreads) {
   const TriangleMesh mesh = test::randomSoup(kSeed, 200);
   const GridFrame frame = test::frameOver(mesh, 0.05F, 0.05F);
   const Columns one = bulletColumns(mesh, frame, 1);
-  for (const unsigned jobs : {2U, 5U}) {
-    const Columns many = bulletColumns(mesh, frame, jobs);
+  for (const unsigned threads : {2U, 5U}) {
+    const Columns many = bulletColumns(mesh, frame, threads);
     EXPECT_EQ(many.first, one.first);
     EXPECT_EQ(many.spans, one.spans);
   }

@@ -74,9 +74,8 @@ TEST_P(CastCheckOfARoom, GivesTheSameAnswerTwice) {
 
 TEST_P(CastCheckOfARoom, DoesNotDependOnTheNumberOfThreads) {
   const CastCheck one = check(columns_);
-  for (const unsigned jobs : {2U, 5U}) {
-    const CastCheck many =
-        checkWithCasts(mesh_, columns_, caster_, {.columns = kColumns, .jobs = jobs});
+  for (const unsigned threads : {2U, 5U}) {
+    const CastCheck many = checkWithCasts(mesh_, columns_, caster_, {.columns = kColumns}, threads);
     EXPECT_EQ(one.columns, many.columns);
     EXPECT_EQ(one.columns_differing, many.columns_differing);
     EXPECT_EQ(one.compared, many.compared);

@@ -52,8 +52,8 @@ TEST(EmbreeColumns, DoNotDependOnTheNumberOfThreads) {
   const TriangleMesh mesh = test::randomSoup(kSeed + 1, 400);
   const GridFrame frame = test::frameOver(mesh, 0.05F, 0.02F);
   const Columns one = embreeColumns(mesh, frame, 1).value();
-  for (const unsigned jobs : {2U, 3U, 8U}) {
-    const Columns many = embreeColumns(mesh, frame, jobs).value();
+  for (const unsigned threads : {2U, 3U, 8U}) {
+    const Columns many = embreeColumns(mesh, frame, threads).value();
     EXPECT_EQ(many.first, one.first);
     EXPECT_EQ(many.spans, one.spans);
   }

@@ -235,13 +235,13 @@ TEST(ScenesWithoutFloorOrSurface, AreLeftOutAsIfTheyWereNotThere) {
   for (const std::uint32_t episodes : {1U, 3U, 150U}) {
     EpisodeGeneratorOptions options = optionsFor(episodes, 2);
     const auto wanted = generated(good, options);
-    for (const unsigned jobs : {1U, 2U, 5U}) {
-      options.jobs = jobs;
+    for (const unsigned threads : {1U, 2U, 5U}) {
+      all.threads = threads;
       std::size_t told = 0;
       const auto made = MemoryPack::opened(
           bake::generateEpisodes(all, options, [&told](std::size_t done) { told = done; }));
       EXPECT_EQ(told, episodes);
-      EXPECT_TRUE(bytesOf(made.episodes) == bytesOf(wanted.episodes)) << episodes << " " << jobs;
+      EXPECT_TRUE(bytesOf(made.episodes) == bytesOf(wanted.episodes)) << episodes << " " << threads;
       EXPECT_EQ(made.episodes.scenes, (std::vector<std::string>{"kitchen", "room"}));
       EXPECT_EQ(made.scenes.size(), wanted.scenes.size());
       EXPECT_EQ(made.rejections[EpisodeRejection::kNoRoom],
@@ -346,10 +346,10 @@ TEST(GeneratedEpisodes, AreTheSameWithAnyThreadsAndAnyOrderOfPacks) {
   EXPECT_THAT(uses, testing::Each(testing::Gt(50)));
   const auto bytes = bytesOf(first.episodes);
   std::ranges::reverse(inputs.packs);
-  for (const unsigned jobs : {2U, 5U}) {
-    options.jobs = jobs;
+  for (const unsigned threads : {2U, 5U}) {
+    inputs.threads = threads;
     const auto again = generated(inputs, options);
-    EXPECT_TRUE(bytesOf(again.episodes) == bytes) << jobs;
+    EXPECT_TRUE(bytesOf(again.episodes) == bytes) << threads;
     for (std::size_t n = 0; n < bake::kRejectionCount; ++n) {
       const auto reason = static_cast<EpisodeRejection>(n);
       EXPECT_EQ(again.rejections[reason], first.rejections[reason]) << rejectionName(reason);

@@ -63,9 +63,9 @@ EpisodeGeneratorOptions optionsFor(std::uint32_t episodes, std::uint32_t objects
   return options;
 }
 
-Result<GeneratedEpisodes> generated(const MadeWorld& world,
-                                    const EpisodeGeneratorOptions& options) {
-  return bake::generateEpisodes({world.packs(), {}}, options);
+Result<GeneratedEpisodes> generated(const MadeWorld& world, const EpisodeGeneratorOptions& options,
+                                    unsigned threads = 1) {
+  return bake::generateEpisodes({.packs = world.packs(), .threads = threads}, options);
 }
 
 std::string refusal(const Result<GeneratedEpisodes>& result) {
@@ -125,8 +125,7 @@ TEST(EpisodesWithoutAPlace, AreSkippedAndTheOthersStayWhatTheyAre) {
     EXPECT_EQ(one.base_position, same.base_position) << n;
     EXPECT_EQ(one.goal.translation, same.goal.translation) << n;
   }
-  options.jobs = 3;
-  const auto parallel = generated(world, options);
+  const auto parallel = generated(world, options, 3);
   ASSERT_TRUE(parallel.has_value());
   const auto bytesOf = [](const SourceEpisodes& set) {
     return MemoryPack::opened(bake::encodeEpisodePack(set, testProvenance("e")));

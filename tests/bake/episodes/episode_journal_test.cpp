@@ -86,8 +86,8 @@ class EpisodeJournal : public testing::Test {
 
 TEST_F(EpisodeJournal, GoesOnAfterEachInterruptionAndDrawsNothingTwice) {
   const auto wanted = MemoryPack::opened(bake::generateEpisodes(inputs_, options_));
-  for (const unsigned jobs : {1U, 3U}) {
-    options_.jobs = jobs;
+  for (const unsigned threads : {1U, 3U}) {
+    inputs_.threads = threads;
     int questions = 0;
     // Each time it comes a little further: two scenes, 64 and 11 episodes in each.
     Result<GeneratedEpisodes> made = stopAfter(questions);
@@ -100,7 +100,7 @@ TEST_F(EpisodeJournal, GoesOnAfterEachInterruptionAndDrawsNothingTwice) {
     }
     ASSERT_TRUE(made.has_value());
     EXPECT_GE(questions, 4);
-    EXPECT_TRUE(bytesOf(*made) == bytesOf(wanted)) << jobs;
+    EXPECT_TRUE(bytesOf(*made) == bytesOf(wanted)) << threads;
     EXPECT_EQ(textOf(made->rejections), textOf(wanted.rejections));
     ASSERT_EQ(made->scenes.size(), 2U);
     EXPECT_EQ(made->scenes[1].support_places, wanted.scenes[1].support_places);

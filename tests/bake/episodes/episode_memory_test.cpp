@@ -58,6 +58,37 @@ class Readers {
   std::set<std::string, std::less<>> met_;
 };
 
+/// A build's, told to hold up whoever draws: each that asks whether to go on waits until it has met
+/// another, but not for ever.
+class HoldingObserver final : public bake::BuildObserver {
+ public:
+  explicit HoldingObserver(milliseconds patience) : patience_(patience) {}
+
+  void show(std::string_view item, std::string_view stage, double fraction) override {
+    const std::lock_guard lock(mutex_);
+    if (item == "episodes") is_drawing_ = stage != "solve" && fraction < 1;
+  }
+  [[nodiscard]] bool stops() override {
+    std::unique_lock lock(mutex_);
+    if (!is_drawing_ || have_met_) return false;
+    have_met_ = ++asking_ > 1;
+    came_.notify_all();
+    came_.wait_for(lock, patience_, [&] { return have_met_; });
+    --asking_;
+    return false;
+  }
+  /// Whether two scenes were drawn in at the same time.
+  [[nodiscard]] bool haveMet() const { return have_met_; }
+
+ private:
+  milliseconds patience_;
+  std::mutex mutex_;
+  std::condition_variable came_;
+  bool is_drawing_ = false;
+  bool have_met_ = false;
+  int asking_ = 0;
+};
+
 /// For those who would meet at once, and for those who surely meet.
 constexpr milliseconds kLittle{300};
 constexpr milliseconds kLong{20'000};
@@ -68,18 +99,15 @@ class EpisodeMemory : public testing::Test {
 
   /// Draws an episode in each of the scenes, on two threads.
   void draw(const Scenes& scenes, MemoryBudget* memory, Readers& readers) const {
-    bake::EpisodeInputs inputs{
-        .packs = allPacks(scenes), .details = detailsFrom(readers), .memory = memory};
-    auto options = optionsFor(scenes);
-    options.jobs = 2;
-    const auto made = bake::generateEpisodes(inputs, options);
+    const bake::EpisodeInputs inputs{
+        .packs = allPacks(scenes), .details = detailsFrom(readers), .threads = 2, .memory = memory};
+    const auto made = bake::generateEpisodes(inputs, optionsFor(scenes));
     EXPECT_TRUE(made) << made.error().text();
   }
   /// The same in a build that may take so many bytes.
-  void build(const Scenes& scenes, std::uint64_t bytes, Readers& readers) const {
+  void build(const Scenes& scenes, std::uint64_t bytes, HoldingObserver& observer) const {
     const ScratchFolder folder;
-    bake::EpisodeGenerationJob job{
-        .generate = optionsFor(scenes), .solve = 0, .details = detailsFrom(readers)};
+    bake::EpisodeGenerationJob job{.generate = optionsFor(scenes), .solve = 0};
     for (const PackFile* pack : allPacks(scenes)) {
       const auto content = pack->bytes();
       job.packs.push_back(
@@ -93,8 +121,8 @@ class EpisodeMemory : public testing::Test {
                      .job = std::move(job),
                      .output = folder.path() / "episodes.pack",
                      .folder = folder.path()};
-    bake::BuildObserver observer;
-    const auto made = bake::build(plan, {.jobs = 2, .memory = bytes}, observer);
+    bake::BakeLibraries libraries;
+    const auto made = bake::build(plan, {.threads = 2, .memory = bytes}, observer, libraries);
     ASSERT_EQ(made.packs.size(), 1U);
     EXPECT_TRUE(made.packs.front().isThere());
   }
@@ -142,12 +170,12 @@ TEST_F(EpisodeMemory, HoldsOneSceneAfterTheOtherWhereTheyDoNotFit) {
 }
 
 TEST_F(EpisodeMemory, IsThatOfTheBuild) {
-  Readers few(kLittle);
-  build({&small_, &tiny_}, 1, few);
-  EXPECT_FALSE(few.haveMet("small"));
-  Readers many(kLong);
-  build({&small_, &tiny_}, 3 * memoryFor(0), many);
-  EXPECT_TRUE(many.haveMet("small"));
+  HoldingObserver one(kLittle);
+  build({&small_, &tiny_}, 1, one);
+  EXPECT_FALSE(one.haveMet());
+  HoldingObserver both(kLong);
+  build({&small_, &tiny_}, 3 * memoryFor(0), both);
+  EXPECT_TRUE(both.haveMet());
 }
 
 TEST_F(EpisodeMemory, HoldsALargeSceneAlone) {

@@ -37,8 +37,9 @@ TEST(PromisesOfManyEpisodes, AreKeptWithEveryOption) {
   options.target_to_goal = {1.5F, 4.0F};
   options.start_to_target = {1.0F, 3.0F};
   options.goal_on_other_support = true;
-  options.jobs = 2;
-  const auto made = MemoryPack::opened(bake::generateEpisodes(world.inputs(), options));
+  bake::EpisodeInputs inputs = world.inputs();
+  inputs.threads = 2;
+  const auto made = MemoryPack::opened(bake::generateEpisodes(inputs, options));
   const SourceEpisodes& set = made.episodes;
   ASSERT_EQ(set.episodes.size(), options.episodes);
   const EpisodeOracle oracle(world.scenes.front(), world.objects, world.robot, options);

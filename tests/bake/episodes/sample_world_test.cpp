@@ -164,8 +164,8 @@ TEST(SolvedSamples, TellEpisodesThatCanBeSolvedFromThoseThatCannot) {
   options.episodes = 8;
   options.objects = {3, 3};
   bake::SourceEpisodes set = generated(world, options);
-  const auto solve = [&](const bake::EpisodeSolvingOptions& how) {
-    const auto sample = bake::solveSample(world.inputs().packs, set, how);
+  const auto solve = [&](const bake::EpisodeSolvingOptions& how, unsigned threads = 1) {
+    const auto sample = bake::solveSample(world.inputs().packs, set, how, threads);
     EXPECT_TRUE(sample.has_value());
     return sample.value_or(bake::SolvedSample{});
   };
@@ -181,8 +181,8 @@ TEST(SolvedSamples, TellEpisodesThatCanBeSolvedFromThoseThatCannot) {
   set.episodes[3].goal.translation.y += 1.5F;
   set.episodes[4].base_position.x = 500;
   const std::map<std::string, std::uint32_t> ends{{"does not start", 1U}, {"no placement", 2U}};
-  for (const unsigned jobs : {1U, 3U}) {
-    const bake::SolvedSample spoiled = solve({.most_episodes = 8, .jobs = jobs});
+  for (const unsigned threads : {1U, 3U}) {
+    const bake::SolvedSample spoiled = solve({.most_episodes = 8}, threads);
     EXPECT_EQ(spoiled.solved, 5U);
     EXPECT_EQ(spoiled.unsolved, ends);
   }

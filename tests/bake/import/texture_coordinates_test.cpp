@@ -98,7 +98,7 @@ std::array<Uv, 3> drawn(const bake::SourceAsset& asset) {
   std::array<Uv, 3> uvs{};
   const auto source = bake::sceneRenderSource(asset, {}, {});
   EXPECT_TRUE(source);
-  const auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002, .jobs = 1});
+  const auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002});
   EXPECT_TRUE(meshes);
   const auto triangles = drawnTriangles(meshes->view(), 0);
   EXPECT_EQ(triangles.size(), 1U);

@@ -50,9 +50,9 @@ SourceMesh ball(float radius, int rings) {
 }
 
 bake::BakedRenderMeshes bakeLit(const bake::RenderSource& source,
-                                Lighting lighting = Lighting::kAll, unsigned jobs = 1) {
+                                Lighting lighting = Lighting::kAll, unsigned threads = 1) {
   // Simplified balls have slivers that face anywhere.
-  auto meshes = bake::bakeRenderMeshes(source, {.error = 0, .lighting = lighting, .jobs = jobs});
+  auto meshes = bake::bakeRenderMeshes(source, {.error = 0, .lighting = lighting}, threads);
   EXPECT_TRUE(meshes.has_value()) << meshes.error().message;
   return meshes ? *std::move(meshes) : bake::BakedRenderMeshes();
 }
@@ -267,8 +267,8 @@ TEST(Light, DoesNotDependOnThreads) {
     builder.place(ball(0.1F, 6), wood, movedBy(0.07 * n, 0.05 * (n % 3), 0));
   }
   const auto once = bakeLit(builder.source(), Lighting::kAll, 1);
-  for (const unsigned jobs : {2U, 7U}) {
-    const auto again = bakeLit(builder.source(), Lighting::kAll, jobs);
+  for (const unsigned threads : {2U, 7U}) {
+    const auto again = bakeLit(builder.source(), Lighting::kAll, threads);
     EXPECT_EQ(again.colors, once.colors);
     EXPECT_EQ(again.vertices, once.vertices);
   }
@@ -289,7 +289,7 @@ TEST(Light, ManyTrianglesAtOnePlaceShareALight) {
   }
   SourceBuilder builder;
   builder.place(fan, builder.material(true));
-  auto meshes = bake::bakeRenderMeshes(builder.source(), {.error = 0, .jobs = 1});
+  auto meshes = bake::bakeRenderMeshes(builder.source(), {.error = 0});
   ASSERT_TRUE(meshes);
   std::set<std::uint32_t> middle;
   for (const DrawnTriangle& triangle : drawnOf(*meshes)) {

@@ -5,7 +5,7 @@
 namespace galactic::test {
 
 RayDepth::RayDepth(const bake::TriangleMesh& mesh)
-    : rays_(bake::TriangleRays::build(mesh.vertices, mesh.triangles, /*jobs=*/1).value()) {}
+    : rays_(bake::TriangleRays::build(mesh.vertices, mesh.triangles, /*threads=*/1).value()) {}
 
 float RayDepth::first(const Vec3& origin, const Vec3& direction, float near) const {
   return rays_.first({.origin = origin, .direction = direction, .nearest = near}).value_or(0);

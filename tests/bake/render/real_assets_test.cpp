@@ -52,8 +52,8 @@ void expectNear(const std::string& relative, double error) {
   const auto source =
       bake::sceneRenderSource(*asset, (assetsFolder() / relative).parent_path(), {.largest = 64});
   ASSERT_TRUE(source) << source.error().message;
-  const auto meshes = bake::bakeRenderMeshes(
-      *source, {.error = error, .lighting = bake::Lighting::kNone, .jobs = 2});
+  const auto meshes =
+      bake::bakeRenderMeshes(*source, {.error = error, .lighting = bake::Lighting::kNone}, 2);
   ASSERT_TRUE(meshes) << meshes.error().message;
   const auto placed = bake::placeAndClean(*asset);
   ASSERT_TRUE(placed);
@@ -92,8 +92,8 @@ TEST(RealRenderMeshes, OfClosedFurnitureStayClosed) {
   ASSERT_TRUE(asset);
   const auto source = bake::sceneRenderSource(*asset, {}, {.largest = 64});
   ASSERT_TRUE(source);
-  const auto meshes = bake::bakeRenderMeshes(
-      *source, {.error = 0.005, .lighting = bake::Lighting::kNone, .jobs = 1});
+  const auto meshes =
+      bake::bakeRenderMeshes(*source, {.error = 0.005, .lighting = bake::Lighting::kNone});
   ASSERT_TRUE(meshes);
   const auto triangles = drawnTriangles(meshes->view(), 0);
   EXPECT_EQ(openEdges(triangles), 0U);

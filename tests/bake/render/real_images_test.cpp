@@ -40,8 +40,8 @@ void read(const std::string& relative, double error, RealScene& scene) {
   ASSERT_TRUE(asset) << asset.error().message;
   const auto source = bake::sceneRenderSource(*asset, file.parent_path(), {.largest = 256});
   ASSERT_TRUE(source) << source.error().message;
-  auto meshes = bake::bakeRenderMeshes(
-      *source, {.error = error, .lighting = bake::Lighting::kNone, .jobs = 2});
+  auto meshes =
+      bake::bakeRenderMeshes(*source, {.error = error, .lighting = bake::Lighting::kNone}, 2);
   ASSERT_TRUE(meshes) << meshes.error().message;
   scene.meshes = std::move(*meshes);
   auto clean = bake::placeAndClean(*asset);

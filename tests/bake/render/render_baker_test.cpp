@@ -17,9 +17,9 @@ namespace {
 constexpr double kFinest = kFinestStep;
 
 bake::BakedRenderMeshes bakedMeshes(const SourceBuilder& builder, double error = 0,
-                                    unsigned jobs = 1) {
+                                    unsigned threads = 1) {
   auto meshes = bake::bakeRenderMeshes(
-      builder.source(), {.error = error, .lighting = bake::Lighting::kNone, .jobs = jobs});
+      builder.source(), {.error = error, .lighting = bake::Lighting::kNone}, threads);
   EXPECT_TRUE(meshes) << meshes.error().text();
   return meshes ? std::move(*meshes) : bake::BakedRenderMeshes{};
 }
@@ -297,8 +297,8 @@ TEST(RenderBaker, GivesTheSameForAnyNumberOfJobs) {
   builder.place(meshOf(MeshBuilder().sphere({0, 1, 0.1F}, 0.4F, 30).build()), plain);
   builder.part(3).place(sheet(33, 0.4F), textured).part(7).place(soup(12, 50), plain);
   const auto once = bakedMeshes(builder, 0.003, 1);
-  for (const unsigned jobs : {2U, 3U, 16U}) {
-    const auto again = bakedMeshes(builder, 0.003, jobs);
+  for (const unsigned threads : {2U, 3U, 16U}) {
+    const auto again = bakedMeshes(builder, 0.003, threads);
     EXPECT_EQ(once.vertices, again.vertices);
     EXPECT_EQ(once.triangles, again.triangles);
     EXPECT_EQ(once.cluster_bounds, again.cluster_bounds);

@@ -24,7 +24,7 @@ bake::Provenance provenance() {
 bake::BakedRenderMeshes meshesOf(const bake::SourceAsset& asset) {
   const auto source = bake::objectRenderSource(asset, {}, {});
   EXPECT_TRUE(source);
-  auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002, .jobs = 1});
+  auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002});
   EXPECT_TRUE(meshes);
   return std::move(*meshes);
 }

@@ -121,7 +121,7 @@ TEST(RenderSource, OfALinkThatLostItsVisualsIsItsCollisionGeometryInGray) {
   ASSERT_EQ(source->parts.size(), 1U);
   EXPECT_EQ(source->parts[0].part, 1U);
   ASSERT_EQ(source->parts[0].meshes.size(), 2U);
-  const auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002, .jobs = 1});
+  const auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002});
   ASSERT_TRUE(meshes);
   EXPECT_NEAR(meshes->models[0].bounds_min.x, -0.1F, 0.003F);
   EXPECT_NEAR(meshes->models[0].bounds_max.x, 0.6F, 0.003F);
@@ -137,7 +137,7 @@ TEST(RenderSource, OfARobotIsBakedInTheFramesOfItsLinks) {
   const bake::SourceRobot made = robot();
   const auto source = bake::robotRenderSource(made, {}, {});
   ASSERT_TRUE(source);
-  const auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002, .jobs = 1});
+  const auto meshes = bake::bakeRenderMeshes(*source, {.error = 0.002});
   ASSERT_TRUE(meshes);
   ASSERT_EQ(meshes->models.size(), 2U);
   constexpr float kRounding = 1e-4F;

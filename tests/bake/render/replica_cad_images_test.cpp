@@ -59,8 +59,8 @@ class ReplicaCadImages : public testing::Test {
     ASSERT_TRUE(scene) << scene.error().message;
     const auto source = bake::sceneRenderSource(scene->scene, dataset_->folder(), {.largest = 64});
     ASSERT_TRUE(source) << source.error().message;
-    const auto meshes = bake::bakeRenderMeshes(
-        *source, {.error = 0.005, .lighting = bake::Lighting::kNone, .jobs = 2});
+    const auto meshes =
+        bake::bakeRenderMeshes(*source, {.error = 0.005, .lighting = bake::Lighting::kNone}, 2);
     ASSERT_TRUE(meshes) << meshes.error().message;
     RenderLibrary library;
     library.add(meshes->view());

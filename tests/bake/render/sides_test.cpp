@@ -23,8 +23,8 @@ bake::SourceMesh openBox() {
 }
 
 std::vector<DrawnTriangle> baked(const SourceBuilder& builder, double error = 0) {
-  const auto meshes = bake::bakeRenderMeshes(
-      builder.source(), {.error = error, .lighting = bake::Lighting::kNone, .jobs = 1});
+  const auto meshes =
+      bake::bakeRenderMeshes(builder.source(), {.error = error, .lighting = bake::Lighting::kNone});
   EXPECT_TRUE(meshes) << meshes.error().text();
   if (!meshes) return {};
   return drawnTriangles(meshes->view(), 0);

@@ -25,9 +25,8 @@ struct Outcome {
 Outcome simplified(const bake::SourceMesh& mesh, double error, bool textured = false) {
   SourceBuilder builder;
   const std::uint32_t material = builder.material(true, textured);
-  const auto meshes =
-      bake::bakeRenderMeshes(builder.place(mesh, material).source(),
-                             {.error = error, .lighting = bake::Lighting::kNone, .jobs = 1});
+  const auto meshes = bake::bakeRenderMeshes(builder.place(mesh, material).source(),
+                                             {.error = error, .lighting = bake::Lighting::kNone});
   EXPECT_TRUE(meshes);
   return {drawnTriangles(meshes->view(), 0), static_cast<double>(meshes->models[0].largest_error)};
 }
@@ -314,8 +313,8 @@ TEST(Simplification, OpensNoCrackBetweenMaterials) {
     parts[t / 100 % 3].triangles.push_back(whole.triangles[t]);
   }
   for (bake::SourceMesh& part : parts) builder.place(part, builder.material(true, true));
-  const auto meshes = bake::bakeRenderMeshes(
-      builder.source(), {.error = 0.005, .lighting = bake::Lighting::kNone, .jobs = 1});
+  const auto meshes =
+      bake::bakeRenderMeshes(builder.source(), {.error = 0.005, .lighting = bake::Lighting::kNone});
   ASSERT_TRUE(meshes);
   const auto triangles = drawnTriangles(meshes->view(), 0);
   EXPECT_LT(triangles.size(), whole.triangles.size());

@@ -58,8 +58,8 @@ RobotBakeOptions coarse() {
 }
 
 BakedRobot bakeWell(const SourceRobot& robot, const RobotRecipe* recipe,
-                    const RobotBakeOptions& options) {
-  auto baked = bakeRobot(robot, recipe, options);
+                    const RobotBakeOptions& options, unsigned threads = 1) {
+  auto baked = bakeRobot(robot, recipe, options, threads);
   if (baked) return std::move(*baked);
   ADD_FAILURE() << baked.error().text();
   return {};
@@ -235,12 +235,10 @@ TEST(RobotPack, OpensWithLimitsBeyondAllFloats) {
   EXPECT_TRUE(openPackOf(bakeWell(robot, nullptr, coarse())).robot.has_value());
 }
 
-TEST(RobotPack, HasTheSameBytesForAnyNumberOfJobs) {
+TEST(RobotPack, HasTheSameBytesForAnyNumberOfThreads) {
   const RobotRecipe recipe = armRecipe();
-  RobotBakeOptions options = coarse();
-  const auto one = bake::encodeRobotPack(bakeWell(smallArm(), &recipe, options), {});
-  options.jobs = 3;
-  const auto three = bake::encodeRobotPack(bakeWell(smallArm(), &recipe, options), {});
+  const auto one = bake::encodeRobotPack(bakeWell(smallArm(), &recipe, coarse()), {});
+  const auto three = bake::encodeRobotPack(bakeWell(smallArm(), &recipe, coarse(), 3), {});
   ASSERT_TRUE(one.has_value() && three.has_value());
   EXPECT_TRUE(*one == *three);
 }

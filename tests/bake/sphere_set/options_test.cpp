@@ -227,9 +227,9 @@ TEST(SphereSetLimit, IsKeptAndCostsGap) {
 
 /// A curve with all its points.
 Result<SphereCurve> wholeCurve(const TriangleMesh& mesh, const SphereSetOptions& options,
-                               unsigned jobs) {
+                               unsigned threads) {
   auto curve = SphereCurve::begin(mesh, options);
-  while (curve && !curve->complete()) EXPECT_TRUE(curve->refine(jobs));
+  while (curve && !curve->complete()) EXPECT_TRUE(curve->refine(threads));
   return curve;
 }
 
@@ -303,11 +303,10 @@ TEST(SphereSetResult, DependsOnNothingButItsInput) {
   const auto first = fitSphereSet(mesh, options);
   ASSERT_TRUE(first);
   ASSERT_GT(first->spheres.size(), 8U);
-  for (const unsigned jobs : {1U, 2U, 5U}) {
-    options.jobs = jobs;
-    const auto again = fitSphereSet(mesh, options);
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    const auto again = fitSphereSet(mesh, options, threads);
     ASSERT_TRUE(again);
-    EXPECT_EQ(again->spheres, first->spheres) << jobs << " jobs";
+    EXPECT_EQ(again->spheres, first->spheres) << threads << " threads";
     EXPECT_EQ(again->quality.gap.mean, first->quality.gap.mean);
     EXPECT_EQ(again->quality.protrusion.mean, first->quality.protrusion.mean);
     EXPECT_EQ(again->quality.volume_ratio, first->quality.volume_ratio);

@@ -71,10 +71,9 @@ TEST(SphereSetsOfScans, AreTheSameOnAnyNumberOfThreads) {
   if (!test::hasAsset(file)) GTEST_SKIP() << file << " is not in the assets folder";
   const auto mesh = loadScan(file);
   ASSERT_TRUE(mesh);
-  SphereSetOptions options;
+  const SphereSetOptions options;
   const auto one = fitSphereSet(*mesh, options);
-  options.jobs = 3;
-  const auto three = fitSphereSet(*mesh, options);
+  const auto three = fitSphereSet(*mesh, options, 3);
   ASSERT_TRUE(one && three);
   EXPECT_EQ(one->spheres, three->spheres);
 }

@@ -75,7 +75,8 @@ TEST(SharedTextures, AreStoredOncePerContentAndFactor) {
   const std::vector<SourceMaterial> materials{
       textured("a.png"), textured("sub/b.png"),   textured("c.png"), textured("a.png", half),
       textured("d.png"), textured("c.png", half), textured("*0"),    textured("a.png", faint)};
-  const auto baked = bake::bakeMaterials(materials, std::vector{embedded(file)}, folder.path(), {});
+  const std::vector images{embedded(file)};
+  const auto baked = bake::bakeMaterials(materials, {images, folder.path()}, {});
   ASSERT_TRUE(baked.has_value());
   std::vector<int> used;
   for (const bake::BakedMaterial& material : baked->materials) used.push_back(material.texture);
@@ -90,7 +91,8 @@ TEST(SharedTextures, AreStoredOncePerContentAndFactor) {
 TEST(SharedTextures, NameNoFolderOfThisMachine) {
   const ScratchFolder folder;
   const auto file = folder.write("a.png", pngFile(busyImage(4, 4)));
-  const auto baked = bake::bakeMaterials(std::vector{textured(file.string())}, {}, "elsewhere", {});
+  const auto baked =
+      bake::bakeMaterials(std::vector{textured(file.string())}, {.folder = "elsewhere"}, {});
   ASSERT_TRUE(baked.has_value());
   ASSERT_EQ(baked->textures.size(), 1U);
   EXPECT_EQ(baked->textures[0].name, "a.png");
@@ -122,7 +124,7 @@ TEST(UnusableImages, LeaveTheColorAndGiveOneWarningEach) {
   }
   // The importer has told of an image that is not encoded.
   const std::vector images{embedded(good), embedded("", "raw")};
-  const auto baked = bake::bakeMaterials(materials, images, folder.path(), {});
+  const auto baked = bake::bakeMaterials(materials, {images, folder.path()}, {});
   ASSERT_TRUE(baked.has_value());
   EXPECT_THAT(
       baked->warnings,
@@ -270,11 +272,10 @@ TEST(Baking, GivesTheSameBytesOnAnyNumberOfThreads) {
                                   n % 2 == 0 ? AlphaMode::kBlend : AlphaMode::kMask));
   }
   for (const TexelFormat format : {TexelFormat::kRgba8, TexelFormat::kBc1}) {
-    const BakedMaterials once = bakeEmbedded(materials, images, {.format = format, .jobs = 1});
+    const BakedMaterials once = bakeEmbedded(materials, images, {.format = format});
     ASSERT_GE(once.textures.size(), images.size());
-    for (const unsigned jobs : {2U, 7U}) {
-      const BakedMaterials again =
-          bakeEmbedded(materials, images, {.format = format, .jobs = jobs});
+    for (const unsigned threads : {2U, 7U}) {
+      const BakedMaterials again = bakeEmbedded(materials, images, {.format = format}, threads);
       EXPECT_EQ(again.texels, once.texels);
       EXPECT_EQ(again.warnings, once.warnings);
       ASSERT_EQ(again.textures.size(), once.textures.size());

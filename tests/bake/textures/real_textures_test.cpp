@@ -28,8 +28,8 @@ class RealTextures : public testing::Test {
     const auto asset = bake::importMesh(path, options);
     EXPECT_TRUE(asset.has_value()) << asset.error().message;
     if (!asset) return {};
-    const auto baked = bake::bakeMaterials(asset->materials, asset->textures, path.parent_path(),
-                                           {.largest = 256, .jobs = 2});
+    const auto baked = bake::bakeMaterials(asset->materials, {asset->textures, path.parent_path()},
+                                           {.largest = 256}, 2);
     EXPECT_TRUE(baked.has_value());
     return baked.value_or(BakedMaterials{});
   }

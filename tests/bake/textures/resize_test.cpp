@@ -62,7 +62,7 @@ TEST(TextureSize, IsTheNextPowerOfTwoUpToTheLargest) {
 
 TEST(TextureSize, RefusesALargestThatIsNoPowerOfTwo) {
   for (const std::uint32_t largest : {0U, 3U, 300U, 8192U}) {
-    const auto baked = bake::bakeMaterials({}, {}, {}, {.largest = largest});
+    const auto baked = bake::bakeMaterials({}, {}, {.largest = largest});
     ASSERT_FALSE(baked.has_value());
     EXPECT_EQ(baked.error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(baked.error().message,

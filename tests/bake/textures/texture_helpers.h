@@ -58,16 +58,19 @@ inline bake::SourceMaterial textured(std::string texture,
 /// bakeMaterials of embedded images; fails the test on an error.
 inline bake::BakedMaterials bakeEmbedded(const std::vector<bake::SourceMaterial>& materials,
                                          const std::vector<bake::EmbeddedTexture>& images,
-                                         const bake::TextureBakeOptions& options = {}) {
-  auto baked = bake::bakeMaterials(materials, images, "no folder", options);
+                                         const bake::TextureBakeOptions& options = {},
+                                         unsigned threads = 1,
+                                         bake::TextureLibrary* library = nullptr) {
+  auto baked = bake::bakeMaterials(materials, {images, "no folder"}, options, threads, library);
   EXPECT_TRUE(baked.has_value()) << baked.error().message;
   return baked ? *std::move(baked) : bake::BakedMaterials{};
 }
 
 /// One image with a white, opaque material.
 inline bake::BakedMaterials bakeImage(const std::string& file,
-                                      const bake::TextureBakeOptions& options = {}) {
-  return bakeEmbedded({textured("*0")}, {embedded(file)}, options);
+                                      const bake::TextureBakeOptions& options = {},
+                                      bake::TextureLibrary* library = nullptr) {
+  return bakeEmbedded({textured("*0")}, {embedded(file)}, options, 1, library);
 }
 
 /// R, G, B, A of texel (x, y) of a level of an Rgba8 texture.

@@ -1,7 +1,6 @@
 // Assets that are baked side by side, with a library of the images that they have in common.
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <span>
 #include <string>
 #include <thread>
@@ -21,7 +20,7 @@ std::size_t imageAt(std::size_t asset, std::size_t place, std::size_t count) {
 
 /// Bakes assets at the same time, each of which shows all images.
 std::vector<BakedMaterials> bakeSideBySide(std::size_t assets, std::span<const std::string> files,
-                                           const bake::TextureBakeOptions& options) {
+                                           unsigned threads_each, bake::TextureLibrary* library) {
   std::vector<BakedMaterials> baked(assets);
   std::vector<std::thread> threads;
   for (std::size_t asset = 0; asset < assets; ++asset) {
@@ -32,7 +31,7 @@ std::vector<BakedMaterials> bakeSideBySide(std::size_t assets, std::span<const s
         images.push_back(embedded(files[imageAt(asset, place, files.size())]));
         materials.push_back(textured("*" + std::to_string(place)));
       }
-      baked[asset] = bakeEmbedded(materials, images, options);
+      baked[asset] = bakeEmbedded(materials, images, {}, threads_each, library);
     });
   }
   for (std::thread& thread : threads) thread.join();
@@ -49,11 +48,10 @@ TEST(TextureLibrary, GivesAssetsSideBySideWhatTheyHadAlone) {
   constexpr std::size_t kAssets = 6;
   std::vector<std::string> files = differentImages(5);
   files.emplace_back("no image at all");
-  const std::vector<BakedMaterials> alone = bakeSideBySide(kAssets, files, {});
-  for (const unsigned jobs : {1U, 2U}) {
-    const auto library = std::make_shared<bake::TextureLibrary>();
-    const std::vector<BakedMaterials> together =
-        bakeSideBySide(kAssets, files, {.jobs = jobs, .library = library});
+  const std::vector<BakedMaterials> alone = bakeSideBySide(kAssets, files, 1, nullptr);
+  for (const unsigned threads : {1U, 2U}) {
+    bake::TextureLibrary library;
+    const std::vector<BakedMaterials> together = bakeSideBySide(kAssets, files, threads, &library);
     for (std::size_t asset = 0; asset < kAssets; ++asset) {
       EXPECT_EQ(together[asset].texels, alone[asset].texels);
       EXPECT_EQ(together[asset].warnings, alone[asset].warnings);
@@ -67,14 +65,14 @@ TEST(TextureLibrary, GivesAssetsSideBySideWhatTheyHadAlone) {
 }
 
 TEST(TextureLibrary, KeepsImagesOfDifferentOptionsApart) {
-  const auto library = std::make_shared<bake::TextureLibrary>();
+  bake::TextureLibrary library;
   const std::string file = pngFile(busyImage(64, 64));
-  const BakedMaterials large = bakeImage(file, {.library = library});
-  const BakedMaterials small = bakeImage(file, {.largest = 16, .library = library});
+  const BakedMaterials large = bakeImage(file, {}, &library);
+  const BakedMaterials small = bakeImage(file, {.largest = 16}, &library);
   EXPECT_EQ(large.textures.at(0).size, 64U);
   EXPECT_EQ(small.textures.at(0).size, 16U);
   EXPECT_EQ(small.texels, bakeImage(file, {.largest = 16}).texels);
-  EXPECT_EQ(large.texels, bakeImage(file, {.library = library}).texels);
+  EXPECT_EQ(large.texels, bakeImage(file, {}, &library).texels);
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ TEST(ExportedRenderMeshes, KeepTheTexelsOfTextures) {
   const auto pack = PackFile::view(bytes.bytes(), "kitchen.pack");
   ASSERT_TRUE(pack.has_value());
   const bake::SourceAsset asset = importedAsset(*pack);
-  const auto baked = bake::bakeMaterials(asset.materials, asset.textures, {}, {});
+  const auto baked = bake::bakeMaterials(asset.materials, {.embedded = asset.textures}, {});
   ASSERT_TRUE(baked.has_value()) << baked.error().message;
   EXPECT_THAT(baked->warnings, testing::IsEmpty());
   ASSERT_EQ(baked->textures.size(), 2U);

@@ -252,8 +252,8 @@ TEST_F(CheckMany, SaysTheSameInTheGivenOrderOnAnyNumberOfThreads) {
   }
   EXPECT_GT(good, packs_.size() / 10);
   EXPECT_LT(good, packs_.size() * 9 / 10);
-  for (const unsigned jobs : {0U, 2U, 7U, 100U}) {
-    const Outcome many = check({.packs = packs_, .form = OutputForm::kJson, .threads = jobs});
+  for (const unsigned threads : {0U, 2U, 7U, 100U}) {
+    const Outcome many = check({.packs = packs_, .form = OutputForm::kJson, .threads = threads});
     EXPECT_EQ(many.out, one.out);
     EXPECT_EQ(many.err, one.err);
     EXPECT_EQ(many.exit_code, one.exit_code);

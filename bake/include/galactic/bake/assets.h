@@ -10,6 +10,7 @@
 
 #include "galactic/bake/episode_generator.h"
 #include "galactic/bake/jobs.h"
+#include "galactic/bake/libraries.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/world_pack.h"
 #include "galactic/error.h"
@@ -53,11 +54,14 @@ class ReadLog {
 using BakeProgress =
     std::function<void(std::string_view item, std::string_view stage, double fraction)>;
 
-/// What a bake is given besides its job.
+/// What a bake is given besides its job: where the pack goes, and what the bakes of a run share.
 struct BakeContext {
   /// The pack; with `dry_run` nothing is written.
   std::filesystem::path output{};
   ReadLog& log;
+  BakeLibraries& libraries;
+  /// The pack does not depend on them.
+  unsigned threads = 1;
   BakeProgress show = [](std::string_view, std::string_view, double) {};
   /// Asked now and then, from several threads, whether a long bake ends early, with kInterrupted.
   std::function<bool()> stops = [] { return false; };
@@ -155,7 +159,7 @@ struct BakedPack {
 [[nodiscard]] std::string nameOf(const SceneJob& job);
 
 /// Reads the meshes of a scene as bakeSceneFile does.
-[[nodiscard]] Result<SourceAsset> readSceneFile(const SceneJob& job);
+[[nodiscard]] Result<SourceAsset> readSceneFile(const SceneJob& job, BakeLibraries& libraries);
 
 /// Bakes all objects of a job into one pack. An object that fails is in the outcome's failures; it
 /// is the result's error where no object is left, or where there is no pack for another reason.

@@ -11,6 +11,7 @@
 
 #include "galactic/bake/figures.h"
 #include "galactic/bake/jobs.h"
+#include "galactic/bake/libraries.h"
 #include "galactic/error.h"
 
 namespace galactic::bake {
@@ -69,8 +70,7 @@ struct Shard {
 };
 
 struct BuildOptions {
-  /// Threads.
-  unsigned jobs = 1;
+  unsigned threads = 1;
   /// Whether to begin the next pack after an error.
   bool keep_going = false;
   /// Whether everything is baked and nothing written.
@@ -78,8 +78,8 @@ struct BuildOptions {
 };
 
 struct WorldBuildOptions {
-  /// Threads, of all bakes together.
-  unsigned jobs = 1;
+  /// Of all bakes together.
+  unsigned threads = 1;
   /// Whether to begin the next pack after an error, and to link the world without those that fail.
   bool keep_going = false;
   /// Folder of bakes that were done before; none: nothing is remembered.
@@ -150,13 +150,14 @@ class BuildObserver {
 };
 
 /// Makes the packs, one after the other. Clears away what killed builds of them have left.
+/// `libraries`: those with which the jobs were planned, if any, so that nothing is read twice.
 [[nodiscard]] BuildOutcome build(std::span<const PackJob> packs, const BuildOptions& options,
-                                 BuildObserver& observer);
+                                 BuildObserver& observer, BakeLibraries& libraries);
 
 /// Makes the packs of a world, several at a time, and then the world, of which the observer is not
 /// told. Clears away what killed builds of it have left.
 [[nodiscard]] BuildOutcome build(const WorldPlan& plan, const WorldBuildOptions& options,
-                                 BuildObserver& observer);
+                                 BuildObserver& observer, BakeLibraries& libraries);
 
 /// What a build of a world begins with: what is planned, what belongs to another shard, and what is
 /// broken.
@@ -165,6 +166,7 @@ class BuildObserver {
 /// What the packs of a world name and what is not there: inputs, meshes that a scene of a dataset
 /// places, textures, meshes of robots. Reads the meshes, on `threads` threads, and bakes nothing.
 /// In the order of the plan; packs that miss nothing are left out.
-[[nodiscard]] std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads);
+[[nodiscard]] std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads,
+                                               BakeLibraries& libraries);
 
 }  // namespace galactic::bake

@@ -13,12 +13,6 @@ namespace galactic::bake {
 /// What a free span promises; see schema/column_grid.fbs.
 enum class Coverage { kColumn, kCell };
 
-struct ExactOptions {
-  /// Threads; the result does not depend on it.
-  unsigned jobs = 1;
-  Coverage coverage = Coverage::kColumn;
-};
-
 struct ExactColumns {
   Columns columns;
   /// Gaps between blocked intervals closed because they were within kMergeTolerance.
@@ -30,8 +24,10 @@ struct ExactColumns {
 /// a union of intervals. Exact to float rounding (about 1e-6 m); a surface at distance exactly the
 /// radius is a tie and may fall on either side. With Coverage::kCell the ball is swept over the
 /// whole cell and padded by what float rounding can take. Memory is proportional to the columns.
+/// The result does not depend on `threads`.
 [[nodiscard]] ExactColumns exactColumns(const TriangleMesh& mesh, const GridFrame& frame,
-                                        const ExactOptions& options = {});
+                                        Coverage coverage = Coverage::kColumn,
+                                        unsigned threads = 1);
 
 /// The published method (paper, appendix G), as an independent check: overlap tests of a sphere
 /// every step, padded, and sphere casts up and down.
@@ -63,15 +59,15 @@ class BulletColumnCaster {
   std::unique_ptr<World> world_;
 };
 
-/// All columns by the published method. `jobs` threads; the result does not depend on it.
+/// All columns by the published method. `threads` threads; the result does not depend on it.
 [[nodiscard]] Columns bulletColumns(const TriangleMesh& mesh, const GridFrame& frame,
-                                    unsigned jobs);
+                                    unsigned threads);
 
 /// All columns by vertical Embree rays at triangles dilated by the radius (user geometry whose
-/// intersection is the closed-form interval). `jobs` threads; the result does not depend on it.
+/// intersection is the closed-form interval). `threads` threads; the result does not depend on it.
 /// Fails with kInternal when Embree runs out of memory or does not know this processor.
 [[nodiscard]] Result<Columns> embreeColumns(const TriangleMesh& mesh, const GridFrame& frame,
-                                            unsigned jobs);
+                                            unsigned threads);
 
 struct CastCheckOptions {
   /// Columns to replay, spread evenly over those that hold spans. Fewer where very many triangles
@@ -79,8 +75,6 @@ struct CastCheckOptions {
   std::uint32_t columns = 128;
   /// A surface whose distance differs from the radius by no more than this is a tie, meters.
   double tie_tolerance = 1e-5;
-  /// Threads; the result does not depend on it.
-  unsigned jobs = 1;
 };
 
 /// How replayed sphere casts compare with a grid; lengths in meters, summed over the sample.
@@ -103,9 +97,9 @@ struct CastCheck {
 
 /// Replays a sample of columns with Bullet and judges each disagreement by the distance to the
 /// mesh, computed in double precision by brute force. `columns` are the free spans before the
-/// choice of regions, of Coverage::kColumn.
+/// choice of regions, of Coverage::kColumn. The result does not depend on `threads`.
 [[nodiscard]] CastCheck checkWithCasts(const TriangleMesh& mesh, const Columns& columns,
                                        const BulletColumnCaster& caster,
-                                       const CastCheckOptions& options = {});
+                                       const CastCheckOptions& options = {}, unsigned threads = 1);
 
 }  // namespace galactic::bake

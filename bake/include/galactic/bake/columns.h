@@ -74,6 +74,8 @@ struct FreeSpaceOptions {
   std::vector<Vec3> seeds{};
   /// How many of the largest components are the room when there are no seeds.
   std::uint32_t components = 1;
+
+  friend bool operator==(const FreeSpaceOptions&, const FreeSpaceOptions&) = default;
 };
 
 /// One connected part of the free space.

@@ -99,6 +99,8 @@ struct SceneSplit {
   /// Expected share of the scenes that is held out, 0 to 1.
   float held_out = 0.2F;
   std::uint64_t seed = 1;
+
+  friend bool operator==(const SceneSplit&, const SceneSplit&) = default;
 };
 
 /// Whether the scene of this name is for validation.
@@ -108,12 +110,16 @@ struct SceneSplit {
 struct CountRange {
   std::uint32_t least = 0;
   std::uint32_t most = 0;
+
+  friend bool operator==(const CountRange&, const CountRange&) = default;
 };
 
 /// Meters, both ends included.
 struct DistanceRange {
   float least = 0;
   float most = std::numeric_limits<float>::infinity();
+
+  friend bool operator==(const DistanceRange&, const DistanceRange&) = default;
 };
 
 inline constexpr float kMostFlatness = 0.02F;
@@ -141,9 +147,8 @@ struct EpisodeGeneratorOptions {
   float most_skipped = 0.1F;
   SupportChoice supports = SupportChoice::kBoth;
   SceneSplit split{};
-  /// Threads; the result does not depend on it. Each has one scene prepared at a time, as far as
-  /// EpisodeInputs::memory goes.
-  unsigned jobs = 1;
+
+  friend bool operator==(const EpisodeGeneratorOptions&, const EpisodeGeneratorOptions&) = default;
 };
 
 /// In what episodes are generated.
@@ -152,6 +157,9 @@ struct EpisodeInputs {
   std::vector<const PackFile*> packs{};
   /// Empty: nothing is known but the packs.
   SceneDetailSource details{};
+  /// The result does not depend on them. Each has one scene prepared at a time, as far as `memory`
+  /// goes.
+  unsigned threads = 1;
   /// Keeps what is done, and may hold what was done before, of the same packs, options, seed and
   /// program: that is not done again. Null: nothing is kept.
   Journal* journal = nullptr;
@@ -242,16 +250,15 @@ struct EpisodeSolvingOptions {
   std::uint32_t most_episodes = 16;
   /// After this many steps an episode counts as unsolved.
   std::uint32_t most_steps = 1000;
-  /// Threads; the result does not depend on it.
-  unsigned jobs = 1;
 };
 
 /// Lets the ScriptedPolicy of the runtime play Rearrange in a sample of the episodes: what it does
 /// not solve may be solvable nevertheless, but a low share says that something is wrong. `packs`:
 /// scenes, objects and the robot of the episodes. Fails with the errors of World::from and
-/// BatchSimulator::create.
+/// BatchSimulator::create. The result does not depend on `threads`.
 [[nodiscard]] Result<SolvedSample> solveSample(std::span<const PackFile* const> packs,
                                                const SourceEpisodes& episodes,
-                                               const EpisodeSolvingOptions& options);
+                                               const EpisodeSolvingOptions& options,
+                                               unsigned threads = 1);
 
 }  // namespace galactic::bake

@@ -77,6 +77,8 @@ struct EpisodeImportOptions {
   /// Indices of the episodes to keep, in this order; none: all of them. With HabitatTargets::kEach
   /// those that the file's become are counted.
   std::optional<std::vector<std::uint32_t>> only;
+
+  friend bool operator==(const EpisodeImportOptions&, const EpisodeImportOptions&) = default;
 };
 
 /// Reads a published `*.episode_set.json`. An object is named by its render asset, a scene by its

@@ -9,6 +9,7 @@
 
 #include "galactic/bake/build.h"
 #include "galactic/bake/jobs.h"
+#include "galactic/bake/libraries.h"
 #include "galactic/bake/option_field.h"
 #include "galactic/error.h"
 
@@ -48,7 +49,8 @@ void visitOptions(DatasetJobs& dataset, OptionVisitor& visitor);
 /// kInvalidInput where two packs would have one name, or something is missing and that is to be an
 /// error.
 [[nodiscard]] Result<WorldPlan> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
-                                               const std::filesystem::path& world);
+                                               const std::filesystem::path& world,
+                                               BakeLibraries& libraries);
 
 /// What may be said of the episodes of a recipe instead of what the recipe says, so that it makes
 /// several worlds that differ in their episodes.
@@ -70,7 +72,8 @@ struct RecipeSource {
 /// Everything that is baked for a recipe. Fails as jobsOfDatasets does, and with kIo and
 /// kInvalidInput, naming the recipe's line, on what cannot be read or found.
 [[nodiscard]] Result<WorldPlan> jobsOfRecipe(const RecipeSource& source,
-                                             const std::filesystem::path& world);
+                                             const std::filesystem::path& world,
+                                             BakeLibraries& libraries);
 
 /// Options that contradict each other, or say nothing without others, as far as a job or the given
 /// options show it. Fails with kInvalidInput.

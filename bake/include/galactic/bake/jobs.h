@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,10 +21,8 @@
 
 namespace galactic::bake {
 
-class MeshLibrary;
-class SceneDataset;
-
-// What is asked of one pack: its inputs and its options. Whatever is not an input, a name or an
+// What is asked of one pack: its inputs and its options, plain values that say all there is to say
+// of it. What a bake works with besides is in BakeContext. Whatever is not an input, a name or an
 // internal is in the kind's visitor below, and from there in the command line, in recipes, in the
 // provenance and in the key of the cache.
 
@@ -36,6 +33,8 @@ struct DrawOptions {
   TextureBakeOptions textures{};
   /// Folder for texture packs that assets share; empty: each pack has its own.
   std::filesystem::path shared_textures{};
+
+  friend bool operator==(const DrawOptions&, const DrawOptions&) = default;
 };
 
 /// How far a surface of what is handled may move, meters: it is seen from nearer than scenes are.
@@ -43,10 +42,11 @@ inline constexpr double kHandledRenderError = 0.002;
 
 /// A scene instance of a dataset.
 struct InstancedScene {
-  std::shared_ptr<const SceneDataset> dataset;
-  /// What scenes of the dataset share.
-  std::shared_ptr<MeshLibrary> meshes;
   std::string name;
+  /// Changes with what the dataset has: the scene may then be of other parts with the same names.
+  std::uint64_t dataset_fingerprint = 0;
+
+  friend bool operator==(const InstancedScene&, const InstancedScene&) = default;
 };
 
 /// One scene.
@@ -59,6 +59,8 @@ struct SceneJob {
   MeshImportOptions import{};
   SceneBakeOptions grids{};
   DrawOptions draw{};
+
+  friend bool operator==(const SceneJob&, const SceneJob&) = default;
 };
 
 /// A set of objects.
@@ -73,6 +75,8 @@ struct ObjectJob {
   MeshImportOptions import{.smallest_size = 0};
   ObjectBakeOptions shape{};
   DrawOptions draw{.meshes = {.error = kHandledRenderError}};
+
+  friend bool operator==(const ObjectJob&, const ObjectJob&) = default;
 };
 
 /// One robot.
@@ -89,6 +93,8 @@ struct RobotJob {
   bool allow_outside = false;
   RobotBakeOptions shape{};
   DrawOptions draw{.meshes = {.error = kHandledRenderError}};
+
+  friend bool operator==(const RobotJob&, const RobotJob&) = default;
 };
 
 /// A published set of episodes.
@@ -99,6 +105,8 @@ struct EpisodeImportJob {
   /// Pack of the objects, for where their centers are; empty: none.
   std::filesystem::path object_pack{};
   EpisodeImportOptions import{};
+
+  friend bool operator==(const EpisodeImportJob&, const EpisodeImportJob&) = default;
 };
 
 /// Episodes that are generated.
@@ -110,8 +118,10 @@ struct EpisodeGenerationJob {
   std::uint32_t solve = 16;
   /// The meshes that scenes were baked from, by the scenes' names.
   std::map<std::string, std::filesystem::path> geometry{};
-  /// What is known of the scenes that were made in the same build; empty: nothing but `geometry`.
-  SceneDetailSource details{};
+  /// What scenes were baked from that are made in the same build, by the scenes' names.
+  std::map<std::string, SceneJob> scenes{};
+
+  friend bool operator==(const EpisodeGenerationJob&, const EpisodeGenerationJob&) = default;
 };
 
 /// A list of packs.
@@ -119,6 +129,8 @@ struct WorldJob {
   std::vector<std::filesystem::path> packs{};
   /// What the world says of its task: options of OptionScope::kTask.
   std::vector<OptionText> task{};
+
+  friend bool operator==(const WorldJob&, const WorldJob&) = default;
 };
 
 using Job =
@@ -143,9 +155,6 @@ void visitOptions(Job& job, OptionVisitor& visitor);
 
 /// The files and folders that the job names, inputs first.
 [[nodiscard]] std::vector<std::filesystem::path> filesOf(const Job& job);
-
-/// Bakes on `count` threads, which the result does not depend on.
-void setThreads(Job& job, unsigned count);
 
 /// The options of a job that have a value, as they would be typed, files without their folders: for
 /// the provenance of its pack. The kind comes first, of all but scenes.

@@ -29,6 +29,8 @@ struct MeshImportOptions {
   /// uses more memory than this; so a broken file costs one error message, not the bake.
   std::chrono::seconds time_limit{600};
   std::uint64_t memory_limit = std::uint64_t{16} << 30U;
+
+  friend bool operator==(const MeshImportOptions&, const MeshImportOptions&) = default;
 };
 
 /// Reads anything assimp reads (GLB, glTF, OBJ, PLY, STL, DAE and more): axes and unit converted to

@@ -20,6 +20,8 @@ struct AuthoredShape {
   Bounds box;
   /// In the order of packs: radius descending, then x, y, z ascending. None: they are fitted.
   std::vector<SetSphere> spheres;
+
+  friend bool operator==(const AuthoredShape&, const AuthoredShape&) = default;
 };
 
 struct ObjectBakeOptions {
@@ -30,6 +32,8 @@ struct ObjectBakeOptions {
   bool keep_above_support = true;
   /// Given by hand, or by a published collection.
   std::optional<AuthoredShape> authored;
+
+  friend bool operator==(const ObjectBakeOptions&, const ObjectBakeOptions&) = default;
 };
 
 /// How long each stage took, seconds of wall clock.
@@ -66,6 +70,7 @@ struct BakedObject {
 /// or geometry that cannot give them; `where` names the option or "mesh", or is empty, since the
 /// baker knows no file. The result does not depend on the number of threads.
 [[nodiscard]] Result<BakedObject> bakeObject(const SourceAsset& asset,
-                                             const ObjectBakeOptions& options);
+                                             const ObjectBakeOptions& options,
+                                             unsigned threads = 1);
 
 }  // namespace galactic::bake

@@ -4,9 +4,9 @@
 
 namespace galactic::bake {
 
-/// Calls `body` once for each index below `count`, on up to `jobs` threads (the caller's included),
-/// in no particular order. Returns when all calls have returned. If a call throws, the rest are
-/// skipped and the caller gets the exception.
-void parallelFor(unsigned jobs, std::size_t count, const std::function<void(std::size_t)>& body);
+/// Calls `body` once for each index below `count`, on up to `threads` threads (the caller's
+/// included), in no particular order. Returns when all calls have returned. If a call throws, the
+/// rest are skipped and the caller gets the exception.
+void parallelFor(unsigned threads, std::size_t count, const std::function<void(std::size_t)>& body);
 
 }  // namespace galactic::bake

@@ -63,8 +63,8 @@ struct RenderBakeOptions {
   /// kLargestThinness of their area per extent.
   double error = 0.005;
   Lighting lighting = Lighting::kAuto;
-  /// Threads. The result does not depend on them.
-  unsigned jobs = 1;
+
+  friend bool operator==(const RenderBakeOptions&, const RenderBakeOptions&) = default;
 };
 
 /// Most that simplification moves a piece, as a share of its longest edge: a knob stays a knob.
@@ -124,10 +124,11 @@ struct BakedRenderMeshes : RenderPools {
 ///
 /// Fails with kInvalidInput where a corner is not finite or beyond kMaxCoordinate (`where` names
 /// the mesh), and when a material or semantic does not exist; with kUnsupported when there are more
-/// than 65,536 materials or semantics. The result depends neither on the number of jobs nor on the
+/// than 65,536 materials or semantics. The result depends neither on `threads` nor on the
 /// processor.
 [[nodiscard]] Result<BakedRenderMeshes> bakeRenderMeshes(const RenderSource& source,
-                                                         const RenderBakeOptions& options);
+                                                         const RenderBakeOptions& options,
+                                                         unsigned threads = 1);
 
 /// Appends the models of `more` to `meshes`, numbered from `part` on. Equal textures and equal
 /// names of semantics are shared. Together they have at most 65,536 materials and as many names.

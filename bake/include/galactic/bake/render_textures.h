@@ -74,16 +74,21 @@ struct TextureBakeOptions {
   std::uint32_t largest = 512;
   /// Of opaque textures; those with a cut-out shape are always kRgba8.
   TexelFormat format = TexelFormat::kRgba8;
-  /// Threads. The result does not depend on them.
-  unsigned jobs = 1;
-  /// Where images of other assets may be found again; null: nowhere.
-  std::shared_ptr<TextureLibrary> library = nullptr;
+
+  friend bool operator==(const TextureBakeOptions&, const TextureBakeOptions&) = default;
+};
+
+/// Where the images are that materials name.
+struct TextureFiles {
+  /// Those that a texture "*N" means.
+  std::span<const EmbeddedTexture> embedded{};
+  /// The names of other textures are relative to it.
+  std::filesystem::path folder{};
 };
 
 /// Makes flat colors and small square mip-mapped textures of the materials of an asset.
 ///
-/// `embedded`: the images that a texture "*N" means; other textures are files, named relative to
-/// `folder`. PNG and JPEG are decoded, each in a process of its own, because they may be hostile.
+/// PNG and JPEG are decoded, each in a process of its own, because they may be hostile.
 /// Whatever cannot be used (missing, broken, another format, over 16384 texels wide or high or over
 /// 64 million in all) leaves its materials with their plain color and gives one warning.
 ///
@@ -96,10 +101,14 @@ struct TextureBakeOptions {
 ///
 /// Fails with kInvalidInput when `options.largest` is no power of two from 1 to 4096, kUnsupported
 /// when the texels would exceed a pack's 2 GiB. Thread-safe.
+///
+/// `library`: where images of other assets are found again; null: nowhere. The result depends
+/// neither on it nor on `threads`.
 [[nodiscard]] Result<BakedMaterials> bakeMaterials(std::span<const SourceMaterial> materials,
-                                                   std::span<const EmbeddedTexture> embedded,
-                                                   const std::filesystem::path& folder,
-                                                   const TextureBakeOptions& options);
+                                                   const TextureFiles& files,
+                                                   const TextureBakeOptions& options,
+                                                   unsigned threads = 1,
+                                                   TextureLibrary* library = nullptr);
 
 /// 32 hexadecimal digits of the texture's hash: the name of its pack.
 [[nodiscard]] std::string textureHash(const BakedTexture& texture);

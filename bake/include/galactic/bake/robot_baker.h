@@ -27,8 +27,8 @@ struct RobotBakeOptions {
   /// Spheres made by hand or by another tool. Links named here take them instead of fitted ones;
   /// the others get none.
   std::optional<HandSpheres> hand_spheres;
-  /// Threads. Never changes the result.
-  unsigned jobs = 1;
+
+  friend bool operator==(const RobotBakeOptions&, const RobotBakeOptions&) = default;
 };
 
 /// Links that no joint moves against each other, and their spheres.
@@ -100,6 +100,6 @@ struct BakedRobot {
 /// of the recipe, the link or the option, or is empty, since the baker knows no file. The result
 /// does not depend on the number of threads.
 [[nodiscard]] Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe,
-                                           const RobotBakeOptions& options);
+                                           const RobotBakeOptions& options, unsigned threads = 1);
 
 }  // namespace galactic::bake

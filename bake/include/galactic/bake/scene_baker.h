@@ -27,7 +27,8 @@ struct SceneBakeOptions {
   FreeSpaceOptions free_space{};
   /// Columns per grid to replay with sphere casts; 0 switches the check off.
   std::uint32_t check_columns = 128;
-  unsigned jobs = 1;
+
+  friend bool operator==(const SceneBakeOptions&, const SceneBakeOptions&) = default;
 };
 
 /// How long each stage took, seconds of wall clock.
@@ -72,10 +73,10 @@ using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 /// Bakes all column grids of one scene. Adds the time of its stages to `times`. Fails with
 /// kInvalidInput on options or geometry that cannot give a grid; where an option is the cause, the
-/// error's `where` is its name in backquotes. The result depends on neither the number of jobs nor
-/// the processor.
+/// error's `where` is its name in backquotes. The result depends on neither `threads` nor the
+/// processor.
 [[nodiscard]] Result<BakedScene> bakeScene(const SourceAsset& asset,
                                            const SceneBakeOptions& options, StageTimes& times,
-                                           const Progress& progress);
+                                           const Progress& progress, unsigned threads = 1);
 
 }  // namespace galactic::bake

@@ -114,6 +114,8 @@ struct HandSpheres {
   std::vector<LinkSpheres> links;
   /// One sentence each: collision elements that are no spheres.
   std::vector<std::string> warnings;
+
+  friend bool operator==(const HandSpheres&, const HandSpheres&) = default;
 };
 
 }  // namespace galactic::bake

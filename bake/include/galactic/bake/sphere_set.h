@@ -17,6 +17,8 @@ struct HalfSpace {
   Vec3 normal{0, 1, 0};
   /// Meters.
   float offset = 0;
+
+  friend bool operator==(const HalfSpace&, const HalfSpace&) = default;
 };
 
 /// What the spheres must do. Lengths in meters.
@@ -33,8 +35,8 @@ struct SphereSetOptions {
   std::optional<HalfSpace> support;
   /// Most spheres allowed; 0: as many as the tolerances need. With a limit the gap may exceed eps.
   std::uint32_t max_spheres = 0;
-  /// Threads. Never changes the result.
-  unsigned jobs = 1;
+
+  friend bool operator==(const SphereSetOptions&, const SphereSetOptions&) = default;
 };
 
 /// Mean, 95th percentile and maximum of a length over samples, meters.
@@ -85,9 +87,9 @@ struct SphereSet {
 /// search of Gao, Weise and Li (EJOR 2015), then refinement on finer lattices and denser samples.
 /// Where the tolerances need more than `max_spheres`, the set of a SphereCurve with that many.
 /// Fails with kInvalidInput on options out of range or a mesh without a reachable surface, and with
-/// kUnsupported where the extents are beyond 10 m.
+/// kUnsupported where the extents are beyond 10 m. The result does not depend on `threads`.
 [[nodiscard]] Result<SphereSet> fitSphereSet(const TriangleMesh& mesh,
-                                             const SphereSetOptions& options);
+                                             const SphereSetOptions& options, unsigned threads = 1);
 
 /// One set of a trade-off curve, before it is made ready.
 struct CurvePoint {
@@ -110,17 +112,18 @@ class SphereCurve {
  public:
   /// The curve of `mesh`, without sets yet. Fails as fitSphereSet does.
   [[nodiscard]] static Result<SphereCurve> begin(const TriangleMesh& mesh,
-                                                 const SphereSetOptions& options);
+                                                 const SphereSetOptions& options,
+                                                 unsigned threads = 1);
   ~SphereCurve();
   SphereCurve(SphereCurve&&) noexcept;
   SphereCurve& operator=(SphereCurve&&) noexcept;
 
-  /// Adds the set with one more sphere, on up to `jobs` threads, which never change it. Does
+  /// Adds the set with one more sphere, on up to `threads` threads, which never change it. Does
   /// nothing when the curve is complete. Where parts are so thin that nothing stays within tau, the
   /// curve is finished at once. Fails as fitSphereSet does.
-  [[nodiscard]] Result<void> refine(unsigned jobs);
+  [[nodiscard]] Result<void> refine(unsigned threads);
   /// Replaces all sets by one that meets the tolerances, as fitSphereSet makes it, with less work.
-  [[nodiscard]] Result<void> finish(unsigned jobs);
+  [[nodiscard]] Result<void> finish(unsigned threads);
   /// Whether the last set leaves no gap wider than eps, has the most spheres allowed, or cannot be
   /// bettered by one more.
   [[nodiscard]] bool complete() const;
@@ -143,6 +146,7 @@ class SphereCurve {
 /// not in the working set.
 [[nodiscard]] Result<SphereSetQuality> measureSphereSet(const TriangleMesh& mesh,
                                                         const std::vector<SetSphere>& spheres,
-                                                        const SphereSetOptions& options);
+                                                        const SphereSetOptions& options,
+                                                        unsigned threads = 1);
 
 }  // namespace galactic::bake

@@ -14,6 +14,8 @@ namespace galactic::bake {
 struct Bounds {
   Vec3 min;
   Vec3 max;
+
+  friend bool operator==(const Bounds&, const Bounds&) = default;
 };
 
 /// What cleaning a mesh dropped.

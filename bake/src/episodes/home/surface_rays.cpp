@@ -13,7 +13,7 @@ constexpr float kAbove = 0.025F;
 }  // namespace
 
 Result<SurfaceRays> SurfaceRays::build(const TriangleMesh& mesh) {
-  auto rays = TriangleRays::build(mesh.vertices, mesh.triangles, /*jobs=*/1);
+  auto rays = TriangleRays::build(mesh.vertices, mesh.triangles, /*threads=*/1);
   if (!rays) {
     return fail(ErrorCode::kUnsupported, "episodes",
                 "could not build a scene for rays, for lack of memory; generate without geometry");

@@ -62,11 +62,11 @@ Result<EpisodeEnd> play(const World& world, std::uint32_t most_steps) {
 
 Result<SolvedSample> solveSample(std::span<const PackFile* const> packs,
                                  const SourceEpisodes& episodes,
-                                 const EpisodeSolvingOptions& options) {
+                                 const EpisodeSolvingOptions& options, unsigned threads) {
   const std::size_t all = episodes.episodes.size();
   const std::size_t count = std::min<std::size_t>(options.most_episodes, all);
   std::vector<Result<EpisodeEnd>> ends(count);
-  parallelFor(options.jobs, count, [&](std::size_t n) {
+  parallelFor(threads, count, [&](std::size_t n) {
     const auto world = MemoryWorld::open(packs, alone(episodes, n * all / count));
     ends[n] = world ? play(**world, options.most_steps) : tl::unexpected(world.error());
   });

@@ -51,9 +51,9 @@ std::vector<Candidate> candidatesOfRadius(const FitTask& task, std::uint32_t rad
   const double highest = highestCenter(task, radius_index);
   const LatticeBand band{latticeSpacing(task, radius_index), -(radius + task.eps), highest, &wanted,
                          radius + task.eps};
-  const auto lattice = latticeInBand(*task.solid, band, task.jobs);
+  const auto lattice = latticeInBand(*task.solid, band, task.threads);
   std::vector<std::optional<Candidate>> made(lattice.size());
-  parallelFor(task.jobs, lattice.size(), [&](std::size_t at) {
+  parallelFor(task.threads, lattice.size(), [&](std::size_t at) {
     const LatticePoint& point = lattice[at];
     const bool high = point.surface.distance > highest - 1.5 * band.spacing;
     const Candidate candidate =
@@ -153,17 +153,17 @@ void addThinCandidates(const FitTask& task, std::span<const Vec3d> points,
   const LatticeBand band{latticeSpacing(task, 0), -reach, task.support ? radius : 0.0, &wanted,
                          reach};
   std::vector<Vec3d> places;
-  for (const LatticePoint& p : latticeInBand(*task.solid, band, task.jobs)) {
+  for (const LatticePoint& p : latticeInBand(*task.solid, band, task.threads)) {
     places.push_back(p.position);
   }
   const std::size_t of_points = places.size();
   places.resize(of_points + 2 * open.size());
-  parallelFor(task.jobs, open.size(), [&](std::size_t at) {
+  parallelFor(task.threads, open.size(), [&](std::size_t at) {
     places[of_points + 2 * at] = open[at];
     places[of_points + 2 * at + 1] = middleOfPart(task, open[at]);
   });
   std::vector<Candidate> found(places.size());
-  parallelFor(task.jobs, places.size(),
+  parallelFor(task.threads, places.size(),
               [&](std::size_t at) { found[at] = sphereAround(task, places[at]); });
 
   CandidatePool thin;

@@ -28,7 +28,7 @@ void appendCovering(const FitTask& task, const PointGrid& grid, std::span<const 
                     CandidatePool& pool) {
   const std::size_t chunks = (found.size() + kChunk - 1) / kChunk;
   std::vector<CoverMatrix> parts(chunks);
-  parallelFor(task.jobs, chunks, [&](std::size_t chunk) {
+  parallelFor(task.threads, chunks, [&](std::size_t chunk) {
     std::vector<std::uint32_t> rows;
     for (std::size_t at = chunk * kChunk; at < std::min(found.size(), (chunk + 1) * kChunk); ++at) {
       rows.clear();
@@ -70,7 +70,7 @@ CandidatePool withoutDominated(const FitTask& task, std::span<const Vec3d> point
     });
   };
   std::vector<char> dominated(centers.size(), 0);
-  parallelFor(task.jobs, (centers.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+  parallelFor(task.threads, (centers.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     const std::size_t end = std::min(centers.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < end; ++i) {
       const auto at = static_cast<std::uint32_t>(i);

@@ -142,7 +142,7 @@ class CoverSolver {
 
   [[nodiscard]] std::vector<Candidate> fineLattices(int round) const {
     std::vector<std::vector<Candidate>> parts(chosen_.size());
-    parallelFor(task_.jobs, chosen_.size(), [&](std::size_t at) {
+    parallelFor(task_.threads, chosen_.size(), [&](std::size_t at) {
       const double coarse = latticeSpacing(task_, chosen_[at].radius_index);
       addFineLattice(chosen_[at], coarse / (2 << std::min(round, 2)), parts[at]);
     });

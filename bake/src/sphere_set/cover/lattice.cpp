@@ -91,11 +91,12 @@ class BandSearch {
 }  // namespace
 
 std::vector<LatticePoint> latticeInBand(const ExteriorSolid& solid, const LatticeBand& band,
-                                        unsigned jobs) {
+                                        unsigned threads) {
   const BandSearch search(solid, band);
   const std::vector<Cube> leaves = search.leaves();
   std::vector<std::vector<LatticePoint>> parts(leaves.size());
-  parallelFor(jobs, leaves.size(), [&](std::size_t at) { search.collect(leaves[at], parts[at]); });
+  parallelFor(threads, leaves.size(),
+              [&](std::size_t at) { search.collect(leaves[at], parts[at]); });
   std::vector<LatticePoint> points;
   for (const auto& part : parts) points.insert(points.end(), part.begin(), part.end());
   return points;

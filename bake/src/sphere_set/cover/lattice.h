@@ -28,6 +28,6 @@ struct LatticePoint {
 /// skipped whole where the distance at their middle, which changes by no more than the way gone,
 /// rules them out.
 [[nodiscard]] std::vector<LatticePoint> latticeInBand(const ExteriorSolid& solid,
-                                                      const LatticeBand& band, unsigned jobs);
+                                                      const LatticeBand& band, unsigned threads);
 
 }  // namespace galactic::bake::sphere_set

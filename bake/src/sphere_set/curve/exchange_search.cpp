@@ -309,7 +309,7 @@ ExchangeSearch::Offers ExchangeSearch::offersOf(std::uint32_t candidate) const {
 std::vector<ExchangeSearch::Offers> ExchangeSearch::offersOf(
     const std::vector<std::uint32_t>& candidates) const {
   std::vector<Offers> offers(candidates.size());
-  parallelFor(task_.jobs, (offers.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
+  parallelFor(task_.threads, (offers.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
     const std::size_t end = std::min(offers.size(), (chunk + 1) * kChunk);
     for (std::size_t at = chunk * kChunk; at < end; ++at) offers[at] = offersOf(candidates[at]);
   });

@@ -78,17 +78,17 @@ class SphereCurve::Fitter {
                                           {spacing_, kPointSeed, 10})),
         weights_(weightsFor(prepared_.task.eps)) {}
 
-  Result<void> refine(unsigned jobs) {
+  Result<void> refine(unsigned threads) {
     if (points_.empty()) return sphere_set::nothingToCover();
     if (complete_) return {};
     FitTask& task = prepared_.task;
-    task.jobs = jobs;
+    task.threads = threads;
     if (!search_) {
-      grid_.emplace(*task.solid, sphere_set::kLooserTau * task.tau, kGridNodes, jobs);
+      grid_.emplace(*task.solid, sphere_set::kLooserTau * task.tau, kGridNodes, threads);
       search_.emplace(task, *grid_, points_, weights_);
     }
     if (!grow()) {
-      if (steps_.empty()) return finish(jobs);
+      if (steps_.empty()) return finish(threads);
       complete_ = true;
       return {};
     }
@@ -96,10 +96,10 @@ class SphereCurve::Fitter {
     return {};
   }
 
-  Result<void> finish(unsigned jobs) {
+  Result<void> finish(unsigned threads) {
     if (complete_) return {};
     FitTask task = prepared_.task;
-    task.jobs = jobs;
+    task.threads = threads;
     task.most_places = kCurvePlaces;
     sphere_set::SurfacePoints surface;
     Cover cover = sphere_set::solveCover(task, kCurveEffort, surface);
@@ -190,13 +190,14 @@ SphereCurve::~SphereCurve() = default;
 SphereCurve::SphereCurve(SphereCurve&&) noexcept = default;
 SphereCurve& SphereCurve::operator=(SphereCurve&&) noexcept = default;
 
-Result<SphereCurve> SphereCurve::begin(const TriangleMesh& mesh, const SphereSetOptions& options) {
-  ASSIGN_OR_RETURN(auto prepared, sphere_set::prepareFit(mesh, options));
+Result<SphereCurve> SphereCurve::begin(const TriangleMesh& mesh, const SphereSetOptions& options,
+                                       unsigned threads) {
+  ASSIGN_OR_RETURN(auto prepared, sphere_set::prepareFit(mesh, options, threads));
   return SphereCurve(std::make_unique<Fitter>(std::move(prepared), options.max_spheres));
 }
 
-Result<void> SphereCurve::refine(unsigned jobs) { return fitter_->refine(jobs); }
-Result<void> SphereCurve::finish(unsigned jobs) { return fitter_->finish(jobs); }
+Result<void> SphereCurve::refine(unsigned threads) { return fitter_->refine(threads); }
+Result<void> SphereCurve::finish(unsigned threads) { return fitter_->finish(threads); }
 bool SphereCurve::complete() const { return fitter_->complete(); }
 const std::vector<CurvePoint>& SphereCurve::points() const { return fitter_->points(); }
 SphereSet SphereCurve::take(std::size_t point) const { return fitter_->take(point); }

@@ -5,7 +5,7 @@
 namespace galactic::bake::sphere_set {
 
 DistanceGrid::DistanceGrid(const ExteriorSolid& solid, double margin, double most_nodes,
-                           unsigned jobs) {
+                           unsigned threads) {
   const Box box = solid.bounds().widened(margin);
   const Vec3d size = box.size();
   step_ = std::cbrt(size.x * size.y * size.z / most_nodes);
@@ -15,7 +15,7 @@ DistanceGrid::DistanceGrid(const ExteriorSolid& solid, double margin, double mos
   };
   size_ = {along(size.x), along(size.y), along(size.z)};
   distance_.resize(size_[0] * size_[1] * size_[2]);
-  parallelFor(jobs, size_[2], [&](std::size_t z) {
+  parallelFor(threads, size_[2], [&](std::size_t z) {
     std::uint32_t hint = kNoFacet;
     const std::size_t plane = size_[0] * size_[1];
     for (std::size_t node = z * plane; node < (z + 1) * plane; ++node) {

@@ -12,7 +12,7 @@ namespace galactic::bake::sphere_set {
 class DistanceGrid {
  public:
   /// Over the solid's bounds and `margin` meters around them, about `most_nodes` nodes.
-  DistanceGrid(const ExteriorSolid& solid, double margin, double most_nodes, unsigned jobs);
+  DistanceGrid(const ExteriorSolid& solid, double margin, double most_nodes, unsigned threads);
 
   [[nodiscard]] double step() const { return step_; }
   [[nodiscard]] std::size_t nodes() const { return distance_.size(); }

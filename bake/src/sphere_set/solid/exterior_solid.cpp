@@ -73,10 +73,11 @@ Vec3d facetNormal(const Facet& facet) {
   return cross(widen(facet[1]) - a, widen(facet[2]) - a);
 }
 
-ExteriorSolid::ExteriorSolid(const TriangleMesh& mesh, double smallest_radius, unsigned jobs)
+ExteriorSolid::ExteriorSolid(const TriangleMesh& mesh, double smallest_radius, unsigned threads)
     : surface_({}) {
   const TriangleTree all(facetsOf(mesh));
-  field_ = std::make_unique<const ProbeField>(all, boundsOf(all.facets()), smallest_radius, jobs);
+  field_ =
+      std::make_unique<const ProbeField>(all, boundsOf(all.facets()), smallest_radius, threads);
   surface_ = TriangleTree(touchedFacets(mesh));
   bounds_ = boundsOf(surface_.facets());
   for (const Facet& facet : surface_.facets()) area_ += norm(facetNormal(facet)) / 2;

@@ -22,8 +22,8 @@ struct SurfaceDistance {
 /// threads.
 class ExteriorSolid {
  public:
-  /// See ProbeField for the probe that `smallest_radius` gives. Never changes with `jobs`.
-  ExteriorSolid(const TriangleMesh& mesh, double smallest_radius, unsigned jobs);
+  /// See ProbeField for the probe that `smallest_radius` gives. Never changes with `threads`.
+  ExteriorSolid(const TriangleMesh& mesh, double smallest_radius, unsigned threads);
 
   /// The facets that the probe touches; large ones that it touches only in part are cut up.
   [[nodiscard]] std::span<const Facet> facets() const { return surface_.facets(); }

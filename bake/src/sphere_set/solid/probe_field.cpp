@@ -79,10 +79,10 @@ std::int64_t squared(std::int64_t value) { return value * value; }
 }  // namespace
 
 ProbeField::ProbeField(const TriangleTree& tree, const Box& bounds, double smallest_radius,
-                       unsigned jobs) {
+                       unsigned threads) {
   chooseGrid(bounds, smallest_radius);
   spread(tree);
-  findNearestReached(jobs);
+  findNearestReached(threads);
 }
 
 void ProbeField::chooseGrid(const Box& bounds, double smallest_radius) {
@@ -159,9 +159,9 @@ void ProbeField::spread(const TriangleTree& tree) {
   }
 }
 
-void ProbeField::findNearestReached(unsigned jobs) {
-  parallelFor(jobs, size_[2], [&](std::size_t z) { nearestInPlane(z); });
-  parallelFor(jobs, size_[1], [&](std::size_t y) { nearestAcrossPlanes(y); });
+void ProbeField::findNearestReached(unsigned threads) {
+  parallelFor(threads, size_[2], [&](std::size_t z) { nearestInPlane(z); });
+  parallelFor(threads, size_[1], [&](std::size_t y) { nearestAcrossPlanes(y); });
 }
 
 void ProbeField::nearestInRow(std::size_t y, std::size_t z) {

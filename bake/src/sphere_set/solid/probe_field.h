@@ -19,7 +19,7 @@ class ProbeField {
  public:
   /// For all facets of `tree`, which lie in `bounds`. The probe's radius is half of
   /// `smallest_radius`, or more where the grid would have too many voxels otherwise.
-  ProbeField(const TriangleTree& tree, const Box& bounds, double smallest_radius, unsigned jobs);
+  ProbeField(const TriangleTree& tree, const Box& bounds, double smallest_radius, unsigned threads);
 
   /// Edge of a voxel, meters.
   [[nodiscard]] double voxel() const { return voxel_; }
@@ -32,7 +32,7 @@ class ProbeField {
  private:
   void chooseGrid(const Box& bounds, double smallest_radius);
   void spread(const TriangleTree& tree);
-  void findNearestReached(unsigned jobs);
+  void findNearestReached(unsigned threads);
   void nearestInRow(std::size_t y, std::size_t z);
   void nearestInPlane(std::size_t z);
   void nearestAcrossPlanes(std::size_t y);
