@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include "episodes/reach_witness.h"
@@ -23,16 +25,35 @@ constexpr float kTurn = 2 * std::numbers::pi_v<float>;
 
 using BodySpheres = std::vector<BodySphere>;
 
-/// A stable pose, each as likely as drops end in it.
-const StablePose& drawStablePose(const ObjectModel& model, Random& random) {
+/// Cosine of the angle by which the up axis of an object leans.
+float uprightness(const StablePose& pose) { return rotate(pose.rotation, {0, 1, 0}).y; }
+
+/// The least uprightness of poses that may be drawn.
+float leastUprightness(const ObjectModel& model, PoseChoice choice) {
+  // Of an object that stands askew on its bottom: the cosine of 15 degrees.
+  constexpr float kUpright = 0.966F;
+  if (choice == PoseChoice::kDropped) return -std::numeric_limits<float>::infinity();
+  float most = -1;
+  for (const StablePose& pose : model.stable_poses) most = std::max(most, uprightness(pose));
+  return std::min(most, kUpright);
+}
+
+/// A stable pose, of those that may be drawn each as likely as drops end in it.
+const StablePose& drawStablePose(const ObjectModel& model, PoseChoice choice, Random& random) {
+  const float least = leastUprightness(model, choice);
+  const auto may_be_drawn = [least](const StablePose& pose) { return uprightness(pose) >= least; };
   float total = 0;
-  for (const StablePose& pose : model.stable_poses) total += pose.likelihood;
+  for (const StablePose& pose : model.stable_poses | std::views::filter(may_be_drawn)) {
+    total += pose.likelihood;
+  }
   float left = static_cast<float>(random.unit()) * total;
-  for (const StablePose& pose : model.stable_poses) {
+  const StablePose* drawn = nullptr;
+  for (const StablePose& pose : model.stable_poses | std::views::filter(may_be_drawn)) {
+    if (drawn == nullptr) drawn = &pose;
     left -= pose.likelihood;
     if (left < 0) return pose;
   }
-  return model.stable_poses.front();
+  return *drawn;
 }
 
 bool isWithin(float distance, const DistanceRange& range) {
@@ -180,7 +201,7 @@ class Draft {
 
   Wanted drawObject() {
     const std::uint32_t object = random_.below(static_cast<std::uint32_t>(home_.objects.size()));
-    return {object, &drawStablePose(home_.objects[object], random_)};
+    return {object, &drawStablePose(home_.objects[object], home_.options.poses, random_)};
   }
 
   bool reject(EpisodeRejection reason) {

@@ -30,6 +30,8 @@ constexpr std::array<Named<Lighting>, 3> kLightingNames{
     {{"auto", Lighting::kAuto}, {"all", Lighting::kAll}, {"none", Lighting::kNone}}};
 constexpr std::array<Named<HabitatTargets>, 2> kTargetNames{
     {{"first", HabitatTargets::kFirst}, {"each", HabitatTargets::kEach}}};
+constexpr std::array<Named<PoseChoice>, 2> kPoseNames{
+    {{"dropped", PoseChoice::kDropped}, {"upright", PoseChoice::kUpright}}};
 constexpr std::array<Named<SupportChoice>, 3> kSupportNames{
     {{"found", SupportChoice::kFound},
      {"receptacles", SupportChoice::kReceptacles},
@@ -204,7 +206,7 @@ void visitSplit(SceneSplit& split, OptionVisitor& v) {
 
 void visitGeneration(EpisodeGeneratorOptions& options, OptionVisitor& v) {
   auto& [episodes, objects, seed, heights, flatness, target_to_goal, shorten_way, start_to_target,
-         goal_on_other_support, most_skipped, supports, split] = options;
+         goal_on_other_support, most_skipped, supports, poses, split] = options;
   v.group("Episodes");
   v.option(
       {"seed", "N",
@@ -235,6 +237,9 @@ void visitGeneration(EpisodeGeneratorOptions& options, OptionVisitor& v) {
             "Generate: objects stand on all surfaces that are found, in the dataset's "
             "receptacles, or half of them in these where a scene has any"},
            choice(supports, kSupportNames));
+  v.option({"poses", "dropped|upright",
+            "Generate: objects stand as drops end, so that bottles mostly lie, or upright"},
+           choice(poses, kPoseNames));
   visitSplit(split, v);
   v.internals(shorten_way);
 }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 #include <set>
@@ -401,6 +403,54 @@ TEST(GeneratedEpisodes, HaveTheirGoalsOnTheOtherTableWhereAsked) {
   EXPECT_LT(some, 180);
   options.goal_on_other_support = true;
   EXPECT_EQ(crossing(), 200);
+}
+
+/// A cube of 8 cm that comes to rest in these poses.
+MemoryPack bottlePack(const std::vector<StablePose>& poses) {
+  ObjectPackFields fields;
+  fields.radii = madeRadii();
+  ObjectFields& bottle = fields.objects.emplace_back();
+  constexpr float kHalf = 0.04F;
+  bottle.name = "bottle";
+  bottle.box_half_extents = Vec3{kHalf, kHalf, kHalf};
+  bottle.spheres = {{{}, 1}};
+  bottle.stable_poses = poses;
+  return {buildPack(fields), "bottle"};
+}
+
+Quat aboutX(float angle) { return {std::sin(angle / 2), 0, 0, std::cos(angle / 2)}; }
+
+/// How much the up axes of all objects and goals of 40 episodes lean, whole degrees.
+std::set<long> leansOf(const std::vector<StablePose>& poses, bake::PoseChoice choice) {
+  const MadeWorld world(twoTables(), stickRobot());
+  const MemoryPack bottle = bottlePack(poses);
+  auto packs = world.packs();
+  packs[1] = &bottle.pack();
+  EpisodeGeneratorOptions options = optionsFor(40, 2);
+  options.poses = choice;
+  const SourceEpisodes set = generated({packs, {}}, options).episodes;
+  std::set<long> leans;
+  const auto add = [&](const Quat& rotation) {
+    const float up = std::clamp(rotate(rotation, {0, 1, 0}).y, -1.0F, 1.0F);
+    leans.insert(std::lround(std::acos(up) * 180 / std::numbers::pi_v<float>));
+  };
+  for (const Placement& placement : set.placements) add(placement.pose.rotation);
+  for (const Episode& episode : set.episodes) add(episode.goal.rotation);
+  return leans;
+}
+
+TEST(GeneratedEpisodes, HaveUprightObjectsWhereAsked) {
+  constexpr float kDegree = std::numbers::pi_v<float> / 180;
+  constexpr float kHeight = 0.06F;
+  const StablePose lying{aboutX(90 * kDegree), kHeight, 0.6F};
+  const StablePose hanging{aboutX(180 * kDegree), kHeight, 0.2F};
+  const StablePose leaning{aboutX(10 * kDegree), kHeight, 0.1F};
+  const StablePose standing{{}, kHeight, 0.1F};
+  const std::vector poses{lying, hanging, leaning, standing};
+  EXPECT_THAT(leansOf(poses, bake::PoseChoice::kDropped), testing::ElementsAre(0, 10, 90, 180));
+  EXPECT_THAT(leansOf(poses, bake::PoseChoice::kUpright), testing::ElementsAre(0, 10));
+  // What cannot stand leans least.
+  EXPECT_THAT(leansOf({lying, hanging}, bake::PoseChoice::kUpright), testing::ElementsAre(90));
 }
 
 TEST(Replay, TellsEpisodesThatStandFromThoseThatDoNot) {

@@ -89,6 +89,12 @@ enum class SupportChoice : std::uint8_t {
   kBoth,         ///< All, but half of the draws go to receptacles where the scene has some.
 };
 
+/// In which of their stable poses objects stand.
+enum class PoseChoice : std::uint8_t {
+  kDropped,  ///< Each as often as drops end in it: bottles mostly lie.
+  kUpright,  ///< Those of an object in which its up axis leans least.
+};
+
 /// A part of the scenes.
 enum class SplitSide : std::uint8_t { kAll, kTrain, kValidation };
 
@@ -146,6 +152,7 @@ struct EpisodeGeneratorOptions {
   /// Share of the episodes that may find no place: they are skipped. More are an error. 0 to 1.
   float most_skipped = 0.1F;
   SupportChoice supports = SupportChoice::kBoth;
+  PoseChoice poses = PoseChoice::kDropped;
   SceneSplit split{};
 
   friend bool operator==(const EpisodeGeneratorOptions&, const EpisodeGeneratorOptions&) = default;
