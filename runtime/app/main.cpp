@@ -69,6 +69,7 @@ int describePacks(const RunOptions& options) {
     if (const auto scene = galactic::Scene::from(*pack)) scenes.push_back(scene->grids());
     packs.push_back(std::move(*pack));
   }
+  if (!options.is_quiet) fmt::print("galactic-pack info FILE says what is in a pack.\n");
   if (options.bench && scenes.empty()) {
     return report({ErrorCode::kInvalidInput, "--bench",
                    "found no pack of a scene, whose grids are measured; name one, or one of those "

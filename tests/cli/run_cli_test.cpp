@@ -47,11 +47,11 @@ class RunCli : public testing::Test {
   test::ScratchFolder folder_;
 };
 
-TEST_F(RunCli, SaysWhatIsInAPack) {
+TEST_F(RunCli, SaysWhatAPackIsAndWhoSaysMore) {
   const ProgramRun result = run({"good.pack"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("good.pack: scene "), HasSubstr("verified in"),
-                                HasSubstr("radius m"), HasSubstr("sphere casts")));
+                                HasSubstr("\ngalactic-pack info FILE says what is in a pack.\n")));
   EXPECT_THAT(result.err, IsEmpty());
 }
 
@@ -61,7 +61,7 @@ TEST_F(RunCli, SaysWhatToDoWithoutAPack) {
     const ProgramRun result = run(arguments);
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_EQ(result.err,
-              "galactic-run: command line: found no pack; name one to see what is in it "
+              "galactic-run: command line: found no pack; name one to open and verify it "
               "(galactic-run world.pack), or a world to step (galactic-run world.pack --steps "
               "1000); galactic-bake makes packs; see --help\n");
   }
@@ -89,17 +89,13 @@ TEST_F(RunCli, KeepsItsExitCodeWhereNobodyHearsItsErrors) {
   }
 }
 
-TEST_F(RunCli, SaysWhatIsInEpisodesAndListsThePacksOfAWorld) {
+TEST_F(RunCli, SaysHowManyEpisodesAndPacksThereAre) {
   write("tidy.pack", test::textOf(test::buildPack(test::smallEpisodes())));
   write("world.pack", test::textOf(test::buildPack(test::smallWorldPack())));
   const ProgramRun result = run({"tidy.pack", "world.pack"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("tidy.pack: 2 episodes \"tidy\", format 1"),
-                                HasSubstr("\n  1 scene, 2 objects, 1 to 3 of them at a time\n"
-                                          "  robot: helper, start joints: elbow, lift\n"
-                                          "    episodes  scene\n           2  kitchen\n"),
-                                HasSubstr("world.pack: world of 4 packs, format 1"),
-                                HasSubstr("\n    RBOT        0.00  robots/helper.pack\n")));
+                                HasSubstr("\nworld.pack: world of 4 packs, format 1")));
 }
 
 TEST_F(RunCli, SkipsVerificationOnlyWhenTold) {
@@ -134,8 +130,7 @@ TEST_F(RunCli, SummarizesATexture) {
   write("wood.pack", test::textOf(test::buildPack(test::TexturePackFields{})));
   const ProgramRun result = run({"wood.pack"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("wood.pack: texture \"oak\", format 1"),
-                                HasSubstr("  2 x 2 texels (")));
+  EXPECT_THAT(result.out, HasSubstr("wood.pack: texture \"oak\", format 1"));
 }
 
 TEST_F(RunCli, EndsWithACodeForEachKindOfMistake) {

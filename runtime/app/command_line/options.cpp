@@ -38,7 +38,7 @@ constexpr const char* kFooter =
     "  galactic-run world.pack --policy replay:run.rec";
 /// Perhaps the first that a newcomer reads.
 constexpr const char* kNoPack =
-    "found no pack; name one to see what is in it (galactic-run world.pack), or a world to step "
+    "found no pack; name one to open and verify it (galactic-run world.pack), or a world to step "
     "(galactic-run world.pack --steps 1000); galactic-bake makes packs";
 constexpr const char* kPackOption = "PACK,--pack";
 constexpr const char* kReplayPrefix = "replay:";
@@ -195,7 +195,7 @@ std::string RunOptions::policyFile() const {
 }
 
 std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOptions& options) {
-  CLI::App app{"Opens packs and says what is inside, or steps a world of them.", "galactic-run"};
+  CLI::App app{"Opens and verifies packs, or steps a world of them.", "galactic-run"};
   app.footer(std::string(kFooter) + "\n\n" + kExitCodesHelp);
   constexpr std::size_t kHelpColumn = 34;
   app.formatter(std::make_shared<RunHelp>());

@@ -14,7 +14,7 @@ struct OpenTimes {
   double verify = 0;
 };
 
-/// What a pack of any kind holds, several lines of text, each ended.
+/// What a pack of any kind is and how it opened, its warnings: lines of text, each ended.
 [[nodiscard]] std::string summarize(const PackFile& pack, const OpenTimes& times);
 
 }  // namespace galactic
