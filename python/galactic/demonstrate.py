@@ -29,7 +29,7 @@ from galactic.learning.homes import Homes, exact_camera
 from galactic.learning.playing.demonstrating import acting, begin, make_parts
 from galactic.learning.playing.evaluation import MOST_ENVS
 from galactic.learning.playing.experts import Expert, LearnedExpert, RolledIn, ScriptedExpert
-from galactic.learning.presets import PRESETS, preset
+from galactic.learning.presets import WORDS, preset
 from galactic.learning.ranks.distributed import threads_of
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.progress import ProgressLine
@@ -105,7 +105,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--preset",
         default=None,
-        metavar="|".join(PRESETS),
+        metavar=WORDS,
         help="settings to start from (the paper's, but without images: --network state)",
     )
     parser.add_argument(

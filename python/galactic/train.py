@@ -29,7 +29,7 @@ from galactic.learning.homes import Homes, require_options
 from galactic.learning.packs import content
 from galactic.learning.playing.validation import validation_of
 from galactic.learning.policies.privileges import require_sensors
-from galactic.learning.presets import PRESETS, TAUGHT, preset
+from galactic.learning.presets import TAUGHT, WORDS, preset
 from galactic.learning.ranks.distributed import Group, device_of, local_ranks, threads_of
 from galactic.learning.ranks.launch import follow_launcher, launch
 from galactic.learning.refusals import SettingsError
@@ -86,8 +86,8 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--preset",
         default=None,
-        metavar="|".join(PRESETS),
-        help="settings to start from (paper, whose settings stand in parentheses)",
+        metavar=WORDS,
+        help="settings to start from (paper, whose settings stand in parentheses), or the folder of a run that has them",
     )
     parser.add_argument(
         "--validation", type=named_path, metavar="WORLD", help="world with held-out episodes"

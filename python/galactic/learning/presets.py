@@ -1,11 +1,14 @@
-"""Settings that are known to work, by name."""
+"""Settings that are known to work, by name, or as another run has them."""
 
 from __future__ import annotations
 
 import dataclasses
+import os
+import pathlib
 from typing import Any, Mapping
 
 from galactic.learning.refusals import SettingsError, did_you_mean
+from galactic.learning.saving.runs import settings_in
 from galactic.learning.setting_options import overriding
 from galactic.learning.settings import Settings
 
@@ -66,10 +69,22 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
 TAUGHT = ("quick-laser", "quick-depth")
 
 
+WORDS = "|".join((*PRESETS, "RUN"))
+
+
 def preset(name: str, **changes: Any) -> Settings:
-    """The settings of a preset, with changes: see overriding()."""
-    if name not in PRESETS:
-        hint = did_you_mean(name, PRESETS) or f"; the presets are {', '.join(PRESETS)}"
-        raise SettingsError(f'"{name}" is not a preset{hint}')
-    chosen = Settings(**PRESETS[name])
+    """The settings of a preset, or of the run in the folder that is called so, with changes: see
+    overriding()."""
+    chosen = _named(name)
     return dataclasses.replace(chosen, **overriding(chosen, changes))
+
+
+def _named(name: str) -> Settings:
+    if name in PRESETS:
+        return Settings(**PRESETS[name])
+    folder = pathlib.Path(name)
+    if os.sep in name or (name and folder.is_dir()):
+        return settings_in(folder)
+    hint = did_you_mean(name, PRESETS)
+    known = f"; the presets are {', '.join(PRESETS)}, and folders of runs"
+    raise SettingsError(f'"{name}" is not a preset{hint or known}')

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import pathlib
 import re
 import shlex
@@ -12,6 +13,7 @@ import pytest
 
 from galactic import evaluate, export, train
 from galactic.learning.presets import preset
+from galactic.learning.saving import runs
 from galactic.learning.setting_options import given_options
 
 NO_NUMBER = ("", "nan", "-nan", "inf", "-inf", "1e300", "-1e300", "nonsense", "1x", " 1", "1,1")
@@ -135,6 +137,27 @@ def test_the_walk_reaches_options_that_are_taken(run: Any) -> None:
     # The policy that is missing is looked for after the options.
     assert run("evaluate", ["none.pt", "none.pack", "--seed", "7", "--episodes", "1"])[0] == 2
     assert run("export", ["none.pt", "-o", "out.pack", "--name", "a"])[0] == 2
+
+
+def test_the_settings_of_a_run_are_those_that_another_starts_from(
+    run: Any, tmp_path: pathlib.Path
+) -> None:
+    begun = preset("quick", seed=7, simulation="task=rearrange", envs=64)
+    folder = tmp_path / "run"
+    folder.mkdir()
+    runs.write_run(runs.Run(pathlib.Path("/homes.pack"), None, begun), folder)
+    assert preset(str(folder)) == begun
+    changed = preset(str(folder), seed=8, simulation="episode-steps=300")
+    assert (changed.seed, changed.envs) == (8, 64)
+    assert changed.simulation == begun.simulation.replace("steps=200", "steps=300")
+    # Code of one's own is where the run found it.
+    for setting in ("task", "network"):
+        own = dataclasses.replace(begun, **{setting: "lab.py:Own"})
+        files: Any = {f"{setting}_file": pathlib.Path("/lab/lab.py")}
+        runs.write_run(runs.Run(pathlib.Path("/homes.pack"), None, own, **files), folder)
+        assert getattr(preset(str(folder)), setting) == "/lab/lab.py:Own"
+    code, said = run("train", ["--preset", str(tmp_path / "none"), "--print-settings"])
+    assert code == 2 and "none holds no run" in said
 
 
 def test_settings_are_printed_as_one_types_them(run: Any, capsys: Any) -> None:

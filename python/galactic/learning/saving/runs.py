@@ -38,6 +38,18 @@ def run_in(folder: pathlib.Path) -> Run:
     return read_run(file)
 
 
+def settings_in(folder: pathlib.Path) -> Settings:
+    """Those of a run, for another one: code of one's own is named by the files that the run began with, not by
+    its copies. Raises as run_in() does."""
+    run = run_in(folder)
+    changes = {}
+    for setting, file in (("task", run.task_file), ("network", run.network_file)):
+        if file is not None:
+            name = own_code.named(getattr(run.settings, setting), f"--{setting}").name
+            changes[setting] = f"{file}:{name}"
+    return dataclasses.replace(run.settings, **changes)
+
+
 def read_run(file: pathlib.Path) -> Run:
     """Of a settings.json. Raises Error where it cannot be read, and CheckpointError where it is not one."""
     try:
