@@ -35,12 +35,9 @@ class Turns:
         self._require_threads()
         # A second thread may have come as far as here.
         with self._beginning:
-            if not self._halves:
-                raise RuntimeError("this env is closed; make another one")
+            self._require_open()
             self.require_idle(half)
-            step = self._threads[half].submit(self._halves[half].step, actions, out)
-            self._pending[half] = step
-        return step
+            return self._submit(half, actions, out)
 
     def end(self, half: int) -> StepResult:
         """Waits for the step that begin() began. Where Ctrl-C ends the wait, it stays under way."""
@@ -55,22 +52,27 @@ class Turns:
     def step(
         self, actions: Sequence[NDArray[np.float32]], out: Sequence[Row | None]
     ) -> list[StepResult]:
-        """One step of each half, at the same time."""
-        under_way = [
-            self.begin(half, rows, places) for half, (rows, places) in enumerate(zip(actions, out))
-        ]
-        # All have to be done, whatever one of them raises: else the others would stay under way.
-        wait(under_way)
+        """One step of each half, at the same time. Whatever cuts it off, Ctrl-C too, cuts off all halves, and
+        none is under way any more."""
+        self._require_threads()
+        has_begun = False
         try:
-            return [step.result() for step in under_way]
+            with self._beginning:
+                self._require_open()
+                self.require_idle()
+                has_begun = True
+                steps = [
+                    self._submit(half, rows, places)
+                    for half, (rows, places) in enumerate(zip(actions, out))
+                ]
+            wait(steps)
+            results = [step.result() for step in steps]
         except BaseException:
-            # No half goes on alone.
-            if any(half.is_cut_off for half in self._halves):
-                for half in self._halves:
-                    half.is_cut_off = True
+            if has_begun:
+                self._cut_off()
             raise
-        finally:
-            self._pending = [None] * len(self)
+        self._pending = [None] * len(self)
+        return results
 
     def require_idle(self, *halves: int) -> None:
         """Raises RuntimeError where one of these halves, or of all, is under way."""
@@ -90,6 +92,29 @@ class Turns:
     def _require_threads(self) -> None:
         if os.getpid() != self._process:
             raise RuntimeError("the threads of this env are in another process; make one in each")
+
+    def _require_open(self) -> None:
+        if not self._halves:
+            raise RuntimeError("this env is closed; make another one")
+
+    def _submit(
+        self, half: int, actions: NDArray[np.float32], out: Row | None
+    ) -> Future[StepResult]:
+        step = self._threads[half].submit(self._halves[half].step, actions, out)
+        self._pending[half] = step
+        return step
+
+    def _cut_off(self) -> None:
+        """Has no half go on alone: some of them may have made a step that others have not. Each thread does
+        it behind what it was given before, also where an interrupt came before that was noted anywhere.
+        """
+        wait(
+            [
+                thread.submit(setattr, half, "is_cut_off", True)
+                for thread, half in zip(self._threads, self._halves)
+            ]
+        )
+        self._pending = [None] * len(self)
 
     def _under_way(self, half: int) -> Future[StepResult]:
         step = self._pending[half]

@@ -123,6 +123,70 @@ def test_a_step_whose_wait_is_interrupted_stays_under_way(world, draw_actions, f
         env.recv(0)
 
 
+def require_cut_off_until_reset(env):
+    """All calls but reset() are refused; then the halves go on, step by step with each other."""
+    actions = np.zeros((env.num_envs, 8), np.float32)
+    for call in (lambda: env.step(actions), lambda: env.send(actions[:4], 1) or env.recv(1)):
+        with pytest.raises(RuntimeError, match=r"has cut off .*; reset\(\) all envs"):
+            call()
+    with pytest.raises(RuntimeError, match=r"has cut off .*; reset\(\) all envs"):
+        env.save_state()
+    env.reset()
+    for _ in range(2):
+        env.step(actions)
+    assert env.env_states().step.tolist() == 8 * [2]
+
+
+def test_a_step_of_both_halves_whose_wait_is_interrupted_is_cut_off(world):
+    goes_on = threading.Event()
+
+    class Slow(Task):
+        def step(self, envs):
+            goes_on.wait(timeout=60)
+            return Outcome(envs.observations["time"][:, 0].astype(np.float64))
+
+    env = VectorEnv(world, 8, halves=2, task=Slow, threads=1)
+    env.reset()
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    threading.Timer(0.4, goes_on.set).start()
+    with pytest.raises(KeyboardInterrupt):
+        env.step(np.zeros((8, 8), np.float32))
+    require_cut_off_until_reset(env)
+
+
+@pytest.mark.parametrize("is_submitted", [False, True])
+@pytest.mark.parametrize("half", [0, 1])
+def test_a_step_that_is_interrupted_while_it_begins_leaves_no_half_ahead(
+    world, monkeypatch, half, is_submitted
+):
+    env = VectorEnv(world, 8, halves=2, threads=1)
+    env.reset()
+    thread = env._turns._threads[half]
+    submit = thread.submit
+
+    def interrupted(*call):
+        monkeypatch.undo()
+        if is_submitted:
+            submit(*call)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(thread, "submit", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        env.step(np.zeros((8, 8), np.float32))
+    require_cut_off_until_reset(env)
+
+
+def test_a_step_that_one_half_refuses_leaves_no_half_ahead(world):
+    env = VectorEnv(world, 8, halves=2, threads=1)
+    env.reset()
+    actions = np.zeros((8, 8), np.float32)
+    env.simulators[1].begin_step(actions[:4])
+    with pytest.raises(RuntimeError, match="a step is under way"):
+        env.step(actions)
+    env.simulators[1].end_step()
+    require_cut_off_until_reset(env)
+
+
 def test_two_threads_do_not_receive_one_step(world, draw_actions, refused_at_once):
     env = VectorEnv(world, 512, threads=1, task="pick")
     env.reset()
