@@ -1,14 +1,9 @@
 #include "dlpack.h"
 
-#include <dlfcn.h>
-
 #include <cstddef>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
-
-#include "galactic/error.h"
 
 namespace galactic::python {
 namespace {
@@ -69,54 +64,16 @@ DlType typeOf(ElementType type) {
   return {.code = kUnsigned, .bits = 8};
 }
 
-/// A function of CUDA's driver, which is loaded already when there are device images.
-template <class Function>
-Function driverFunction(const char* name) {
-  void* library = dlopen("libcuda.so.1", RTLD_LAZY | RTLD_LOCAL);
-  void* function = library == nullptr ? nullptr : dlsym(library, name);
-  if (function != nullptr) return reinterpret_cast<Function>(function);
-  throw ErrorException{
-      {ErrorCode::kUnsupported, "device images",
-       std::string("found no ") + name + " in libcuda.so.1; install NVIDIA's driver"}};
-}
-
-int currentDevice() {
-  int device = -1;
-  if (driverFunction<int (*)(int*)>("cuCtxGetDevice")(&device) == 0) return device;
-  throw ErrorException{{ErrorCode::kUnsupported, "device images",
-                        "no CUDA context is current on this thread; make one first"}};
-}
-
-/// The images are there in the order of the legacy default stream. Streams that do not wait for it
-/// by themselves get them when they are complete.
-void awaitImagesFor(const py::object& stream) {
-  constexpr std::int64_t kLegacyDefault = 1;
-  constexpr std::int64_t kThreadDefault = 2;
-  constexpr std::int64_t kNoWait = -1;
-  const std::int64_t number = stream.is_none() ? kLegacyDefault : stream.cast<std::int64_t>();
-  if (number == 0) {
-    throw py::buffer_error("stream 0 is ambiguous on CUDA; give 1 or 2 for a default stream");
-  }
-  if (number == kLegacyDefault || number == kThreadDefault || number == kNoWait) return;
-  const auto synchronize = driverFunction<int (*)(void*)>("cuStreamSynchronize");
-  const int code = [&] {
-    const py::gil_scoped_release unlocked;
-    return synchronize(nullptr);
-  }();
-  if (code == 0) return;
-  throw ErrorException{{ErrorCode::kInternal, "device images",
-                        "did not become complete: cuStreamSynchronize failed with CUDA's error " +
-                            std::to_string(code) + "; what ran on the device before has failed"}};
+/// Images are complete before there is a DeviceArray of them, so no stream has to wait for them.
+void requireStream(const py::object& stream) {
+  if (stream.is_none() || stream.cast<std::int64_t>() != 0) return;
+  throw py::buffer_error("stream 0 is ambiguous on CUDA; give 1 or 2 for a default stream");
 }
 
 }  // namespace
 
-DeviceArray::DeviceArray(std::uint64_t address, Shape shape, ElementType type, py::object owner)
-    : address_(address),
-      shape_(std::move(shape)),
-      type_(type),
-      owner_(std::move(owner)),
-      device_(currentDevice()) {}
+DeviceArray::DeviceArray(const Place& place, Shape shape, ElementType type, py::object owner)
+    : place_(place), shape_(std::move(shape)), type_(type), owner_(std::move(owner)) {}
 
 py::capsule DeviceArray::capsule(const Wish& wish) const {
   if (!wish.device.is_none() && !wish.device.equal(device())) {
@@ -126,12 +83,12 @@ py::capsule DeviceArray::capsule(const Wish& wish) const {
     throw py::buffer_error(
         "the images are handed on without a copy; copy them where they are used");
   }
-  awaitImagesFor(wish.stream);
+  requireStream(wish.stream);
   auto held = std::make_unique<Export>();
   held->shape.assign(shape_.begin(), shape_.end());
   held->owner = owner_;
-  held->managed.tensor = {.data = reinterpret_cast<void*>(address_),
-                          .device = {.id = device_},
+  held->managed.tensor = {.data = reinterpret_cast<void*>(place_.address),
+                          .device = {.id = place_.device},
                           .axes = static_cast<std::int32_t>(shape_.size()),
                           .type = typeOf(type_),
                           .shape = held->shape.data()};
@@ -146,6 +103,6 @@ py::capsule DeviceArray::capsule(const Wish& wish) const {
   });
 }
 
-py::tuple DeviceArray::device() const { return py::make_tuple(kDlCuda, device_); }
+py::tuple DeviceArray::device() const { return py::make_tuple(kDlCuda, place_.device); }
 
 }  // namespace galactic::python

@@ -13,14 +13,19 @@ enum class ElementType : std::uint8_t { kUint8, kInt32, kFloat32 };
 /// capsule that all of them know), without a copy. Rows without gaps.
 class DeviceArray {
  public:
-  /// `address`: on the device whose context is current. `owner` stays as long as anybody uses the
-  /// memory.
-  DeviceArray(std::uint64_t address, Shape shape, ElementType type, py::object owner);
+  struct Place {
+    std::uint64_t address = 0;
+    /// CUDA's number of the device.
+    int device = 0;
+  };
+  /// What is there must be complete. `owner` stays as long as anybody uses the memory.
+  DeviceArray(const Place& place, Shape shape, ElementType type, py::object owner);
 
   /// What a consumer may ask for, by the array API standard.
   struct Wish {
-    /// Where it will use the memory: None and 1 for the legacy default stream, 2 for that of the
-    /// thread, -1 for no synchronization, else a cudaStream_t. 0 is forbidden.
+    /// Where it will use the memory, which is complete for all of them: None and 1 for the legacy
+    /// default stream, 2 for that of the thread, -1 for no synchronization, else a cudaStream_t. 0
+    /// is forbidden.
     py::object stream;
     /// Another device than this one, and a copy, are not given; None asks for neither.
     py::object device;
@@ -36,11 +41,10 @@ class DeviceArray {
   [[nodiscard]] ElementType type() const { return type_; }
 
  private:
-  std::uint64_t address_;
+  Place place_;
   Shape shape_;
   ElementType type_;
   py::object owner_;
-  int device_;
 };
 
 }  // namespace galactic::python

@@ -165,7 +165,8 @@ py::dict Renderer::renderToDevice(std::uintptr_t stream) {
   py::dict arrays;
   const auto add = [&](const char* name, std::uint64_t address, const Shape& shape,
                        ElementType type) {
-    if (address != 0) arrays[name] = py::cast(DeviceArray(address, shape, type, self));
+    if (address == 0) return;
+    arrays[name] = py::cast(DeviceArray({address, images.device}, shape, type, self));
   };
   add(colorName(options.color), images.color, colorShape(views.size(), options),
       ElementType::kUint8);

@@ -17,6 +17,8 @@ namespace galactic {
 /// RenderTargets; 0 for images that the options do not ask for. color has 3 or 4 bytes a pixel,
 /// depth a float, semantics a 32-bit number.
 struct DeviceImages {
+  /// The device's number in CUDA, as CUDA_VISIBLE_DEVICES leaves it to this process.
+  int device = 0;
   std::uint64_t color = 0;
   std::uint64_t depth = 0;
   std::uint64_t semantics = 0;

@@ -563,7 +563,7 @@ Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> view
     abandon();
     return tl::unexpected<Error>(drawn.error());
   }
-  DeviceImages images;
+  DeviceImages images{.device = device_.number()};
   if (options_.color != ColorFormat::kNone) images.color = color_.address();
   if (options_.depth) images.depth = depth_.address();
   if (options_.semantics) images.semantics = semantics_.address();

@@ -168,6 +168,7 @@ Result<Device> Device::choose(const Driver& driver, const std::string& wish) {
     return refuse(fmt::format("{} has compute capability {}.{}; expected {}.0 or more",
                               chosen.name_, chosen.major_, chosen.minor_, kLeastMajor));
   }
+  chosen.number_ = number;
   chosen.device_ = device;
   return chosen;
 }
@@ -178,6 +179,7 @@ Result<void> Device::open() {
 
 Device::Device(Device&& other) noexcept
     : driver_(other.driver_),
+      number_(other.number_),
       device_(other.device_),
       context_(std::exchange(other.context_, nullptr)),
       name_(std::move(other.name_)),

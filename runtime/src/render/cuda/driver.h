@@ -86,11 +86,14 @@ class Device {
   [[nodiscard]] int minor() const { return minor_; }
   [[nodiscard]] int multiprocessors() const { return multiprocessors_; }
   [[nodiscard]] void* context() const { return context_; }
+  /// CUDA's own, which learning libraries use, too.
+  [[nodiscard]] int number() const { return number_; }
 
  private:
   explicit Device(const Driver& driver) : driver_(&driver) {}
 
   const Driver* driver_;
+  int number_ = 0;
   int device_ = 0;
   void* context_ = nullptr;
   std::string name_;

@@ -8,7 +8,7 @@ struct CudaMapping::Driver {};
 CudaMapping::CudaMapping() = default;
 CudaMapping::~CudaMapping() = default;
 
-Result<std::uint64_t> CudaMapping::map(std::uint32_t /*buffer*/, std::uintptr_t /*stream*/) {
+Result<MappedBuffer> CudaMapping::map(std::uint32_t /*buffer*/, std::uintptr_t /*stream*/) {
   return fail(ErrorCode::kUnsupported, "device images",
               "this program was built without CUDA; build it where CMake finds cuda.h (Debian: "
               "nvidia-cuda-toolkit), or render to memory of the processor");

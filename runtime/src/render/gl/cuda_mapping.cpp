@@ -14,11 +14,13 @@ namespace galactic::render::gl {
 /// The functions of CUDA's driver that are used, by their names in libcuda.so.1.
 struct CudaMapping::Driver {
   CUresult (*current)(CUcontext*) = nullptr;
+  CUresult (*device)(CUdevice*) = nullptr;
   CUresult (*register_buffer)(CUgraphicsResource*, unsigned, unsigned) = nullptr;
   CUresult (*unregister)(CUgraphicsResource) = nullptr;
   CUresult (*map)(unsigned, CUgraphicsResource*, CUstream) = nullptr;
   CUresult (*unmap)(unsigned, CUgraphicsResource*, CUstream) = nullptr;
   CUresult (*address)(CUdeviceptr*, std::size_t*, CUgraphicsResource) = nullptr;
+  CUresult (*synchronize)(CUstream) = nullptr;
 
   std::uint32_t buffer = 0;
   CUgraphicsResource resource = nullptr;
@@ -44,22 +46,26 @@ bool find(void* library, const char* name, Function& function) {
 CudaMapping::CudaMapping() = default;
 CudaMapping::~CudaMapping() { forget(); }
 
-Result<std::uint64_t> CudaMapping::map(std::uint32_t buffer, std::uintptr_t stream) {
+Result<MappedBuffer> CudaMapping::map(std::uint32_t buffer, std::uintptr_t stream) {
   if (driver_ == nullptr) {
     void* library = dlopen("libcuda.so.1", RTLD_LAZY | RTLD_LOCAL);
     if (library == nullptr) return refused("found no libcuda.so.1; install NVIDIA's driver");
     auto driver = std::make_unique<Driver>();
     const bool complete = find(library, "cuCtxGetCurrent", driver->current) &&
+                          find(library, "cuCtxGetDevice", driver->device) &&
                           find(library, "cuGraphicsGLRegisterBuffer", driver->register_buffer) &&
                           find(library, "cuGraphicsUnregisterResource", driver->unregister) &&
                           find(library, "cuGraphicsMapResources", driver->map) &&
                           find(library, "cuGraphicsUnmapResources", driver->unmap) &&
-                          find(library, "cuGraphicsResourceGetMappedPointer_v2", driver->address);
+                          find(library, "cuGraphicsResourceGetMappedPointer_v2", driver->address) &&
+                          find(library, "cuStreamSynchronize", driver->synchronize);
     if (!complete) return refused("libcuda.so.1 is too old to share buffers with OpenGL");
     driver_ = std::move(driver);
   }
   CUcontext context = nullptr;
-  if (driver_->current(&context) != CUDA_SUCCESS || context == nullptr) {
+  CUdevice device = 0;
+  if (driver_->current(&context) != CUDA_SUCCESS || context == nullptr ||
+      driver_->device(&device) != CUDA_SUCCESS) {
     return refused("no CUDA context is current on this thread; make one first");
   }
   if (driver_->buffer != buffer) {
@@ -84,11 +90,14 @@ Result<std::uint64_t> CudaMapping::map(std::uint32_t buffer, std::uintptr_t stre
     driver_->mapped = true;
     result = driver_->address(&address, &size, driver_->resource);
   }
+  // Other streams may use it, too.
+  if (result == CUDA_SUCCESS) result = driver_->synchronize(driver_->stream);
   if (result != CUDA_SUCCESS) {
     return refused(
         fmt::format("CUDA cannot map OpenGL's buffer (error {})", static_cast<int>(result)));
   }
-  return static_cast<std::uint64_t>(address);
+  // CUDA's devices are numbered as its handles of them are.
+  return MappedBuffer{static_cast<std::uint64_t>(address), static_cast<int>(device)};
 }
 
 void CudaMapping::unmap() {

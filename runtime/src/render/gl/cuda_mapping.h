@@ -6,6 +6,13 @@
 
 namespace galactic::render::gl {
 
+/// A buffer of OpenGL in CUDA's memory.
+struct MappedBuffer {
+  std::uint64_t address = 0;
+  /// CUDA's number of the device.
+  int device = 0;
+};
+
 /// Gives CUDA the memory of a buffer of OpenGL, without a copy. The OpenGL context must be current
 /// for all calls, also for the destructor, unless it is lost.
 class CudaMapping {
@@ -15,11 +22,11 @@ class CudaMapping {
   CudaMapping(const CudaMapping&) = delete;
   CudaMapping& operator=(const CudaMapping&) = delete;
 
-  /// The address of `buffer` in CUDA's memory, after all that OpenGL has been told to do with it;
-  /// for what `stream` does from then on.
+  /// `buffer` after all that OpenGL has been told to do with it, which is done when this returns.
+  /// What `stream` does with it ends before unmap() lets OpenGL have it again.
   /// CUDA's context must be current on this thread. OpenGL must not touch the buffer until
   /// unmap(). Fails with kUnsupported where CUDA is absent or is on another device.
-  [[nodiscard]] Result<std::uint64_t> map(std::uint32_t buffer, std::uintptr_t stream);
+  [[nodiscard]] Result<MappedBuffer> map(std::uint32_t buffer, std::uintptr_t stream);
   /// OpenGL may use the buffer again, after all that the stream has been told to do with it.
   void unmap();
   /// To be called before a buffer is deleted.

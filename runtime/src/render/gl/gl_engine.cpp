@@ -125,12 +125,11 @@ Result<DeviceImages> GlEngine::renderToDevice(std::span<const RenderView> views,
   ASSIGN_OR_RETURN(const ImageLayout layout, drawToDevice(views));
   const CurrentContext current(context_);
   if (!current.holds()) return tl::unexpected<Error>(lostContext(current));
-  ASSIGN_OR_RETURN(const std::uint64_t address,
-                   cuda_->map(renderer_->deviceImages().get(), stream));
-  DeviceImages images;
-  if (layout.color_of_view > 0) images.color = address + layout.color;
-  if (layout.depth_of_view > 0) images.depth = address + layout.depth;
-  if (layout.semantics_of_view > 0) images.semantics = address + layout.semantics;
+  ASSIGN_OR_RETURN(const MappedBuffer mapped, cuda_->map(renderer_->deviceImages().get(), stream));
+  DeviceImages images{.device = mapped.device};
+  if (layout.color_of_view > 0) images.color = mapped.address + layout.color;
+  if (layout.depth_of_view > 0) images.depth = mapped.address + layout.depth;
+  if (layout.semantics_of_view > 0) images.semantics = mapped.address + layout.semantics;
   return images;
 }
 

@@ -254,6 +254,22 @@ TEST_F(CudaHost, LeavesOnTheDeviceWhatItWouldRead) {
   EXPECT_EQ((*engine)->statistics().triangles_drawn, 6U);
 }
 
+TEST_F(CudaHost, SaysOnWhichDeviceItLeavesImages) {
+  const auto device_of = [&](const char* wish) {
+    options_.device = wish;
+    auto engine = makeEngine(library_, options_);
+    EXPECT_TRUE(engine);
+    const auto images = (*engine)->renderToDevice({&view_, 1}, 0);
+    EXPECT_TRUE(images);
+    return images->device;
+  };
+  EXPECT_EQ(device_of(""), 0);
+  EXPECT_EQ(device_of("cuda:1"), 1);
+  // As those number them that use the images.
+  const Variable turned("CUDA_VISIBLE_DEVICES", "1,0");
+  EXPECT_EQ(device_of("GPU-10111213-1415-1617-1819-1a1b1c1d1e1f"), 0);
+}
+
 /// The stand-in is loaded under the name of CUDA's driver, so this program finds it by that.
 TEST_F(CudaHost, DrawsOnTheStreamThatUsesTheImages) {
   auto engine = makeEngine(library_, options_);

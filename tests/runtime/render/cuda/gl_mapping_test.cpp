@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstring>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "drawn_by_kernels.h"
@@ -102,10 +103,27 @@ TEST_F(GlMapping, IsForTheStreamThatUsesTheImages) {
   ASSERT_NE(engine, nullptr);
   standin_->stream = 0x5A;
   ASSERT_TRUE(engine->renderToDevice({&view_, 1}, 0x5A));
+  // Maps, and waits: another stream may use the images, too.
+  EXPECT_EQ(standin_->on_stream, 2U);
+  EXPECT_EQ(standin_->under_way, 0U);
   // Unmaps for the stream that had the images, and maps for the next.
   ASSERT_TRUE(engine->renderToDevice({&view_, 1}, 0x6B));
-  EXPECT_EQ(standin_->on_stream, 2U);
-  EXPECT_EQ(standin_->on_others, 1U);
+  EXPECT_EQ(standin_->on_stream, 3U);
+  EXPECT_EQ(standin_->on_others, 2U);
+}
+
+TEST_F(GlMapping, SaysOnWhichDeviceTheImagesAre) {
+  const auto engine = makeGl();
+  ASSERT_NE(engine, nullptr);
+  for (const int number : {1, 0}) {
+    auto device = Device::choose(*driver_, std::to_string(number));
+    ASSERT_TRUE(device) << device.error().message;
+    ASSERT_TRUE(device->open());
+    const CurrentDevice current(*driver_, *device);
+    const auto images = engine->renderToDevice({&view_, 1}, 0);
+    ASSERT_TRUE(images) << images.error().message;
+    EXPECT_EQ(images->device, number);
+  }
 }
 
 TEST_F(GlMapping, SaysWhatCudaRefuses) {
@@ -115,7 +133,8 @@ TEST_F(GlMapping, SaysWhatCudaRefuses) {
   ASSERT_FALSE(without);
   EXPECT_EQ(without.error().message, "no CUDA context is current on this thread; make one first");
   const CurrentDevice current(*driver_, *device_);
-  for (const char* function : {"cuGraphicsGLRegisterBuffer", "cuGraphicsMapResources"}) {
+  for (const char* function :
+       {"cuGraphicsGLRegisterBuffer", "cuGraphicsMapResources", "cuStreamSynchronize"}) {
     standin_->failing = function;
     const auto images = engine->renderToDevice({&view_, 1}, 0);
     ASSERT_FALSE(images) << function;

@@ -33,9 +33,11 @@ Standin standin;
 std::map<void*, std::size_t> memories;
 /// Programs draw from several threads; the device does one thing after the other.
 std::mutex device_mutex;
-int device_context = 0;
+/// A device is its number, and a context the place of that here.
+constexpr std::size_t kMostDevices = 8;
+char device_contexts[kMostDevices];
 int loaded_module = 0;
-int contexts_pushed = 0;
+thread_local std::vector<void*> contexts_pushed;
 /// The devices by the numbers that programs see.
 std::vector<int> visible;
 
@@ -165,15 +167,18 @@ STANDIN int cuDeviceGetCount(int* count) {
   return outcome("cuDeviceGetCount");
 }
 STANDIN int cuDeviceGet(int* device, int number) {
-  *device = visible.at(static_cast<std::size_t>(number));
+  static_cast<void>(visible.at(static_cast<std::size_t>(number)));
+  *device = number;
   return 0;
 }
 STANDIN int cuDeviceGetName(char* name, int length, int device) {
-  std::strncpy(name, device == 0 ? "Stand-in A" : "Stand-in B", static_cast<std::size_t>(length));
+  const bool is_first = visible.at(static_cast<std::size_t>(device)) == 0;
+  std::strncpy(name, is_first ? "Stand-in A" : "Stand-in B", static_cast<std::size_t>(length));
   return 0;
 }
 STANDIN int cuDeviceGetUuid(unsigned char* uuid, int device) {
-  for (int n = 0; n < 16; ++n) uuid[n] = static_cast<unsigned char>(16 * device + n);
+  const int seen = visible.at(static_cast<std::size_t>(device));
+  for (int n = 0; n < 16; ++n) uuid[n] = static_cast<unsigned char>(16 * seen + n);
   return 0;
 }
 STANDIN int cuDeviceGetAttribute(int* value, int attribute, int) {
@@ -186,8 +191,8 @@ STANDIN int cuDeviceGetAttribute(int* value, int attribute, int) {
   }
   return 0;
 }
-STANDIN int cuDevicePrimaryCtxRetain(void** context, int) {
-  *context = &device_context;
+STANDIN int cuDevicePrimaryCtxRetain(void** context, int device) {
+  *context = device_contexts + device;
   ++standin.contexts;
   return outcome("cuDevicePrimaryCtxRetain");
 }
@@ -196,19 +201,23 @@ STANDIN int cuDevicePrimaryCtxRelease_v2(int) {
   return 0;
 }
 STANDIN int cuCtxPushCurrent_v2(void* context) {
-  const std::scoped_lock lock(device_mutex);
-  ++contexts_pushed;
-  return context == &device_context ? 0 : 1;
+  contexts_pushed.push_back(context);
+  const auto* place = static_cast<const char*>(context);
+  return place >= device_contexts && place < device_contexts + kMostDevices ? 0 : 1;
 }
 STANDIN int cuCtxPopCurrent_v2(void** context) {
-  const std::scoped_lock lock(device_mutex);
-  --contexts_pushed;
-  *context = &device_context;
+  *context = contexts_pushed.back();
+  contexts_pushed.pop_back();
   return 0;
 }
 STANDIN int cuCtxGetCurrent(void** context) {
-  const std::scoped_lock lock(device_mutex);
-  *context = contexts_pushed > 0 ? &device_context : nullptr;
+  *context = contexts_pushed.empty() ? nullptr : contexts_pushed.back();
+  return 0;
+}
+STANDIN int cuCtxGetDevice(int* device) {
+  constexpr int kInvalidContext = 201;
+  if (contexts_pushed.empty()) return kInvalidContext;
+  *device = static_cast<int>(static_cast<char*>(contexts_pushed.back()) - device_contexts);
   return 0;
 }
 STANDIN int cuModuleLoadDataEx(void** module, const void* image, unsigned, int*, void** values) {
