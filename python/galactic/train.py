@@ -30,7 +30,13 @@ from galactic.learning.packs import content
 from galactic.learning.playing.validation import validation_of
 from galactic.learning.policies.privileges import require_sensors
 from galactic.learning.presets import TAUGHT, WORDS, preset
-from galactic.learning.ranks.distributed import Group, device_of, local_ranks, threads_of
+from galactic.learning.ranks.distributed import (
+    Group,
+    device_of,
+    local_ranks,
+    threads_of,
+    where_words,
+)
 from galactic.learning.ranks.launch import follow_launcher, launch
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import log
@@ -230,7 +236,13 @@ def _train(
         dataclasses.replace(settings, envs=settings.halves, mini_batches=1) if shown else settings
     )
     envs = Homes(
-        galactic.World(run.world), played, threads, rank=group.rank, ranks=group.size, task=task
+        galactic.World(run.world),
+        played,
+        threads,
+        rank=group.rank,
+        ranks=group.size,
+        task=task,
+        device=group.device,
     )
     validation = validation_of(run, envs, threads, group, task)
     teacher = None
@@ -271,6 +283,7 @@ def _train(
             if group.rank == 0
             else None
         )
+        say(where_words(group, envs.drawn_by))
         undisturbed = _carry_out(trainer, run, options)
     envs.close()
     if trainer.steps < settings.steps or not undisturbed:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Optional, Sequence
+from typing import Any, Callable, Mapping, Optional, Sequence
 
 import numpy as np
 import torch
@@ -69,13 +69,15 @@ class Homes:
 
     `task` makes tasks of one's own, in the place of the simulation's, which are told whether it
     `is_evaluation`. `onlooker`: options of a camera
-    more, whose color images are in `shown`.
+    more, whose color images are in `shown`. `device`: where networks run; if that is a CUDA device, images are
+    drawn there, too, or by the processor where nothing can draw there (`drawn_by` says what does).
     """
 
     def __init__(self, world: "galactic.World", settings: Settings, threads: int, *,
                  rank: int = 0, ranks: int = 1, order: str = "shuffled",
                  task: Optional[MakeTask] = None, is_evaluation: bool = False,
-                 onlooker: Optional[Mapping[str, Any]] = None):  # fmt: skip
+                 onlooker: Optional[Mapping[str, Any]] = None,
+                 device: torch.device = torch.device("cpu")):  # fmt: skip
         keywords = simulation_keywords(settings.simulation)
         images = camera_options(settings) if settings.sight else None
         # What begins the names of the network's images.
@@ -86,11 +88,12 @@ class Homes:
         self.shown: Optional[np.ndarray] = None
         """What the onlooker saw last, uint8 [n, height, width, 3], the end of an episode before the
         beginning of the next one."""
-        try:
-            self.env = galactic.VectorEnv(
+
+        def made(**drawing: str) -> galactic.VectorEnv:
+            return galactic.VectorEnv(
                 world,
                 settings.envs,
-                images=images,
+                images=None if images is None else _with_drawing(images, drawing),
                 halves=2 if settings.halves == 2 else 1,
                 copy=False,
                 threads=threads,
@@ -101,6 +104,9 @@ class Homes:
                 is_evaluation=is_evaluation,
                 **(keywords if task is None else {**keywords, "task": task}),
             )
+
+        try:
+            self.env = _drawing_on(device, made)
         except (TypeError, ValueError) as problem:
             if task_runner.has_raised(problem):
                 raise
@@ -122,6 +128,14 @@ class Homes:
         self._landings = [_landing(half.stop - half.start) for half in self.halves]
         self._into: list[Optional[Observation]] = [None] * settings.halves
         self._staged: list[Optional[Observation]] = [None] * settings.halves
+
+    @property
+    def drawn_by(self) -> Optional[str]:
+        """What draws the images, in words; None without images."""
+        for renderers in self.env.renderers[:1]:
+            one = next(iter(renderers.values())) if isinstance(renderers, dict) else renderers
+            return str(one.description)
+        return None
 
     def restart(self, seed: int) -> None:
         """As if the homes had just been made with this seed."""
@@ -261,6 +275,28 @@ class Homes:
             )
             self._staged[half] = staged
         return staged
+
+
+def _with_drawing(images: Mapping[str, Any], drawing: Mapping[str, str]) -> dict[str, Any]:
+    """Options of a camera, or of several by their names, with some more of the Renderer."""
+    if _ONLOOKER in images:
+        return {name: {**camera, **drawing} for name, camera in images.items()}
+    return {**images, **drawing}
+
+
+def _drawing_on(
+    device: torch.device, made: Callable[..., galactic.VectorEnv]
+) -> galactic.VectorEnv:
+    """What `made` makes with options of the Renderer: on the device of the networks, which is not the first one
+    in all ranks."""
+    if device.type != "cuda":
+        return made()
+    try:
+        return made(device=f"cuda:{device.index or 0}")
+    except galactic.Error as error:
+        if error.code != galactic.ErrorCode.UNSUPPORTED or error.where != "render device":
+            raise
+    return made(backend="soft")
 
 
 def _pinned(like: torch.Tensor) -> torch.Tensor:

@@ -19,7 +19,6 @@ import galactic
 from galactic import export, train
 from galactic.learning.homes import Homes
 from galactic.learning.playing import validation
-from galactic.learning.ranks.distributed import device_of
 from galactic.learning.refusals import CheckpointError
 from galactic.learning.reports.curves import read_curves
 from galactic.learning.saving import checkpoint
@@ -272,20 +271,6 @@ def test_a_world_in_which_nothing_can_be_validated_is_refused_before_training(
     assert done.returncode == 3
     assert done.stderr.startswith(f"galactic.train: {HELD_OUT}: {message}")
     assert not (tmp_path / "run").exists()
-
-
-@pytest.mark.parametrize("devices, ranks, wanted", [(0, 1, "cpu"), (1, 2, "cpu"), (2, 2, "cuda")])
-def test_each_rank_has_a_cuda_device_of_its_own_or_none_has(
-    monkeypatch: pytest.MonkeyPatch, devices: int, ranks: int, wanted: str
-) -> None:
-    monkeypatch.setattr(torch.cuda, "is_available", lambda: devices > 0)
-    monkeypatch.setattr(torch.cuda, "device_count", lambda: devices)
-    assert device_of("cpu", 1, ranks) == torch.device("cpu")
-    for rank in range(ranks):
-        device = torch.device("cuda", rank) if wanted == "cuda" else torch.device("cpu")
-        assert device_of("auto", rank, ranks) == device
-        if wanted == "cuda":
-            assert device_of("cuda", rank, ranks) == device
 
 
 def test_a_gpu_for_two_ranks_is_refused_before_they_start(

@@ -29,7 +29,14 @@ def validation_of(
         return None
     envs = min(settings.envs, evaluation.MOST_ENVS)
     held_out = dataclasses.replace(settings.without_noise(), envs=envs, halves=1, mini_batches=1)
-    homes = Homes(galactic.World(run.validation), held_out, threads, task=task, is_evaluation=True)
+    homes = Homes(
+        galactic.World(run.validation),
+        held_out,
+        threads,
+        task=task,
+        is_evaluation=True,
+        device=group.device,
+    )
     if homes.parts != trained.parts:
         raise galactic.Error(
             galactic.ErrorCode.INVALID_INPUT,

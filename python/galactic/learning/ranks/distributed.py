@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import datetime
 import hashlib
 import math
 import os
 import pickle
+import socket
 from typing import Iterator, Optional
 
 import torch
@@ -23,11 +25,21 @@ class RankLost(Exception):
     """Another rank has ended: what it said is above."""
 
 
-def device_of(name: str, local_rank: int, local_ranks: int) -> torch.device:
+def cuda_devices() -> int:
+    """How many torch has."""
+    return torch.cuda.device_count() if torch.cuda.is_available() else 0
+
+
+def device_of(
+    name: str, local_rank: int, local_ranks: int, *, is_dealt: bool = False
+) -> torch.device:
     """Where the networks of a rank run, one of so many on this machine: on a CUDA device of its own, or
     on the processor. `name`: cpu, cuda, or auto, which takes CUDA devices if there is one for each rank.
+    `is_dealt`: each rank sees one device alone, which no other rank sees (devices_are_dealt()).
     SettingsError where cuda asks for more than torch has."""
-    devices = torch.cuda.device_count() if torch.cuda.is_available() else 0
+    devices = cuda_devices()
+    if name != "cpu" and is_dealt:
+        return torch.device("cuda", 0)
     if name == "cuda" and devices == 0:
         raise SettingsError("--device: found cuda, but this torch has no CUDA device; take cpu")
     if name == "cuda" and devices < local_ranks:
@@ -40,6 +52,28 @@ def device_of(name: str, local_rank: int, local_ranks: int) -> torch.device:
     return torch.device("cuda", local_rank)
 
 
+def devices_are_dealt(store: torch.distributed.Store, rank: int, size: int) -> bool:
+    """Whether each of the ranks sees one CUDA device alone, and each another one, as SLURM's --gpus-per-task
+    and CUDA_VISIBLE_DEVICES have it. All of them ask at the same time."""
+    own = f"{socket.gethostname()} {_uuid_of_first()}" if cuda_devices() == 1 else ""
+    store.set(f"device/{rank}", own)
+    seen = [store.get(f"device/{other}").decode() for other in range(size)]
+    return "" not in seen and len(set(seen)) == size
+
+
+def _uuid_of_first() -> str:
+    """Of the first device that CUDA's driver shows this process: torch 1.13 does not tell it."""
+    try:
+        driver = ctypes.CDLL("libcuda.so.1")
+    except OSError:  # such as where torch's devices are others than NVIDIA's
+        return "unknown"
+    device, uuid = ctypes.c_int(), ctypes.create_string_buffer(16)
+    # The second version tells parts of a device apart.
+    ask = getattr(driver, "cuDeviceGetUuid_v2", driver.cuDeviceGetUuid)
+    failed = driver.cuInit(0) or driver.cuDeviceGet(ctypes.byref(device), 0) or ask(uuid, device)
+    return "unknown" if failed else uuid.raw.hex()
+
+
 def local_ranks() -> int:
     """How many ranks of the run are on this machine."""
     return int(os.environ.get("LOCAL_WORLD_SIZE", "1"))
@@ -48,6 +82,21 @@ def local_ranks() -> int:
 def threads_of(wanted: int, local_ranks: int) -> int:
     """Of one rank; 0: its share of the processors that this process may use."""
     return wanted or max(1, len(os.sched_getaffinity(0)) // local_ranks)
+
+
+def where_words(group: "Group", drawn_by: Optional[str]) -> str:
+    """Where networks run and what draws the images, for a line at the start of a run: in the rank that tells it."""
+    if group.device.type == "cuda":
+        place = f"{group.device} ({torch.cuda.get_device_name(group.device)})"
+    else:
+        unused = cuda_devices()
+        place = "the processor"
+        if unused:
+            place += (
+                f", though there are CUDA devices: {unused} of them for {local_ranks()} ranks here"
+            )
+    draws = "" if drawn_by is None else f"; images are drawn by {drawn_by}"
+    return f"networks run on {place}{draws}" + (" (rank 0)" if group.size > 1 else "")
 
 
 class Group:
@@ -74,13 +123,18 @@ class Group:
         size = int(os.environ.get("WORLD_SIZE", "1"))
         rank = int(os.environ.get("RANK", "0"))
         local_rank = int(os.environ.get("LOCAL_RANK", "0"))
-        group = cls(rank, size, device_of(device, local_rank, local_ranks()))
-        is_cuda = group.device.type == "cuda"
-        if is_cuda:
-            torch.cuda.set_device(group.device)
+        store, is_dealt = None, False
         if size > 1:
             with interrupts.ended_at_once():
                 store = next(rendezvous("env://"))[0]
+                asked = torch.distributed.PrefixStore("devices", store)
+                is_dealt = devices_are_dealt(asked, rank, size)
+        group = cls(rank, size, device_of(device, local_rank, local_ranks(), is_dealt=is_dealt))
+        is_cuda = group.device.type == "cuda"
+        if is_cuda:
+            torch.cuda.set_device(group.device)
+        if store is not None:
+            with interrupts.ended_at_once():
                 torch.distributed.init_process_group(
                     "nccl" if is_cuda else "gloo",
                     store=torch.distributed.PrefixStore("group", store),
