@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Callable
+import contextlib
+from typing import Any, Callable, Iterator, Optional
+from unittest import mock
 
 import pytest
 import torch
@@ -61,6 +63,61 @@ def test_a_replayed_policy_decides_the_same(recurrent: bool) -> None:
     assert not torch.equal(plain[0]["log_probs"], plain[1]["log_probs"])
     for one, other in zip(plain, replayed):
         the_same(one, other, 0.0)
+
+
+def test_graphs_are_recorded_while_no_half_is_under_way() -> None:
+    done: list[str] = []
+
+    class Listening(ReachAndGrasp):
+        def send(self, *call: Any) -> None:
+            done.append("sent")
+            super().send(*call)
+
+    def record(function: Function, places: Tensors) -> tuple[Tensors, Callable[[], None]]:
+        done.append("recorded")
+        return record_here(function, places)
+
+    envs = Listening(16, halves=2)
+    policy = make_policy("state", PolicyShape(envs.state_size, envs.motions, False), width=16)
+    cpu = torch.device("cpu")
+    options = CollectorOptions(horizon=3, seed=3, gamma=0.99)
+    collector = Collector(envs, policy, options, Precision("fp32", cpu), cpu)
+    collector._decisions = [Replayed(collector._decide, record) for _ in envs.halves]
+    collector.reset()
+    for update in range(2):
+        collector.collect(update)
+    assert done == 2 * ["recorded"] + 2 * 2 * 3 * ["sent"]
+
+
+@pytest.mark.parametrize("mode", [None, "thread_local"])
+def test_other_threads_may_use_the_device_while_a_graph_is_recorded(
+    monkeypatch: pytest.MonkeyPatch, mode: Optional[str]
+) -> None:
+    """Where torch can do it. It is a torch without a device here, of either kind."""
+    captured: list[Optional[str]] = []
+
+    class Graph:
+        def replay(self) -> None:
+            pass
+
+    @contextlib.contextmanager
+    def graph(cuda_graph: Graph, capture_error_mode: str = "global") -> Iterator[None]:
+        captured.append(capture_error_mode)
+        yield
+
+    @contextlib.contextmanager
+    def older_graph(cuda_graph: Graph) -> Iterator[None]:
+        captured.append(None)
+        yield
+
+    monkeypatch.setattr(torch.cuda, "Stream", mock.Mock())
+    monkeypatch.setattr(torch.cuda, "current_stream", mock.Mock())
+    monkeypatch.setattr(torch.cuda, "stream", contextlib.nullcontext)
+    monkeypatch.setattr(torch.cuda, "CUDAGraph", Graph)
+    monkeypatch.setattr(torch.cuda, "graph", graph if mode else older_graph)
+    doubled, replay = record_cuda(lambda x: (2 * x,), (torch.ones(1),))
+    replay()
+    assert captured == [mode] and torch.equal(doubled[0], torch.full((1,), 2.0))
 
 
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU")

@@ -101,6 +101,7 @@ class Collector:
             noise = self._noise(update)
         self.policy.eval()
         with torch.inference_mode():
+            self._prepare(noise)
             step = 0
             while step == 0 or (step < options.horizon and not should_stop(step)):
                 for half, envs in enumerate(self.envs.halves):
@@ -178,15 +179,25 @@ class Collector:
         noise = action_noise(self.options.seed, envs, steps, self.envs.motions)
         return torch.from_numpy(noise).to(self.device)
 
+    def _prepare(self, noise: Tensor) -> None:
+        """Records graphs while no half is under way: its threads use the device, too."""
+        with self.stopwatch.time("inference"):
+            for envs, decide in zip(self.envs.halves, self._decisions):
+                if isinstance(decide, Replayed):
+                    decide.prepare(*self._asked(envs, 0, noise[0, envs]))
+
+    def _asked(self, envs: slice, step: int, noise: Tensor) -> Tensors:
+        """What the policy decides by: arguments of _decide()."""
+        inputs = self.rollout.inputs(step, step + 1, envs, self.policy.needs_previous)
+        memory = None if self._hidden is None else self._hidden[envs]
+        starts = self.rollout.starts[step : step + 1, envs]
+        return (*inputs, memory, starts, noise.unsqueeze(0))
+
     def _act(self, half: int, envs: slice, step: int, noise: Tensor) -> None:
         rollout = self.rollout
         with self.stopwatch.time("inference"):
-            inputs = rollout.inputs(step, step + 1, envs, self.policy.needs_previous)
-            memory = None if self._hidden is None else self._hidden[envs]
-            starts = rollout.starts[step : step + 1, envs]
-            actions, log_probs, values, hidden = self._decisions[half](
-                *inputs, memory, starts, noise.unsqueeze(0)
-            )
+            asked = self._asked(envs, step, noise)
+            actions, log_probs, values, hidden = self._decisions[half](*asked)
             assert actions is not None and log_probs is not None and values is not None
             rollout.actions[step, envs] = actions[0]
             rollout.log_probs[step, envs] = log_probs[0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from typing import Callable, Optional, Sequence
 
 import torch
@@ -28,10 +29,15 @@ class Replayed:
         self._results: Tensors = ()
         self._replay: Optional[Callable[[], None]] = None
 
-    def __call__(self, *arguments: Optional[Tensor]) -> Tensors:
+    def prepare(self, *arguments: Optional[Tensor]) -> None:
+        """Records what it does of such arguments, unless it has."""
         if self._replay is None:
             self._places = tuple(None if one is None else one.clone() for one in arguments)
             self._results, self._replay = self._record(self._function, self._places)
+
+    def __call__(self, *arguments: Optional[Tensor]) -> Tensors:
+        self.prepare(*arguments)
+        assert self._replay is not None
         self._place(arguments)
         self._replay()
         return self._results
@@ -54,7 +60,8 @@ class Replayed:
 
 def record_cuda(function: Function, places: Tensors) -> tuple[Tensors, Callable[[], None]]:
     """Records on the current CUDA device. Libraries choose their kernels and workspaces in the first calls, on
-    a stream of their own, as torch's documentation of CUDA graphs asks for."""
+    a stream of their own, as torch's documentation of CUDA graphs asks for. What other threads do on the
+    device meanwhile spoils it in versions of torch before 2.1."""
     warming = torch.cuda.Stream()
     warming.wait_stream(torch.cuda.current_stream())
     with torch.cuda.stream(warming):
@@ -62,6 +69,8 @@ def record_cuda(function: Function, places: Tensors) -> tuple[Tensors, Callable[
             function(*places)
     torch.cuda.current_stream().wait_stream(warming)
     graph = torch.cuda.CUDAGraph()
-    with torch.cuda.graph(graph):
+    has_modes = "capture_error_mode" in inspect.signature(torch.cuda.graph).parameters
+    mode = {"capture_error_mode": "thread_local"} if has_modes else {}
+    with torch.cuda.graph(graph, **mode):
         results = function(*places)
     return results, graph.replay
