@@ -38,10 +38,14 @@ class Timed(ReachAndGrasp):
         return step
 
 
-def collected(timeouts: str, recurrent: bool) -> tuple[Rollout, Timed, list[Tensor], list[Tensor]]:
-    """A rollout, its environments, and the rows whose values were asked for after it, and these."""
+def collected(
+    timeouts: str, recurrent: bool, tunes: bool = False
+) -> tuple[Rollout, Timed, list[Tensor], list[Tensor]]:
+    """A rollout, its environments, and the rows whose values were asked for after it, and these. `tunes`: as on a
+    GPU."""
     settings = dataclasses.replace(SETTINGS, timeouts=timeouts, recurrent=recurrent)
     trainer = make_trainer(None, settings, Timed)
+    trainer.learner.precision.tunes = tunes
     policy, asked, given = trainer.policy, [], []
     value = policy.value
 
@@ -77,6 +81,18 @@ def test_values_are_asked_for_as_the_setting_says(timeouts: str, recurrent: bool
         found = rollout.rewards[number // SETTINGS.halves, part]
         torch.testing.assert_close(found, expected, rtol=0.0, atol=0.0)
     assert first == len(values)
+
+
+@pytest.mark.parametrize("recurrent", [False, True])
+def test_on_a_gpu_few_numbers_of_values_are_asked_for(recurrent: bool) -> None:
+    """Each of them costs, because convolutions are timed for it."""
+    plain, _, asked, _ = collected("observed", recurrent)
+    padded, _, more, _ = collected("observed", recurrent, tunes=True)
+    (few,), (many,) = asked, more
+    count, size = few.shape[1], many.shape[1]
+    assert count < size < 2 * count and size.bit_count() == 1
+    assert torch.equal(many[:, :count], few) and not many[:, count:].any()
+    torch.testing.assert_close(padded.rewards, plain.rewards, rtol=0.0, atol=1e-6)
 
 
 def test_an_end_is_worth_nothing() -> None:

@@ -296,16 +296,20 @@ class Collector:
         if not self._timeouts:
             return
         kept = self._timeouts
+        count = sum(len(timeout.envs) for timeout in kept)
+        # It is another one in each rollout: a few sizes are enough.
+        size = 1 << (count - 1).bit_length() if self.precision.tunes else count
+        state = _joined([timeout.inputs.state for timeout in kept], size)
+        assert state is not None
         inputs = Inputs(
-            torch.cat([timeout.inputs.state for timeout in kept]).unsqueeze(0),
-            *(_joined([timeout.inputs[part] for timeout in kept]) for part in (1, 2, 3)),
+            state,
+            *(_joined([timeout.inputs[part] for timeout in kept], size) for part in (1, 2, 3)),
         )
-        hidden = _joined([timeout.hidden for timeout in kept])
+        hidden = _joined([timeout.hidden for timeout in kept], size)
         hidden = None if hidden is None else hidden[0]
-        count = inputs.state.shape[1]
-        starts = torch.zeros(1, count, dtype=torch.bool, device=self.device)
+        starts = torch.zeros(1, size, dtype=torch.bool, device=self.device)
         with self.precision.autocast():
-            values = self.policy.value(inputs, hidden, starts)[0]
+            values = self.policy.value(inputs, hidden, starts)[0, :count]
         step = torch.cat([torch.full_like(t.envs, t.step) for t in kept])
         envs = torch.cat([t.envs for t in kept])
         self.rollout.rewards[step, envs] += self.options.gamma * values
@@ -321,7 +325,12 @@ class _Timeout:
     hidden: Optional[Tensor]  # [k, H]
 
 
-def _joined(parts: list[Optional[Tensor]]) -> Optional[Tensor]:
-    """[1, k, ...] from parts of [k_i, ...], all of them there or none."""
+def _joined(parts: list[Optional[Tensor]], size: int) -> Optional[Tensor]:
+    """[1, size, ...] from parts of [k_i, ...], all of them there or none: zeros behind them."""
     there = [part for part in parts if part is not None]
-    return torch.cat(there).unsqueeze(0) if there else None
+    if not there:
+        return None
+    count = sum(len(part) for part in there)
+    if count < size:
+        there.append(there[0].new_zeros(size - count, *there[0].shape[1:]))
+    return torch.cat(there).unsqueeze(0)

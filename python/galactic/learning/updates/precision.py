@@ -14,12 +14,14 @@ class Precision:
     float32. On processors all are fp32."""
 
     def __init__(self, name: str, device: torch.device):
+        self.tunes = device.type == "cuda"
+        """Whether convolutions are timed anew for each shape of what they are given: see cudnn.benchmark."""
         self._bf16 = name == "bf16" and device.type == "cuda"
         if device.type == "cuda":
             quick = name in ("tf32", "bf16")
             torch.backends.cuda.matmul.allow_tf32 = quick
             torch.backends.cudnn.allow_tf32 = quick
-            torch.backends.cudnn.benchmark = True
+            torch.backends.cudnn.benchmark = self.tunes
 
     def autocast(self) -> ContextManager[None]:
         """Around every use of a policy."""
