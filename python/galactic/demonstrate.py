@@ -20,6 +20,7 @@ from galactic.learning.command import (
     INTERRUPTED,
     OK,
     Parser,
+    add_device_option,
     lost_output,
     named_path,
     told,
@@ -30,7 +31,7 @@ from galactic.learning.playing.demonstrating import acting, begin, make_parts
 from galactic.learning.playing.evaluation import MOST_ENVS
 from galactic.learning.playing.experts import Expert, LearnedExpert, RolledIn, ScriptedExpert
 from galactic.learning.presets import WORDS, preset
-from galactic.learning.ranks.distributed import threads_of
+from galactic.learning.ranks.distributed import device_of, threads_of
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.progress import ProgressLine
 from galactic.learning.reports.shares import percent
@@ -111,6 +112,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--threads", type=whole(0, 4096), default=0, metavar="N", help="0: all processors (0)"
     )
+    add_device_option(parser, "where policies run")
     add_options(parser, (*_SETTINGS, *_OF_OWN_NETWORK))
     return parser
 
@@ -123,13 +125,14 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
 def _demonstrate(options: argparse.Namespace) -> int:
     _require_uses(options)
     settings, task = _settings(options)
+    device = device_of(options.device, 0, 1)
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
     homes = Homes(galactic.World(options.world), settings, threads, task=task)
     # Others learn from them for the task at its end.
     homes.progress = 1.0
     _require_limit(homes)
-    expert = _expert(options, homes, settings)
+    expert = _expert(options, homes, settings, device)
     episodes = homes.playable_episodes()[: options.episodes]
     if not episodes:
         message = "has no episode in which the robot can start; take another world"
@@ -183,17 +186,19 @@ def _settings(options: argparse.Namespace) -> tuple[Settings, Optional[own_tasks
     return dataclasses.replace(settings, task=str(name), simulation=simulation), make
 
 
-def _expert(options: argparse.Namespace, homes: Homes, settings: Settings) -> Expert:
+def _expert(
+    options: argparse.Namespace, homes: Homes, settings: Settings, device: torch.device
+) -> Expert:
     expert: Expert
     if options.expert == SCRIPTED:
         expert = ScriptedExpert(homes)
     else:
         expert = LearnedExpert(
-            acting(pathlib.Path(options.expert), homes, settings, options.deterministic)
+            acting(pathlib.Path(options.expert), homes, settings, options.deterministic, device)
         )
     if options.learner is None:
         return expert
-    learner = acting(options.learner, homes, settings, deterministic=False)
+    learner = acting(options.learner, homes, settings, False, device)
     return RolledIn(learner, expert, _learner_steps(options, homes), settings.seed)
 
 

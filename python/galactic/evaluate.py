@@ -11,11 +11,20 @@ import torch
 
 from galactic import files
 from galactic.learning import dynamics
-from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told, whole
+from galactic.learning.command import (
+    EXIT_CODES,
+    OK,
+    Parser,
+    add_device_option,
+    lost_output,
+    named_path,
+    told,
+    whole,
+)
 from galactic.learning.homes import Homes
 from galactic.learning.playing import evaluation
 from galactic.learning.playing.judging import Terms, judging
-from galactic.learning.ranks.distributed import threads_of
+from galactic.learning.ranks.distributed import device_of, threads_of
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import pictures
 from galactic.learning.reports.curves import write_json
@@ -59,6 +68,7 @@ def make_parser() -> argparse.ArgumentParser:
         default=0,
         help="number of threads; 0: one per processor (0)",
     )
+    add_device_option(parser, "where the policy runs")
     parser.add_argument(
         "--camera-noise",
         action="store_true",
@@ -162,6 +172,7 @@ def _evaluate(options: argparse.Namespace) -> int:
     _require_uses(options)
     # Playing may take long.
     _require_outputs(options)
+    device = device_of(options.device, 0, 1)
     saved = checkpoint.read_policy(options.policy, options.network)
     pack = dynamics.packed(options.policy, options.network) if options.dynamics else b""
     threads = threads_of(options.threads, 1)
@@ -171,7 +182,12 @@ def _evaluate(options: argparse.Namespace) -> int:
     if options.dynamics:
         _tell_what_is_left_out(homes)
     episodes = homes.playable_episodes()[: options.episodes or None]
-    actor = evaluation.Actor(saved.policy, deterministic=options.deterministic, seed=options.seed)
+    actor = evaluation.Actor(
+        saved.policy.to(device),
+        deterministic=options.deterministic,
+        seed=options.seed,
+        device=device,
+    )
     results = evaluation.Evaluator(homes, actor).play(episodes)
     homes.close()
     summary = evaluation.summary(results, judged.world)
@@ -181,7 +197,7 @@ def _evaluate(options: argparse.Namespace) -> int:
         there = _play_there(options, pack)
         is_told &= put(sys.stdout, _text(dict(dynamics.told(there))))
     if options.report:
-        report = {**_about(options, saved.steps), **summary}
+        report = {**_about(options, saved.steps, device), **summary}
         write_json(options.report, {**report, **({"dynamics": there} if there else {})})
     if _draws(options) and results:
         chosen = pictures.choose(results, options.shown or SHOWN)
@@ -238,7 +254,9 @@ def _terms(options: argparse.Namespace, threads: int) -> Terms:
     )
 
 
-def _about(options: argparse.Namespace, trained_steps: int) -> dict[str, object]:
+def _about(
+    options: argparse.Namespace, trained_steps: int, device: torch.device
+) -> dict[str, object]:
     """What a report is about."""
     task = {"task": options.task, "task_options": options.task_options} if options.task else {}
     return {
@@ -249,6 +267,7 @@ def _about(options: argparse.Namespace, trained_steps: int) -> dict[str, object]
         "seed": options.seed,
         "camera_noise": options.camera_noise,
         "robot_noise": options.robot_noise,
+        "device": str(device),
         **task,
         **({"network": options.network} if options.network else {}),
     }

@@ -21,6 +21,7 @@ from galactic.learning.command import (
     INTERRUPTED,
     OK,
     Parser,
+    add_device_option,
     lost_output,
     named_path,
     told,
@@ -129,12 +130,7 @@ def make_parser() -> argparse.ArgumentParser:
         metavar="STEPS",
         help="validate, save and end after so many steps of the run, for --resume to go on",
     )
-    parser.add_argument(
-        "--device",
-        default="auto",
-        choices=("auto", "cpu", "cuda"),
-        help="where the networks run; auto: on CUDA devices, if there is one for each rank (auto)",
-    )
+    add_device_option(parser, "where the networks run", "there is one for each rank")
     parser.add_argument(
         "--log-to",
         metavar="FILE.py:NAME|MODULE:NAME",

@@ -97,6 +97,18 @@ def named_path(text: str) -> pathlib.Path:
     return pathlib.Path(text)
 
 
+def add_device_option(
+    parser: argparse.ArgumentParser, what: str, condition: str = "there is one"
+) -> None:
+    """--device, as ranks.distributed.device_of() takes it. `what`: what it is about."""
+    parser.add_argument(
+        "--device",
+        default="auto",
+        choices=("auto", "cpu", "cuda"),
+        help=f"{what}; auto: on a CUDA device, if {condition} (auto)",
+    )
+
+
 def told(
     program: str,
     work: Callable[[], int],

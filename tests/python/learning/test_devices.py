@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pathlib
 import socket
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import torch
 from torch.distributed import HashStore
 
 import galactic
 from galactic.learning.homes import Homes
+from galactic.learning.playing.evaluation import Actor
 from galactic.learning.presets import preset
 from galactic.learning.ranks import distributed
 from galactic.learning.ranks.distributed import Group, device_of, where_words
+from galactic.learning.rollouts.environments import Observation
+from galactic.learning.saving import checkpoint
+from policies import untrained
 from programs import SMALL, UPDATE, WORLD, call, needs_worlds
 
 pytestmark = needs_worlds
@@ -124,3 +130,34 @@ def test_a_run_tells_where_it_learns(tmp_path: pathlib.Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert done.stderr.count("networks run on the processor") == 1
+
+
+def test_policies_run_where_it_is_asked_for(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    policy, report, demos = (tmp_path / name for name in ("policy.pt", "report.json", "demos"))
+    settings = preset("quick", envs=4, halves=1, mini_batches=1)
+    checkpoint.save_policy(untrained(settings), policy)
+    evaluating = ["evaluate", policy, WORLD, "--episodes", 2, "--report", report]
+    demonstrating = ["demonstrate", WORLD, "-o", demos, "--expert", policy, "--episodes", 2]
+    demonstrating += ["--preset", "quick"]
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    for words in (evaluating, demonstrating):
+        refused = call(*words, "--device", "cuda")
+        assert refused.returncode == 1 and "this torch has no CUDA device" in refused.stderr
+        done = call(*words, "--device", "cpu")
+        assert done.returncode == 0, done.stderr
+    assert json.loads(report.read_text())["device"] == "cpu"
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU")
+def test_a_policy_on_a_gpu_does_as_one_on_a_processor(tmp_path: pathlib.Path) -> None:
+    settings = preset("quick", envs=4, halves=1, mini_batches=1)
+    saved, seen = untrained(settings), torch.rand(4, untrained(settings).shape.state)
+    starts, numbers = np.ones(4, np.bool_), np.arange(4)
+    found = []
+    for device in (torch.device("cpu"), torch.device("cuda", 0)):
+        actor = Actor(saved.policy.to(device), deterministic=False, device=device)
+        actor.begin(4)
+        found.append(actor.act(Observation(seen), starts, numbers, numbers))
+    np.testing.assert_allclose(found[0], found[1], atol=1e-2)

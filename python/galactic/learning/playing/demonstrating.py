@@ -8,6 +8,7 @@ import pathlib
 import time
 
 import numpy as np
+import torch
 
 import galactic
 from galactic import demonstrations, files
@@ -90,14 +91,21 @@ def make_parts(folder: pathlib.Path, parts: list[list[int]], homes: Homes, exper
         )
 
 
-def acting(file: pathlib.Path, homes: Homes, settings: Settings, deterministic: bool) -> Actor:
-    """The policy of a file, that plays in these homes."""
+def acting(file: pathlib.Path, homes: Homes, settings: Settings, deterministic: bool,
+           device: torch.device) -> Actor:  # fmt: skip
+    """The policy of a file, that plays in these homes, on this device."""
     own = own_networks.own_network(settings.network) if settings.has_own_network else None
     saved = checkpoint.load_policy(file, network=own)
     _require_sight(saved, file, settings)
     observed = Observed(homes.parts, homes.meanings, homes.motions)
     columns = columns_of(saved, file, observed, "take another policy")
-    return Actor(saved.policy, deterministic=deterministic, seed=settings.seed, columns=columns)
+    return Actor(
+        saved.policy.to(device),
+        deterministic=deterministic,
+        seed=settings.seed,
+        device=device,
+        columns=columns,
+    )
 
 
 def _require_sight(saved: SavedPolicy, file: pathlib.Path, settings: Settings) -> None:
