@@ -24,6 +24,16 @@ class Inputs(NamedTuple):
     previous: Optional[Tensor] = None  # [T, n, A]: the action before, zero where an episode starts
 
 
+class FullLinear(nn.Linear):
+    """A linear layer in float32, even where the layers around it are computed in bfloat16, whose 8 bits would blur
+    what they tell apart: meters of the state centimeters, values advantages, and log-stds the ratios of
+    probabilities."""
+
+    def forward(self, input: Tensor) -> Tensor:
+        with torch.autocast(input.device.type, enabled=False):
+            return super().forward(input.float())
+
+
 class Encoder(nn.Module):
     """Inputs -> features [T, n, F].
 
@@ -118,15 +128,14 @@ class ResNet(Encoder):
             nn.LayerNorm(FEATURES),
             nn.ReLU(inplace=True),
         )
-        self.state = nn.Linear(state, FEATURES)
-        self.previous = nn.Linear(actions, 32)
+        self.state = FullLinear(state, FEATURES)
+        self.previous = FullLinear(actions, 32)
         _kaiming(self.visual)
 
     def forward(self, inputs: Inputs) -> Tensor:
         assert inputs.previous is not None
         seen = self.visual(images(inputs)).float().view(*inputs.state.shape[:2], FEATURES)
-        felt = self.state(inputs.state).float()
-        return torch.cat([seen, felt, self.previous(inputs.previous).float()], -1)
+        return torch.cat([seen, self.state(inputs.state), self.previous(inputs.previous)], -1)
 
 
 class DepthCNN(nn.Module):
@@ -246,7 +255,7 @@ def perceptron(inputs: int, width: int, layers: int, activation: str) -> nn.Sequ
     chain: list[nn.Module] = []
     for layer in range(layers):
         chain += [
-            orthogonal(nn.Linear(inputs if layer == 0 else width, width), math.sqrt(2.0)),
+            orthogonal(FullLinear(inputs if layer == 0 else width, width), math.sqrt(2.0)),
             ACTIVATIONS[activation](),
         ]
     return nn.Sequential(*chain)

@@ -1,5 +1,6 @@
 """The policies: the paper's parameter counts, memory across episodes, normalization."""
 
+import contextlib
 from typing import Optional
 
 import pytest
@@ -12,6 +13,7 @@ from galactic.learning.policies.networks import PolicyShape, make_policy
 from galactic.learning.policies.normalization import Normalizer
 from galactic.learning.policies.sight import SIGHT
 from galactic.learning.sequences import run_gru
+from galactic.learning.updates.precision import Precision
 
 ARM_OF_SEVEN = PolicyShape(state=26, motions=9)
 
@@ -146,6 +148,44 @@ def test_heads_are_float32_after_a_network_of_bfloat16(
         assert torch.equal(actions.mean, torch.tanh(rows[..., :9]))
         assert torch.equal(actions.logits, rows[..., -3::2] - rows[..., -4::2])
         assert not torch.equal(actions.logits, actions.logits.bfloat16().float())
+
+
+@pytest.mark.parametrize("network, recurrent", POLICIES[:-1])  # a GroupNorm mixes no types here
+def test_the_state_is_not_rounded_in_a_network_of_bfloat16(network: str, recurrent: bool) -> None:
+    """7.01 m would be 7 m."""
+    torch.manual_seed(12)
+    policy = make_policy(network, ARM_OF_SEVEN, recurrent=recurrent)
+    with torch.no_grad():
+        for name, parameter in policy.named_parameters():
+            if "visual" not in name and "eyes" not in name:
+                parameter.mul_(3.0)  # of heads that act on what they see
+    inputs = some_inputs(network, 1, 4)
+    near = inputs._replace(state=torch.full_like(inputs.state, 7.0))
+    far = inputs._replace(state=torch.full_like(inputs.state, 7.01))
+    assert torch.equal(near.state.bfloat16(), far.state.bfloat16())
+    hidden = policy.initial_hidden(4, torch.device("cpu"))
+    starts = torch.zeros(1, 4, dtype=torch.bool)
+    with torch.no_grad(), torch.autocast("cpu", dtype=torch.bfloat16):
+        one, other = (policy(seen, hidden, starts) for seen in (near, far))
+    assert not torch.equal(one.values, other.values)
+    assert not torch.equal(one.actions.mean, other.actions.mean)
+
+
+def test_bfloat16_is_for_networks_that_see_images(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[tuple[str, torch.dtype]] = []
+
+    def autocast(device: str, dtype: torch.dtype) -> contextlib.nullcontext:
+        begun.append((device, dtype))
+        return contextlib.nullcontext()
+
+    monkeypatch.setattr(torch, "autocast", autocast)
+    for flags in (torch.backends.cuda.matmul, torch.backends.cudnn):
+        monkeypatch.setattr(flags, "allow_tf32", flags.allow_tf32)
+    monkeypatch.setattr(torch.backends.cudnn, "benchmark", torch.backends.cudnn.benchmark)
+    Precision("bf16", torch.device("cuda"), sees_images=False).autocast()
+    assert not begun
+    Precision("bf16", torch.device("cuda")).autocast()
+    assert begun == [("cuda", torch.bfloat16)]
 
 
 def test_memory_does_not_cross_the_start_of_an_episode() -> None:

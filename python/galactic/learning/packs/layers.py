@@ -8,8 +8,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from galactic.learning.encoders import ResidualBlock, SpaceToDepth, Tanh
-from galactic.learning.policies.networks import HeadLinear, Policy
+from galactic.learning.encoders import FullLinear, ResidualBlock, SpaceToDepth, Tanh
+from galactic.learning.policies.networks import Policy
 from galactic.learning.policies.normalization import MOST
 from galactic.learning.refusals import CheckpointError
 
@@ -39,7 +39,7 @@ class Layers:
             for part in module:
                 x = self.module(part, x)
             return x
-        if computes_as(module, nn.Linear, HeadLinear):
+        if computes_as(module, nn.Linear, FullLinear):
             weight, bias = numbers_of(module.weight), numbers_of(module.bias)
             return self.add("linear", x, outputs=module.out_features, weight=weight, bias=bias)
         if computes_as(module, nn.Conv2d):

@@ -9,8 +9,8 @@ Every policy is the same plain chain, kept in these attributes so that an export
     blinkers    Blinkers: keeps from the actor what the critic alone sees, or None
     encoder     inputs -> features
     rnn         nn.GRU of one layer, or None
-    action      ActorHead: one HeadLinear for means, log-stds (unless those are a parameter), decisions
-    critic      HeadLinear: the value
+    action      ActorHead: one FullLinear for means, log-stds (unless those are a parameter), decisions
+    critic      FullLinear: the value
 
 A policy without `rnn` (class FeedForwardPolicy) has two encoders, `encoder` for the actor and
 `value_encoder` for the critic, which share nothing but what is before them. One with `rnn` has a
@@ -32,6 +32,7 @@ from galactic.learning.encoders import (
     FEATURES,
     DepthCNN,
     Encoder,
+    FullLinear,
     Inputs,
     ResNet,
     SimpleCNN,
@@ -109,15 +110,6 @@ class Blinkers(nn.Module):
         return seen.index_select(-1, self.aside)
 
 
-class HeadLinear(nn.Linear):
-    """A linear layer in float32, even where the layers before it are computed in bfloat16: values of 8
-    bits would blur advantages, and log-stds of 8 bits the ratios of probabilities."""
-
-    def forward(self, input: Tensor) -> Tensor:
-        with torch.autocast(input.device.type, enabled=False):
-            return super().forward(input.float())
-
-
 class ActorHead(nn.Module):
     """Features [..., F] -> ActionDistribution. One linear layer, so one multiplication.
 
@@ -136,7 +128,7 @@ class ActorHead(nn.Module):
         if initial_log_std is not None:
             self.log_std = nn.Parameter(torch.full((shape.motions,), initial_log_std))
         rows = shape.motions * (2 if self.log_std is None else 1) + 2 * DECISIONS
-        self.linear = HeadLinear(features, rows)
+        self.linear = FullLinear(features, rows)
         orthogonal(self.linear, 0.01)
 
     def forward(self, features: Tensor) -> ActionDistribution:
@@ -235,7 +227,7 @@ class FeedForwardPolicy(Policy):
         self.encoder = perceptron(seen - shape.apart, width, layers, activation)
         self.value_encoder = perceptron(seen, width, layers, activation)
         self.action = ActorHead(width, shape, initial_log_std, odds_limit)
-        self.critic = orthogonal(HeadLinear(width, 1), 1.0)
+        self.critic = orthogonal(FullLinear(width, 1), 1.0)
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         seen = self._seen(inputs)
@@ -268,7 +260,7 @@ class RecurrentPolicy(Policy):
         self.value_encoder: Optional[nn.Module] = None
         if shape.critic_only:
             self.value_encoder = perceptron(width + shape.apart, width, 1, "tanh")
-        self.critic = orthogonal(HeadLinear(width, 1), 1.0)
+        self.critic = orthogonal(FullLinear(width, 1), 1.0)
         for name, parameter in self.rnn.named_parameters():
             if "weight" in name:
                 nn.init.orthogonal_(parameter)
@@ -299,7 +291,7 @@ class EncoderPolicy(Policy):
         self.value_encoder: Optional[nn.Module] = None
         if shape.critic_only:
             self.value_encoder = perceptron(width + shape.apart, width, 1, "tanh")
-        self.critic = orthogonal(HeadLinear(width, 1), 1.0)
+        self.critic = orthogonal(FullLinear(width, 1), 1.0)
 
     def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
         seen = self._seen(inputs)

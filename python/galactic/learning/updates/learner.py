@@ -25,7 +25,9 @@ class Learner:
         self.policy = policy
         self.settings = settings
         self.group = group
-        self.precision = Precision(settings.precision, group.device)
+        self.precision = Precision(
+            settings.precision, group.device, sees_images=bool(settings.sight)
+        )
         self.optimizer = FlatAdam(policy, settings.learning_rate, settings.adam_epsilon)
         self.rate = PacedRate(settings.target_kl)
         self.share_policy()

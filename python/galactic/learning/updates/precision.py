@@ -9,14 +9,14 @@ import torch
 
 
 class Precision:
-    """How networks are computed: `fp32`; `tf32`: multiplications with 10 bits of mantissa; `bf16`: what is
-    before the memory in bfloat16, memory and heads (multiplied as with `tf32`), losses and parameters in
-    float32. On processors all are fp32."""
+    """How networks are computed: `fp32`; `tf32`: multiplications with 10 bits of mantissa; `bf16`: of what
+    `sees_images`, that is before the memory in bfloat16, but for FullLinear layers; these and the memory
+    (multiplied as with `tf32`), losses and parameters in float32. On processors all are fp32."""
 
-    def __init__(self, name: str, device: torch.device):
+    def __init__(self, name: str, device: torch.device, *, sees_images: bool = True):
         self.tunes = device.type == "cuda"
         """Whether convolutions are timed anew for each shape of what they are given: see cudnn.benchmark."""
-        self._bf16 = name == "bf16" and device.type == "cuda"
+        self._bf16 = name == "bf16" and device.type == "cuda" and sees_images
         if device.type == "cuda":
             quick = name in ("tf32", "bf16")
             torch.backends.cuda.matmul.allow_tf32 = quick
