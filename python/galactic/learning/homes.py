@@ -207,11 +207,9 @@ class Homes:
         """How episodes ended in the last step, as numbers of EpisodeEnd; [n]."""
         return self._landings[half]["endings"]
 
-    def base_position(self, env: int) -> np.ndarray:
-        """Where the base of a robot stands, on the floor plane: x and z, meters."""
-        half, row = divmod(env, self.count // len(self.halves))
-        place = self.env.simulators[half].env_state(row).world_from_root.translation
-        return np.array([place[0], place[2]])
+    def base_positions(self) -> np.ndarray:
+        """Where the bases of all robots stand, on the floor plane: x and z, meters, float32 [n, 2]."""
+        return self.env.env_states().world_from_root.translation[:, [0, 2]]
 
     def collisions(self, env: int) -> tuple[int, int]:
         """Steps of an env so far in which its robot was refused, and in which it slid."""

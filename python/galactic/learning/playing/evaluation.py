@@ -181,13 +181,15 @@ class Evaluator:
             if waiting:
                 wanted[int(env)] = waiting.pop()
         homes.begin_episodes(wanted, self._seen)
+        places = homes.base_positions() if details and wanted else None
         for env, episode in wanted.items():
             self._played[env] = _Played(episode)
-            if details:
-                place, collisions = homes.base_position(env), homes.collisions(env)
-                self._played[env] = _Played(episode, place, collisions)
+            if places is not None:
+                self._played[env] = _Played(episode, places[env], homes.collisions(env))
 
     def _follow(self, step: Step, ended: np.ndarray, details: bool) -> None:
+        places = self._homes.base_positions() if details else None
+        holds = self._seen.state[:, self._holding].numpy() != 0.0
         for env, one in enumerate(self._played):
             if one is None:
                 continue
@@ -203,10 +205,9 @@ class Evaluator:
                 result.measures = {name: float(row[env]) for name, row in step.measures.items()}
                 if details:
                     one.finish(self._homes.collisions(env))
-            elif details:
+            elif places is not None:
                 # Behind its end, the env is in the next episode.
-                holds = bool(self._seen.state[env, self._holding])
-                one.follow(self._homes.base_position(env), holds)
+                one.follow(places[env], bool(holds[env]))
 
 
 class _Played:
