@@ -1,7 +1,7 @@
 """The compiled part of galactic. Its docstrings say what arrays hold; shapes stand beside types."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
 from typing import Any, Literal, TypedDict
 
@@ -350,7 +350,9 @@ class DeviceArray:
 
 class Renderer:
     OPTIONS: tuple[str, ...]  # what its keywords are called
+    DEFAULTS: Mapping[str, Any]  # what they are where they are left out
     NOISE_OPTIONS: tuple[str, ...]  # those of noise and jitter
+    NOISE_LIMITS: Mapping[str, float]  # and the largest value of each
     def __init__(
         self,
         simulator: Simulator,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galactic import demonstrations, files, spaces
-from galactic._core import EpisodeEnd, ErrorCode
+from galactic._core import EpisodeEnd, ErrorCode, Renderer
 from galactic.demonstrations import OBSERVED, About, Demonstration
 from galactic.errors import Error
 from galactic.half_batch import Observations
@@ -28,16 +28,16 @@ EPISODES_WITH_IMAGES = 64
 # What a VectorEnv says itself, and no option of its simulators.
 _OF_VECTOR_ENV = ("envs", "seed", "order", "rank", "ranks")
 # Options of a Renderer by which images are alike, but for their noise.
-_CAMERA: Mapping[str, Any] = {
-    "color": "rgb",
-    "camera": "head",
-    "fov_degrees": 0.0,
-    "position": (0.0, 0.0, 0.0),
-    "rpy_degrees": (0.0, 0.0, 0.0),
-    "near": 0.0,
-    "width": 128,
-    "height": 128,
-}
+_CAMERA = (
+    "color",
+    "camera",
+    "fov_degrees",
+    "position",
+    "rpy_degrees",
+    "near",
+    "width",
+    "height",
+)
 
 
 class DemonstrationWriter:
@@ -323,17 +323,17 @@ def _about(env: VectorEnv, expert: str, world: str) -> About:
 
 def _camera_of(images: Mapping[str, Any]) -> dict[str, Any]:
     """Options of a camera, those of _CAMERA, as JSON has them."""
-    given = {**_CAMERA, **images}
+    given = {**Renderer.DEFAULTS, **images}
     if given["color"] not in ("rgb", None):
         raise ValueError(f"env draws {given['color']!r}, expected images with color='rgb' or None")
-    return {
-        name: [float(one) for one in given[name]]
-        if isinstance(default, tuple)
-        else None
-        if given[name] is None
-        else type(default)(given[name])
-        for name, default in _CAMERA.items()
-    }
+    camera: dict[str, Any] = {}
+    for name in _CAMERA:
+        value, default = given[name], Renderer.DEFAULTS[name]
+        if isinstance(default, tuple):
+            camera[name] = [float(one) for one in value]
+        else:
+            camera[name] = None if value is None else type(default)(value)
+    return camera
 
 
 def write_part(part: pathlib.Path, episodes: Sequence[Demonstration]) -> None:

@@ -55,38 +55,70 @@ std::array<float, 3> threeOf(const char* name, const py::handle& value) {
   return {given.at(0), given.at(1), given.at(2)};
 }
 
-using Keyword = std::pair<std::string_view, void (*)(CameraOptions&, const py::handle&)>;
+py::object nameOf(ColorFormat color) {
+  if (color == ColorFormat::kNone) return py::none();
+  return py::str(color == ColorFormat::kRgb8 ? "rgb" : "rgba");
+}
 
-/// What takes the value of each keyword of Renderer.
+py::object tupleOf(const std::array<float, 3>& three) {
+  return py::make_tuple(three[0], three[1], three[2]);
+}
+
+/// A keyword of Renderer: what takes its value, and what has it.
+struct Keyword {
+  std::string_view name;
+  void (*take)(CameraOptions&, const py::handle&);
+  py::object (*value)(const CameraOptions&);
+};
+
 constexpr Keyword kKeywords[] = {
-    {"width", [](CameraOptions& o, const py::handle& v) { o.render.width = edgeOf("width", v); }},
-    {"height",
-     [](CameraOptions& o, const py::handle& v) { o.render.height = edgeOf("height", v); }},
-    {"color", [](CameraOptions& o, const py::handle& v) { o.render.color = colorOf(v); }},
-    {"depth", [](CameraOptions& o, const py::handle& v) { o.render.depth = truthOf("depth", v); }},
+    {"width", [](CameraOptions& o, const py::handle& v) { o.render.width = edgeOf("width", v); },
+     [](const CameraOptions& o) -> py::object { return py::int_(o.render.width); }},
+    {"height", [](CameraOptions& o, const py::handle& v) { o.render.height = edgeOf("height", v); },
+     [](const CameraOptions& o) -> py::object { return py::int_(o.render.height); }},
+    {"color", [](CameraOptions& o, const py::handle& v) { o.render.color = colorOf(v); },
+     [](const CameraOptions& o) { return nameOf(o.render.color); }},
+    {"depth", [](CameraOptions& o, const py::handle& v) { o.render.depth = truthOf("depth", v); },
+     [](const CameraOptions& o) -> py::object { return py::bool_(o.render.depth); }},
     {"semantics",
      [](CameraOptions& o, const py::handle& v) {
        const bool of_objects = py::isinstance<py::str>(v) && v.cast<std::string>() == "objects";
        o.ids = of_objects ? ObjectIds::kObjects : ObjectIds::kNames;
        o.render.semantics = of_objects || truthOf("semantics", v, "True, False or objects");
+     },
+     [](const CameraOptions& o) -> py::object {
+       if (o.render.semantics && o.ids == ObjectIds::kObjects) return py::str("objects");
+       return py::bool_(o.render.semantics);
      }},
     {"camera",
      [](CameraOptions& o, const py::handle& v) {
        o.camera.name = wordOf("camera", v, "head, follow, top or a link");
-     }},
+     },
+     [](const CameraOptions& o) -> py::object { return py::str(o.camera.name); }},
     {"fov_degrees",
      [](CameraOptions& o, const py::handle& v) {
        o.camera.fov_degrees = static_cast<float>(numberOf("fov_degrees", v));
-     }},
+     },
+     [](const CameraOptions& o) -> py::object { return py::float_(o.camera.fov_degrees); }},
     {"position",
-     [](CameraOptions& o, const py::handle& v) { o.camera.position = threeOf("position", v); }},
-    {"rpy_degrees", [](CameraOptions& o,
-                       const py::handle& v) { o.camera.rpy_degrees = threeOf("rpy_degrees", v); }},
-    {"near", [](CameraOptions& o,
-                const py::handle& v) { o.camera.near = static_cast<float>(numberOf("near", v)); }},
-    {"backend", [](CameraOptions& o, const py::handle& v) { o.render.backend = backendOf(v); }},
-    {"device", [](CameraOptions& o, const py::handle& v) { o.render.device = deviceOf(v); }},
-    {"threads", [](CameraOptions& o, const py::handle& v) { o.render.threads = threadsOf(v); }},
+     [](CameraOptions& o, const py::handle& v) { o.camera.position = threeOf("position", v); },
+     [](const CameraOptions& o) { return tupleOf(o.camera.position); }},
+    {"rpy_degrees",
+     [](CameraOptions& o, const py::handle& v) {
+       o.camera.rpy_degrees = threeOf("rpy_degrees", v);
+     },
+     [](const CameraOptions& o) { return tupleOf(o.camera.rpy_degrees); }},
+    {"near",
+     [](CameraOptions& o, const py::handle& v) {
+       o.camera.near = static_cast<float>(numberOf("near", v));
+     },
+     [](const CameraOptions& o) -> py::object { return py::float_(o.camera.near); }},
+    {"backend", [](CameraOptions& o, const py::handle& v) { o.render.backend = backendOf(v); },
+     [](const CameraOptions& o) -> py::object { return py::str(backendName(o.render.backend)); }},
+    {"device", [](CameraOptions& o, const py::handle& v) { o.render.device = deviceOf(v); },
+     [](const CameraOptions& o) -> py::object { return py::str(o.render.device); }},
+    {"threads", [](CameraOptions& o, const py::handle& v) { o.render.threads = threadsOf(v); },
+     [](const CameraOptions& o) -> py::object { return py::int_(o.render.threads); }},
 };
 
 /// What the keyword of an option is called.
@@ -97,17 +129,23 @@ std::string keywordOf(const SensorOption<Options>& option) {
   return name;
 }
 
-/// Those that make images other than they are, and cameras other than they should be.
+/// Calls `f` with each option that makes images other than they are, or cameras other than they
+/// should be.
+template <class F>
+void forEachNoise(F&& f) {
+  for (const auto& option : kImageNoiseOptions) f(option);
+  for (const auto& option : kCameraJitterOptions) f(option);
+}
+
 std::vector<std::string> noiseNames() {
   std::vector<std::string> names;
-  for (const auto& option : kImageNoiseOptions) names.push_back(keywordOf(option));
-  for (const auto& option : kCameraJitterOptions) names.push_back(keywordOf(option));
+  forEachNoise([&](const auto& option) { names.push_back(keywordOf(option)); });
   return names;
 }
 
 std::vector<std::string> keywordNames() {
   std::vector<std::string> names;
-  for (const auto& [name, take] : kKeywords) names.emplace_back(name);
+  for (const Keyword& keyword : kKeywords) names.emplace_back(keyword.name);
   std::ranges::move(noiseNames(), std::back_inserter(names));
   return names;
 }
@@ -126,17 +164,16 @@ bool takeSensorOption(const std::array<SensorOption<Options>, count>& table,
 
 /// Whether it is a keyword, whose value `options` has then.
 bool takeKeyword(const std::string& keyword, const py::handle& value, CameraOptions& options) {
-  const auto* known = std::ranges::find(kKeywords, std::string_view(keyword), &Keyword::first);
+  const auto* known = std::ranges::find(kKeywords, std::string_view(keyword), &Keyword::name);
   if (known != std::end(kKeywords)) {
-    known->second(options, value);
+    known->take(options, value);
     return true;
   }
   return takeSensorOption(kImageNoiseOptions, keyword, value, options.render.noise) ||
          takeSensorOption(kCameraJitterOptions, keyword, value, options.camera.jitter);
 }
 
-/// The keywords of Renderer, with their defaults.
-CameraOptions optionsFrom(const py::kwargs& keywords) {
+CameraOptions defaultOptions() {
   CameraOptions options;
   options.render.color = ColorFormat::kRgb8;
   options.camera = {.name = "head",
@@ -148,6 +185,35 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
                                 .jitter = "camera_jitter",
                                 .jitter_degrees = "camera_jitter_degrees",
                                 .jitter_fov = "camera_jitter_fov"}};
+  return options;
+}
+
+/// A dictionary that nobody changes.
+py::object readOnly(const py::dict& dictionary) {
+  return py::module_::import("types").attr("MappingProxyType")(dictionary);
+}
+
+/// What a keyword that is left out is, by its name.
+py::object defaults() {
+  const CameraOptions options = defaultOptions();
+  py::dict values;
+  for (const Keyword& keyword : kKeywords) {
+    values[py::str(std::string(keyword.name))] = keyword.value(options);
+  }
+  for (const std::string& name : noiseNames()) values[py::str(name)] = 0.0;
+  return readOnly(values);
+}
+
+/// The largest value of each keyword of noise.
+py::object noiseLimits() {
+  py::dict limits;
+  forEachNoise([&](const auto& option) { limits[py::str(keywordOf(option))] = option.most; });
+  return readOnly(limits);
+}
+
+/// The keywords of Renderer, with their defaults.
+CameraOptions optionsFrom(const py::kwargs& keywords) {
+  CameraOptions options = defaultOptions();
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     if (!takeKeyword(name, value, options)) refuseKeyword(name, keywordNames());
@@ -221,6 +287,8 @@ void bindRenderer(py::module_& module) {
       "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.";
   type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
   type.attr("NOISE_OPTIONS") = py::tuple(py::cast(noiseNames()));
+  type.attr("NOISE_LIMITS") = noiseLimits();
+  type.attr("DEFAULTS") = defaults();
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"
            "out: arrays by name that are drawn to, of exactly the images' shape and type; what it\n"

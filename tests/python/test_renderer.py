@@ -1,6 +1,9 @@
 """Renderer: its images, where they are drawn to, and what is refused."""
 
+import ast
 import gc
+import os
+import pathlib
 import pickle
 
 import numpy as np
@@ -222,6 +225,34 @@ def test_fields_of_view_that_show_nothing_are_refused(world, simulator, fov):
         Renderer(simulator, **CAMERA, fov_degrees=fov)
     with pytest.raises(Error, match=message):
         VectorEnv(world, 2, images={**CAMERA, "fov_degrees": fov})
+
+
+def test_what_is_left_out_is_what_the_defaults_say(simulator):
+    assert tuple(Renderer.DEFAULTS) == Renderer.OPTIONS
+    plain, said = Renderer(simulator), Renderer(simulator, **Renderer.DEFAULTS)
+    assert plain.shapes == said.shapes and plain.description == said.description
+    for name, image in plain.render().items():
+        np.testing.assert_array_equal(image, said.render()[name])
+    with pytest.raises(TypeError):
+        Renderer.DEFAULTS["width"] = 64
+
+
+def test_type_checkers_are_told_the_same_defaults():
+    types = pathlib.Path(os.environ["GALACTIC_SOURCE_DIR"], "python/galactic/_core.pyi")
+    classes = {c.name: c for c in ast.parse(types.read_text()).body if isinstance(c, ast.ClassDef)}
+    (made,) = (f for f in classes["Renderer"].body if getattr(f, "name", "") == "__init__")
+    told = {
+        name.arg: ast.literal_eval(value)
+        for name, value in zip(made.args.kwonlyargs, made.args.kw_defaults)
+    }
+    assert told == dict(Renderer.DEFAULTS)
+
+
+def test_noise_above_its_limits_is_refused(simulator):
+    assert tuple(Renderer.NOISE_LIMITS) == Renderer.NOISE_OPTIONS
+    for name, most in Renderer.NOISE_LIMITS.items():
+        with pytest.raises(Error, match=f"{name}: is .*expected .* to {most:g}"):
+            Renderer(simulator, **CAMERA, **{name: 1.001 * most})
 
 
 def test_the_widest_field_of_view_and_that_of_the_camera_show_something(simulator):

@@ -24,6 +24,7 @@ from galactic.learning.simulation_words import is_robot_noise, latest_words
 COLOR_NOISE = ("color_noise", "light_jitter")
 # All that make the images of training unlike those that policies are judged by.
 CAMERA_NOISE = galactic.Renderer.NOISE_OPTIONS
+_MOST_NOISE = galactic.Renderer.NOISE_LIMITS
 # Options of galactic.Renderer, and the settings that they are taken from.
 CAMERA = {
     "camera": "camera",
@@ -137,18 +138,23 @@ class Settings:
         "Network",
         "standard deviation of the depth that the network sees, at 1 m, meters; it grows with depth squared",
         low=0.0,
-        high=1.0,
+        high=_MOST_NOISE["depth_noise"],
         may_be_range=True,
     )
     depth_dropout: Drawn = setting(
-        0.0, "Network", "share of the pixels without depth", low=0.0, high=1.0, may_be_range=True
+        0.0,
+        "Network",
+        "share of the pixels without depth",
+        low=0.0,
+        high=_MOST_NOISE["depth_dropout"],
+        may_be_range=True,
     )
     color_noise: Drawn = setting(
         0.0,
         "Network",
         "standard deviation of each channel of color, levels of 255",
         low=0.0,
-        high=255.0,
+        high=_MOST_NOISE["color_noise"],
         may_be_range=True,
     )
     light_jitter: Drawn = setting(
@@ -156,7 +162,7 @@ class Settings:
         "Network",
         "colors of an episode are multiplied by a number from 1 - this to 1 + this",
         low=0.0,
-        high=1.0,
+        high=_MOST_NOISE["light_jitter"],
         may_be_range=True,
     )
     camera_jitter: Drawn = setting(
@@ -164,7 +170,7 @@ class Settings:
         "Network",
         "how far the camera may be from its place in an episode, along each of its axes, meters",
         low=0.0,
-        high=1.0,
+        high=_MOST_NOISE["camera_jitter"],
         may_be_range=True,
     )
     camera_jitter_degrees: Drawn = setting(
@@ -172,7 +178,7 @@ class Settings:
         "Network",
         "the same of its roll, pitch and yaw, degrees",
         low=0.0,
-        high=180.0,
+        high=_MOST_NOISE["camera_jitter_degrees"],
         may_be_range=True,
     )
     camera_jitter_fov: Drawn = setting(
@@ -180,7 +186,7 @@ class Settings:
         "Network",
         "the same of its vertical field of view, degrees",
         low=0.0,
-        high=90.0,
+        high=_MOST_NOISE["camera_jitter_fov"],
         may_be_range=True,
     )
     recurrent: bool = setting(

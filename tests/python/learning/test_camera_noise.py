@@ -139,3 +139,10 @@ def test_a_run_with_noise_goes_on_as_if_it_had_not_been_paused(tmp_path: pathlib
     run("train", "-o", paused, "--resume")
     run("train", "-o", plain, *words)
     assert curve(whole) == curve(paused) != curve(plain)
+
+
+def test_settings_take_the_noise_that_the_renderer_takes() -> None:
+    for name, most in galactic.Renderer.NOISE_LIMITS.items():
+        assert getattr(Settings(network="simple_cnn", **{name: most}), name) == most
+        with pytest.raises(SettingsError, match=f"{name}: found .*, expected .* to {most:g}"):
+            Settings(network="simple_cnn", **{name: 1.001 * most})

@@ -129,7 +129,7 @@ def _limited(layers: Layers, limit: float, logits: int) -> int:
 
 def image_of(options: Mapping[str, Any]) -> dict[str, Any]:
     """What a camera with these options of galactic.Renderer draws, as _core.write_policy_pack() wants it."""
-    seen = {**_CAMERA, **options}
+    seen = {**_core.Renderer.DEFAULTS, **options}
     return {
         "width": seen["width"],
         "height": seen["height"],
@@ -144,17 +144,3 @@ def image_of(options: Mapping[str, Any]) -> dict[str, Any]:
         "rpy_degrees": seen["rpy_degrees"],
         "near": seen["near"],
     }
-
-
-# Where galactic.Renderer is not told otherwise.
-_CAMERA: Mapping[str, Any] = {
-    "width": 128,
-    "height": 128,
-    "color": "rgb",
-    "depth": True,
-    "camera": "head",
-    "fov_degrees": 0.0,
-    "position": (0.0, 0.0, 0.0),
-    "rpy_degrees": (0.0, 0.0, 0.0),
-    "near": 0.0,
-}
