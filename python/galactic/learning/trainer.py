@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pathlib
 import signal
-from typing import Any, Callable, ContextManager, Optional, Union
+from typing import Any, Callable, ContextManager, Optional
 
 import torch
 
@@ -21,6 +21,7 @@ from galactic.learning.reports.run_reports import RunReports
 from galactic.learning.rollouts.collector import Collector, CollectorOptions
 from galactic.learning.rollouts.environments import Environments
 from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames, RecentEpisodes
+from galactic.learning.rollouts.rollout import RolloutSource
 from galactic.learning.rollouts.stopwatch import RunClock
 from galactic.learning.saving import checkpoint, older
 from galactic.learning.saving.checkpoint import SavedPolicy, new_policy
@@ -65,8 +66,8 @@ class Trainer:
         self.validation = validation
         self.names = OwnNames(tuple(envs.measures), tuple(envs.logs))
         torch.manual_seed(settings.seed)
-        self.parts: list[tuple[str, int]] = list(getattr(envs, "parts", []))
-        self.meanings: dict[str, Any] = dict(getattr(envs, "meanings", {}))
+        self.parts: list[tuple[str, int]] = list(envs.parts)
+        self.meanings: dict[str, Any] = dict(envs.meanings)
         self.shape = PolicyShape(
             envs.state_size,
             envs.motions,
@@ -81,7 +82,7 @@ class Trainer:
         if envs.images:
             self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.learner: Learner
-        self.source: Union[Collector, Streams]
+        self.source: RolloutSource
         if demonstrations is not None:
             observed = Observed(self.parts, self.meanings, envs.motions)
             require_same(demonstrations, settings, observed, envs.images)
@@ -270,7 +271,7 @@ class Trainer:
         self.reports.tell_update(
             self._row(losses),
             self.recent.figures(),
-            imitates=isinstance(self.source, Streams),
+            imitates=not self.source.plays_episodes,
             is_last=is_last,
         )
 

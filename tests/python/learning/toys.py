@@ -23,6 +23,8 @@ class ReachAndGrasp:
     decides_terminate = False
     measures: Sequence[str] = ()
     logs: Sequence[str] = ()
+    parts: Sequence[tuple[str, int]] = ()
+    meanings: Mapping[str, object] = {}
     progress = 0.0
 
     def __init__(self, count: int, halves: int = 1, seed: int = 1, first_env: int = 0,

@@ -44,6 +44,7 @@ class Collector:
 
     PHASES = ("inference", "sending", "simulation", "post-processing")
     """What the stopwatch measures of a rollout; "simulation" is what is waited for it."""
+    plays_episodes = True
 
     def __init__(self, envs: Environments, policy: Policy, options: CollectorOptions,
                  precision: Precision, device: torch.device):  # fmt: skip

@@ -60,6 +60,14 @@ class Environments(Protocol):
     logs: Sequence[str]  # and of each step
     progress: float  # what it is told of how much of the training is over, 0 to 1
 
+    @property
+    def parts(self) -> Sequence[tuple[str, int]]:
+        """Names and sizes of what a row of the state is made of, for those who use the policy; or none."""
+
+    @property
+    def meanings(self) -> Mapping[str, Any]:
+        """Options of the simulation by which numbers of these parts mean one thing or another."""
+
     def reset(self, into: Observation) -> None:
         """Starts all envs on their first episodes, and writes what they see: rows of all envs."""
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Mapping, Optional
+from typing import Callable, Mapping, Optional, Protocol
 
 import torch
 from torch import Tensor
 
 from galactic.learning.encoders import Inputs
 from galactic.learning.rollouts.environments import Observation
+from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.rollouts.stopwatch import Stopwatch
 
 
 @dataclass
@@ -81,6 +83,41 @@ class Rollout:
             before[start:] = self.actions[first + start - 1 : last - 1, envs].clamp(-1.0, 1.0)
             before *= (~self.starts[first:last, envs]).unsqueeze(-1)
         return Inputs(self.state[first:last, envs], part(self.rgb), part(self.depth), before)
+
+
+class RolloutSource(Protocol):
+    """What fills rollouts for the trainer: a policy that acts, or demonstrations."""
+
+    episodes: EpisodeSums
+    """Of those that ended in the latest rollout."""
+    stopwatch: Stopwatch
+
+    @property
+    def PHASES(self) -> tuple[str, ...]:
+        """What the stopwatch measures of a rollout."""
+
+    @property
+    def plays_episodes(self) -> bool:
+        """Whether there are episodes of the policy's, of which the curves can tell how they went."""
+
+    @property
+    def waiting(self) -> int:
+        """How many envs have not finished an episode since reset()."""
+
+    def reset(self) -> None:
+        """Begins at the first step."""
+
+    def collect(
+        self, update: int, should_stop: Callable[[int], bool] = lambda step: False
+    ) -> Rollout:
+        """The next rollout, of the update with this number: its full length, or until should_stop(step) where it
+        plays. Overwritten by the next call."""
+
+    def state_dict(self) -> dict[str, Tensor]:
+        """All that the next collect() depends on, but for the policy."""
+
+    def load_state_dict(self, state: dict[str, Tensor]) -> None:
+        """Goes on from there. Raises ValueError where the state is another source's."""
 
 
 def advantages(rewards: Tensor, values: Tensor, ends: Tensor, gamma: float, lam: float) -> Tensor:

@@ -45,6 +45,7 @@ class Streams:
     after the other. Each rank has a share of the episodes, and shuffles it anew for each pass."""
 
     PHASES = ("reading",)
+    plays_episodes = False
 
     def __init__(
         self, demonstrations: Demonstrations, settings: Settings, policy: Policy, group: Group
