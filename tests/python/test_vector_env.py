@@ -419,7 +419,7 @@ def test_envs_that_have_had_their_share_are_idle(world, draw_actions, halves):
     env.recv(0)
 
 
-def test_halves_are_idle_after_a_step_in_which_one_failed(world, draw_actions, monkeypatch):
+def test_no_half_goes_on_alone_after_a_step_in_which_one_failed(world, draw_actions, monkeypatch):
     env = VectorEnv(world, ENVS, halves=2, **OPTIONS)
 
     def fail(*arguments):
@@ -429,7 +429,11 @@ def test_halves_are_idle_after_a_step_in_which_one_failed(world, draw_actions, m
         broken.setattr(env._halves[0], "step", fail)
         env.step(draw_actions(ENVS, 8))
     assert [one.statistics()["steps"] for one in env.simulators] == [0, ENVS // 2]
+    with pytest.raises(RuntimeError, match=r"has cut off .*; reset\(\) all envs"):
+        env.step(draw_actions(ENVS, 8))
+    env.reset()
     env.step(draw_actions(ENVS, 8))
+    assert env.env_states().step.tolist() == ENVS * [1]
 
 
 @pytest.mark.parametrize(
