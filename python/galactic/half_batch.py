@@ -15,7 +15,7 @@ from galactic._core import EpisodeTally, ErrorCode, Renderer, Simulator, World
 from galactic.cameras import Cameras
 from galactic.env_states import EnvStates
 from galactic.errors import Error
-from galactic.step_events import StepEvents
+from galactic.step_events import StepEvents, masked
 from galactic.task import Placements, Task
 from galactic.task_runner import TaskRunner, options_of
 
@@ -396,8 +396,7 @@ class HalfBatch:
         """What a task of one's own says of each step, of the envs that are `playing`."""
         if self._task is None or not self._task.logs:
             return {}
-        masks = {f"_{name}": playing for name in self._task.logs}
-        return {"log": {**self._task.logs, **masks}, "_log": playing}
+        return masked({"log": masked(self._task.logs, playing)}, playing)
 
     def blank_infos(self) -> dict[str, Any]:
         """The infos of a step in which episodes ended, but none of these envs'."""
@@ -416,26 +415,20 @@ class HalfBatch:
         final_obs = np.full(len(ended), None, object)
         for row, env in enumerate(which):
             final_obs[env] = _row(last, row)
-        episode = {"r": sums.pop("r"), "_r": ended, "l": sums.pop("l"), "_l": ended}
+        episode = {"r": sums.pop("r"), "l": sums.pop("l")}
         now = time.perf_counter()
         took = np.where(ended, now - self._began, 0.0)
         self._began[which] = now
-        final_info = {"episode": episode, "_episode": ended}
-        for name, values in {**sums, **more}.items():
-            final_info[name] = values
-            final_info["_" + name] = ended
-        return {
-            "final_obs": final_obs,
-            "_final_obs": ended,
-            "final_info": final_info,
-            "_final_info": ended,
-            "episode": {
-                **{name: values.copy() for name, values in episode.items()},
-                "t": took,
-                "_t": ended,
+        timed = {**{name: values.copy() for name, values in episode.items()}, "t": took}
+        final_info: dict[str, Any] = {"episode": masked(episode, ended), **sums, **more}
+        return masked(
+            {
+                "final_obs": final_obs,
+                "final_info": masked(final_info, ended),
+                "episode": masked(timed, ended),
             },
-            "_episode": ended,
-        }
+            ended,
+        )
 
 
 def _unbounded(size: int) -> spaces.Space:

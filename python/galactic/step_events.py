@@ -1,7 +1,8 @@
-"""What happened to each env in a step, as arrays: for those who ask."""
+"""What happened to each env in a step, as infos: for those who ask."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -37,5 +38,13 @@ class StepEvents:
             event: now[counted] > self._before[counted] for event, counted in _COUNTED.items()
         }
         events["touched"] = events["refused"] | events["slid"]
-        masks = {f"_{name}": playing for name in events}
-        return {"events": {**events, **masks}, "_events": playing}
+        return masked({"events": masked(events, playing)}, playing)
+
+
+def masked(infos: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
+    """Infos, each beside a mask of its own: who changes one of them changes no other."""
+    both: dict[str, Any] = {}
+    for name, values in infos.items():
+        both[name] = values
+        both[f"_{name}"] = mask.copy()
+    return both

@@ -1,11 +1,12 @@
 """VectorEnv step by step against the simulator, and what Gymnasium 1.x asks of it."""
 
+import itertools
 import multiprocessing
 
 import numpy as np
 import pytest
 
-from galactic import EpisodeEnd, Error, Renderer, Simulator, VectorEnv, reached
+from galactic import EpisodeEnd, Error, Outcome, Renderer, Simulator, Task, VectorEnv, reached
 
 ENVS = 24
 OPTIONS = {"threads": 1, "seed": 11, "episode_steps": 35}
@@ -90,6 +91,30 @@ def check_infos(infos, ended, simulator):
         assert final["episode_index"][env] == episode
     for name, nothing in {"ending": 0, "success": 0, "picked": 0, "episode_index": -1}.items():
         assert (final[name][~mask] == nothing).all()
+
+
+@pytest.mark.parametrize("halves", [1, 2])
+def test_no_array_of_infos_is_another_one_as_well(world, draw_actions, halves):
+    class Logging(Task):
+        logs = ("one", "other")
+
+        def step(self, envs):
+            values = envs.observations["time"][:, 0]
+            return Outcome(values.astype(np.float64), logs={"one": values, "other": values})
+
+    def arrays_of(infos):
+        for value in infos.values():
+            yield from arrays_of(value) if isinstance(value, dict) else [value]
+
+    env = VectorEnv(world, 4, threads=1, task=Logging, events=True, halves=halves, episode_steps=3)
+    env.reset()
+    for _ in range(3):
+        infos = env.step(draw_actions(4, 8))[4]
+    assert infos["_episode"].any()
+    arrays = list(arrays_of(infos))
+    assert len(arrays) > 30
+    for one, other in itertools.combinations(arrays, 2):
+        assert not np.shares_memory(one, other)
 
 
 def test_results_stay_as_they_were(world, draw_actions):
