@@ -12,10 +12,39 @@ from galactic.learning.policies.networks import Policy, PolicyShape, make_policy
 from galactic.learning.ranks.distributed import Group
 from galactic.learning.rollouts.collector import Collector, CollectorOptions
 from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.updates.flat_adam import FlatAdam
 from galactic.learning.updates.learner import Learner
 from galactic.learning.updates.ppo import PpoLearner
 from toys import Look
 from trainers import SETTINGS, UPDATE, make_trainer
+
+
+def test_parameters_of_any_strides_stay_what_they_are_and_apart() -> None:
+    numbers = torch.arange(1.0, 65.0)
+    made = {
+        "sliced": numbers.view(4, 16)[:, :5],
+        "expanded": numbers[:1].expand(2, 3),
+        "strided": numbers[::7],
+        "transposed": numbers[:12].view(3, 4).T,
+        "channels_last": numbers.view(4, 4, 2, 2).to(memory_format=torch.channels_last),
+        "last": numbers.view(8, 8)[:, 2:4],
+    }
+    module = torch.nn.ParameterDict({name: torch.nn.Parameter(one) for name, one in made.items()})
+    before = {name: one.clone() for name, one in made.items()}
+    optimizer = FlatAdam(module, 1e-3, 1e-5)
+    places: list[int] = []
+    for name, parameter in module.items():
+        assert torch.equal(parameter, before[name]), name
+        parameter.grad.copy_(before[name])
+        numbered = torch.arange(optimizer.parameters.numel())
+        places += numbered.as_strided(
+            parameter.shape, parameter.stride(), parameter.storage_offset()
+        ).flatten()
+    assert sorted(map(int, places)) == list(range(optimizer.parameters.numel()))
+    # The gradients lie as the parameters do.
+    assert torch.equal(optimizer.gradients, optimizer.parameters)
+    assert module["channels_last"].is_contiguous(memory_format=torch.channels_last)
+    assert not module["channels_last"].is_contiguous()
 
 
 def validate(policy: Policy) -> EpisodeSums:

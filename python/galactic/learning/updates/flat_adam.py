@@ -25,8 +25,10 @@ class FlatAdam:
         self.parameters.grad = self.gradients
         first = 0
         for view in views:
-            # Strides stay as they are: channels_last weights remain so.
-            place = (view.shape, view.stride(), first)
+            # The order of axes in memory stays: channels_last weights remain so. Gaps between elements, which slices of
+            # other tensors have, do not: the next parameter would lie in them.
+            strides = torch.empty_like(view, memory_format=torch.preserve_format).stride()
+            place = (view.shape, strides, first)
             flat = self.parameters.data.as_strided(*place)
             flat.copy_(view.data)
             view.data = flat
