@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pathlib
 import signal
-from typing import Any, Callable, ContextManager, Optional
+from typing import Any, Callable, ContextManager, Mapping, Optional
 
 import torch
 
@@ -24,8 +24,8 @@ from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames, Recen
 from galactic.learning.rollouts.rollout import RolloutSource
 from galactic.learning.rollouts.stopwatch import RunClock
 from galactic.learning.saving import checkpoint, older
-from galactic.learning.saving.checkpoint import SavedPolicy, new_policy
-from galactic.learning.saving.run_folder import CheckpointFolder
+from galactic.learning.saving.checkpoint import SavedPolicy, Score, new_policy
+from galactic.learning.saving.run_folder import BEST, CheckpointFolder
 from galactic.learning.saving.trainer_state import TrainerState, state_of
 from galactic.learning.settings import Settings
 from galactic.learning.updates.imitation import ImitationLearner, Streams, require_same
@@ -108,7 +108,8 @@ class Trainer:
         """What looks on: the same on all ranks, of which the first one calls it."""
         self.steps = 0
         self.updates = 0
-        self.best: Optional[float] = None
+        self.best = Score()
+        """Of best.pt."""
         self.recent = RecentEpisodes(self.names, settings.window, settings.envs * group.size)
         self._interrupted = False
         # What a signal has put off: a validation, and the end that a callback asked for behind it.
@@ -286,22 +287,24 @@ class Trainer:
             )
             found = EpisodeSums.of(self.group.sum(sums).tolist(), self.names)
         row = self.reports.tell_validation(self.steps, found)
-        self._keep_if_best(found.means()["success"])
+        self._keep_if_best(found.means())
         self._must_validate = False
         return row
 
-    def _keep_if_best(self, success: Optional[float]) -> None:
-        """Writes best.pt when none was better; equal ones replace it, being trained longer."""
-        if self.best is not None and (success is None or success < self.best):
+    def _keep_if_best(self, means: Mapping[str, float]) -> None:
+        """Writes best.pt, for a policy whose episodes had these means, when none was better; equal ones replace it,
+        being trained longer."""
+        score = Score(means.get("success"), means.get("return"))
+        if score.is_below(self.best):
             return
-        self.best = success
+        self.best = score
         if self.folder and self.group.rank == 0:
-            checkpoint.save_policy(self._saved_policy(success), self.folder / "best.pt")
+            checkpoint.save_policy(self._saved_policy(score), self.folder / BEST)
 
     def save(self) -> None:
         """Writes a checkpoint; all ranks call it after the same update."""
         if self.validation is None:
-            self._keep_if_best(self.recent.figures().get("success"))
+            self._keep_if_best(self.recent.figures())
         if self.checkpoints is None:
             return
         with self.stopwatch.time("reports"):
@@ -311,7 +314,7 @@ class Trainer:
             folder = self.checkpoints.unfinished(self.steps)
             checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.source.state_dict())
             if self.group.rank == 0:
-                checkpoint.save_policy(self._saved_policy(None), folder / "policy.pt")
+                checkpoint.save_policy(self._saved_policy(Score()), folder / "policy.pt")
                 optimizer = {"optimizer": self.learner.optimizer.state_dict()}
                 checkpoint.save(folder / "trainer.pt", self._state().to_values(), optimizer)
             self.group.wait_for_all()
@@ -344,12 +347,22 @@ class Trainer:
         _, state = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
             self.source.load_state_dict(older.rank_tensors(state))
+        self._take_up_best()
         self.steps = saved.steps
         self.clock.start()
         self.reports.begin_at(self.steps)
 
+    def _take_up_best(self) -> None:
+        """The best.pt that is there may be of after the checkpoint: a worse one is not to take its place."""
+        assert self.folder is not None
+        file = self.folder / BEST
+        if file.exists():
+            self.best = checkpoint.read_score(
+                file, "move it away, and the run keeps the best policy from here on"
+            )
+
     def _take_up_state(self, state: TrainerState) -> None:
-        self.updates, self.best = state.updates, state.best
+        self.updates = state.updates
         self.learner.rate.share = state.rate_share
         self._must_validate = state.must_validate and self._validates
         self._must_end = state.must_end and state.must_validate
@@ -358,23 +371,23 @@ class Trainer:
         self.stopwatch.seconds = dict(state.stopwatch)
         self.clock.take_up(state.seconds, state.processor_seconds)
 
-    def _saved_policy(self, success: Optional[float]) -> SavedPolicy:
+    def _saved_policy(self, score: Score) -> SavedPolicy:
         return SavedPolicy(
             self.policy,
             self.settings,
             self.shape,
             self.parts,
             self.steps,
-            success,
+            score.success,
             self.meanings,
             self.network,
+            score.mean_return,
         )
 
     def _state(self) -> TrainerState:
         return TrainerState(
             ranks=self.group.size,
             updates=self.updates,
-            best=self.best,
             rate_share=self.learner.rate.share,
             must_validate=self._must_validate,
             must_end=self._must_end,
@@ -406,7 +419,8 @@ class Trainer:
                 "seconds": self.clock.seconds,
                 "processor_seconds": self.clock.processor_seconds,
                 "steps_per_second": self.steps / max(self.clock.seconds, 1e-9),
-                "best_success": self.best,
+                "best_success": self.best.success,
+                "best_return": self.best.mean_return,
                 "training": self.recent.figures(),
                 "validation": self.reports.curves.latest_validation(),
                 "timing": self.stopwatch.tables(

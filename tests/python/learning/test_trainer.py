@@ -159,6 +159,7 @@ def write_policy(file: pathlib.Path, **changes: Any) -> None:
         ({"meanings": []}, r"meanings: found \[\], expected dict"),
         ({"steps": "many"}, "steps: found 'many', expected int"),
         ({"success": "left out"}, "success: found nothing, expected float or int or NoneType"),
+        ({"return": "much"}, "return: found 'much', expected float or int or NoneType"),
         ({"policy": []}, "list"),
         ({"policy": {}}, "Missing key"),
     ],
@@ -246,7 +247,6 @@ GONE = "gone"
         ("trainer.pt", {"ranks": 2}, "is of 2 ranks, not 1; start as many"),
         ("trainer.pt", {"ranks": GONE}, "ranks: found nothing, expected int"),
         ("trainer.pt", {"updates": 1.5}, "updates: found 1.5, expected int"),
-        ("trainer.pt", {"best": "most"}, "best: found 'most', expected float or int or NoneType"),
         ("trainer.pt", {"rows": None}, "rows: found None, expected list"),
         (
             "trainer.pt",

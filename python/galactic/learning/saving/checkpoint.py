@@ -12,17 +12,19 @@ and under "values" a JSON text with all else (torch 1.13 reads no plain floats t
                 network_digest  SHA-256 of the file of a network of one's own
                 steps     steps of training
                 success   success rate by which it was judged, or null
+                return    the mean return of the same episodes, or null
 """
 
 from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import pathlib
 import shlex
 from dataclasses import dataclass, field
-from typing import Any, Mapping, Optional, Sequence, Union
+from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
 
 import torch
 from torch import Tensor
@@ -53,9 +55,10 @@ _ANOTHER_POLICY = "take best.pt or a policy.pt of a run"
 
 @dataclass
 class SavedPolicy:
-    """A policy as it was saved. `parts`: names and sizes of the parts of its observations. `meanings`: what
-    their numbers mean (sensors.meaning_of()), as far as that is known. `network`: what has made its network,
-    if that is one of the user's."""
+    """A policy as it was saved. `parts`: names and sizes of the parts of its observations. `success`, `mean_return`:
+    of the episodes by which it was judged; None: it was not. `meanings`: what the numbers of its observations mean
+    (sensors.meaning_of()), as far as that is known. `network`: what has made its network, if that is one of the
+    user's."""
 
     policy: Policy
     settings: Settings
@@ -65,6 +68,22 @@ class SavedPolicy:
     success: Optional[float]
     meanings: Mapping[str, Any] = field(default_factory=dict)
     network: Optional[OwnNetwork] = None
+    mean_return: Optional[float] = None
+
+
+class Score(NamedTuple):
+    """How well a policy did in some episodes: what is not known is None."""
+
+    success: Optional[float] = None
+    mean_return: Optional[float] = None
+
+    def is_below(self, other: "Score") -> bool:
+        """Whether it had fewer successes, or as many and a smaller return, by which tasks without successes are judged.
+        What is not known is below all that is."""
+        ours, theirs = (
+            [-math.inf if one is None else one for one in score] for score in (self, other)
+        )
+        return ours < theirs
 
 
 def new_policy(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, int]] = (),
@@ -101,6 +120,7 @@ def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
         "network_digest": saved.network.digest if saved.network and saved.network.code.file else "",
         "steps": saved.steps,
         "success": saved.success,
+        "return": saved.mean_return,
     }
     save(file, values, {"policy": saved.policy.state_dict()})
 
@@ -123,6 +143,15 @@ def load_policy(file: pathlib.Path, remedy: str = "", network: Optional[OwnNetwo
         else:
             network = _same_network(file, settings, values["network_digest"], network, without)
         return _policy_of(values, tensors["policy"], settings, network)
+
+
+def read_score(file: pathlib.Path, remedy: str) -> Score:
+    """By what the policy of a policy.pt or best.pt was judged. `remedy` is as in load()."""
+    values, _ = load(file, remedy)
+    with refusing(f"{file} is not a policy of this version", remedy):
+        values = older.policy_values(values)
+        require_types(values, _SCORE)
+        return Score(values["success"], values["return"])
 
 
 def read_policy(path: Union[str, pathlib.Path], network: Optional[str] = None) -> SavedPolicy:
@@ -162,14 +191,15 @@ def _same_network(file: pathlib.Path, settings: Settings, digest: str,
 
 
 # Of what is in a policy.pt, and of its shape: types that JSON gives them.
-_POLICY = {
+_SCORE = {"success": (float, int, type(None)), "return": (float, int, type(None))}
+_POLICY: dict[str, Any] = {
     "settings": dict,
     "shape": dict,
     "parts": list,
     "meanings": dict,
     "network_digest": str,
     "steps": int,
-    "success": (float, int, type(None)),
+    **_SCORE,
 }
 _SHAPE = {
     "state": int,
@@ -193,8 +223,17 @@ def _policy_of(values: dict[str, Any], state: dict[str, Any], settings: Settings
     policy = new_policy(settings, shape, parts, network)
     policy.load_state_dict(state)
     policy.eval()
-    steps, success, meanings = values["steps"], values["success"], values["meanings"]
-    return SavedPolicy(policy, settings, shape, parts, steps, success, meanings, network)
+    return SavedPolicy(
+        policy,
+        settings,
+        shape,
+        parts,
+        values["steps"],
+        values["success"],
+        values["meanings"],
+        network,
+        values["return"],
+    )
 
 
 def _require_columns(settings: Settings, shape: PolicyShape, parts: list[tuple[str, int]]) -> None:

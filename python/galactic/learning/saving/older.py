@@ -34,7 +34,7 @@ def demonstrations_about(about: About) -> About:
 
 def policy_values(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a policy.pt."""
-    values = {"meanings": {}, "network_digest": "", **values}
+    values = {"meanings": {}, "network_digest": "", "return": None, **values}
     if "settings" in values:
         values["settings"] = settings_values(values["settings"])
     if "shape" in values:

@@ -20,7 +20,6 @@ class TrainerState:
 
     ranks: int
     updates: int
-    best: Optional[float]
     rate_share: float
     must_validate: bool
     must_end: bool
@@ -78,7 +77,6 @@ def state_of(values: dict[str, Any], ranks: int, names: OwnNames, folder: pathli
 _TYPES = {
     "ranks": int,
     "updates": int,
-    "best": (float, int, type(None)),
     "rate_share": (float, int),
     "must_validate": bool,
     "must_end": bool,
