@@ -93,6 +93,38 @@ def test_an_unfinished_checkpoint_is_passed_over(tmp_path: pathlib.Path) -> None
     assert again.checkpoints.latest().name == f"{2 * UPDATE:012d}"
 
 
+def test_a_checkpoint_that_is_written_again_is_whole_all_the_time(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It may be the only one, and whatever ends the run may do so between any two steps of that."""
+    settings = dataclasses.replace(SETTINGS, keep=1)
+    trainer = make_trainer(tmp_path, settings)
+    trainer.begin()
+    trainer._iterate()
+    trainer.save()
+    taken_up: list[int] = []
+
+    def look() -> None:
+        again = make_trainer(tmp_path, settings)
+        again.resume()
+        assert torch.equal(parameters(again), parameters(trainer))
+        taken_up.append(again.steps)
+
+    def watched(change: Any) -> Any:
+        def change_and_look(*arguments: Any, **options: Any) -> None:
+            change(*arguments, **options)
+            look()
+
+        return change_and_look
+
+    monkeypatch.setattr(os, "replace", watched(os.replace))
+    monkeypatch.setattr(shutil, "rmtree", watched(shutil.rmtree))
+    trainer.save()
+    # Each of three files was written, and then put in its place.
+    assert taken_up == [UPDATE] * len(taken_up) and len(taken_up) >= 2 * 3
+    assert [path.name for path in (tmp_path / "checkpoints").iterdir()] == [f"{UPDATE:012d}"]
+
+
 def test_a_write_that_fails_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
     file = tmp_path / "file"
     files.write_atomically(file, lambda handle: handle.write(b"old"))

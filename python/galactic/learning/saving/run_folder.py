@@ -239,10 +239,19 @@ class CheckpointFolder:
         return self.folder / f".{steps:012d}.unfinished"
 
     def finish(self, steps: int) -> pathlib.Path:
-        """Gives it its name and deletes the oldest; the first rank calls this when all have written."""
-        final = self.folder / f"{steps:012d}"
-        shutil.rmtree(final, ignore_errors=True)
-        os.replace(self.unfinished(steps), final)
+        """Gives it its name and deletes the oldest; the first rank calls this when all have written.
+
+        A run that is resumed and saved before its next step has a checkpoint of as many steps already, of the same
+        state but for what was reported since. Its files are replaced one by one, so that it is whole all the time: it
+        may be the only one."""
+        final, unfinished = self.folder / f"{steps:012d}", self.unfinished(steps)
+        if final.exists():
+            for file in sorted(unfinished.iterdir()):
+                os.replace(file, final / file.name)
+            files.sync(final)
+            unfinished.rmdir()
+        else:
+            os.replace(unfinished, final)
         files.sync(self.folder)
         for old in self.complete()[: -self._keep]:
             shutil.rmtree(old, ignore_errors=True)
