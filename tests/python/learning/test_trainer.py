@@ -6,6 +6,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import resource
 import shutil
 import time
 from typing import Any
@@ -15,13 +16,16 @@ import torch
 
 import galactic
 from galactic import files
+from galactic.learning.encoders import Inputs
 from galactic.learning.policies.networks import PolicyShape
+from galactic.learning.policies.outlines import Outlined
 from galactic.learning.ranks.distributed import Stragglers
 from galactic.learning.refusals import CheckpointError
 from galactic.learning.reports.curves import COLUMNS
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import load_policy, new_policy
 from galactic.learning.saving.run_folder import CheckpointFolder
+from galactic.learning.settings import Settings
 from toys import Measured, ReachAndGrasp, Remember, Uneven
 from trainers import SETTINGS, UPDATE, curve, make_trainer, parameters, saved_run
 
@@ -173,7 +177,10 @@ def write_policy(file: pathlib.Path, **changes: Any) -> None:
     [
         ({"settings": "left out"}, "settings: found nothing, expected dict"),
         ({"settings": [1, 2]}, r"settings: found \[1, 2\], expected dict"),
-        ({"settings": {"width": 17}}, "size mismatch for encoder.0.weight"),
+        (
+            {"settings": {"width": 17}},
+            r"encoder.0.weight: found float32 \[16, 4\], expected float32 \[17, 4\]",
+        ),
         ({"settings": {"steps": "many"}}, "steps: found 'many', expected a whole number"),
         ({"settings": {"steps": 1.5}}, "steps: found 1.5, expected a whole number"),
         ({"settings": {"gamma": None}}, "gamma: found None, expected a number"),
@@ -184,7 +191,11 @@ def write_policy(file: pathlib.Path, **changes: Any) -> None:
         ({"shape": "left out"}, "shape: found nothing, expected dict"),
         ({"shape": {"state": 4}}, "motions: found nothing, expected int"),
         ({"shape": {"state": "4", "motions": 2}}, "state: found '4', expected int"),
-        ({"shape": {"state": -4, "motions": 2}}, "negative dimension"),
+        ({"shape": {"state": -4, "motions": 2}}, "state: found -4, expected 0 to 1048576"),
+        (
+            {"shape": {"state": 4, "motions": 1 << 40}},
+            "motions: found 1099511627776, expected 0 to",
+        ),
         ({"shape": {"state": 4, "motions": 2, "legs": 2}}, "legs"),
         ({"parts": [["way"]]}, "not enough values"),
         ({"parts": None}, "parts: found None, expected list"),
@@ -192,8 +203,9 @@ def write_policy(file: pathlib.Path, **changes: Any) -> None:
         ({"steps": "many"}, "steps: found 'many', expected int"),
         ({"success": "left out"}, "success: found nothing, expected float or int or NoneType"),
         ({"return": "much"}, "return: found 'much', expected float or int or NoneType"),
-        ({"policy": []}, "list"),
-        ({"policy": {}}, "Missing key"),
+        ({"policy": []}, "normalize.mean: found nothing, expected float32"),
+        ({"policy": {}}, "normalize.mean: found nothing, expected float32"),
+        ({"policy": torch.zeros(3)}, "normalize.mean: found nothing, expected float32"),
     ],
 )
 def test_a_policy_of_other_values_is_refused_with_the_files_name(
@@ -207,6 +219,66 @@ def test_a_policy_of_other_values_is_refused_with_the_files_name(
         load_policy(file)
     said = str(refused.value)
     assert said.startswith(f"{file} is not a policy of this version: ") and "\n" not in said
+
+
+def test_a_small_file_that_describes_a_large_network_costs_nothing(tmp_path: pathlib.Path) -> None:
+    """What it asks for would be a terabyte. Nothing may be made before its tensors have been looked at, which are
+    of these sizes in a second file, and in one place."""
+    file = tmp_path / "policy.pt"
+    large = dataclasses.replace(SETTINGS, width=65536, layers=64)
+    write_policy(file, settings=large.to_dict())
+    memory = resource.getrlimit(resource.RLIMIT_AS)
+    used = int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (used + (1 << 30), memory[1]))
+    try:
+        with pytest.raises(CheckpointError, match=r"expected float32 \[65536, 4\]"):
+            load_policy(file)
+        with Outlined():
+            outline = new_policy(large, PolicyShape(4, 2, False, True)).state_dict()
+        write_policy(
+            file,
+            settings=large.to_dict(),
+            policy={
+                name: torch.zeros((), dtype=one.dtype).expand(one.shape)
+                for name, one in outline.items()
+            },
+        )
+        with pytest.raises(CheckpointError, match="found 4 numbers in 1 places, expected one pl"):
+            load_policy(file)
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, memory)
+
+
+@pytest.mark.parametrize("network", ["state", "depth", "simple_cnn", "resnet9"])
+@pytest.mark.parametrize("critic_only", ["", "bump"])
+def test_a_policy_is_read_without_a_random_number(
+    tmp_path: pathlib.Path, network: str, critic_only: str
+) -> None:
+    settings = Settings(network=network, normalize=True, critic_only=critic_only)
+    shape = PolicyShape(5, 2, True, True, 0.2, critic_only=(4,) if critic_only else ())
+    policy = new_policy(settings, shape).eval()
+    with torch.no_grad():
+        for parameter in policy.parameters():
+            parameter.add_(torch.randn_like(parameter))
+    saved = checkpoint.SavedPolicy(policy, settings, shape, [("way", 4), ("bump", 1)], 7, None)
+    checkpoint.save_policy(saved, tmp_path / "policy.pt")
+    torch.manual_seed(3)
+    before = torch.random.get_rng_state()
+    found = load_policy(tmp_path / "policy.pt").policy
+    assert torch.equal(torch.random.get_rng_state(), before)
+    edge = settings.image_size
+    inputs = Inputs(
+        torch.randn(2, 3, 5),
+        torch.randint(0, 255, (2, 3, edge, edge, 3), dtype=torch.uint8),
+        torch.rand(2, 3, edge, edge) * 5.0,
+        torch.randn(2, 3, 4),
+    )
+    starts = torch.zeros(2, 3, dtype=torch.bool)
+    hidden = policy.initial_hidden(3, torch.device("cpu"))
+    with torch.no_grad():
+        for one, other in zip(policy(inputs, hidden, starts), found(inputs, hidden, starts)):
+            assert str(one) == str(other)
+    assert all(parameter.requires_grad for parameter in found.parameters())
 
 
 def test_a_policy_of_before_a_choice_takes_its_default(tmp_path: pathlib.Path) -> None:

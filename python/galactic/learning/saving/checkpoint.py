@@ -32,7 +32,9 @@ from torch import Tensor
 from galactic import files
 from galactic._core import ErrorCode
 from galactic.errors import Error
+from galactic.learning.encoders import Encoder
 from galactic.learning.policies.networks import Policy, PolicyShape, make_policy
+from galactic.learning.policies.outlines import Outlined, give_memory
 from galactic.learning.policies.privileges import critic_columns, names_of
 from galactic.learning.policies.sight import OF_THE_PAPER
 from galactic.learning.refusals import (
@@ -90,10 +92,18 @@ def new_policy(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str
                network: Optional[OwnNetwork] = None) -> Policy:  # fmt: skip
     """The policy that the settings describe, with weights from torch's global random stream. `network` makes
     one of the user's, which is told where the `parts` of an observation are."""
+    return _policy_around(_own_encoder(settings, shape, parts, network), settings, shape)
+
+
+def _own_encoder(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, int]],
+                 network: Optional[OwnNetwork]) -> Optional[Encoder]:  # fmt: skip
+    if network is None:
+        return None
+    return network.make(seen_by(settings, shape, parts), settings.recurrent)
+
+
+def _policy_around(encoder: Optional[Encoder], settings: Settings, shape: PolicyShape) -> Policy:
     free = settings.log_std == "parameter"
-    encoder = None
-    if network is not None:
-        encoder = network.make(seen_by(settings, shape, parts), settings.recurrent)
     return make_policy(
         settings.network,
         shape,
@@ -212,15 +222,32 @@ _SHAPE = {
 }
 
 
+MOST_NUMBERS = 1 << 20
+"""Of an observation of a policy that is read."""
+
+
 def _policy_of(values: dict[str, Any], state: dict[str, Any], settings: Settings,
                network: Optional[OwnNetwork]) -> SavedPolicy:  # fmt: skip
     sizes = dict(values["shape"])
     require_types(sizes, _SHAPE)
+    for name in ("state", "motions"):
+        if not 0 <= sizes[name] <= MOST_NUMBERS:
+            raise ValueError(f"{name}: found {sizes[name]}, expected 0 to {MOST_NUMBERS}")
     sizes["critic_only"] = tuple(sizes["critic_only"])
     shape = PolicyShape(**sizes)
     parts = [(str(name), int(size)) for name, size in values["parts"]]
     _require_columns(settings, shape, parts)
-    policy = new_policy(settings, shape, parts, network)
+    # A class of the user's makes random numbers, which are not what was asked for.
+    with torch.random.fork_rng(devices=[]):
+        encoder = _own_encoder(settings, shape, parts, network)
+    # What the settings of a stranger's file describe may be of any size.
+    with Outlined():
+        policy = _policy_around(encoder, settings, shape)
+    wanted = policy.state_dict()
+    require_tensors(state, wanted)
+    for name in wanted:
+        _require_own_memory(name, state[name])
+    give_memory(policy)
     policy.load_state_dict(state)
     policy.eval()
     return SavedPolicy(
@@ -255,6 +282,15 @@ def require_tensors(found: Any, wanted: Mapping[str, Tensor]) -> None:
         one = _described(tensors.get(name))
         if one != _described(tensor):
             raise ValueError(f"{name}: found {one}, expected {_described(tensor)}")
+
+
+def _require_own_memory(name: str, tensor: Tensor) -> None:
+    """Raises ValueError where elements of a tensor are in one place: a small file could be of any size."""
+    places = 1 + sum((size - 1) * step for size, step in zip(tensor.shape, tensor.stride()))
+    if tensor.numel() > max(places, 0):
+        raise ValueError(
+            f"{name}: found {tensor.numel()} numbers in {places} places, expected one place for each"
+        )
 
 
 def _described(value: Any) -> str:
