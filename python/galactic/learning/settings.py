@@ -289,7 +289,10 @@ class Settings:
         -1.0, "PPO", "its value at the end of the run, linear in between; -1: no change", low=-1.0
     )
     max_grad_norm: float = setting(
-        2.0, "PPO", "largest norm of the gradient; longer ones are scaled down", low=0.0
+        2.0,
+        "PPO",
+        "largest norm of the gradient; longer ones are scaled down; 0: any length",
+        low=0.0,
     )
     gamma: float = setting(0.99, "PPO", "discount factor", low=0.0, high=1.0)
     gae_lambda: float = setting(

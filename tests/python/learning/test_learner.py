@@ -47,6 +47,19 @@ def test_parameters_of_any_strides_stay_what_they_are_and_apart() -> None:
     assert not module["channels_last"].is_contiguous()
 
 
+@pytest.mark.parametrize("most_norm, share", [(0.0, 1.0), (2.5, 0.5), (10.0, 1.0)])
+def test_longer_gradients_are_clipped_where_there_is_a_limit(
+    most_norm: float, share: float
+) -> None:
+    module = torch.nn.ParameterList([torch.nn.Parameter(torch.zeros(2))])
+    optimizer = FlatAdam(module, 1e-3, 1e-5)
+    module[0].grad.copy_(torch.tensor([3.0, 4.0]))
+    assert optimizer.step(most_norm).item() == 5.0
+    assert optimizer.gradients.tolist() == pytest.approx([3.0 * share, 4.0 * share], rel=1e-6)
+    # Adam's first step is as long as the rate, in each direction in which there is a gradient.
+    assert module[0].tolist() == pytest.approx([-1e-3, -1e-3], rel=1e-4)
+
+
 def validate(policy: Policy) -> EpisodeSums:
     """As validations leave a policy."""
     policy.eval()

@@ -49,9 +49,10 @@ class FlatAdam:
         self.gradients.zero_()
 
     def step(self, most_norm: float) -> Tensor:
-        """One step; returns the norm of the gradient before it was clipped to `most_norm`."""
+        """One step; returns the norm of the gradient before it was clipped to `most_norm`; 0: it is not."""
         norm = torch.linalg.vector_norm(self.gradients)
-        self.gradients.mul_(torch.clamp(most_norm / (norm + 1e-6), max=1.0))
+        if most_norm > 0.0:
+            self.gradients.mul_(torch.clamp(most_norm / (norm + 1e-6), max=1.0))
         self._adam.step()
         return norm
 
