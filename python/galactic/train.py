@@ -9,7 +9,7 @@ import functools
 import os
 import pathlib
 import sys
-from typing import Optional, Sequence
+from typing import Any, Mapping, Optional, Sequence
 
 import torch
 
@@ -374,7 +374,7 @@ def _run_of(options: argparse.Namespace, world: pathlib.Path) -> Run:
     settings = preset("paper" if options.preset is None else options.preset, **given)
     settings.require_pace()
     if options.demonstrations:
-        _require_imitation(options, settings)
+        _require_imitation(options, given)
     run = Run(
         world,
         _absolute(options.validation),
@@ -391,16 +391,17 @@ def _run_of(options: argparse.Namespace, world: pathlib.Path) -> Run:
     return with_network(run) if settings.has_own_network else run
 
 
-def _require_imitation(options: argparse.Namespace, settings: Settings) -> None:
+def _require_imitation(options: argparse.Namespace, given: Mapping[str, Any]) -> None:
     """Raises SettingsError for what a run that imitates has no use for."""
-    for is_given, option in (
-        (options.teacher is not None, "--teacher"),
-        (settings.target_kl > 0.0, "--target-kl"),
-    ):
-        if is_given:
-            raise SettingsError(
-                f"{option} is for a run that acts, and not for one with --demonstrations; leave one of them out"
-            )
+    of_acting = [
+        option_name(field.name)
+        for field in dataclasses.fields(Settings)
+        if field.metadata["is_of_acting"] and field.name in given
+    ]
+    for option in [*(["--teacher"] if options.teacher is not None else []), *of_acting]:
+        raise SettingsError(
+            f"{option} is for a run that acts, and not for one with --demonstrations; leave one of them out"
+        )
 
 
 def _resumed_run(options: argparse.Namespace) -> Run:

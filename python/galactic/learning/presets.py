@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import pathlib
 from typing import Any, Mapping
@@ -73,10 +72,10 @@ WORDS = "|".join((*PRESETS, "RUN"))
 
 
 def preset(name: str, **changes: Any) -> Settings:
-    """The settings of a preset, or of the run in the folder that is called so, with changes: see
-    overriding()."""
+    """The settings of a preset, or of the run in the folder that is called so, with changes: see overriding(). What the
+    preset says and these leave no effect is left out. Raises SettingsError for a change without one."""
     chosen = _named(name)
-    return dataclasses.replace(chosen, **overriding(chosen, changes))
+    return Settings.effective({**vars(chosen), **overriding(chosen, changes)}, changes)
 
 
 def _named(name: str) -> Settings:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import re
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Callable, NamedTuple, Optional, Sequence, Union
 
 from galactic.learning.refusals import SettingsError
 
@@ -17,12 +17,31 @@ MOST_WHOLE = 2**53
 MOST_NUMBER = 1e9
 
 
+class Scope(NamedTuple):
+    """Where a setting has an effect."""
+
+    covers: Callable[[Any], bool]
+    """Whether it has one, beside the others of its Settings."""
+    words: str
+    """What it applies to, behind "applies only to", why that is not so here, and what to do; with names of other
+    settings in braces, in the place of their values."""
+
+
+class IdleSetting(SettingsError):
+    """One that has another value than its default, and no effect. `name`: which."""
+
+    def __init__(self, name: str, message: str):
+        super().__init__(message)
+        self.name = name
+
+
 def setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
             high: Optional[float] = None, choices: Sequence[str] = (),
-            may_change: bool = False, may_be_own: bool = False,
-            may_be_range: bool = False) -> Any:  # fmt: skip
+            may_change: bool = False, may_be_own: bool = False, may_be_range: bool = False,
+            scope: Optional[Scope] = None, is_of_acting: bool = False) -> Any:  # fmt: skip
     """A field of Settings. `may_change`: a resumed run may have another value. `may_be_own`: beside the
-    choices it can be the name of code of one's own (own_code.named()). `may_be_range`: it is Drawn.
+    choices it can be the name of code of one's own (own_code.named()). `may_be_range`: it is Drawn. `scope`: None: it
+    always has an effect. `is_of_acting`: it has none in a run that imitates demonstrations.
     """
     if high is None and isinstance(default, (int, float)) and not isinstance(default, bool):
         high = MOST_WHOLE if isinstance(default, int) else MOST_NUMBER
@@ -37,6 +56,8 @@ def setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
             "may_change": may_change,
             "may_be_own": may_be_own,
             "may_be_range": may_be_range,
+            "scope": scope,
+            "is_of_acting": is_of_acting,
         },
     )
 
@@ -81,6 +102,15 @@ def require_valid(field: "dataclasses.Field[Any]", value: Any) -> None:
             is_whole = isinstance(field.default, int)
             wanted = f"from {low} to {high}" if is_whole else f"from {low:g} to {high:g}"
             raise SettingsError(f"{field.name}: found {number}, expected a number {wanted}")
+
+
+def require_effect(field: "dataclasses.Field[Any]", settings: Any) -> None:
+    """Raises IdleSetting where the setting has another value than its default in these Settings, and no effect."""
+    scope: Optional[Scope] = field.metadata["scope"]
+    if scope is None or getattr(settings, field.name) == field.default or scope.covers(settings):
+        return
+    words = scope.words.format_map(vars(settings))
+    raise IdleSetting(field.name, f"{field.name} applies only to {words}")
 
 
 def _require_range(name: str, value: tuple[Any, ...], low: float, high: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any, Mapping
+from typing import Any, Collection, Mapping
 
 import galactic
 from galactic.learning.policies.sight import (
@@ -16,12 +16,49 @@ from galactic.learning.policies.sight import (
     SMALLEST_IMAGE,
 )
 from galactic.learning.refusals import SettingsError
-from galactic.learning.setting_fields import Drawn, require_valid, setting
+from galactic.learning.setting_fields import (
+    Drawn,
+    IdleSetting,
+    Scope,
+    require_effect,
+    require_valid,
+    setting,
+)
 from galactic.learning.simulation_words import is_robot_noise, latest_words
 
 
-# Settings that change colors.
-COLOR_NOISE = ("color_noise", "light_jitter")
+_OF_IMAGES = Scope(
+    lambda settings: bool(settings.sight),
+    "networks that see images, and the network {network} does not; choose another one, such as depth",
+)
+_OF_COLORS = Scope(
+    lambda settings: "rgb" in settings.sight,
+    "networks that see colors, and the network {network} does not; choose another one, such as simple_cnn",
+)
+_OF_OWN_NETWORKS = Scope(
+    lambda settings: settings.has_own_network,
+    "networks of your own, and the network {network} is none; name a class, as FILE.py:CLASS, or leave it out",
+)
+_OF_PERCEPTRONS = Scope(
+    lambda settings: settings.network in ("state", "depth"),
+    "the networks state and depth, and the network is {network}; choose one of them, or leave it out",
+)
+_OF_CHOSEN_LAYERS = Scope(
+    lambda settings: settings.network not in OF_THE_PAPER,
+    "the networks state and depth and to networks of your own, and {network} is the paper's, which always has a GRU "
+    "of its size and log-stds as outputs; choose another one, or leave it out",
+)
+_OF_WIDTHS = Scope(
+    lambda settings: settings.network in ("state", "depth")
+    or (settings.has_own_network and settings.recurrent),
+    "the networks state and depth and to the GRU (recurrent) behind one of your own; choose one of these, or leave it out",
+)
+_OF_PARAMETERS = Scope(
+    lambda settings: settings.log_std == "parameter" and settings.network not in OF_THE_PAPER,
+    "log-stds that are parameters, and log_std is {log_std} of the network {network}; take log_std parameter, which "
+    "state, depth and networks of your own have, or leave it out",
+)
+
 # All that make the images of training unlike those that policies are judged by.
 CAMERA_NOISE = galactic.Renderer.NOISE_OPTIONS
 _MOST_NOISE = galactic.Renderer.NOISE_LIMITS
@@ -55,6 +92,7 @@ class Settings:
         "groups of envs: with 2, one simulates while the network acts on the other",
         low=1,
         high=2,
+        is_of_acting=True,
     )
     simulation: str = setting(
         "",
@@ -88,21 +126,31 @@ class Settings:
         may_be_own=True,
     )
     network_options: str = setting(
-        "", "Network", "what its class is made with, as NAME=VALUE separated by spaces"
+        "",
+        "Network",
+        "what its class is made with, as NAME=VALUE separated by spaces",
+        scope=_OF_OWN_NETWORKS,
     )
     sees: str = setting(
         "none",
         "Network",
         "which images a network of your own sees; `rgbd` are `rgb` and `depth`",
         choices=tuple(OWN_SIGHT),
+        scope=_OF_OWN_NETWORKS,
     )
     camera: str = setting(
         "head",
         "Network",
         "what the network sees: the recipe's camera (`head`), `follow`, `top`, or a link",
+        scope=_OF_IMAGES,
     )
     fov: float = setting(
-        0.0, "Network", "vertical field of view, degrees; 0: the camera's", low=0.0, high=175.0
+        0.0,
+        "Network",
+        "vertical field of view, degrees; 0: the camera's",
+        low=0.0,
+        high=175.0,
+        scope=_OF_IMAGES,
     )
     camera_position: tuple[float, float, float] = setting(
         (0.0, 0.0, 0.0),
@@ -111,6 +159,7 @@ class Settings:
         "and up",
         low=-100.0,
         high=100.0,
+        scope=_OF_IMAGES,
     )
     camera_rpy: tuple[float, float, float] = setting(
         (0.0, 0.0, 0.0),
@@ -118,6 +167,7 @@ class Settings:
         "how it is turned there, degrees: roll, pitch (down is positive), yaw",
         low=-360.0,
         high=360.0,
+        scope=_OF_IMAGES,
     )
     near: float = setting(
         0.0,
@@ -125,6 +175,7 @@ class Settings:
         "meters along the camera's axis below which nothing is drawn, 0.01 at least; 0: the camera's",
         low=0.0,
         high=100.0,
+        scope=_OF_IMAGES,
     )
     image_size: int = setting(
         IMAGE_SIZE,
@@ -132,6 +183,7 @@ class Settings:
         f"height and width of the images, {SMALLEST_IMAGE} to 512 pixels; the paper's networks are made for {IMAGE_SIZE}",
         low=SMALLEST_IMAGE,
         high=512,
+        scope=_OF_IMAGES,
     )
     depth_noise: Drawn = setting(
         0.0,
@@ -140,6 +192,7 @@ class Settings:
         low=0.0,
         high=_MOST_NOISE["depth_noise"],
         may_be_range=True,
+        scope=_OF_IMAGES,
     )
     depth_dropout: Drawn = setting(
         0.0,
@@ -148,6 +201,7 @@ class Settings:
         low=0.0,
         high=_MOST_NOISE["depth_dropout"],
         may_be_range=True,
+        scope=_OF_IMAGES,
     )
     color_noise: Drawn = setting(
         0.0,
@@ -156,6 +210,7 @@ class Settings:
         low=0.0,
         high=_MOST_NOISE["color_noise"],
         may_be_range=True,
+        scope=_OF_COLORS,
     )
     light_jitter: Drawn = setting(
         0.0,
@@ -164,6 +219,7 @@ class Settings:
         low=0.0,
         high=_MOST_NOISE["light_jitter"],
         may_be_range=True,
+        scope=_OF_COLORS,
     )
     camera_jitter: Drawn = setting(
         0.0,
@@ -172,6 +228,7 @@ class Settings:
         low=0.0,
         high=_MOST_NOISE["camera_jitter"],
         may_be_range=True,
+        scope=_OF_IMAGES,
     )
     camera_jitter_degrees: Drawn = setting(
         0.0,
@@ -180,6 +237,7 @@ class Settings:
         low=0.0,
         high=_MOST_NOISE["camera_jitter_degrees"],
         may_be_range=True,
+        scope=_OF_IMAGES,
     )
     camera_jitter_fov: Drawn = setting(
         0.0,
@@ -188,11 +246,13 @@ class Settings:
         low=0.0,
         high=_MOST_NOISE["camera_jitter_fov"],
         may_be_range=True,
+        scope=_OF_IMAGES,
     )
     recurrent: bool = setting(
         False,
         "Network",
         "put a GRU into the network `state` or `depth`, or behind one of your own; the paper's always have one",
+        scope=_OF_CHOSEN_LAYERS,
     )
     width: int = setting(
         128,
@@ -200,13 +260,22 @@ class Settings:
         "units per layer of `state` and `depth`, and of the GRU behind one of your own",
         low=1,
         high=65536,
+        scope=_OF_WIDTHS,
     )
-    layers: int = setting(2, "Network", "hidden layers of `state` and `depth`", low=1, high=64)
+    layers: int = setting(
+        2,
+        "Network",
+        "hidden layers of `state` and `depth`",
+        low=1,
+        high=64,
+        scope=_OF_PERCEPTRONS,
+    )
     activation: str = setting(
         "tanh",
         "Network",
         "activation between the layers of `state` and `depth`",
         choices=("tanh", "relu"),
+        scope=_OF_PERCEPTRONS,
     )
     log_std: str = setting(
         "output",
@@ -214,9 +283,15 @@ class Settings:
         "standard deviations of `state`, `depth` and networks of your own: an `output` of the network, clamped to "
         "exp(-5)..exp(2), or a `parameter`, the same everywhere",
         choices=("output", "parameter"),
+        scope=_OF_CHOSEN_LAYERS,
     )
     initial_log_std: float = setting(
-        -0.5, "Network", "initial value of the parameters of `log_std`", low=-5.0, high=2.0
+        -0.5,
+        "Network",
+        "initial value of the parameters of `log_std`",
+        low=-5.0,
+        high=2.0,
+        scope=_OF_PARAMETERS,
     )
     final_log_std: float = setting(
         2.0,
@@ -225,6 +300,8 @@ class Settings:
         "`initial_log_std` over the last four fifths; 2: no limit",
         low=-5.0,
         high=2.0,
+        scope=_OF_PARAMETERS,
+        is_of_acting=True,
     )
     odds_limit: float = setting(
         0.0,
@@ -267,12 +344,19 @@ class Settings:
         "of the divergence before each one's step. Where it is larger, the learning rate goes down, and up "
         "again to the schedule's where it is smaller; 0: always the schedule's",
         low=0.0,
+        is_of_acting=True,
     )
     adam_epsilon: float = setting(1e-5, "PPO", "Adam's epsilon", low=0.0)
     horizon: int = setting(64, "PPO", "steps per env in a rollout", low=1, high=1 << 20)
     epochs: int = setting(1, "PPO", "how many times a rollout is used", low=1, high=1000)
     mini_batches: int = setting(2, "PPO", "parts of a rollout, by env; divides `envs`", low=1)
-    clip: float = setting(0.2, "PPO", "clipping range of the probability ratio", low=0.0)
+    clip: float = setting(
+        0.2,
+        "PPO",
+        "clipping range of the probability ratio",
+        low=0.0,
+        is_of_acting=True,
+    )
     value_coefficient: float = setting(
         0.5, "PPO", "weight of the value loss, which is half the squared error", low=0.0
     )
@@ -281,12 +365,21 @@ class Settings:
         "PPO",
         "how far an update may move a value before its loss is flat; 0: any distance",
         low=0.0,
+        is_of_acting=True,
     )
     entropy: float = setting(
-        1e-3, "PPO", "coefficient of the entropy, a plain sum over motions and decisions", low=0.0
+        1e-3,
+        "PPO",
+        "coefficient of the entropy, a plain sum over motions and decisions",
+        low=0.0,
+        is_of_acting=True,
     )
     entropy_end: float = setting(
-        -1.0, "PPO", "its value at the end of the run, linear in between; -1: no change", low=-1.0
+        -1.0,
+        "PPO",
+        "its value at the end of the run, linear in between; -1: no change",
+        low=-1.0,
+        is_of_acting=True,
     )
     max_grad_norm: float = setting(
         2.0,
@@ -296,7 +389,12 @@ class Settings:
     )
     gamma: float = setting(0.99, "PPO", "discount factor", low=0.0, high=1.0)
     gae_lambda: float = setting(
-        0.95, "PPO", "lambda of generalized advantage estimates", low=0.0, high=1.0
+        0.95,
+        "PPO",
+        "lambda of generalized advantage estimates",
+        low=0.0,
+        high=1.0,
+        is_of_acting=True,
     )
     timeouts: str = setting(
         "observed",
@@ -304,9 +402,13 @@ class Settings:
         "what an episode that time cuts off is worth from there on: what its last observation is valued at "
         "(`observed`), the same as if it had no limit of time (`endless`), or nothing (`ends`)",
         choices=("endless", "ends", "observed"),
+        is_of_acting=True,
     )
     normalize_advantages: bool = setting(
-        True, "PPO", "normalize advantages to mean 0, variance 1 over all ranks"
+        True,
+        "PPO",
+        "normalize advantages to mean 0, variance 1 over all ranks",
+        is_of_acting=True,
     )
 
     teacher_weight: float = setting(
@@ -337,6 +439,7 @@ class Settings:
         "once this share of the ranks has finished a rollout, the others stop theirs; 1: all wait",
         low=0.0,
         high=1.0,
+        is_of_acting=True,
     )
     shortest_rollout: float = setting(
         0.25,
@@ -344,6 +447,7 @@ class Settings:
         "no rank is stopped before this share of its rollout, nor before its first step",
         low=0.0,
         high=1.0,
+        is_of_acting=True,
     )
 
     simulation_threads: int = setting(
@@ -373,6 +477,7 @@ class Settings:
         False,
         "Machine",
         "on a GPU, launch what the policy computes in a rollout's step as one graph",
+        is_of_acting=True,
     )
 
     validate_every: int = setting(
@@ -402,7 +507,11 @@ class Settings:
         may_change=True,
     )
     window: int = setting(
-        1000, "Reports", "number of episodes over which the training curves are averaged", low=1
+        1000,
+        "Reports",
+        "number of episodes over which the training curves are averaged",
+        low=1,
+        is_of_acting=True,
     )
     log_every: float = setting(
         2.0, "Reports", "seconds between points of the curves", low=0.0, may_change=True
@@ -411,6 +520,8 @@ class Settings:
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
             require_valid(field, getattr(self, field.name))
+        for field in dataclasses.fields(self):
+            require_effect(field, self)
         if self.envs % self.mini_batches:
             raise SettingsError(
                 f"{self.envs} envs cannot be split into {self.mini_batches} mini-batches; take a "
@@ -418,35 +529,11 @@ class Settings:
             )
         if self.envs % self.halves:
             raise SettingsError(f"{self.envs} envs cannot be split into {self.halves} halves")
-        if self.network in OF_THE_PAPER and self.recurrent:
-            raise SettingsError(
-                "recurrent applies only to the networks state and depth; the paper's networks always "
-                "have a GRU"
-            )
         if self.network in OF_THE_PAPER and self.image_size != IMAGE_SIZE:
             raise SettingsError(
                 f"image_size: found {self.image_size}, expected {IMAGE_SIZE}, which {self.network} is "
                 "made for; the network depth takes others"
             )
-        for name, unused in (("network_options", ""), ("sees", "none")):
-            if getattr(self, name) != unused and not self.has_own_network:
-                raise SettingsError(
-                    f"{name} applies only to networks of your own, and the network {self.network} is none; "
-                    "name a class, as FILE.py:CLASS, or leave it out"
-                )
-        for field in dataclasses.fields(self):
-            is_default = getattr(self, field.name) == field.default
-            if not self.sight and field.name in CAMERA.values() and not is_default:
-                raise SettingsError(
-                    f"{field.name} applies only to networks that see images, and the network "
-                    f"{self.network} does not; choose another one, such as depth"
-                )
-        for name in COLOR_NOISE:
-            if getattr(self, name) and "rgb" not in self.sight:
-                raise SettingsError(
-                    f"{name} applies only to networks that see colors, and the network {self.network} "
-                    "does not; choose another one, such as simple_cnn"
-                )
 
     @property
     def has_own_network(self) -> bool:
@@ -487,16 +574,30 @@ class Settings:
         """The same without either noise: what policies are judged by."""
         return self.without_camera_noise().without_robot_noise()
 
+    @classmethod
+    def effective(cls, values: Mapping[str, Any], given: Collection[str] = ()) -> "Settings":
+        """Settings of these values, but for those without an effect, which take their defaults. Raises IdleSetting for
+        one of them that is `given`."""
+        kept = dict(values)
+        while True:
+            try:
+                return cls(**kept)
+            except IdleSetting as error:
+                if error.name in given:
+                    raise
+                del kept[error.name]
+
     def to_dict(self) -> dict[str, Any]:
         return dataclasses.asdict(self)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "Settings":
         """What to_dict() returned, also as JSON gives it. Names that this version does not know are rejected; a
-        setting that is missing takes its default."""
+        setting that is missing takes its default, and so does one without an effect, which was once taken.
+        """
         unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})
         if unknown:
             raise SettingsError(f"the settings {', '.join(unknown)} are unknown to this version")
         # JSON knows no tuples.
         known = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
-        return cls(**known)
+        return cls.effective(known)

@@ -33,10 +33,14 @@ def run(program: str, *arguments: object) -> None:
     assert done.returncode == 0, done.stderr
 
 
+COLORS = ("color_noise", "light_jitter")
+
+
 def test_noise_is_a_setting_of_networks_that_see_what_it_changes() -> None:
     for name in CAMERA_NOISE:
+        what = "colors" if name in COLORS else "images"
         with pytest.raises(
-            SettingsError, match=f"^{name} applies only to networks that see images"
+            SettingsError, match=f"^{name} applies only to networks that see {what}"
         ):
             preset("quick", **{name: 0.1})
         noisy = preset("quick", network="simple_cnn", **{name: 0.1})
@@ -58,7 +62,7 @@ def test_noise_is_a_setting_of_networks_that_see_what_it_changes() -> None:
         ):
             with pytest.raises(SettingsError, match=f"{name}: found .*, expected a number from 0"):
                 preset("quick", network="simple_cnn", **{name: wrong})
-    for name in ("color_noise", "light_jitter"):
+    for name in COLORS:
         with pytest.raises(
             SettingsError, match=f"^{name} applies only to networks that see colors"
         ):

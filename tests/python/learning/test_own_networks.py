@@ -115,7 +115,9 @@ def test_it_learns_what_only_a_memory_of_its_own_knows() -> None:
 def test_a_resumed_run_is_the_run_that_would_have_been(
     tmp_path: pathlib.Path, lab: pathlib.Path
 ) -> None:
-    settings = dataclasses.replace(SETTINGS, network="lab.py:Net", checkpoint_every=TOY_UPDATE)
+    settings = dataclasses.replace(
+        SETTINGS, width=128, network="lab.py:Net", checkpoint_every=TOY_UPDATE
+    )
     own = named(lab, "Net")
     for name in ("whole", "half"):
         (tmp_path / name).mkdir()
@@ -144,7 +146,7 @@ def test_weights_of_another_class_of_the_name_are_refused(
     tmp_path: pathlib.Path, lab: pathlib.Path
 ) -> None:
     """As those of a module, whose file may change."""
-    settings = dataclasses.replace(SETTINGS, network="lab:Net", steps=TOY_UPDATE)
+    settings = dataclasses.replace(SETTINGS, width=128, network="lab:Net", steps=TOY_UPDATE)
     (tmp_path / "run").mkdir()
     trainer = make_trainer(
         tmp_path / "run", settings, network=named(lab, "Net")._replace(digest="")
