@@ -314,7 +314,7 @@ class Trainer:
             folder = self.checkpoints.unfinished(self.steps)
             checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.source.state_dict())
             if self.group.rank == 0:
-                checkpoint.save_policy(self._saved_policy(Score()), folder / "policy.pt")
+                checkpoint.save_policy(self._saved_policy(), folder / "policy.pt")
                 optimizer = {"optimizer": self.learner.optimizer.state_dict()}
                 checkpoint.save(folder / "trainer.pt", self._state().to_values(), optimizer)
             self.group.wait_for_all()
@@ -371,7 +371,7 @@ class Trainer:
         self.stopwatch.seconds = dict(state.stopwatch)
         self.clock.take_up(state.seconds, state.processor_seconds)
 
-    def _saved_policy(self, score: Score) -> SavedPolicy:
+    def _saved_policy(self, score: Score = Score()) -> SavedPolicy:
         return SavedPolicy(
             self.policy,
             self.settings,

@@ -158,6 +158,18 @@ def test_noise_is_normal_and_uniform_and_depends_on_env_and_step_only() -> None:
     assert (action_noise(6, range(40), range(30, 130), 9) != noise).mean() > 0.99
 
 
+@pytest.mark.parametrize("mean", [0.0, -100.0, 3000.0])
+def test_advantages_far_from_zero_are_normalized_as_others_are(mean: float) -> None:
+    learner = PpoLearner(toy_policy(), Settings(**TOY), Group.alone())
+    raw = torch.randn(32, 512, generator=torch.Generator().manual_seed(0)) + mean
+    scaled, count = learner._normalized(raw)
+    assert count == raw.numel()
+    exact = raw.double().numpy()
+    np.testing.assert_allclose(scaled, (exact - exact.mean()) / exact.std(), atol=2e-3)
+    assert abs(scaled.double().mean().item()) < 1e-3
+    assert abs(scaled.double().std(unbiased=False).item() - 1.0) < 1e-4
+
+
 def test_mini_batches_are_the_same_for_one_rank_and_for_two() -> None:
     whole = mini_batch_envs(3, epoch=4, envs=range(0, 24), parts=3)
     first = mini_batch_envs(3, epoch=4, envs=range(0, 12), parts=3)

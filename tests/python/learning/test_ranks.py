@@ -139,7 +139,7 @@ def two(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
         trainer = make_trainer(None, dataclasses.replace(SETTINGS, seed=1 + rank))
         trainer.begin()
         trainer.train(UPDATE)
-        checkpoint.save_policy(trainer._saved_policy(None), folder / f"before-{rank}.pt")
+        checkpoint.save_policy(trainer._saved_policy(), folder / f"before-{rank}.pt")
     assert launch(2, [sys.executable, "-B", str(HERE / "ranks.py"), str(folder)]) == 0
     return folder
 

@@ -145,7 +145,9 @@ class PpoLearner(Learner):
 
     def _normalized(self, raw: Tensor) -> tuple[Tensor, float]:
         """Advantages of mean 0 and variance 1 over all ranks, and the steps of all ranks."""
-        sums = torch.stack([torch.ones_like(raw).sum(), raw.sum(), raw.square().sum()]).double()
+        # The variance is a small difference of large sums where all advantages are far from zero.
+        exact = raw.double()
+        sums = torch.stack([torch.ones_like(exact).sum(), exact.sum(), exact.square().sum()])
         count, first, second = self.group.sum(sums).tolist()
         if not self.settings.normalize_advantages:
             return raw, count
@@ -161,8 +163,9 @@ class PpoLearner(Learner):
     def _report(self, totals: Tensor, raw: Tensor, returns: Tensor) -> dict[str, float]:
         """Means over all ranks, mini-batches and epochs."""
         rounds = self.settings.epochs * self.settings.mini_batches
+        raw, returns = raw.double(), returns.double()
         moments = [raw.square(), torch.ones_like(raw), returns, returns.square()]
-        spread = torch.stack([moment.sum() for moment in moments]).double()
+        spread = torch.stack([moment.sum() for moment in moments])
         *sums, error, steps, first, second = self.group.sum(torch.cat([totals, spread])).tolist()
         count = sums[Loss.NAMES.index("steps")]
         report = {name: sums[i] / count for i, name in enumerate(Loss.NAMES[:-1])}
