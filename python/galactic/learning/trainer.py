@@ -79,8 +79,10 @@ class Trainer:
         )
         self.network = network
         self.policy = new_policy(settings, self.shape, self.parts, network).to(group.device)
-        if envs.images:
-            self.policy = self.policy.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+        for layer in self.policy.modules():
+            # As pictures lie in memory. Torch refuses it for parameters of some other layers.
+            if envs.images and isinstance(layer, torch.nn.Conv2d):
+                layer.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.learner: Learner
         self.source: RolloutSource
         if demonstrations is not None:

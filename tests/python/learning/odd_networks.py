@@ -5,7 +5,7 @@ A line that ends with the name of a network is where that one fails.
 
 import torch
 from torch import nn
-from galactic.learning.encoders import Encoder, Eyes, StateEncoder
+from galactic.learning.encoders import Encoder, Eyes, StateEncoder, images
 from galactic.learning.sequences import run_gru
 
 
@@ -107,6 +107,25 @@ class Looks(Net):
 
     def forward(self, inputs):
         return torch.cat([self.eyes(inputs), inputs.state], -1)
+
+
+class Stacks(Net):
+    """Looks at the channels of a picture as layers of a volume."""
+
+    def __init__(self, seen):
+        super().__init__(seen)
+        self.features = 8 + seen.state
+        self.layers = nn.Sequential(
+            nn.Conv3d(1, 4, (seen.channels, 8, 8), 8),
+            nn.ReLU(),
+            nn.Flatten(),
+            nn.Linear(4 * 4 * 4, 8),
+        )
+
+    def forward(self, inputs):
+        steps, envs = inputs.state.shape[:2]
+        volumes = images(inputs).unsqueeze(1)
+        return torch.cat([self.layers(volumes).view(steps, envs, 8), inputs.state], -1)
 
 
 class Sines(Net):

@@ -16,7 +16,7 @@ from galactic.learning.settings import Settings
 from galactic.learning.user_code import own_code
 from own_lab import EXAMPLE, NETWORKS, SEEN, lab, named, saved_policy, with_line
 from programs import HELD_OUT, SMALL, UPDATE, WORLD, call, curve, needs_worlds
-from toys import Remember
+from toys import Look, Remember
 from trainers import SETTINGS, UPDATE as TOY_UPDATE, make_trainer, parameters
 
 
@@ -110,6 +110,23 @@ def test_it_learns_what_only_a_memory_of_its_own_knows() -> None:
     trainer.begin()
     trainer.train()
     assert trainer.recent.figures()["success"] > 0.8  # without a memory, 0.5
+
+
+def test_convolutions_of_three_dimensions_learn(lab: pathlib.Path) -> None:
+    settings = dataclasses.replace(
+        SETTINGS,
+        width=128,
+        network="lab.py:Stacks",
+        sees="depth",
+        image_size=Look.EDGE,
+        steps=TOY_UPDATE,
+    )
+    trainer = make_trainer(None, settings, Look, network=named(lab, "Stacks"))
+    weights = trainer.policy.encoder.layers[0].weight
+    before = weights.detach().clone()
+    trainer.begin()
+    trainer.train()
+    assert not torch.equal(weights, before)
 
 
 def test_a_resumed_run_is_the_run_that_would_have_been(
