@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 import torch
 
+from galactic.learning.encoders import Inputs
+from galactic.learning.playing.evaluation import Actor
 from galactic.learning.policies.distributions import ActionDistribution
 from galactic.learning.policies.networks import Outputs, Policy, PolicyShape, make_policy
 from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import SettingsError
 from galactic.learning.rollouts.collector import Collector, CollectorOptions
-from galactic.learning.rollouts.noise import action_noise, mini_batch_envs
+from galactic.learning.rollouts.environments import Observation
+from galactic.learning.rollouts.noise import action_noise, episode_noise, mini_batch_envs
 from galactic.learning.rollouts.rollout import advantages
 from galactic.learning.settings import Settings
 from galactic.learning.trainer import Trainer
@@ -95,8 +98,6 @@ def test_a_rollout_is_what_the_policy_did_and_saw(recurrent: bool) -> None:
     collector = collector_of(ReachAndGrasp(6, halves=2, limit=2), policy, horizon=7)
     by_hand = ReachAndGrasp(6, limit=2)
     state = torch.zeros(6, 4)
-    from galactic.learning.rollouts.environments import Observation
-    from galactic.learning.encoders import Inputs
 
     by_hand.reset(Observation(state))
     hidden, starts = policy.initial_hidden(6, CPU), torch.ones(1, 6, dtype=torch.bool)
@@ -156,6 +157,23 @@ def test_noise_is_normal_and_uniform_and_depends_on_env_and_step_only() -> None:
     assert np.abs(correlations).max() < 0.08
     np.testing.assert_array_equal(action_noise(5, range(7, 9), range(60, 61), 9)[0], noise[30, 7:9])
     assert (action_noise(6, range(40), range(30, 130), 9) != noise).mean() > 0.99
+
+
+def test_policies_are_judged_by_other_noise_than_they_learn_with() -> None:
+    learned = action_noise(5, range(40), range(30, 130), 9)
+    judged = episode_noise(5, np.arange(40)[None], np.arange(30, 130)[:, None], 9)
+    assert judged.shape == learned.shape and (judged != learned).mean() > 0.99
+    correlations = np.corrcoef(judged.reshape(-1, 11).T, learned.reshape(-1, 11).T) - np.eye(22)
+    assert np.abs(correlations).max() < 0.08
+    policy, seen, starts = toy_policy().eval(), torch.zeros(40, 4), np.ones(40, bool)
+    episodes, steps = np.arange(40), np.full(40, 30)
+    actor = Actor(policy, deterministic=False, seed=5)
+    actor.begin(40)
+    acted = actor.act(Observation(seen), starts, episodes, steps)
+    with torch.inference_mode():
+        actions = policy.act(Inputs(seen[None]), None, torch.from_numpy(starts[None])).actions
+        sampled = actions.sample(torch.from_numpy(episode_noise(5, episodes, steps, 2)[None]))
+    np.testing.assert_array_equal(acted, sampled[0])
 
 
 @pytest.mark.parametrize("mean", [0.0, -100.0, 3000.0])

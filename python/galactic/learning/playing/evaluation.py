@@ -15,7 +15,7 @@ from galactic.learning.policies.networks import Policy
 from galactic.learning.reports.shares import interval
 from galactic.learning.rollouts.environments import Observation, Step
 from galactic.learning.rollouts.episode_sums import EpisodeSums
-from galactic.learning.rollouts.noise import noise_of
+from galactic.learning.rollouts.noise import episode_noise
 from galactic.learning.rollouts.rollout import Rollout
 
 MOST_ENVS = 256
@@ -119,7 +119,7 @@ class Actor:
             if self._deterministic:
                 actions = outputs.actions.mode()
             else:
-                noise = noise_of(self._seed, episodes, steps, self.policy.action.motions)
+                noise = episode_noise(self._seed, episodes, steps, self.policy.action.motions)
                 noise_rows = torch.from_numpy(noise).to(self._device).unsqueeze(0)
                 actions = outputs.actions.sample(noise_rows)
             self._hidden = outputs.hidden

@@ -40,6 +40,12 @@ def action_noise(seed: int, envs: range, steps: range, motions: int) -> np.ndarr
     return noise_of(seed, _numbers(envs)[None, :], _numbers(steps)[:, None], motions)
 
 
+def episode_noise(seed: int, episodes: np.ndarray, steps: np.ndarray, motions: int) -> np.ndarray:
+    """The noise of evaluations and validations: float32 [n, motions + 2], for each of `episodes` and how many steps of
+    it are done. It is not that of rollouts with the same seed, which a policy has learned with."""
+    return noise_of(seed ^ 0x706C6179, episodes, steps, motions)
+
+
 def mini_batch_envs(seed: int, epoch: int, envs: range, parts: int) -> np.ndarray:
     """Splits the envs of a rank into mini-batches, differently in each epoch; int64 [parts, n].
 
