@@ -16,7 +16,7 @@ from galactic.learning.policies.networks import Policy, PolicyShape
 from galactic.learning.policies.privileges import columns_among, critic_columns, other_meaning
 from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import CheckpointError, refusing
-from galactic.learning.reports.curves import write_json
+from galactic.learning.reports.curves import TABLE, write_json
 from galactic.learning.reports.run_reports import RunReports
 from galactic.learning.rollouts.collector import Collector, CollectorOptions
 from galactic.learning.rollouts.environments import Environments
@@ -318,7 +318,9 @@ class Trainer:
             if self.group.rank == 0:
                 checkpoint.save_policy(self._saved_policy(), folder / "policy.pt")
                 optimizer = {"optimizer": self.learner.optimizer.state_dict()}
-                checkpoint.save(folder / "trainer.pt", self._state().to_values(), optimizer)
+                # Those that it counts are there before it is.
+                rows = self.reports.curves.keep()
+                checkpoint.save(folder / "trainer.pt", self._state(rows).to_values(), optimizer)
             self.group.wait_for_all()
             if self.group.rank == 0:
                 self.checkpoints.finish(self.steps)
@@ -339,17 +341,19 @@ class Trainer:
         file = folder / "trainer.pt"
         values, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
-            self._take_up_state(state_of(values, self.group.size, self.names, folder))
+            state = state_of(values, self.group.size, self.names, folder)
+            self._take_up_state(state)
             self.learner.optimizer.load_state_dict(tensors.get("optimizer", {}))
         file = folder / "policy.pt"
         saved = checkpoint.load_policy(file, remedy, self.network)
         with _fitting(file, remedy):
             self.policy.load_state_dict(saved.policy.state_dict())
         file = folder / f"rank-{self.group.rank}.pt"
-        _, state = checkpoint.load(file, remedy)
+        _, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
-            self.source.load_state_dict(older.rank_tensors(state))
+            self.source.load_state_dict(older.rank_tensors(tensors))
         self._take_up_best()
+        self._take_up_curves(state)
         self.steps = saved.steps
         self.clock.start()
         self.reports.begin_at(self.steps)
@@ -363,12 +367,16 @@ class Trainer:
                 file, "move it away, and the run keeps the best policy from here on"
             )
 
+    def _take_up_curves(self, state: TrainerState) -> None:
+        assert self.folder is not None
+        with _fitting(self.folder / TABLE, "move it away, and the curves begin anew"):
+            self.reports.take_up(state.row_count, state.added_columns, state.added)
+
     def _take_up_state(self, state: TrainerState) -> None:
         self.updates = state.updates
         self.learner.rate.share = state.rate_share
         self._must_validate = state.must_validate and self._validates
         self._must_end = state.must_end and state.must_validate
-        self.reports.take_up(state.rows, state.columns, state.added)
         self.recent.take_up(state.window, state.names, state.waiting)
         self.stopwatch.seconds = dict(state.stopwatch)
         self.clock.take_up(state.seconds, state.processor_seconds)
@@ -386,14 +394,14 @@ class Trainer:
             score.mean_return,
         )
 
-    def _state(self) -> TrainerState:
+    def _state(self, row_count: int) -> TrainerState:
         return TrainerState(
             ranks=self.group.size,
             updates=self.updates,
             rate_share=self.learner.rate.share,
             must_validate=self._must_validate,
             must_end=self._must_end,
-            rows=self.reports.curves.rows,
+            row_count=row_count,
             added_columns=self.reports.curves.added,
             added=self.reports.added,
             waiting=self.recent.waiting,

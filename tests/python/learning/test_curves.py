@@ -12,10 +12,12 @@ from typing import Any
 
 import pytest
 
+from galactic.learning.refusals import CheckpointError
 from galactic.learning.reports import curves as curves_module
 from galactic.learning.reports.curves import Curves, read_curves
 from galactic.learning.reports.progress import ProgressLine, amount
 from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import load_policy
 from toys import Measured, ReachAndGrasp, Uneven
 from trainers import SETTINGS, UPDATE, curve, make_trainer, saved_run
@@ -191,13 +193,87 @@ def test_a_torn_row_of_the_curves_is_ignored_and_mended(tmp_path: pathlib.Path) 
     whole = table.read_bytes()
     assert len(read_curves(table)) == 2
     later = whole.splitlines(keepends=True)[-1]
-    for damaged, rows in ((whole + later[:9], 2), (whole[:-2], 1), (whole + later, 3)):
+    for damaged, rows in ((whole + later[:9], 2), (whole + later, 3)):
         table.write_bytes(damaged)
         assert len(read_curves(table)) == rows
         resumed = make_trainer(tmp_path, resumed.settings)
         resumed.resume()
         resumed.reports.curves.write({}, [])
         assert table.read_bytes() == whole
+
+
+def test_a_checkpoint_counts_rows_that_are_on_the_disk(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also those of validations, which are written with the next ones of training, much later here. Whatever ends the
+    run between two changes of names, no row of before a checkpoint is lost."""
+    settings = dataclasses.replace(
+        SETTINGS, validate_every=UPDATE, checkpoint_every=UPDATE, log_every=1e9, keep=8
+    )
+    episodes = EpisodeSums(2.0, 1.0, 1.0, 3.0, 8.0)
+    trainer = make_trainer(tmp_path, settings, validation=lambda policy: episodes)
+    counts: list[int] = []
+    change = os.replace
+
+    def change_and_look(source: Any, target: Any) -> None:
+        change(source, target)
+        if trainer.checkpoints.complete():
+            values, tensors = checkpoint.load(trainer.checkpoints.latest() / "trainer.pt")
+            assert "rows" not in values and list(tensors) == ["optimizer"]
+            assert len(read_curves(tmp_path / "curves.csv")) >= values["row_count"]
+            counts.append(values["row_count"])
+
+    monkeypatch.setattr(os, "replace", change_and_look)
+    trainer.begin()
+    trainer.train()
+    assert set(counts) == {1, 2, 3, 4, 5, 6, 7, 9}
+
+
+def test_a_resumed_run_goes_on_behind_the_rows_that_its_checkpoint_counts(
+    tmp_path: pathlib.Path,
+) -> None:
+    """Numbers come back from the table as they are in it: with nine digits, whole ones whole."""
+    resumed = saved_run(tmp_path)
+    table = tmp_path / "curves.csv"
+    whole = table.read_text(encoding="utf-8")
+    later = whole.splitlines()[-1].replace(str(2 * UPDATE), "12345678901", 1)
+    table.write_text(whole + later + "\n", encoding="utf-8")
+    file = resumed.checkpoints.latest() / "trainer.pt"
+    values, tensors = checkpoint.load(file)
+    for count, rows in ((3, [UPDATE, 2 * UPDATE, 12345678901]), (1, [UPDATE])):
+        checkpoint.save(file, {**values, "row_count": count}, tensors)
+        resumed = make_trainer(tmp_path, resumed.settings)
+        resumed.resume()
+        # Nothing is gone before something comes.
+        assert table.read_text(encoding="utf-8") == whole + later + "\n" or count == 1
+        resumed.reports.curves.write({}, [])
+        found = table.read_text(encoding="utf-8").splitlines()
+        assert found == [*whole.splitlines(), later][: count + 1]
+        assert [row["steps"] for row in read_curves(table)] == rows
+
+
+def test_curves_that_are_lost_cost_no_run(tmp_path: pathlib.Path, capsys: Any) -> None:
+    resumed = saved_run(tmp_path)
+    (tmp_path / "curves.csv").unlink()
+    resumed.resume()
+    assert (
+        "curves.csv has 0 of the 2 rows that the run had told; the curves go on without the others\n"
+        in capsys.readouterr().err
+    )
+    resumed.train()
+    assert [row["updates"] for row in curve(tmp_path)] == [3, 4, 5, 6, 7, 8]
+
+
+def test_curves_that_are_none_are_refused_with_what_to_do(tmp_path: pathlib.Path) -> None:
+    resumed = saved_run(tmp_path)
+    table = tmp_path / "curves.csv"
+    table.write_text("steps,seconds\n1,a\n", encoding="utf-8")
+    with pytest.raises(CheckpointError) as refused:
+        resumed.resume()
+    assert str(refused.value) == (
+        f"{table} does not fit this run: could not convert string to float: 'a'; move it away, and the curves "
+        "begin anew"
+    )
 
 
 def test_the_page_of_the_curves_takes_a_hundredth_of_the_time(

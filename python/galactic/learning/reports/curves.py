@@ -11,7 +11,7 @@ from typing import Any, Iterable, Mapping, Optional, Sequence
 
 from galactic._core import ErrorCode
 from galactic.errors import Error
-from galactic.files import write_atomically
+from galactic.files import sync, write_atomically
 from galactic.learning.reports.page import curves_page
 from galactic.learning.rollouts.episode_sums import OwnNames
 from galactic.learning.user_code.callbacks import CALLBACK
@@ -46,8 +46,9 @@ row before. Success, return and length: means of the latest episodes of training
 has finished one, and so is picked, the share of those in which the target has been in the hand;
 `validation_...`: of the episodes for validation, in rows that have them. Episodes: how many episodes that are.
 Log_std: the mean of the policy's, where they are parameters. Teacher_kl: the divergence from what the teacher
-would do, nats per step, while it counts. New columns come last: see older.trainer_values()."""
+would do, nats per step, while it counts."""
 VALIDATION = "validation_"
+TABLE = "curves.csv"
 
 
 def columns_of(names: OwnNames) -> tuple[str, ...]:
@@ -70,7 +71,7 @@ class Curves:
         self.columns = columns_of(names)
         self._own = len(self.columns)
         self.rows: list[list[Optional[float]]] = []
-        # How many of them the table has; None: it is none of this run's yet, or of its time before.
+        # How many of them the table has; None: it is none of this run's yet, or has others.
         self._in_table: Optional[int] = None
         self._next_page = 0.0
 
@@ -92,11 +93,14 @@ class Curves:
                 row += [None] * len(new)
             self._in_table = None  # which has a row of names to begin with
 
-    def take_up(self, rows: Sequence[Sequence[Optional[float]]], columns: Sequence[str]) -> None:
-        """Goes on behind these rows, which may lack some of the columns."""
-        before = [dict(zip(columns, row)) for row in rows]
-        self._widen(name for name in columns if name.startswith(CALLBACK))
+    def take_up(self, count: int, added: Sequence[str]) -> int:
+        """Goes on behind the first `count` rows of the table, which may lack some of the columns: those of a callback
+        are `added`. Returns how many it has of them. The others leave it with the next write()."""
+        self._widen(added)
+        file = None if self._folder is None else self._folder / TABLE
+        before = read_curves(file)[:count] if file is not None and file.exists() else []
         self.rows = [[values.get(name) for name in self.columns] for values in before]
+        return len(self.rows)
 
     def latest_validation(self) -> dict[str, float]:
         """Means of the latest validation, by their names in training; nothing where there was none."""
@@ -114,13 +118,20 @@ class Curves:
         where that takes no more than PAGE_SHARE of the time. Nothing without a folder."""
         if self._folder is None:
             return
-        self._write_table(self._folder / "curves.csv")
+        self._write_table(self._folder / TABLE)
         begin = time.monotonic()
         if is_last or begin >= self._next_page:
             page = curves_page(self._title, self.columns, self.rows, settings, breakdown)
             write_atomically(self._folder / "curves.html", lambda file: file.write(page), "w")
             end = time.monotonic()
             self._next_page = end + (end - begin) / PAGE_SHARE
+
+    def keep(self) -> int:
+        """Has all rows on the disk, for a checkpoint, from which take_up() goes on. Returns how many there are."""
+        if self._folder is not None:
+            self._write_table(self._folder / TABLE)
+            sync(self._folder / TABLE)
+        return len(self.rows)
 
     def _write_table(self, file: pathlib.Path) -> None:
         """The first time the whole table, which a run that was killed may have left with more rows, or
@@ -155,13 +166,18 @@ def _cell(value: Optional[float]) -> str:
     return str(value) if isinstance(value, int) else f"{value:.9g}"
 
 
+def _number(text: str) -> float:
+    """Of which _cell() makes the same text again."""
+    return int(text) if text.isdecimal() else float(text)
+
+
 def read_curves(file: pathlib.Path) -> list[dict[str, Optional[float]]]:
     """The rows of a curves.csv, but for a last one that is not whole: of a run that a full disk or a
     power failure has ended."""
     lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
     whole = [line for line in lines if line.endswith("\n")]
     return [
-        {name: float(value) if value else None for name, value in row.items()}
+        {name: _number(value) if value else None for name, value in row.items()}
         for row in csv.DictReader(whole)
     ]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pathlib
 from typing import Mapping, Optional, Sequence
 
-from galactic.learning.reports.curves import VALIDATION, Curves
+from galactic.learning.reports.curves import TABLE, VALIDATION, Curves
 from galactic.learning.reports.log import Log
 from galactic.learning.reports.progress import ProgressLine, amount, duration
 from galactic.learning.reports.shares import percent_of
@@ -98,10 +98,16 @@ class RunReports:
             shares = self._stopwatch.shares(self._clock.seconds)
             self.curves.write(self._settings.to_dict(), shares, is_last=is_last)
 
-    def take_up(self, rows: Sequence[Sequence[Optional[float]]], columns: Sequence[str],
-                added: Mapping[str, float]) -> None:  # fmt: skip
-        """Goes on behind these rows, and with what a callback said after them."""
-        self.curves.take_up(rows, columns)
+    def take_up(self, count: int, columns: Sequence[str], added: Mapping[str, float]) -> None:
+        """Goes on behind so many rows, and with what a callback said after them, which has added `columns`. Raises
+        ValueError where their file has something else."""
+        found = self.curves.take_up(
+            count, [str(one) for one in columns if str(one).startswith(CALLBACK)]
+        )
+        if found < count:
+            self.progress.say(
+                f"{TABLE} has {found} of the {count} rows that the run had told; the curves go on without the others"
+            )
         self.added = {name: value for name, value in added.items() if name.startswith(CALLBACK)}
 
     def begin_at(self, steps: int) -> None:

@@ -12,7 +12,6 @@ from torch import Tensor
 
 from galactic.demonstrations import About
 from galactic.learning.policies.networks import PolicyShape
-from galactic.learning.reports.curves import COLUMNS, columns_of
 from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames
 from galactic.learning.settings import CAMERA, Settings
 
@@ -44,7 +43,8 @@ def policy_values(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def trainer_values(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a trainer.pt, which once did not know who waits for an episode's end, nor of a paced rate, of
-    processor time, of what a task or a callback says, of what a signal has put off, or of picks."""
+    processor time, of what a task or a callback says, of what a signal has put off, or of picks, and had the rows of the
+    curves, which curves.csv has, too."""
     values = {
         "waiting": 0,
         "rate_share": 1.0,
@@ -58,28 +58,17 @@ def trainer_values(values: Mapping[str, Any]) -> dict[str, Any]:
         **values,
     }
     if isinstance(values.get("rows"), list):
-        values["rows"] = [_row_with_teacher(row) for row in values["rows"]]
+        values["row_count"] = len(values["rows"])
     return _with_picks(values)
-
-
-def _row_with_teacher(row: Any) -> Any:
-    """Rows once ended before the teacher's column."""
-    is_without = isinstance(row, list) and len(row) == COLUMNS.index("teacher_kl")
-    return [*row, *[None] * (len(COLUMNS) - len(row))] if is_without else row
 
 
 def _with_picks(values: dict[str, Any]) -> dict[str, Any]:
     """Nobody once counted in which episodes the target was picked: of those it is not known."""
-    measures, logs, added = (values[name] for name in ("measures", "logs", "added_columns"))
-    if not all(_are_names(one) for one in (measures, logs, added)):
-        return values
-    names = OwnNames(tuple(measures), tuple(logs))
-    columns, numbers = len(columns_of(names)) + len(added), len(EpisodeSums().numbers(names))
-    if isinstance(values.get("rows"), list):
-        at = COLUMNS.index("picked")
-        values["rows"] = [_with_gap(row, columns, at, [None, None]) for row in values["rows"]]
-    if isinstance(values.get("window"), list):
-        values["window"] = [_with_gap(row, numbers, 2, [math.nan]) for row in values["window"]]
+    measures, logs, window = values["measures"], values["logs"], values.get("window")
+    if _are_names(measures) and _are_names(logs) and isinstance(window, list):
+        names = OwnNames(tuple(measures), tuple(logs))
+        width = len(EpisodeSums().numbers(names))
+        values["window"] = [_with_gap(row, width, 2, math.nan) for row in window]
     return values
 
 
@@ -87,10 +76,10 @@ def _are_names(values: Any) -> bool:
     return isinstance(values, list) and all(isinstance(one, str) for one in values)
 
 
-def _with_gap(row: Any, width: int, at: int, gap: list[Any]) -> Any:
+def _with_gap(row: Any, width: int, at: int, gap: float) -> Any:
     """A row of a table of that width, which has the gap at that place where it was without."""
-    is_without = isinstance(row, list) and len(row) == width - len(gap)
-    return [*row[:at], *gap, *row[at:]] if is_without else row
+    is_without = isinstance(row, list) and len(row) == width - 1
+    return [*row[:at], gap, *row[at:]] if is_without else row
 
 
 def rank_tensors(tensors: Mapping[str, Any]) -> dict[str, Any]:

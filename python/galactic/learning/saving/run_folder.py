@@ -3,7 +3,7 @@
     settings.json                    what the run is
     checkpoints/000001048576/        after so many steps: the latest few
         policy.pt                    networks and settings: see checkpoint.load_policy()
-        trainer.pt                   optimizer, counters, curves
+        trainer.pt                   optimizer, counters, how many rows of curves.csv were there
         rank-0.pt, rank-1.pt ...     envs, memories and episodes of each rank
     best.pt                          the policy.pt that did best
     teacher.pt                       the policy.pt of the teacher, if there is one
@@ -27,6 +27,7 @@ from galactic import files
 from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.refusals import CheckpointError, SettingsError
+from galactic.learning.reports.curves import TABLE
 from galactic.learning.saving import checkpoint, older
 from galactic.learning.saving.checkpoint import SavedPolicy
 from galactic.learning.saving.runs import Run, read_run, write_run
@@ -36,13 +37,13 @@ TEACHER = "teacher.pt"
 """The copy of the teacher in the folder of a run."""
 BEST = "best.pt"
 """The policy that did best."""
-_TABLE, _PAGE, _REPORT = "curves.csv", "curves.html", "report.json"
+_PAGE, _REPORT = "curves.html", "report.json"
 
 
 def files_of(folder: pathlib.Path) -> list[pathlib.Path]:
     """Where a run has its files in `folder`, and those of its checkpoints."""
     copies = own_code.COPIES.values()
-    names = (own_code.RUN, _TABLE, _PAGE, _REPORT, BEST, TEACHER, ".lock", *copies)
+    names = (own_code.RUN, TABLE, _PAGE, _REPORT, BEST, TEACHER, ".lock", *copies)
     return [*(folder / name for name in names), *(folder / "checkpoints").rglob("*")]
 
 
@@ -148,7 +149,7 @@ def _make_room(
     if before is None:
         return
     say(f"{folder} held a run without a checkpoint; this one takes its place")
-    table, teacher = folder / _TABLE, folder / TEACHER
+    table, teacher = folder / TABLE, folder / TEACHER
     if _has_rows(table):
         replaced.append(table)
     if before.teacher is not None and teacher.is_file():

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import pathlib
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any
 
 from galactic.learning.refusals import CheckpointError, require_types
-from galactic.learning.reports.curves import columns_of
 from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames
 from galactic.learning.saving import older
 
 
 @dataclass
 class TrainerState:
-    """Where a Trainer is. `rows`, `added_columns`: those of the curves, and which of them a callback has added.
-    `added`: what it has said since the latest row. `measures`, `logs`: names of what the task says.
+    """Where a Trainer is. `row_count`: how many rows of curves.csv are of before. `added_columns`: which of its columns
+    a callback has added. `added`: what it has said since the latest row. `measures`, `logs`: names of what the task says.
     `window`: EpisodeSums.numbers() of recent rollouts. `stopwatch`: its seconds."""
 
     ranks: int
@@ -23,7 +22,7 @@ class TrainerState:
     rate_share: float
     must_validate: bool
     must_end: bool
-    rows: list[list[Optional[float]]]
+    row_count: int
     added_columns: list[str]
     added: dict[str, float]
     waiting: int
@@ -37,11 +36,6 @@ class TrainerState:
     @property
     def names(self) -> OwnNames:
         return OwnNames(tuple(self.measures), tuple(self.logs))
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Of the rows."""
-        return (*columns_of(self.names), *map(str, self.added_columns))
 
     def to_values(self) -> dict[str, Any]:
         return dict(vars(self))
@@ -66,8 +60,7 @@ def state_of(values: dict[str, Any], ranks: int, names: OwnNames, folder: pathli
                 f"{folder} is of a task that {said} {lost[0]}, and the task does so no longer; put "
                 "its class back as it was, or begin another run"
             )
-    _require_rows("rows", state.rows, len(state.columns), (float, int, type(None)))
-    _require_rows("window", state.window, len(EpisodeSums().numbers(state.names)), (float, int))
+    _require_rows("window", state.window, len(EpisodeSums().numbers(state.names)))
     for numbers in (state.added, state.stopwatch):
         require_types(numbers, dict.fromkeys(numbers, (float, int)))
     return state
@@ -80,7 +73,7 @@ _TYPES = {
     "rate_share": (float, int),
     "must_validate": bool,
     "must_end": bool,
-    "rows": list,
+    "row_count": int,
     "added_columns": list,
     "added": dict,
     "waiting": int,
@@ -93,9 +86,9 @@ _TYPES = {
 }
 
 
-def _require_rows(name: str, rows: list[Any], width: int, kinds: Any) -> None:
-    """Raises ValueError where a row of the table has another width or kind of numbers."""
+def _require_rows(name: str, rows: list[Any], width: int) -> None:
+    """Raises ValueError where a row of the table has another width, or no numbers."""
     for number, row in enumerate(rows):
-        are_numbers = isinstance(row, list) and all(isinstance(one, kinds) for one in row)
+        are_numbers = isinstance(row, list) and all(isinstance(one, (float, int)) for one in row)
         if not are_numbers or len(row) != width:
             raise ValueError(f"{name}[{number}]: found {row!r}, expected {width} numbers")
