@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 import pathlib
 import signal
 from typing import Any, Callable, ContextManager, Mapping, Optional
@@ -42,6 +43,28 @@ Validation = Callable[[Policy], EpisodeSums]
 
 class TrainingError(ArithmeticError):
     """Training cannot go on: says at which update, what was found, what may help."""
+
+
+class _Ending(enum.Enum):
+    """Why training ends behind an update."""
+
+    NONE = 0
+    """It goes on."""
+    GOAL = 1
+    """All steps that were asked for are done."""
+    CALLBACK = 2
+    """The callback asks for it."""
+    CUT_OFF = 3
+    """A signal does, and something is left to do."""
+
+
+class _Owed(enum.Enum):
+    """What a signal has put off, for the next part of the run to begin with."""
+
+    NOTHING = 0
+    VALIDATION = 1
+    VALIDATION_AND_END = 2
+    """And the end that the callback asked for before it."""
 
 
 class Trainer:
@@ -114,9 +137,7 @@ class Trainer:
         """Of best.pt."""
         self.recent = RecentEpisodes(self.names, settings.window, settings.envs * group.size)
         self._interrupted = False
-        # What a signal has put off: a validation, and the end that a callback asked for behind it.
-        self._must_validate = False
-        self._must_end = False
+        self._owed = _Owed.NOTHING
 
     def _taught_by(self, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]) -> Optional[Teacher]:
         if teacher is None:
@@ -160,37 +181,12 @@ class Trainer:
         """Trains until `settings.steps` are done, or `pause_at` of them, or the callback or a signal asks to
         stop; validates in all cases but the last, saves in all. A validation that a signal has put off comes first.
         Returns whether all is done. Raises TrainingError when the loss is not a number."""
-        settings = self.settings
-        end = settings.steps if pause_at is None else min(pause_at, settings.steps)
+        steps = self.settings.steps
+        goal = steps if pause_at is None else min(pause_at, steps)
         with interrupts.handled(self._interrupt):
-            if self._must_validate:
-                late = self._validate()
-                if self._calls_stop(VALIDATED, lambda: late) or self._must_end:
-                    end = self.steps
-                self._must_end = False
-                self.reports.write(is_last=True)
-                if self.steps >= end:
-                    self.save()
-            while self.steps < end:
-                before = self.steps
-                losses, stop = self._iterate()
-                is_stopped = self._calls_stop(UPDATE, lambda: self._row(losses))
-                if is_stopped:
-                    end = self.steps
-                if self._validates and self._is_due(settings.validate_every, before, end):
-                    self._must_validate = True
-                if self._must_validate and not stop:
-                    row = self._validate()
-                    if self._calls_stop(VALIDATED, lambda: row):
-                        end = self.steps
-                is_last = stop or self.steps >= end
-                self._must_end = self._must_validate and is_stopped
-                if is_last or self.reports.are_due:
-                    self._log(losses, is_last=is_last)
-                if stop or self._is_due(settings.checkpoint_every, before, end):
-                    self.save()
-                if stop:
-                    break
+            ending = self._make_up(goal)
+            while ending is _Ending.NONE:
+                ending = self._advance(goal)
             self._calls_stop(END, lambda: self._row({}))
             if self.reports.added:
                 self.reports.add_row(self._row({}))
@@ -199,7 +195,46 @@ class Trainer:
             # Here, too, a signal that comes again is not to end it. It may have been cut off behind its last
             # checkpoint the time before.
             self._write_report()
-        return self.steps >= end and not self._must_validate
+        return ending is not _Ending.CUT_OFF
+
+    def _make_up(self, goal: int) -> "_Ending":
+        """Does what a signal has put off, if there is anything. Returns whether nothing comes after that."""
+        owed = self._owed
+        if owed is _Owed.NOTHING:
+            return self._ending_at(goal)
+        ending = self._validate(self._ending_at(goal))
+        if owed is _Owed.VALIDATION_AND_END:
+            ending = _Ending.CALLBACK
+        self.reports.write(is_last=True)
+        if ending is not _Ending.NONE:
+            self.save()
+        return ending
+
+    def _advance(self, goal: int) -> "_Ending":
+        """One update, and what is due behind it: by how many steps are done, and where this is the end."""
+        before = self.steps
+        losses, is_interrupted = self._iterate()
+        ending = self._ending_at(goal)
+        if self._calls_stop(UPDATE, lambda: self._row(losses)):
+            ending = _Ending.CALLBACK
+        if self._validates and self._is_due(self.settings.validate_every, before, ending):
+            if not is_interrupted:
+                ending = self._validate(ending)
+            elif ending is _Ending.CALLBACK:
+                self._owed = _Owed.VALIDATION_AND_END
+            else:
+                self._owed = _Owed.VALIDATION
+        if is_interrupted and (ending is _Ending.NONE or self._owed is not _Owed.NOTHING):
+            ending = _Ending.CUT_OFF
+        is_last = ending is not _Ending.NONE
+        if is_last or self.reports.are_due:
+            self._log(losses, is_last=is_last)
+        if self._is_due(self.settings.checkpoint_every, before, ending):
+            self.save()
+        return ending
+
+    def _ending_at(self, goal: int) -> "_Ending":
+        return _Ending.GOAL if self.steps >= goal else _Ending.NONE
 
     def _calls_stop(self, kind: str, row: Callable[[], dict[str, float]]) -> bool:
         """Lets the callback know where the run is. Returns whether the run is to end, on all ranks."""
@@ -253,9 +288,10 @@ class Trainer:
             )
         return losses, stop > 0.0
 
-    def _is_due(self, every: int, before: int, end: int) -> bool:
+    def _is_due(self, every: int, before: int, ending: "_Ending") -> bool:
         """What comes every so many steps, and at the end, after those that followed `before`."""
-        return self.steps >= end or (every > 0 and self.steps // every > before // every)
+        is_next = every > 0 and self.steps // every > before // every
+        return ending is not _Ending.NONE or is_next
 
     def _row(self, losses: dict[str, float]) -> dict[str, float]:
         """What a row of the curves has."""
@@ -278,8 +314,8 @@ class Trainer:
             is_last=is_last,
         )
 
-    def _validate(self) -> dict[str, float]:
-        """Returns the row of the curves."""
+    def _validate(self, ending: "_Ending") -> "_Ending":
+        """Returns `ending`, or that the callback ends the run here."""
         assert self.validation is not None
         with self.stopwatch.time("validation"):
             sums = torch.tensor(
@@ -290,8 +326,8 @@ class Trainer:
             found = EpisodeSums.of(self.group.sum(sums).tolist(), self.names)
         row = self.reports.tell_validation(self.steps, found)
         self._keep_if_best(found.means())
-        self._must_validate = False
-        return row
+        self._owed = _Owed.NOTHING
+        return _Ending.CALLBACK if self._calls_stop(VALIDATED, lambda: row) else ending
 
     def _keep_if_best(self, means: Mapping[str, float]) -> None:
         """Writes best.pt, for a policy whose episodes had these means, when none was better; equal ones replace it,
@@ -375,8 +411,9 @@ class Trainer:
     def _take_up_state(self, state: TrainerState) -> None:
         self.updates = state.updates
         self.learner.rate.share = state.rate_share
-        self._must_validate = state.must_validate and self._validates
-        self._must_end = state.must_end and state.must_validate
+        self._owed = _Owed.NOTHING
+        if state.must_validate and self._validates:
+            self._owed = _Owed.VALIDATION_AND_END if state.must_end else _Owed.VALIDATION
         self.recent.take_up(state.window, state.names, state.waiting)
         self.stopwatch.seconds = dict(state.stopwatch)
         self.clock.take_up(state.seconds, state.processor_seconds)
@@ -399,8 +436,8 @@ class Trainer:
             ranks=self.group.size,
             updates=self.updates,
             rate_share=self.learner.rate.share,
-            must_validate=self._must_validate,
-            must_end=self._must_end,
+            must_validate=self._owed is not _Owed.NOTHING,
+            must_end=self._owed is _Owed.VALIDATION_AND_END,
             row_count=row_count,
             added_columns=self.reports.curves.added,
             added=self.reports.added,
@@ -424,7 +461,7 @@ class Trainer:
                 "device": str(self.group.device),
                 "parameters": self.learner.optimizer.parameters.numel(),
                 "steps": self.steps,
-                "must_validate": self._must_validate,
+                "must_validate": self._owed is not _Owed.NOTHING,
                 "updates": self.updates,
                 "seconds": self.clock.seconds,
                 "processor_seconds": self.clock.processor_seconds,
