@@ -29,6 +29,7 @@ from galactic.learning.saving.checkpoint import SavedPolicy, Score, new_policy
 from galactic.learning.saving.run_folder import BEST, CheckpointFolder
 from galactic.learning.saving.trainer_state import TrainerState, state_of
 from galactic.learning.settings import Settings
+from galactic.learning.sums import over_ranks
 from galactic.learning.updates.imitation import ImitationLearner, Streams, require_same
 from galactic.learning.updates.learner import Learner
 from galactic.learning.updates.ppo import PpoLearner
@@ -266,27 +267,25 @@ class Trainer:
             self.stragglers.finished(update)
         with self.stopwatch.time("update"):
             losses = self.learner.update(rollout, update, self.steps / self.settings.steps)
-        shared = torch.tensor(
-            [
-                float(rollout.steps * self.settings.envs),
-                float(self._interrupted),
-                float(self.source.waiting),
-                *self.source.episodes.numbers(self.names),
-            ],
-            dtype=torch.float64,
-            device=self.group.device,
+        shared = over_ranks(
+            self.group,
+            {
+                "rollout_steps": rollout.steps * self.settings.envs,
+                "interrupted": self._interrupted,
+                "waiting": self.source.waiting,
+                **self.source.episodes.by_name(self.names),
+            },
         )
-        steps, stop, waiting, *episodes = self.group.sum(shared).tolist()
         self.stragglers.forget(update)
-        self.steps += int(steps)
+        self.steps += int(shared["rollout_steps"])
         self.updates += 1
-        self.recent.add(EpisodeSums.of(episodes, self.names), int(waiting))
+        self.recent.add(EpisodeSums.of(shared, self.names), int(shared["waiting"]))
         if not all(abs(value) < float("inf") for value in losses.values()):
             raise TrainingError(
                 f"update {self.updates} gave a loss that is not a number ({losses}); a lower "
                 "--learning-rate or --max-grad-norm may help"
             )
-        return losses, stop > 0.0
+        return losses, shared["interrupted"] > 0.0
 
     def _is_due(self, every: int, before: int, ending: "_Ending") -> bool:
         """What comes every so many steps, and at the end, after those that followed `before`."""
@@ -318,12 +317,8 @@ class Trainer:
         """Returns `ending`, or that the callback ends the run here."""
         assert self.validation is not None
         with self.stopwatch.time("validation"):
-            sums = torch.tensor(
-                self.validation(self.policy).numbers(self.names),
-                dtype=torch.float64,
-                device=self.group.device,
-            )
-            found = EpisodeSums.of(self.group.sum(sums).tolist(), self.names)
+            sums = self.validation(self.policy).by_name(self.names)
+            found = EpisodeSums.of(over_ranks(self.group, sums), self.names)
         row = self.reports.tell_validation(self.steps, found)
         self._keep_if_best(found.means())
         self._owed = _Owed.NOTHING
@@ -414,7 +409,7 @@ class Trainer:
         self._owed = _Owed.NOTHING
         if state.must_validate and self._validates:
             self._owed = _Owed.VALIDATION_AND_END if state.must_end else _Owed.VALIDATION
-        self.recent.take_up(state.window, state.names, state.waiting)
+        self.recent.take_up(state.window, state.waiting)
         self.stopwatch.seconds = dict(state.stopwatch)
         self.clock.take_up(state.seconds, state.processor_seconds)
 
@@ -444,7 +439,7 @@ class Trainer:
             waiting=self.recent.waiting,
             measures=list(self.names.measures),
             logs=list(self.names.logs),
-            window=self.recent.numbers(),
+            window=self.recent.rows(),
             seconds=self.clock.seconds,
             processor_seconds=self.clock.processor_seconds,
             stopwatch=self.stopwatch.seconds,

@@ -12,6 +12,7 @@ from galactic.learning.policies.networks import Policy, PolicyShape, make_policy
 from galactic.learning.ranks.distributed import Group
 from galactic.learning.rollouts.collector import Collector, CollectorOptions
 from galactic.learning.rollouts.episode_sums import EpisodeSums
+from galactic.learning.sums import Sums, over_ranks
 from galactic.learning.updates.flat_adam import FlatAdam
 from galactic.learning.updates.learner import Learner
 from galactic.learning.updates.ppo import PpoLearner
@@ -58,6 +59,18 @@ def test_longer_gradients_are_clipped_where_there_is_a_limit(
     assert optimizer.gradients.tolist() == pytest.approx([3.0 * share, 4.0 * share], rel=1e-6)
     # Adam's first step is as long as the rate, in each direction in which there is a gradient.
     assert module[0].tolist() == pytest.approx([-1e-3, -1e-3], rel=1e-4)
+
+
+def test_sums_are_told_apart_by_name() -> None:
+    sums = Sums()
+    assert sums.by_name() == {}
+    for number in (2.0**24, 1.0, 1.0):
+        sums.add({"first": torch.tensor(number), "second": torch.tensor(-number)})
+    found = over_ranks(Group.alone(), {**sums.by_name(), "third": 3, "is_it": True})
+    # In float32, 2^24 + 1 is 2^24.
+    assert found == {"first": 2.0**24 + 2, "second": -(2.0**24) - 2, "third": 3.0, "is_it": 1.0}
+    with pytest.raises(AssertionError):
+        sums.add({"second": torch.tensor(1.0), "first": torch.tensor(1.0)})
 
 
 def validate(policy: Policy) -> EpisodeSums:

@@ -75,7 +75,7 @@ def test_the_loss_is_the_clipped_surrogate() -> None:
         total += 0.5 * 0.5 * error - 0.01 * float(distribution.entropy()[i])
         clipped += ratio != kept
     assert loss.total.item() == pytest.approx(total / (2.0 * count), abs=1e-9)
-    assert loss.sums[4].item() == clipped and 0.1 * count < clipped < 0.9 * count
+    assert loss.sums["clipped"].item() == clipped and 0.1 * count < clipped < 0.9 * count
 
 
 def collector_of(envs: ReachAndGrasp, policy: Policy, horizon: int, seed: int = 1) -> Collector:

@@ -300,11 +300,14 @@ class Collector:
         count = sum(len(timeout.envs) for timeout in kept)
         # It is another one in each rollout: a few sizes are enough.
         size = 1 << (count - 1).bit_length() if self.precision.tunes else count
-        state = _joined([timeout.inputs.state for timeout in kept], size)
+        seen = [timeout.inputs for timeout in kept]
+        state = _joined([one.state for one in seen], size)
         assert state is not None
         inputs = Inputs(
-            state,
-            *(_joined([timeout.inputs[part] for timeout in kept], size) for part in (1, 2, 3)),
+            state=state,
+            rgb=_joined([one.rgb for one in seen], size),
+            depth=_joined([one.depth for one in seen], size),
+            previous=_joined([one.previous for one in seen], size),
         )
         hidden = _joined([timeout.hidden for timeout in kept], size)
         hidden = None if hidden is None else hidden[0]

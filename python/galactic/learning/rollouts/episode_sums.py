@@ -5,7 +5,7 @@ from __future__ import annotations
 import collections
 import math
 from dataclasses import dataclass, field
-from typing import Iterable, NamedTuple, Sequence
+from typing import Iterable, Mapping, NamedTuple
 
 MEASURE = "measure_"
 """What the names of means begin with that are of a task's own measures: no other one does."""
@@ -41,26 +41,38 @@ class EpisodeSums:
     steps: float = 0.0
     logs: dict[str, float] = field(default_factory=dict)
 
-    def numbers(self, names: OwnNames) -> list[float]:
-        """All of them in a row, of which of() makes the same, with what is named."""
-        measured = [self.measures.get(name, 0.0) for name in names.measures]
-        logged = [self.logs.get(name, 0.0) for name in names.logs]
-        row = [self.episodes, self.successes, self.picks, self.returns, self.lengths, *measured]
-        return [*row, self.steps, *logged] if logged else row
+    def by_name(self, names: OwnNames) -> dict[str, float]:
+        """All of them, and of the task's own what is named; of() makes the same of it."""
+        return {
+            "episodes": self.episodes,
+            "successes": self.successes,
+            "picks": self.picks,
+            "returns": self.returns,
+            "lengths": self.lengths,
+            **{MEASURE + name: self.measures.get(name, 0.0) for name in names.measures},
+            "steps": self.steps,
+            **{LOG + name: self.logs.get(name, 0.0) for name in names.logs},
+        }
 
     @classmethod
-    def of(cls, numbers: Sequence[float], names: OwnNames) -> EpisodeSums:
-        episodes, successes, picks, returns, lengths, *own = numbers
-        measures = dict(zip(names.measures, own))
-        steps, *logged = own[len(measures) :] or [0.0]
-        logs = dict(zip(names.logs, logged))
-        return cls(episodes, successes, picks, returns, lengths, measures, steps, logs)
+    def of(cls, numbers: Mapping[str, float], names: OwnNames) -> EpisodeSums:
+        """Of the task's own what is named, and not known where it is not among `numbers`."""
+        return cls(
+            numbers["episodes"],
+            numbers["successes"],
+            numbers["picks"],
+            numbers["returns"],
+            numbers["lengths"],
+            {name: numbers.get(MEASURE + name, math.nan) for name in names.measures},
+            numbers["steps"],
+            {name: numbers.get(LOG + name, math.nan) for name in names.logs},
+        )
 
     @classmethod
     def total(cls, parts: Iterable[EpisodeSums], names: OwnNames) -> EpisodeSums:
         """Of all parts together."""
-        rows = [one.numbers(names) for one in (cls(), *parts)]
-        return cls.of([sum(column) for column in zip(*rows)], names)
+        rows = [one.by_name(names) for one in (cls(), *parts)]
+        return cls.of({name: sum(row[name] for row in rows) for name in rows[0]}, names)
 
     def means(self) -> dict[str, float]:
         """Of an episode or a step, by the names that columns of the curves have; nothing where no episode was."""
@@ -105,16 +117,12 @@ class RecentEpisodes:
         """
         return {} if self.waiting else self.total().means()
 
-    def numbers(self) -> list[list[float]]:
-        """Rows that take_up() takes."""
-        return [sums.numbers(self._names) for sums in self._rollouts]
+    def rows(self) -> list[dict[str, float]]:
+        """What take_up() takes: EpisodeSums.by_name() of each rollout."""
+        return [sums.by_name(self._names) for sums in self._rollouts]
 
-    def take_up(self, rows: Iterable[Sequence[float]], names: OwnNames, waiting: int) -> None:
-        """Goes on from rows of what `names` name, which may be less than is named now: the rest is not known."""
+    def take_up(self, rows: Iterable[Mapping[str, float]], waiting: int) -> None:
+        """Goes on from rows in which less may be named than the task says now: the rest is not known."""
         self.waiting = waiting
         self._rollouts.clear()
-        for numbers in rows:
-            sums = EpisodeSums.of(numbers, names)
-            sums.measures = {**dict.fromkeys(self._names.measures, math.nan), **sums.measures}
-            sums.logs = {**dict.fromkeys(self._names.logs, math.nan), **sums.logs}
-            self._rollouts.append(sums)
+        self._rollouts.extend(EpisodeSums.of(row, self._names) for row in rows)

@@ -12,7 +12,7 @@ from torch import Tensor
 
 from galactic.demonstrations import About
 from galactic.learning.policies.networks import PolicyShape
-from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames
+from galactic.learning.rollouts.episode_sums import LOG, MEASURE
 from galactic.learning.settings import CAMERA, Settings
 
 
@@ -59,27 +59,26 @@ def trainer_values(values: Mapping[str, Any]) -> dict[str, Any]:
     }
     if isinstance(values.get("rows"), list):
         values["row_count"] = len(values["rows"])
-    return _with_picks(values)
-
-
-def _with_picks(values: dict[str, Any]) -> dict[str, Any]:
-    """Nobody once counted in which episodes the target was picked: of those it is not known."""
     measures, logs, window = values["measures"], values["logs"], values.get("window")
     if _are_names(measures) and _are_names(logs) and isinstance(window, list):
-        names = OwnNames(tuple(measures), tuple(logs))
-        width = len(EpisodeSums().numbers(names))
-        values["window"] = [_with_gap(row, width, 2, math.nan) for row in window]
+        own = [MEASURE + name for name in measures]
+        own += ["steps", *(LOG + name for name in logs)] if logs else []
+        values["window"] = [_by_name(row, own) for row in window]
     return values
+
+
+def _by_name(row: Any, own: list[str]) -> Any:
+    """A row of the window, which was a list once: of these, and of the task's `own`. Nobody counted at first in which
+    episodes the target was picked: of those it is not known."""
+    names = ["episodes", "successes", "picks", "returns", "lengths", *own]
+    if isinstance(row, list) and len(row) == len(names) - 1:
+        row = [*row[:2], math.nan, *row[2:]]
+    is_old = isinstance(row, list) and len(row) == len(names)
+    return {"steps": 0.0, **dict(zip(names, row))} if is_old else row
 
 
 def _are_names(values: Any) -> bool:
     return isinstance(values, list) and all(isinstance(one, str) for one in values)
-
-
-def _with_gap(row: Any, width: int, at: int, gap: float) -> Any:
-    """A row of a table of that width, which has the gap at that place where it was without."""
-    is_without = isinstance(row, list) and len(row) == width - 1
-    return [*row[:at], gap, *row[at:]] if is_without else row
 
 
 def rank_tensors(tensors: Mapping[str, Any]) -> dict[str, Any]:

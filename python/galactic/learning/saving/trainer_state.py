@@ -15,7 +15,7 @@ from galactic.learning.saving import older
 class TrainerState:
     """Where a Trainer is. `row_count`: how many rows of curves.csv are of before. `added_columns`: which of its columns
     a callback has added. `added`: what it has said since the latest row. `measures`, `logs`: names of what the task says.
-    `window`: EpisodeSums.numbers() of recent rollouts. `stopwatch`: its seconds."""
+    `window`: EpisodeSums.by_name() of recent rollouts. `stopwatch`: its seconds."""
 
     ranks: int
     updates: int
@@ -28,7 +28,7 @@ class TrainerState:
     waiting: int
     measures: list[str]
     logs: list[str]
-    window: list[list[float]]
+    window: list[dict[str, float]]
     seconds: float
     processor_seconds: float
     stopwatch: dict[str, float]
@@ -60,7 +60,10 @@ def state_of(values: dict[str, Any], ranks: int, names: OwnNames, folder: pathli
                 f"{folder} is of a task that {said} {lost[0]}, and the task does so no longer; put "
                 "its class back as it was, or begin another run"
             )
-    _require_rows("window", state.window, len(EpisodeSums().numbers(state.names)))
+    for number, row in enumerate(state.window):
+        with_name = {f"window[{number}]": row}
+        require_types(with_name, dict.fromkeys(with_name, dict))
+        require_types(row, dict.fromkeys(EpisodeSums().by_name(state.names), (float, int)))
     for numbers in (state.added, state.stopwatch):
         require_types(numbers, dict.fromkeys(numbers, (float, int)))
     return state
@@ -84,11 +87,3 @@ _TYPES = {
     "processor_seconds": (float, int),
     "stopwatch": dict,
 }
-
-
-def _require_rows(name: str, rows: list[Any], width: int) -> None:
-    """Raises ValueError where a row of the table has another width, or no numbers."""
-    for number, row in enumerate(rows):
-        are_numbers = isinstance(row, list) and all(isinstance(one, (float, int)) for one in row)
-        if not are_numbers or len(row) != width:
-            raise ValueError(f"{name}[{number}]: found {row!r}, expected {width} numbers")

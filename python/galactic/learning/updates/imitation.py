@@ -24,6 +24,7 @@ from galactic.learning.rollouts.rollout import Rollout
 from galactic.learning.rollouts.stopwatch import Stopwatch
 from galactic.learning.saving.checkpoint import require_tensors
 from galactic.learning.settings import Settings
+from galactic.learning.sums import Sums, over_ranks
 from galactic.learning.updates.learner import Learner
 from galactic.learning.updates.schedules import learning_rate_at
 
@@ -227,8 +228,6 @@ def _returns_of(demonstrations: Demonstrations, gamma: float) -> np.ndarray:
 class ImitationLearner(Learner):
     """Makes what an expert did likelier, and the values what its episodes paid."""
 
-    _NAMES = ("policy_loss", "value_loss", "entropy")
-
     def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
         assert isinstance(rollout, Shown)
         settings = self.settings
@@ -236,27 +235,30 @@ class ImitationLearner(Learner):
         shown = rollout.by_expert[: rollout.steps]
         kept = rollout.returns[: rollout.steps][shown]
         kept = kept.double()
-        moments = [torch.ones_like(kept).sum(), kept.sum(), kept.square().sum()]
-        found, first, second = self.group.sum(torch.stack(moments)).tolist()
-        steps = max(found, 1.0)
+        moments = over_ranks(
+            self.group,
+            {"steps": kept.numel(), "first": kept.sum(), "second": kept.square().sum()},
+        )
+        steps = max(moments["steps"], 1.0)
         per_mini_batch = steps / settings.mini_batches
-        totals = torch.zeros(len(self._NAMES) + 1, dtype=torch.float64, device=kept.device)
+        sums = Sums()
         for chosen in self._mini_batches(rollout, update):
-            totals += self._step(rollout, chosen, per_mini_batch)
+            sums.add(self._step(rollout, chosen, per_mini_batch))
         self._absorb_observations(rollout)
         rounds = settings.epochs * settings.mini_batches
-        *sums, norm = self.group.sum(totals).tolist()
-        report = {name: total / (steps * settings.epochs) for name, total in zip(self._NAMES, sums)}
+        report = over_ranks(self.group, sums.by_name())
+        norm = report.pop("grad_norm")
+        report = {name: total / (steps * settings.epochs) for name, total in report.items()}
         report["grad_norm"] = norm / (rounds * self.group.size)
-        variance = second / steps - (first / steps) ** 2
+        variance = moments["second"] / steps - (moments["first"] / steps) ** 2
         report["explained_variance"] = 1.0 - 2.0 * report["value_loss"] / max(variance, 1e-12)
         if self.policy.action.log_std is not None:
             report["log_std"] = float(self.policy.action.log_std.mean())
         return report
 
-    def _step(self, rollout: Shown, chosen: Tensor, steps_of_all: float) -> Tensor:
-        """One step of the optimizer; sums over the expert's steps in the order of _NAMES, and the norm of
-        the gradient."""
+    def _step(self, rollout: Shown, chosen: Tensor, steps_of_all: float) -> dict[str, Tensor]:
+        """One step of the optimizer; sums over the expert's steps of policy_loss, value_loss and entropy, and the norm of
+        the gradient, grad_norm."""
         steps = rollout.steps
         self.optimizer.clear()
         outputs = self._outputs(rollout, chosen)
@@ -271,7 +273,12 @@ class ImitationLearner(Learner):
             rollout.last_hidden[chosen] = outputs.hidden.detach().float()
         with torch.no_grad():
             entropy = (outputs.actions.entropy() * weights).sum()
-            return torch.stack([surprise, value_loss, entropy, norm]).double()
+        return {
+            "policy_loss": surprise.detach(),
+            "value_loss": value_loss.detach(),
+            "entropy": entropy,
+            "grad_norm": norm,
+        }
 
 
 def require_same(demonstrations: Demonstrations, settings: Settings, observed: Observed,

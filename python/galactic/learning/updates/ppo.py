@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Union
 
 import torch
 from torch import Tensor
@@ -13,6 +13,7 @@ from galactic.learning.policies.networks import Outputs, Policy
 from galactic.learning.ranks.distributed import Group
 from galactic.learning.rollouts.rollout import Rollout, advantages
 from galactic.learning.settings import Settings
+from galactic.learning.sums import Sums, over_ranks
 from galactic.learning.updates.learner import Learner
 from galactic.learning.updates.schedules import (
     entropy_at,
@@ -29,10 +30,8 @@ class Loss:
 
     total: Tensor
     """To be minimized; already divided by the steps of all ranks."""
-    sums: Tensor
-    """[6]: in the order of NAMES."""
-
-    NAMES = ("policy_loss", "value_loss", "entropy", "kl", "clipped", "steps")
+    sums: dict[str, Tensor]
+    """Of policy_loss, value_loss, entropy, kl and clipped, and how many steps they are of: steps."""
 
 
 @dataclass
@@ -68,7 +67,14 @@ def ppo_loss(outputs: Outputs, batch: Batch, settings: Settings, entropy_coeffic
         kl = (ratio - 1.0 - log_ratio).sum()
         moved = (ratio != clipped).sum()
         count = torch.tensor(float(ratio.numel()), device=ratio.device)
-        sums = torch.stack([-surrogate, value_loss, entropy, kl, moved.float(), count])
+        sums = {
+            "policy_loss": -surrogate.detach(),
+            "value_loss": value_loss.detach(),
+            "entropy": entropy.detach(),
+            "kl": kl,
+            "clipped": moved.float(),
+            "steps": count,
+        }
     return Loss(total, sums)
 
 
@@ -103,7 +109,7 @@ class PpoLearner(Learner):
         scaled, all_steps = self._normalized(raw)
         per_mini_batch = all_steps / settings.mini_batches
         lesson = self._lesson(rollout, progress)
-        totals = torch.zeros(len(Loss.NAMES) + 2, dtype=torch.float64, device=raw.device)
+        sums = Sums()
         for chosen in self._mini_batches(rollout, update):
             batch = Batch(
                 rollout.actions[:steps, chosen],
@@ -112,12 +118,12 @@ class PpoLearner(Learner):
                 scaled[:, chosen],
                 returns[:, chosen],
             )
-            totals += self._step(
-                rollout, chosen, batch, lesson, entropy_coefficient, per_mini_batch
+            sums.add(
+                self._step(rollout, chosen, batch, lesson, entropy_coefficient, per_mini_batch)
             )
         self._limit_exploration(progress)
         self._absorb_observations(rollout)
-        report = self._report(totals, raw, returns)
+        report = self._report(sums, raw, returns)
         if lesson is None:
             del report["teacher_kl"]
         self.rate.follow(report["kl"])
@@ -130,29 +136,32 @@ class PpoLearner(Learner):
         return Lesson(self.teacher.actions(rollout), weight)
 
     def _step(self, rollout: Rollout, chosen: Tensor, batch: Batch, lesson: Optional[Lesson],
-              entropy_coefficient: float, steps_of_all: float) -> Tensor:  # fmt: skip
-        """One step of the optimizer; the sums of its losses, the divergence from the teacher, and the
-        norm of the gradient."""
+              entropy_coefficient: float, steps_of_all: float) -> dict[str, Tensor]:  # fmt: skip
+        """One step of the optimizer; the sums of its losses, and of the divergence from the teacher, teacher_kl, and the
+        norm of the gradient, grad_norm."""
         self.optimizer.clear()
         outputs = self._outputs(rollout, chosen)
         loss = ppo_loss(outputs, batch, self.settings, entropy_coefficient, steps_of_all)
-        total, divergence = loss.total, loss.sums.new_zeros(())
+        total, divergence = loss.total, torch.zeros_like(loss.total)
         if lesson is not None:
             divergence = lesson.actions.of(chosen).divergence(outputs.actions).sum()
             total = total + (lesson.weight / steps_of_all) * divergence
         norm = self._descend(total)
-        return torch.cat([loss.sums, divergence.detach().reshape(1), norm.reshape(1)]).double()
+        return {**loss.sums, "teacher_kl": divergence.detach(), "grad_norm": norm}
 
     def _normalized(self, raw: Tensor) -> tuple[Tensor, float]:
         """Advantages of mean 0 and variance 1 over all ranks, and the steps of all ranks."""
         # The variance is a small difference of large sums where all advantages are far from zero.
         exact = raw.double()
-        sums = torch.stack([torch.ones_like(exact).sum(), exact.sum(), exact.square().sum()])
-        count, first, second = self.group.sum(sums).tolist()
+        found = over_ranks(
+            self.group,
+            {"steps": raw.numel(), "first": exact.sum(), "second": exact.square().sum()},
+        )
+        count = found["steps"]
         if not self.settings.normalize_advantages:
             return raw, count
-        mean = first / count
-        deviation = max(second / count - mean * mean, 0.0) ** 0.5
+        mean = found["first"] / count
+        deviation = max(found["second"] / count - mean * mean, 0.0) ** 0.5
         return (raw - mean) / (deviation + 1e-5), count
 
     def _limit_exploration(self, progress: float) -> None:
@@ -160,19 +169,23 @@ class PpoLearner(Learner):
         less of it lets the means learn what the noise did."""
         self.policy.action.limit_log_std(log_std_limit_at(self.settings, progress))
 
-    def _report(self, totals: Tensor, raw: Tensor, returns: Tensor) -> dict[str, float]:
+    def _report(self, sums: Sums, raw: Tensor, returns: Tensor) -> dict[str, float]:
         """Means over all ranks, mini-batches and epochs."""
         rounds = self.settings.epochs * self.settings.mini_batches
         raw, returns = raw.double(), returns.double()
-        moments = [raw.square(), torch.ones_like(raw), returns, returns.square()]
-        spread = torch.stack([moment.sum() for moment in moments])
-        *sums, error, steps, first, second = self.group.sum(torch.cat([totals, spread])).tolist()
-        count = sums[Loss.NAMES.index("steps")]
-        report = {name: sums[i] / count for i, name in enumerate(Loss.NAMES[:-1])}
-        report["teacher_kl"] = sums[-2] / count
-        report["grad_norm"] = sums[-1] / (rounds * self.group.size)
-        variance = second / steps - (first / steps) ** 2
-        report["explained_variance"] = 1.0 - error / steps / max(variance, 1e-12)
+        moments: dict[str, Union[float, Tensor]] = {
+            "rollout_steps": raw.numel(),
+            "error": raw.square().sum(),
+            "first": returns.sum(),
+            "second": returns.square().sum(),
+        }
+        found = over_ranks(self.group, {**sums.by_name(), **moments})
+        of_steps = ("policy_loss", "value_loss", "entropy", "kl", "clipped", "teacher_kl")
+        report = {name: found[name] / found["steps"] for name in of_steps}
+        report["grad_norm"] = found["grad_norm"] / (rounds * self.group.size)
+        steps = found["rollout_steps"]
+        variance = found["second"] / steps - (found["first"] / steps) ** 2
+        report["explained_variance"] = 1.0 - found["error"] / steps / max(variance, 1e-12)
         if self.policy.action.log_std is not None:
             report["log_std"] = float(self.policy.action.log_std.mean())
         return report
