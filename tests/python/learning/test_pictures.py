@@ -35,9 +35,8 @@ def result(episode: int, success: bool) -> EpisodeResult:
 
 def policy_of(network: str, **more: Any) -> tuple[Settings, Homes, checkpoint.SavedPolicy]:
     """An untrained policy, and the homes that it is for."""
-    settings = Settings(
-        envs=6, halves=1, mini_batches=1, network=network, width=16, simulation=SIMULATION, **more
-    )
+    sizes = {"envs": 6, "halves": 1, "mini_batches": 1, "width": 16}
+    settings = Settings.effective({**sizes, "network": network, "simulation": SIMULATION, **more})
     homes = Homes(galactic.World(WORLD), settings, 1)
     return settings, homes, untrained(settings, homes)
 
