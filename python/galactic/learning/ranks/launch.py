@@ -32,10 +32,11 @@ GRACE = 30.0
 
 def launch(ranks: int, command: Sequence[str]) -> int:
     """Runs `command` in `ranks` processes that find each other by torch.distributed's environment
-    variables, and waits for them. Returns the first code that is not 0, else 0. Interrupts reach the
-    ranks, which end as they see fit, and a terminal that closes asks them to end. Raises galactic.Error
-    where another signal has ended a rank, which could not say so itself. Ranks that call
-    follow_launcher() do not outlive this process, whatever ends it."""
+    variables, and waits for them. Returns the first code that is not 0, else 0. Interrupts reach
+    the ranks, which end as they see fit, and a terminal that closes asks them to end. Ctrl-Z stops
+    them, too, until this process goes on. Raises galactic.Error where another signal has ended a
+    rank, which could not say so itself. Ranks that call follow_launcher() do not outlive this
+    process, whatever ends it."""
     store = torch.distributed.TCPStore("127.0.0.1", 0, is_master=True, wait_for_workers=False)
     environment = {
         **os.environ,
@@ -101,6 +102,9 @@ class _PassedOn:
             # nohup ignores what a terminal says when it closes.
             if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
                 self._before[number] = signal.signal(number, self._pass_on)
+        # Of a shell without jobs, none comes.
+        if signal.getsignal(signal.SIGTSTP) != signal.SIG_IGN:
+            self._before[signal.SIGTSTP] = signal.signal(signal.SIGTSTP, self._pause)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -121,10 +125,20 @@ class _PassedOn:
         else:
             self._early.append(number)
 
+    def _pause(self, number: int, _: Any) -> None:
+        """Ranks are in no terminal's group, of which Ctrl-Z stops all, and they hold the processors."""
+        self._signal(signal.SIGSTOP)
+        os.kill(os.getpid(), signal.SIGSTOP)
+        # Here a SIGCONT, which the shell's fg and bg send, lets it go on.
+        self._signal(signal.SIGCONT)
+
     def _send(self, number: int) -> None:
+        self._signal(self._AS[signal.Signals(number)])
+
+    def _signal(self, number: int) -> None:
         for process in self._processes:
             if process.poll() is None:
-                process.send_signal(self._AS[signal.Signals(number)])
+                process.send_signal(number)
 
 
 def _ended_by(number: signal.Signals, rank: int) -> int:
