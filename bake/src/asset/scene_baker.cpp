@@ -84,7 +84,8 @@ class RegionWarnings {
     const float radius = baked.grid.frame.radius;
     const double volume = baked.totals[static_cast<std::size_t>(Region::kRoom)].volume;
     if (!(volume > 0)) {
-      full_.push_back(radius);
+      const bool is_free_outside = !baked.components.empty();
+      (is_free_outside ? full_rooms_ : full_).push_back(radius);
       return;
     }
     if (options_.free_space.keep == Keep::kAll) return;
@@ -101,6 +102,12 @@ class RegionWarnings {
   [[nodiscard]] std::vector<std::string> take() {
     if (!full_.empty()) {
       closed_.push_back(fmt::format("radius {} m: no free space at all", fmt::join(full_, " m, ")));
+    }
+    if (!full_rooms_.empty()) {
+      closed_.push_back(
+          fmt::format("radius {} m: no free space in the room; what is free outside of it is left "
+                      "out, keep it with `inside`",
+                      fmt::join(full_rooms_, " m, ")));
     }
     if (!open_.empty()) {
       closed_.push_back(fmt::format(
@@ -162,7 +169,9 @@ class RegionWarnings {
   }
 
   const SceneBakeOptions& options_;
+  /// Radii with no free space at all, and with some outside of the room alone.
   std::vector<float> full_;
+  std::vector<float> full_rooms_;
   std::vector<float> open_;
   std::string way_out_;
   std::vector<Bounds> known_;

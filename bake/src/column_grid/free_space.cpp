@@ -83,10 +83,15 @@ constexpr double kLeastFloor = 4;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+/// Length of the part of a span within heights.
+double overlap(const Span& span, const Span& heights) {
+  return std::max(0.0, static_cast<double>(std::min(span.hi, heights.hi)) -
+                           static_cast<double>(std::max(span.lo, heights.lo)));
+}
+
 /// Length of the part of a span within the scene's heights.
 double overlap(const Span& span, const Bounds& scene) {
-  return std::max(0.0, static_cast<double>(std::min(span.hi, scene.max.y)) -
-                           static_cast<double>(std::max(span.lo, scene.min.y)));
+  return overlap(span, Span{scene.min.y, scene.max.y});
 }
 
 /// Whether a column in the scene's bounds lies at their edge, in the plane.
@@ -220,11 +225,13 @@ std::uint32_t cellAt(double at, float min, float spacing, std::uint32_t count) {
 }
 
 /// Of each component, the length of its spans that lies within the scene's heights and, in the
-/// nearest columns, in `room`, as a share of all that lies there.
+/// nearest columns, in `room`, as a share of all that lies there. A scene without a height, such as
+/// a floor, has no span in it: there, of what lies within the heights of the grid of `room`.
 std::vector<double> sharesIn(const Columns& columns, const Labels& labels, const Columns& room) {
   const GridFrame& frame = columns.frame;
   const GridFrame& other = room.frame;
   const Bounds scene = sceneBounds(frame);
+  const Span compared = scene.max.y > scene.min.y ? Span{scene.min.y, scene.max.y} : other.heights;
   std::vector<double> all(labels.count);
   std::vector<double> inside(labels.count);
   for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
@@ -236,10 +243,10 @@ std::vector<double> sharesIn(const Columns& columns, const Labels& labels, const
       const std::size_t at = columns.index(i, k);
       for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
         const Span& heights = columns.spans[span];
-        all[labels.of_span[span]] += overlap(heights, scene);
+        all[labels.of_span[span]] += overlap(heights, compared);
         for (const Span& free : room.column(room.index(other_i, other_k))) {
           const Span both{std::max(free.lo, heights.lo), std::min(free.hi, heights.hi)};
-          if (both.hi > both.lo) inside[labels.of_span[span]] += overlap(both, scene);
+          if (both.hi > both.lo) inside[labels.of_span[span]] += overlap(both, compared);
         }
       }
     }

@@ -233,6 +233,17 @@ TEST(SceneBaker, WarnsOfAClosedRoomThatItLeavesOut) {
                                     "with `inside` or `keep-components`"));
 }
 
+TEST(SceneBaker, TellsRadiiThatFitOutsideTheRoomOnlyFromThoseThatFitNowhere) {
+  test::MeshBuilder builder;
+  builder.box({0, 0, 0}, {0.6F, 2.5F, 4});
+  const SceneBakeOptions options{.radii = {0.05F, 0.4F}, .check_columns = 0};
+  const auto scene = bake(test::sourceAssetOf(builder.build()), options);
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_THAT(scene->warnings,
+              testing::ElementsAre("radius 0.4 m: no free space in the room; what is free outside "
+                                   "of it is left out, keep it with `inside`"));
+}
+
 TEST(SceneBaker, WarnsOfAGardenThatItLeavesOut) {
   test::MeshBuilder builder;
   builder.box({0, 0.1F, 0}, {5, 2.5F, 4}).box({-8, -0.1F, -8}, {13, 0, 12});

@@ -261,6 +261,19 @@ TEST(FreeSpace, OfAFloorAloneIsWhatIsAboveIt) {
   }
 }
 
+TEST(FreeSpace, OfAFloorWithoutThicknessIsTheSameForAllRadii) {
+  MeshBuilder builder;
+  builder.floor({0, 0, 0}, {5, 0, 4}, 0);
+  const TriangleMesh mesh = builder.build();
+  const FreeSpace room = chooseFreeSpace(columnsOf(mesh, 0.015F)).value();
+  EXPECT_FALSE(room.columns.spans.empty());
+  for (const float radius : {0.05F, 0.12F, 1.0F}) {
+    const Columns columns = columnsOf(mesh, radius);
+    const FreeSpace free = chooseFreeSpace(columns, {}, &room.columns).value();
+    EXPECT_EQ(free.columns.spans.size(), columns.spans.size()) << "radius " << radius;
+  }
+}
+
 /// A room, a closed cabinet in it, and a closed chest in the cabinet.
 TriangleMesh nestedBoxes() {
   MeshBuilder builder;
