@@ -32,6 +32,15 @@ Result<OptionalMeshes> drawFrom(Result<RenderSource> source, const DrawOptions& 
   return OptionalMeshes(std::move(*meshes));
 }
 
+/// Where the spheres of the smallest radius are: there is most of the room for them.
+std::vector<Bounds> roomsOf(const BakedScene& baked) {
+  std::vector<Bounds> rooms;
+  for (const Component& part : baked.grids.front().components) {
+    if (part.region == Region::kRoom) rooms.push_back(part.bounds);
+  }
+  return rooms;
+}
+
 }  // namespace
 
 std::string inFile(const fs::path& file, const std::string& where) {
@@ -71,14 +80,15 @@ Result<std::unique_ptr<Journal>> openJournal(const Job& job, std::span<const Sou
 }
 
 Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,
-                                 std::vector<std::string>& warnings, const BakeContext& context) {
+                                 BakedScene& baked, const BakeContext& context) {
   if (!options.wanted) return std::nullopt;
   // Scenes that share no textures would only fill the library.
   TextureLibrary* const images =
       options.shared_textures.empty() ? nullptr : &context.libraries.images();
-  return drawFrom(
-      sceneRenderSource(scene.asset, scene.folder, options.textures, context.threads, images),
-      options, scene.input, warnings, context.threads);
+  auto source =
+      sceneRenderSource(scene.asset, scene.folder, options.textures, context.threads, images);
+  if (source) source->rooms = roomsOf(baked);
+  return drawFrom(std::move(source), options, scene.input, baked.warnings, context.threads);
 }
 
 Result<OptionalMeshes> drawObject(const SourceAsset& object, const DrawOptions& options,

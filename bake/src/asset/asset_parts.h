@@ -56,10 +56,9 @@ template <class Outcome, class Bake>
 using OptionalMeshes = std::optional<BakedRenderMeshes>;
 
 /// Bake what is drawn of an asset that was read from `input`, and add the warnings. Errors name the
-/// input.
+/// input. Of a scene the grids of `baked` tell where its room is, and the warnings are added there.
 [[nodiscard]] Result<OptionalMeshes> drawScene(const ReadScene& scene, const DrawOptions& options,
-                                               std::vector<std::string>& warnings,
-                                               const BakeContext& context);
+                                               BakedScene& baked, const BakeContext& context);
 [[nodiscard]] Result<OptionalMeshes> drawObject(const SourceAsset& object,
                                                 const DrawOptions& options,
                                                 const std::filesystem::path& input,

@@ -18,7 +18,7 @@ Result<BakedScene> bakeParts(const ReadScene& read, const SceneJob& job, const P
   }
   progress("render meshes", 0.9);
   const detail::Stopwatch timer(times.render);
-  ASSIGN_OR_RETURN(auto meshes, drawScene(read, job.draw, scene->warnings, context));
+  ASSIGN_OR_RETURN(auto meshes, drawScene(read, job.draw, *scene, context));
   scene->render_meshes = std::move(meshes);
   return scene;
 }

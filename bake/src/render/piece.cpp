@@ -63,10 +63,20 @@ bool isTwoSided(const PartMesh& piece, const RenderSource& source) {
   });
 }
 
+/// Whether a part of the room may be inside of a closed piece, which cannot cut it: all or none is.
+bool mayHoldRoom(const PieceShape& shape, const RenderSource& source) {
+  const Bounds& bounds = shape.bounds;
+  return std::ranges::any_of(source.rooms, [&](const Bounds& room) {
+    return bounds.min.x <= room.min.x && bounds.min.y <= room.min.y && bounds.min.z <= room.min.z &&
+           room.max.x <= bounds.max.x && room.max.y <= bounds.max.y && room.max.z <= bounds.max.z;
+  });
+}
+
 /// Whether the piece is a solid that shows its outside only; turns it if it shows its inside.
 bool showOutside(PartMesh& piece, const PieceShape& shape, const RenderSource& source) {
   if (!shape.closed || hasHoles(piece, source)) return false;
   if (*std::min_element(shape.size.begin(), shape.size.end()) > kRoomSize) return false;
+  if (mayHoldRoom(shape, source)) return false;
   const double flat = kFlatVolume * std::pow(shape.area, 1.5);
   if (shape.volume > flat) return true;
   // What a one-sided material shows is meant.
@@ -90,14 +100,14 @@ PieceShape measurePiece(const PartMesh& piece) {
   for (const RenderVertex& vertex : piece.vertices) positions.push_back(vertex.position);
   shape.closed = isClosed(piece.triangles, numberValues(positions).number_of);
   const Vec3d origin = widen(positions.front());
-  Vec3d low = origin;
-  Vec3d high = origin;
-  for (const Vec3& position : positions) {
-    const Vec3d p = widen(position);
+  shape.bounds = {positions.front(), positions.front()};
+  auto& [low, high] = shape.bounds;
+  for (const Vec3& p : positions) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  shape.size = {high.x - low.x, high.y - low.y, high.z - low.z};
+  const Vec3d size = widen(high) - widen(low);
+  shape.size = {size.x, size.y, size.z};
   for (const Triangle& triangle : piece.triangles) {
     const Vec3d a = widen(positions[triangle[0]]) - origin;
     const Vec3d b = widen(positions[triangle[1]]) - origin;

@@ -14,7 +14,8 @@ struct PieceShape {
   /// Of a closed piece: above 0 when its triangles face outwards. Cubic meters.
   double volume = 0;
   double area = 0;
-  /// Edges of the axis-aligned box, meters.
+  Bounds bounds;
+  /// Edges of the bounds, meters.
   std::array<double, 3> size{};
 };
 [[nodiscard]] PieceShape measurePiece(const PartMesh& piece);

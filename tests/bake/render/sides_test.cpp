@@ -78,6 +78,20 @@ TEST(Sides, OfARoomStayTwoForACameraWithinIt) {
   EXPECT_EQ(twoSidedCount(bakedAlone(insideOut(room), kTwoSided)), 12U);
 }
 
+TEST(Sides, OfANarrowRoomStayTwoAndOfItsFurnitureAreOne) {
+  for (const float width : {0.5F, 1.0F, 1.4F}) {
+    const auto corridor = meshOf(MeshBuilder().box({0, 0, 0}, {width, 2.5F, 6}).build());
+    for (const bool faces_inward : {false, true}) {
+      SourceBuilder builder;
+      const std::uint32_t material = builder.material(kTwoSided);
+      builder.place(faces_inward ? insideOut(corridor) : corridor, material)
+          .place(cube(), material);
+      builder.source().rooms = {{{0.03F, 0.02F, 0.03F}, {width - 0.03F, 2.48F, 5.97F}}};
+      EXPECT_EQ(twoSidedCount(baked(builder)), 12U) << "width " << width;
+    }
+  }
+}
+
 TEST(Sides, OfACubeOfTwoMaterialsThatMeetAreOne) {
   const bake::SourceMesh whole = cube();
   bake::SourceMesh lower = whole;

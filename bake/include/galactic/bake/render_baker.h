@@ -7,6 +7,7 @@
 
 #include "galactic/bake/render_textures.h"
 #include "galactic/bake/source_asset.h"
+#include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
 #include "galactic/render_meshes.h"
 #include "layout/render_pools.h"
@@ -46,6 +47,9 @@ struct RenderSource {
   std::vector<std::unique_ptr<SourceMesh>> own_meshes;
   /// Whether textures and vertex colors may hold the light of the place, as those of scans do.
   bool may_hold_light = false;
+  /// Bounds of the parts of a scene's free space that are its room, in the frame of its part: there
+  /// cameras may be.
+  std::vector<Bounds> rooms;
 };
 
 /// Which surfaces get light, baked into their vertex colors: a sky and a key light by normal, kept
@@ -120,7 +124,7 @@ struct BakedRenderMeshes : RenderPools {
 ///
 /// Pieces touch at equal corners, whatever their materials, so no crack opens between materials or
 /// clusters. Closed pieces of two-sided materials become one-sided, and are turned outside out if
-/// need be, unless they are as large as a room: a camera may be inside.
+/// need be, unless they are as large as a room or hold one: a camera may be inside.
 ///
 /// Fails with kInvalidInput where a corner is not finite or beyond kMaxCoordinate (`where` names
 /// the mesh), and when a material or semantic does not exist; with kUnsupported when there are more
