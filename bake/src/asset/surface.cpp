@@ -16,21 +16,6 @@ std::uint32_t byteOf(double value) {
   return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255));
 }
 
-/// Where each position of the mesh comes to stand among those that triangles use; kUnused: none
-/// does.
-constexpr std::uint32_t kUnused = 0xFFFFFFFF;
-std::vector<std::uint32_t> placesOf(const SourceMesh& mesh) {
-  std::vector<std::uint32_t> places(mesh.positions.size(), kUnused);
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t corner : triangle) places[corner] = 0;
-  }
-  std::uint32_t count = 0;
-  for (std::uint32_t& place : places) {
-    if (place != kUnused) place = count++;
-  }
-  return places;
-}
-
 std::array<float, 4> product(const std::array<float, 4>& a, const std::array<float, 4>& b) {
   return {a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]};
 }
@@ -56,9 +41,7 @@ Surface surfaceOf(const SourceAsset& asset, const Affine& frame_from_asset,
     const std::array<float, 4> material = mesh.material < asset.materials.size()
                                               ? asset.materials[mesh.material].base_color
                                               : kNeutral;
-    const std::vector<std::uint32_t> places = placesOf(mesh);
     for (std::size_t n = 0; n < mesh.positions.size(); ++n) {
-      if (places[n] == kUnused) continue;
       const auto p = transformed(frame_from_mesh, mesh.positions[n]);
       surface.positions.push_back(
           {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
@@ -70,8 +53,7 @@ Surface surfaceOf(const SourceAsset& asset, const Affine& frame_from_asset,
       }
     }
     for (const Triangle& triangle : mesh.triangles) {
-      Triangle placed{first + places[triangle[0]], first + places[triangle[1]],
-                      first + places[triangle[2]]};
+      Triangle placed{first + triangle[0], first + triangle[1], first + triangle[2]};
       if (mirrors) std::swap(placed[1], placed[2]);
       surface.triangles.push_back(placed);
     }

@@ -26,6 +26,7 @@
 #include "import/polygon_triangulation.h"
 #include "import/readable_gltf.h"
 #include "import/source_files.h"
+#include "import/used_vertices.h"
 #include "support/mapped_file.h"
 #include "support/try.h"
 
@@ -338,6 +339,20 @@ std::size_t cornersWithoutUv(const SourceMesh& mesh) {
   return corners;
 }
 
+/// Of a pool that many meshes share, each keeps what is its own. Of a mesh with corners that do not
+/// exist, which is refused later, all stays.
+void dropUnusedVertices(SourceMesh& mesh) {
+  const std::size_t count = mesh.positions.size();
+  for (const Triangle& triangle : mesh.triangles) {
+    if (*std::max_element(triangle.begin(), triangle.end()) >= count) return;
+  }
+  const std::vector<std::uint32_t> places = placesOfUsed(count, mesh.triangles);
+  keepUsed(places, mesh.positions);
+  keepUsed(places, mesh.uvs);
+  keepUsed(places, mesh.colors);
+  moveCorners(places, mesh.triangles);
+}
+
 Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index,
                                             const SceneLooks& looks) {
   SourceMesh converted;
@@ -370,6 +385,7 @@ Result<SourceMesh> SceneReader::convertMesh(const aiMesh& mesh, unsigned index,
                     "texture is drawn wrong there; export it again",
                     converted.name, index, corners));
   }
+  dropUnusedVertices(converted);
   return converted;
 }
 

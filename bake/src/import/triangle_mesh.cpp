@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "import/affine.h"
+#include "import/used_vertices.h"
 #include "support/out_of_memory.h"
 #include "support/try.h"
 
@@ -104,7 +105,7 @@ Result<void> Placement::place(const SourceInstance& instance) {
     if (mirrors) std::swap(triangle[1], triangle[2]);
     mesh_.triangles.push_back(triangle);
   }
-  // Only what was touched: a small mesh may share a big pool of vertices with many others.
+  // Only what was touched: a small mesh may come after a large one.
   for (const Triangle& triangle : source.triangles) {
     for (const std::uint32_t corner : triangle) placed_[corner] = kNone;
   }
@@ -290,20 +291,9 @@ CleaningCounts dropTriangles(TriangleMesh& mesh) {
 
 /// Drops vertices that no triangle uses, keeping the order of the others.
 void dropUnusedVertices(TriangleMesh& mesh) {
-  std::vector<std::uint32_t> index(mesh.vertices.size(), kNone);
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t corner : triangle) index[corner] = 0;
-  }
-  std::uint32_t kept = 0;
-  for (std::size_t i = 0; i < index.size(); ++i) {
-    if (index[i] == kNone) continue;
-    mesh.vertices[kept] = mesh.vertices[i];
-    index[i] = kept++;
-  }
-  mesh.vertices.resize(kept);
-  for (Triangle& triangle : mesh.triangles) {
-    for (std::uint32_t& corner : triangle) corner = index[corner];
-  }
+  const std::vector<std::uint32_t> places = placesOfUsed(mesh.vertices.size(), mesh.triangles);
+  keepUsed(places, mesh.vertices);
+  moveCorners(places, mesh.triangles);
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "galactic/bake/triangle_mesh.h"
 #include "support/source_asset.h"
 
@@ -57,20 +55,6 @@ TEST(Surface, PlacesInstancesAndKeepsMirroredOnesOutsideOut) {
   EXPECT_THAT(surface.positions, ElementsAre(Vec3{0, 1, 0}, Vec3{2, 1, 0}, Vec3{0, 3, 0},
                                              Vec3{10, 1, 0}, Vec3{8, 1, 0}, Vec3{10, 3, 0}));
   EXPECT_THAT(surface.triangles, ElementsAre(bake::Triangle{0, 1, 2}, bake::Triangle{3, 5, 4}));
-}
-
-TEST(Surface, LeavesOutPointsThatNoTriangleUses) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  bake::SourceAsset asset = triangle();
-  bake::SourceMesh& mesh = asset.meshes[0];
-  mesh.positions = {{nan, 0, 0}, {0, 0, 0}, {9, 9, 9}, {1, 0, 0}, {0, 1, 0}, {-9, 0, 0}};
-  mesh.colors = {{0, 0, 0, 0}, {1, 1, 1, 1}, {0, 0, 0, 0},
-                 {0, 1, 1, 1}, {1, 0, 1, 0}, {0, 0, 0, 0}};
-  mesh.triangles = {{1, 3, 4}};
-  const Surface surface = surfaceOf(asset, kIdentity);
-  EXPECT_THAT(surface.positions, ElementsAre(Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}));
-  EXPECT_THAT(surface.triangles, ElementsAre(bake::Triangle{0, 1, 2}));
-  EXPECT_THAT(surface.colors, ElementsAre(0xff0080ffU, 0xff008000U, 0x000000ffU));
 }
 
 TEST(Surface, AppendsPartsWithAndWithoutColors) {

@@ -256,6 +256,39 @@ TEST(SceneGraph, ShapesMeshesOfGltfFilesByTheWeightsOfTheirMorphTargets) {
   EXPECT_THAT(second(R"(,"weights":[-0.5])"), ElementsAre(8.5, -1, -1.5));
 }
 
+/// Two triangles as two primitives that share their six points.
+std::string sharedPointsFile() {
+  std::string buffer;
+  for (const float value :
+       {0.F, 0.F, 0.F, 9.F, 0.F, 0.F, 0.F, 9.F, 0.F, 0.F, 0.F, 5.F, 8.F, 0.F, 5.F, 0.F, 7.F, 5.F}) {
+    buffer += bytesOf(value);
+  }
+  const std::array<std::uint16_t, 6> indices{3, 4, 5, 2, 0, 1};
+  for (const std::uint16_t index : indices) buffer += bytesOf(index);
+  return glbContainer(
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1},)"
+      R"({"attributes":{"POSITION":0},"indices":2}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":6,"type":"VEC3",)"
+      R"("min":[0,0,0],"max":[9,9,5]},{"bufferView":1,"componentType":5123,"count":3,)"
+      R"("type":"SCALAR"},{"bufferView":1,"byteOffset":6,"componentType":5123,"count":3,)"
+      R"("type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":72},)"
+      R"({"buffer":0,"byteOffset":72,"byteLength":12}],"buffers":[{"byteLength":84}]})",
+      buffer);
+}
+
+TEST(SceneGraph, LeavesOutVerticesThatOtherMeshesUse) {
+  const auto asset = importContent("a.glb", sharedPointsFile());
+  ASSERT_TRUE(asset.has_value()) << asset.error().message;
+  ASSERT_EQ(asset->meshes.size(), 2U);
+  const bake::SourceMesh& first = asset->meshes[0];
+  const bake::SourceMesh& second = asset->meshes[1];
+  EXPECT_THAT(first.positions, ElementsAre(Vec3{0, 0, 5}, Vec3{8, 0, 5}, Vec3{0, 7, 5}));
+  EXPECT_THAT(first.triangles, ElementsAre(bake::Triangle{0, 1, 2}));
+  EXPECT_THAT(second.positions, ElementsAre(Vec3{0, 0, 0}, Vec3{9, 0, 0}, Vec3{0, 9, 0}));
+  EXPECT_THAT(second.triangles, ElementsAre(bake::Triangle{2, 0, 1}));
+}
+
 TEST(SceneGraph, WarnsOfWeightsOfMorphTargetsThatNodesStateOnce) {
   const auto warnings = [](std::string_view weights) {
     const auto asset = importContent("a.glb", morphFile("", weights));

@@ -48,6 +48,7 @@ struct EmbeddedTexture {
 /// One mesh in its own frame.
 struct SourceMesh {
   std::string name;
+  /// Triangles use all of them: the readers leave others out.
   std::vector<Vec3> positions;
   /// Texture coordinates, one per position or none; (0, 0) is the image's lower left corner.
   std::vector<std::array<float, 2>> uvs;
