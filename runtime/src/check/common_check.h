@@ -25,6 +25,13 @@ inline constexpr float kMostAngle = 1e9F;
 /// A coordinate, meters.
 [[nodiscard]] inline bool isCoordinate(float meters) { return std::fabs(meters) <= kFarthest; }
 
+/// How far from the origin a plane may be that passes points of these coordinates, meters: as far
+/// as the corners of their cube.
+inline constexpr float kFarthestPlane = 1386;
+[[nodiscard]] inline bool isPlaneOffset(float meters) {
+  return std::fabs(meters) <= kFarthestPlane;
+}
+
 /// A point, meters.
 [[nodiscard]] inline bool isPlace(const schema::Vec3& v) {
   return isCoordinate(v.x()) && isCoordinate(v.y()) && isCoordinate(v.z());

@@ -36,8 +36,8 @@ Result<void> checkStablePoses(const schema::Object& object, const std::string& w
     const std::string field = fmt::format("stable_poses[{}]", n);
     offence.require(isUnit(pose.rotation()), field + ".rotation",
                     "is not a unit quaternion, expected a rotation");
-    offence.require(isCoordinate(pose.height()), field + ".height", "is {} m, expected up to {} m",
-                    pose.height(), kFarthest);
+    offence.require(isPlaneOffset(pose.height()), field + ".height", "is {} m, expected up to {} m",
+                    pose.height(), kFarthestPlane);
     const float most = n == 0 ? 1.0F : poses.Get(n - 1)->likelihood();
     offence.require(pose.likelihood() >= 0 && pose.likelihood() <= most, field + ".likelihood",
                     "is {}, expected 0 to {}: the likeliest first", pose.likelihood(), most);
@@ -59,8 +59,8 @@ Result<void> checkHullPlanes(const schema::Object& object, const std::string& wh
     const std::string field = fmt::format("hull_planes[{}]", n);
     offence.require(isUnit(plane.normal()), field + ".normal",
                     "is not of unit length, expected a direction");
-    offence.require(isCoordinate(plane.offset()), field + ".offset", "is {} m, expected up to {} m",
-                    plane.offset(), kFarthest);
+    offence.require(isPlaneOffset(plane.offset()), field + ".offset",
+                    "is {} m, expected up to {} m", plane.offset(), kFarthestPlane);
   }
   return offence.result();
 }

@@ -70,6 +70,23 @@ TEST(ObjectPack, OpensAndShowsTheObjectsByAscendingName) {
   }
 }
 
+TEST(ObjectPack, OpensWithAnObjectAsFarAwayAsPossible) {
+  BakedObjectSet set;
+  set.radii = coarse().spheres.radii;
+  auto object = bakeObject(
+      sourceAssetOf(MeshBuilder().box({799, -799, 799}, {799.5F, -798.5F, 799.25F}).build(), "far"),
+      coarse());
+  ASSERT_TRUE(object) << object.error().text();
+  set.objects = {std::move(*object)};
+  const auto payload = encodeObjectPack(set, provenance());
+  ASSERT_TRUE(payload) << payload.error().text();
+  const AlignedBytes bytes = packFile(PackKind::kObjects, *payload);
+  const auto pack = PackFile::view(bytes.bytes(), "far.pack");
+  ASSERT_TRUE(pack) << pack.error().text();
+  const auto opened = ObjectSet::from(*pack);
+  EXPECT_TRUE(opened) << opened.error().text();
+}
+
 TEST(ObjectPack, HasTheSameBytesForAnyOrderOfObjectsAndAnyNumberOfJobs) {
   const auto first = encodeObjectPack(threeBoxes(1), provenance());
   BakedObjectSet turned = threeBoxes(3);

@@ -147,10 +147,10 @@ TEST(ObjectCheck, RefusesWrongHullPlanes) {
          [](Planes& p) { p[1].normal.x = 0.5F; }),
       in("hull_planes[0].normal", "is not of unit length, expected a direction",
          [](Planes& p) { p[0].normal.y = kNan; }),
-      in("hull_planes[1].offset", "is nan m, expected up to 800 m",
+      in("hull_planes[1].offset", "is nan m, expected up to 1386 m",
          [](Planes& p) { p[1].offset = kNan; }),
-      in("hull_planes[1].offset", "is -801 m, expected up to 800 m",
-         [](Planes& p) { p[1].offset = -801; }),
+      in("hull_planes[1].offset", "is -1387 m, expected up to 1386 m",
+         [](Planes& p) { p[1].offset = -1387; }),
   });
 }
 
@@ -160,7 +160,7 @@ TEST(ObjectCheck, RefusesWrongStablePoses) {
                [](ObjectFields& o) { o.stable_poses.clear(); }),
       inObject("stable_poses[1].rotation", "is not a unit quaternion, expected a rotation",
                [](ObjectFields& o) { o.stable_poses[1].rotation.x = 0.5F; }),
-      inObject("stable_poses[0].height", "is nan m, expected up to 800 m",
+      inObject("stable_poses[0].height", "is nan m, expected up to 1386 m",
                [](ObjectFields& o) { o.stable_poses[0].height = kNan; }),
       inObject("stable_poses[0].likelihood", "is 1.5, expected 0 to 1: the likeliest first",
                [](ObjectFields& o) { o.stable_poses[0].likelihood = 1.5F; }),
