@@ -177,7 +177,7 @@ Result<std::vector<Openness>> measure(const Scene& scene, const LightPoints& poi
   AmbientOcclusionOptions rays;
   rays.rays = kRays;
   rays.dim = kDim;
-  rays.least_distance = static_cast<float>(2 * options.error);
+  rays.least_distance = std::min(static_cast<float>(2 * options.error), rays.largest_distance / 2);
   ASSIGN_OR_RETURN(auto measured, ambientOcclusion(meshes, rays, threads));
   // A point belongs to one kind, but where kinds meet without an edge.
   std::vector<Openness> openness = std::move(measured[static_cast<std::size_t>(LitSides::kBoth)]);

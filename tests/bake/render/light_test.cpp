@@ -300,6 +300,15 @@ TEST(Light, ManyTrianglesAtOnePlaceShareALight) {
   EXPECT_EQ(middle.size(), 1U);
 }
 
+TEST(Light, GoesWithAnyErrorOfSimplification) {
+  SourceBuilder builder;
+  builder.place(box({0.1F, 0.2F, 0.15F}), builder.material(true));
+  for (const double error : {0.49, 0.5, 0.7, 1.0}) {
+    const auto meshes = bake::bakeRenderMeshes(builder.source(), {.error = error});
+    EXPECT_TRUE(meshes) << meshes.error().text();
+  }
+}
+
 TEST(Light, PutsUpWithTrianglesOfNoArea) {
   SourceBuilder builder;
   SourceMesh needle = box({0.1F, 0.2F, 0.15F});
