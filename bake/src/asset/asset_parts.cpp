@@ -27,8 +27,9 @@ Result<OptionalMeshes> drawFrom(Result<RenderSource> source, const DrawOptions& 
   if (!source) return located(source.error());
   auto meshes = bakeRenderMeshes(*source, options.meshes, threads);
   if (!meshes) return located(meshes.error());
-  const std::vector<std::string>& more = meshes->materials.warnings;
-  warnings.insert(warnings.end(), more.begin(), more.end());
+  for (const auto& more : {meshes->materials.warnings, meshes->warnings}) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  }
   return OptionalMeshes(std::move(*meshes));
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -135,19 +135,66 @@ bool fits(const LatticeCluster& cluster) {
          box.high[2] - box.low[2] <= kMostSteps;
 }
 
-/// The clusters on a lattice, or none when one of them spans too many steps.
-std::optional<std::vector<LatticeCluster>> cutOnLattice(std::span<const FinishedPiece> pieces,
-                                                        const RenderSource& source, double step,
-                                                        unsigned threads) {
+/// The triangles `which` of a cluster as one of its own.
+LatticeCluster partOf(const LatticeCluster& cluster, std::span<const std::size_t> which) {
+  LatticeCluster part = cluster;
+  part.vertices.clear();
+  part.triangles.clear();
+  constexpr std::size_t kNone = ~std::size_t{0};
+  std::vector<std::size_t> moved_to(cluster.vertices.size(), kNone);
+  for (const std::size_t n : which) {
+    auto& triangle = part.triangles.emplace_back(cluster.triangles[n]);
+    for (std::uint8_t& corner : triangle) {
+      std::size_t& to = moved_to[corner];
+      if (to == kNone) {
+        to = part.vertices.size();
+        part.vertices.push_back(cluster.vertices[corner]);
+      }
+      corner = static_cast<std::uint8_t>(to);
+    }
+  }
+  return part;
+}
+
+/// Appends a cluster, cut where the gap between its triangles is widest until its parts span few
+/// steps: things of one surface may stand far apart.
+void appendFitting(LatticeCluster cluster, std::vector<LatticeCluster>& clusters) {
+  if (fits(cluster)) {
+    clusters.push_back(std::move(cluster));
+    return;
+  }
+  const Box box = boxOf(cluster);
+  std::size_t axis = 0;
+  for (std::size_t n = 1; n < 3; ++n) {
+    if (box.high[n] - box.low[n] > box.high[axis] - box.low[axis]) axis = n;
+  }
+  const auto begin = [&](std::size_t n) {
+    const auto& [a, b, c] = cluster.triangles[n];
+    return std::min(
+        {cluster.vertices[a].at[axis], cluster.vertices[b].at[axis], cluster.vertices[c].at[axis]});
+  };
+  std::vector<std::size_t> order(cluster.triangles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return begin(a) < begin(b); });
+  std::size_t cut = 1;
+  for (std::size_t n = 2; n < order.size(); ++n) {
+    if (begin(order[n]) - begin(order[n - 1]) > begin(order[cut]) - begin(order[cut - 1])) cut = n;
+  }
+  const std::span all(order);
+  appendFitting(partOf(cluster, all.first(cut)), clusters);
+  appendFitting(partOf(cluster, all.subspan(cut)), clusters);
+}
+
+std::vector<LatticeCluster> cutOnLattice(std::span<const FinishedPiece> pieces,
+                                         const RenderSource& source, double step,
+                                         unsigned threads) {
   std::vector<Group> groups = groupTriangles(pieces, source, step);
   std::vector<std::vector<LatticeCluster>> cut(groups.size());
   parallelFor(threads, groups.size(), [&](std::size_t n) { cut[n] = cutGroup(groups[n]); });
   std::vector<LatticeCluster> clusters;
   for (std::vector<LatticeCluster>& of_group : cut) {
-    for (LatticeCluster& cluster : of_group) {
-      if (!fits(cluster)) return std::nullopt;
-      clusters.push_back(std::move(cluster));
-    }
+    for (LatticeCluster& cluster : of_group) appendFitting(std::move(cluster), clusters);
   }
   return clusters;
 }
@@ -197,15 +244,10 @@ LatticeModel cutModel(std::span<const FinishedPiece> pieces, const RenderSource&
                       unsigned threads) {
   LatticeModel model;
   model.step = kFinestStep;
+  // Rounding adds a step at most.
   const double largest = largestExtent(pieces);
-  while (model.step * static_cast<double>(kMostSteps) < largest) model.step *= 2;
-  while (true) {
-    if (auto clusters = cutOnLattice(pieces, source, model.step, threads)) {
-      model.clusters = std::move(*clusters);
-      break;
-    }
-    model.step *= 2;
-  }
+  while (model.step * static_cast<double>(kMostSteps - 1) < largest) model.step *= 2;
+  model.clusters = cutOnLattice(pieces, source, model.step, threads);
   sortInSpace(model.clusters);
   return model;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -24,6 +25,7 @@ constexpr std::size_t kMostNumbers = 65536;
 struct PartWork {
   LatticeModel model;
   RenderModelFigures figures;
+  std::string warning;
 };
 
 Result<void> checkSource(const RenderSource& source) {
@@ -42,6 +44,21 @@ Result<void> checkSource(const RenderSource& source) {
                             source.materials.size(), source.semantics.size(), kMostNumbers));
   }
   return {};
+}
+
+/// Adds what a lattice moves corners by that is coarser than the finest one, where that counts
+/// beside the error allowed: one large triangle makes it so for all.
+void addLatticeError(double allowed, PartWork& work) {
+  constexpr double kCounts = 0.1;
+  const double step = work.model.step;
+  const double moved = step * std::sqrt(3.0) / 2;
+  if (step <= kFinestStep || moved <= kCounts * allowed) return;
+  work.figures.largest_error += static_cast<float>(moved);
+  if (moved <= allowed) return;
+  work.warning = fmt::format(
+      "render meshes: a triangle of more than {:.0f} m makes corners of all of them move by up to "
+      "{:.1f} mm, expected {:.1f} mm; cut it into smaller ones, or leave it out",
+      step / 2 * static_cast<double>(kMostSteps), 1000 * moved, 1000 * allowed);
 }
 
 Result<PartWork> bakePart(const RenderPart& part, const RenderSource& source,
@@ -66,6 +83,7 @@ Result<PartWork> bakePart(const RenderPart& part, const RenderSource& source,
   for (const FinishedPiece& piece : finished) {
     work.figures.largest_error = std::max(work.figures.largest_error, piece.error);
   }
+  addLatticeError(options.error, work);
   return work;
 }
 
@@ -104,6 +122,7 @@ Result<BakedRenderMeshes> bakeRenderMeshes(const RenderSource& source,
     if (!part) return tl::unexpected(part.error());
     part->figures.colored = colored;
     appendModel(part->model, part->figures, meshes);
+    if (!part->warning.empty()) meshes.warnings.push_back(std::move(part->warning));
     for (const PlacedMesh& placed : source.parts[n].meshes) countSource(*placed.mesh, meshes);
   }
   return meshes;

@@ -312,6 +312,45 @@ TEST(RenderBaker, GivesTheSameForAnyNumberOfJobs) {
   EXPECT_EQ(once.models[2].part, 7U);
 }
 
+bake::SourceMesh smallCube(float x) {
+  return meshOf(MeshBuilder().box({x, 0.001F, 0}, {x + 0.012F, 0.013F, 0.012F}).build());
+}
+
+TEST(RenderBaker, KeepsTheFinestLatticeForThingsThatStandFarApart) {
+  SourceBuilder builder;
+  const std::uint32_t material = builder.material(true);
+  for (const float x : {-300.0F, -299.0F, 0.0F, 20.0F, 300.0F}) {
+    builder.place(smallCube(x), material);
+  }
+  const auto meshes = bakedMeshes(builder, 0.005);
+  EXPECT_EQ(meshes.models[0].step, static_cast<float>(kFinest));
+  EXPECT_EQ(meshes.models[0].triangles, 60U);
+  EXPECT_EQ(meshes.models[0].largest_error, 0);
+  EXPECT_EQ(meshes.clusters.size(), 4U);
+}
+
+TEST(RenderBaker, TellsWhatALatticeMovesThatALargeTriangleMakesCoarse) {
+  const auto meshesOn = [](float ground) {
+    SourceBuilder builder;
+    const std::uint32_t material = builder.material(true);
+    builder.place(smallCube(0.1F), material);
+    builder.place(meshOf(MeshBuilder()
+                             .floor({-ground / 2, 0, -ground / 2}, {ground / 2, 0, ground / 2}, 0)
+                             .build()),
+                  material);
+    return bakedMeshes(builder, 0.005);
+  };
+  const auto some = meshesOn(100);
+  EXPECT_NEAR(some.models[0].largest_error, 32 * kFinest * std::sqrt(3.0) / 2, 1e-6);
+  EXPECT_THAT(some.warnings, testing::IsEmpty());
+  const auto much = meshesOn(400);
+  EXPECT_NEAR(much.models[0].largest_error, 128 * kFinest * std::sqrt(3.0) / 2, 1e-6);
+  EXPECT_THAT(much.warnings,
+              testing::ElementsAre("render meshes: a triangle of more than 256 m makes corners of "
+                                   "all of them move by up to 6.8 mm, expected 5.0 mm; cut it into "
+                                   "smaller ones, or leave it out"));
+}
+
 TEST(RenderBaker, RefusesWhatLiesTooFarOff) {
   for (const float far :
        {801.0F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {

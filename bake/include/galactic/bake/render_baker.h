@@ -94,7 +94,8 @@ struct RenderBakeStatistics {
   std::uint64_t source_texture_bytes = 0;
   std::uint64_t texture_bytes = 0;
   /// Farthest that simplification moved a surface, as measured at its corners and the middles of
-  /// its triangles; meters.
+  /// its triangles; with the most that the lattice moved a corner, where that is more than a tenth
+  /// of the error allowed and the lattice is not the finest. Meters.
   float largest_error = 0;
 
   /// Of several assets together.
@@ -108,6 +109,8 @@ struct BakedRenderMeshes : RenderPools {
   /// Of the placed meshes: see RenderBakeStatistics.
   std::uint64_t source_vertices = 0;
   std::uint64_t source_bytes = 0;
+  /// One sentence each. Those of the materials are theirs.
+  std::vector<std::string> warnings;
 
   /// Views into this, which must outlive it.
   [[nodiscard]] RenderMeshes view() const;
