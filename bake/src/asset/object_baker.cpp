@@ -9,6 +9,7 @@
 #include "fit/stable_poses.h"
 #include "import/checks/asset_check.h"
 #include "sphere_set/authored_spheres.h"
+#include "sphere_set/cover/cover_solver.h"
 #include "support/counted.h"
 #include "support/stopwatch.h"
 
@@ -49,6 +50,15 @@ void warnOfSpheres(const SphereSet& set, const SphereSetOptions& options,
         fmt::format("has thin parts: spheres that cover them stick out up to {:.1f} mm, expected "
                     "{:.1f} mm; a smaller radius in `radii` does better",
                     1000 * set.guaranteed_protrusion, 1000 * options.tau));
+    return;
+  }
+  const auto eps = static_cast<double>(options.eps);
+  if (options.max_spheres == 0 && sphere_set::isTooLarge(set.quality.area, eps)) {
+    warnings.push_back(
+        fmt::format("its surface of {:.2g} m2 is so large that it is known at points far apart: "
+                    "gaps are {:.1f} mm at most, expected {:.1f} mm; give a wider `eps`, or bake "
+                    "its parts as objects",
+                    set.quality.area, 1000 * set.guaranteed_gap, 1000 * eps));
     return;
   }
   warnings.push_back(

@@ -58,8 +58,9 @@ SphereSet finishedSet(const FitTask& task, const Yardstick& yardstick, const Cov
   // further from the facets than from the solid: what was measured counts.
   set.guaranteed_gap = std::max(cover.guaranteed_gap, set.quality.gap.max);
   set.guaranteed_protrusion = std::max(cover.guaranteed_protrusion, set.quality.protrusion.max);
+  const double slack = std::min(cover.slack, kSlackOfEps * task.eps);
   set.meets_tolerances =
-      set.guaranteed_gap <= task.eps + cover.slack && set.guaranteed_protrusion <= task.tau;
+      set.guaranteed_gap <= task.eps + slack && set.guaranteed_protrusion <= task.tau;
   return set;
 }
 

@@ -111,6 +111,20 @@ TEST(ObjectBaker, SaysWhenTheTolerancesCannotBeMet) {
               HasSubstr("expected 20.0 and 30.0 mm; allow more with `max-spheres`"));
 }
 
+TEST(ObjectBaker, SaysWhenASurfaceIsTooLargeForTheTolerances) {
+  ObjectBakeOptions options = coarse();
+  options.spheres.eps = 0.002F;
+  const BakedObject object = bakeWell(brick(), options);
+  EXPECT_GT(object.spheres.guaranteed_gap, 1.18 * 0.002);
+  EXPECT_FALSE(object.spheres.meets_tolerances);
+  ASSERT_EQ(object.warnings.size(), 1U);
+  EXPECT_THAT(
+      object.warnings[0],
+      testing::MatchesRegex("its surface of 0\\.038 m2 is so large that it is known at points "
+                            "far apart: gaps are [23]\\.[0-9] mm at most, expected 2\\.0 "
+                            "mm; give a wider `eps`, or bake its parts as objects"));
+}
+
 TEST(ObjectBaker, AsksAboutTheUnitOfTinyAndLargeObjectsAndRefusesHugeOnes) {
   constexpr float kTiny = 0.01F;
   EXPECT_THAT(bakeWell(scaledBrick(kTiny), coarse(kTiny)).warnings,

@@ -72,9 +72,9 @@ struct SphereSet {
   double guaranteed_gap = 0;
   /// What the solver promises: no sphere sticks out further than this (more than tau: thin parts).
   double guaranteed_protrusion = 0;
-  /// False where the tolerances could not be met within max_spheres, or at all: the guaranteed
-  /// figures then say by how much. Thin parts alone make it false when their protrusion is above
-  /// tau.
+  /// False where the tolerances could not be met within max_spheres, or at all, such as on large
+  /// objects: the guaranteed figures then say by how much. A gap of up to 1.18 eps meets them. Thin
+  /// parts alone make it false when their protrusion is above tau.
   bool meets_tolerances = true;
 };
 

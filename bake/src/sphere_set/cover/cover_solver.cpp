@@ -32,6 +32,8 @@ constexpr int kFineSteps = 4;
 /// Rounds of refinement more than wanted while the cover still misses points of the check.
 constexpr int kMoreRounds = 2;
 
+static_assert((1 + kTolerated) * kDenser * kSpacingOfEps <= kSlackOfEps + 1e-9);
+
 double spacingOf(const FitTask& task) {
   const double area = task.solid->area();
   return std::clamp(kSpacingOfEps * task.eps, std::sqrt(area / kMostPoints),
@@ -212,6 +214,10 @@ class CoverSolver {
 };
 
 }  // namespace
+
+bool isTooLarge(double area, double eps) {
+  return std::sqrt(area / kMostPoints) > kSpacingOfEps * eps;
+}
 
 Cover solveCover(const FitTask& task, const Effort& effort, SurfacePoints& surface) {
   spreadPoints(task, surface);

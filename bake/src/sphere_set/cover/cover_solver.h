@@ -39,6 +39,13 @@ struct Cover {
   double slack = 0;
 };
 
+/// What sampling may add to eps, as a share of it, where tolerances are called met.
+inline constexpr double kSlackOfEps = 0.18;
+
+/// Whether a surface of this area, square meters, is so large that the points that stand for it lie
+/// too far apart for that.
+[[nodiscard]] bool isTooLarge(double area, double eps);
+
 /// As few spheres as found that cover the task's solid. Empty where the surface has no point that
 /// needs cover. `surface`: of the same solid and support; replaced where other spacings are needed.
 [[nodiscard]] Cover solveCover(const FitTask& task, const Effort& effort, SurfacePoints& surface);
