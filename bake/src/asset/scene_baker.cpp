@@ -110,6 +110,7 @@ class RegionWarnings {
                       fmt::join(full_rooms_, " m, ")));
     }
     if (!open_.empty()) {
+      if (open_room_) way_out_ = narrowestWay(*open_room_);
       closed_.push_back(fmt::format(
           "radius {} m: the room is one with the outside, and all of it is stored: {}; a scan with "
           "an open door or window works as it is, and for grids of the room alone close it in the "
@@ -127,14 +128,18 @@ class RegionWarnings {
       way_out_ = part.volume_open_above >= part.volume_open_below
                      ? "it leads over the walls, there is no ceiling"
                      : "it leads under the walls, there is no floor";
+      open_room_.reset();
       return;
     }
+    open_room_ = room;
+  }
+
+  [[nodiscard]] std::string narrowestWay(const Columns& room) const {
     const std::optional<WayOut> way = findWayOut(room, options_.free_space.seeds);
-    way_out_ = way ? fmt::format(
-                         "the narrowest passage on the way out is at ({:.2f}, {:.2f}, "
-                         "{:.2f}), some {:.2f} m wide",
-                         way->at.x, way->at.y, way->at.z, way->width + 2 * room.frame.radius)
-                   : "nothing narrows the way out";
+    if (!way) return "nothing narrows the way out";
+    return fmt::format(
+        "the narrowest passage on the way out is at ({:.2f}, {:.2f}, {:.2f}), some {:.2f} m wide",
+        way->at.x, way->at.y, way->at.z, way->width + 2 * room.frame.radius);
   }
 
   /// Where there is much floor outside, it may be what was wanted. Told of the smallest radius.
@@ -174,6 +179,8 @@ class RegionWarnings {
   std::vector<float> full_rooms_;
   std::vector<float> open_;
   std::string way_out_;
+  /// The room from which a way out is still to be searched, which takes long: once, in the end.
+  std::optional<Columns> open_room_;
   std::vector<Bounds> known_;
   bool is_yard_known_ = false;
   std::vector<std::string> closed_;
@@ -296,6 +303,7 @@ Result<BakedScene> bakeScene(const SourceAsset& asset, const SceneBakeOptions& o
     ASSIGN_OR_RETURN(auto grid, baker.bakeGrid(options.radii[i], warnings));
     scene.grids.push_back(std::move(grid));
   }
+  const detail::Stopwatch timer(times.regions);
   for (std::string& warning : warnings.take()) scene.warnings.push_back(std::move(warning));
   return scene;
 }
