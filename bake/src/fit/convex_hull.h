@@ -54,14 +54,18 @@ inline constexpr double kFloatNoise = 2.5e-7;
 /// Faces of a hull that lie in one plane, but for the hull's rounding: indices of faces.
 using Facet = std::vector<std::uint32_t>;
 
+/// How near faces of `hull` are to one plane that its rounding may have kept off it, meters: the
+/// `tolerance` of what follows.
+[[nodiscard]] double planeTolerance(const ConvexHull& hull);
+
 /// The planar facets of `hull` (kSolid), in the order of their largest faces, largest first. Every
 /// face belongs to one.
-[[nodiscard]] std::vector<Facet> planarFacets(const ConvexHull& hull);
+[[nodiscard]] std::vector<Facet> planarFacets(const ConvexHull& hull, double tolerance);
 
 /// The outward unit normal of a facet of the hull of `points`: of the corners' sources, which carry
 /// the rounding of floats alone; of the rounded corners where the hull's rounding decided which
 /// corners there are, so that the plane of their sources cuts through the body.
 [[nodiscard]] Vec3d facetNormal(const ConvexHull& hull, std::span<const Vec3> points,
-                                const Facet& facet);
+                                const Facet& facet, double tolerance);
 
 }  // namespace galactic::bake::fit

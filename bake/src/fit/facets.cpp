@@ -10,8 +10,7 @@
 namespace galactic::bake::fit {
 namespace {
 
-/// Faces within this share of the hull's extent of the largest one's plane join it: the rounding of
-/// their corners and of its own.
+/// As a share of the hull's extent: the rounding of a face's corners and of a plane's own.
 constexpr double kPlaneTolerance = 2 * kHullRounding;
 /// A face steeper than this to the plane (cosine, 60 degrees) does not join it, however thin the
 /// body is.
@@ -28,18 +27,10 @@ Vec3d areaOf(const std::vector<std::uint32_t>& face, const Place& place) {
   return area;
 }
 
-double planeTolerance(const ConvexHull& hull) {
-  double extent = 0;
-  for (const HullCorner& corner : hull.corners) {
-    extent = std::max(extent, norm(corner.rounded - hull.corners[0].rounded));
-  }
-  return kPlaneTolerance * extent;
-}
-
 class FacetBuilder {
  public:
-  explicit FacetBuilder(const ConvexHull& hull)
-      : hull_(hull), tolerance_(planeTolerance(hull)), facet_of_face_(hull.faces.size(), kNone) {
+  FacetBuilder(const ConvexHull& hull, double tolerance)
+      : hull_(hull), tolerance_(tolerance), facet_of_face_(hull.faces.size(), kNone) {
     areas_.reserve(hull.faces.size());
     for (const auto& face : hull.faces) {
       areas_.push_back(areaOf(face, [&](std::uint32_t c) { return hull.corners[c].rounded; }));
@@ -116,9 +107,20 @@ class FacetBuilder {
 
 }  // namespace
 
-std::vector<Facet> planarFacets(const ConvexHull& hull) { return FacetBuilder(hull).build(); }
+double planeTolerance(const ConvexHull& hull) {
+  double extent = 0;
+  for (const HullCorner& corner : hull.corners) {
+    extent = std::max(extent, norm(corner.rounded - hull.corners[0].rounded));
+  }
+  return kPlaneTolerance * extent;
+}
 
-Vec3d facetNormal(const ConvexHull& hull, std::span<const Vec3> points, const Facet& facet) {
+std::vector<Facet> planarFacets(const ConvexHull& hull, double tolerance) {
+  return FacetBuilder(hull, tolerance).build();
+}
+
+Vec3d facetNormal(const ConvexHull& hull, std::span<const Vec3> points, const Facet& facet,
+                  double tolerance) {
   const auto source = [&](std::uint32_t corner) {
     return widen(points[hull.corners[corner].source]);
   };
@@ -141,7 +143,7 @@ Vec3d facetNormal(const ConvexHull& hull, std::span<const Vec3> points, const Fa
   for (std::uint32_t corner = 0; corner < hull.corners.size(); ++corner) {
     support = std::max(support, dot(source(corner), normal));
   }
-  return support - plane <= 2 * planeTolerance(hull) ? normal : normalized(rounded);
+  return support - plane <= 2 * tolerance ? normal : normalized(rounded);
 }
 
 }  // namespace galactic::bake::fit

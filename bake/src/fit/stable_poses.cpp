@@ -52,11 +52,13 @@ std::vector<Resting> restingsOfLine(const Vec3d& along) {
 std::vector<Resting> restingsOfSolid(const ConvexHull& hull, std::span<const Vec3> points) {
   const std::vector<double> shares = fit::restingShares(hull);
   std::vector<Resting> restings;
-  for (const fit::Facet& facet : fit::planarFacets(hull)) {
+  const double tolerance = fit::planeTolerance(hull);
+  for (const fit::Facet& facet : fit::planarFacets(hull, tolerance)) {
     const double likelihood =
         std::accumulate(facet.begin(), facet.end(), 0.0,
                         [&](double sum, std::uint32_t face) { return sum + shares[face]; });
-    if (likelihood > 0) restings.push_back({fit::facetNormal(hull, points, facet), likelihood});
+    if (likelihood > 0)
+      restings.push_back({fit::facetNormal(hull, points, facet, tolerance), likelihood});
   }
   return restings;
 }
