@@ -10,7 +10,6 @@
 #include "ambient/vertex_fans.h"
 #include "engines/triangle_rays.h"
 #include "galactic/bake/parallel_for.h"
-#include "import/affine.h"
 #include "support/try.h"
 
 namespace galactic::bake {
@@ -44,45 +43,25 @@ Result<void> checkOptions(const AmbientOcclusionOptions& options) {
   return {};
 }
 
-/// A mesh in the world.
-struct PlacedMesh {
-  std::vector<Vec3> positions;
-  std::vector<Triangle> triangles;
-};
-
-PlacedMesh placed(const OccludingMesh& mesh) {
-  PlacedMesh result;
-  result.positions.reserve(mesh.positions.size());
-  for (const Vec3& position : mesh.positions) {
-    const auto p = transformed(mesh.world_from_mesh, position);
-    result.positions.push_back(
-        {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-  }
-  result.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
-  if (determinant(mesh.world_from_mesh) < 0) {
-    for (Triangle& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
-  }
-  return result;
-}
-
-Result<TriangleRays> allOccluders(std::span<const PlacedMesh> meshes, unsigned threads) {
+Result<TriangleRays> allOccluders(std::span<const OccludingMesh> meshes, unsigned threads) {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  for (const PlacedMesh& mesh : meshes) {
+  for (const OccludingMesh& mesh : meshes) {
     vertices += mesh.positions.size();
     triangles += mesh.triangles.size();
   }
-  PlacedMesh all;
-  all.positions.reserve(vertices + 1);
-  all.triangles.reserve(triangles);
-  for (const PlacedMesh& mesh : meshes) {
-    const auto first = static_cast<std::uint32_t>(all.positions.size());
-    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+  std::vector<Vec3> all_positions;
+  std::vector<Triangle> all_triangles;
+  all_positions.reserve(vertices + 1);
+  all_triangles.reserve(triangles);
+  for (const OccludingMesh& mesh : meshes) {
+    const auto first = static_cast<std::uint32_t>(all_positions.size());
+    all_positions.insert(all_positions.end(), mesh.positions.begin(), mesh.positions.end());
     for (const Triangle& t : mesh.triangles) {
-      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      all_triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
   }
-  auto occluders = TriangleRays::build(std::move(all.positions), std::move(all.triangles), threads);
+  auto occluders = TriangleRays::build(std::move(all_positions), std::move(all_triangles), threads);
   if (!occluders) {
     return fail(ErrorCode::kUnsupported, "`lighting`",
                 "could not build its scene, for lack of memory; bake with `lighting` none");
@@ -105,7 +84,7 @@ std::array<Vector, 2> tangents(const Vector& n) {
 /// Rays from the triangles around the vertices of one mesh.
 class RayMaker {
  public:
-  RayMaker(const PlacedMesh& mesh, std::span<const PatternRay> pattern,
+  RayMaker(const OccludingMesh& mesh, std::span<const PatternRay> pattern,
            const AmbientOcclusionOptions& options)
       : mesh_(mesh), pattern_(pattern), options_(options), fans_(mesh.positions, mesh.triangles) {}
 
@@ -157,7 +136,7 @@ class RayMaker {
             .farthest = options_.largest_distance};
   }
 
-  const PlacedMesh& mesh_;
+  const OccludingMesh& mesh_;
   std::span<const PatternRay> pattern_;
   const AmbientOcclusionOptions& options_;
   VertexFans fans_;
@@ -177,16 +156,14 @@ Result<std::vector<std::vector<Openness>>> ambientOcclusion(std::span<const Occl
                                                             const AmbientOcclusionOptions& options,
                                                             unsigned threads) {
   RETURN_IF_ERROR(checkOptions(options));
-  std::vector<PlacedMesh> world(meshes.size());
-  parallelFor(threads, meshes.size(), [&](std::size_t m) { world[m] = placed(meshes[m]); });
-  ASSIGN_OR_RETURN(const auto occluders, allOccluders(world, threads));
+  ASSIGN_OR_RETURN(const auto occluders, allOccluders(meshes, threads));
   const std::vector<PatternRay> pattern = rayPattern(options.rays);
 
   std::vector<std::vector<Openness>> openness(meshes.size());
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     if (meshes[m].lit == LitSides::kNone) continue;
-    const RayMaker maker(world[m], pattern, options);
-    const std::size_t vertices = world[m].positions.size();
+    const RayMaker maker(meshes[m], pattern, options);
+    const std::size_t vertices = meshes[m].positions.size();
     openness[m].resize(vertices);
     parallelFor(threads, (vertices + kChunk - 1) / kChunk, [&](std::size_t chunk) {
       std::vector<Ray> rays;

@@ -16,13 +16,11 @@ enum class LitSides : std::uint8_t {
   kBoth
 };
 
-/// One placement of a mesh: what light is kept away from, and what keeps it away.
+/// A mesh in the world: what light is kept away from, and what keeps it away.
 struct OccludingMesh {
   std::span<const Vec3> positions;
   /// Corners in range of `positions`.
   std::span<const Triangle> triangles;
-  /// Row-major; mirroring ones turn the triangles round.
-  Affine world_from_mesh{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   LitSides lit = LitSides::kFront;
 };
 
