@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
+#include "column_grid/column_at.h"
 #include "column_grid/standing_room.h"
 #include "galactic/bake/columns.h"
 #include "support/try.h"
@@ -191,21 +192,13 @@ tl::unexpected<Error> seedFailure(const Vec3& seed, const GridFrame& frame,
 /// Index of the span that holds `seed`.
 Result<std::uint32_t> spanAt(const Columns& columns, const Vec3& seed) {
   const GridFrame& frame = columns.frame;
-  const auto cell = [&](float at, float min) {
-    return std::floor((static_cast<double>(at) - static_cast<double>(min)) /
-                      static_cast<double>(frame.spacing));
-  };
-  const double i = cell(seed.x, frame.min_x);
-  const double k = cell(seed.z, frame.min_z);
-  const bool inside = i >= 0 && k >= 0 && i < static_cast<double>(frame.columns_x) &&
-                      k < static_cast<double>(frame.columns_z);
+  const std::optional<std::size_t> found = columnAt(columns, seed);
   // Between the scene and the grid's border nothing is room.
   const Bounds scene = sceneBounds(frame);
   const bool in_scene = seed.x >= scene.min.x && seed.x <= scene.max.x && seed.z >= scene.min.z &&
                         seed.z <= scene.max.z;
-  if (!inside || !in_scene) return seedFailure(seed, frame, "outside the scene");
-  const std::size_t at =
-      columns.index(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
+  if (!found || !in_scene) return seedFailure(seed, frame, "outside the scene");
+  const std::size_t at = *found;
   for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
     if (seed.y >= columns.spans[span].lo && seed.y <= columns.spans[span].hi) return span;
   }
@@ -216,12 +209,6 @@ Result<std::uint32_t> spanAt(const Columns& columns, const Vec3& seed) {
   }
   if (free != "blocked") free += ")";
   return seedFailure(seed, frame, free);
-}
-
-/// The cell of a frame that holds a point, in one direction.
-std::uint32_t cellAt(double at, float min, float spacing, std::uint32_t count) {
-  const double cell = std::floor((at - static_cast<double>(min)) / static_cast<double>(spacing));
-  return static_cast<std::uint32_t>(std::clamp(cell, 0.0, static_cast<double>(count - 1)));
 }
 
 /// Of each component, the length of its spans that lies within the scene's heights and, in the
@@ -236,10 +223,10 @@ std::vector<double> sharesIn(const Columns& columns, const Labels& labels, const
   std::vector<double> inside(labels.count);
   for (std::uint32_t k = 0; k < frame.columns_z; ++k) {
     const std::uint32_t other_k =
-        cellAt(frame.centerZ(k), other.min_z, other.spacing, other.columns_z);
+        nearestCell(frame.centerZ(k), other.min_z, other.spacing, other.columns_z);
     for (std::uint32_t i = 0; i < frame.columns_x; ++i) {
       const std::uint32_t other_i =
-          cellAt(frame.centerX(i), other.min_x, other.spacing, other.columns_x);
+          nearestCell(frame.centerX(i), other.min_x, other.spacing, other.columns_x);
       const std::size_t at = columns.index(i, k);
       for (std::uint32_t span = columns.first[at]; span < columns.first[at + 1]; ++span) {
         const Span& heights = columns.spans[span];

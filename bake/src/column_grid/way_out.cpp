@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
 #include <queue>
 #include <vector>
+
+#include "column_grid/column_at.h"
 
 namespace galactic::bake {
 namespace {
@@ -129,17 +130,10 @@ class SpanGraph {
 
 std::vector<std::uint32_t> SpanGraph::startsAt(std::span<const Vec3> seeds) const {
   std::vector<std::uint32_t> starts;
-  const GridFrame& frame = room_.frame;
   for (const Vec3& seed : seeds) {
-    const float x = std::floor((seed.x - frame.min_x) / frame.spacing);
-    const float z = std::floor((seed.z - frame.min_z) / frame.spacing);
-    if (!(x >= 0 && z >= 0) || x >= static_cast<float>(frame.columns_x) ||
-        z >= static_cast<float>(frame.columns_z)) {
-      continue;
-    }
-    const std::size_t at =
-        room_.index(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z));
-    for (std::uint32_t span = room_.first[at]; span < room_.first[at + 1]; ++span) {
+    const std::optional<std::size_t> at = columnAt(room_, seed);
+    if (!at) continue;
+    for (std::uint32_t span = room_.first[*at]; span < room_.first[*at + 1]; ++span) {
       const Span& heights = room_.spans[span];
       if (seed.y >= heights.lo && seed.y <= heights.hi) starts.push_back(span);
     }

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <set>
 
+#include "column_grid/column_at.h"
 #include "column_grid/scatter/triangle_bins.h"
 #include "layout/column_cell.h"
 #include "support/test_meshes.h"
@@ -199,6 +201,32 @@ TEST(TriangleBins, ListEachTriangleInEveryStripThatItsGrownFootprintReaches) {
   }
   EXPECT_GT(listed, all / 10);
   EXPECT_LT(listed, all * 9 / 10);
+}
+
+TEST(ColumnAt, TellsCellsApartToTheLastBit) {
+  Columns columns;
+  columns.frame = {.radius = 0.05F,
+                   .spacing = 0.03F,
+                   .min_x = -3.1F,
+                   .min_z = 1.7F,
+                   .heights = {},
+                   .columns_x = 300,
+                   .columns_z = 200};
+  const auto border = [](float min, std::uint32_t cell) {
+    return static_cast<double>(min) + cell * static_cast<double>(0.03F);
+  };
+  const auto from = [](double at) {
+    const auto rounded = static_cast<float>(at);
+    return static_cast<double>(rounded) < at ? std::nextafter(rounded, 1e9F) : rounded;
+  };
+  for (std::uint32_t cell = 1; cell < 200; ++cell) {
+    const Vec3 first{from(border(-3.1F, cell)), 0, from(border(1.7F, cell))};
+    const Vec3 last{std::nextafter(first.x, -1e9F), 0, std::nextafter(first.z, -1e9F)};
+    EXPECT_EQ(columnAt(columns, first), columns.index(cell, cell)) << "cell " << cell;
+    EXPECT_EQ(columnAt(columns, last), columns.index(cell - 1, cell - 1)) << "cell " << cell;
+  }
+  EXPECT_EQ(columnAt(columns, {-3.11F, 0, 2}), std::nullopt);
+  EXPECT_EQ(columnAt(columns, {0, 0, 7.75F}), std::nullopt);
 }
 
 }  // namespace
