@@ -99,7 +99,8 @@ struct RenderModel {
   Vec3 bounds_max;
   std::uint32_t source_triangles = 0;
   std::uint32_t triangles = 0;
-  /// Farthest that simplification moved the surface, meters, as measured.
+  /// Farthest that simplification, and a lattice that is coarse for that, moved the surface;
+  /// meters.
   float largest_error = 0;
 };
 
