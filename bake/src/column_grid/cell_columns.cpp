@@ -45,11 +45,12 @@ class CellScatter {
  public:
   CellScatter(const TriangleMesh& mesh, const GridFrame& frame, std::uint32_t index)
       : frame_(frame),
-        corners_(cornersOf(mesh, index)),
+        triangle_(cornersOf(mesh, index)),
         half_(static_cast<double>(frame.spacing) / 2 + padInPlane(frame)),
         pad_(padInHeight(frame)) {
+    const std::array<Point, 3> corners = cornersOf(mesh, index);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto [lo, hi] = std::minmax({corners_[0][axis], corners_[1][axis], corners_[2][axis]});
+      const auto [lo, hi] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
       min_[axis] = lo;
       max_[axis] = hi;
     }
@@ -82,13 +83,13 @@ class CellScatter {
                      static_cast<float>(max_[1] + height))) {
       return;
     }
-    const auto heights = touchingHeightsOverCell(corners_, x, z, half_, radius());
+    const auto heights = touchingHeightsOverCell(triangle_, x, z, half_, radius());
     if (!heights) return;
     strip.add(k, i, static_cast<float>(heights->lo - pad_), static_cast<float>(heights->hi + pad_));
   }
 
   const GridFrame& frame_;
-  std::array<Point, 3> corners_;
+  PreparedTriangle triangle_;
   /// Half the edge of a square, and what its heights grow by.
   double half_;
   double pad_;

@@ -71,20 +71,11 @@ struct Clip {
   }
 };
 
-/// Coordinates in a triangle's plane: along its longest edge, and along the altitude on that edge.
-/// In them the corners are (0, 0), (length, 0) and (foot, height). Unlike the cross product of two
-/// edges, this stays perpendicular to the longest edge on needles.
-struct FaceFrame {
-  Point origin{};
-  Point along{};
-  Point across{};
-  double length = 0;
-  double foot = 0;
-  double height = 0;
-};
+using Edge = PreparedTriangle::Edge;
+using Face = PreparedTriangle::Face;
 
 /// None when the triangle is too flat to have a normal.
-std::optional<FaceFrame> makeFaceFrame(const Triangle& triangle) {
+std::optional<Face> makeFace(const Triangle& triangle) {
   std::size_t longest = 0;
   double longest_squared = -1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -95,7 +86,7 @@ std::optional<FaceFrame> makeFaceFrame(const Triangle& triangle) {
     }
   }
   if (!(longest_squared > 0)) return std::nullopt;
-  FaceFrame frame;
+  Face frame;
   frame.origin = triangle[longest];
   frame.length = std::sqrt(longest_squared);
   const Point edge = minus(triangle[(longest + 1) % 3], frame.origin);
@@ -108,7 +99,21 @@ std::optional<FaceFrame> makeFaceFrame(const Triangle& triangle) {
   frame.height = std::sqrt(dot(altitude, altitude));
   if (!(frame.height > kFlatness * frame.length)) return std::nullopt;
   for (std::size_t c = 0; c < 3; ++c) frame.across[c] = altitude[c] / frame.height;
+  frame.normal = cross(frame.along, frame.across);
   return frame;
+}
+
+Edge makeEdge(const Point& from, const Point& to) {
+  Edge made{.from = from, .edge = minus(to, from)};
+  const Point& edge = made.edge;
+  made.length = std::sqrt(dot(edge, edge));
+  made.run = std::sqrt(edge[0] * edge[0] + edge[2] * edge[2]);
+  if (!(made.run > 0)) return made;
+  made.x = edge[0] / made.run;
+  made.z = edge[2] / made.run;
+  made.slope = edge[1] / made.run;
+  made.stretch = made.length / made.run;
+  return made;
 }
 
 /// Ball around a corner.
@@ -123,40 +128,35 @@ void addCorner(const Point& corner, Line line, double radius, Hull& hull) {
 
 /// Cylinder along an edge, cut off square at both ends. A vertical edge adds nothing: the balls at
 /// its corners have the same hull.
-void addEdge(const Point& from, const Point& to, Line line, double radius, Hull& hull) {
-  const Point edge = minus(to, from);
-  const double run = std::sqrt(edge[0] * edge[0] + edge[2] * edge[2]);
-  if (!(run > 0)) return;
-  const double hx = edge[0] / run;
-  const double hz = edge[2] / run;
-  const double qx = line.x - from[0];
-  const double qz = line.z - from[2];
+void addEdge(const Edge& edge, Line line, double radius, Hull& hull) {
+  if (!(edge.run > 0)) return;
+  const double qx = line.x - edge.from[0];
+  const double qz = line.z - edge.from[2];
   // The common perpendicular of the edge and a vertical line is horizontal.
-  const double aside = qz * hx - qx * hz;
+  const double aside = qz * edge.x - qx * edge.z;
   const double rest = radius * radius - aside * aside;
   if (!(rest > 0)) return;
-  const double along = qx * hx + qz * hz;
-  const double length = std::sqrt(dot(edge, edge));
-  const double middle = from[1] + along * (edge[1] / run);
-  const double half = std::sqrt(rest) * (length / run);
+  const double along = qx * edge.x + qz * edge.z;
+  const double middle = edge.from[1] + along * edge.slope;
+  const double half = std::sqrt(rest) * edge.stretch;
   Clip clip{middle - half, middle + half};
   // Between the planes square to the edge through its ends.
-  const double start = along * run - from[1] * edge[1];
-  clip.keepPositive(start, edge[1]);
-  clip.keepPositive(length * length - start, -edge[1]);
+  const double rise = edge.edge[1];
+  const double start = along * edge.run - edge.from[1] * rise;
+  clip.keepPositive(start, rise);
+  clip.keepPositive(edge.length * edge.length - start, -rise);
   if (clip.lo < clip.hi) hull.add(clip.lo, clip.hi);
 }
 
 /// Prism: the face moved by up to the radius to both sides along its normal.
-void addFace(const FaceFrame& face, Line line, double radius, Hull& hull) {
+void addFace(const Face& face, Line line, double radius, Hull& hull) {
   const Point foot = minus({line.x, 0, line.z}, face.origin);
-  const Point normal = cross(face.along, face.across);
-  const double off = dot(normal, foot);
+  const double off = dot(face.normal, foot);
   const double along = dot(face.along, foot);
   const double across = dot(face.across, foot);
   Clip clip;
-  clip.keepPositive(radius - off, -normal[1]);
-  clip.keepPositive(radius + off, normal[1]);
+  clip.keepPositive(radius - off, -face.normal[1]);
+  clip.keepPositive(radius + off, face.normal[1]);
   clip.keepPositive(across, face.across[1]);
   clip.keepPositive(face.height * along - face.foot * across,
                     face.height * face.along[1] - face.foot * face.across[1]);
@@ -166,14 +166,13 @@ void addFace(const FaceFrame& face, Line line, double radius, Hull& hull) {
   if (clip.lo < clip.hi) hull.add(clip.lo, clip.hi);
 }
 
-/// All pieces of a grown triangle on one line; `corners` relative to the first.
-void addTriangle(const Triangle& corners, const std::optional<FaceFrame>& face, Line line,
-                 double radius, Hull& hull) {
+/// All pieces of a grown triangle on one line, which is relative to the first corner, too.
+void addTriangle(const PreparedTriangle& triangle, Line line, double radius, Hull& hull) {
   for (std::size_t k = 0; k < 3; ++k) {
-    addCorner(corners[k], line, radius, hull);
-    addEdge(corners[k], corners[(k + 1) % 3], line, radius, hull);
+    addCorner(triangle.corners[k], line, radius, hull);
+    addEdge(triangle.edges[k], line, radius, hull);
   }
-  if (face) addFace(*face, line, radius, hull);
+  if (triangle.face) addFace(*triangle.face, line, radius, hull);
 }
 
 std::optional<HeightInterval> inWorld(const Hull& hull, double height) {
@@ -231,37 +230,39 @@ double squaredDistanceToSegment(const Point& point, const Point& from, const Poi
 
 }  // namespace
 
+PreparedTriangle::PreparedTriangle(const std::array<Point, 3>& triangle)
+    : first(triangle[0]),
+      corners(relativeToFirstCorner(triangle)),
+      edges{makeEdge(corners[0], corners[1]), makeEdge(corners[1], corners[2]),
+            makeEdge(corners[2], corners[0])},
+      face(makeFace(corners)) {}
+
 std::optional<HeightInterval> touchingHeights(const std::array<Point, 3>& triangle, double x,
                                               double z, double radius) {
-  const Triangle corners = relativeToFirstCorner(triangle);
   Hull hull;
-  addTriangle(corners, makeFaceFrame(corners), {x - triangle[0][0], z - triangle[0][2]}, radius,
-              hull);
+  addTriangle(PreparedTriangle(triangle), {x - triangle[0][0], z - triangle[0][2]}, radius, hull);
   return inWorld(hull, triangle[0][1]);
 }
 
-std::optional<HeightInterval> touchingHeightsOverCell(const std::array<Point, 3>& triangle,
-                                                      double x, double z, double half,
-                                                      double radius) {
+std::optional<HeightInterval> touchingHeightsOverCell(const PreparedTriangle& triangle, double x,
+                                                      double z, double half, double radius) {
   // The upper (lower) end over the square of centers is a concave (convex) function: its extreme
   // lies over a corner of the triangle, at a corner of the square, or on a side of the square where
   // an edge's contact normal is square to that side.
-  const Triangle corners = relativeToFirstCorner(triangle);
-  const std::optional<FaceFrame> face = makeFaceFrame(corners);
-  const Cell cell{{x - triangle[0][0], z - triangle[0][2]}, half};
+  const Cell cell{{x - triangle.first[0], z - triangle.first[2]}, half};
   Hull hull;
   for (const double dx : {-half, half}) {
     for (const double dz : {-half, half}) {
-      addTriangle(corners, face, {cell.center.x + dx, cell.center.z + dz}, radius, hull);
+      addTriangle(triangle, {cell.center.x + dx, cell.center.z + dz}, radius, hull);
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    addCornerOverCell(corners[k], cell, radius, hull);
-    const Point edge = minus(corners[(k + 1) % 3], corners[k]);
-    addEdgeOverSide(corners[k], edge, cell, 0, hull, radius);
-    addEdgeOverSide(corners[k], edge, cell, 2, hull, radius);
+    const Edge& edge = triangle.edges[k];
+    addCornerOverCell(triangle.corners[k], cell, radius, hull);
+    addEdgeOverSide(edge.from, edge.edge, cell, 0, hull, radius);
+    addEdgeOverSide(edge.from, edge.edge, cell, 2, hull, radius);
   }
-  return inWorld(hull, triangle[0][1]);
+  return inWorld(hull, triangle.first[1]);
 }
 
 double squaredDistance(const Point& point, const std::array<Point, 3>& triangle) {
@@ -269,7 +270,7 @@ double squaredDistance(const Point& point, const std::array<Point, 3>& triangle)
   for (std::size_t k = 0; k < 3; ++k) {
     least = std::min(least, squaredDistanceToSegment(point, triangle[k], triangle[(k + 1) % 3]));
   }
-  const std::optional<FaceFrame> face = makeFaceFrame(triangle);
+  const std::optional<Face> face = makeFace(triangle);
   if (!face) return least;
   const Point offset = minus(point, face->origin);
   const double along = dot(offset, face->along);

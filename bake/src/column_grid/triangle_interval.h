@@ -19,10 +19,50 @@ struct HeightInterval {
 [[nodiscard]] std::optional<HeightInterval> touchingHeights(const std::array<Point, 3>& triangle,
                                                             double x, double z, double radius);
 
+/// What the intervals over many cells need of one triangle.
+struct PreparedTriangle {
+  /// From a corner to the next one.
+  struct Edge {
+    Point from{};
+    Point edge{};
+    /// In the plane: how far it goes, and its unit direction there; 0 of a vertical edge.
+    double run = 0;
+    double x = 0;
+    double z = 0;
+    double length = 0;
+    /// Height and length by run.
+    double slope = 0;
+    double stretch = 0;
+  };
+
+  /// Coordinates in a triangle's plane: along its longest edge, and along the altitude on that
+  /// edge. In them the corners are (0, 0), (length, 0) and (foot, height). Unlike the cross product
+  /// of two edges, this stays perpendicular to the longest edge on needles.
+  struct Face {
+    Point origin{};
+    Point along{};
+    Point across{};
+    Point normal{};
+    double length = 0;
+    double foot = 0;
+    double height = 0;
+  };
+
+  explicit PreparedTriangle(const std::array<Point, 3>& triangle);
+
+  /// What all else is relative to, so that rounding follows the triangle's size, not its place in
+  /// the world.
+  Point first;
+  std::array<Point, 3> corners;
+  std::array<Edge, 3> edges;
+  /// None when the triangle is too flat to have a normal.
+  std::optional<Face> face;
+};
+
 /// The same for a center anywhere over the square of half edge `half` around (x, z): the heights at
 /// which some center in the square touches.
 [[nodiscard]] std::optional<HeightInterval> touchingHeightsOverCell(
-    const std::array<Point, 3>& triangle, double x, double z, double half, double radius);
+    const PreparedTriangle& triangle, double x, double z, double half, double radius);
 
 /// Squared distance from `point` to the triangle: the least over its edges, and its plane where the
 /// foot lies inside. Safe on needles, where the usual barycentric closest point is not.
