@@ -8,6 +8,9 @@
 #include <thread>
 #include <vector>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include "galactic/bake/packs.h"
 #include "support/scratch_folder.h"
 
@@ -19,8 +22,10 @@ namespace fs = std::filesystem;
 /// Writes the pack of a texture of one texel.
 Result<void> writeTexel(const fs::path& pack) {
   bake::BakedMaterials materials;
-  materials.textures = {{.name = "texel", .size = 1}};
   materials.texels = {1, 2, 3, 255};
+  const XXH128_hash_t hash = XXH3_128bits(materials.texels.data(), materials.texels.size());
+  materials.textures = {
+      {.name = "texel", .size = 1, .hash_low = hash.low64, .hash_high = hash.high64}};
   bake::Provenance provenance;
   provenance.tool_version = "1.2.3";
   const auto written =

@@ -33,29 +33,11 @@ std::vector<WalkedOption> walk(Options options) {
 
 /// Values of all sorts: for each option there is one that it takes and that is not its default.
 inline const std::vector<std::string>& candidateValues() {
-  static const std::vector<std::string> values{"true",
-                                               "7",
-                                               "0.25",
-                                               "0.01",
-                                               "16",
-                                               "0.05,0.5",
-                                               "1,2,3",
-                                               "a=b",
-                                               "1/2",
-                                               "x",
-                                               "-z",
-                                               "cell",
-                                               "embree",
-                                               "all",
-                                               "min",
-                                               "tight",
-                                               "bc1",
-                                               "train",
-                                               "found",
-                                               "each",
-                                               "skip",
-                                               "some/file",
-                                               "1,0,0,0,0,1,0,0,0,0,1,0.5"};
+  static const std::vector<std::string> values{
+      "true",   "7",       "0.25", "0.01",  "16",        "0.05,0.5",
+      "1,2,3",  "a=b",     "1/2",  "x",     "-z",        "cell",
+      "embree", "all",     "min",  "tight", "bc1",       "train",
+      "found",  "upright", "each", "skip",  "some/file", "1,0,0,0,0,1,0,0,0,0,1,0.5"};
   return values;
 }
 
