@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <ranges>
 #include <utility>
 
 #include "episodes/reach_witness.h"
@@ -41,19 +40,18 @@ float leastUprightness(const ObjectModel& model, PoseChoice choice) {
 /// A stable pose, of those that may be drawn each as likely as drops end in it.
 const StablePose& drawStablePose(const ObjectModel& model, PoseChoice choice, Random& random) {
   const float least = leastUprightness(model, choice);
-  const auto may_be_drawn = [least](const StablePose& pose) { return uprightness(pose) >= least; };
+  const auto likelihood = [least](const StablePose& pose) {
+    return uprightness(pose) >= least ? pose.likelihood : 0.0F;
+  };
   float total = 0;
-  for (const StablePose& pose : model.stable_poses | std::views::filter(may_be_drawn)) {
-    total += pose.likelihood;
-  }
+  for (const StablePose& pose : model.stable_poses) total += likelihood(pose);
   float left = static_cast<float>(random.unit()) * total;
-  const StablePose* drawn = nullptr;
-  for (const StablePose& pose : model.stable_poses | std::views::filter(may_be_drawn)) {
-    if (drawn == nullptr) drawn = &pose;
-    left -= pose.likelihood;
+  for (const StablePose& pose : model.stable_poses) {
+    left -= likelihood(pose);
     if (left < 0) return pose;
   }
-  return *drawn;
+  // Rounding left something of the total.
+  return *std::ranges::max_element(model.stable_poses, {}, likelihood);
 }
 
 bool isWithin(float distance, const DistanceRange& range) {

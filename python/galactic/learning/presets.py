@@ -73,7 +73,8 @@ WORDS = "|".join((*PRESETS, "RUN"))
 
 def preset(name: str, **changes: Any) -> Settings:
     """The settings of a preset, or of the run in the folder that is called so, with changes: see overriding(). What the
-    preset says and these leave no effect is left out. Raises SettingsError for a change without one."""
+    preset says and these leave no effect is left out. Raises SettingsError for a change without one.
+    """
     chosen = _named(name)
     return Settings.effective({**vars(chosen), **overriding(chosen, changes)}, changes)
 
