@@ -13,6 +13,7 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "render/cuda/kernels/kernels.inl"
@@ -37,7 +38,9 @@ std::mutex device_mutex;
 constexpr std::size_t kMostDevices = 8;
 char device_contexts[kMostDevices];
 int loaded_module = 0;
-thread_local std::vector<void*> contexts_pushed;
+/// By threads. No thread_local: leak checkers stumble over those of libraries that were opened
+/// late.
+std::map<std::thread::id, std::vector<void*>> contexts_pushed;
 /// The devices by the numbers that programs see.
 std::vector<int> visible;
 
@@ -201,23 +204,30 @@ STANDIN int cuDevicePrimaryCtxRelease_v2(int) {
   return 0;
 }
 STANDIN int cuCtxPushCurrent_v2(void* context) {
-  contexts_pushed.push_back(context);
+  const std::scoped_lock lock(device_mutex);
+  contexts_pushed[std::this_thread::get_id()].push_back(context);
   const auto* place = static_cast<const char*>(context);
   return place >= device_contexts && place < device_contexts + kMostDevices ? 0 : 1;
 }
 STANDIN int cuCtxPopCurrent_v2(void** context) {
-  *context = contexts_pushed.back();
-  contexts_pushed.pop_back();
+  const std::scoped_lock lock(device_mutex);
+  std::vector<void*>& pushed = contexts_pushed[std::this_thread::get_id()];
+  *context = pushed.back();
+  pushed.pop_back();
   return 0;
 }
 STANDIN int cuCtxGetCurrent(void** context) {
-  *context = contexts_pushed.empty() ? nullptr : contexts_pushed.back();
+  const std::scoped_lock lock(device_mutex);
+  const std::vector<void*>& pushed = contexts_pushed[std::this_thread::get_id()];
+  *context = pushed.empty() ? nullptr : pushed.back();
   return 0;
 }
 STANDIN int cuCtxGetDevice(int* device) {
   constexpr int kInvalidContext = 201;
-  if (contexts_pushed.empty()) return kInvalidContext;
-  *device = static_cast<int>(static_cast<char*>(contexts_pushed.back()) - device_contexts);
+  const std::scoped_lock lock(device_mutex);
+  const std::vector<void*>& pushed = contexts_pushed[std::this_thread::get_id()];
+  if (pushed.empty()) return kInvalidContext;
+  *device = static_cast<int>(static_cast<char*>(pushed.back()) - device_contexts);
   return 0;
 }
 STANDIN int cuModuleLoadDataEx(void** module, const void* image, unsigned, int*, void** values) {
