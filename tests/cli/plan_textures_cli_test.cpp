@@ -33,6 +33,17 @@ TEST_F(PlanTextures, MakesTexturePacksAgainThatAreGoneOrDamaged) {
   expectSamePacks(packsIn("out"), before);
 }
 
+/// Where those of the cache are those of the world.
+TEST_F(PlanTextures, MakesThemAgainWhereTheCacheIsTheFolderOfTheWorld) {
+  const std::vector<std::string> options{"--scenes", "c", "--cache", "out/home"};
+  ASSERT_EQ(bake("out", options).exit_code, 0);
+  const std::string texture = textures("out").front();
+  const std::string before = content(texture);
+  fs::remove(path(texture));
+  ASSERT_EQ(bake("out", options).exit_code, 0);
+  EXPECT_TRUE(content(texture) == before);
+}
+
 /// What is drawn is not what the scene looks like, and nobody may take it for that.
 TEST_F(PlanTextures, SaysWhichSharedTexturesAPictureLacks) {
   ASSERT_EQ(bake("out", {"--scenes", "c"}).exit_code, 0);

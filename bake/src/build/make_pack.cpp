@@ -75,11 +75,9 @@ bool hasTextures(const PackJob& pack, const PackFigures& figures, BuildTools& to
   TexturePacks& packs = tools.libraries.texturePacks();
   return std::ranges::all_of(textures, [&](const std::string& hash) {
     const TexturePlaces places = placesOf(hash, pack, tools);
-    const auto take_kept = [&]() -> Result<void> {
-      if (packs.isWhole(places.kept)) return linkOrCopy(places.kept, places.used);
-      return fail(ErrorCode::kIo, places.kept.string(), "is not there, or broken");
-    };
-    return packs.provide(places.used, take_kept).has_value();
+    if (packs.isWhole(places.used)) return true;
+    const auto take_kept = [&] { return linkOrCopy(places.kept, places.used); };
+    return packs.isWhole(places.kept) && packs.provide(places.used, take_kept).has_value();
   });
 }
 
