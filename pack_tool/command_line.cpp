@@ -18,9 +18,9 @@
 #include "galactic/error.h"
 #include "pack_tool/diff/report_diff.h"
 #include "pack_tool/pictures/figure_picture.h"
-#include "support/help_lines.h"
-#include "support/nearest_name.h"
-#include "support/number_text.h"
+#include "support/text/help_lines.h"
+#include "support/text/nearest_name.h"
+#include "support/text/number_text.h"
 
 namespace galactic::pack_tool {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "pack_tool/command_line.h"
+#include "support/console/standard_streams.h"
 #include "support/exception_error.h"
-#include "support/standard_streams.h"
 
 namespace galactic::pack_tool {
 

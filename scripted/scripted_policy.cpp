@@ -14,8 +14,8 @@
 #include "scripted/plan_player.h"
 #include "scripted/planner.h"
 #include "support/call_check.h"
+#include "support/threads/workers.h"
 #include "support/try.h"
-#include "support/workers.h"
 
 namespace galactic {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "followers.h"
 #include "outputs.h"
-#include "support/output_files.h"
-#include "support/stopwatch.h"
+#include "support/files/output_files.h"
+#include "support/threads/stopwatch.h"
 #include "support/try.h"
 #include "terminal.h"
 

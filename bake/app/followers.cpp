@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "report.h"
-#include "support/printable.h"
+#include "support/text/printable.h"
 #include "views.h"
 
 namespace galactic::bake {

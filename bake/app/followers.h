@@ -9,7 +9,7 @@
 
 #include "command.h"
 #include "galactic/bake/build.h"
-#include "support/stop_request.h"
+#include "support/console/stop_request.h"
 #include "terminal.h"
 
 namespace galactic::bake {

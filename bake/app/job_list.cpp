@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "command.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -8,9 +8,9 @@
 #include "followers.h"
 #include "galactic/bake/robot_recipe.h"
 #include "outputs.h"
+#include "support/console/standard_streams.h"
 #include "support/exception_error.h"
-#include "support/output_files.h"
-#include "support/standard_streams.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 #include "terminal.h"
 

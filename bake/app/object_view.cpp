@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string_view>
 
-#include "support/counted.h"
-#include "support/printable.h"
+#include "support/text/counted.h"
+#include "support/text/printable.h"
 #include "terminal.h"
 #include "views.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 #include "terminal.h"
 

@@ -9,9 +9,9 @@
 #include <span>
 #include <string>
 
-#include "support/atomic_file.h"
-#include "support/counted.h"
-#include "support/printable.h"
+#include "support/files/atomic_file.h"
+#include "support/text/counted.h"
+#include "support/text/printable.h"
 #include "terminal.h"
 #include "views.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "support/counted.h"
-#include "support/printable.h"
+#include "support/text/counted.h"
+#include "support/text/printable.h"
 #include "terminal.h"
 #include "views.h"
 

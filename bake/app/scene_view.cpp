@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "support/counted.h"
-#include "support/printable.h"
+#include "support/text/counted.h"
+#include "support/text/printable.h"
 #include "terminal.h"
 #include "views.h"
 

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "support/printable.h"
-#include "support/sentence_kinds.h"
-#include "support/standard_streams.h"
-#include "support/terminal_line.h"
+#include "support/console/standard_streams.h"
+#include "support/console/terminal_line.h"
+#include "support/text/printable.h"
+#include "support/text/sentence_kinds.h"
 
 namespace galactic::bake {
 namespace {

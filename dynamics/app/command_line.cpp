@@ -11,11 +11,11 @@
 #include "command_line/policy_command_line.h"
 #include "galactic/error.h"
 #include "run/policy.h"
-#include "support/help_lines.h"
-#include "support/nearest_name.h"
-#include "support/number_text.h"
-#include "support/printable.h"
-#include "support/standard_streams.h"
+#include "support/console/standard_streams.h"
+#include "support/text/help_lines.h"
+#include "support/text/nearest_name.h"
+#include "support/text/number_text.h"
+#include "support/text/printable.h"
 
 namespace galactic::dynamics {
 namespace {

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "galactic/bake/parallel_for.h"
-#include "support/standard_streams.h"
-#include "support/stop_request.h"
+#include "support/console/standard_streams.h"
+#include "support/console/stop_request.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {

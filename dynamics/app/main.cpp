@@ -22,12 +22,12 @@
 #include "galactic/bake/assets.h"
 #include "galactic/bake/read_files.h"
 #include "run/recording.h"
-#include "support/atomic_file.h"
+#include "support/console/standard_streams.h"
 #include "support/exception_error.h"
-#include "support/output_files.h"
-#include "support/printable.h"
-#include "support/sentence_kinds.h"
-#include "support/standard_streams.h"
+#include "support/files/atomic_file.h"
+#include "support/files/output_files.h"
+#include "support/text/printable.h"
+#include "support/text/sentence_kinds.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {

@@ -14,7 +14,7 @@
 #include "galactic/option_text.h"
 #include "run/learned_run.h"
 #include "run/recording.h"
-#include "support/range_text.h"
+#include "support/text/range_text.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {

@@ -7,7 +7,7 @@
 
 #include "dynamics/episodes/comparison.h"
 #include "galactic/error.h"
-#include "support/journal.h"
+#include "support/files/journal.h"
 
 namespace galactic::dynamics {
 

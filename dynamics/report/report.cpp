@@ -13,7 +13,7 @@
 #include "dynamics/episodes/robot_driver.h"
 #include "dynamics/report/names.h"
 #include "dynamics/report/report_sums.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
 
 namespace galactic::dynamics {
 namespace {

@@ -17,7 +17,7 @@
 #include "dynamics/report/names.h"
 #include "pictures/png_file.h"
 #include "run/tracked_run.h"
-#include "support/atomic_file.h"
+#include "support/files/atomic_file.h"
 #include "support/try.h"
 #include "view/json_writer.h"
 #include "view/page.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 
 namespace galactic::pack_tool {
 

@@ -6,7 +6,7 @@
 #include "galactic/world.h"
 #include "pack_tool/check/finding.h"
 #include "pack_tool/support/console.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
 
 namespace galactic::pack_tool {
 

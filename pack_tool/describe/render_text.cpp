@@ -10,7 +10,7 @@
 #include "pack_tool/describe/asset_text.h"
 #include "pack_tool/describe/text_parts.h"
 #include "pack_tool/support/text_table.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
 
 namespace galactic::pack_tool {
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "pack_tool/support/text_table.h"
-#include "support/counted.h"
-#include "support/printable.h"
+#include "support/text/counted.h"
+#include "support/text/printable.h"
 
 namespace galactic::pack_tool {
 

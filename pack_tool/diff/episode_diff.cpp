@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "galactic/episode_set.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {

@@ -15,8 +15,8 @@
 #include "galactic/pack_reference.h"
 #include "galactic/scene.h"
 #include "pack_tool/support/open_scene.h"
-#include "support/nearest_name.h"
-#include "support/printable.h"
+#include "support/text/nearest_name.h"
+#include "support/text/printable.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {

@@ -7,7 +7,7 @@
 
 #include "galactic/schema/pack_generated.h"
 #include "pack_tool/figure/shared_textures_of.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {

@@ -19,8 +19,8 @@
 #include "pack_tool/pictures/plan_panel.h"
 #include "pack_tool/pictures/sheet.h"
 #include "pictures/palette.h"
-#include "support/counted.h"
-#include "support/printable.h"
+#include "support/text/counted.h"
+#include "support/text/printable.h"
 #include "support/try.h"
 
 namespace galactic::pictures {

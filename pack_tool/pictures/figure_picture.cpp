@@ -13,7 +13,7 @@
 #include "pack_tool/pictures/figure_view.h"
 #include "pack_tool/pictures/sheet.h"
 #include "pictures/palette.h"
-#include "support/printable.h"
+#include "support/text/printable.h"
 #include "support/try.h"
 
 namespace galactic::pictures {

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "pictures/palette.h"
-#include "support/printable.h"
+#include "support/text/printable.h"
 
 namespace galactic::pictures {
 

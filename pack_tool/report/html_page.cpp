@@ -6,7 +6,7 @@
 
 #include "pack_tool/describe/info_text.h"
 #include "pack_tool/support/xml_text.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
 #include "view/page_data.h"
 
 namespace galactic::pack_tool {

@@ -16,7 +16,7 @@
 #include "pack_tool/pictures/scene_picture.h"
 #include "pack_tool/support/open_scene.h"
 #include "pictures/png_file.h"
-#include "support/printable.h"
+#include "support/text/printable.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "galactic/error.h"
-#include "support/printable.h"
+#include "support/text/printable.h"
 
 namespace galactic::pack_tool {
 

@@ -4,7 +4,7 @@
 
 #include "galactic/pack_reference.h"
 #include "pack_tool/support/output_file.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "support/atomic_file.h"
-#include "support/output_files.h"
+#include "support/files/atomic_file.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {

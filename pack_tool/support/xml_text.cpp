@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "support/printable.h"
+#include "support/text/printable.h"
 
 namespace galactic::pack_tool {
 

@@ -13,8 +13,8 @@
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
 #include "support/exception_error.h"
-#include "support/output_files.h"
-#include "support/workers.h"
+#include "support/files/output_files.h"
+#include "support/threads/workers.h"
 
 namespace galactic::pack_tool {
 

@@ -12,7 +12,7 @@
 #include "pack_tool/support/open_scene.h"
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {

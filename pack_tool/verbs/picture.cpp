@@ -14,7 +14,7 @@
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
 #include "pictures/png_file.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::pack_tool {

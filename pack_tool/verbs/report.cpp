@@ -9,9 +9,9 @@
 #include "pack_tool/support/open_listed.h"
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
+#include "support/threads/workers.h"
 #include "support/try.h"
-#include "support/workers.h"
 
 namespace galactic::pack_tool {
 

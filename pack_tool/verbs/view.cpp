@@ -7,7 +7,7 @@
 #include "pack_tool/support/open_listed.h"
 #include "pack_tool/support/output_file.h"
 #include "pack_tool/verbs/verbs.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 #include "view/page.h"
 

@@ -19,10 +19,10 @@
 #include "run/recording.h"
 #include "run/run_report.h"
 #include "run/simulate.h"
-#include "support/atomic_file.h"
+#include "support/console/standard_streams.h"
 #include "support/exception_error.h"
-#include "support/printable.h"
-#include "support/standard_streams.h"
+#include "support/files/atomic_file.h"
+#include "support/text/printable.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <bit>
 #include <cstring>
 
-#include "support/atomic_file.h"
+#include "support/files/atomic_file.h"
 
 namespace galactic::pictures {
 namespace {

@@ -18,7 +18,7 @@
 #include "galactic/world.h"
 #include "support/build_paths.h"
 #include "support/file_content.h"
-#include "support/journal.h"
+#include "support/files/journal.h"
 
 namespace galactic::generation_cli_test {
 namespace {

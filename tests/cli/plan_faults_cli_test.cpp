@@ -14,8 +14,8 @@
 #include "galactic/error.h"
 #include "support/build_paths.h"
 #include "support/file_content.h"
+#include "support/files/part_files.h"
 #include "support/mesh_files.h"
-#include "support/part_files.h"
 #include "support/recipe_text.h"
 
 namespace galactic::test::plan_faults_cli_test {

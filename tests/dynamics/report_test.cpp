@@ -15,8 +15,8 @@
 #include "dynamics/report/moments.h"
 #include "dynamics/report/report_sums.h"
 #include "galactic/batch_simulator.h"
+#include "support/files/journal.h"
 #include "support/homes/small_home.h"
-#include "support/journal.h"
 #include "support/scratch_folder.h"
 #include "view/run_track.h"
 

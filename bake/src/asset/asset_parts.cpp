@@ -9,7 +9,7 @@
 #include "galactic/bake/packs.h"
 #include "galactic/bake/source_asset.h"
 #include "support/exception_error.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {

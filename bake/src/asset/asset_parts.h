@@ -11,8 +11,8 @@
 #include "galactic/bake/assets.h"
 #include "galactic/bake/urdf_import.h"
 #include "render/render_source.h"
-#include "support/journal.h"
-#include "support/stopwatch.h"
+#include "support/files/journal.h"
+#include "support/threads/stopwatch.h"
 
 namespace galactic::bake {
 

@@ -6,7 +6,7 @@
 #include "asset/asset_parts.h"
 #include "common/overload.h"
 #include "galactic/bake/packs.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {

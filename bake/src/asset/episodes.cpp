@@ -16,7 +16,7 @@
 #include "galactic/bake/read_files.h"
 #include "galactic/pack.h"
 #include "galactic/scene.h"
-#include "support/journal.h"
+#include "support/files/journal.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -10,7 +10,7 @@
 
 #include "common/folder_entries.h"
 #include "galactic/bake/assets.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -10,8 +10,8 @@
 #include "import/checks/asset_check.h"
 #include "sphere_set/authored_spheres.h"
 #include "sphere_set/cover/cover_solver.h"
-#include "support/counted.h"
-#include "support/stopwatch.h"
+#include "support/text/counted.h"
+#include "support/threads/stopwatch.h"
 
 namespace galactic::bake {
 namespace {

@@ -15,8 +15,8 @@
 #include "galactic/bake/parallel_for.h"
 #include "import/checks/asset_check.h"
 #include "recipe/collection_shape.h"
-#include "support/output_files.h"
-#include "support/stopwatch.h"
+#include "support/files/output_files.h"
+#include "support/threads/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {

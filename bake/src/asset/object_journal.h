@@ -10,7 +10,7 @@
 #include "galactic/bake/assets.h"
 #include "galactic/bake/object_baker.h"
 #include "galactic/bake/read_files.h"
-#include "support/journal.h"
+#include "support/files/journal.h"
 
 namespace galactic::bake {
 

@@ -5,7 +5,7 @@
 #include "galactic/bake/packs.h"
 #include "galactic/bake/robot_recipe.h"
 #include "recipe/collection_import.h"
-#include "support/stopwatch.h"
+#include "support/threads/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -9,7 +9,7 @@
 #include "column_grid/way_out.h"
 #include "galactic/scene.h"
 #include "support/out_of_memory.h"
-#include "support/stopwatch.h"
+#include "support/threads/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {

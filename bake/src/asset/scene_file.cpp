@@ -3,7 +3,7 @@
 #include "asset/asset_parts.h"
 #include "asset/scene_source.h"
 #include "galactic/bake/packs.h"
-#include "support/stopwatch.h"
+#include "support/threads/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -9,8 +9,8 @@
 
 #include "build/make_pack.h"
 #include "galactic/bake/parallel_for.h"
-#include "support/part_files.h"
-#include "support/stopwatch.h"
+#include "support/files/part_files.h"
+#include "support/threads/stopwatch.h"
 
 namespace galactic::bake {
 namespace {

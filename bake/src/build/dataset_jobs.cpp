@@ -13,7 +13,7 @@
 #include "dataset/scene_files.h"
 #include "json/json_reader.h"
 #include "recipe/world_recipe.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -7,7 +7,7 @@
 #include "galactic/bake/build.h"
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/parallel_for.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 
 namespace galactic::bake {
 namespace {

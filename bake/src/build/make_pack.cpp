@@ -11,8 +11,8 @@
 #include "cache/cache_entry.h"
 #include "cache/file_digests.h"
 #include "galactic/bake/read_files.h"
-#include "support/output_files.h"
-#include "support/stopwatch.h"
+#include "support/files/output_files.h"
+#include "support/threads/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "cache/cache_entry.h"
-#include "support/atomic_file.h"
-#include "support/output_files.h"
+#include "support/files/atomic_file.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic::bake {

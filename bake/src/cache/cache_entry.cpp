@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "json/figure_json.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 
 namespace galactic::bake {
 namespace {

@@ -3,9 +3,9 @@
 #include <system_error>
 
 #include "cache/bake_cache.h"
-#include "support/atomic_file.h"
-#include "support/mapped_file.h"
-#include "support/part_files.h"
+#include "support/files/atomic_file.h"
+#include "support/files/mapped_file.h"
+#include "support/files/part_files.h"
 
 namespace galactic::bake {
 namespace {

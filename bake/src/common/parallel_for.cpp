@@ -1,6 +1,6 @@
 #include "galactic/bake/parallel_for.h"
 
-#include "support/workers.h"
+#include "support/threads/workers.h"
 
 namespace galactic::bake {
 

@@ -16,7 +16,7 @@
 #include "dataset/scene_layout.h"
 #include "dataset/unique_names.h"
 #include "galactic/bake/read_files.h"
-#include "support/nearest_name.h"
+#include "support/text/nearest_name.h"
 #include "support/try.h"
 #include "urdf/named_files.h"
 

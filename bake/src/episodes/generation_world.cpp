@@ -10,7 +10,7 @@
 #include "galactic/render_meshes.h"
 #include "galactic/schema/pack_generated.h"
 #include "layout/render_layout.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
 #include "support/try.h"
 
 namespace galactic::bake {

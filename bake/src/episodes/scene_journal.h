@@ -11,7 +11,7 @@
 #include "galactic/bake/episode_generator.h"
 #include "galactic/error.h"
 #include "support/content_hash.h"
-#include "support/journal.h"
+#include "support/files/journal.h"
 
 namespace galactic::bake {
 

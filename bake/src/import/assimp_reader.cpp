@@ -27,7 +27,7 @@
 #include "import/readable_gltf.h"
 #include "import/source_files.h"
 #include "import/used_vertices.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -11,7 +11,7 @@
 
 #include "galactic/error.h"
 #include "import/source_files.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 
 namespace galactic::bake {
 

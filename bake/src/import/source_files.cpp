@@ -17,7 +17,7 @@
 #include "common/lfs_pointer.h"
 #include "galactic/bake/source_asset.h"
 #include "support/content_hash.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "json/gzip.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic::bake {

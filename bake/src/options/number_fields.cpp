@@ -8,7 +8,7 @@
 
 #include "galactic/bake/option_field.h"
 #include "options/given_text.h"
-#include "support/number_text.h"
+#include "support/text/number_text.h"
 
 namespace galactic::bake {
 namespace {

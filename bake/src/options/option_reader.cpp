@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "galactic/bake/option_field.h"
-#include "support/nearest_name.h"
+#include "support/text/nearest_name.h"
 
 namespace galactic::bake {
 namespace {

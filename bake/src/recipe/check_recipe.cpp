@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "galactic/bake/robot_recipe.h"
-#include "support/nearest_name.h"
+#include "support/text/nearest_name.h"
 #include "support/try.h"
 
 namespace galactic::bake {

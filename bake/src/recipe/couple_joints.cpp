@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "galactic/bake/robot_recipe.h"
-#include "support/nearest_name.h"
+#include "support/text/nearest_name.h"
 #include "support/try.h"
 #include "urdf/mimics.h"
 

@@ -6,7 +6,7 @@
 
 #include "galactic/bake/robot_recipe.h"
 #include "recipe/robot_guess.h"
-#include "support/printable.h"
+#include "support/text/printable.h"
 
 namespace galactic::bake {
 namespace {

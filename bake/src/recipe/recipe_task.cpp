@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "support/height_text.h"
 #include "support/option_table.h"
-#include "support/range_text.h"
+#include "support/text/height_text.h"
+#include "support/text/range_text.h"
 
 namespace galactic::bake {
 namespace {

@@ -10,8 +10,8 @@
 #include "robot/group_spheres.h"
 #include "robot/robot_parts.h"
 #include "sphere_set/prepared_fit.h"
-#include "support/nearest_name.h"
-#include "support/stopwatch.h"
+#include "support/text/nearest_name.h"
+#include "support/threads/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -10,7 +10,7 @@
 
 #include "galactic/bake/render_textures.h"
 #include "galactic/bake/source_asset.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 
 namespace galactic::bake {
 

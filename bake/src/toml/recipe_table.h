@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "galactic/bake/robot_recipe.h"
-#include "support/nearest_name.h"
+#include "support/text/nearest_name.h"
 #include "toml/toml_table.h"
 
 namespace galactic::bake {

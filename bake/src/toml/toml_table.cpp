@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -8,7 +8,7 @@
 #include "common/lower_case.h"
 #include "import/source_files.h"
 #include "json/json_reader.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "urdf/mesh_resolver.h"
 
 namespace galactic::bake {

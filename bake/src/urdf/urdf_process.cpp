@@ -9,7 +9,7 @@
 #include "galactic/bake/urdf_import.h"
 #include "import/isolated_process.h"
 #include "import/transfer_archive.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "support/try.h"
 #include "urdf/urdf_reader.h"
 

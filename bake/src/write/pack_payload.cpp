@@ -4,7 +4,7 @@
 
 #include "galactic/pack.h"
 #include "layout/render_pools.h"
-#include "support/atomic_file.h"
+#include "support/files/atomic_file.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -10,8 +10,8 @@
 #include "command_line/options.h"
 #include "command_line/policy_command_line.h"
 #include "run/policy.h"
-#include "support/height_text.h"
-#include "support/range_text.h"
+#include "support/text/height_text.h"
+#include "support/text/range_text.h"
 
 namespace galactic {
 namespace {

@@ -14,8 +14,8 @@
 #include "command_line/render_options.h"
 #include "galactic/drawn_number.h"
 #include "galactic/sensor_noise.h"
-#include "support/number_text.h"
 #include "support/option_table.h"
+#include "support/text/number_text.h"
 
 namespace galactic {
 

@@ -16,11 +16,11 @@
 #include "command_line/render_command_line.h"
 #include "galactic/error.h"
 #include "run/tracked_run.h"
-#include "support/help_lines.h"
-#include "support/nearest_name.h"
+#include "support/console/standard_streams.h"
 #include "support/option_table.h"
-#include "support/printable.h"
-#include "support/standard_streams.h"
+#include "support/text/help_lines.h"
+#include "support/text/nearest_name.h"
+#include "support/text/printable.h"
 
 namespace galactic {
 namespace {

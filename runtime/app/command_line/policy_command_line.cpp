@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
-#include "support/number_text.h"
+#include "support/text/number_text.h"
 
 namespace galactic {
 

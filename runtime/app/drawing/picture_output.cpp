@@ -17,9 +17,9 @@
 #include "galactic/debug_views.h"
 #include "pictures/drawing.h"
 #include "pictures/png_file.h"
-#include "support/atomic_file.h"
+#include "support/files/atomic_file.h"
+#include "support/files/output_files.h"
 #include "support/out_of_memory.h"
-#include "support/output_files.h"
 #include "support/try.h"
 
 namespace galactic {

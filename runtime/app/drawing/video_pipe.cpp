@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/part_files.h"
+#include "support/files/part_files.h"
 
 namespace galactic {
 namespace {

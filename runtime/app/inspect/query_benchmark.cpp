@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "support/counted.h"
+#include "support/text/counted.h"
 
 namespace galactic {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "galactic/schema/pack_generated.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
 
 namespace galactic {
 namespace {

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "galactic/pack.h"
-#include "support/printable.h"
+#include "support/text/printable.h"
 
 namespace galactic {
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "support/standard_streams.h"
-#include "support/terminal_line.h"
+#include "support/console/standard_streams.h"
+#include "support/console/terminal_line.h"
 
 namespace galactic {
 

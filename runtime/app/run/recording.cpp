@@ -11,7 +11,7 @@
 
 #include "command_line/option_lines.h"
 #include "galactic/pack_header.h"
-#include "support/printable.h"
+#include "support/text/printable.h"
 #include "support/try.h"
 
 namespace galactic {

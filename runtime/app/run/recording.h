@@ -12,7 +12,7 @@
 #include "galactic/error.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
-#include "support/atomic_file.h"
+#include "support/files/atomic_file.h"
 
 namespace galactic {
 

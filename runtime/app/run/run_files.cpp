@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "drawing/picture_output.h"
-#include "support/output_files.h"
+#include "support/files/output_files.h"
 #include "support/try.h"
 
 namespace galactic {

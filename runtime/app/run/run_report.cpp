@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <span>
 
-#include "support/counted.h"
-#include "support/printable.h"
+#include "support/text/counted.h"
+#include "support/text/printable.h"
 
 namespace galactic {
 namespace {

@@ -19,8 +19,8 @@
 #include "run/policy.h"
 #include "run/run_files.h"
 #include "run/tracked_run.h"
-#include "support/counted.h"
-#include "support/stop_request.h"
+#include "support/console/stop_request.h"
+#include "support/text/counted.h"
 #include "support/try.h"
 
 namespace galactic {

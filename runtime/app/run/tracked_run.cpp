@@ -10,7 +10,7 @@
 
 #include "galactic/option_text.h"
 #include "galactic/render_library.h"
-#include "support/atomic_file.h"
+#include "support/files/atomic_file.h"
 #include "support/try.h"
 #include "view/page.h"
 #include "view/run_animation.h"

@@ -6,7 +6,7 @@
 #include "check/pack_check.h"
 #include "galactic/schema/pack_generated.h"
 #include "support/call_check.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic {

@@ -14,8 +14,8 @@
 #include "check/pack_check.h"
 #include "galactic/schema/pack_generated.h"
 #include "pack/schema_values.h"
-#include "support/atomic_file.h"
 #include "support/content_hash.h"
+#include "support/files/atomic_file.h"
 #include "support/try.h"
 
 namespace galactic {

@@ -17,9 +17,9 @@
 #include <utility>
 
 #include "galactic/pack_reference.h"
-#include "support/counted.h"
+#include "support/text/counted.h"
+#include "support/threads/workers.h"
 #include "support/try.h"
-#include "support/workers.h"
 
 namespace galactic {
 namespace {

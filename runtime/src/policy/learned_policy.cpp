@@ -13,8 +13,8 @@
 #include "policy/layer_shapes.h"
 #include "policy/operation.h"
 #include "support/call_check.h"
+#include "support/threads/workers.h"
 #include "support/try.h"
-#include "support/workers.h"
 
 namespace galactic {
 namespace {

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "support/workers.h"
+#include "support/threads/workers.h"
 
 namespace galactic::sensors {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "support/height_text.h"
+#include "support/text/height_text.h"
+#include "support/threads/workers.h"
 #include "support/try.h"
-#include "support/workers.h"
 
 namespace galactic::sensors {
 namespace {

@@ -15,8 +15,8 @@
 #include "simulation/collision/floor_query.h"
 #include "simulation/motion/motion_model.h"
 #include "support/call_check.h"
+#include "support/threads/workers.h"
 #include "support/try.h"
-#include "support/workers.h"
 
 namespace galactic {
 namespace {

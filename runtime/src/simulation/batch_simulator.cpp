@@ -23,8 +23,8 @@
 #include "simulation/state/saved_state.h"
 #include "support/call_check.h"
 #include "support/out_of_memory.h"
+#include "support/threads/workers.h"
 #include "support/try.h"
-#include "support/workers.h"
 
 namespace galactic {
 

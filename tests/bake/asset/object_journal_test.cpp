@@ -12,7 +12,7 @@
 #include "galactic/bake/assets.h"
 #include "support/build_paths.h"
 #include "support/file_content.h"
-#include "support/journal.h"
+#include "support/files/journal.h"
 #include "support/mesh_files.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"

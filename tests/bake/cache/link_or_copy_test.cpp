@@ -6,7 +6,7 @@
 
 #include "cache/bake_cache.h"
 #include "support/file_content.h"
-#include "support/part_files.h"
+#include "support/files/part_files.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 

@@ -13,7 +13,7 @@
 #include "episodes/scene_journal.h"
 #include "galactic/bake/packs.h"
 #include "made_world.h"
-#include "support/journal.h"
+#include "support/files/journal.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::episode_journal_test {

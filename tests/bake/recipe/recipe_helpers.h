@@ -2,8 +2,8 @@
 #include <string>
 
 #include "galactic/bake/robot_recipe.h"
-#include "support/nearest_name.h"
 #include "support/scratch_folder.h"
+#include "support/text/nearest_name.h"
 
 namespace galactic::test {
 

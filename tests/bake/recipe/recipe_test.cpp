@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "bake/recipe/recipe_helpers.h"
-#include "support/nearest_name.h"
+#include "support/text/nearest_name.h"
 
 namespace galactic::test::recipe_test {
 namespace {

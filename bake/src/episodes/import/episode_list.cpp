@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "galactic/bake/episode_set_import.h"
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic::bake {

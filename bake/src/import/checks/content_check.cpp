@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "support/mapped_file.h"
+#include "support/files/mapped_file.h"
 #include "support/try.h"
 
 namespace galactic::bake {

@@ -11,8 +11,8 @@
 #endif
 
 #include "render/cuda/kernel_image.h"
-#include "support/stopwatch.h"
-#include "support/thread_clock.h"
+#include "support/threads/stopwatch.h"
+#include "support/threads/thread_clock.h"
 #include "support/try.h"
 
 namespace galactic::render::cuda {

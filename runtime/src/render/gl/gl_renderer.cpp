@@ -9,7 +9,7 @@
 
 #include "render/device_wish.h"
 #include "render/gl/library_textures.h"
-#include "support/stopwatch.h"
+#include "support/threads/stopwatch.h"
 #include "support/try.h"
 
 namespace galactic::render::gl {

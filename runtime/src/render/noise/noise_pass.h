@@ -4,7 +4,7 @@
 #include <span>
 
 #include "galactic/batch_renderer.h"
-#include "support/workers.h"
+#include "support/threads/workers.h"
 
 namespace galactic::render {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "render/raster/placed_model.h"
-#include "support/counted.h"
 #include "support/processor.h"
+#include "support/text/counted.h"
 
 namespace galactic::render {
 

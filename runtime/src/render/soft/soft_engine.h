@@ -9,7 +9,7 @@
 #include "render/render_engine.h"
 #include "render/soft/pane_memory.h"
 #include "render/soft/soft_scene.h"
-#include "support/workers.h"
+#include "support/threads/workers.h"
 
 namespace galactic::render {
 

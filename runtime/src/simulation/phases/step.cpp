@@ -9,7 +9,7 @@
 #include "simulation/phases/observe.h"
 #include "simulation/phases/robot_noise.h"
 #include "simulation/phases/task.h"
-#include "support/thread_clock.h"
+#include "support/threads/thread_clock.h"
 
 namespace galactic::simulation {
 

@@ -14,7 +14,7 @@
 #include "simulation/collision/resting_box.h"
 #include "simulation/queries/checked_state.h"
 #include "support/call_check.h"
-#include "support/workers.h"
+#include "support/threads/workers.h"
 
 namespace galactic {
 namespace {

@@ -13,7 +13,7 @@
 #include "simulation/collision/floor_clearance.h"
 #include "simulation/collision/floor_query.h"
 #include "simulation/ways_out/floor_slices.h"
-#include "support/workers.h"
+#include "support/threads/workers.h"
 
 namespace galactic::simulation {
 namespace {

@@ -13,8 +13,8 @@
 #include "simulation/phases/slide.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/floor_maps.h"
+#include "support/threads/workers.h"
 #include "support/try.h"
-#include "support/workers.h"
 
 namespace galactic::simulation {
 namespace {

@@ -16,9 +16,9 @@
 #include "picture_folder.h"
 #include "pictures/drawing.h"
 #include "support/file_content.h"
+#include "support/files/part_files.h"
 #include "support/homes/small_home.h"
 #include "support/homes/small_home_models.h"
-#include "support/part_files.h"
 #include "support/program_run.h"
 
 namespace galactic::picture_output_test {

@@ -8,7 +8,7 @@
 
 #include "picture_folder.h"
 #include "support/file_content.h"
-#include "support/part_files.h"
+#include "support/files/part_files.h"
 #include "support/program_run.h"
 
 namespace galactic::video_pipe_test {
