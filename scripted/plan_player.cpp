@@ -53,8 +53,7 @@ void clear(const ActionRow& row) {
 
 }  // namespace
 
-ActionRow rowOf(std::span<float> actions) {
-  const ActionLayout layout{.joints = actions.size() - ActionLayout{}.count()};
+ActionRow rowOf(const ActionLayout& layout, std::span<float> actions) {
   return {actions.first(layout.joints), actions[layout.forward()], actions[layout.turn()],
           actions[layout.hand()], actions[layout.terminate()]};
 }

@@ -9,7 +9,7 @@
 
 namespace galactic::scripted {
 
-/// Where the values of an env's actions go, as BatchSimulator has them.
+/// Where the values of an env's actions go, as BatchSimulator has them. No plan drives sideways.
 struct ActionRow {
   std::span<float> joints;
   float& forward;
@@ -17,7 +17,7 @@ struct ActionRow {
   float& grasp;
   float& terminate;
 };
-[[nodiscard]] ActionRow rowOf(std::span<float> actions);
+[[nodiscard]] ActionRow rowOf(const ActionLayout& layout, std::span<float> actions);
 
 /// Turns a plan into actions, one step after the other. A base that is off the line of a drive
 /// turns towards a point on that line, somewhat ahead, as where motions are not quite what was

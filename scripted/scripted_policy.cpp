@@ -157,7 +157,7 @@ class ScriptedPolicy::Impl {
   void playOn(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
     while (true) {
       std::ranges::fill(actions, 0.0F);
-      const scripted::ActionRow row = scripted::rowOf(actions);
+      const scripted::ActionRow row = scripted::rowOf(ActionLayout::of(world_.robot()), actions);
       // Grasping, letting go and terminating are steps of a plan.
       row.grasp = state.held >= 0 ? decisions_.keep : decisions_.stay_open;
       row.terminate = decisions_.go_on;

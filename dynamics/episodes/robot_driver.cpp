@@ -8,13 +8,23 @@ namespace {
 
 float clamped(float action) { return std::isnan(action) ? 0.0F : std::clamp(action, -1.0F, 1.0F); }
 
-ActionLayout layoutOf(const Robot& robot) { return {.joints = robot.controlledJoints().size()}; }
+/// What the actions ask of the base.
+BaseMotion baseMotionOf(const Robot& robot, std::span<const float> actions) {
+  const RobotBase& base = *robot.base();
+  const ActionLayout layout = ActionLayout::of(robot);
+  BaseMotion motion{.forward = base.forward_step * clamped(actions[layout.forward()]),
+                    .turn = base.turn_step * clamped(actions[layout.turn()])};
+  if (layout.drives_sideways) {
+    motion.left = base.sideways_step * clamped(actions[layout.sideways()]);
+  }
+  return motion;
+}
 
-/// Turns clockwise, seen from above, then drives ahead.
-void moveBase(float forward, float turn, Pose& world_from_root) {
-  world_from_root.rotation = rotationOfYaw(-turn) * world_from_root.rotation;
-  world_from_root.translation =
-      world_from_root.translation + rotate(world_from_root.rotation, {forward, 0, 0});
+/// Turns, then drives along the new heading.
+void moveBase(const BaseMotion& motion, Pose& world_from_root) {
+  world_from_root.rotation = rotationOfYaw(-motion.turn) * world_from_root.rotation;
+  world_from_root.translation = world_from_root.translation +
+                                rotate(world_from_root.rotation, {motion.forward, 0, -motion.left});
 }
 
 /// Out of what was met along the ground, as far as it is deep; zero where that leads nowhere.
@@ -45,10 +55,7 @@ void moveJoints(const Robot& robot, std::span<const float> actions, std::span<fl
 void applyActions(const Robot& robot, std::span<const float> actions, Pose& world_from_root,
                   std::span<float> positions) {
   moveJoints(robot, actions, positions);
-  const ActionLayout layout = layoutOf(robot);
-  const RobotBase& base = *robot.base();
-  moveBase(base.forward_step * clamped(actions[layout.forward()]),
-           base.turn_step * clamped(actions[layout.turn()]), world_from_root);
+  moveBase(baseMotionOf(robot, actions), world_from_root);
 }
 
 RobotDriver::RobotDriver(const Robot& robot, DynamicsWorld& world, const SimulationOptions& options)
@@ -57,11 +64,11 @@ RobotDriver::RobotDriver(const Robot& robot, DynamicsWorld& world, const Simulat
 DrivenStep RobotDriver::step(std::span<const float> actions) {
   moveJoints(robot_, actions, targets_);
   const std::optional<Pose> root = clearOf(driveBase(actions));
-  if (!root) speed_ = turn_speed_ = 0;
+  if (!root) speed_ = {};
   world_.drive(root.value_or(world_.worldFromRoot()), targets_);
   world_.step();
   DrivenStep step{.base_refused = !root, .grasped = {}, .released = {}};
-  useHand(clamped(actions[layoutOf(robot_).hand()]), step);
+  useHand(clamped(actions[ActionLayout::of(robot_).hand()]), step);
   return step;
 }
 
@@ -70,23 +77,24 @@ Pose RobotDriver::worldFromGrip() const {
 }
 
 Pose RobotDriver::driveBase(std::span<const float> actions) {
-  const RobotBase& base = *robot_.base();
-  const ActionLayout layout = layoutOf(robot_);
-  const float forward = base.forward_step * clamped(actions[layout.forward()]);
-  const float turn = base.turn_step * clamped(actions[layout.turn()]);
+  const BaseMotion asked = baseMotionOf(robot_, actions);
   Pose root = world_.worldFromRoot();
   const WorldOptions& options = world_.options();
   if (options.base == BaseDrive::kKinematic) {
-    moveBase(forward, turn, root);
+    moveBase(asked, root);
     return root;
   }
   const auto substep = static_cast<float>(options.substep);
   const auto gain = static_cast<float>(options.base_gain);
   const float seconds = substep * static_cast<float>(options.substeps);
   for (std::uint32_t n = 0; n < options.substeps; ++n) {
-    speed_ += gain * (forward / seconds - speed_);
-    turn_speed_ += gain * (turn / seconds - turn_speed_);
-    moveBase(speed_ * substep, turn_speed_ * substep, root);
+    const auto follow = [&](float& speed, float motion) {
+      speed += gain * (motion / seconds - speed);
+    };
+    follow(speed_.forward, asked.forward);
+    follow(speed_.turn, asked.turn);
+    follow(speed_.left, asked.left);
+    moveBase({speed_.forward * substep, speed_.turn * substep, speed_.left * substep}, root);
   }
   return root;
 }

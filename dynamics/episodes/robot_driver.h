@@ -22,6 +22,14 @@ struct DrivenStep {
   std::optional<std::size_t> released;
 };
 
+/// How a base moves: along its heading, clockwise seen from above, and to its left; meters and
+/// radians, or these by the second.
+struct BaseMotion {
+  float forward = 0;
+  float turn = 0;
+  float left = 0;
+};
+
 /// Carries out the simulation's actions in a dynamics world.
 ///
 /// The base drives and turns as in the simulation, kinematically, or its speeds follow those that
@@ -35,8 +43,7 @@ class RobotDriver {
   /// All but `options` must outlive it. The robot stands in the world.
   RobotDriver(const Robot& robot, DynamicsWorld& world, const SimulationOptions& options);
 
-  /// `actions`: one per controlled joint, forward, turn, hand, terminate; clamped to [-1, 1], NaN
-  /// counts as 0.
+  /// `actions`: as ActionLayout says; clamped to [-1, 1], NaN counts as 0.
   DrivenStep step(std::span<const float> actions);
 
   /// Origin at the grasp point, axes of the end effector's link.
@@ -55,9 +62,8 @@ class RobotDriver {
   DynamicsWorld& world_;
   SimulationOptions options_;
   std::vector<float> targets_;
-  /// Of the base with BaseDrive::kVelocity: m/s along its heading, rad/s clockwise seen from above.
-  float speed_ = 0;
-  float turn_speed_ = 0;
+  /// Of the base with BaseDrive::kVelocity, by the second.
+  BaseMotion speed_;
 };
 
 /// The pose of the grip for a pose of the root and joint positions.

@@ -122,6 +122,7 @@ class RobotDescription {
     if (!base) return nullptr;
     return {{"forward_step", jsonNumber(base->forward_step)},
             {"turn_step", jsonNumber(base->turn_step)},
+            {"sideways_step", jsonNumber(base->sideways_step)},
             {"root_height", jsonNumber(base->root_height)},
             {"footprint_min", describePoint(base->footprint_min)},
             {"footprint_max", describePoint(base->footprint_max)},

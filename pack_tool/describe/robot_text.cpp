@@ -136,9 +136,12 @@ std::string toolsText(const Json& robot) {
           ? fmt::format("circle of radius {} m", lengthOf(base.at("footprint_radius")))
           : fmt::format("x {} to {}, z {} to {} m", lengthOf(low.at(0)), lengthOf(high.at(0)),
                         lengthOf(low.at(2)), lengthOf(high.at(2)));
-  return text + labeled("base", fmt::format("steps of {} m and {:.4g} rad, root {} m above the "
+  const bool drives_sideways = numberOf(base.at("sideways_step")) > 0;
+  const std::string sideways =
+      drives_sideways ? fmt::format(", {} m sideways", lengthOf(base.at("sideways_step"))) : "";
+  return text + labeled("base", fmt::format("steps of {} m{} and {:.4g} rad, root {} m above the "
                                             "ground, footprint {}",
-                                            lengthOf(base.at("forward_step")),
+                                            lengthOf(base.at("forward_step")), sideways,
                                             numberOf(base.at("turn_step")),
                                             lengthOf(base.at("root_height")), footprint));
 }

@@ -97,8 +97,8 @@ class VectorEnv(_Base):
             several cameras by name, such as {"head": {}, "hand": {"camera": "gripper_link"}}, where
             a name is the Renderer's `camera` unless that is given; or None for no images.
         actions: "box": one float32 array in [-1, 1], (num_envs, action_count). "paper": a
-            dictionary of "continuous", float32 (num_envs, action_count - 2) for joints, forward and
-            turn, and "discrete", 0 or 1, (num_envs, 2) for hand and terminate.
+            dictionary of "continuous", float32 (num_envs, action_count - 2) for joints, forward,
+            turn and, where the base does, sideways, and "discrete", 0 or 1, (num_envs, 2) for hand and terminate.
         halves: 1, or 2 for send() and recv() in turns.
         copy: whether each step's results are arrays of their own. Else they are those of the step before,
             overwritten, unless they were written to `out`.

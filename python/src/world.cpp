@@ -123,6 +123,9 @@ std::vector<Action> actionsOf(const World& world) {
   const RobotBase base = robot.base().value_or(RobotBase());
   actions.push_back({.name = "forward", .step = base.forward_step, .unit = "m"});
   actions.push_back({.name = "turn", .step = base.turn_step, .unit = "rad"});
+  if (base.sideways_step > 0) {
+    actions.push_back({.name = "sideways", .step = base.sideways_step, .unit = "m"});
+  }
   actions.push_back({.name = "hand"});
   actions.push_back({.name = "terminate"});
   return actions;

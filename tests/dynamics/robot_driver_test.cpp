@@ -80,6 +80,29 @@ TEST(ADrivenBase, GoesAsFarAsItsActionsSay) {
   EXPECT_NEAR(std::atan2(ahead.z, ahead.x), 4 * room.robot().base()->turn_step, 1e-4);
 }
 
+TEST(ADrivenBase, GoesToItsLeftWhereItDrivesSideways) {
+  RobotPackFields fields = smallHomeRobot();
+  fields.base->sideways_step = 0.06F;
+  const MadeRobot robot(fields);
+  const RobotKit kit(*robot, smallHomeParts());
+  const ActionLayout layout = ActionLayout::of(*robot);
+  for (const auto drive : {dynamics::BaseDrive::kKinematic, dynamics::BaseDrive::kVelocity}) {
+    DynamicsWorld world(dynamics::makeSceneShape(roomWithTable()), {}, {.base = drive});
+    world.addRobot(kit.setup({{0, 0.1F, 0}, rotationOfYaw(0.5F)}));
+    RobotDriver driver(*robot, world, SimulationOptions{});
+    std::vector<float> actions(layout.count());
+    actions[layout.sideways()] = 1;
+    for (int n = 0; n < 5; ++n) driver.step(actions);
+    // What speeds lag behind they make good.
+    actions[layout.sideways()] = 0;
+    for (int n = 0; n < 20; ++n) driver.step(actions);
+    const Pose root = world.worldFromRoot();
+    EXPECT_NEAR(root.translation.x, -0.3F * std::sin(0.5F), 1e-4);
+    EXPECT_NEAR(root.translation.z, -0.3F * std::cos(0.5F), 1e-4);
+    EXPECT_FALSE(world.held());
+  }
+}
+
 TEST(ADrivenBase, StopsAtAWall) {
   Room room(ArmDrive::kKinematic);
   bool was_refused = false;

@@ -155,6 +155,31 @@ def test_actions_of_joints_that_cannot_be_simulated_have_no_unit(world_path):
         Simulator(world, envs=1)
 
 
+def test_a_base_that_drives_sideways_has_an_action_for_it(world_path):
+    world = World(world_path.parent / "sideways" / "world.pack")
+    names = [action.name for action in world.actions]
+    assert names == [*world.joints, "forward", "turn", "sideways", "hand", "terminate"]
+    column = names.index("sideways")
+    sideways = world.actions[column]
+    assert repr(sideways) == "<galactic.Action sideways, 0.0625 m a step>"
+    simulator = Simulator(world, envs=1, threads=1, task="none", order="linear", slide="off")
+    before = simulator.env_state(0).world_from_root
+    actions = np.zeros((1, simulator.action_count), np.float32)
+    actions[0, column] = 1
+    simulator.step(actions)
+    after = simulator.env_state(0).world_from_root
+    way = after.translation - before.translation
+    assert np.linalg.norm(way) == pytest.approx(sideways.step, abs=1e-5)
+    # To the left: -Z of the root, which looks along its +X.
+    w, _, y, _ = before.rotation
+    yaw = 2 * np.arctan2(y, w)
+    np.testing.assert_allclose(
+        way[[0, 2]], -sideways.step * np.array([np.sin(yaw), np.cos(yaw)]), atol=1e-5
+    )
+    homes = galactic.VectorEnv(world, 2, actions="paper")
+    assert homes.single_action_space["continuous"].shape == (len(names) - 2,)
+
+
 def test_links_and_objects_have_names(world):
     simulator = Simulator(world, envs=8, threads=1)
     assert len(world.links) == len(PlanningScene(simulator).root_from_links)

@@ -1,5 +1,5 @@
-// Writes the small home to a folder, and below it one that no simulator takes and one with strange
-// names, for tests in another language.
+// Writes the small home to a folder, and below it one that no simulator takes, one whose robot
+// drives sideways, and one with strange names, for tests in another language.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -34,6 +34,13 @@ galactic::test::WorldFields planarHome() {
   return home;
 }
 
+/// A home whose robot drives sideways, too.
+galactic::test::WorldFields sidewaysHome() {
+  galactic::test::WorldFields home = galactic::test::smallHomeWorldWithModels();
+  home.robot.base->sideways_step = 0.0625F;
+  return home;
+}
+
 /// A home whose names are no UTF-8, as the names of files need not be: half of a surrogate pair, a
 /// character that is longer than it has to be, one behind the last, and a lonely byte.
 galactic::test::WorldFields strangeHome() {
@@ -55,6 +62,7 @@ int main(int argc, char** argv) {
   try {
     write(galactic::test::smallHomeWorldWithModels(), argv[1]);
     write(planarHome(), fs::path(argv[1]) / "planar");
+    write(sidewaysHome(), fs::path(argv[1]) / "sideways");
     write(strangeHome(), fs::path(argv[1]) / "strange");
   } catch (const std::exception& problem) {
     std::fprintf(stderr, "%s\n", problem.what());

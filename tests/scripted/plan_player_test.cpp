@@ -69,7 +69,8 @@ class APlanPlayer : public testing::Test {
       state.world_from_root = {at_.position, {0, std::sin(at_.yaw / 2), 0, std::cos(at_.yaw / 2)}};
       state.joint_positions = start_;
       const Progress progress =
-          player.play(arm_, base_, state, start_, scripted::rowOf(std::span(actions)));
+          player.play(arm_, base_, state, start_,
+                      scripted::rowOf({.joints = arm_.joints().size()}, std::span(actions)));
       if (progress != Progress::kActs) return progress;
       const float forward = actions.begin()[count];
       const float turn = actions.begin()[count + 1];

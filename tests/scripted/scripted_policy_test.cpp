@@ -199,6 +199,27 @@ ScriptedWorld tableWorld(float goal) {
   return stickWorld(room.build(), {0.8F, 0, 1.5F}, {2.4F, 0.501F, 1.3F}, {2.4F, 0.501F, goal});
 }
 
+TEST(ScriptedPolicy, DrivesARobotThatCouldDriveSidewaysAheadOnly) {
+  MeshBuilder room = madeRoom(4, 3);
+  room.box({2.2F, 0, 1}, {2.8F, 0.5F, 2});
+  const Vec3 base{0.8F, 0, 1.5F};
+  const Vec3 cube{2.4F, 0.501F, 1.3F};
+  const Vec3 goal{2.4F, 0.501F, 1.7F};
+  RobotPackFields robot = stickRobot();
+  const Outcomes without =
+      play(stickWorld(room.build(), base, cube, goal, robot).world(), optionsOf(1));
+  robot.base->sideways_step = 0.1F;
+  const ScriptedWorld made = stickWorld(room.build(), base, cube, goal, robot);
+  const ActionLayout layout = ActionLayout::of(made.world().robot());
+  ASSERT_TRUE(layout.drives_sideways);
+  const Outcomes with = play(made.world(), optionsOf(1));
+  EXPECT_EQ(with.successCount(), 1U);
+  EXPECT_EQ(with.steps, without.steps);
+  for (std::size_t n = layout.sideways(); n < with.actions.size(); n += layout.count()) {
+    ASSERT_EQ(with.actions[n], 0);
+  }
+}
+
 TEST(ScriptedPolicy, GivesUpWhereThereIsNoWayAndStandsStill) {
   MeshBuilder room = madeRoom(4, 3);
   room.box({1.95F, 0, 0}, {2.05F, 2.5F, 3});

@@ -139,7 +139,8 @@ class RecipeDraft {
         "# the ground, but for the arm, stands for the footprint, and its lowest point touches the "
         "ground.\n"
         "[base]\nfootprint_radius = {:.3f}\nroot_height = {:.3f}\n"
-        "forward_step = 0.1\nturn_step_degrees = 5.0\n\n",
+        "forward_step = 0.1\nturn_step_degrees = 5.0\n"
+        "# sideways_step = 0.1   # if it drives sideways, too: one action more\n\n",
         printable(robot_.links.front().name), guess_.footprint_radius,
         inMillimeters(guess_.root_height));
   }

@@ -80,6 +80,8 @@ void visitKeys(RecipeBase& base, V& v) {
   v.number({"forward_step", "farthest drive of one action"}, base.forward_step, {0.001, 1, "m"});
   v.degrees({"turn_step_degrees", "farthest turn of one action", "5.0"}, base.turn_step,
             {0.1, 180, "degrees"});
+  v.number({"sideways_step", "the same to the side; 0: it drives ahead only"}, base.sideways_step,
+           {0, 1, "m"});
   v.number({"root_height", "height of the root's origin above the ground"}, base.root_height,
            {-2, 2, "m"});
 }

@@ -269,6 +269,7 @@ class RobotBaker {
     RobotBase base;
     base.forward_step = static_cast<float>(recipe.forward_step);
     base.turn_step = static_cast<float>(recipe.turn_step);
+    base.sideways_step = static_cast<float>(recipe.sideways_step);
     base.root_height = static_cast<float>(recipe.root_height);
     if (const auto* circle = std::get_if<FootprintCircle>(&recipe.footprint)) {
       const auto radius = static_cast<float>(circle->radius);

@@ -85,9 +85,9 @@ RecipeTables recipeTables(FlatBufferBuilder& builder, const BakedRobot& robot) {
   if (robot.base) {
     const schema::Vec3 min = toSchema(robot.base->footprint_min);
     const schema::Vec3 max = toSchema(robot.base->footprint_max);
-    tables.base =
-        schema::CreateBase(builder, robot.base->forward_step, robot.base->turn_step,
-                           robot.base->root_height, &min, &max, robot.base->footprint_radius);
+    tables.base = schema::CreateBase(builder, robot.base->forward_step, robot.base->turn_step,
+                                     robot.base->root_height, &min, &max,
+                                     robot.base->footprint_radius, robot.base->sideways_step);
   }
   if (robot.laser) {
     const schema::Pose pose = toSchema(robot.laser->link_from_laser);

@@ -19,14 +19,22 @@ namespace galactic {
 struct ActionLayout {
   /// Of the controlled joints, which come first, in the order of the robot's recipe.
   std::size_t joints = 0;
+  /// Whether the base drives sideways, too, by an action after `turn`.
+  bool drives_sideways = false;
+
+  [[nodiscard]] static ActionLayout of(const Robot& robot);
 
   [[nodiscard]] constexpr std::size_t forward() const { return joints; }
   [[nodiscard]] constexpr std::size_t turn() const { return joints + 1; }
-  [[nodiscard]] constexpr std::size_t hand() const { return joints + 2; }
-  [[nodiscard]] constexpr std::size_t terminate() const { return joints + 3; }
+  /// Only where the base drives sideways.
+  [[nodiscard]] constexpr std::size_t sideways() const { return joints + 2; }
+  [[nodiscard]] constexpr std::size_t hand() const { return movingCount(); }
+  [[nodiscard]] constexpr std::size_t terminate() const { return movingCount() + 1; }
   /// How many there are, and how many of them, the first ones, move the robot.
-  [[nodiscard]] constexpr std::size_t count() const { return joints + 4; }
-  [[nodiscard]] constexpr std::size_t movingCount() const { return joints + 2; }
+  [[nodiscard]] constexpr std::size_t count() const { return movingCount() + 2; }
+  [[nodiscard]] constexpr std::size_t movingCount() const {
+    return joints + (drives_sideways ? 3 : 2);
+  }
 };
 
 /// One named part of an env's observation.
@@ -211,8 +219,10 @@ enum class EpisodeChoice : std::uint8_t {
 ///
 /// Actions, for each env: one per controlled joint of the robot, in the order of its recipe (+-1:
 /// the largest step); forward (+1: forward_step meters ahead); turn (+1: turn_step radians
-/// clockwise, seen from above); hand (1: grasp what the gripper touches, or keep it; 0: release);
-/// terminate (1: the robot says that the task is done): see ActionLayout. Values are clamped to
+/// clockwise, seen from above); where the robot's base drives sideways, sideways (+1:
+/// sideways_step meters to the left); hand (1: grasp what the gripper touches, or keep it; 0:
+/// release); terminate (1: the robot says that the task is done): see ActionLayout. Values are
+/// clamped to
 /// [-1, 1]; NaN is taken as 0 and counted.
 class BatchSimulator {
  public:

@@ -77,6 +77,8 @@ struct RobotBase {
   /// Farthest drive of one action, meters, and farthest turn, radians.
   float forward_step = 0;
   float turn_step = 0;
+  /// Farthest drive of one action to the side, meters; 0: the base does not drive sideways.
+  float sideways_step = 0;
   /// Height of the root link's origin above the ground, meters.
   float root_height = 0;
   /// Rectangle on the ground in the root link's frame, meters.

@@ -294,6 +294,9 @@ class RobotChecker {
     offence_.require(is_step(base.forward_step()) && is_step(base.turn_step()), "base.forward_step",
                      "or turn_step is {} or {}, expected numbers above 0 and up to {}",
                      base.forward_step(), base.turn_step(), kFarthest);
+    offence_.require(base.sideways_step() >= 0 && base.sideways_step() <= kFarthest,
+                     "base.sideways_step", "is {} m, expected 0 to {} m", base.sideways_step(),
+                     kFarthest);
     offence_.require(isCoordinate(base.root_height()), "base.root_height",
                      "is {} m, expected up to {} m", base.root_height(), kFarthest);
     const schema::Vec3* min = base.footprint_min();

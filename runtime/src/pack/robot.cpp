@@ -29,6 +29,7 @@ std::optional<RobotBase> baseOf(const schema::Base* stored) {
   if (stored == nullptr) return std::nullopt;
   return RobotBase{.forward_step = stored->forward_step(),
                    .turn_step = stored->turn_step(),
+                   .sideways_step = stored->sideways_step(),
                    .root_height = stored->root_height(),
                    .footprint_min = detail::fromSchema(*stored->footprint_min()),
                    .footprint_max = detail::fromSchema(*stored->footprint_max()),

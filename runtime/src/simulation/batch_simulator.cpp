@@ -56,6 +56,11 @@ Result<void> requireDistinct(std::span<const std::uint32_t> envs) {
 
 }  // namespace
 
+ActionLayout ActionLayout::of(const Robot& robot) {
+  const std::optional<RobotBase>& base = robot.base();
+  return {robot.controlledJoints().size(), base && base->sideways_step > 0};
+}
+
 /// The batch, and the threads that step it.
 class BatchSimulator::Impl {
  public:

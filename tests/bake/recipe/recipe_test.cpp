@@ -72,6 +72,7 @@ TEST(Recipes, OfTheLeastLengthTakeDefaults) {
   EXPECT_FALSE(recipe->camera.has_value());
   EXPECT_EQ(recipe->base.forward_step, 0.1);
   EXPECT_EQ(recipe->base.turn_step, 0.0873);
+  EXPECT_EQ(recipe->base.sideways_step, 0);
   EXPECT_TRUE(recipe->joints.empty());
 }
 

@@ -81,6 +81,7 @@ RobotRecipe armRecipe() {
   recipe.base.footprint = bake::FootprintRectangle{-0.1, 0.2, -0.3, 0.4};
   recipe.base.forward_step = 0.25;
   recipe.base.turn_step = 0.125;
+  recipe.base.sideways_step = 0.0625;
   recipe.base.root_height = 0.01;
   recipe.joints = {{.joint = {"hand_joint", ""}, .step = 0.02, .min = 0.025, .max = {}},
                    {.joint = {"arm_joint", ""}, .step = 0.5, .min = -1, .max = 2}};
@@ -118,6 +119,7 @@ TEST(RobotBaker, AppliesTheRecipe) {
   ASSERT_TRUE(robot.base.has_value());
   EXPECT_EQ(robot.base->forward_step, 0.25F);
   EXPECT_EQ(robot.base->turn_step, 0.125F);
+  EXPECT_EQ(robot.base->sideways_step, 0.0625F);
   EXPECT_EQ(robot.base->root_height, 0.01F);
   EXPECT_EQ(robot.base->footprint_min, (Vec3{-0.1F, 0, -0.3F}));
   EXPECT_EQ(robot.base->footprint_max, (Vec3{0.2F, 0, 0.4F}));

@@ -35,6 +35,7 @@ class RandomRobotMaker {
     robot.base->root_height = uniformIn(random_, -0.2F, 0.5F);
     robot.base->forward_step = uniformIn(random_, 0.05F, 0.2F);
     robot.base->turn_step = uniformIn(random_, 0.05F, 0.3F);
+    if (random_() % 2 == 0) robot.base->sideways_step = uniformIn(random_, 0.05F, 0.2F);
     return robot;
   }
 

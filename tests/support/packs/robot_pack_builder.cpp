@@ -106,7 +106,8 @@ class RobotPackBuilder {
     const schema::Vec3 max = stored(fields.footprint_max.value_or(Vec3{}));
     return schema::CreateBase(builder_, fields.forward_step, fields.turn_step, fields.root_height,
                               fields.footprint_min ? &min : nullptr,
-                              fields.footprint_max ? &max : nullptr, fields.footprint_radius);
+                              fields.footprint_max ? &max : nullptr, fields.footprint_radius,
+                              fields.sideways_step);
   }
 
   flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<schema::LinkSurface>>>

@@ -40,6 +40,7 @@ struct CameraFields {
 struct BaseFields {
   float forward_step = 0.1F;
   float turn_step = 0.05F;
+  float sideways_step = 0;
   float root_height = 0.25F;
   std::optional<Vec3> footprint_min = Vec3{-0.3F, 0, -0.2F};
   std::optional<Vec3> footprint_max = Vec3{0.3F, 0, 0.2F};

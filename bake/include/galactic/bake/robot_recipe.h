@@ -67,6 +67,8 @@ struct RecipeBase {
   /// Farthest drive of one action, meters, and farthest turn, radians.
   double forward_step = 0.1;
   double turn_step = 0.0873;
+  /// Farthest drive of one action to the side, meters; 0: the base does not drive sideways.
+  double sideways_step = 0;
   /// Height of the root link's origin above the ground, meters.
   double root_height = 0;
 };

@@ -1,7 +1,7 @@
 """The distribution of an action: Gaussian motions and two yes-or-no decisions.
 
-An action is a row of `motions + 2` numbers: the changes of the joints, forward and turn, which are
-continuous in [-1, 1], then hand and terminate, each 0 or 1 (paper, appendix A). torch.distributions
+An action is a row of `motions + 2` numbers: the changes of the joints, forward, turn and, where the base
+does, sideways, which are continuous in [-1, 1], then hand and terminate, each 0 or 1 (paper, appendix A). torch.distributions
 would do the same at several times the cost: it checks its arguments and wraps every call.
 """
 

@@ -217,10 +217,18 @@ inline void moveLanes(const MotionTables& tables, const MoveBatch& batch) noexce
   const Lanes yaw = wrapped(load(batch.from.yaw) - spread(tables.turn_step) * clockwise);
   const SineCosine heading = sineCosine(yaw);
   const Lanes drive = spread(tables.forward_step) * forward;
+  Lanes x = load(batch.from.x) + heading.cosine * drive;
+  Lanes z = load(batch.from.z) - heading.sine * drive;
+  if (tables.sideways_step > 0) {
+    const Lanes left =
+        spread(tables.sideways_step) * load(batch.actions + (batch.joints + 2) * kMostWidth);
+    x = x - heading.sine * left;
+    z = z - heading.cosine * left;
+  }
   store(batch.to.yaw, yaw);
-  store(batch.to.x, load(batch.from.x) + heading.cosine * drive);
+  store(batch.to.x, x);
   store(batch.to.y, load(batch.from.y));
-  store(batch.to.z, load(batch.from.z) - heading.sine * drive);
+  store(batch.to.z, z);
   for (std::uint32_t v = 0; v < tables.variable_count; ++v) {
     const MotionVariable& variable = tables.variables[v];
     Lanes value = load(batch.from.variables + v * batch.from.stride);

@@ -19,6 +19,8 @@ struct MotionTables {
   FixedFrame grip;
   float forward_step = 0;
   float turn_step = 0;
+  /// 0: no action drives sideways.
+  float sideways_step = 0;
   /// Of the root link above the floor, meters.
   float root_height = 0;
 };
@@ -89,7 +91,8 @@ struct ActionBatch {
 
 /// Envs' candidate poses after their actions: turn, then drive along the new heading, then the
 /// joints, each within its limits. `actions`: rows, each in [-1, 1]; joints first, then forward,
-/// then turn (+1: clockwise seen from above). `from` and `to` are arrays of these envs; y is
+/// then turn (+1: clockwise seen from above), then sideways (+1: to the left) where there is such
+/// a step. `from` and `to` are arrays of these envs; y is
 /// copied.
 struct MoveBatch {
   const float* actions = nullptr;

@@ -30,6 +30,7 @@ MotionTables motionTables(const MotionModel& model) {
           .grip = model.grip,
           .forward_step = model.base.forward_step,
           .turn_step = model.base.turn_step,
+          .sideways_step = model.base.sideways_step,
           .root_height = model.base.root_height};
 }
 

@@ -48,10 +48,15 @@ void disturb(const ChunkStep& step, std::size_t e) {
   for (std::size_t m = 0; m < motions.size(); ++m) {
     motions[m].values[e] = asked[m].values[e] * (1 + fleeting.next() + lasting.next());
   }
-  // Wheels that differ turn a base that drives.
+  // Wheels that differ turn a base that drives, to whichever side.
   const float drift = fleeting.next() + lasting.next();
   const ActionLayout layout = step.model.actionLayout();
-  motions[layout.turn()].values[e] += asked[layout.forward()].values[e] * drift;
+  float drive = asked[layout.forward()].values[e];
+  if (layout.drives_sideways) {
+    const RobotBase& base = step.model.motion.base;
+    drive += asked[layout.sideways()].values[e] * base.sideways_step / base.forward_step;
+  }
+  motions[layout.turn()].values[e] += drive * drift;
 }
 
 /// A way along the floor, turned.

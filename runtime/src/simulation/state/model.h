@@ -85,7 +85,9 @@ struct Model {
 
   /// Of what grows with the world: homes and episodes.
   [[nodiscard]] std::size_t bytes() const;
-  [[nodiscard]] ActionLayout actionLayout() const { return {motion.controlled.size()}; }
+  [[nodiscard]] ActionLayout actionLayout() const {
+    return {motion.controlled.size(), motion.base.sideways_step > 0};
+  }
   [[nodiscard]] std::size_t actionCount() const { return actionLayout().count(); }
   [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }
   /// Of how many steps, the last ones, actions are kept: they may arrive late, or be observed.

@@ -52,8 +52,9 @@ TEST(Policy, DependsOnSeedStepAndEnv) {
 TEST(Policy, IsUniformAndTerminatesSeldom) {
   constexpr std::size_t kEnvs = 100;
   constexpr std::uint64_t kSteps = 1000;
-  for (const std::size_t joints : {kLayout.joints, kLayout.joints + 1}) {
-    const ActionLayout layout{.joints = joints};
+  for (const ActionLayout& layout :
+       {kLayout, ActionLayout{.joints = kLayout.joints + 1},
+        ActionLayout{.joints = kLayout.joints, .drives_sideways = true}}) {
     const std::size_t actions = layout.count();
     const auto policy = makeGeneratedPolicy("random", {.actions = layout, .seed = 1});
     const auto ahead = makeGeneratedPolicy("forward", {.actions = layout, .seed = 1});
@@ -74,7 +75,7 @@ TEST(Policy, IsUniformAndTerminatesSeldom) {
         }
       }
       ASSERT_TRUE(ahead->act(step, row));
-      for (std::size_t n = actions - 4; n < row.size(); n += actions) {
+      for (std::size_t n = layout.forward(); n < row.size(); n += actions) {
         ASSERT_GE(row[n], 0);
         ASSERT_LT(row[n], 1);
       }

@@ -53,7 +53,10 @@ class MotionBatch {
         bounds_(kEnvs * simulation::kBounds * groupStride() / simulation::kLanes),
         frames_(simulation::frameRows(robot.model.nodes.size())) {}
 
-  [[nodiscard]] std::size_t actionCount() const { return robot_.model.controlled.size() + 4; }
+  [[nodiscard]] std::size_t actionCount() const {
+    return ActionLayout{robot_.model.controlled.size(), robot_.model.base.sideways_step > 0}
+        .count();
+  }
   [[nodiscard]] std::size_t bodyCount() const { return robot_.model.nodes.size() + 1; }
   [[nodiscard]] std::size_t groupStride() const {
     return simulation::paddedToLanes(robot_.model.spheres.size() / simulation::kLanes);

@@ -147,9 +147,12 @@ TEST(Move, DoesWhatItDoesInDoublePrecision) {
   std::mt19937 random(kSeed);
   constexpr float kPi = 3.14159265F;
   Tally wraps;
+  Tally drives_sideways;
   for (int n = 0; n < 200; ++n) {
     const MotionRobot robot{buildPack(RandomRobotMaker(random).robot()), {1}};
     for (const MotionVariable& variable : robot.model.variables) wraps.add(variable.wraps);
+    const RobotBase& base = robot.model.base;
+    drives_sideways.add(base.sideways_step > 0);
     MotionBatch batch(robot);
     batch.draw(random);
     batch.move(motionKernels());
@@ -158,19 +161,25 @@ TEST(Move, DoesWhatItDoesInDoublePrecision) {
         expectJointMoved(robot, batch, v, env);
       }
       const std::size_t joints = robot.model.controlled.size();
-      const double yaw = asDouble(batch.yaw[env]) - asDouble(robot.model.base.turn_step) *
-                                                        asDouble(batch.action(env, joints + 1));
-      const double drive =
-          asDouble(robot.model.base.forward_step) * asDouble(batch.action(env, joints));
+      const double yaw = asDouble(batch.yaw[env]) -
+                         asDouble(base.turn_step) * asDouble(batch.action(env, joints + 1));
+      const double drive = asDouble(base.forward_step) * asDouble(batch.action(env, joints));
+      const double left = base.sideways_step > 0 ? asDouble(base.sideways_step) *
+                                                       asDouble(batch.action(env, joints + 2))
+                                                 : 0;
       ASSERT_GE(batch.moved_yaw[env], -kPi);
       ASSERT_LT(batch.moved_yaw[env], kPi);
       ASSERT_NEAR(turnBetween(yaw, asDouble(batch.moved_yaw[env])), 0, kRounding);
-      ASSERT_NEAR(batch.moved_x[env], asDouble(batch.x[env]) + drive * std::cos(yaw), kRounding);
-      ASSERT_NEAR(batch.moved_z[env], asDouble(batch.z[env]) - drive * std::sin(yaw), kRounding);
+      // To the left is a quarter turn further.
+      ASSERT_NEAR(batch.moved_x[env],
+                  asDouble(batch.x[env]) + drive * std::cos(yaw) - left * std::sin(yaw), kRounding);
+      ASSERT_NEAR(batch.moved_z[env],
+                  asDouble(batch.z[env]) - drive * std::sin(yaw) - left * std::cos(yaw), kRounding);
       ASSERT_EQ(batch.moved_y[env], batch.y[env]);
     }
   }
   wraps.expectBothSides();
+  drives_sideways.expectBothSides();
 }
 
 TEST(Move, KeepsTurningInOneDirectionForEver) {
