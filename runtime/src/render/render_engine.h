@@ -1,9 +1,12 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "galactic/batch_renderer.h"
+#include "render/raster/pane_task.h"
 
 namespace galactic::render {
 
@@ -64,6 +67,14 @@ void forModels(const RenderView& view, const Use& use) {
     use(attached.model, view.bodies[attached.body] * attached.body_from_model, kSemanticsOfPack);
   }
 }
+
+/// Edge of the panes that an image is cut in, of whose edge it is given: as few as possible, of
+/// like size, of whole tiles.
+[[nodiscard]] std::uint32_t paneEdge(std::uint32_t pixels) noexcept;
+
+/// The panes of an image of `width` x `height` pixels, row after row; those at its right and lower
+/// edges end there.
+[[nodiscard]] std::vector<PaneRectangle> cutIntoPanes(std::uint32_t width, std::uint32_t height);
 
 /// 1/256 pixels at a distance of 1 m for each meter beside the camera's axis.
 [[nodiscard]] float focalLength(const RenderOptions& options, const RenderCamera& camera) noexcept;

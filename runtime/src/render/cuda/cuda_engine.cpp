@@ -205,6 +205,9 @@ CudaEngine::CudaEngine(const RenderOptions& options, std::unique_ptr<Driver> dri
     : options_(options),
       driver_(std::move(driver)),
       device_(std::move(device)),
+      panes_(cutIntoPanes(options.width, options.height)),
+      pixels_of_pane_(paneEdge(options.width) * paneEdge(options.height)),
+      tiles_of_pane_(pixels_of_pane_ / (kTileEdge * kTileEdge)),
       staged_(*driver_, Memory::Kind::kHost),
       uploaded_(*driver_, Memory::Kind::kDevice),
       placed_(*driver_, Memory::Kind::kDevice),
@@ -212,18 +215,7 @@ CudaEngine::CudaEngine(const RenderOptions& options, std::unique_ptr<Driver> dri
       color_(*driver_, Memory::Kind::kDevice),
       depth_(*driver_, Memory::Kind::kDevice),
       semantics_(*driver_, Memory::Kind::kDevice),
-      slice_memory_(std::make_unique<SliceMemory>(*driver_)) {
-  const std::uint32_t wide = paneEdge(options.width);
-  const std::uint32_t high = paneEdge(options.height);
-  for (std::uint32_t y = 0; y < options.height; y += high) {
-    for (std::uint32_t x = 0; x < options.width; x += wide) {
-      panes_.push_back(
-          {x, y, std::min(wide, options.width - x), std::min(high, options.height - y)});
-    }
-  }
-  pixels_of_pane_ = wide * high;
-  tiles_of_pane_ = pixels_of_pane_ / (kTileEdge * kTileEdge);
-}
+      slice_memory_(std::make_unique<SliceMemory>(*driver_)) {}
 
 Result<std::unique_ptr<CudaEngine>> CudaEngine::make(const RenderLibrary& library,
                                                      const RenderOptions& options,

@@ -128,8 +128,8 @@ class CudaEngine final : public RenderEngine {
 
   /// Of an image.
   std::vector<PaneRectangle> panes_;
-  std::uint32_t pixels_of_pane_ = 0;
-  std::uint32_t tiles_of_pane_ = 0;
+  std::uint32_t pixels_of_pane_;
+  std::uint32_t tiles_of_pane_;
 
   Memory staged_, uploaded_, placed_, counts_;
   Memory color_, depth_, semantics_;

@@ -82,6 +82,14 @@ struct PlacedModel {
   std::uint32_t semantic = kSemanticsOfPack;
 };
 
+/// A part of an image that is drawn by itself, pixels.
+struct PaneRectangle {
+  std::uint32_t left = 0;
+  std::uint32_t top = 0;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+};
+
 /// One pane of one image.
 struct PaneTask {
   const PlacedModel* models = nullptr;

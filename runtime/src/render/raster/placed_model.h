@@ -2,8 +2,8 @@
 #include "galactic/pose.h"
 #include "render/raster/pane_task.h"
 
-// From poses to what rasterizers read, and how images are cut into panes; for processors and for
-// graphics processors, so without the library.
+// From poses to what rasterizers read; for processors and for graphics processors, so without the
+// library.
 namespace galactic::render {
 
 GALACTIC_EVERYWHERE inline bool isFinite(const Vec3& v) {
@@ -37,13 +37,6 @@ GALACTIC_EVERYWHERE inline bool placeModel(const RigidTransform& camera_from_wor
   placed.y[2] = -scaled.z_axis.y;
   placed.y[3] = -scaled.origin.y;
   return true;
-}
-
-/// Edge of the panes that an image is cut in: as few as possible, of like size, of whole tiles.
-GALACTIC_EVERYWHERE inline std::uint32_t paneEdge(std::uint32_t pixels) {
-  const std::uint32_t count = (pixels + kPaneEdge - 1) / kPaneEdge;
-  const std::uint32_t edge = (pixels + count - 1) / count;
-  return (edge + kTileEdge - 1) / kTileEdge * kTileEdge;
 }
 
 }  // namespace galactic::render

@@ -9,9 +9,11 @@
 namespace galactic::render {
 
 SoftEngine::SoftEngine(const RenderLibrary& library, const RenderOptions& options, DrawPane draw)
-    : options_(options), draw_(draw), scene_(library) {
+    : options_(options),
+      draw_(draw),
+      scene_(library),
+      panes_(cutIntoPanes(options.width, options.height)) {
   options_.threads = detail::threadCount(options.threads);
-  cutImage();
   memories_.reserve(options_.threads);
   for (std::uint32_t n = 0; n < options_.threads; ++n) {
     memories_.push_back(
@@ -21,17 +23,6 @@ SoftEngine::SoftEngine(const RenderLibrary& library, const RenderOptions& option
       options_.threads, [this](std::size_t part) { drawPanes(*memories_[part]); });
   options_.threads =
       static_cast<std::uint32_t>(std::min<std::size_t>(options_.threads, workers_->count()));
-}
-
-void SoftEngine::cutImage() {
-  const std::uint32_t wide = paneEdge(options_.width);
-  const std::uint32_t high = paneEdge(options_.height);
-  for (std::uint32_t y = 0; y < options_.height; y += high) {
-    for (std::uint32_t x = 0; x < options_.width; x += wide) {
-      panes_.push_back(
-          {x, y, std::min(wide, options_.width - x), std::min(high, options_.height - y)});
-    }
-  }
 }
 
 void SoftEngine::begin(std::span<const RenderView> views, const RenderTargets& targets) {

@@ -28,12 +28,6 @@ class SoftEngine final : public RenderEngine {
   [[nodiscard]] RenderStatistics statistics() const override { return statistics_; }
 
  private:
-  /// A rectangle of the image, pixels.
-  struct PaneRectangle {
-    std::uint32_t left, top, width, height;
-  };
-
-  void cutImage();
   /// Draws panes until none is left.
   void drawPanes(PaneMemory& memory) noexcept;
   void drawOne(PaneMemory& memory, std::size_t view, const PaneRectangle& pane) noexcept;

@@ -53,11 +53,6 @@ struct DeviceView {
   std::uint32_t first_body;
 };
 
-/// A part of an image that is drawn by itself, pixels.
-struct PaneRectangle {
-  std::uint32_t left, top, width, height;
-};
-
 /// A cluster that is to be drawn on a pane.
 struct WorkItem {
   std::uint32_t pane;
