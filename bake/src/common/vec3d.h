@@ -1,5 +1,7 @@
 #pragma once
 #include <cmath>
+#include <cstddef>
+#include <numbers>
 
 #include "galactic/pose.h"
 
@@ -52,6 +54,16 @@ struct Vec3d {
 [[nodiscard]] inline Vec3d normalized(const Vec3d& v, const Vec3d& fallback = {1, 0, 0}) {
   const double length = norm(v);
   return length > 0 ? v * (1 / length) : fallback;
+}
+
+/// Direction number `index` of `count` that are spread evenly over the sphere, on a Fibonacci
+/// spiral.
+[[nodiscard]] inline Vec3d evenDirection(std::size_t index, std::size_t count) {
+  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+  const double z = 1 - (2 * static_cast<double>(index) + 1) / static_cast<double>(count);
+  const double ring = std::sqrt(1 - z * z);
+  const double turn = golden_angle * static_cast<double>(index);
+  return {ring * std::cos(turn), ring * std::sin(turn), z};
 }
 
 }  // namespace galactic::bake

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 #include "fit/box_axes.h"
@@ -22,20 +21,11 @@ constexpr std::size_t kImprovedCandidates = 8;
 constexpr double kSameNormal = 1 - 1e-5;
 constexpr double kSameBox = 0.9985;
 
-/// `count` directions spread evenly over the sphere (Fibonacci lattice).
-Vec3d fibonacciDirection(std::size_t index, std::size_t count) {
-  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
-  const double z = 1 - (2 * static_cast<double>(index) + 1) / static_cast<double>(count);
-  const double ring = std::sqrt(1 - z * z);
-  const double turn = golden_angle * static_cast<double>(index);
-  return {ring * std::cos(turn), ring * std::sin(turn), z};
-}
-
 /// The points that reach farthest along evenly spread directions, in their order.
 std::vector<Vec3> extremalPoints(std::span<const Vec3> points) {
   std::vector<bool> chosen(points.size(), false);
   for (std::size_t index = 0; index < kSearchDirections; ++index) {
-    const Vec3d direction = fibonacciDirection(index, kSearchDirections);
+    const Vec3d direction = evenDirection(index, kSearchDirections);
     std::size_t best = 0;
     double reach = dot(widen(points[0]), direction);
     for (std::size_t at = 1; at < points.size(); ++at) {

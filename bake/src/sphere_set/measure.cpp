@@ -1,6 +1,5 @@
 #include "sphere_set/measure.h"
 
-#include <numbers>
 #include <numeric>
 
 #include "galactic/bake/parallel_for.h"
@@ -59,19 +58,6 @@ double sampleSpacing(const FitTask& task) {
                     std::max(kCoarsestSpacing * radius, std::sqrt(area / (5 * kSurfaceSamples))));
 }
 
-/// Points spread evenly over the sphere, on a Fibonacci spiral.
-std::vector<Vec3d> spherePoints(const Vec3d& center, double radius, std::size_t count) {
-  constexpr double kGoldenAngle = std::numbers::pi * (3 - 2.23606797749978969641);
-  std::vector<Vec3d> points;
-  for (std::size_t n = 0; n < count; ++n) {
-    const double z = 1 - 2 * (static_cast<double>(n) + 0.5) / static_cast<double>(count);
-    const double ring = std::sqrt(1 - z * z);
-    const double turn = kGoldenAngle * static_cast<double>(n);
-    points.push_back(center + Vec3d{ring * std::cos(turn), ring * std::sin(turn), z} * radius);
-  }
-  return points;
-}
-
 /// The spheres that meet each sphere.
 std::vector<std::vector<const Candidate*>> neighborsOf(const FitTask& task,
                                                        std::span<const Candidate> spheres) {
@@ -95,9 +81,10 @@ LengthStatistics protrusionOf(const FitTask& task, std::span<const Candidate> sp
     const double scaled = kLeastSpherePoints * radius / task.radii.front();
     const double count = std::clamp(scaled, kLeastSpherePoints, kMostSpherePoints);
     const double share = radius * radius / count;
+    const auto points = static_cast<std::size_t>(count);
     std::uint32_t hint = kNoFacet;
-    for (const Vec3d& p :
-         spherePoints(spheres[at].center, radius, static_cast<std::size_t>(count))) {
+    for (std::size_t n = 0; n < points; ++n) {
+      const Vec3d p = spheres[at].center + evenDirection(n, points) * radius;
       const bool hidden =
           std::any_of(neighbors[at].begin(), neighbors[at].end(),
                       [&](const Candidate* other) { return outside(task, *other, p) < -1e-9; });

@@ -42,14 +42,8 @@ constexpr int kTries = 8;
 constexpr double kLastStep = 0.08;
 
 std::array<Vec3d, kDirections> evenDirections() {
-  constexpr double kGoldenAngle = std::numbers::pi * (3 - 2.23606797749978969641);
   std::array<Vec3d, kDirections> directions;
-  for (std::size_t n = 0; n < kDirections; ++n) {
-    const double z = 1 - 2 * (static_cast<double>(n) + 0.5) / static_cast<double>(kDirections);
-    const double ring = std::sqrt(1 - z * z);
-    const double turn = kGoldenAngle * static_cast<double>(n);
-    directions[n] = {ring * std::cos(turn), ring * std::sin(turn), z};
-  }
+  for (std::size_t n = 0; n < kDirections; ++n) directions[n] = evenDirection(n, kDirections);
   return directions;
 }
 
