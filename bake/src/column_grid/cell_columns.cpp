@@ -10,16 +10,6 @@
 namespace galactic::bake {
 namespace {
 
-std::array<Point, 3> cornersOf(const TriangleMesh& mesh, std::uint32_t index) {
-  std::array<Point, 3> corners{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3& corner = mesh.vertices[mesh.triangles[index][i]];
-    corners[i] = {static_cast<double>(corner.x), static_cast<double>(corner.y),
-                  static_cast<double>(corner.z)};
-  }
-  return corners;
-}
-
 /// Distance from `at` to the interval [lo, hi]; 0 inside.
 double distanceTo(double at, double lo, double hi) { return std::max({lo - at, at - hi, 0.0}); }
 
@@ -45,10 +35,10 @@ class CellScatter {
  public:
   CellScatter(const TriangleMesh& mesh, const GridFrame& frame, std::uint32_t index)
       : frame_(frame),
-        triangle_(cornersOf(mesh, index)),
+        triangle_(pointsOf(mesh, mesh.triangles[index])),
         half_(static_cast<double>(frame.spacing) / 2 + padInPlane(frame)),
         pad_(padInHeight(frame)) {
-    const std::array<Point, 3> corners = cornersOf(mesh, index);
+    const std::array<Point, 3> corners = pointsOf(mesh, mesh.triangles[index]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto [lo, hi] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
       min_[axis] = lo;

@@ -65,7 +65,7 @@ class MeshScatter {
 
   /// Adds the blocked heights of triangle `index` to the rows of `strip`.
   void operator()(std::uint32_t index, ColumnStrip& strip) const {
-    const Corners corners = cornersOf(index);
+    const Corners corners = cornersInGrid(index);
     const double r = static_cast<double>(frame_.radius);
     const auto [min_x, max_x] = std::minmax({corners[0][0], corners[1][0], corners[2][0]});
     const auto [min_z, max_z] = std::minmax({corners[0][2], corners[1][2], corners[2][2]});
@@ -117,13 +117,12 @@ class MeshScatter {
     }
   }
 
-  [[nodiscard]] Corners cornersOf(std::uint32_t index) const {
-    Corners corners{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3& corner = mesh_.vertices[mesh_.triangles[index][i]];
-      corners[i] = {static_cast<double>(corner.x) - static_cast<double>(frame_.min_x),
-                    static_cast<double>(corner.y),
-                    static_cast<double>(corner.z) - static_cast<double>(frame_.min_z)};
+  /// From where the grid begins, in the plane.
+  [[nodiscard]] Corners cornersInGrid(std::uint32_t index) const {
+    Corners corners = pointsOf(mesh_, mesh_.triangles[index]);
+    for (Point& corner : corners) {
+      corner[0] -= static_cast<double>(frame_.min_x);
+      corner[2] -= static_cast<double>(frame_.min_z);
     }
     return corners;
   }

@@ -13,7 +13,7 @@ namespace {
 // computed so that its ends lie within rounding of the grown triangle, however thin or steep the
 // triangle is; what a badly conditioned piece loses, its neighbors cover.
 
-using Triangle = std::array<Point, 3>;
+using Corners = std::array<Point, 3>;
 
 /// A triangle whose altitude is smaller than this part of its longest edge has no usable normal;
 /// its edges cover it to within far less than rounding.
@@ -33,7 +33,7 @@ Point cross(const Point& a, const Point& b) {
 
 /// The triangle with its first corner at the origin: rounding then follows the triangle's size, not
 /// its place in the world.
-Triangle relativeToFirstCorner(const Triangle& triangle) {
+Corners relativeToFirstCorner(const Corners& triangle) {
   return {Point{0, 0, 0}, minus(triangle[1], triangle[0]), minus(triangle[2], triangle[0])};
 }
 
@@ -75,7 +75,7 @@ using Edge = PreparedTriangle::Edge;
 using Face = PreparedTriangle::Face;
 
 /// None when the triangle is too flat to have a normal.
-std::optional<Face> makeFace(const Triangle& triangle) {
+std::optional<Face> makeFace(const Corners& triangle) {
   std::size_t longest = 0;
   double longest_squared = -1;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -2,9 +2,22 @@
 #include <array>
 #include <optional>
 
+#include "galactic/bake/triangle_mesh.h"
+
 namespace galactic::bake {
 
 using Point = std::array<double, 3>;
+
+/// The corners of a triangle of a mesh.
+[[nodiscard]] inline std::array<Point, 3> pointsOf(const TriangleMesh& mesh,
+                                                   const Triangle& triangle) {
+  std::array<Point, 3> points{};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Vec3& v = mesh.vertices[triangle[n]];
+    points[n] = {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+  }
+  return points;
+}
 
 /// An interval of heights in double precision.
 struct HeightInterval {

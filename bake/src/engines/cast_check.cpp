@@ -73,15 +73,6 @@ std::vector<SampledColumn> chooseColumns(const Columns& columns, std::uint32_t w
   return chosen;
 }
 
-std::array<Point, 3> cornersOf(const TriangleMesh& mesh, std::uint32_t triangle) {
-  std::array<Point, 3> corners{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3& v = mesh.vertices[mesh.triangles[triangle][k]];
-    corners[k] = {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-  }
-  return corners;
-}
-
 /// Least and greatest coordinate of a triangle along an axis.
 std::array<double, 2> extent(const std::array<Point, 3>& corners, std::size_t axis) {
   const auto [lo, hi] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
@@ -121,7 +112,7 @@ void forEachNear(const TriangleMesh& mesh, const GridFrame& frame, double reach,
     return column.index < index;
   };
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::array<Point, 3> corners = cornersOf(mesh, t);
+    const std::array<Point, 3> corners = pointsOf(mesh, mesh.triangles[t]);
     const std::array<double, 2> x = extent(corners, 0);
     const std::array<double, 2> y = extent(corners, 1);
     const std::array<double, 2> z = extent(corners, 2);
@@ -204,7 +195,8 @@ class Judge {
     for (const NearTriangle& near : column_.near) {
       const double off = outside(height, near.heights);
       if (near.aside_squared + off * off >= least) continue;
-      least = std::min(least, squaredDistance({x_, height, z_}, cornersOf(mesh_, near.triangle)));
+      least = std::min(least, squaredDistance({x_, height, z_},
+                                              pointsOf(mesh_, mesh_.triangles[near.triangle])));
       if (least < inside * inside) break;
     }
     const double clearance = std::sqrt(least) - radius_;

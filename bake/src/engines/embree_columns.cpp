@@ -28,12 +28,7 @@ struct DilatedMesh {
   double radius = 0;
 
   [[nodiscard]] std::array<Point, 3> corners(unsigned triangle) const {
-    std::array<Point, 3> points{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& v = mesh.vertices[mesh.triangles[triangle][k]];
-      points[k] = {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-    }
-    return points;
+    return pointsOf(mesh, mesh.triangles[triangle]);
   }
 };
 

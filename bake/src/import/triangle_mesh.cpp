@@ -172,10 +172,6 @@ Result<TriangleMesh> Placement::run() {
 
 using Corners = std::array<Vec3, 3>;
 
-Corners cornersOf(const TriangleMesh& mesh, const Triangle& triangle) {
-  return {mesh.vertices[triangle[0]], mesh.vertices[triangle[1]], mesh.vertices[triangle[2]]};
-}
-
 /// Twice the area over the longest edge, in double precision.
 double shortestAltitude(const Corners& corners) {
   const auto difference = [](const Vec3& a, const Vec3& b) {

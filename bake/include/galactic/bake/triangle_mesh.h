@@ -41,6 +41,11 @@ struct TriangleMesh {
   Bounds bounds;
 };
 
+[[nodiscard]] inline std::array<Vec3, 3> cornersOf(const TriangleMesh& mesh,
+                                                   const Triangle& triangle) {
+  return {mesh.vertices[triangle[0]], mesh.vertices[triangle[1]], mesh.vertices[triangle[2]]};
+}
+
 struct CleanMesh {
   TriangleMesh mesh;
   CleaningCounts counts;

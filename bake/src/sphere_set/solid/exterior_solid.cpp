@@ -15,9 +15,7 @@ enum class Touch { kNowhere, kPartly, kEverywhere };
 std::vector<Facet> facetsOf(const TriangleMesh& mesh) {
   std::vector<Facet> facets;
   facets.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) {
-    facets.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
-  }
+  for (const Triangle& t : mesh.triangles) facets.push_back(cornersOf(mesh, t));
   return facets;
 }
 
