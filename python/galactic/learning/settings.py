@@ -593,11 +593,10 @@ class Settings:
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "Settings":
         """What to_dict() returned, also as JSON gives it. Names that this version does not know are rejected; a
-        setting that is missing takes its default, and so does one without an effect, which was once taken.
-        """
+        setting that is missing takes its default."""
         unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})
         if unknown:
             raise SettingsError(f"the settings {', '.join(unknown)} are unknown to this version")
         # JSON knows no tuples.
         known = {name: tuple(v) if isinstance(v, list) else v for name, v in values.items()}
-        return cls.effective(known)
+        return cls(**known)

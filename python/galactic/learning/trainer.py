@@ -24,7 +24,7 @@ from galactic.learning.rollouts.environments import Environments
 from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames, RecentEpisodes
 from galactic.learning.rollouts.rollout import RolloutSource
 from galactic.learning.rollouts.stopwatch import RunClock
-from galactic.learning.saving import checkpoint, older
+from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import SavedPolicy, Score, new_policy
 from galactic.learning.saving.run_folder import BEST, CheckpointFolder
 from galactic.learning.saving.trainer_state import TrainerState, state_of
@@ -382,7 +382,7 @@ class Trainer:
         file = folder / f"rank-{self.group.rank}.pt"
         _, tensors = checkpoint.load(file, remedy)
         with _fitting(file, remedy):
-            self.source.load_state_dict(older.rank_tensors(tensors))
+            self.source.load_state_dict(tensors)
         self._take_up_best()
         self._take_up_curves(state)
         self.steps = saved.steps

@@ -109,16 +109,6 @@ def test_a_damaged_best_one_is_refused_with_what_to_do(tmp_path: pathlib.Path) -
     )
 
 
-def test_a_best_one_of_before_returns_were_kept_is_taken_up(tmp_path: pathlib.Path) -> None:
-    resumed = saved_run(tmp_path)
-    values, tensors = checkpoint.load(tmp_path / "best.pt")
-    del values["return"]
-    checkpoint.save(tmp_path / "best.pt", values, tensors)
-    assert load_policy(tmp_path / "best.pt").mean_return is None
-    resumed.resume()
-    assert resumed.best == Score(values["success"], None)
-
-
 @pytest.mark.parametrize(
     "score, other",
     [

@@ -115,16 +115,6 @@ def test_a_page_overlays_the_curves_and_asks_for_nothing(
     }
 
 
-def test_older_tables_without_a_number_of_episodes_have_that_of_the_settings(
-    tmp_path: pathlib.Path,
-) -> None:
-    table = "steps,seconds,validation_success\n10,1,0.5\n"
-    (one,) = comparison.read([make_run(tmp_path / "a", table, validation_episodes=50)])
-    assert str(one.last) == "50.0 % (36.6 to 63.4)"
-    (all_of_them,) = comparison.read([make_run(tmp_path / "b", table, validation_episodes=0)])
-    assert str(all_of_them.last) == "50.0 %"
-
-
 def test_a_run_under_way_may_have_no_table_or_a_part_of_a_row(
     tmp_path: pathlib.Path, capsys: Any
 ) -> None:
@@ -144,6 +134,7 @@ def test_a_run_under_way_may_have_no_table_or_a_part_of_a_row(
         "1,2\n3,4\n",
         b"\xff\xfe\n",
         HEAD + "1000,10,50,,2,\n",
+        HEAD + "1000,10,,,0.5,\n",
         HEAD + "1000,10,50,,-0.5,\n",
         HEAD + "1000,10,50,,nan,\n",
         HEAD + "1000,10,50,inf,,\n",

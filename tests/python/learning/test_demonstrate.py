@@ -239,25 +239,6 @@ def test_others_are_not_mixed_with_them(shown: pathlib.Path) -> None:
     assert contents(shown) == before
 
 
-def test_those_of_before_there_was_a_setting_go_on(
-    shown: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It was at its default."""
-    monkeypatch.setattr(demonstrate, "EPISODES_OF_PART", 8)
-    older = tmp_path / "older"
-    shutil.copytree(shown, older)
-    index = json.loads((older / "demonstrations.json").read_text())
-    del index["made_with"]["settings"]["camera_jitter_fov"]
-    (older / "demonstrations.json").write_text(json.dumps(index))
-    shutil.rmtree(older / "part-000002")
-    same = ["demonstrate", WORLD, "-o", older, *QUICK, "--episodes", 24]
-    done = call(*same, "--camera-jitter-fov", 5, "--network", "depth")
-    assert done.returncode == 1 and "holds other demonstrations" in done.stderr
-    done = call(*same)
-    assert done.returncode == 0, done.stderr
-    assert contents(older) == contents(shown)
-
-
 @pytest.fixture(scope="module")
 def clone(shown: pathlib.Path, tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     """The run of a policy that has imitated them for a while."""

@@ -121,14 +121,6 @@ def test_what_a_preset_says_without_effect_is_left_out() -> None:
             preset("quick", network="resnet18", **{name: getattr(before, name)})
 
 
-def test_a_file_of_before_they_were_refused_is_read() -> None:
-    chosen = Settings(network="resnet18")
-    idle = {"width": 7, "log_std": "parameter", "initial_log_std": -3.0}
-    assert Settings.from_dict({**chosen.to_dict(), **idle}) == chosen
-    with pytest.raises(SettingsError, match="width: found 0, expected a number from 1"):
-        Settings.from_dict({**chosen.to_dict(), "width": 0})
-
-
 @pytest.mark.parametrize(
     "option",
     [

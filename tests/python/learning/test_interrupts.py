@@ -144,24 +144,6 @@ def test_a_stop_that_an_interrupt_puts_off_comes_behind_its_validation(
     assert third.train() and third.steps == settings.steps
 
 
-def test_a_checkpoint_of_before_owes_no_validation(tmp_path: pathlib.Path) -> None:
-    from galactic.learning.saving import checkpoint
-
-    settings = dataclasses.replace(SETTINGS, steps=4 * UPDATE, validate_every=2 * UPDATE)
-    done: list[torch.Tensor] = []
-    cut = make_trainer(tmp_path, settings, validation=validating(done))
-    signaled_in_the_second_update(cut, signal.SIGINT)
-    cut.begin()
-    assert not cut.train()
-    file = cut.checkpoints.latest() / "trainer.pt"
-    values, tensors = checkpoint.load(file)
-    del values["must_validate"]
-    checkpoint.save(file, values, tensors)
-    again = make_trainer(tmp_path, settings, validation=validating(done))
-    again.resume()
-    assert again.train() and len(done) == 1
-
-
 @needs_worlds
 def test_a_run_is_not_complete_before_its_last_validation(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch

@@ -13,7 +13,6 @@ from torch import Tensor
 from galactic.learning.encoders import Inputs
 from galactic.learning.rollouts.environments import Step
 from galactic.learning.rollouts.rollout import Rollout
-from galactic.learning.saving import older
 from galactic.learning.settings import Settings
 from toys import ReachAndGrasp
 from trainers import SETTINGS, make_trainer
@@ -114,11 +113,3 @@ def test_nothing_else_of_a_rollout_is_another() -> None:
         for (_, step), (_, before) in zip(envs.said, observed[1].said):
             if step.timeouts is not None:
                 np.testing.assert_array_equal(step.timeouts.state, before.timeouts.state)
-
-
-def test_runs_of_before_there_was_a_choice_go_on_as_they_were() -> None:
-    before = {name: value for name, value in SETTINGS.to_dict().items() if name != "timeouts"}
-    assert Settings.from_dict(older.settings_values(before)).timeouts == "observed"
-    assert (
-        Settings.from_dict(older.settings_values({**before, "timeouts": "ends"})).timeouts == "ends"
-    )

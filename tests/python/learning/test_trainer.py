@@ -21,7 +21,7 @@ from galactic.learning.policies.networks import PolicyShape
 from galactic.learning.policies.outlines import Outlined
 from galactic.learning.ranks.distributed import Stragglers
 from galactic.learning.refusals import CheckpointError
-from galactic.learning.reports.curves import COLUMNS
+from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import load_policy, new_policy
 from galactic.learning.saving.run_folder import CheckpointFolder
@@ -151,16 +151,37 @@ def test_what_is_no_checkpoint_is_refused(tmp_path: pathlib.Path) -> None:
     (tmp_path / "policy.pt").write_bytes(b"nonsense")
     with pytest.raises(CheckpointError, match="cannot be read as a checkpoint"):
         load_policy(tmp_path / "policy.pt")
-    checkpoint.save(tmp_path / "policy.pt", {"format": 99}, {})
-    with pytest.raises(CheckpointError, match="is not a policy of format 1"):
+    checkpoint.save(tmp_path / "policy.pt", {}, {})
+    with pytest.raises(CheckpointError, match="policy.pt holds no policy; take best.pt or a"):
         load_policy(tmp_path / "policy.pt")
     with pytest.raises(galactic.Error, match="none.pt: cannot open the file: No such file"):
         load_policy(tmp_path / "none.pt")
 
 
+@pytest.mark.parametrize("name", ["trainer.pt", "policy.pt", "rank-0.pt"])
+@pytest.mark.parametrize("form, found", [(2, "format 2"), (None, "no format")])
+def test_a_file_of_another_format_is_refused_with_what_to_do(
+    tmp_path: pathlib.Path, name: str, form: int | None, found: str
+) -> None:
+    resumed = saved_run(tmp_path)
+    file = resumed.checkpoints.latest() / name
+    values, tensors = checkpoint.load(file)
+    values |= {} if form is None else {"format": form}
+    torch.save({"values": json.dumps(values), **tensors}, file)
+    with pytest.raises(CheckpointError) as refused:
+        resumed.resume()
+    assert str(refused.value) == (
+        f"{file} has {found}, and this version reads format 1; use it with the version of galactic that wrote it, or "
+        "train anew"
+    )
+
+
+SHAPE = PolicyShape(4, 2, False, True)._asdict()
+
+
 def write_policy(file: pathlib.Path, **changes: Any) -> None:
     """A policy.pt in which some of the values, and "policy", are others; "left out" leaves one out."""
-    shape = PolicyShape(4, 2, False, True)
+    shape = PolicyShape(**SHAPE)
     policy = new_policy(SETTINGS, shape)
     good = checkpoint.SavedPolicy(
         policy, SETTINGS, shape, [("way", 4)], 7, None, {"laser_fov": 270}
@@ -191,15 +212,15 @@ def write_policy(file: pathlib.Path, **changes: Any) -> None:
         ({"shape": "left out"}, "shape: found nothing, expected dict"),
         ({"shape": {"state": 4}}, "motions: found nothing, expected int"),
         ({"shape": {"state": "4", "motions": 2}}, "state: found '4', expected int"),
-        ({"shape": {"state": -4, "motions": 2}}, "state: found -4, expected 0 to 1048576"),
-        (
-            {"shape": {"state": 4, "motions": 1 << 40}},
-            "motions: found 1099511627776, expected 0 to",
-        ),
-        ({"shape": {"state": 4, "motions": 2, "legs": 2}}, "legs"),
+        ({"shape": {**SHAPE, "state": -4}}, "state: found -4, expected 0 to 1048576"),
+        ({"shape": {**SHAPE, "motions": 1 << 40}}, "motions: found 1099511627776, expected 0 to"),
+        ({"shape": {**SHAPE, "legs": 2}}, "legs"),
         ({"parts": [["way"]]}, "not enough values"),
         ({"parts": None}, "parts: found None, expected list"),
         ({"meanings": []}, r"meanings: found \[\], expected dict"),
+        ({"meanings": "left out"}, "meanings: found nothing, expected dict"),
+        ({"return": "left out"}, "return: found nothing, expected float or int or NoneType"),
+        ({"shape": {"state": 4, "motions": 2}}, "decides_terminate: found nothing, expected bool"),
         ({"steps": "many"}, "steps: found 'many', expected int"),
         ({"success": "left out"}, "success: found nothing, expected float or int or NoneType"),
         ({"return": "much"}, "return: found 'much', expected float or int or NoneType"),
@@ -281,16 +302,8 @@ def test_a_policy_is_read_without_a_random_number(
     assert all(parameter.requires_grad for parameter in found.parameters())
 
 
-def test_a_policy_of_before_a_choice_takes_its_default(tmp_path: pathlib.Path) -> None:
-    write_policy(tmp_path / "policy.pt", shape={"state": 4, "motions": 2, "normalize": True})
-    found = load_policy(tmp_path / "policy.pt")
-    assert found.shape == PolicyShape(4, 2, normalize=True) and found.meanings == {"laser_fov": 270}
-    write_policy(tmp_path / "policy.pt", meanings="left out")
-    assert load_policy(tmp_path / "policy.pt").meanings == {}
-
-
 def test_values_that_are_no_dictionary_are_refused(tmp_path: pathlib.Path) -> None:
-    checkpoint.save(tmp_path / "policy.pt", [1, 2], {})
+    torch.save({"values": "[1, 2]"}, tmp_path / "policy.pt")
     with pytest.raises(CheckpointError, match="policy.pt cannot be read as a checkpoint"):
         load_policy(tmp_path / "policy.pt")
 
@@ -343,6 +356,8 @@ def test_the_only_checkpoint_has_none_to_go_back_to(tmp_path: pathlib.Path) -> N
 
 
 GONE = "gone"
+SUMS = EpisodeSums().by_name(OwnNames())
+PICKLESS = {name: total for name, total in SUMS.items() if name != "picks"}
 
 
 @pytest.mark.parametrize(
@@ -350,16 +365,18 @@ GONE = "gone"
     [
         ("trainer.pt", {"ranks": 2}, "is of 2 ranks, not 1; start as many"),
         ("trainer.pt", {"ranks": GONE}, "ranks: found nothing, expected int"),
+        ("trainer.pt", {"rate_share": GONE}, "rate_share: found nothing, expected float or int"),
         ("trainer.pt", {"updates": 1.5}, "updates: found 1.5, expected int"),
         ("trainer.pt", {"row_count": "2"}, "row_count: found '2', expected int"),
         ("trainer.pt", {"window": [[1, 2, 3]]}, r"window\[0\]: found \[1, 2, 3\], expected dict"),
         ("trainer.pt", {"window": [4]}, r"window\[0\]: found 4, expected dict"),
         (
             "trainer.pt",
-            {"window": [[1, 2, 3, 4, "5"]]},
+            {"window": [{**SUMS, "lengths": "5"}]},
             "lengths: found '5', expected float or int",
         ),
         ("trainer.pt", {"window": [{"episodes": 3}]}, "successes: found nothing, expected float"),
+        ("trainer.pt", {"window": [PICKLESS]}, "picks: found nothing, expected float or int"),
         ("trainer.pt", {"measures": "kl"}, "measures: found 'kl', expected list"),
         ("trainer.pt", {"measures": [[]]}, r"is of a task that measured \[\], and"),
         ("trainer.pt", {"must_validate": 1}, "must_validate: found 1, expected bool"),
@@ -381,6 +398,7 @@ GONE = "gone"
             {"returns": torch.zeros(16)},
             r"found float32 \[16\], expected float64 \[16\]",
         ),
+        ("rank-0.pt", {"waits": GONE}, r"waits: found nothing, expected bool \[16\]"),
         ("rank-0.pt", {"waits": torch.zeros(2).bool()}, r"waits: found bool \[2\], expected bool"),
     ],
 )
@@ -402,31 +420,9 @@ def test_a_checkpoint_of_other_values_is_refused(
     assert str(file.parent) in str(refused.value) and "\n" not in str(refused.value)
 
 
-def test_curves_of_before_there_was_a_column_are_taken_up(tmp_path: pathlib.Path) -> None:
-    resumed = saved_run(tmp_path)
-    file = resumed.checkpoints.latest() / "trainer.pt"
-    values, tensors = checkpoint.load(file)
-    # Which a checkpoint once had, too.
-    values["rows"] = [[None] * 20] * values.pop("row_count")
-    checkpoint.save(file, values, tensors)
-    table = tmp_path / "curves.csv"
-    lines = [line.split(",") for line in table.read_text(encoding="utf-8").splitlines()]
-    at = COLUMNS.index("teacher_kl")
-    table.write_text("".join(",".join(line[:at]) + "\n" for line in lines), encoding="utf-8")
-    resumed.resume()
-    resumed.train()
-    rows = curve(tmp_path)
-    assert len(rows) == 8 and [row["picked"] is None for row in rows] == [True] * 2 + [False] * 6
-    assert all(row["success"] is not None for row in rows)
-
-
-def test_a_checkpoint_of_before_there_were_measures_is_taken_up(tmp_path: pathlib.Path) -> None:
-    """Means of them begin when all episodes that count have been measured."""
+def test_a_run_goes_on_with_a_task_that_measures_more(tmp_path: pathlib.Path) -> None:
+    """Means of what is new begin when all episodes that count have been measured."""
     saved = saved_run(tmp_path, window=250)
-    file = saved.checkpoints.latest() / "trainer.pt"
-    values, tensors = checkpoint.load(file)
-    assert values.pop("measures") == []
-    checkpoint.save(file, values, tensors)
     resumed = make_trainer(tmp_path, saved.settings, Measured)
     resumed.resume()
     # From a checkpoint of its own, too.
@@ -440,47 +436,6 @@ def test_a_checkpoint_of_before_there_were_measures_is_taken_up(tmp_path: pathli
     missing = known.count(None)
     assert 2 < missing < 8 and known[:missing] == [None] * missing
     assert known[missing:] == [row["length"] for row in rows[missing:]]
-
-
-@pytest.mark.parametrize("toy", [ReachAndGrasp, Measured])
-def test_a_checkpoint_of_before_there_were_picks_is_taken_up(
-    tmp_path: pathlib.Path, toy: Any
-) -> None:
-    """The share of them begins when it is known of all episodes that count."""
-    settings = dataclasses.replace(SETTINGS, checkpoint_every=UPDATE, window=250)
-    made = make_trainer(tmp_path, dataclasses.replace(settings, steps=2 * UPDATE), toy)
-    made.callback = lambda moment: moment.log("level", 1.0)
-    made.begin()
-    made.train()
-    file = made.checkpoints.latest() / "trainer.pt"
-    values, tensors = checkpoint.load(file)
-    assert values["added_columns"] == ["callback_level"] and values["row_count"] == 2
-    table = tmp_path / "curves.csv"
-    lines = [line.split(",") for line in table.read_text(encoding="utf-8").splitlines()]
-    at = COLUMNS.index("picked")
-    lines = [[*line[:at], *line[at + 2 :]] for line in lines]
-    table.write_text("".join(",".join(line) + "\n" for line in lines), encoding="utf-8")
-    # They had no names, either.
-    for row in values["window"]:
-        del row["picks"], row["steps"]
-    values["window"] = [list(row.values()) for row in values["window"]]
-    checkpoint.save(file, values, tensors)
-    resumed = make_trainer(tmp_path, settings, toy)
-    resumed.resume()
-    # From a checkpoint of its own, too.
-    resumed.train(pause_at=3 * UPDATE)
-    again = make_trainer(tmp_path, settings, toy)
-    again.resume()
-    assert again.train()
-    rows = [row for row in curve(tmp_path) if row["policy_loss"] is not None]
-    assert len(rows) == 8 and all(row["length"] is not None for row in rows)
-    assert [row["callback_level"] for row in rows[:2]] == [1.0, 1.0]
-    known = [row["picked"] for row in rows]
-    missing = known.count(None)
-    assert 2 < missing < 8 and known[:missing] == [None] * missing
-    if toy is Measured:
-        assert [row["measure_steps"] for row in rows] == [row["length"] for row in rows]
-        assert known[missing:] == [row["measure_kl"] for row in rows[missing:]]
 
 
 def test_a_task_that_measures_something_else_is_another_run(tmp_path: pathlib.Path) -> None:
@@ -502,18 +457,6 @@ def test_a_task_that_measures_something_else_is_another_run(tmp_path: pathlib.Pa
     more.resume()
     row = dict(zip(more.reports.curves.columns, more.reports.curves.rows[0]))
     assert row["measure_steps"] == row["length"] and row["measure_more"] is None
-
-
-def test_a_checkpoint_of_before_the_curves_waited_is_taken_up(tmp_path: pathlib.Path) -> None:
-    resumed = saved_run(tmp_path)
-    removed = [("trainer.pt", key) for key in ("waiting", "rate_share", "processor_seconds")]
-    for name, key in [*removed, ("rank-0.pt", "waits")]:
-        file = resumed.checkpoints.latest() / name
-        values, tensors = checkpoint.load(file)
-        (values if key in values else tensors).pop(key)
-        checkpoint.save(file, values, tensors)
-    resumed.resume()
-    assert resumed.source.waiting == 0 and resumed.steps == 2 * UPDATE
 
 
 def test_a_resumed_run_counts_the_processor_time_of_all_its_parts(

@@ -564,7 +564,7 @@ def test_an_evaluation_refuses_what_is_no_policy(tmp_path: pathlib.Path) -> None
     done = call("evaluate", tmp_path / "bad.pt", HELD_OUT)
     assert done.returncode == 3 and "cannot be read as a checkpoint" in done.stderr
     assert "weights_only" not in done.stderr
-    checkpoint.save(tmp_path / "bad.pt", {"format": checkpoint.FORMAT}, {"policy": {}})
+    checkpoint.save(tmp_path / "bad.pt", {}, {"policy": {}})
     done = call("evaluate", tmp_path / "bad.pt", HELD_OUT)
     assert done.returncode == 3 and "Traceback" not in done.stderr
     assert "bad.pt is not a policy of this version: settings: found nothing" in done.stderr

@@ -21,7 +21,7 @@ from galactic.learning.playing.experts import Expert, Recorder
 from galactic.learning.policies.fitting import Observed, columns_of
 from galactic.learning.refusals import CheckpointError, SettingsError
 from galactic.learning.reports.progress import ProgressLine, duration
-from galactic.learning.saving import checkpoint, older
+from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import SavedPolicy
 from galactic.learning.setting_fields import option_name, typed
 from galactic.learning.settings import CAMERA, CAMERA_NOISE, Settings
@@ -40,7 +40,7 @@ def begin(folder: pathlib.Path, about: About) -> None:
         text = demonstrations.text_of(about)
         files.write_atomically(file, lambda handle: handle.write(text), "w")
         return
-    found = older.demonstrations_about(demonstrations.read_about(folder))
+    found = demonstrations.read_about(folder)
     wanted = demonstrations.about_of(demonstrations.text_of(about), file)
     if found != wanted:
         raise SettingsError(

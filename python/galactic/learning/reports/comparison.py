@@ -23,14 +23,12 @@ SEED = "seed"
 
 
 class Success(NamedTuple):
-    """A share of so many episodes; None where nobody has kept how many."""
+    """A share of so many episodes."""
 
     share: float
-    episodes: Optional[float]
+    episodes: float
 
     def __str__(self) -> str:
-        if self.episodes is None:
-            return f"{100.0 * self.share:.1f} %"
         return percent(self.share, self.episodes)
 
 
@@ -96,13 +94,13 @@ def _read(folder: pathlib.Path) -> ComparedRun:
         rows = read_curves(file) if file.exists() else []
         for row in rows:
             _require_numbers(row)
-    validated = [row for row in rows if row.get(f"{VALIDATION}success") is not None]
+        validations = [one for one in map(_success_of, rows) if one is not None]
     return ComparedRun(
         os.fspath(folder),
         _settings_of(run, folder),
         run.settings.steps,
         rows,
-        [_success_of(row, run) for row in validated],
+        validations,
     )
 
 
@@ -123,10 +121,15 @@ def _require_numbers(row: Mapping[str, Optional[float]]) -> None:
             raise ValueError(f"{column}: found {value:g}, expected {wanted}")
 
 
-def _success_of(row: Mapping[str, Optional[float]], run: Run) -> Success:
-    # Tables once had no number of episodes beside a validation.
-    episodes = row.get("episodes") or run.settings.validation_episodes or None
-    return Success(row[f"{VALIDATION}success"] or 0.0, episodes)
+def _success_of(row: Mapping[str, Optional[float]]) -> Optional[Success]:
+    """Of the validation that a row is of, if it is of one. Raises ValueError where it does not say of how many
+    episodes."""
+    share, episodes = row.get(f"{VALIDATION}success"), row.get("episodes")
+    if share is None:
+        return None
+    if not episodes:
+        raise ValueError("found a validation without a number of episodes")
+    return Success(share, episodes)
 
 
 def _settings_of(run: Run, folder: pathlib.Path) -> dict[str, str]:

@@ -27,8 +27,8 @@ class OwnNames(NamedTuple):
 
 @dataclass
 class EpisodeSums:
-    """Sums over some episodes. `picks`: in how many of them the target had been in the hand; NaN is not
-    known. `measures`: of what a task of one's own says of them, by name; those that
+    """Sums over some episodes. `picks`: in how many of them the target had been in the hand.
+    `measures`: of what a task of one's own says of them, by name; those that
     are not there are 0, and NaN is not known. `logs`: the same of what it says of each of `steps`, of these
     episodes or of others that are under way."""
 

@@ -1,11 +1,11 @@
 """Files that hold policies and the state of a run, which appear whole or not at all.
 
 A .pt file is a dictionary that `torch.load(..., weights_only=True)` reads: tensors under their names,
-and under "values" a JSON text with all else (torch 1.13 reads no plain floats that way). In policy.pt:
+and under "values" a JSON text with all else (torch 1.13 reads no plain floats that way), first of all
+"format", a number: files of another one than FORMAT are refused. In policy.pt:
 
     policy      the network's state_dict
-    values      format    1
-                settings  Settings.to_dict()
+    values      settings  Settings.to_dict()
                 shape     PolicyShape._asdict()
                 parts     names and sizes of the parts of an observation, in order: [[name, size], ...]
                 meanings  what their numbers mean: sensors.meaning_of()
@@ -44,12 +44,12 @@ from galactic.learning.refusals import (
     refusing,
     require_types,
 )
-from galactic.learning.saving import older
 from galactic.learning.settings import Settings
 from galactic.learning.user_code.own_code import place_beside
 from galactic.learning.user_code.own_networks import OwnNetwork, own_network, seen_by, with_options
 
 FORMAT = 1
+"""Of all files that save() writes, and the only one that load() reads: another one where names or meanings change."""
 # What every pack begins with: docs/packs.md.
 _PACK = b"GALAPACK"
 _ANOTHER_POLICY = "take best.pt or a policy.pt of a run"
@@ -121,7 +121,6 @@ def _policy_around(encoder: Optional[Encoder], settings: Settings, shape: Policy
 def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
     """Writes a policy.pt, atomically."""
     values = {
-        "format": FORMAT,
         "settings": saved.settings.to_dict(),
         "shape": saved.shape._asdict(),
         "parts": [list(part) for part in saved.parts],
@@ -142,10 +141,9 @@ def load_policy(file: pathlib.Path, remedy: str = "", network: Optional[OwnNetwo
     `without` is what to do where nobody has named it."""
     values, tensors = load(file, remedy)
     remedy = remedy or _ANOTHER_POLICY
-    if values.get("format") != FORMAT or "policy" not in tensors:
-        raise CheckpointError(f"{file} is not a policy of format {FORMAT}; {remedy}")
+    if "policy" not in tensors:
+        raise CheckpointError(f"{file} holds no policy; {remedy}")
     with refusing(f"{file} is not a policy of this version", remedy):
-        values = older.policy_values(values)
         require_types(values, _POLICY)
         settings = Settings.from_dict(values["settings"])
         if not settings.has_own_network:
@@ -159,7 +157,6 @@ def read_score(file: pathlib.Path, remedy: str) -> Score:
     """By what the policy of a policy.pt or best.pt was judged. `remedy` is as in load()."""
     values, _ = load(file, remedy)
     with refusing(f"{file} is not a policy of this version", remedy):
-        values = older.policy_values(values)
         require_types(values, _SCORE)
         return Score(values["success"], values["return"])
 
@@ -378,8 +375,8 @@ def _difference(policy: dict[str, int], run: dict[str, int]) -> str:
 
 
 def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str, Any]]:
-    """Values and tensors of a file. Rejects files that would run code. `remedy`: what to do about a
-    file that is none; of itself it says how to come by a policy."""
+    """Values and tensors of a file. Rejects files that would run code, and those of another format than FORMAT.
+    `remedy`: what to do about a file that is none; of itself it says how to come by a policy."""
     try:
         handle = open(file, "rb")
     except OSError as error:
@@ -397,18 +394,24 @@ def load(file: pathlib.Path, remedy: str = "") -> tuple[dict[str, Any], dict[str
             values = json.loads(contents.pop("values"))
             if not isinstance(values, dict):
                 raise ValueError("its values have no names")
-            return values, contents
         except Exception as error:  # torch raises whatever its readers do
             # What torch advises is to let the file run code.
             raise CheckpointError(
                 f"{file} cannot be read as a checkpoint: found {os.fstat(handle.fileno()).st_size:,} "
                 f"bytes of something else, or a part of one; {remedy or _ANOTHER_POLICY}"
             ) from error
+    found = values.pop("format", None)
+    if found != FORMAT:
+        raise CheckpointError(
+            f"{file} has {'no format' if found is None else f'format {found}'}, and this version reads format "
+            f"{FORMAT}; use it with the version of galactic that wrote it, or train anew"
+        )
+    return values, contents
 
 
 def save(file: pathlib.Path, values: dict[str, Any], tensors: dict[str, Any]) -> None:
     """Writes what load() reads, atomically."""
     # Torch ends the process where the disk has no room for what it writes.
     contents = io.BytesIO()
-    torch.save({"values": json.dumps(values), **tensors}, contents)
+    torch.save({"values": json.dumps({"format": FORMAT, **values}), **tensors}, contents)
     files.write_atomically(file, lambda handle: handle.write(contents.getbuffer()))

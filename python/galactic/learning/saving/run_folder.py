@@ -28,7 +28,7 @@ from galactic._core import ErrorCode
 from galactic.errors import Error
 from galactic.learning.refusals import CheckpointError, SettingsError
 from galactic.learning.reports.curves import TABLE
-from galactic.learning.saving import checkpoint, older
+from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import SavedPolicy
 from galactic.learning.saving.runs import Run, read_run, write_run
 from galactic.learning.user_code import own_code
@@ -213,7 +213,6 @@ def is_complete(run: Run, folder: pathlib.Path) -> bool:
     done = CheckpointFolder(folder, run.settings.keep).steps
     try:
         report = json.loads((folder / _REPORT).read_text(encoding="utf-8"))
-        report = older.report_values(report)
         reported, is_whole = report["steps"], not report["must_validate"]
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return False

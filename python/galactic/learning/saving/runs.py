@@ -10,7 +10,6 @@ from typing import Optional, Sequence
 import galactic
 from galactic.learning.refusals import refusing, require_types
 from galactic.learning.reports.curves import write_json
-from galactic.learning.saving import older
 from galactic.learning.settings import Settings
 from galactic.learning.user_code import own_code, own_networks, own_tasks
 
@@ -59,7 +58,7 @@ def read_run(file: pathlib.Path) -> Run:
         raise galactic.Error(galactic.ErrorCode.IO, str(file), message) from None
     remedy = "begin another run, which can have the weights of best.pt (--start-from)"
     with refusing(f"{file} does not say what the run is", remedy):
-        run, path = older.run_values(json.loads(contents.decode("utf-8"))), (str, type(None))
+        run, path = json.loads(contents.decode("utf-8")), (str, type(None))
         require_types(
             run,
             {

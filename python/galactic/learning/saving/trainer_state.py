@@ -8,7 +8,6 @@ from typing import Any
 
 from galactic.learning.refusals import CheckpointError, require_types
 from galactic.learning.rollouts.episode_sums import EpisodeSums, OwnNames
-from galactic.learning.saving import older
 
 
 @dataclass
@@ -45,7 +44,6 @@ def state_of(values: dict[str, Any], ranks: int, names: OwnNames, folder: pathli
     """The state that the values of a trainer.pt in `folder` are, for a run of so many ranks whose task says what
     `names` name. Raises CheckpointError where they are of another run, ValueError where they are none.
     """
-    values = older.trainer_values(values)
     require_types(values, _TYPES)
     state = TrainerState(**{name: values[name] for name in _TYPES})
     if state.ranks != ranks:
