@@ -27,6 +27,7 @@ from galactic.learning.command import (
     whole,
 )
 from galactic.learning.homes import Homes, exact_camera
+from galactic.learning.network_settings import CAMERA
 from galactic.learning.playing.demonstrating import acting, begin, make_parts
 from galactic.learning.playing.evaluation import MOST_ENVS
 from galactic.learning.playing.experts import Expert, LearnedExpert, RolledIn, ScriptedExpert
@@ -36,7 +37,7 @@ from galactic.learning.refusals import SettingsError
 from galactic.learning.reports.progress import ProgressLine
 from galactic.learning.reports.shares import percent
 from galactic.learning.setting_options import add_options, given_options
-from galactic.learning.settings import CAMERA, Settings
+from galactic.learning.settings import Settings
 from galactic.learning.simulation_words import simulation_keywords
 from galactic.learning.user_code import own_code, own_tasks
 from galactic.streams import put

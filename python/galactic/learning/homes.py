@@ -9,10 +9,11 @@ import torch
 
 import galactic
 from galactic import task_runner
+from galactic.learning.network_settings import CAMERA, CAMERA_NOISE
 from galactic.learning.refusals import SettingsError
 from galactic.learning.rollouts.environments import Observation, Step, Timeouts
 from galactic.learning.setting_fields import option_name
-from galactic.learning.settings import CAMERA, CAMERA_NOISE, Settings
+from galactic.learning.settings import Settings
 from galactic.learning.simulation_words import simulation_keywords
 from galactic.learning.user_code.own_tasks import MakeTask
 from galactic.sensors import meaning_of

@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import re
-from typing import Any, Callable, NamedTuple, Optional, Sequence, Union
+from typing import Any, Optional, Sequence, Union
 
 from galactic.learning.refusals import SettingsError
+from galactic.learning.setting_scopes import Scope
 
 # A number, or a range from which each episode draws its own.
 Drawn = Union[float, tuple[float, float]]
@@ -15,24 +16,6 @@ Drawn = Union[float, tuple[float, float]]
 # Of a setting without a limit of its own.
 MOST_WHOLE = 2**53
 MOST_NUMBER = 1e9
-
-
-class Scope(NamedTuple):
-    """Where a setting has an effect."""
-
-    covers: Callable[[Any], bool]
-    """Whether it has one, beside the others of its Settings."""
-    words: str
-    """What it applies to, behind "applies only to", why that is not so here, and what to do; with names of other
-    settings in braces, in the place of their values."""
-
-
-class IdleSetting(SettingsError):
-    """One that has another value than its default, and no effect. `name`: which."""
-
-    def __init__(self, name: str, message: str):
-        super().__init__(message)
-        self.name = name
 
 
 def setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
@@ -102,15 +85,6 @@ def require_valid(field: "dataclasses.Field[Any]", value: Any) -> None:
             is_whole = isinstance(field.default, int)
             wanted = f"from {low} to {high}" if is_whole else f"from {low:g} to {high:g}"
             raise SettingsError(f"{field.name}: found {number}, expected a number {wanted}")
-
-
-def require_effect(field: "dataclasses.Field[Any]", settings: Any) -> None:
-    """Raises IdleSetting where the setting has another value than its default in these Settings, and no effect."""
-    scope: Optional[Scope] = field.metadata["scope"]
-    if scope is None or getattr(settings, field.name) == field.default or scope.covers(settings):
-        return
-    words = scope.words.format_map(vars(settings))
-    raise IdleSetting(field.name, f"{field.name} applies only to {words}")
 
 
 def _require_range(name: str, value: tuple[Any, ...], low: float, high: float) -> None:

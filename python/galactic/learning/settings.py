@@ -7,80 +7,18 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any, Collection, Mapping
 
-import galactic
-from galactic.learning.policies.sight import (
-    IMAGE_SIZE,
-    OF_THE_PAPER,
-    OWN_SIGHT,
-    SIGHT,
-    SMALLEST_IMAGE,
-)
+from galactic.learning.network_settings import CAMERA_NOISE, NetworkSettings
+from galactic.learning.policies.sight import IMAGE_SIZE, OF_THE_PAPER
 from galactic.learning.refusals import SettingsError
-from galactic.learning.setting_fields import (
-    Drawn,
-    IdleSetting,
-    Scope,
-    require_effect,
-    require_valid,
-    setting,
-)
+from galactic.learning.setting_fields import require_valid, setting
+from galactic.learning.setting_scopes import IdleSetting, require_effect
 from galactic.learning.simulation_words import is_robot_noise, latest_words
 
 
-_OF_IMAGES = Scope(
-    lambda settings: bool(settings.sight),
-    "networks that see images, and the network {network} does not; choose another one, such as depth",
-)
-_OF_COLORS = Scope(
-    lambda settings: "rgb" in settings.sight,
-    "networks that see colors, and the network {network} does not; choose another one, such as simple_cnn",
-)
-_OF_OWN_NETWORKS = Scope(
-    lambda settings: settings.has_own_network,
-    "networks of your own, and the network {network} is none; name a class, as FILE.py:CLASS, or leave it out",
-)
-_OF_PERCEPTRONS = Scope(
-    lambda settings: settings.network in ("state", "depth"),
-    "the networks state and depth, and the network is {network}; choose one of them, or leave it out",
-)
-_OF_CHOSEN_LAYERS = Scope(
-    lambda settings: settings.network not in OF_THE_PAPER,
-    "the networks state and depth and to networks of your own, and {network} is the paper's, which always has a GRU "
-    "of its size and log-stds as outputs; choose another one, or leave it out",
-)
-_OF_WIDTHS = Scope(
-    lambda settings: settings.network in ("state", "depth")
-    or (settings.has_own_network and settings.recurrent),
-    "the networks state and depth and to the GRU (recurrent) behind one of your own; choose one of these, or leave it out",
-)
-_OF_PARAMETERS = Scope(
-    lambda settings: settings.log_std == "parameter" and settings.network not in OF_THE_PAPER,
-    "log-stds that are parameters, and log_std is {log_std} of the network {network}; take log_std parameter, which "
-    "state, depth and networks of your own have, or leave it out",
-)
-
-# All that make the images of training unlike those that policies are judged by.
-CAMERA_NOISE = galactic.Renderer.NOISE_OPTIONS
-_MOST_NOISE = galactic.Renderer.NOISE_LIMITS
-# Options of galactic.Renderer, and the settings that they are taken from.
-CAMERA = {
-    "camera": "camera",
-    "fov_degrees": "fov",
-    "position": "camera_position",
-    "rpy_degrees": "camera_rpy",
-    "near": "near",
-    "width": "image_size",
-    "height": "image_size",
-    **{name: name for name in CAMERA_NOISE},
-}
-
-
 @dataclass(frozen=True)
-class Settings:
-    """What defines a run. The defaults are those of the preset `paper`: table 3 of the paper, and of
-    Habitat's DD-PPO where the table is silent."""
+class _RunSettings:
+    """The group Run of Settings: what the robot does, and for how long."""
 
-    # What the robot does, and for how long.
     steps: int = setting(
         200_000_000, "Run", "total steps of all envs of all ranks", low=1, may_change=True
     )
@@ -117,222 +55,13 @@ class Settings:
         choices=("auto", "learned", "never"),
     )
 
-    network: str = setting(
-        "resnet18",
-        "Network",
-        "`state` sees no images, `depth` depth alone, with few channels; the others are the paper's "
-        "(table 4); or one of your own, `FILE.py:CLASS` or `MODULE:CLASS`",
-        choices=tuple(SIGHT),
-        may_be_own=True,
-    )
-    network_options: str = setting(
-        "",
-        "Network",
-        "what its class is made with, as NAME=VALUE separated by spaces",
-        scope=_OF_OWN_NETWORKS,
-    )
-    sees: str = setting(
-        "none",
-        "Network",
-        "which images a network of your own sees; `rgbd` are `rgb` and `depth`",
-        choices=tuple(OWN_SIGHT),
-        scope=_OF_OWN_NETWORKS,
-    )
-    camera: str = setting(
-        "head",
-        "Network",
-        "what the network sees: the recipe's camera (`head`), `follow`, `top`, or a link",
-        scope=_OF_IMAGES,
-    )
-    fov: float = setting(
-        0.0,
-        "Network",
-        "vertical field of view, degrees; 0: the camera's",
-        low=0.0,
-        high=175.0,
-        scope=_OF_IMAGES,
-    )
-    camera_position: tuple[float, float, float] = setting(
-        (0.0, 0.0, 0.0),
-        "Network",
-        "where the camera is, seen from where that camera or link has it: meters ahead, to the left "
-        "and up",
-        low=-100.0,
-        high=100.0,
-        scope=_OF_IMAGES,
-    )
-    camera_rpy: tuple[float, float, float] = setting(
-        (0.0, 0.0, 0.0),
-        "Network",
-        "how it is turned there, degrees: roll, pitch (down is positive), yaw",
-        low=-360.0,
-        high=360.0,
-        scope=_OF_IMAGES,
-    )
-    near: float = setting(
-        0.0,
-        "Network",
-        "meters along the camera's axis below which nothing is drawn, 0.01 at least; 0: the camera's",
-        low=0.0,
-        high=100.0,
-        scope=_OF_IMAGES,
-    )
-    image_size: int = setting(
-        IMAGE_SIZE,
-        "Network",
-        f"height and width of the images, {SMALLEST_IMAGE} to 512 pixels; the paper's networks are made for {IMAGE_SIZE}",
-        low=SMALLEST_IMAGE,
-        high=512,
-        scope=_OF_IMAGES,
-    )
-    depth_noise: Drawn = setting(
-        0.0,
-        "Network",
-        "standard deviation of the depth that the network sees, at 1 m, meters; it grows with depth squared",
-        low=0.0,
-        high=_MOST_NOISE["depth_noise"],
-        may_be_range=True,
-        scope=_OF_IMAGES,
-    )
-    depth_dropout: Drawn = setting(
-        0.0,
-        "Network",
-        "share of the pixels without depth",
-        low=0.0,
-        high=_MOST_NOISE["depth_dropout"],
-        may_be_range=True,
-        scope=_OF_IMAGES,
-    )
-    color_noise: Drawn = setting(
-        0.0,
-        "Network",
-        "standard deviation of each channel of color, levels of 255",
-        low=0.0,
-        high=_MOST_NOISE["color_noise"],
-        may_be_range=True,
-        scope=_OF_COLORS,
-    )
-    light_jitter: Drawn = setting(
-        0.0,
-        "Network",
-        "colors of an episode are multiplied by a number from 1 - this to 1 + this",
-        low=0.0,
-        high=_MOST_NOISE["light_jitter"],
-        may_be_range=True,
-        scope=_OF_COLORS,
-    )
-    camera_jitter: Drawn = setting(
-        0.0,
-        "Network",
-        "how far the camera may be from its place in an episode, along each of its axes, meters",
-        low=0.0,
-        high=_MOST_NOISE["camera_jitter"],
-        may_be_range=True,
-        scope=_OF_IMAGES,
-    )
-    camera_jitter_degrees: Drawn = setting(
-        0.0,
-        "Network",
-        "the same of its roll, pitch and yaw, degrees",
-        low=0.0,
-        high=_MOST_NOISE["camera_jitter_degrees"],
-        may_be_range=True,
-        scope=_OF_IMAGES,
-    )
-    camera_jitter_fov: Drawn = setting(
-        0.0,
-        "Network",
-        "the same of its vertical field of view, degrees",
-        low=0.0,
-        high=_MOST_NOISE["camera_jitter_fov"],
-        may_be_range=True,
-        scope=_OF_IMAGES,
-    )
-    recurrent: bool = setting(
-        False,
-        "Network",
-        "put a GRU into the network `state` or `depth`, or behind one of your own; the paper's always have one",
-        scope=_OF_CHOSEN_LAYERS,
-    )
-    width: int = setting(
-        128,
-        "Network",
-        "units per layer of `state` and `depth`, and of the GRU behind one of your own",
-        low=1,
-        high=65536,
-        scope=_OF_WIDTHS,
-    )
-    layers: int = setting(
-        2,
-        "Network",
-        "hidden layers of `state` and `depth`",
-        low=1,
-        high=64,
-        scope=_OF_PERCEPTRONS,
-    )
-    activation: str = setting(
-        "tanh",
-        "Network",
-        "activation between the layers of `state` and `depth`",
-        choices=("tanh", "relu"),
-        scope=_OF_PERCEPTRONS,
-    )
-    log_std: str = setting(
-        "output",
-        "Network",
-        "standard deviations of `state`, `depth` and networks of your own: an `output` of the network, clamped to "
-        "exp(-5)..exp(2), or a `parameter`, the same everywhere",
-        choices=("output", "parameter"),
-        scope=_OF_CHOSEN_LAYERS,
-    )
-    initial_log_std: float = setting(
-        -0.5,
-        "Network",
-        "initial value of the parameters of `log_std`",
-        low=-5.0,
-        high=2.0,
-        scope=_OF_PARAMETERS,
-    )
-    final_log_std: float = setting(
-        2.0,
-        "Network",
-        "upper limit of these parameters at the end of the run; the limit falls from "
-        "`initial_log_std` over the last four fifths; 2: no limit",
-        low=-5.0,
-        high=2.0,
-        scope=_OF_PARAMETERS,
-        is_of_acting=True,
-    )
-    odds_limit: float = setting(
-        0.0,
-        "Network",
-        "what the log-odds of a decision stay below, so that none is so certain that the other is "
-        "never tried: with 4 it is in one step of 56; 0: no limit",
-        low=0.0,
-    )
-    normalize: bool = setting(
-        False, "Network", "normalize observations by their running mean and variance, clamped to 10"
-    )
-    closeup: float = setting(
-        0.0,
-        "Network",
-        "also show the network tanh(x / this) of each number x of the observation, so that "
-        "centimeters near zero count beside meters; 0: off",
-        low=0.0,
-    )
-    second_closeup: float = setting(
-        0.0,
-        "Network",
-        "the same with another divisor, beside the first or alone; 0: off",
-        low=0.0,
-    )
-    critic_only: str = setting(
-        "",
-        "Network",
-        "sensors that the critic alone sees, such as `geodesic`, with commas between: they teach the "
-        "policy, which acts without them",
-    )
 
+@dataclass(frozen=True)
+class Settings(NetworkSettings, _RunSettings):
+    """What defines a run. The defaults are those of the preset `paper`: table 3 of the paper, and of
+    Habitat's DD-PPO where the table is silent."""
+
+    # Behind those of the bases, of which the last one comes first.
     learning_rate: float = setting(3.5e-4, "PPO", "Adam's learning rate at the start", low=0.0)
     learning_rate_end: float = setting(
         0.0, "PPO", "learning rate at the end; linear in between", low=0.0
@@ -534,16 +263,6 @@ class Settings:
                 f"image_size: found {self.image_size}, expected {IMAGE_SIZE}, which {self.network} is "
                 "made for; the network depth takes others"
             )
-
-    @property
-    def has_own_network(self) -> bool:
-        """Whether the network is a class of the user's."""
-        return self.network not in SIGHT
-
-    @property
-    def sight(self) -> tuple[str, ...]:
-        """Which images the network sees."""
-        return OWN_SIGHT[self.sees] if self.has_own_network else SIGHT[self.network]
 
     def require_pace(self) -> None:
         """Raises SettingsError where nothing could be measured that paces the learning rate. Not so with

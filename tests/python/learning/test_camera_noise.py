@@ -12,11 +12,12 @@ import pytest
 
 import galactic
 from galactic.learning.homes import Homes
+from galactic.learning.network_settings import CAMERA_NOISE
 from galactic.learning.presets import preset
 from galactic.learning.refusals import SettingsError
 from galactic.learning.saving import checkpoint
 from galactic.learning.setting_options import add_options, given_options, option_lines
-from galactic.learning.settings import CAMERA_NOISE, Settings
+from galactic.learning.settings import Settings
 from policies import untrained
 from programs import HELD_OUT, WORLD, call, curve, needs_worlds
 

@@ -16,6 +16,7 @@ from galactic.demonstration_writer import write_part
 from galactic.demonstrations import About, Demonstrations
 from galactic.hashing import hashed
 from galactic.learning.homes import Homes
+from galactic.learning.network_settings import CAMERA, CAMERA_NOISE
 from galactic.learning.playing.evaluation import Actor, Evaluator
 from galactic.learning.playing.experts import Expert, Recorder
 from galactic.learning.policies.fitting import Observed, columns_of
@@ -24,7 +25,7 @@ from galactic.learning.reports.progress import ProgressLine, duration
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import SavedPolicy
 from galactic.learning.setting_fields import option_name, typed
-from galactic.learning.settings import CAMERA, CAMERA_NOISE, Settings
+from galactic.learning.settings import Settings
 from galactic.learning.user_code import own_networks
 
 
