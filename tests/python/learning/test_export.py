@@ -18,6 +18,7 @@ import galactic  # noqa: E402
 from galactic import export  # noqa: E402
 from galactic.learning.encoders import Inputs  # noqa: E402
 from galactic.learning.homes import Homes  # noqa: E402
+from galactic.learning.packs import content  # noqa: E402
 from galactic.learning.packs.content import content_of  # noqa: E402
 from galactic.learning.packs.layers import ExportError, Layers  # noqa: E402
 from galactic.learning.policies.networks import PolicyShape  # noqa: E402
@@ -197,20 +198,76 @@ def test_a_pack_acts_as_torch_does(name: str, tmp_path: pathlib.Path) -> None:
 def test_deviations_and_odds_are_those_of_torch(name: str, tmp_path: pathlib.Path) -> None:
     saved = saved_policy(**NETWORKS[name])
     seen = Recorded(3, 5, saved.settings.network)
-    content = content_of(saved, name)
+    made = content_of(saved, name)
     # A policy whose actions are all that the network says.
-    heads = [content["continuous"]["mean"], content["continuous"]["log_deviation"]]
-    heads += [action["logits"] for action in content["discrete"]]
-    layers = content["layers"]
+    heads = [made["continuous"]["mean"], made["continuous"]["log_deviation"]]
+    heads += [action["logits"] for action in made["discrete"]]
+    layers = made["layers"]
     layers.append({"kind": "concatenate", "inputs": heads})
     everything = {"count": 22, "mean": len(layers) - 1, "log_deviation": len(layers) - 1}
-    content.update(continuous=everything, discrete=[])
-    played = by_pack(write(content, tmp_path / "all.pack"), seen)
+    made.update(continuous=everything, discrete=[])
+    played = by_pack(write(made, tmp_path / "all.pack"), seen)
     for step, actions in enumerate(by_torch(saved, seen)):
         np.testing.assert_allclose(played[step, :, :9], actions.mean[0], atol=TOLERANCE)
         np.testing.assert_allclose(played[step, :, 9:18], actions.log_std[0], atol=TOLERANCE)
         odds = played[step, :, 19::2] - played[step, :, 18::2]
         np.testing.assert_allclose(odds, actions.logits[0], atol=TOLERANCE)
+
+
+def _unlimited(layers: Layers, limit: float, logits: int) -> int:
+    return logits
+
+
+def _linear_closeup(layers: Layers, scale: float, state: int, size: int) -> int:
+    return layers.times(1.0 / scale, state, size)
+
+
+def _forgetful_gru(layers: Layers, gru: torch.nn.GRU, x: int) -> int:
+    number = GRU(layers, gru, x)
+    layers.list[number]["state_weight"] = 0.9 * layers.list[number]["state_weight"]
+    return number
+
+
+GRU = Layers.gru
+
+
+@pytest.mark.parametrize(
+    "network, place, attribute, other",
+    [
+        ("state_unsure", content, "_limited", _unlimited),
+        ("state", content, "HIGHEST_LOG_STD", 0.5),
+        ("state_closeup", Layers, "closeup", _linear_closeup),
+        ("state_recurrent", Layers, "gru", _forgetful_gru),
+    ],
+)
+def test_a_pack_that_acts_otherwise_is_not_written(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: Any,
+    network: str, place: Any, attribute: str, other: Any
+) -> None:  # fmt: skip
+    """As where a layer of the pack is made wrong."""
+    file, pack = tmp_path / "policy.pt", tmp_path / "policy.pack"
+    checkpoint.save_policy(saved_policy(**NETWORKS[network]), file)
+    monkeypatch.setattr(place, attribute, other)
+    assert export.main([str(file), "-o", str(pack)]) == 3
+    said = capsys.readouterr().err
+    assert "the layers of the pack make other actions than the network (" in said
+    assert said.endswith(" apart on made-up inputs): please report it\n")
+    assert not pack.exists()
+
+
+def test_a_weight_that_is_no_number_is_told_of_the_policy(
+    tmp_path: pathlib.Path, capsys: Any
+) -> None:
+    file, pack = tmp_path / "policy.pt", tmp_path / "picker.pack"
+    saved = saved_policy(network="state")
+    saved.policy.action.linear.weight.data[0, 0] = float("nan")
+    checkpoint.save_policy(saved, file)
+    assert export.main([str(file), "-o", str(pack)]) == 3
+    said = capsys.readouterr().err
+    assert said.startswith(
+        f"galactic.export: {file} cannot become a policy pack: picker: policy.layers[5].weight[0]: is not finite"
+    )
+    assert not pack.exists()
 
 
 def test_nobody_terminates_where_the_task_does_not_ask(tmp_path: pathlib.Path) -> None:

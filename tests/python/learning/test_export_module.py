@@ -262,7 +262,7 @@ class Blind(nn.Module):
         (lambda x, inputs: ActionParameters(x + inputs.depth.mean()), "failed on made-up inputs: Attri"),
         (
             lambda x, inputs: ActionParameters(x + (4.0 if isinstance(x, torch.Tensor) else 3.0)),
-            r"make other actions than it \(1 apart on made-up inputs\)",
+            r"make other actions than the network \(1 apart on made-up inputs\): write forward\(\) of",
         ),
     ],
 )  # fmt: skip

@@ -72,7 +72,7 @@ def test_a_pack_of_known_layers_does_what_the_network_does(
         ("InPlace", {}, r"relu in forward\(\) works in place on what is read elsewhere \(%relu"),
         ("InPlaceToo", {}, "works in place on what is read elsewhere .*: leave inplace=True out"),
         ("OfASlice", {}, "works in place on what is read elsewhere"),
-        ("BehindAView", {}, r"make other features than it \([0-9.]+ apart on made-up inputs\): write"),
+        ("BehindAView", {}, r"make other actions than the network \([0-9.]+ apart on made-up inputs\): write"),
         ("WeightNormed", {}, r"layer \(Linear\) has hooks around its forward\(\), as torch.nn.utils.wei"),
         ("Replaced", {}, r"layer \(Linear\) was given another forward\(\) than its class has"),
     ],

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 import pathlib
-from typing import Any, Mapping, Optional
+from typing import Any, Mapping, Optional, Sequence
 
 import numpy as np
+import torch
+from torch import Tensor
 
 from galactic import _core, files
+from galactic.learning.encoders import Inputs
 from galactic.learning.homes import camera_options
-from galactic.learning.packs.encoder_layers import encoded, require_same
+from galactic.learning.packs.encoder_layers import PLAIN_LAYERS, encoded
 from galactic.learning.packs.layers import ExportError, Layers, numbers_of
+from galactic.learning.packs.same_actions import Network, made_up, require_same_actions
 from galactic.learning.policies.distributions import DECISIONS, HIGHEST_LOG_STD, LOWEST_LOG_STD
 from galactic.learning.policies.networks import (
     ActorHead,
@@ -27,7 +31,6 @@ from galactic.learning.saving import checkpoint
 from galactic.learning.setting_fields import typed
 from galactic.learning.simulation_words import simulation_keywords
 from galactic.learning.user_code import own_code
-from galactic.learning.user_code.own_networks import seen_by, some_inputs
 
 
 def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "",
@@ -61,7 +64,7 @@ def fault_of(policy: Policy) -> str:
 
 def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dict[str, Any]:
     """A saved policy as _core.write_policy_pack() wants it. The critic is left out, with all that it alone
-    sees."""
+    sees. Raises ExportError where it cannot become a pack, or not one that acts as it does."""
     policy, privileges = saved.policy, saved.settings.critic_only
     observation = parts_of_actor(privileges, saved.parts)
     own = of_own_tasks(observation)
@@ -77,15 +80,12 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
         features = layers.module(policy.encoder, seen)
     elif isinstance(policy, (RecurrentPolicy, EncoderPolicy)):
         features = encoded(layers, policy.encoder, seen)
-        if saved.network is not None:
-            sizes = seen_by(saved.settings, saved.shape, saved.parts)
-            require_same(policy.encoder, some_inputs(policy.encoder, sizes, 4, 8), layers, seen)
         if isinstance(policy, RecurrentPolicy):
             features = layers.gru(policy.rnn, features)
     else:
         raise ExportError(f"the policy {type(policy).__name__} is unknown")
     actions = _actions(layers, policy.action, features)
-    return {
+    content: dict[str, Any] = {
         "name": name,
         "robot": robot,
         "options": options_of_actor(
@@ -96,6 +96,26 @@ def content_of(saved: checkpoint.SavedPolicy, name: str, robot: str = "") -> dic
         "layers": layers.list,
         **actions,
     }
+    inputs = made_up(saved.shape.state, content["image"], saved.shape.motions + DECISIONS)
+    remedy = "please report it" if saved.network is None else PLAIN_LAYERS
+    require_same_actions(content, _network_of(policy, columns), inputs, remedy)
+    return content
+
+
+def _network_of(policy: Policy, columns: Sequence[int]) -> Network:
+    """What a pack of the policy, which observes these columns of its state, is compared with."""
+
+    def heads(inputs: Inputs, memory: Tensor, starts: Tensor) -> tuple[list[Tensor], Tensor]:
+        if not policy.needs_previous:
+            inputs = inputs._replace(previous=None)
+        with torch.no_grad():
+            said = policy.act(inputs, memory if policy.hidden_size else None, starts)
+        made = said.actions
+        decided = [made.logits[0, :, number : number + 1] for number in range(DECISIONS)]
+        after = memory if said.hidden is None else said.hidden
+        return [made.mean[0], made.log_std[0], *decided], after
+
+    return Network(heads, policy.hidden_size, columns)
 
 
 def _actions(layers: Layers, head: ActorHead, features: int) -> dict[str, Any]:

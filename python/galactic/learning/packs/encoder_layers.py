@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import operator
 import pathlib
 import traceback
@@ -24,13 +23,11 @@ from torch import Tensor, fx, nn
 from torch.nn import functional
 
 from galactic.learning.encoders import Encoder, Eyes, Inputs, ResNet, SimpleCNN, StateEncoder
-from galactic.learning.packs import layer_values
 from galactic.learning.packs.layers import LARGEST, ExportError, Layers, computes_as
 from galactic.learning.sequences import run_gru
 
-SAME = 1e-3
-"""Between features of a network and of its layers, as a share of the largest: sums in another order differ by
-less, another network by more."""
+PLAIN_LAYERS = "write forward() of plain layers, none of which changes what another one reads"
+"""What to do where the layers that were found in one do something else."""
 _RELU = (torch.relu, functional.relu, "relu")
 _TANH = (torch.tanh, functional.tanh, "tanh")
 _SUM = (operator.add, torch.add, "add")
@@ -460,31 +457,3 @@ def _require_unshared(node: fx.Node, given: fx.Node, in_place: Any) -> None:
             f"{node.target} in forward() works in place on what is read elsewhere ({node.format_node()}): leave "
             "inplace=True out"
         )
-
-
-def require_same(encoder: Encoder, inputs: Inputs, layers: Layers, seen: int) -> None:
-    """Raises ExportError where the layers behind value `seen` are not what the network computes."""
-    # Rows of a state have both signs.
-    inputs = inputs._replace(state=4.0 * inputs.state - 2.0)
-    with torch.no_grad():
-        if encoder.memory:
-            starts = _starts_in_turn(*inputs.state.shape[:2])
-            no_memory = torch.zeros(inputs.state.shape[1], encoder.memory)
-            wanted, _ = encoder(inputs, no_memory, starts.clone())
-        else:
-            starts, wanted = None, encoder(inputs)
-        found = layer_values.value(layers.list, seen, inputs, starts)
-        wanted = wanted.flatten(0, 1)
-    apart = float((found - wanted).abs().max()) if found.shape == wanted.shape else math.inf
-    if not apart <= SAME * max(1.0, float(wanted.abs().max())):
-        raise ExportError(
-            f"the layers that were found in forward() make other features than it ({apart:.3g} apart on made-up "
-            "inputs): write it of plain layers, none of which changes what another one reads"
-        )
-
-
-def _starts_in_turn(steps: int, envs: int) -> Tensor:
-    """Where episodes begin, bool [T, n]: all in the first step, and each env in a later one."""
-    starts = torch.arange(envs) % steps == torch.arange(steps)[:, None]
-    starts[0] = True
-    return starts

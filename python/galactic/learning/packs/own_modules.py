@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import pathlib
-import tempfile
 from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
@@ -13,10 +12,17 @@ from torch import Tensor, nn
 
 from galactic import _core
 from galactic.cameras import options_of_cameras
-from galactic.learning.encoders import Encoder, Inputs
+from galactic.learning.encoders import Inputs
 from galactic.learning.packs.content import image_of
-from galactic.learning.packs.encoder_layers import SAME, beside_memory, followed
+from galactic.learning.packs.encoder_layers import PLAIN_LAYERS, beside_memory, followed
 from galactic.learning.packs.layers import ExportError, Layers, numbers_of
+from galactic.learning.packs.same_actions import (
+    ENVS,
+    Network,
+    made_up,
+    require_same_actions,
+    step_of,
+)
 from galactic.learning.policies.privileges import (
     critic_columns,
     of_own_tasks,
@@ -24,13 +30,10 @@ from galactic.learning.policies.privileges import (
     parts_of_actor,
 )
 from galactic.learning.simulation_words import CHOSEN_BY_TRAINER
-from galactic.learning.user_code.own_networks import Seen, some_inputs
 from galactic.vector_env import VectorEnv
 
 NO_NOISE = -20.0
 """The logarithm of a standard deviation that changes no action."""
-_STEPS, _ENVS = 4, 8
-"""Of the inputs that a pack is tried with."""
 
 
 class ActionParameters(NamedTuple):
@@ -84,7 +87,7 @@ def export_module(path: Union[str, pathlib.Path], module: nn.Module, envs: Vecto
     path, values = pathlib.Path(path), [[float(one) for one in of] for of in discrete]
     exported = _Exported(_copied(module), envs, values, ",".join(critic_only))
     content = exported.content(name or path.stem, robot)
-    exported.require_same(content)
+    require_same_actions(content, exported.network(), exported.inputs, PLAIN_LAYERS)
     _core.write_policy_pack(path, content, dict(trained_with or {}), "", b"")
 
 
@@ -110,11 +113,17 @@ class _Exported:
             )
         self._options = options_of_actor(critic_only, _options_of(envs))
         self._image = _image_of(envs)
-        self._inputs = self._made_up()
+        state = sum(size for _, size in self._observation)
+        self.inputs = made_up(state, self._image, self._actions)
+        """What it is tried with."""
 
     def content(self, name: str, robot: str) -> dict[str, Any]:
         """As _core.write_policy_pack() wants it."""
-        arguments = (self._step(0), self._no_memory(), torch.ones(1, _ENVS, dtype=torch.bool))
+        arguments = (
+            step_of(self.inputs, 0),
+            self._no_memory(),
+            torch.ones(1, ENVS, dtype=torch.bool),
+        )
         tried, _ = self._called(*arguments)
         layers, expected = Layers(), 3 if self._memory else 1
         made = followed(layers, self._module, layers.add("observation"), arguments[:expected])
@@ -153,51 +162,14 @@ class _Exported:
             "discrete": discrete,
         }
 
-    def require_same(self, content: dict[str, Any]) -> None:
-        """Raises ExportError where a pack of this content does not what the module does."""
-        heads = [one["logits"] for one in content["discrete"]]
-        if self._motions:
-            heads = [content["continuous"]["mean"], content["continuous"]["log_deviation"], *heads]
-        layers = [*content["layers"], {"kind": "concatenate", "inputs": heads}]
-        total, count = (
-            2 * self._motions + sum(max(2, len(of)) for of in self._values),
-            self._actions,
-        )
-        # Packs whose actions are what the network says, as many numbers at a time as there are actions.
-        for first in sorted({*range(0, total - count, count), total - count}):
-            said = {"kind": "slice", "inputs": [len(layers) - 1], "first": first, "size": count}
-            everything = {"count": count, "mean": len(layers), "log_deviation": len(layers)}
-            self._compare({**content, "layers": [*layers, said], "continuous": everything, "discrete": []},
-                          slice(first, first + count))  # fmt: skip
-        self._compare(content, slice(0, self._motions))
+    def network(self) -> Network:
+        """What a pack of it is compared with."""
 
-    def _compare(self, content: dict[str, Any], columns: slice) -> None:
-        """The first actions of a pack with these columns of what the module returns."""
-        with tempfile.TemporaryDirectory() as folder:
-            pack = pathlib.Path(folder) / "tried.pack"
-            _core.write_policy_pack(pack, content, {}, "", b"")
-            player = _core.LearnedPolicy(pack, _ENVS, deterministic=True, threads=1)
-        image = content["image"] or {"color": False, "depth": False}
-        memory, previous = self._no_memory(), torch.zeros(_ENVS, self._actions)
-        for step in range(_STEPS):
-            # Envs begin in turn, and all of them in the first step.
-            starts = (torch.arange(_ENVS) + step) % _STEPS == 0 if step else torch.ones(_ENVS) > 0
-            inputs = self._step(step)._replace(previous=(previous * ~starts[:, None])[None])
-            made, memory = self._called(inputs, memory, starts[None])
-            wanted = self._row(made)[:, columns]
-            played = player.act(
-                inputs.state[0].numpy(),
-                starts.numpy(),
-                inputs.rgb[0].numpy() if image["color"] and inputs.rgb is not None else None,
-                inputs.depth[0].numpy() if image["depth"] and inputs.depth is not None else None,
-            )
-            previous = torch.from_numpy(played).clamp(-1.0, 1.0)
-            apart = np.abs(played[:, : wanted.shape[1]] - wanted.numpy()).max(initial=0.0)
-            if not apart <= SAME * max(1.0, float(wanted.abs().max()) if wanted.numel() else 0.0):
-                raise ExportError(
-                    f"the layers that were found in forward() make other actions than it ({apart:.3g} apart on made-up "
-                    "inputs): write it of plain layers, none of which changes what another one reads"
-                )
+        def heads(inputs: Inputs, memory: Tensor, starts: Tensor) -> tuple[list[Tensor], Tensor]:
+            made, memory = self._called(inputs, memory, starts)
+            return self._heads(made), memory
+
+        return Network(heads, self._memory)
 
     def _called(
         self, inputs: Inputs, memory: Tensor, starts: Tensor
@@ -219,7 +191,7 @@ class _Exported:
                     f"last step: memory is {self._memory}"
                 )
             made, memory = made
-            _require_shape("memory", memory, [_ENVS, self._memory], "as the attribute memory says")
+            _require_shape("memory", memory, [ENVS, self._memory], "as the attribute memory says")
         if not isinstance(made, ActionParameters):
             raise ExportError(
                 f"forward() returned a {type(made).__name__}, expected ActionParameters"
@@ -232,7 +204,7 @@ class _Exported:
         several = [len(values) for values in self._values if len(values) > 1]
         counts = f"the envs have {self._actions} actions, and `discrete` has the values of the last {len(self._values)}"
         if self._motions:
-            shape = [1, _ENVS, self._motions]
+            shape = [1, ENVS, self._motions]
             _require_shape("mean", made.mean, shape, counts)
             if made.log_deviation is not None:
                 is_constant = (
@@ -251,41 +223,22 @@ class _Exported:
         for logits, values in zip(made.logits, several):
             is_odds = values == 2 and isinstance(logits, Tensor) and logits.shape[-1:] == (1,)
             width = 1 if is_odds else values
-            _require_shape("logits", logits, [1, _ENVS, width], f"their action has {values} values")
+            _require_shape("logits", logits, [1, ENVS, width], f"their action has {values} values")
 
-    def _row(self, made: ActionParameters) -> Tensor:
-        """All numbers of one step as a pack has them, [n, ...]."""
-        rows = []
+    def _heads(self, made: ActionParameters) -> list[Tensor]:
+        """Those of one step, as a Network has them."""
+        heads = []
         if made.mean is not None:
             deviation = _constant_deviations(self._motions, made.log_deviation)
-            rows = [made.mean, deviation.expand_as(made.mean)]
+            heads = [made.mean[0], deviation.expand_as(made.mean)[0]]
         logits = iter(made.logits)
         for values in self._values:
-            given = next(logits) if len(values) > 1 else torch.zeros(1, _ENVS, 2)
-            rows.append(
-                torch.cat([-0.5 * given, 0.5 * given], -1) if given.shape[-1] == 1 else given
-            )
-        return torch.cat([one.detach().float() for one in rows], -1)[0]
-
-    def _step(self, step: int) -> Inputs:
-        state, *others = self._inputs
-        at = slice(step, step + 1)
-        return Inputs(state[at], *(None if one is None else one[at] for one in others))
+            given = next(logits)[0] if len(values) > 1 else torch.zeros(ENVS, 1)
+            heads.append(given if given.shape[-1] == 1 else given[:, 1:] - given[:, :1])
+        return heads
 
     def _no_memory(self) -> Tensor:
-        return torch.zeros(_ENVS, self._memory)
-
-    def _made_up(self) -> Inputs:
-        images: dict[str, tuple[int, ...]] = {}
-        if self._image is not None:
-            edges = (self._image["height"], self._image["width"])
-            images = {"rgb": (*edges, 3)} if self._image["color"] else {}
-            images |= {"depth": edges} if self._image["depth"] else {}
-        state = sum(size for _, size in self._observation)
-        inputs = some_inputs(Encoder(), Seen(state, {}, images, self._actions), _STEPS, _ENVS)
-        previous = torch.zeros(_STEPS, _ENVS, self._actions)
-        # Rows of a state have both signs.
-        return inputs._replace(state=4.0 * inputs.state - 2.0, previous=previous)
+        return torch.zeros(ENVS, self._memory)
 
 
 def _copied(module: nn.Module) -> nn.Module:
@@ -354,5 +307,5 @@ def _require_shape(name: str, found: Any, wanted: list[int], why: str) -> None:
         )
         raise ExportError(
             f"forward() returned {name} of {kind.removeprefix('torch.')}, expected {wanted} on made-up inputs of one "
-            f"step of {_ENVS} envs: {why}"
+            f"step of {ENVS} envs: {why}"
         )
