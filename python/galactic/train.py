@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import dataclasses
-import functools
 import os
 import pathlib
 import sys
 from typing import Any, Mapping, Optional, Sequence
 
-import torch
-
-import galactic
 from galactic import files
-from galactic.demonstrations import Demonstrations
 from galactic.learning.command import (
     EXIT_CODES,
     INTERRUPTED,
@@ -26,40 +20,22 @@ from galactic.learning.command import (
     named_path,
     told,
 )
-from galactic.learning.homes import Homes, require_options
-from galactic.learning.packs import content
-from galactic.learning.playing.validation import validation_of
+from galactic.learning.homes import require_options
 from galactic.learning.policies.privileges import require_sensors
 from galactic.learning.presets import TAUGHT, WORDS, preset
-from galactic.learning.ranks.distributed import (
-    Group,
-    device_of,
-    local_ranks,
-    threads_of,
-    where_words,
-)
+from galactic.learning.ranks.distributed import Group, device_of
+from galactic.learning.ranks.job import Job, train_in_rank
 from galactic.learning.ranks.launch import follow_launcher, launch
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import log
 from galactic.learning.reports.progress import amount
-from galactic.learning.saving import checkpoint
 from galactic.learning.saving.run_folder import (
     BEST,
-    TEACHER,
     CheckpointFolder,
-    begin_folder,
     is_complete,
     require_no_run,
-    take_folder,
 )
-from galactic.learning.saving.runs import (
-    Run,
-    network_of,
-    run_in,
-    task_of,
-    with_network,
-    with_task,
-)
+from galactic.learning.saving.runs import Run, run_in, with_network, with_task
 from galactic.learning.setting_fields import option_name
 from galactic.learning.setting_options import (
     add_options,
@@ -69,7 +45,6 @@ from galactic.learning.setting_options import (
     resumed,
 )
 from galactic.learning.settings import Settings
-from galactic.learning.trainer import Trainer
 from galactic.learning.user_code import callbacks, own_tasks
 from galactic.streams import put
 
@@ -176,8 +151,16 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
             return _launched(run, options.out, [sys.executable, "-m", "galactic.train", *given])
         group = Group.join(options.device)
         try:
-            work = functools.partial(_train, run, options, group, make_log, make_callback)
-            return told("galactic.train", work, group.may_tell)
+            job = Job(
+                run,
+                options.out,
+                resumes=options.resume,
+                pause_at=options.pause_at,
+                notes=_notes_on(run, options),
+                make_log=make_log,
+                make_callback=make_callback,
+            )
+            return told("galactic.train", lambda: train_in_rank(job, group), group.may_tell)
         finally:
             group.leave()
 
@@ -212,136 +195,13 @@ def _log_maker(options: argparse.Namespace) -> Optional[log.MakeTaker]:
     return log.maker(options.log_to) if is_used else None
 
 
-def _train(
-    run: Run,
-    options: argparse.Namespace,
-    group: Group,
-    make_log: Optional[log.MakeTaker],
-    make_callback: Optional[callbacks.MakeCallback],
-) -> int:
-    folder: pathlib.Path = options.out
-    settings = run.settings
-    threads = threads_of(settings.simulation_threads, local_ranks())
-    sharing = 1 if settings.network == "state" else 0
-    torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
-    kept = folder if options.resume else None
-    task, network = task_of(run, kept), network_of(run, kept)
-    shown = Demonstrations(*run.demonstrations) if run.demonstrations else None
-    # Of those in which nobody acts, one is enough.
-    played = (
-        dataclasses.replace(settings, envs=settings.halves, mini_batches=1) if shown else settings
-    )
-    envs = Homes(
-        galactic.World(run.world),
-        played,
-        threads,
-        rank=group.rank,
-        ranks=group.size,
-        task=task,
-        device=group.device,
-    )
-    validation = validation_of(run, envs, threads, group, task)
-    teacher = None
-    if run.teacher:
-        # A run keeps a copy, with which it can be resumed.
-        file, remedy = run.teacher, ""
-        if options.resume:
-            file = folder / TEACHER
-            remedy = f"put back this copy of {run.teacher}, or begin another run"
-        without = "give another --teacher, of the network state"
-        teacher = checkpoint.load_policy(file, remedy, without=without), file
-    trainer = Trainer(
-        settings,
-        envs,
-        group,
-        folder,
-        validation=validation,
-        teacher=teacher,
-        demonstrations=shown,
-        network=network,
-        title=folder.resolve().name,
-    )
-    if run.start_from and not options.resume:
-        trainer.start_from(run.start_from)
-    # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
-    group.wait_for_all()
-    with contextlib.ExitStack() as held:
-        group.raise_on_all(
-            take_folder(folder, held, resumes=options.resume) if group.rank == 0 else None
-        )
-        if options.resume:
-            trainer.resume()
-        group.raise_on_all(_begin_callback(trainer, make_callback, folder))
-        group.raise_on_all(_begin_log(trainer, make_log, options.out, held) if make_log else None)
-        say = trainer.reports.progress.say
-        group.raise_on_all(
-            begin_folder(run, folder, teacher, resumes=options.resume, say=say)
-            if group.rank == 0
-            else None
-        )
-        say(where_words(group, envs.drawn_by))
-        undisturbed = _carry_out(trainer, run, options)
-    envs.close()
-    if trainer.steps < settings.steps or not undisturbed:
-        trainer.reports.progress.say(
-            f"{'paused' if undisturbed else 'stopped'} and saved after {trainer.steps:,} steps; go on "
-            f"with python3 -m galactic.train -o {folder} --resume"
-        )
-        return OK if undisturbed else INTERRUPTED
-    trainer.reports.progress.say(f"{folder}: curves.html, curves.csv, report.json, best.pt")
-    return OK
-
-
-def _begin_log(
-    trainer: Trainer, make: log.MakeTaker, folder: pathlib.Path, held: contextlib.ExitStack
-) -> Optional[Exception]:
-    """Lets a function of the user's take the curves, while `held` is; why that is impossible."""
-    try:
-        take = make(folder, trainer.settings.to_dict())
-    except SettingsError as error:
-        return error
-    trainer.reports.log = log.Log(take, trainer.reports.progress.say)
-    held.callback(trainer.reports.log.close)
-    return None
-
-
-def _begin_callback(
-    trainer: Trainer, make: Optional[callbacks.MakeCallback], folder: pathlib.Path
-) -> Optional[Exception]:
-    """Lets code of the user's look on, in the first rank, and all ranks know of it; why that is impossible."""
-    try:
-        if make is not None and trainer.group.rank == 0:
-            trainer.callback = make(folder, trainer.settings.to_dict())
-        elif make is not None:
-            trainer.callback = lambda moment: None
-    except SettingsError as error:
-        return error
-    return None
-
-
-def _carry_out(trainer: Trainer, run: Run, options: argparse.Namespace) -> bool:
-    """Trains as far as it is asked for. Returns whether no signal has left something to do."""
-    if options.resume:
-        trainer.reports.progress.say(f"going on after {trainer.steps:,} steps")
-    else:
-        if options.preset in TAUGHT and run.teacher is None and not run.demonstrations:
-            trainer.reports.progress.say(
-                f"the preset {options.preset} is made for a --teacher; without one, give it more --steps"
-            )
-        if trainer.network is not None and trainer.group.rank == 0:
-            _tell_of_no_export(trainer)
-        trainer.begin()
-    return trainer.train(options.pause_at)
-
-
-def _tell_of_no_export(trainer: Trainer) -> None:
-    """Of a network that learns for hours and cannot become a pack, before it does."""
-    fault = content.fault_of(trainer.policy)
-    if fault:
-        trainer.reports.progress.say(
-            f"--network: galactic.export can make no pack of {trainer.settings.network}, which Python alone will play: "
-            f"{fault}"
-        )
+def _notes_on(run: Run, options: argparse.Namespace) -> list[str]:
+    """What there is to say of a new run that is allowed and seldom meant."""
+    if options.preset not in TAUGHT or run.teacher is not None or run.demonstrations:
+        return []
+    return [
+        f"the preset {options.preset} is made for a --teacher; without one, give it more --steps"
+    ]
 
 
 def _print_settings(options: argparse.Namespace) -> int:

@@ -11,12 +11,11 @@ import torch
 
 from galactic import interrupts
 from galactic.demonstrations import Demonstrations
-from galactic.errors import Error
 from galactic.learning.policies.fitting import Observed
 from galactic.learning.policies.networks import Policy, PolicyShape
 from galactic.learning.policies.privileges import columns_among, critic_columns, other_meaning
 from galactic.learning.ranks.distributed import Group
-from galactic.learning.refusals import CheckpointError, refusing
+from galactic.learning.refusals import refusing
 from galactic.learning.reports.curves import TABLE, write_json
 from galactic.learning.reports.run_reports import RunReports
 from galactic.learning.rollouts.collector import Collector, CollectorOptions
@@ -361,12 +360,8 @@ class Trainer:
         bit for bit. Raises on all ranks what one of them finds wrong: CheckpointError, or Error where a
         file is missing."""
         assert self.checkpoints is not None
-        fault = None
-        try:
+        with self.group.together():
             self._take_up(self.checkpoints.latest(), self.checkpoints.without_latest)
-        except (CheckpointError, Error) as error:
-            fault = error
-        self.group.raise_on_all(fault)
 
     def _take_up(self, folder: pathlib.Path, remedy: str) -> None:
         file = folder / "trainer.pt"

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import datetime
+import json
 import pathlib
 import pickle
 import signal
 import subprocess
 import sys
-from typing import Any
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Optional
 
 import pytest
 import torch
@@ -22,6 +25,7 @@ from galactic.learning.ranks.launch import launch
 from galactic.learning.reports.curves import read_curves
 from galactic.learning.saving import checkpoint
 import ranks
+from programs import needs_worlds
 from trainers import SETTINGS, UPDATE, make_trainer
 
 HERE = pathlib.Path(__file__).parent
@@ -35,6 +39,13 @@ def two_groups() -> list[Group]:
     return both
 
 
+def taking(group: Group, fault: Optional[Exception] = None) -> None:
+    """A step of all ranks, which this one cannot take where there is a fault."""
+    with group.together(OSError):
+        if fault is not None:
+            raise fault
+
+
 def test_a_rank_that_ends_over_an_error_before_the_others_met_it_leaves_it_to_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -44,22 +55,83 @@ def test_a_rank_that_ends_over_an_error_before_the_others_met_it_leaves_it_to_th
     first, second = two_groups()
     monkeypatch.setattr(first, "wait_for_all", lambda: None)
     monkeypatch.setattr(second, "wait_for_all", is_gone)
-    second._store.set("error/1", pickle.dumps(None).hex())
+    for step in range(2):
+        second._store.set(f"fault/{step}/1", pickle.dumps(None).hex())
     with pytest.raises(OSError, match="disk full"):
-        first.raise_on_all(OSError("disk full"))
+        taking(first, OSError("disk full"))
     with pytest.raises(OSError, match="disk full"):
-        second.raise_on_all(None)
+        taking(second)
     # Who said nothing before it was gone is missed, unless there is something to say here.
-    first.raise_on_all(None)
+    taking(first)
     with pytest.raises(RankLost, match="by peer"):
-        second.raise_on_all(None)
+        taking(second)
     _, alone = two_groups()
     monkeypatch.setattr(alone, "wait_for_all", is_gone)
     alone._store.set_timeout(datetime.timedelta(seconds=0.1))
     with pytest.raises(OSError, match="in use"):
-        alone.raise_on_all(OSError("in use"))
+        taking(alone, OSError("in use"))
     with pytest.raises(RankLost, match="by peer"):
-        alone.raise_on_all(None)
+        taking(alone)
+
+
+def test_a_rank_that_is_ahead_is_not_taken_for_one_that_fails_now(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The first one fails in the second step before the second one has read what was said in the first step."""
+    both, is_ahead = two_groups(), threading.Event()
+    barrier, read = threading.Barrier(2), both[1]._said_by_all
+    steps = 0
+
+    def wait_in_the_first() -> None:
+        nonlocal steps
+        steps += 1
+        if steps == 2:
+            is_ahead.set()
+        barrier.wait(10.0)
+
+    def read_late(*arguments: Any) -> Any:
+        assert is_ahead.wait(10.0)
+        return read(*arguments)
+
+    monkeypatch.setattr(both[0], "wait_for_all", wait_in_the_first)
+    monkeypatch.setattr(both[1], "wait_for_all", lambda: barrier.wait(10.0))
+    monkeypatch.setattr(both[1], "_said_by_all", read_late)
+
+    def failed_in(group: Group) -> tuple[int, str]:
+        for step, fault in enumerate((None, OSError("disk full") if group.rank == 0 else None)):
+            try:
+                taking(group, fault)
+            except OSError as error:
+                return step, str(error)
+        return -1, ""
+
+    with ThreadPoolExecutor(2) as threads:
+        assert list(threads.map(failed_in, both)) == [(1, "disk full")] * 2
+
+
+@needs_worlds
+def test_what_is_refused_in_one_rank_ends_both_with_its_words(tmp_path: pathlib.Path) -> None:
+    """In every step before they learn, and the same ranks go on to learn when nothing is refused."""
+    script = str(HERE / "ranks_that_fail.py")
+    assert launch(2, [sys.executable, "-B", script, str(tmp_path)]) == 0
+    first, second = (
+        json.loads((tmp_path / f"rank-{rank}.json").read_text("utf-8")) for rank in range(2)
+    )
+    assert first == second == {
+        "parts in 0": "SettingsError: no validation",
+        "parts in 1": "SettingsError: no validation",
+        "take in 0": "OSError: disk full",
+        "callback in 0": "SettingsError: no callback",
+        "callback in 1": "SettingsError: no callback",
+        "log in 0": "SettingsError: no log",
+        "log in 1": "SettingsError: no log",
+        "begin in 0": "Error: run: is full",
+        "settings": "False",
+        "run": "0",
+        "resume in 0": "CheckpointError: no optimizer",
+        "resume in 1": "CheckpointError: no optimizer",
+        "resumed": "0",
+    }  # fmt: skip
 
 
 def test_ranks_tell_once_what_went_wrong() -> None:

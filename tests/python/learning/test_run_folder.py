@@ -138,13 +138,12 @@ def begin(run: Run, folder: pathlib.Path) -> Optional[Exception]:
     """As a training does where it is not resumed; why it is refused."""
     try:
         run_folder.require_no_run(folder)
+        with contextlib.ExitStack() as held:
+            run_folder.take_folder(folder, held, resumes=False)
+            run_folder.begin_folder(run, folder, None, resumes=False, say=lambda line: None)
     except Exception as refusal:
         return refusal
-    with contextlib.ExitStack() as held:
-        refused = run_folder.take_folder(folder, held, resumes=False)
-        return refused or run_folder.begin_folder(
-            run, folder, None, resumes=False, say=lambda line: None
-        )
+    return None
 
 
 def contents(folder: pathlib.Path) -> dict[str, bytes]:

@@ -19,6 +19,7 @@ import galactic
 from galactic import export, train
 from galactic.learning.homes import Homes
 from galactic.learning.playing import validation
+from galactic.learning.ranks import job
 from galactic.learning.refusals import CheckpointError
 from galactic.learning.reports.curves import read_curves
 from galactic.learning.saving import checkpoint
@@ -156,7 +157,7 @@ def test_a_complete_run_needs_nothing_but_its_folder(
     assert call("train", WORLD, "-o", folder, *SMALL, "--steps", 2 * UPDATE).returncode == 0
     before = {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()}
     with monkeypatch.context() as without:
-        without.setattr(train, "Homes", None)
+        without.setattr(job, "Homes", None)
         done = call("train", "-o", folder, "--resume")
     assert done.returncode == 0
     assert done.stderr == f"{folder} is complete; give it more --steps to go on\n"

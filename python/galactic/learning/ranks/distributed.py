@@ -18,7 +18,8 @@ from torch import Tensor
 from torch.distributed.rendezvous import rendezvous
 
 from galactic import interrupts
-from galactic.learning.refusals import SettingsError
+from galactic.errors import Error
+from galactic.learning.refusals import CheckpointError, SettingsError
 
 
 class RankLost(Exception):
@@ -111,6 +112,8 @@ class Group:
         self.size = size
         self.device = device
         self._store: Optional[torch.distributed.Store] = None
+        # How many steps of together() are over.
+        self._steps = 0
 
     @classmethod
     def alone(cls, device: Optional[torch.device] = None) -> "Group":
@@ -167,27 +170,47 @@ class Group:
             with _others():
                 torch.distributed.barrier()
 
-    def raise_on_all(self, error: Optional[Exception]) -> None:
-        """Raises on every rank the `error` of the first that has one; nothing where none has. It is then
-        one sentence and one exit code, and nobody waits for a rank that has ended."""
-        known: "list[Optional[Exception]]" = [error]
-        if self._store is not None:
-            self._store.set(f"error/{self.rank}", pickle.dumps(error).hex())
-            try:
-                self.wait_for_all()
-                known = self._said_by_all(self._store)
-            except RankLost as lost:
-                known = [error, lost]
-                # One that knows of an error ends at once, perhaps before the others have met it.
-                with contextlib.suppress(RankLost):
-                    known = [*self._said_by_all(self._store), lost]
-        for one in known:
+    @contextlib.contextmanager
+    def together(self, *more: type[Exception]) -> Iterator[None]:
+        """Around a step of all ranks, of which each does its part, or nothing: none of them goes on before all have
+        come to its end. What is refused in one of them is raised on all, of several the first rank's: it is then one
+        sentence and one exit code, and nobody waits for a rank that has ended.
+
+        No sum and no copy_from_first() may be within: a rank that is refused something would not come to it. What else
+        is raised, also by code of the user's, is that rank's own, and the others meet RankLost. `more`: kinds of
+        exceptions that are shared, too.
+        """
+        shared: tuple[type[Exception], ...] = (SettingsError, CheckpointError, Error, *more)
+        fault: Optional[Exception] = None
+        try:
+            yield
+        except shared as error:
+            fault = error
+        for one in self._faults(fault):
             if one is not None:
                 raise one
 
-    def _said_by_all(self, store: torch.distributed.Store) -> "list[Optional[Exception]]":
-        """The error of each rank, in their order. RankLost where one has said nothing and says nothing."""
-        keys = [f"error/{rank}" for rank in range(self.size)]
+    def _faults(self, own: Optional[Exception]) -> "list[Optional[Exception]]":
+        """Those of all ranks in the step that they end, in their order."""
+        if self._store is None:
+            return [own]
+        # A rank may be at the end of the next step before another one has read what was said at that of this one.
+        step, self._steps = self._steps, self._steps + 1
+        self._store.set(_fault(step, self.rank), pickle.dumps(own).hex())
+        try:
+            self.wait_for_all()
+            return self._said_by_all(self._store, step)
+        except RankLost as lost:
+            # One that knows of an error ends at once, perhaps before the others have met it.
+            with contextlib.suppress(RankLost):
+                return [*self._said_by_all(self._store, step), lost]
+            return [own, lost]
+
+    def _said_by_all(
+        self, store: torch.distributed.Store, step: int
+    ) -> "list[Optional[Exception]]":
+        """The fault of each rank, in their order. RankLost where one has said nothing and says nothing."""
+        keys = [_fault(step, rank) for rank in range(self.size)]
         with _others():
             store.wait(keys, datetime.timedelta(seconds=5))
             return [pickle.loads(bytes.fromhex(store.get(key).decode())) for key in keys]
@@ -216,6 +239,10 @@ def _others() -> Iterator[None]:
         yield
     except RuntimeError as error:
         raise RankLost(f"another rank has ended, so this one ends, too ({error})") from error
+
+
+def _fault(step: int, rank: int) -> str:
+    return f"fault/{step}/{rank}"
 
 
 class Stragglers:

@@ -76,26 +76,21 @@ def require_no_run(folder: pathlib.Path) -> None:
         ) from error
 
 
-def take_folder(
-    folder: pathlib.Path, held: contextlib.ExitStack, *, resumes: bool
-) -> Optional[Exception]:
-    """Keeps others from writing into the folder of the run, while `held` is; why that is impossible."""
-    try:
-        if not resumes:
-            files.require_folder(folder)
-            folder.mkdir(parents=True, exist_ok=True)
-        is_alone = held.enter_context(files.alone_in(folder))
-        if not resumes:
-            # Another one may have come and gone since.
-            require_no_run(folder)
-            if not is_alone and (folder / own_code.RUN).exists():
-                raise SettingsError(
-                    f"{folder} already holds a run, and its disk has no locks that would tell whether that is under "
-                    f"way; if it is not, remove its {own_code.RUN}, or choose another folder"
-                )
-    except (Error, OSError, SettingsError) as error:
-        return error
-    return None
+def take_folder(folder: pathlib.Path, held: contextlib.ExitStack, *, resumes: bool) -> None:
+    """Keeps others from writing into the folder of the run, while `held` is. Raises Error, OSError or SettingsError
+    where that is impossible."""
+    if not resumes:
+        files.require_folder(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+    is_alone = held.enter_context(files.alone_in(folder))
+    if not resumes:
+        # Another one may have come and gone since.
+        require_no_run(folder)
+        if not is_alone and (folder / own_code.RUN).exists():
+            raise SettingsError(
+                f"{folder} already holds a run, and its disk has no locks that would tell whether that is under "
+                f"way; if it is not, remove its {own_code.RUN}, or choose another folder"
+            )
 
 
 def begin_folder(
@@ -105,22 +100,18 @@ def begin_folder(
     *,
     resumes: bool,
     say: Callable[[str], None],
-) -> Optional[Exception]:
-    """Writes what the run is into its folder, in the place of one that ended before its first checkpoint; why that is
-    impossible."""
-    try:
-        # A run that is resumed has the copies, with which it goes on.
-        code = {} if resumes else _code_of(run, folder)
-        if not resumes:
-            _make_room(run, folder, code, say)
-        if teacher is not None and teacher[1] != folder / TEACHER:
-            checkpoint.save_policy(teacher[0], folder / TEACHER)
-        for copy, text in code.items():
-            files.write_atomically(copy, lambda handle: handle.write(text))
-        write_run(run, folder)
-    except (CheckpointError, Error, OSError) as error:
-        return error
-    return None
+) -> None:
+    """Writes what the run is into its folder, in the place of one that ended before its first checkpoint. Raises
+    CheckpointError, Error or OSError where that is impossible."""
+    # A run that is resumed has the copies, with which it goes on.
+    code = {} if resumes else _code_of(run, folder)
+    if not resumes:
+        _make_room(run, folder, code, say)
+    if teacher is not None and teacher[1] != folder / TEACHER:
+        checkpoint.save_policy(teacher[0], folder / TEACHER)
+    for copy, text in code.items():
+        files.write_atomically(copy, lambda handle: handle.write(text))
+    write_run(run, folder)
 
 
 def _code_of(run: Run, folder: pathlib.Path) -> dict[pathlib.Path, bytes]:

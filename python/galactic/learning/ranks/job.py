@@ -1,0 +1,192 @@
+"""What each rank of a run does, from the world that it opens to the last line that it says."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import pathlib
+from typing import NamedTuple, Optional, Sequence
+
+import torch
+
+import galactic
+from galactic.demonstrations import Demonstrations
+from galactic.learning.command import INTERRUPTED, OK
+from galactic.learning.homes import Homes
+from galactic.learning.packs import content
+from galactic.learning.playing.validation import validation_of
+from galactic.learning.ranks.distributed import Group, local_ranks, threads_of, where_words
+from galactic.learning.reports import log
+from galactic.learning.saving import checkpoint
+from galactic.learning.saving.run_folder import TEACHER, begin_folder, take_folder
+from galactic.learning.saving.runs import Run, network_of, task_of
+from galactic.learning.trainer import Trainer, Validation
+from galactic.learning.user_code import callbacks
+from galactic.learning.user_code.own_networks import OwnNetwork
+
+
+class _Parts(NamedTuple):
+    """What a run learns from, as one rank has it."""
+
+    envs: Homes
+    validation: Optional[Validation]
+    teacher: Optional[tuple[checkpoint.SavedPolicy, pathlib.Path]]
+    demonstrations: Optional[Demonstrations]
+    network: Optional[OwnNetwork]
+
+
+@dataclasses.dataclass(frozen=True)
+class Job:
+    """What the ranks of a run are to do. `notes`: lines to begin a new run with. `make_log` is the first rank's alone,
+    `make_callback` is known to all."""
+
+    run: Run
+    folder: pathlib.Path
+    resumes: bool = False
+    pause_at: Optional[int] = None
+    notes: Sequence[str] = ()
+    make_log: Optional[log.MakeTaker] = None
+    make_callback: Optional[callbacks.MakeCallback] = None
+
+
+def train_in_rank(job: Job, group: Group) -> int:
+    """Trains, as one of the ranks. All of them take the same steps in the same order; what is refused in one of them
+    before it learns ends all, and nothing of the run is in its folder before the last of these steps. Returns the exit
+    code."""
+    with group.together():
+        parts = _parts_of(job, group)
+    trainer = _trainer_of(job, group, parts)
+    # Everybody has looked for a run in the folder, and has all that it needs, before there is one.
+    group.wait_for_all()
+    with contextlib.ExitStack() as held:
+        with group.together(OSError):
+            if group.rank == 0:
+                take_folder(job.folder, held, resumes=job.resumes)
+        if job.resumes:
+            trainer.resume()
+        with group.together():
+            _begin_callback(job, trainer)
+        with group.together():
+            _begin_log(job, trainer, held)
+        say = trainer.reports.progress.say
+        with group.together(OSError):
+            if group.rank == 0:
+                resumes = job.resumes
+                begin_folder(job.run, job.folder, parts.teacher, resumes=resumes, say=say)
+        say(where_words(group, parts.envs.drawn_by))
+        undisturbed = _carry_out(job, trainer)
+    parts.envs.close()
+    return _tell_end(job, trainer, undisturbed)
+
+
+def _parts_of(job: Job, group: Group) -> _Parts:
+    """Opens what the run names. Settles how many threads there are, too."""
+    run, settings = job.run, job.run.settings
+    threads = threads_of(settings.simulation_threads, local_ranks())
+    sharing = 1 if settings.network == "state" else 0
+    torch.set_num_threads(threads_of(settings.torch_threads or sharing, local_ranks()))
+    kept = job.folder if job.resumes else None
+    task, network = task_of(run, kept), network_of(run, kept)
+    shown = Demonstrations(*run.demonstrations) if run.demonstrations else None
+    # Of those in which nobody acts, one is enough.
+    played = (
+        dataclasses.replace(settings, envs=settings.halves, mini_batches=1) if shown else settings
+    )
+    envs = Homes(
+        galactic.World(run.world),
+        played,
+        threads,
+        rank=group.rank,
+        ranks=group.size,
+        task=task,
+        device=group.device,
+    )
+    validation = validation_of(run, envs, threads, group, task)
+    return _Parts(envs, validation, _teacher_of(run, kept), shown, network)
+
+
+def _teacher_of(
+    run: Run, kept: Optional[pathlib.Path]
+) -> Optional[tuple[checkpoint.SavedPolicy, pathlib.Path]]:
+    """The teacher and its file: the copy that the run has `kept` in its folder, with which it is resumed."""
+    if run.teacher is None:
+        return None
+    file, remedy = run.teacher, ""
+    if kept is not None:
+        file = kept / TEACHER
+        remedy = f"put back this copy of {run.teacher}, or begin another run"
+    without = "give another --teacher, of the network state"
+    return checkpoint.load_policy(file, remedy, without=without), file
+
+
+def _trainer_of(job: Job, group: Group, parts: _Parts) -> Trainer:
+    trainer = Trainer(
+        job.run.settings,
+        parts.envs,
+        group,
+        job.folder,
+        validation=parts.validation,
+        teacher=parts.teacher,
+        demonstrations=parts.demonstrations,
+        network=parts.network,
+        title=job.folder.resolve().name,
+    )
+    if job.run.start_from and not job.resumes:
+        trainer.start_from(job.run.start_from)
+    return trainer
+
+
+def _begin_callback(job: Job, trainer: Trainer) -> None:
+    """Lets code of the user's look on, in the first rank, and all ranks know of it."""
+    if job.make_callback is None:
+        return
+    if trainer.group.rank == 0:
+        trainer.callback = job.make_callback(job.folder, trainer.settings.to_dict())
+    else:
+        trainer.callback = lambda moment: None
+
+
+def _begin_log(job: Job, trainer: Trainer, held: contextlib.ExitStack) -> None:
+    """Lets a function of the user's take the curves, while `held` is."""
+    if job.make_log is None:
+        return
+    take = job.make_log(job.folder, trainer.settings.to_dict())
+    trainer.reports.log = log.Log(take, trainer.reports.progress.say)
+    held.callback(trainer.reports.log.close)
+
+
+def _carry_out(job: Job, trainer: Trainer) -> bool:
+    """Trains as far as it is asked for. Returns whether no signal has left something to do."""
+    say = trainer.reports.progress.say
+    if job.resumes:
+        say(f"going on after {trainer.steps:,} steps")
+    else:
+        for note in job.notes:
+            say(note)
+        if trainer.network is not None and trainer.group.rank == 0:
+            _tell_of_no_export(trainer)
+        trainer.begin()
+    return trainer.train(job.pause_at)
+
+
+def _tell_end(job: Job, trainer: Trainer, undisturbed: bool) -> int:
+    """Where the run is, and how it goes on. Returns the exit code."""
+    say = trainer.reports.progress.say
+    if trainer.steps < trainer.settings.steps or not undisturbed:
+        say(
+            f"{'paused' if undisturbed else 'stopped'} and saved after {trainer.steps:,} steps; go on "
+            f"with python3 -m galactic.train -o {job.folder} --resume"
+        )
+        return OK if undisturbed else INTERRUPTED
+    say(f"{job.folder}: curves.html, curves.csv, report.json, best.pt")
+    return OK
+
+
+def _tell_of_no_export(trainer: Trainer) -> None:
+    """Of a network that learns for hours and cannot become a pack, before it does."""
+    fault = content.fault_of(trainer.policy)
+    if fault:
+        trainer.reports.progress.say(
+            f"--network: galactic.export can make no pack of {trainer.settings.network}, which Python alone will play: "
+            f"{fault}"
+        )
