@@ -72,6 +72,11 @@ class Homes:
     `is_evaluation`. `onlooker`: options of a camera
     more, whose color images are in `shown`. `device`: where networks run; if that is a CUDA device, images are
     drawn there, too, or by the processor where nothing can draw there (`drawn_by` says what does).
+
+    What is drawn on a GPU does not stay there: Renderer.render() copies it to pinned memory, and recv() from there to
+    the rollout, on the GPU again, while the other half steps. Renderer.render_to_device() would spare both ways, but
+    draws all envs, also where a step draws again those few that begin an episode, and refuses noise, which the
+    processor adds.
     """
 
     def __init__(self, world: "galactic.World", settings: Settings, threads: int, *,
