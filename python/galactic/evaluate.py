@@ -1,9 +1,10 @@
-"""Evaluates a policy: `python3 -m galactic.evaluate runs/pick/best.pt world.pack`."""
+"""Evaluates a policy, or all that a run keeps: `python3 -m galactic.evaluate runs/pick/best.pt world.pack`."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import pathlib
 import sys
 from typing import Any, Optional, Sequence
 
@@ -23,13 +24,16 @@ from galactic.learning.command import (
 )
 from galactic.learning.homes import Homes
 from galactic.learning.playing import evaluation
-from galactic.learning.playing.judging import Terms, judging
+from galactic.learning.playing.judging import Judging, Terms, judging
 from galactic.learning.ranks.distributed import device_of, threads_of
 from galactic.learning.refusals import SettingsError
 from galactic.learning.reports import pictures
+from galactic.learning.reports.comparison import OF_SHARES
 from galactic.learning.reports.curves import write_json
-from galactic.learning.reports.shares import percent_of
+from galactic.learning.reports.progress import amount
+from galactic.learning.reports.shares import percent, percent_of
 from galactic.learning.saving import checkpoint
+from galactic.learning.saving.run_folder import BEST, files_of, policies_in
 from galactic.learning.user_code import own_code
 from galactic.streams import put
 
@@ -40,7 +44,11 @@ def make_parser() -> argparse.ArgumentParser:
         description="Plays each episode of a world once with a policy, and says how well it did.",
         epilog=EXIT_CODES,
     )
-    parser.add_argument("policy", type=named_path, help="best.pt or policy.pt of a run")
+    parser.add_argument(
+        "policy",
+        type=named_path,
+        help="best.pt or policy.pt of a run, or its folder: each policy in it, a row of a table for each",
+    )
     parser.add_argument("world", type=named_path, help="world pack")
     actions = parser.add_mutually_exclusive_group()
     actions.add_argument(
@@ -160,6 +168,16 @@ def _require_uses(options: argparse.Namespace) -> None:
     ):
         if value is not None and not user:
             raise SettingsError(f"{option} applies to {what} only; add {remedy}")
+    if options.policy.is_dir():
+        for option, value in (
+            ("--contact-sheet", options.contact_sheet),
+            ("--video", options.video),
+            ("--dynamics", options.dynamics),
+        ):
+            if value is not None:
+                raise SettingsError(
+                    f"{option} is for one policy, and {options.policy} is a folder; name best.pt or a policy.pt in it"
+                )
     if options.task is not None:
         own_code.named(options.task, "--task")
     if options.task and options.dynamics:
@@ -172,24 +190,81 @@ def _evaluate(options: argparse.Namespace) -> int:
     _require_uses(options)
     # Playing may take long.
     _require_outputs(options)
-    device = device_of(options.device, 0, 1)
-    saved = checkpoint.read_policy(options.policy, options.network)
-    pack = dynamics.packed(options.policy, options.network) if options.dynamics else b""
-    threads = threads_of(options.threads, 1)
+    device, threads = device_of(options.device, 0, 1), threads_of(options.threads, 1)
     torch.set_num_threads(threads)
-    judged = judging(saved, _terms(options, threads))
-    homes = judged.homes
-    if options.dynamics:
-        _tell_what_is_left_out(homes)
-    episodes = homes.playable_episodes()[: options.episodes or None]
+    if options.policy.is_dir():
+        return _evaluate_run(options, threads, device)
+    return _evaluate_policy(options, threads, device)
+
+
+def _evaluate_run(options: argparse.Namespace, threads: int, device: torch.device) -> int:
+    """Each policy that the run of a folder keeps, as if it had been named."""
+    names = {file: _name_in_run(file) for file in policies_in(options.policy)}
+    width = max(map(len, names.values()))
+    is_told = put(sys.stdout, _row("policy".ljust(width), *_COLUMNS))
+    found: list[dict[str, object]] = []
+    for file, name in names.items():
+        saved = checkpoint.read_policy(file, options.network)
+        judged = judging(saved, _terms(options, file, threads))
+        _, results = _played(options, saved, judged, device)
+        summary = evaluation.summary(results, judged.world)
+        is_told &= put(sys.stdout, _row(name.ljust(width), *_cells(saved.steps, summary)))
+        found.append({"policy": str(file), "trained_steps": saved.steps, **summary})
+    is_told &= put(sys.stdout, f"(episodes: {len(results)}; {OF_SHARES})\n")
+    if options.report:
+        about = _about(options, device)
+        write_json(options.report, {"run": str(options.policy), **about, "policies": found})
+    if not is_told:
+        raise lost_output()
+    return OK
+
+
+def _name_in_run(policy: pathlib.Path) -> str:
+    """best.pt, or the steps of a checkpoint as its folder has them."""
+    return policy.name if policy.name == BEST else policy.parent.name
+
+
+_COLUMNS = ("steps", "success", "picked", "return", "length", "spl")
+
+
+def _cells(steps: int, summary: dict[str, Any]) -> list[str]:
+    share = percent(summary["success"], summary["episodes"])
+    rest = [f"{summary[name]:.4g}" for name in _COLUMNS[2:]]
+    return [amount(steps), share, *rest]
+
+
+def _row(name: str, steps: str, success: str, *rest: str) -> str:
+    """Of the table of a run, which is told row by row."""
+    line = f"{name}  {steps:8}  {success:23}  " + "  ".join(f"{one:7}" for one in rest)
+    return line.rstrip() + "\n"
+
+
+def _played(
+    options: argparse.Namespace,
+    saved: checkpoint.SavedPolicy,
+    judged: Judging,
+    device: torch.device,
+) -> tuple[evaluation.Actor, list[evaluation.EpisodeResult]]:
+    """Has a policy play the episodes that are asked for, and closes the homes."""
     actor = evaluation.Actor(
         saved.policy.to(device),
         deterministic=options.deterministic,
         seed=options.seed,
         device=device,
     )
-    results = evaluation.Evaluator(homes, actor).play(episodes)
-    homes.close()
+    episodes = judged.homes.playable_episodes()[: options.episodes or None]
+    results = evaluation.Evaluator(judged.homes, actor).play(episodes)
+    judged.homes.close()
+    return actor, results
+
+
+def _evaluate_policy(options: argparse.Namespace, threads: int, device: torch.device) -> int:
+    saved = checkpoint.read_policy(options.policy, options.network)
+    pack = dynamics.packed(options.policy, options.network) if options.dynamics else b""
+    judged = judging(saved, _terms(options, options.policy, threads))
+    if options.dynamics:
+        _tell_what_is_left_out(judged.homes)
+    actor, results = _played(options, saved, judged, device)
     summary = evaluation.summary(results, judged.world)
     is_told = put(sys.stdout, _text(summary))
     there = None
@@ -197,7 +272,8 @@ def _evaluate(options: argparse.Namespace) -> int:
         there = _play_there(options, pack)
         is_told &= put(sys.stdout, _text(dict(dynamics.told(there))))
     if options.report:
-        report = {**_about(options, saved.steps, device), **summary}
+        policy = {"policy": str(options.policy), "trained_steps": saved.steps}
+        report = {**policy, **_about(options, device), **summary}
         write_json(options.report, {**report, **({"dynamics": there} if there else {})})
     if _draws(options) and results:
         chosen = pictures.choose(results, options.shown or SHOWN)
@@ -230,7 +306,9 @@ def _require_outputs(options: argparse.Namespace) -> None:
     own = (("--task", options.task), ("--network", options.network))
     code_files = [own_code.named(name, option).file for option, name in own if name is not None]
     code = [file for file in code_files if file is not None]
-    files.require_apart(outputs, [options.policy, options.world, *recipe, *code])
+    is_run = options.policy.is_dir()
+    policies = files_of(options.policy) if is_run else [options.policy]
+    files.require_apart(outputs, [*policies, options.world, *recipe, *code])
     for file in outputs.values():
         if file:
             files.require_writable(file)
@@ -240,9 +318,9 @@ def _require_outputs(options: argparse.Namespace) -> None:
         pictures.require_video(options.video)
 
 
-def _terms(options: argparse.Namespace, threads: int) -> Terms:
+def _terms(options: argparse.Namespace, policy: pathlib.Path, threads: int) -> Terms:
     return Terms(
-        policy=options.policy,
+        policy=policy,
         world=options.world,
         seed=options.seed,
         episodes=options.episodes,
@@ -254,15 +332,11 @@ def _terms(options: argparse.Namespace, threads: int) -> Terms:
     )
 
 
-def _about(
-    options: argparse.Namespace, trained_steps: int, device: torch.device
-) -> dict[str, object]:
-    """What a report is about."""
+def _about(options: argparse.Namespace, device: torch.device) -> dict[str, object]:
+    """What a report is about, beside the policy."""
     task = {"task": options.task, "task_options": options.task_options} if options.task else {}
     return {
-        "policy": str(options.policy),
         "world": str(options.world),
-        "trained_steps": trained_steps,
         "deterministic": options.deterministic,
         "seed": options.seed,
         "camera_noise": options.camera_noise,

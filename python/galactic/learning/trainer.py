@@ -25,7 +25,7 @@ from galactic.learning.rollouts.rollout import RolloutSource
 from galactic.learning.rollouts.stopwatch import RunClock
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import SavedPolicy, Score, new_policy
-from galactic.learning.saving.run_folder import BEST, CheckpointFolder
+from galactic.learning.saving.run_folder import BEST, POLICY, CheckpointFolder
 from galactic.learning.saving.trainer_state import TrainerState, state_of
 from galactic.learning.settings import Settings
 from galactic.learning.sums import over_ranks
@@ -346,7 +346,7 @@ class Trainer:
             folder = self.checkpoints.unfinished(self.steps)
             checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.source.state_dict())
             if self.group.rank == 0:
-                checkpoint.save_policy(self._saved_policy(), folder / "policy.pt")
+                checkpoint.save_policy(self._saved_policy(), folder / POLICY)
                 optimizer = {"optimizer": self.learner.optimizer.state_dict()}
                 # Those that it counts are there before it is.
                 rows = self.reports.curves.keep()
@@ -370,7 +370,7 @@ class Trainer:
             state = state_of(values, self.group.size, self.names, folder)
             self._take_up_state(state)
             self.learner.optimizer.load_state_dict(tensors.get("optimizer", {}))
-        file = folder / "policy.pt"
+        file = folder / POLICY
         saved = checkpoint.load_policy(file, remedy, self.network)
         with _fitting(file, remedy):
             self.policy.load_state_dict(saved.policy.state_dict())

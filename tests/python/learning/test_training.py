@@ -555,9 +555,6 @@ def test_an_evaluation_refuses_what_is_no_policy(tmp_path: pathlib.Path) -> None
     done = call("evaluate", tmp_path / "none.pt", HELD_OUT)
     assert done.returncode == 2
     assert f"{tmp_path / 'none.pt'}: cannot open the file: No such file" in done.stderr
-    done = call("evaluate", tmp_path, HELD_OUT)
-    assert done.returncode == 2
-    assert "Is a directory; take best.pt or a policy.pt of a run" in done.stderr
     done = call("evaluate", WORLD, HELD_OUT)
     assert done.returncode == 3
     assert "is a pack, and no checkpoint; play a policy pack with galactic-run" in done.stderr

@@ -212,13 +212,13 @@ def _spread(found: Iterable[Optional[Success]]) -> str:
     return f"{mean:.1f} % ({min(shares):.1f} to {max(shares):.1f}) of {len(shares)}"
 
 
-_OF_SHARES = "success in percent, in brackets the interval of 95 %"
+OF_SHARES = "success in percent, in brackets the interval of 95 %"
 _OF_SEEDS = "runs that differ in nothing but the seed: means, in brackets the least and the most"
 
 
 def text_of(runs: Sequence[ComparedRun]) -> str:
     """The tables, for a console."""
-    text = _aligned(table_of(runs)) + f"({_OF_SHARES})\n"
+    text = _aligned(table_of(runs)) + f"({OF_SHARES})\n"
     seeds = table_of_seeds(runs)
     return text + (f"\n{_aligned(seeds)}({_OF_SEEDS})\n" if seeds else "")
 
@@ -232,7 +232,7 @@ def _aligned(rows: Sequence[Sequence[str]]) -> str:
 def page_of(runs: Sequence[ComparedRun]) -> str:
     """The page that overlays their curves, with the tables below, as text."""
     tables = {run.name: _columns_of(run.curves) for run in runs}
-    below = _under("Runs", _OF_SHARES, table_of(runs))
+    below = _under("Runs", OF_SHARES, table_of(runs))
     seeds = table_of_seeds(runs)
     below += _under("Seeds", _OF_SEEDS, seeds) if seeds else ""
     return overlaid_page(" and ".join(tables) if len(tables) < 4 else f"{len(tables)} runs", tables, below)  # fmt: skip

@@ -35,6 +35,8 @@ from galactic.learning.user_code import own_code
 
 TEACHER = "teacher.pt"
 """The copy of the teacher in the folder of a run."""
+POLICY = "policy.pt"
+"""The policy of a checkpoint."""
 BEST = "best.pt"
 """The policy that did best."""
 _PAGE, _REPORT = "curves.html", "report.json"
@@ -45,6 +47,18 @@ def files_of(folder: pathlib.Path) -> list[pathlib.Path]:
     copies = own_code.COPIES.values()
     names = (own_code.RUN, TABLE, _PAGE, _REPORT, BEST, TEACHER, ".lock", *copies)
     return [*(folder / name for name in names), *(folder / "checkpoints").rglob("*")]
+
+
+def policies_in(folder: pathlib.Path) -> list[pathlib.Path]:
+    """The files of all policies that the run of a folder keeps: of its checkpoints, the oldest first, and the best one.
+    Raises Error where there are none."""
+    kept = [one / POLICY for one in CheckpointFolder(folder, 1).complete()]
+    best = folder / BEST
+    policies = [*kept, *([best] if best.exists() else [])]
+    if not policies:
+        message = f"holds no {BEST} and no checkpoint; name the folder of a run that has saved one, or a {POLICY}"
+        raise Error(ErrorCode.IO, str(folder), message)
+    return policies
 
 
 def require_no_run(folder: pathlib.Path) -> None:
