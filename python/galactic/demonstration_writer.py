@@ -129,8 +129,8 @@ class DemonstrationWriter:
         for env in np.flatnonzero(playing & infos.get("_final_obs", False)).tolist():
             for name, one in self._seen("final_obs", infos["final_obs"][env], ()).items():
                 _require_finite(f"final_obs: {name}", one[np.newaxis], np.ones(1, np.bool_))
-        self._recorder.sees(seen, rows, by_expert, playing)
-        ended = self._recorder.hears(paid, infos)
+        self._recorder.before_step(seen, rows, by_expert, playing)
+        ended = self._recorder.after_step(paid, infos)
         self._kept += ended
         self._count += len(ended)
         while len(self._kept) >= self._size:
@@ -206,7 +206,7 @@ class EpisodeRecorder:
         self._under_way: dict[int, dict[str, list[Any]]] = {}
         self._playing = np.zeros(0, np.int64)
 
-    def sees(
+    def before_step(
         self,
         observations: Observations,
         actions: NDArray[np.float32],
@@ -223,7 +223,9 @@ class EpisodeRecorder:
             for name, row in rows.items():
                 kept.setdefault(name, []).append(row[env].copy())
 
-    def hears(self, rewards: NDArray[np.floating], infos: Mapping[str, Any]) -> list[Demonstration]:
+    def after_step(
+        self, rewards: NDArray[np.floating], infos: Mapping[str, Any]
+    ) -> list[Demonstration]:
         """After it: what it paid, and VectorEnv's infos. Returns the episodes that it ended."""
         for env in self._playing.tolist():
             self._under_way[env].setdefault("rewards", []).append(rewards[env])

@@ -29,7 +29,11 @@ from galactic.learning.saving.run_folder import BEST, POLICY, CheckpointFolder
 from galactic.learning.saving.trainer_state import TrainerState, state_of
 from galactic.learning.settings import Settings
 from galactic.learning.sums import over_ranks
-from galactic.learning.updates.imitation import ImitationLearner, Streams, require_same
+from galactic.learning.updates.imitation import (
+    DemonstrationSampler,
+    ImitationLearner,
+    require_same,
+)
 from galactic.learning.updates.learner import Learner
 from galactic.learning.updates.ppo import PpoLearner
 from galactic.learning.updates.teacher import Teacher
@@ -112,7 +116,7 @@ class Trainer:
             observed = Observed(self.parts, self.meanings, envs.motions)
             require_same(demonstrations, settings, observed, envs.images)
             self.learner = ImitationLearner(self.policy, settings, group)
-            self.source = Streams(demonstrations, settings, self.policy, group)
+            self.source = DemonstrationSampler(demonstrations, settings, self.policy, group)
         else:
             self.learner = PpoLearner(self.policy, settings, group, self._taught_by(teacher))
             self.source = self._collector()

@@ -14,7 +14,7 @@ from galactic.learning.rollouts.episode_sums import EpisodeSums
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.checkpoint import Score, load_policy
 from galactic.learning.trainer import Trainer, Validation
-from trainers import SETTINGS, UPDATE, make_trainer, saved_run
+from trainers import SETTINGS, UPDATE, make_trainer
 
 
 def validation(*scores: tuple[float, float]) -> Validation:

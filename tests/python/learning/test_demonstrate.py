@@ -209,11 +209,11 @@ class _Fake:
         self.acted = episodes != NO_EPISODE
         return np.full((2, 4), self.number, np.float32)
 
-    def hears(self, actions: np.ndarray) -> None:
+    def override_actions(self, actions: np.ndarray) -> None:
         self.heard.append(actions.copy())
 
 
-def test_both_hear_what_was_done() -> None:
+def test_both_know_what_was_done() -> None:
     """A memory of what it would have done itself would be one of another episode."""
     learner, expert = _Fake(0.25), _Fake(0.75)
     both = RolledIn(learner, expert, most=5, seed=3)

@@ -17,7 +17,7 @@ pytestmark = needs_worlds
 
 
 class Walked:
-    """A Witness that asks each env where its robot is, and adds up how far it went over the floor."""
+    """A StepObserver that asks each env where its robot is, and adds up how far it went over the floor."""
 
     def __init__(self, homes: Homes):
         self._homes = homes
@@ -30,11 +30,11 @@ class Walked:
         x, _, z = self._homes.env.simulators[0].env_state(env).world_from_root.translation
         return np.array([x, z])
 
-    def sees(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
+    def before_step(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
         self._episodes = episodes.copy()
         self._before = [self._place(env) for env in range(len(episodes))]
 
-    def hears(self, step: Step) -> None:
+    def after_step(self, step: Step) -> None:
         self.steps += 1
         for env, episode in enumerate(self._episodes):
             if episode != NO_EPISODE:
@@ -60,7 +60,7 @@ def test_paths_are_those_of_the_robots_and_all_envs_are_asked_at_once(
     monkeypatch.setattr(homes.env, "env_states", counted)
     walked, actor = Walked(homes), Actor(untrained(settings).policy, deterministic=False)
     episodes = homes.playable_episodes()[:20]
-    results = Evaluator(homes, actor).play(episodes, witness=walked)
+    results = Evaluator(homes, actor).play(episodes, observer=walked)
     assert {one.episode: one.path for one in results} == walked.paths
     assert sum(one.path > 0.5 for one in results) > 10
     # Once in a step, and once where episodes begin.

@@ -22,7 +22,11 @@ from galactic.learning.ranks.distributed import Group
 from galactic.learning.refusals import CheckpointError
 from galactic.learning.saving.checkpoint import new_policy
 from galactic.learning.settings import Settings
-from galactic.learning.updates.imitation import ImitationLearner, Streams, require_same
+from galactic.learning.updates.imitation import (
+    DemonstrationSampler,
+    ImitationLearner,
+    require_same,
+)
 
 MOTIONS = 2
 SETTINGS = Settings(
@@ -102,10 +106,10 @@ def policy_for(settings: Settings) -> Policy:
 def learn(shown: Demonstrations, settings: Settings, updates: int) -> tuple[Policy, list[float]]:
     policy = policy_for(settings)
     learner = ImitationLearner(policy, settings, Group.alone())
-    streams = Streams(shown, settings, policy, Group.alone())
-    streams.reset()
+    sampler = DemonstrationSampler(shown, settings, policy, Group.alone())
+    sampler.reset()
     losses = [
-        learner.update(streams.collect(n), n, n / updates)["policy_loss"] for n in range(updates)
+        learner.update(sampler.collect(n), n, n / updates)["policy_loss"] for n in range(updates)
     ]
     return policy, losses
 
@@ -153,21 +157,21 @@ def test_what_was_seen_before_the_stretch_is_remembered(tmp_path: pathlib.Path) 
 
 def test_a_policy_learns_in_the_mode_for_it_whoever_acted_with_it(tmp_path: pathlib.Path) -> None:
     policy = policy_for(SETTINGS)
-    streams = Streams(make(tmp_path / "shown"), SETTINGS, policy, Group.alone())
-    streams.reset()
+    sampler = DemonstrationSampler(make(tmp_path / "shown"), SETTINGS, policy, Group.alone())
+    sampler.reset()
     modes: list[bool] = []
     policy.register_forward_hook(lambda *_: modes.append(policy.training))
     policy.eval()
-    ImitationLearner(policy, SETTINGS, Group.alone()).update(streams.collect(0), 0, 0.0)
+    ImitationLearner(policy, SETTINGS, Group.alone()).update(sampler.collect(0), 0, 0.0)
     assert len(modes) == SETTINGS.epochs * SETTINGS.mini_batches and all(modes)
 
 
 def test_values_are_what_episodes_pay_from_there_on(tmp_path: pathlib.Path) -> None:
     made = make(tmp_path / "shown")
     settings = dataclasses.replace(SETTINGS, gamma=0.9)
-    streams = Streams(made, settings, policy_for(settings), Group.alone())
-    streams.reset()
-    rollout = streams.collect(0)
+    sampler = DemonstrationSampler(made, settings, policy_for(settings), Group.alone())
+    sampler.reset()
+    rollout = sampler.collect(0)
     wanted = {
         tuple(one.state[step]): sum(0.5 * 0.9**n for n in range(len(one) - step))
         for one in made
@@ -189,12 +193,12 @@ def test_each_pass_shows_each_solved_episode_once(
     begun: list[list[int]] = []
     for rank in range(ranks):
         group = Group(rank, ranks, torch.device("cpu"))
-        streams = Streams(made, settings, policy_for(settings), group)
-        streams.reset()
+        sampler = DemonstrationSampler(made, settings, policy_for(settings), group)
+        sampler.reset()
         own = []
         under_way: list[Optional[tuple[Demonstration, int]]] = [None] * envs
         for update in range(60):
-            rollout = streams.collect(update)
+            rollout = sampler.collect(update)
             for stream in range(envs):
                 for step in range(settings.horizon):
                     row = rollout.state[step, stream].numpy()
@@ -224,13 +228,13 @@ def test_a_checkpoint_goes_on_bit_for_bit(tmp_path: pathlib.Path, recurrent: boo
     made = make(tmp_path / "shown")
     settings = dataclasses.replace(SETTINGS, recurrent=recurrent)
 
-    def begin() -> tuple[Policy, ImitationLearner, Streams]:
+    def begin() -> tuple[Policy, ImitationLearner, DemonstrationSampler]:
         policy = policy_for(settings)
         learner = ImitationLearner(policy, settings, Group.alone())
-        return policy, learner, Streams(made, settings, policy, Group.alone())
+        return policy, learner, DemonstrationSampler(made, settings, policy, Group.alone())
 
-    policy, learner, streams = begin()
-    streams.reset()
+    policy, learner, sampler = begin()
+    sampler.reset()
     losses = []
     for update in range(8):
         if update == 4:
@@ -239,16 +243,16 @@ def test_a_checkpoint_goes_on_bit_for_bit(tmp_path: pathlib.Path, recurrent: boo
                 for state in (
                     policy.state_dict(),
                     learner.optimizer.state_dict(),
-                    streams.state_dict(),
+                    sampler.state_dict(),
                 )
             ]
-        losses.append(learner.update(streams.collect(update), update, update / 8))
-    policy, learner, streams = begin()
+        losses.append(learner.update(sampler.collect(update), update, update / 8))
+    policy, learner, sampler = begin()
     policy.load_state_dict(saved[0])
     learner.optimizer.load_state_dict(saved[1])
-    streams.load_state_dict(saved[2])
+    sampler.load_state_dict(saved[2])
     resumed = [
-        learner.update(streams.collect(update), update, update / 8) for update in range(4, 8)
+        learner.update(sampler.collect(update), update, update / 8) for update in range(4, 8)
     ]
     assert resumed == losses[4:]
 
@@ -257,19 +261,21 @@ def test_a_checkpoint_of_other_demonstrations_is_refused(tmp_path: pathlib.Path)
     one, other = make(tmp_path / "one"), make(tmp_path / "other", from_memory)
     assert one.lengths.tolist() == other.lengths.tolist()
     policy = policy_for(SETTINGS)
-    streams = Streams(one, SETTINGS, policy, Group.alone())
-    streams.reset()
-    streams.collect(0)
-    state = streams.state_dict()
+    sampler = DemonstrationSampler(one, SETTINGS, policy, Group.alone())
+    sampler.reset()
+    sampler.collect(0)
+    state = sampler.state_dict()
     with pytest.raises(ValueError, match="found other demonstrations than those with which"):
-        Streams(other, SETTINGS, policy, Group.alone()).load_state_dict(state)
+        DemonstrationSampler(other, SETTINGS, policy, Group.alone()).load_state_dict(state)
     for damaged in (
         {"at": state["at"] + 1000},
         {"at": -1 - state["at"]},
         {"begun": state["begun"] * 0},
     ):
         with pytest.raises(ValueError, match="places that are in no episode"):
-            Streams(one, SETTINGS, policy, Group.alone()).load_state_dict({**state, **damaged})
+            DemonstrationSampler(one, SETTINGS, policy, Group.alone()).load_state_dict(
+                {**state, **damaged}
+            )
 
 
 def test_a_rank_without_episodes_is_refused(tmp_path: pathlib.Path) -> None:
@@ -278,7 +284,7 @@ def test_a_rank_without_episodes_is_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(
         CheckpointError, match="found 2 solved episodes, expected 3 at least, one for each rank"
     ):
-        Streams(made, SETTINGS, policy_for(SETTINGS), group)
+        DemonstrationSampler(made, SETTINGS, policy_for(SETTINGS), group)
 
 
 @pytest.mark.parametrize(
@@ -312,9 +318,9 @@ def test_how_much_values_explain_does_not_depend_on_epochs(tmp_path: pathlib.Pat
     for epochs in (1, 3):
         settings = dataclasses.replace(SETTINGS, epochs=epochs, learning_rate=0.0)
         policy = policy_for(settings)
-        streams = Streams(made, settings, policy, Group.alone())
-        streams.reset()
-        rollout = streams.collect(0)
+        sampler = DemonstrationSampler(made, settings, policy, Group.alone())
+        sampler.reset()
+        rollout = sampler.collect(0)
         returns = rollout.returns[rollout.by_expert]
         with torch.no_grad():
             values = policy(Inputs(rollout.state[:-1]), None, rollout.starts[:-1]).values

@@ -17,7 +17,7 @@ from galactic.learning.packs.content import export_policy
 from galactic.learning.refusals import CheckpointError
 from galactic.learning.saving import checkpoint
 from galactic.learning.user_code import own_networks
-from own_lab import EXAMPLE, EYES, lab, named, saved_policy, with_line
+from own_lab import EYES, lab, named, saved_policy, with_line
 from programs import SMALL, UPDATE, WORLD, call, needs_worlds
 from trainers import make_trainer
 

@@ -13,7 +13,6 @@ from torch import Tensor
 from galactic.learning.encoders import Inputs
 from galactic.learning.rollouts.environments import Step
 from galactic.learning.rollouts.rollout import Rollout
-from galactic.learning.settings import Settings
 from toys import ReachAndGrasp
 from trainers import SETTINGS, make_trainer
 

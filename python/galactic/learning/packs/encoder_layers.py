@@ -22,7 +22,7 @@ import torch
 from torch import Tensor, fx, nn
 from torch.nn import functional
 
-from galactic.learning.encoders import Encoder, Eyes, Inputs, ResNet, SimpleCNN, StateEncoder
+from galactic.learning.encoders import Encoder, Eyes, ResNet, SimpleCNN, StateEncoder
 from galactic.learning.packs.layers import LARGEST, ExportError, Layers, computes_as
 from galactic.learning.sequences import run_gru
 

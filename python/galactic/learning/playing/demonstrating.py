@@ -80,7 +80,7 @@ def make_parts(folder: pathlib.Path, parts: list[list[int]], homes: Homes, exper
         # Its noise does not depend on which parts were made before it.
         homes.restart(int(hashed(seed, np.array(number), np.array(0), 1)[0] >> np.uint64(32)))
         recorder = Recorder(expert, homes)
-        results = evaluator.play(episodes, details=False, witness=recorder)
+        results = evaluator.play(episodes, details=False, observer=recorder)
         write_part(demonstrations.part_folder(folder, number), recorder.demonstrations(results))
         played += len(results)
         solved += sum(result.success for result in results)

@@ -72,13 +72,13 @@ class Player(Protocol):
 NO_EPISODE = -1
 
 
-class Witness(Protocol):
+class StepObserver(Protocol):
     """Who looks on while episodes are played."""
 
-    def sees(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
+    def before_step(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
         """Before each step: what Player.act() was told, and what it said. Only for the time of the call."""
 
-    def hears(self, step: Step) -> None:
+    def after_step(self, step: Step) -> None:
         """After it: what came of it."""
 
 
@@ -126,7 +126,7 @@ class Actor:
             self._previous = actions.clamp(-1.0, 1.0)
             return actions[0].cpu().numpy()
 
-    def hears(self, actions: np.ndarray) -> None:
+    def override_actions(self, actions: np.ndarray) -> None:
         """That these were done in the last step, float32 [n, motions + 2], where others have acted."""
         done = torch.from_numpy(actions).to(self._device).unsqueeze(0)
         self._previous = done.clamp(-1.0, 1.0)
@@ -143,7 +143,7 @@ class Evaluator:
         self._played: list[Optional[_Played]] = []
 
     def play(self, episodes: Sequence[int], *, details: bool = True,
-             witness: Optional[Witness] = None) -> list[EpisodeResult]:  # fmt: skip
+             observer: Optional[StepObserver] = None) -> list[EpisodeResult]:  # fmt: skip
         """Has each of `episodes` played once, and returns what came of them, in their order. Without
         `details`, paths and collisions are left out, which is faster."""
         homes, waiting = self._homes, list(reversed(episodes))
@@ -158,12 +158,12 @@ class Evaluator:
             keys = np.array([result.episode for result in played])
             ages = np.array([result.length for result in played])
             actions = self._player.act(self._seen, starts, keys, ages)
-            if witness is not None:
-                witness.sees(keys, self._seen, actions)
+            if observer is not None:
+                observer.before_step(keys, self._seen, actions)
             homes.send(0, actions, self._seen)
             step = homes.recv(0)
-            if witness is not None:
-                witness.hears(step)
+            if observer is not None:
+                observer.after_step(step)
             ended = step.terminated | step.truncated
             self._follow(step, ended, details)
             for one in (p for p, over in zip(self._played, ended) if p is not None and over):

@@ -21,7 +21,7 @@ class Expert(Player, Protocol):
     acted: np.ndarray
     """bool [n]: in which envs it was the expert who acted last, and not who led to where it begins."""
 
-    def hears(self, actions: np.ndarray) -> None:
+    def override_actions(self, actions: np.ndarray) -> None:
         """What was done in the last step, float32 [n, motions + 2], where others have acted."""
 
 
@@ -42,7 +42,7 @@ class ScriptedExpert:
         self.acted = episodes != NO_EPISODE
         return self._policy.act(self.acted)
 
-    def hears(self, actions: np.ndarray) -> None:
+    def override_actions(self, actions: np.ndarray) -> None:
         pass  # it looks at where that has led
 
 
@@ -62,8 +62,8 @@ class LearnedExpert:
         self.acted = episodes != NO_EPISODE
         return self._policy.act(seen, starts, episodes, steps)
 
-    def hears(self, actions: np.ndarray) -> None:
-        self._policy.hears(actions)
+    def override_actions(self, actions: np.ndarray) -> None:
+        self._policy.override_actions(actions)
 
 
 class RolledIn:
@@ -94,28 +94,28 @@ class RolledIn:
         by_expert = self._expert.act(seen, starts, shown, steps)
         self.acted = self._expert.acted
         done = np.where(self.acted[:, np.newaxis], by_expert, actions)
-        self.hears(done)
+        self.override_actions(done)
         return done
 
-    def hears(self, actions: np.ndarray) -> None:
-        self._learner.hears(actions)
-        self._expert.hears(actions)
+    def override_actions(self, actions: np.ndarray) -> None:
+        self._learner.override_actions(actions)
+        self._expert.override_actions(actions)
 
 
 class Recorder:
-    """A Witness that keeps what an expert saw and did."""
+    """A StepObserver that keeps what an expert saw and did."""
 
     def __init__(self, expert: Expert, homes: Homes):
         self._expert = expert
         self._recorder = EpisodeRecorder(homes.env.observation_parts)
         self._ended: dict[int, Demonstration] = {}
 
-    def sees(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
+    def before_step(self, episodes: np.ndarray, seen: Observation, actions: np.ndarray) -> None:
         rows = {name: rows.numpy() for name, rows in seen._asdict().items() if rows is not None}
-        self._recorder.sees(rows, actions, self._expert.acted, episodes != NO_EPISODE)
+        self._recorder.before_step(rows, actions, self._expert.acted, episodes != NO_EPISODE)
 
-    def hears(self, step: Step) -> None:
-        ended = self._recorder.hears(step.rewards, step.infos)
+    def after_step(self, step: Step) -> None:
+        ended = self._recorder.after_step(step.rewards, step.infos)
         self._ended |= {one.episode: one for one in ended}
 
     def demonstrations(self, results: Sequence[EpisodeResult]) -> list[Demonstration]:

@@ -30,7 +30,7 @@ from galactic.learning.updates.schedules import learning_rate_at
 
 
 @dataclasses.dataclass
-class Shown(Rollout):
+class DemonstrationRollout(Rollout):
     """A rollout that comes out of demonstrations. Values, rewards and log-probabilities are not filled."""
 
     returns: Tensor = dataclasses.field(default_factory=lambda: torch.zeros(0))
@@ -41,7 +41,7 @@ class Shown(Rollout):
     """[N, H]: the memory after the last step, which the learner fills."""
 
 
-class Streams:
+class DemonstrationSampler:
     """Fills rollouts with solved episodes: in the place of each of N envs there is a stream of episodes, one
     after the other. Each rank has a share of the episodes, and shuffles it anew for each pass."""
 
@@ -79,7 +79,7 @@ class Streams:
             policy.hidden_size,
             group.device,
         )
-        self.rollout = Shown(
+        self.rollout = DemonstrationRollout(
             **vars(empty),
             returns=torch.zeros_like(empty.rewards),
             by_expert=torch.zeros_like(empty.ends),
@@ -100,7 +100,7 @@ class Streams:
 
     def collect(
         self, update: int, should_stop: Callable[[int], bool] = lambda step: False
-    ) -> Shown:
+    ) -> DemonstrationRollout:
         """The next `horizon` steps of each stream; overwritten by the next call."""
         rollout = self.rollout
         with self.stopwatch.time("reading"):
@@ -229,7 +229,7 @@ class ImitationLearner(Learner):
     """Makes what an expert did likelier, and the values what its episodes paid."""
 
     def update(self, rollout: Rollout, update: int, progress: float) -> dict[str, float]:
-        assert isinstance(rollout, Shown)
+        assert isinstance(rollout, DemonstrationRollout)
         settings = self.settings
         self.optimizer.learning_rate = learning_rate_at(settings, progress)
         shown = rollout.by_expert[: rollout.steps]
@@ -256,7 +256,9 @@ class ImitationLearner(Learner):
             report["log_std"] = float(self.policy.action.log_std.mean())
         return report
 
-    def _step(self, rollout: Shown, chosen: Tensor, steps_of_all: float) -> dict[str, Tensor]:
+    def _step(
+        self, rollout: DemonstrationRollout, chosen: Tensor, steps_of_all: float
+    ) -> dict[str, Tensor]:
         """One step of the optimizer; sums over the expert's steps of policy_loss, value_loss and entropy, and the norm of
         the gradient, grad_norm."""
         steps = rollout.steps

@@ -79,7 +79,7 @@ def ppo_loss(outputs: Outputs, batch: Batch, settings: Settings, entropy_coeffic
 
 
 @dataclass
-class Lesson:
+class TeacherTargets:
     """What a teacher would have done in the steps of a rollout, and how much that counts."""
 
     actions: ActionDistribution  # of shape [T, N]
@@ -108,7 +108,7 @@ class PpoLearner(Learner):
         returns = raw + rollout.values[:steps]
         scaled, all_steps = self._normalized(raw)
         per_mini_batch = all_steps / settings.mini_batches
-        lesson = self._lesson(rollout, progress)
+        targets = self._teacher_targets(rollout, progress)
         sums = Sums()
         for chosen in self._mini_batches(rollout, update):
             batch = Batch(
@@ -119,33 +119,34 @@ class PpoLearner(Learner):
                 returns[:, chosen],
             )
             sums.add(
-                self._step(rollout, chosen, batch, lesson, entropy_coefficient, per_mini_batch)
+                self._step(rollout, chosen, batch, targets, entropy_coefficient, per_mini_batch)
             )
         self._limit_exploration(progress)
         self._absorb_observations(rollout)
         report = self._report(sums, raw, returns)
-        if lesson is None:
+        if targets is None:
             del report["teacher_kl"]
         self.rate.follow(report["kl"])
         return report
 
-    def _lesson(self, rollout: Rollout, progress: float) -> Optional[Lesson]:
+    def _teacher_targets(self, rollout: Rollout, progress: float) -> Optional[TeacherTargets]:
         weight = teacher_weight_at(self.settings, progress)
         if self.teacher is None or weight == 0.0:
             return None
-        return Lesson(self.teacher.actions(rollout), weight)
+        return TeacherTargets(self.teacher.actions(rollout), weight)
 
-    def _step(self, rollout: Rollout, chosen: Tensor, batch: Batch, lesson: Optional[Lesson],
-              entropy_coefficient: float, steps_of_all: float) -> dict[str, Tensor]:  # fmt: skip
+    def _step(self, rollout: Rollout, chosen: Tensor, batch: Batch,
+              targets: Optional[TeacherTargets], entropy_coefficient: float,
+              steps_of_all: float) -> dict[str, Tensor]:  # fmt: skip
         """One step of the optimizer; the sums of its losses, and of the divergence from the teacher, teacher_kl, and the
         norm of the gradient, grad_norm."""
         self.optimizer.clear()
         outputs = self._outputs(rollout, chosen)
         loss = ppo_loss(outputs, batch, self.settings, entropy_coefficient, steps_of_all)
         total, divergence = loss.total, torch.zeros_like(loss.total)
-        if lesson is not None:
-            divergence = lesson.actions.of(chosen).divergence(outputs.actions).sum()
-            total = total + (lesson.weight / steps_of_all) * divergence
+        if targets is not None:
+            divergence = targets.actions.of(chosen).divergence(outputs.actions).sum()
+            total = total + (targets.weight / steps_of_all) * divergence
         norm = self._descend(total)
         return {**loss.sums, "teacher_kl": divergence.detach(), "grad_norm": norm}
 
