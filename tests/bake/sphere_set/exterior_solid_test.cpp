@@ -116,6 +116,19 @@ TEST(TriangleTree, FindsTheNearestOfFacetsThatAreHardToPart) {
   }
 }
 
+/// Along one of the axes nothing parts them.
+TEST(TriangleTree, FindsTheNearestOfFacetsInOnePlane) {
+  MeshBuilder builder;
+  for (float x = -1; x < 1; x += 0.125F) {
+    for (float z = -1; z < 1; z += 0.25F) builder.floor({x, 0, z}, {x + 0.1F, 0, z + 0.2F}, 2);
+  }
+  const TriangleMesh mesh = builder.build();
+  const TriangleTree tree(facetsOf(mesh));
+  for (const Vec3d& p : randomPoints(mesh.bounds, 0.5F, 200)) {
+    EXPECT_NEAR(std::sqrt(tree.nearest(p).squared), bruteForce(mesh, p), 1e-7);
+  }
+}
+
 TEST(TriangleTree, OfNothingFindsNothing) {
   EXPECT_EQ(TriangleTree({}).nearest({0, 0, 0}).facet, kNoFacet);
 }

@@ -1,78 +1,168 @@
 #include "sphere_set/solid/triangle_tree.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <cstddef>
 #include <utility>
 
 namespace galactic::bake::sphere_set {
+
+/// What a tree asks of a facet, together: facets in the order of the tree lie anywhere.
+struct PartedFacet {
+  /// Three floats, which corners are, and one that nobody reads: compared as one vector.
+  using Quad [[gnu::vector_size(16)]] = float;
+
+  /// A box that holds nothing until it is grown.
+  struct Extent {
+    Quad min = Quad{} + HUGE_VALF;
+    Quad max = Quad{} - HUGE_VALF;
+
+    void grow(const Extent& other) {
+      min = other.min < min ? other.min : min;
+      max = max < other.max ? other.max : max;
+    }
+    /// Half of its surface: how often a search has to look into it, but for a factor.
+    [[nodiscard]] double halfSurface() const {
+      const Vec3d size = widen(toVec3(max)) - widen(toVec3(min));
+      return size.x * size.y + size.y * size.z + size.z * size.x;
+    }
+  };
+
+  PartedFacet(const Facet& corners, std::uint32_t number) : index(number) {
+    const Vec3d mean = (widen(corners[0]) + widen(corners[1]) + widen(corners[2])) * (1.0 / 3);
+    middle = {mean.x, mean.y, mean.z};
+    for (const Vec3& corner : corners) {
+      const Quad at{corner.x, corner.y, corner.z, 0};
+      extent.grow({at, at});
+    }
+  }
+
+  [[nodiscard]] static Vec3 toVec3(const Quad& quad) { return {quad[0], quad[1], quad[2]}; }
+
+  std::array<double, 3> middle{};
+  /// In the mesh.
+  std::uint32_t index;
+  Extent extent;
+};
+
 namespace {
+
+using Extent = PartedFacet::Extent;
 
 constexpr std::uint32_t kFacetsPerLeaf = 4;
 /// More than kDeepest and the depth of a halving tree over fewer than 2^32 facets.
 constexpr std::size_t kStack = 80;
-
-double component(const Vec3d& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
-int longestAxis(const Vec3d& size) {
-  if (size.x >= size.y && size.x >= size.z) return 0;
-  return size.y >= size.z ? 1 : 2;
-}
-
 /// Deeper than this, facets are halved by number, so that the search's stack suffices.
 constexpr std::uint32_t kDeepest = 40;
 constexpr std::size_t kBins = 16;
 
-/// Half of a box's surface: how often a search has to look into it, but for a factor.
-double halfSurface(const Box& box) {
-  const Vec3d size = box.size();
-  return size.x * size.y + size.y * size.z + size.z * size.x;
-}
+/// Where the middles of facets lie, by axis.
+struct MiddleRange {
+  explicit MiddleRange(std::span<const PartedFacet> facets) {
+    for (const PartedFacet& facet : facets) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        min[axis] = std::min(min[axis], facet.middle[axis]);
+        max[axis] = std::max(max[axis], facet.middle[axis]);
+      }
+    }
+  }
+
+  [[nodiscard]] double size(std::size_t axis) const { return max[axis] - min[axis]; }
+
+  [[nodiscard]] std::size_t longestAxis() const {
+    if (size(0) >= size(1) && size(0) >= size(2)) return 0;
+    return size(1) >= size(2) ? 1 : 2;
+  }
+
+  /// Of kBins along an axis; the first one where all middles are the same there.
+  [[nodiscard]] std::size_t binOf(const PartedFacet& facet, std::size_t axis) const {
+    const double whole = size(axis) > 0 ? size(axis) : 1;
+    const double share = (facet.middle[axis] - min[axis]) / whole;
+    return std::min(kBins - 1, static_cast<std::size_t>(share * static_cast<double>(kBins)));
+  }
+
+  std::array<double, 3> min{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  std::array<double, 3> max{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+};
 
 /// Where facets are parted: those whose middle lies in a bin below `bin` of kBins along `axis`.
 struct Parting {
-  int axis = 0;
+  std::size_t axis = 0;
   std::size_t bin = 0;
   double cost = HUGE_VAL;
 };
 
 struct Bin {
-  Box box;
+  Extent extent;
   std::size_t count = 0;
-};
 
-std::size_t binOf(const Vec3d& middle, int axis, const Box& of_middles) {
-  const double from = component(of_middles.min, axis);
-  const double share = (component(middle, axis) - from) / (component(of_middles.max, axis) - from);
-  return std::min(kBins - 1, static_cast<std::size_t>(share * static_cast<double>(kBins)));
-}
+  void add(const Bin& other) {
+    extent.grow(other.extent);
+    count += other.count;
+  }
+  [[nodiscard]] double cost() const {
+    return count == 0 ? HUGE_VAL : extent.halfSurface() * static_cast<double>(count);
+  }
+};
 
 /// The parting of bins along an axis that searches pay least for: the surface of each side times
 /// its facets (Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007).
-Parting bestParting(const std::array<Bin, kBins>& bins, int axis) {
+Parting bestParting(const std::array<Bin, kBins>& bins, std::size_t axis) {
+  // Before a bin that is empty, facets are parted as before the next one.
   std::array<double, kBins> left_cost{};
-  Bin left;
-  const auto add = [](Bin& to, const Bin& bin) {
-    if (bin.count == 0) return;
-    to.box.grow(bin.box.min);
-    to.box.grow(bin.box.max);
-    to.count += bin.count;
-  };
-  const auto cost_of = [](const Bin& bin) {
-    return bin.count == 0 ? HUGE_VAL : halfSurface(bin.box) * static_cast<double>(bin.count);
-  };
+  Bin left = bins[0];
   for (std::size_t n = 1; n < kBins; ++n) {
-    add(left, bins[n - 1]);
-    left_cost[n] = cost_of(left);
+    if (bins[n].count == 0) continue;
+    left_cost[n] = left.cost();
+    left.add(bins[n]);
   }
   Parting best{axis, 0, HUGE_VAL};
   Bin right;
   for (std::size_t n = kBins - 1; n > 0; --n) {
-    add(right, bins[n]);
-    const double cost = left_cost[n] + cost_of(right);
+    if (bins[n].count == 0) continue;
+    right.add(bins[n]);
+    const double cost = left_cost[n] + right.cost();
     if (cost < best.cost) best = {axis, n, cost};
   }
   return best;
+}
+
+/// The best one of all axes. Its cost is infinite where nothing parts the facets.
+Parting bestParting(std::span<const PartedFacet> facets, const MiddleRange& middles) {
+  std::array<std::array<Bin, kBins>, 3> bins;
+  for (const PartedFacet& facet : facets) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Bin& bin = bins[axis][middles.binOf(facet, axis)];
+      bin.extent.grow(facet.extent);
+      ++bin.count;
+    }
+  }
+  Parting best;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Parting parting = bestParting(bins[axis], axis);
+    if (parting.cost < best.cost) best = parting;
+  }
+  return best;
+}
+
+/// Parts the facets of a node in two; returns how many come first.
+std::size_t part(std::span<PartedFacet> facets, std::uint32_t depth) {
+  const MiddleRange middles(facets);
+  const Parting best = depth < kDeepest ? bestParting(facets, middles) : Parting{};
+  if (best.cost < HUGE_VAL) {
+    const auto middle = std::partition(facets.begin(), facets.end(), [&](const PartedFacet& facet) {
+      return middles.binOf(facet, best.axis) < best.bin;
+    });
+    return static_cast<std::size_t>(middle - facets.begin());
+  }
+  const std::size_t axis = middles.longestAxis();
+  const std::size_t half = facets.size() / 2;
+  std::nth_element(facets.begin(), facets.begin() + static_cast<std::ptrdiff_t>(half), facets.end(),
+                   [&](const PartedFacet& a, const PartedFacet& b) {
+                     const double at_a = a.middle[axis];
+                     const double at_b = b.middle[axis];
+                     return at_a != at_b ? at_a < at_b : a.index < b.index;
+                   });
+  return half;
 }
 
 }  // namespace
@@ -110,80 +200,39 @@ Vec3d nearestOnFacet(const Vec3d& p, const Facet& facet) {
 }
 
 TriangleTree::TriangleTree(std::vector<Facet> facets) : facets_(std::move(facets)) {
-  const auto count = static_cast<std::uint32_t>(facets_.size());
-  std::vector<Vec3d> middles;
-  middles.reserve(count);
-  for (const Facet& f : facets_) {
-    middles.push_back((widen(f[0]) + widen(f[1]) + widen(f[2])) * (1.0 / 3));
+  std::vector<PartedFacet> parted;
+  parted.reserve(facets_.size());
+  for (const Facet& facet : facets_) {
+    parted.emplace_back(facet, static_cast<std::uint32_t>(parted.size()));
   }
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0U);
-  nodes_.reserve(count);
-  leaves_.reserve(count);
-  facet_of_leaf_.reserve(count);
-  if (count > 0) build(order, middles, {0, count, 0});
+  nodes_.reserve(facets_.size());
+  leaves_.reserve(facets_.size());
+  facet_of_leaf_.reserve(facets_.size());
+  if (!parted.empty()) build(parted, 0);
 }
 
-void TriangleTree::build(std::vector<std::uint32_t>& order, const std::vector<Vec3d>& middles,
-                         const Range& range) {
-  const auto [begin, end, depth] = range;
-  const auto at = nodes_.size();
-  nodes_.emplace_back();
-  Box box;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    for (const Vec3& corner : facets_[order[i]]) box.grow(widen(corner));
-  }
-  nodes_[at].min = narrow(box.min);
-  nodes_[at].max = narrow(box.max);
-  if (end - begin <= kFacetsPerLeaf) {
+void TriangleTree::build(std::span<PartedFacet> facets, std::uint32_t depth) {
+  const std::size_t at = nodes_.size();
+  Extent extent;
+  for (const PartedFacet& facet : facets) extent.grow(facet.extent);
+  nodes_.push_back(
+      {.min = PartedFacet::toVec3(extent.min), .max = PartedFacet::toVec3(extent.max)});
+  if (facets.size() <= kFacetsPerLeaf) {
     // The parts below are sets; only here does their order show.
-    std::sort(order.begin() + begin, order.begin() + end);
+    std::sort(facets.begin(), facets.end(),
+              [](const PartedFacet& a, const PartedFacet& b) { return a.index < b.index; });
     nodes_[at].first = static_cast<std::uint32_t>(leaves_.size());
-    nodes_[at].count = end - begin;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      leaves_.push_back(facets_[order[i]]);
-      facet_of_leaf_.push_back(order[i]);
+    nodes_[at].count = static_cast<std::uint32_t>(facets.size());
+    for (const PartedFacet& facet : facets) {
+      leaves_.push_back(facets_[facet.index]);
+      facet_of_leaf_.push_back(facet.index);
     }
     return;
   }
-  const std::uint32_t middle = part(order, middles, range);
-  build(order, middles, {begin, middle, depth + 1});
+  const std::size_t first_part = part(facets, depth);
+  build(facets.first(first_part), depth + 1);
   nodes_[at].first = static_cast<std::uint32_t>(nodes_.size());
-  build(order, middles, {middle, end, depth + 1});
-}
-
-std::uint32_t TriangleTree::part(std::vector<std::uint32_t>& order,
-                                 const std::vector<Vec3d>& middles, const Range& range) const {
-  const auto first = order.begin() + range.begin;
-  const auto last = order.begin() + range.end;
-  Box of_middles;
-  for (auto facet = first; facet != last; ++facet) of_middles.grow(middles[*facet]);
-  Parting best;
-  for (int axis = 0; axis < 3 && range.depth < kDeepest; ++axis) {
-    if (!(component(of_middles.size(), axis) > 0)) continue;
-    std::array<Bin, kBins> bins;
-    for (auto facet = first; facet != last; ++facet) {
-      Bin& bin = bins[binOf(middles[*facet], axis, of_middles)];
-      for (const Vec3& corner : facets_[*facet]) bin.box.grow(widen(corner));
-      ++bin.count;
-    }
-    const Parting parting = bestParting(bins, axis);
-    if (parting.cost < best.cost) best = parting;
-  }
-  if (best.cost < HUGE_VAL) {
-    const auto middle = std::partition(first, last, [&](std::uint32_t facet) {
-      return binOf(middles[facet], best.axis, of_middles) < best.bin;
-    });
-    return static_cast<std::uint32_t>(middle - order.begin());
-  }
-  const int axis = longestAxis(of_middles.size());
-  const std::uint32_t middle = range.begin + (range.end - range.begin) / 2;
-  std::nth_element(first, order.begin() + middle, last, [&](std::uint32_t a, std::uint32_t b) {
-    const double at_a = component(middles[a], axis);
-    const double at_b = component(middles[b], axis);
-    return at_a != at_b ? at_a < at_b : a < b;
-  });
-  return middle;
+  build(facets.subspan(first_part), depth + 1);
 }
 
 NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) const {

@@ -1,11 +1,12 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
-#include "sphere_set/solid/box.h"
+#include "common/vec3d.h"
 
 namespace galactic::bake::sphere_set {
 
@@ -32,6 +33,9 @@ struct SearchLimits {
   /// A facet that is likely near.
   std::uint32_t hint = kNoFacet;
 };
+
+/// A facet while a tree is built.
+struct PartedFacet;
 
 /// A bounding volume hierarchy over triangles for exact distances. Immutable, so safe to share
 /// between threads.
@@ -62,19 +66,8 @@ class TriangleTree {
     }
   };
 
-  /// Facets of a node, in the order in which they are parted.
-  struct Range {
-    std::uint32_t begin = 0;
-    std::uint32_t end = 0;
-    /// Of the node.
-    std::uint32_t depth = 0;
-  };
-
-  void build(std::vector<std::uint32_t>& order, const std::vector<Vec3d>& middles,
-             const Range& range);
-  /// Parts the facets of a range in two; returns where the second part begins.
-  [[nodiscard]] std::uint32_t part(std::vector<std::uint32_t>& order,
-                                   const std::vector<Vec3d>& middles, const Range& range) const;
+  /// Appends the node of some facets, `depth` nodes below the root, and all nodes below it.
+  void build(std::span<PartedFacet> facets, std::uint32_t depth);
 
   std::vector<Facet> facets_;
   std::vector<Node> nodes_;
