@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/vec3d.h"
-#include "sphere_set/solid/triangle_tree.h"
+#include "distance/triangle_tree.h"
 
 namespace galactic::bake {
 namespace {
@@ -59,14 +59,14 @@ std::vector<bool> coloredDetails(const PartMesh& piece) {
   return details;
 }
 
-sphere_set::TriangleTree treeOf(const PartMesh& piece, const std::vector<Triangle>& triangles) {
-  std::vector<sphere_set::Facet> facets;
+TriangleTree treeOf(const PartMesh& piece, const std::vector<Triangle>& triangles) {
+  std::vector<Facet> facets;
   facets.reserve(triangles.size());
   for (const Triangle& t : triangles) {
     facets.push_back({piece.vertices[t[0]].position, piece.vertices[t[1]].position,
                       piece.vertices[t[2]].position});
   }
-  return sphere_set::TriangleTree(std::move(facets));
+  return TriangleTree(std::move(facets));
 }
 
 Vec3d middleOf(const PartMesh& piece, const Triangle& t) {
@@ -86,7 +86,7 @@ class SimplifiedSurface {
       : piece_(piece),
         counted_(counted),
         tree_(treeOf(piece, triangles)),
-        facet_near_(piece.vertices.size(), sphere_set::kNoFacet),
+        facet_near_(piece.vertices.size(), kNoFacet),
         survives_(piece.vertices.size()) {
     for (std::uint32_t n = 0; n < triangles.size(); ++n) {
       for (const std::uint32_t corner : triangles[n]) {
@@ -104,7 +104,7 @@ class SimplifiedSurface {
 
   /// The same for the middle of a triangle of the source.
   bool middleWithin(const Triangle& triangle, double distance) {
-    std::uint32_t facet = sphere_set::kNoFacet;
+    std::uint32_t facet = kNoFacet;
     return within(middleOf(piece_, triangle), triangle, distance, facet);
   }
 
@@ -129,11 +129,11 @@ class SimplifiedSurface {
   bool within(const Vec3d& point, const Triangle& around, double distance, std::uint32_t& facet) {
     const double squared = distance * distance;
     ++counted_.comparisons;
-    std::uint32_t tried = sphere_set::kNoFacet;
+    std::uint32_t tried = kNoFacet;
     const auto is_near = [&](std::uint32_t candidate) {
-      if (candidate == sphere_set::kNoFacet || candidate == tried) return false;
+      if (candidate == kNoFacet || candidate == tried) return false;
       tried = candidate;
-      const Vec3d nearest = sphere_set::nearestOnFacet(point, tree_.facets()[candidate]);
+      const Vec3d nearest = nearestOnFacet(point, tree_.facets()[candidate]);
       if (squaredNorm(nearest - point) > squared) return false;
       facet = candidate;
       return true;
@@ -145,7 +145,7 @@ class SimplifiedSurface {
     ++counted_.searches;
     const auto nearest =
         tree_.nearest(point, {.squared_limit = squared * kJustBeyond, .squared_enough = squared});
-    if (nearest.facet == sphere_set::kNoFacet || nearest.squared > squared) return false;
+    if (nearest.facet == kNoFacet || nearest.squared > squared) return false;
     facet = nearest.facet;
     return true;
   }
@@ -155,7 +155,7 @@ class SimplifiedSurface {
 
   const PartMesh& piece_;
   MeasuredSimplified& counted_;
-  sphere_set::TriangleTree tree_;
+  TriangleTree tree_;
   /// By corner of the source: a triangle of the surface that is near it, where one is known.
   std::vector<std::uint32_t> facet_near_;
   /// By corner of the source: whether it is a corner of the surface.

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "bake/render/render_helpers.h"
+#include "distance/triangle_tree.h"
 #include "render/simplify_within.h"
-#include "sphere_set/solid/triangle_tree.h"
 #include "support/oracles/distance_oracle.h"
 #include "support/test_meshes.h"
 
@@ -112,8 +112,8 @@ bake::PartMesh pieceOf(const bake::TriangleMesh& mesh) {
 /// Of all corners and middles of triangles, from the nearest triangle of `surface`, meters.
 double largestDistance(const bake::PartMesh& piece, const std::vector<bake::Triangle>& surface) {
   const auto cornersOf = [&](const bake::Triangle& t) {
-    return bake::sphere_set::Facet{piece.vertices[t[0]].position, piece.vertices[t[1]].position,
-                                   piece.vertices[t[2]].position};
+    return bake::Facet{piece.vertices[t[0]].position, piece.vertices[t[1]].position,
+                       piece.vertices[t[2]].position};
   };
   double largest = 0;
   for (const bake::Triangle& triangle : piece.triangles) {
@@ -123,7 +123,7 @@ double largestDistance(const bake::PartMesh& piece, const std::vector<bake::Tria
     for (const bake::Vec3d& point : {a, b, c, (a + b + c) * (1.0 / 3)}) {
       double nearest = 1;
       for (const bake::Triangle& other : surface) {
-        const bake::Vec3d on = bake::sphere_set::nearestOnFacet(point, cornersOf(other));
+        const bake::Vec3d on = bake::nearestOnFacet(point, cornersOf(other));
         nearest = std::min(nearest, norm(on - point));
       }
       largest = std::max(largest, nearest);

@@ -1,13 +1,12 @@
-// Distances to meshes, and what a probe makes of them.
 #include "sphere_set/solid/exterior_solid.h"
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include <utility>
 #include <vector>
 
-#include "column_grid/triangle_interval.h"
 #include "sphere_set/shapes.h"
+#include "support/random_points.h"
 
 namespace galactic::bake::sphere_set::exterior_solid_test {
 namespace {
@@ -18,43 +17,13 @@ using test::MeshBuilder;
 constexpr std::uint32_t kSeed = 20250402;
 constexpr double kSmallestRadius = 0.015;
 
-std::vector<Facet> facetsOf(const TriangleMesh& mesh) {
-  std::vector<Facet> facets;
-  for (const Triangle& t : mesh.triangles) {
-    facets.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
-  }
-  return facets;
-}
-
-std::vector<Vec3d> randomPoints(const Bounds& bounds, float margin, int count) {
-  std::mt19937 random(kSeed);
-  const auto between = [&](float lo, float hi) {
-    const double share = static_cast<double>(random()) * 0x1p-32;
-    return static_cast<double>(lo - margin) + share * static_cast<double>(hi - lo + 2 * margin);
-  };
-  std::vector<Vec3d> points;
-  for (int n = 0; n < count; ++n) {
-    points.push_back({between(bounds.min.x, bounds.max.x), between(bounds.min.y, bounds.max.y),
-                      between(bounds.min.z, bounds.max.z)});
-  }
-  return points;
-}
-
-double bruteForce(const TriangleMesh& mesh, const Vec3d& p) {
-  double least = HUGE_VAL;
-  for (const test::Corners& corners : test::allCorners(mesh)) {
-    least = std::min(least, squaredDistance({p.x, p.y, p.z}, corners));
-  }
-  return std::sqrt(least);
-}
-
 /// Of points further from the surface than `clear`, how many the solid judges other than the
 /// closed form; fails unless both sides were asked often.
 int wrongSides(const ExteriorSolid& solid, const KnownSolid& known, double clear) {
   int inside = 0;
   int outside = 0;
   int wrong = 0;
-  for (const Vec3d& p : randomPoints(known.mesh.bounds, 0.02F, 4000)) {
+  for (const Vec3d& p : test::randomPoints(kSeed, known.mesh.bounds, 0.02F, 4000)) {
     const double distance = known.distance({p.x, p.y, p.z});
     if (std::fabs(distance) < clear) continue;
     ++(distance < 0 ? inside : outside);
@@ -67,7 +36,7 @@ int wrongSides(const ExteriorSolid& solid, const KnownSolid& known, double clear
 
 /// GCC 12 loses conversions to float and back in vectorised code.
 TEST(StoredPoints, AreFloatsAndTheNearestOnes) {
-  for (const Vec3d& p : randomPoints({{-2, -2, -2}, {2, 2, 2}}, 0, 1000)) {
+  for (const Vec3d& p : test::randomPoints(kSeed, {{-2, -2, -2}, {2, 2, 2}}, 0, 1000)) {
     const Vec3d stored = asStored(p);
     const Vec3 as_float = narrow(p);
     EXPECT_EQ(narrow(stored), as_float);
@@ -78,59 +47,6 @@ TEST(StoredPoints, AreFloatsAndTheNearestOnes) {
       EXPECT_EQ(value, static_cast<double>(seen));
     }
   }
-}
-
-TEST(TriangleTree, FindsTheNearestPointOfASoup) {
-  MeshBuilder builder;
-  const TriangleMesh mesh = builder.soup(kSeed, 300, {{-1, -1, -1}, {1, 1, 1}}, 0.3F).build();
-  const TriangleTree tree(facetsOf(mesh));
-  int within = 0;
-  for (const Vec3d& p : randomPoints(mesh.bounds, 0.2F, 400)) {
-    const double truth = bruteForce(mesh, p);
-    const NearestPoint found = tree.nearest(p);
-    EXPECT_NEAR(std::sqrt(found.squared), truth, 1e-7);
-    EXPECT_NEAR(norm(found.point - p), truth, 1e-7);
-    const NearestPoint limited = tree.nearest(p, {.squared_limit = 0.01});
-    EXPECT_EQ(limited.facet != kNoFacet, truth < 0.1);
-    within += truth < 0.1 ? 1 : 0;
-  }
-  EXPECT_GT(within, 40) << "seed " << kSeed;
-  EXPECT_LT(within, 360) << "seed " << kSeed;
-}
-
-/// Facets that no plane parts, and facets each of which is half as far as the one before, so that
-/// planes part off one at a time.
-TEST(TriangleTree, FindsTheNearestOfFacetsThatAreHardToPart) {
-  std::vector<Facet> facets(100, Facet{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}});
-  float at = 1e6F;
-  for (int n = 0; n < 120; ++n, at /= 2) {
-    facets.push_back({Vec3{at, 0, 5}, Vec3{at, 0, 6}, Vec3{at, 1, 5}});
-  }
-  const TriangleTree tree(facets);
-  for (const Vec3d p : {Vec3d{0.2, 0.2, 1}, Vec3d{3e5, 0, 5}, Vec3d{-1, 0, 5.2}, Vec3d{9, 9, 9}}) {
-    double nearest = HUGE_VAL;
-    for (const Facet& facet : facets) {
-      nearest = std::min(nearest, squaredNorm(nearestOnFacet(p, facet) - p));
-    }
-    EXPECT_DOUBLE_EQ(tree.nearest(p).squared, nearest);
-  }
-}
-
-/// Along one of the axes nothing parts them.
-TEST(TriangleTree, FindsTheNearestOfFacetsInOnePlane) {
-  MeshBuilder builder;
-  for (float x = -1; x < 1; x += 0.125F) {
-    for (float z = -1; z < 1; z += 0.25F) builder.floor({x, 0, z}, {x + 0.1F, 0, z + 0.2F}, 2);
-  }
-  const TriangleMesh mesh = builder.build();
-  const TriangleTree tree(facetsOf(mesh));
-  for (const Vec3d& p : randomPoints(mesh.bounds, 0.5F, 200)) {
-    EXPECT_NEAR(std::sqrt(tree.nearest(p).squared), bruteForce(mesh, p), 1e-7);
-  }
-}
-
-TEST(TriangleTree, OfNothingFindsNothing) {
-  EXPECT_EQ(TriangleTree({}).nearest({0, 0, 0}).facet, kNoFacet);
 }
 
 TEST(ExteriorSolid, KnowsInsideFromOutside) {
@@ -145,7 +61,7 @@ TEST(ExteriorSolid, KnowsInsideFromOutside) {
 TEST(ExteriorSolid, MeasuresSignedDistances) {
   const KnownSolid known = test::box(0.1, 0.06, 0.2);
   const ExteriorSolid solid(known.mesh, kSmallestRadius, 1);
-  for (const Vec3d& p : randomPoints(known.mesh.bounds, 0.02F, 1000)) {
+  for (const Vec3d& p : test::randomPoints(kSeed, known.mesh.bounds, 0.02F, 1000)) {
     const double truth = known.distance({p.x, p.y, p.z});
     // Right at the surface the sign is not certain.
     EXPECT_NEAR(solid.distance(p).distance, truth, std::fabs(truth) < 0.0005 ? 0.001 : 1e-6);

@@ -2,9 +2,9 @@
 #include <memory>
 #include <span>
 
+#include "distance/triangle_tree.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "sphere_set/solid/probe_field.h"
-#include "sphere_set/solid/triangle_tree.h"
 
 namespace galactic::bake::sphere_set {
 

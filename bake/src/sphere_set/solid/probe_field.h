@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "distance/triangle_tree.h"
 #include "sphere_set/solid/box.h"
-#include "sphere_set/solid/triangle_tree.h"
 
 namespace galactic::bake::sphere_set {
 

@@ -8,7 +8,7 @@
 
 #include "common/vec3d.h"
 
-namespace galactic::bake::sphere_set {
+namespace galactic::bake {
 
 /// The corners of a triangle.
 using Facet = std::array<Vec3, 3>;
@@ -80,4 +80,4 @@ class TriangleTree {
 /// The point of a triangle nearest to `p` (Ericson, Real-Time Collision Detection, 5.1.5).
 [[nodiscard]] Vec3d nearestOnFacet(const Vec3d& p, const Facet& facet);
 
-}  // namespace galactic::bake::sphere_set
+}  // namespace galactic::bake

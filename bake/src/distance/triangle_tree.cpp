@@ -1,10 +1,10 @@
-#include "sphere_set/solid/triangle_tree.h"
+#include "distance/triangle_tree.h"
 
 #include <cmath>
 #include <cstddef>
 #include <utility>
 
-namespace galactic::bake::sphere_set {
+namespace galactic::bake {
 
 /// What a tree asks of a facet, together: facets in the order of the tree lie anywhere.
 struct PartedFacet {
@@ -269,4 +269,4 @@ NearestPoint TriangleTree::nearest(const Vec3d& p, const SearchLimits& limits) c
   return best;
 }
 
-}  // namespace galactic::bake::sphere_set
+}  // namespace galactic::bake
