@@ -79,7 +79,7 @@ class CellScatter {
   }
 
   const GridFrame& frame_;
-  PreparedTriangle triangle_;
+  CellTriangle triangle_;
   /// Half the edge of a square, and what its heights grow by.
   double half_;
   double pad_;

@@ -180,40 +180,44 @@ std::optional<HeightInterval> inWorld(const Hull& hull, double height) {
   return HeightInterval{hull.lo + height, hull.hi + height};
 }
 
-/// A square of centers.
+/// A square of centers of balls.
 struct Cell {
   Line center;
   double half = 0;
+  double radius = 0;
 };
 
 /// The center of the cell nearest to a corner reaches furthest up and down on its ball.
-void addCornerOverCell(const Point& corner, const Cell& cell, double radius, Hull& hull) {
+void addCornerOverCell(const Point& corner, const Cell& cell, Hull& hull) {
   const double dx = std::max(std::abs(cell.center.x - corner[0]) - cell.half, 0.0);
   const double dz = std::max(std::abs(cell.center.z - corner[2]) - cell.half, 0.0);
-  addCorner(corner, {corner[0] + dx, corner[2] + dz}, radius, hull);
+  addCorner(corner, {corner[0] + dx, corner[2] + dz}, cell.radius, hull);
 }
 
 /// Where a center on one side of the cell touches the edge with a contact normal square to both: a
 /// height can be extreme there between the cell's corners. `side_axis` (0 or 2) is the axis along
 /// which the side runs.
-void addEdgeOverSide(const Point& from, const Point& edge, const Cell& cell, std::size_t side_axis,
-                     Hull& hull, double radius) {
+void addEdgeOverSide(const Edge& of, const CellTriangle::SideNormal& normal, const Cell& cell,
+                     std::size_t side_axis, Hull& hull) {
   const std::size_t across_axis = 2 - side_axis;
+  const Point& from = of.from;
+  const Point& edge = of.edge;
   const std::array<double, 3> center{cell.center.x, 0, cell.center.z};
   // An edge that runs in a plane square to the side's offset has a horizontal normal (or, parallel
   // to the side, is covered by the sides across it): no extreme height.
-  if (edge[across_axis] == 0) return;
-  const double length = std::sqrt(edge[1] * edge[1] + edge[across_axis] * edge[across_axis]);
-  const double normal_across = -edge[1] / length;
-  const double normal_up = edge[across_axis] / length;
+  const double across = edge[across_axis];
+  if (across == 0) return;
   for (const double side : {-cell.half, cell.half}) {
-    for (const double reach : {-radius, radius}) {
-      const double gap = center[across_axis] + side - from[across_axis];
-      const double part = (gap - reach * normal_across) / edge[across_axis];
-      if (!(part >= 0 && part <= 1)) continue;
+    const double gap = center[across_axis] + side - from[across_axis];
+    for (const double reach : {-cell.radius, cell.radius}) {
+      const double offset = gap - reach * normal.across;
+      // Most sides touch the edge's line beyond its ends, which is known without the division.
+      const double forward = across < 0 ? -offset : offset;
+      if (!(forward >= 0 && forward <= std::abs(across))) continue;
+      const double part = offset / across;
       const double along = from[side_axis] + part * edge[side_axis];
       if (std::abs(center[side_axis] - along) > cell.half) continue;
-      const double height = from[1] + part * edge[1] + reach * normal_up;
+      const double height = from[1] + part * edge[1] + reach * normal.up;
       hull.add(height, height);
     }
   }
@@ -244,25 +248,39 @@ std::optional<HeightInterval> touchingHeights(const std::array<Point, 3>& triang
   return inWorld(hull, triangle[0][1]);
 }
 
-std::optional<HeightInterval> touchingHeightsOverCell(const PreparedTriangle& triangle, double x,
+CellTriangle::CellTriangle(const std::array<Point, 3>& triangle) : prepared(triangle) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point& edge = prepared.edges[k].edge;
+    for (const std::size_t side_axis : {0U, 2U}) {
+      const double across = edge[2 - side_axis];
+      if (across == 0) continue;
+      const double length = std::sqrt(edge[1] * edge[1] + across * across);
+      side_normals[k][side_axis / 2] = {.across = -edge[1] / length, .up = across / length};
+    }
+  }
+}
+
+std::optional<HeightInterval> touchingHeightsOverCell(const CellTriangle& triangle, double x,
                                                       double z, double half, double radius) {
   // The upper (lower) end over the square of centers is a concave (convex) function: its extreme
   // lies over a corner of the triangle, at a corner of the square, or on a side of the square where
   // an edge's contact normal is square to that side.
-  const Cell cell{{x - triangle.first[0], z - triangle.first[2]}, half};
+  const PreparedTriangle& prepared = triangle.prepared;
+  const Cell cell{{x - prepared.first[0], z - prepared.first[2]}, half, radius};
   Hull hull;
   for (const double dx : {-half, half}) {
     for (const double dz : {-half, half}) {
-      addTriangle(triangle, {cell.center.x + dx, cell.center.z + dz}, radius, hull);
+      addTriangle(prepared, {cell.center.x + dx, cell.center.z + dz}, radius, hull);
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    const Edge& edge = triangle.edges[k];
-    addCornerOverCell(triangle.corners[k], cell, radius, hull);
-    addEdgeOverSide(edge.from, edge.edge, cell, 0, hull, radius);
-    addEdgeOverSide(edge.from, edge.edge, cell, 2, hull, radius);
+    addCornerOverCell(prepared.corners[k], cell, hull);
+    for (const std::size_t side_axis : {0U, 2U}) {
+      addEdgeOverSide(prepared.edges[k], triangle.side_normals[k][side_axis / 2], cell, side_axis,
+                      hull);
+    }
   }
-  return inWorld(hull, triangle.first[1]);
+  return inWorld(hull, prepared.first[1]);
 }
 
 double squaredDistance(const Point& point, const std::array<Point, 3>& triangle) {

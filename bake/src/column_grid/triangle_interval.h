@@ -32,7 +32,7 @@ struct HeightInterval {
 [[nodiscard]] std::optional<HeightInterval> touchingHeights(const std::array<Point, 3>& triangle,
                                                             double x, double z, double radius);
 
-/// What the intervals over many cells need of one triangle.
+/// What intervals on many lines need of one triangle.
 struct PreparedTriangle {
   /// From a corner to the next one.
   struct Edge {
@@ -72,10 +72,27 @@ struct PreparedTriangle {
   std::optional<Face> face;
 };
 
+/// What intervals over many cells need of one triangle.
+struct CellTriangle {
+  /// Of an edge, at a right angle to it and to the x or the z axis: how far it goes along the other
+  /// one of these, and up. 0 where the edge does not go along that one.
+  struct SideNormal {
+    double across = 0;
+    double up = 0;
+  };
+
+  explicit CellTriangle(const std::array<Point, 3>& triangle);
+
+  PreparedTriangle prepared;
+  /// By edge: at a right angle to the x axis, and to the z axis.
+  std::array<std::array<SideNormal, 2>, 3> side_normals{};
+};
+
 /// The same for a center anywhere over the square of half edge `half` around (x, z): the heights at
 /// which some center in the square touches.
-[[nodiscard]] std::optional<HeightInterval> touchingHeightsOverCell(
-    const PreparedTriangle& triangle, double x, double z, double half, double radius);
+[[nodiscard]] std::optional<HeightInterval> touchingHeightsOverCell(const CellTriangle& triangle,
+                                                                    double x, double z, double half,
+                                                                    double radius);
 
 /// Squared distance from `point` to the triangle: the least over its edges, and its plane where the
 /// foot lies inside. Safe on needles, where the usual barycentric closest point is not.

@@ -309,8 +309,7 @@ TEST(TriangleIntervalOverCell, EqualsTheHullOverAFineSquareOfCenters) {
   for (int i = 0; i < kCases; ++i) {
     const auto shape = static_cast<Shape>(i % static_cast<int>(Shape::kCount));
     const Question q = source.next(shape);
-    const auto found =
-        touchingHeightsOverCell(PreparedTriangle(q.triangle), q.x, q.z, kHalf, q.radius);
+    const auto found = touchingHeightsOverCell(CellTriangle(q.triangle), q.x, q.z, kHalf, q.radius);
     const auto expected = SquareSearch(q, kHalf).run();
     touching += found ? 1 : 0;
     if (expected) {
