@@ -15,7 +15,7 @@ Result<void> checkOutput(const PackFile& pack, const std::filesystem::path& outp
 }
 
 Result<void> writeOutput(const std::filesystem::path& output, const std::string& bytes) {
-  RETURN_IF_ERROR(checkNotDash(output));
+  RETURN_IF_ERROR(tryFile(output));
   return writeFileAtomically(output, {std::as_bytes(std::span(bytes))});
 }
 

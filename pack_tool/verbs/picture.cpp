@@ -151,7 +151,8 @@ Result<void> makePicture(const PictureOptions& options, AbsentTextures& absent) 
   RETURN_IF_ERROR(checkExtension(options.output, kPictureFile));
   ASSIGN_OR_RETURN(const auto pack, PackFile::open(options.pack, options.trust));
   ASSIGN_OR_RETURN(const auto image, draw(pack, options, absent));
-  if (auto checked = checkOutput(pack, options.output); !checked) return checked;
+  RETURN_IF_ERROR(checkOutput(pack, options.output));
+  RETURN_IF_ERROR(tryFile(options.output));
   return pictures::writePng(options.output, image);
 }
 

@@ -7,6 +7,7 @@
 #include "pack_tool/asset_packs.h"
 #include "support/build_paths.h"
 #include "support/file_content.h"
+#include "support/files/part_files.h"
 #include "support/pack_tool_fixture.h"
 #include "support/packs/episode_pack_builder.h"
 #include "support/program_run.h"
@@ -269,6 +270,17 @@ TEST_F(PackCli, PictureExportAndViewWriteTheirFilesQuietly) {
     EXPECT_EQ(result.exit_code, 0) << arguments[3];
     EXPECT_EQ(result.out + result.err, "") << arguments[3];
     EXPECT_THAT(test::fileContent(folder_.path() / arguments[3]), StartsWith(start));
+  }
+}
+
+TEST_F(PackCli, RemovesWhatKilledOnesLeftOfTheFileThatItWrites) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"picture", "good.pack", "-o", "out.png"},
+        {"view", "good.pack", "-o", "out.html"}}) {
+    const std::string part = partPathOf(arguments.back(), 0).string();
+    write(part, "half");
+    EXPECT_EQ(run(arguments).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / part)) << part;
   }
 }
 

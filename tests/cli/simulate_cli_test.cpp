@@ -417,6 +417,20 @@ TEST_F(SimulateCli, KeepsTheRestOfARunWhoseRecordingFillsTheDisk) {
   EXPECT_THAT(files(), Not(testing::Contains(StartsWith("run.rec"))));
 }
 
+TEST_F(SimulateCli, RemovesWhatAKilledRunLeftOfTheSameFile) {
+  const test::StartedProgram started(test::builtProgram("galactic-run"), folder_.path(),
+                                     {"world.pack", "--envs", "1", "--steps", "100000000000",
+                                      "--threads", "1", "--record", "run.rec"});
+  waitForRecording();
+  started.signal(SIGKILL);
+  ASSERT_EQ(started.wait().exit_code, -1);
+  EXPECT_THAT(files(), testing::Contains(StartsWith("run.rec.part-")));
+  EXPECT_EQ(run({"--envs", "1", "--steps", "1", "--record", "another.rec"}).exit_code, 0);
+  EXPECT_THAT(files(), testing::Contains(StartsWith("run.rec.part-")));
+  EXPECT_EQ(run({"--envs", "1", "--steps", "1", "--record", "run.rec"}).exit_code, 0);
+  EXPECT_THAT(files(), Not(testing::Contains(HasSubstr(".part-"))));
+}
+
 TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
   // timeout sends what Ctrl-C does; the run itself would take days.
   const ProgramRun result =

@@ -19,6 +19,7 @@
 #include "pictures/png_file.h"
 #include "support/files/atomic_file.h"
 #include "support/files/output_files.h"
+#include "support/files/part_files.h"
 #include "support/out_of_memory.h"
 #include "support/try.h"
 
@@ -152,7 +153,9 @@ bool isFrameName(std::string_view name) {
 Result<void> makeFrameFolder(const std::filesystem::path& folder) {
   RETURN_IF_ERROR(checkNotDash(folder));
   RETURN_IF_ERROR(makeFolders(folder));
-  return tryFile(folder / frameName(0, 0, "rgb.png"));
+  RETURN_IF_ERROR(tryFile(folder / frameName(0, 0, "rgb.png")));
+  (void)removeStaleParts(folder, {.accepts = isFrameName});
+  return {};
 }
 
 Image tileOf(const EnvFrame& frame) {

@@ -48,8 +48,9 @@ struct PicturedRun {
 /// Whether a frame may have this name, or what stands beside the frames.
 [[nodiscard]] bool isFrameName(std::string_view name);
 
-/// Makes the folder that frames are written into, if needed. Fails with kIo when it cannot, or when
-/// no frame can be written there.
+/// Makes the folder that frames are written into, if needed, and removes the frames that killed
+/// runs began to write there. Fails with kIo when it cannot be made, or when no frame can be
+/// written there.
 [[nodiscard]] Result<void> makeFrameFolder(const std::filesystem::path& folder);
 
 /// Writes frames, contact sheet and video of a run, as the options say.

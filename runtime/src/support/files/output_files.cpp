@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "support/files/atomic_file.h"
+#include "support/files/part_files.h"
 #include "support/try.h"
 
 namespace galactic {
@@ -86,6 +87,12 @@ Result<void> makeFolders(const fs::path& folder) {
 Result<void> tryFile(const fs::path& path) {
   RETURN_IF_ERROR(checkNotDash(path));
   RETURN_IF_ERROR(AtomicFile::create(path));
+  // Some thousand names are listed in milliseconds; a folder of millions, elsewhere in a network,
+  // would keep short work waiting.
+  constexpr std::size_t kMostNames = 30'000;
+  const fs::path target = followLinks(path);
+  (void)removeStaleParts(target.parent_path(),
+                         {.target = target.filename().string(), .most_names = kMostNames});
   return {};
 }
 

@@ -58,8 +58,10 @@ inline constexpr FileKind kPictureFile{".png", "pictures are PNG files"};
 /// kIo.
 [[nodiscard]] Result<void> makeFolders(const std::filesystem::path& folder);
 
-/// Fails with kIo when no file can be written under this name, and for "-"; leaves nothing behind
-/// and a file of the name as it is. Long work that ends with a file begins with this.
+/// Fails with kIo when no file can be written under this name, and for "-"; leaves a file of the
+/// name as it is, and nothing else: what killed programs began to write under it is removed
+/// (removeStaleParts), as far as it is among the first 30,000 names of the folder. Programs that
+/// write a file begin with this.
 [[nodiscard]] Result<void> tryFile(const std::filesystem::path& path);
 
 }  // namespace galactic

@@ -133,16 +133,20 @@ class OpenPart {
 
 /// The parts that `Iterator` finds.
 template <class Iterator>
-std::vector<fs::path> partsIn(const fs::path& folder, const std::string& target) {
+std::vector<fs::path> partsIn(const fs::path& folder, const PartSearch& search) {
   std::vector<fs::path> parts;
-  const std::string wanted = standIn(target);
+  const std::string wanted = standIn(search.target);
+  std::size_t looked_at = 0;
   std::error_code problem;
   for (Iterator at(folder, fs::directory_options::skip_permission_denied, problem), end;
-       !problem && at != end; at.increment(problem)) {
+       !problem && at != end && looked_at < search.most_names; at.increment(problem)) {
+    ++looked_at;
     const std::string file = at->path().filename().string();
     PartName name;
     if (!parsePartName(file, name)) continue;
-    if (wanted.empty() || name.target == wanted) parts.push_back(at->path());
+    const bool is_wanted = (wanted.empty() || name.target == wanted) &&
+                           (!search.accepts || search.accepts(name.target));
+    if (is_wanted) parts.push_back(at->path());
   }
   return parts;
 }
@@ -226,9 +230,9 @@ bool removeStalePart(const fs::path& part, std::chrono::seconds age) {
 
 std::size_t removeStaleParts(const fs::path& folder, const PartSearch& search) {
   const fs::path from = folder.empty() ? fs::path(".") : folder;
-  const std::vector<fs::path> parts =
-      search.is_recursive ? partsIn<fs::recursive_directory_iterator>(from, search.target)
-                          : partsIn<fs::directory_iterator>(from, search.target);
+  const std::vector<fs::path> parts = search.is_recursive
+                                          ? partsIn<fs::recursive_directory_iterator>(from, search)
+                                          : partsIn<fs::directory_iterator>(from, search);
   return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), [&](const auto& part) {
     return removeStalePart(part, search.age);
   }));

@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
+#include <string_view>
 
 namespace galactic {
 
@@ -76,6 +78,11 @@ struct PartSearch {
   bool is_recursive = false;
   /// Only parts of a target of this name; empty: of any.
   std::string target{};
+  /// Only parts of targets whose names it answers yes to, shortened where they are long; empty: of
+  /// any.
+  std::function<bool(std::string_view target)> accepts{};
+  /// How many names are looked at, in the order of the file system.
+  std::size_t most_names = std::numeric_limits<std::size_t>::max();
   std::chrono::seconds age = kPartAge;
 };
 

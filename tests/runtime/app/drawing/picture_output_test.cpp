@@ -29,6 +29,7 @@ using pictures::Rgb;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 /// Memory for a small image of all kinds.
 struct SmallImage {
@@ -270,6 +271,15 @@ TEST_F(Pictures, AFileInTheWayOfTheFramesIsRefused) {
   EXPECT_EQ(made.error().code, ErrorCode::kIo);
   EXPECT_EQ(made.error().where, in_the_way);
   EXPECT_THAT(made.error().message, HasSubstr("cannot be made a folder"));
+}
+
+TEST_F(Pictures, FramesThatKilledRunsBeganAreRemovedWhateverTheirStep) {
+  const std::string begun = "frames/env_0003_step_000120_rgb.png";
+  for (const std::string& name : {begun, std::string("frames/mine.png")}) {
+    static_cast<void>(folder_.write(partPathOf(name, 0).string(), "half"));
+  }
+  ASSERT_TRUE(makeFrameFolder(file("frames")));
+  EXPECT_THAT(files("frames"), ElementsAre(StartsWith("mine.png.part-")));
 }
 
 TEST_F(Pictures, AVideoIsTheTilesOfAllFrames) {

@@ -10,11 +10,13 @@
 #include <climits>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "support/file_content.h"
 #include "support/files/atomic_file.h"
+#include "support/files/output_files.h"
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
@@ -72,6 +74,35 @@ TEST_F(PartFiles, AreLookedForWhereTheCallerSays) {
   EXPECT_EQ(removeStaleParts(folder_.path(), {}), 1U);
   EXPECT_EQ(files().size(), 1U);
   EXPECT_EQ(removeStaleParts(at("none"), {.is_recursive = true}), 0U);
+}
+
+TEST_F(PartFiles, AreLookedForByWhatTheirTargetsAreCalledAndAmongSoManyNames) {
+  leavePart("a.png");
+  leavePart("b.png");
+  leavePart("a.pack");
+  const auto is_picture = [](std::string_view name) { return name.ends_with(".png"); };
+  EXPECT_EQ(removeStaleParts(folder_.path(), {.accepts = is_picture, .most_names = 0}), 0U);
+  EXPECT_EQ(removeStaleParts(folder_.path(), {.target = "a.pack", .accepts = is_picture}), 0U);
+  EXPECT_EQ(removeStaleParts(folder_.path(), {.accepts = is_picture}), 2U);
+  leavePart("b.pack");
+  EXPECT_EQ(removeStaleParts(folder_.path(), {.most_names = 1}), 1U);
+  EXPECT_EQ(files().size(), 1U);
+}
+
+TEST_F(PartFiles, OfAFileAreRemovedByTheNextWhoTriesToWriteIt) {
+  leavePart("a.rec");
+  leavePart("b.rec");
+  (void)folder_.write("a.rec.part-0123456789abcdef-77-0", "another machine's");
+  const auto writer = AtomicFile::create(at("a.rec"));
+  ASSERT_TRUE(writer.has_value());
+  ASSERT_EQ(files().size(), 4U);
+  ASSERT_TRUE(tryFile(at("a.rec")).has_value());
+  EXPECT_EQ(files().size(), 3U) << "what somebody writes stays";
+  // Beside what a link leads to, where it was written.
+  fs::create_directories(at("links"));
+  fs::create_symlink("../b.rec", at("links/link.rec"));
+  ASSERT_TRUE(tryFile(at("links/link.rec")).has_value());
+  EXPECT_EQ(files().size(), 2U);
 }
 
 TEST_F(PartFiles, ThatAreBeingWrittenStay) {
