@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "report.h"
+#include "support/files/output_files.h"
 #include "support/text/printable.h"
 #include "views.h"
 
@@ -19,7 +21,20 @@ std::string clockText(double seconds) {
   return fmt::format("{}:{:02}:{:02}", minutes / 60, minutes % 60, whole % 60);
 }
 
+/// Whether a part of what `job` makes is done, which the next bake goes on with.
+bool isBegun(const PackJob& job) { return isThere(job.output.string() + ".partial"); }
+
 }  // namespace
+
+FileFollower::FileFollower(const BakeCommand& command, std::span<const PackJob> jobs)
+    : stop_("galactic-bake",
+            [jobs] {
+              return std::ranges::any_of(jobs, isBegun)
+                         ? "interrupted; the same command goes on where it was"
+                         : "interrupted; an existing pack is left as it was";
+            }),
+      verbosity_(command.run.verbosity),
+      line_(command.saysMore()) {}
 
 void FileFollower::show(std::string_view item, std::string_view stage, double fraction) {
   const std::lock_guard lock(mutex_);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <mutex>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,16 +15,17 @@
 
 namespace galactic::bake {
 
-/// Follows the build of single files: a line of progress, and the closing table of each.
+/// Follows the build of single files: a line of progress, and the closing table of each. The first
+/// Ctrl-C ends the program: one file may take long, and what is kept of it is kept on the way.
 class FileFollower final : public BuildObserver {
  public:
-  explicit FileFollower(const BakeCommand& command)
-      : verbosity_(command.run.verbosity), line_(command.saysMore()) {}
+  FileFollower(const BakeCommand& command, std::span<const PackJob> jobs);
 
   void show(std::string_view item, std::string_view stage, double fraction) override;
   void end(const PackOutcome& pack) override;
 
  private:
+  StopRequest stop_;
   std::mutex mutex_;
   Verbosity verbosity_;
   ProgressLine line_;

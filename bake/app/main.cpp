@@ -38,7 +38,7 @@ int bakeFiles(const BakeCommand& command) {
   for (const PackJob& job : *jobs) packs.named.push_back(job.output);
   if (auto checked = checkOutputs(command, *jobs, packs); !checked) return refuse(checked.error());
   if (auto tried = tryOutputs(command, packs.named); !tried) return refuse(tried.error());
-  FileFollower follower(command);
+  FileFollower follower(command, *jobs);
   BakeLibraries libraries;
   const BuildOutcome outcome = build(*jobs,
                                      {.threads = command.run.threads,

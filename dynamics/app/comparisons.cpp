@@ -14,7 +14,6 @@
 
 #include "galactic/bake/parallel_for.h"
 #include "support/console/standard_streams.h"
-#include "support/console/stop_request.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {
@@ -79,7 +78,7 @@ class LanePool {
 
 Result<std::vector<EpisodeComparison>> compareAll(const EpisodeSource& episodes,
                                                   const ComparisonWorlds& worlds,
-                                                  const Command& command,
+                                                  const Command& command, const StopRequest& stop,
                                                   ComparisonJournal* journal) {
   std::vector<std::optional<Result<EpisodeComparison>>> results(episodes.count());
   std::vector<std::size_t> open;
@@ -91,8 +90,6 @@ Result<std::vector<EpisodeComparison>> compareAll(const EpisodeSource& episodes,
   const std::size_t wanted =
       command.threads != 0 ? command.threads : std::max(1U, std::thread::hardware_concurrency());
   const std::size_t threads = std::min(wanted, open.size());
-  // Before there are threads, which inherit it.
-  const StopRequest stop("galactic-dynamics");
   ASSIGN_OR_RETURN(const auto lanes, LanePool::create(episodes, threads));
   Progress progress(results.size() - open.size(), results.size(), command.is_quiet);
   // What cannot be kept is not worth the time.

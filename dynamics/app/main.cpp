@@ -23,6 +23,7 @@
 #include "galactic/bake/read_files.h"
 #include "run/recording.h"
 #include "support/console/standard_streams.h"
+#include "support/console/stop_request.h"
 #include "support/exception_error.h"
 #include "support/files/atomic_file.h"
 #include "support/files/output_files.h"
@@ -138,6 +139,7 @@ int endInterrupted(const Command& command, std::size_t done, std::size_t all) {
 
 /// The exit code.
 Result<int> run(const Command& command) {
+  const StopRequest stop("galactic-dynamics");
   ASSIGN_OR_RETURN(const auto world, World::open(command.packs));
   ASSIGN_OR_RETURN(const auto sources,
                    readSources({.recipe = command.recipe, .data = command.data}, world));
@@ -160,7 +162,7 @@ Result<int> run(const Command& command) {
   const ComparisonWorlds worlds{world, episodes->options(), sources, command.world};
   Comparisons comparisons;
   ASSIGN_OR_RETURN(comparisons.episodes,
-                   compareAll(*episodes, worlds, command, journal ? &*journal : nullptr));
+                   compareAll(*episodes, worlds, command, stop, journal ? &*journal : nullptr));
   if (comparisons.episodes.size() < episodes->count()) {
     return endInterrupted(command, comparisons.episodes.size(), episodes->count());
   }

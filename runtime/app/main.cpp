@@ -92,8 +92,9 @@ int simulateWorld(const RunOptions& options, const OpenedWorld& world, const Run
   if (!options.without_effect.empty()) return galactic::refuseCommandLine(options.without_effect);
   const Result<galactic::RunReport> run = galactic::simulate(options, world, source);
   if (!run) return report(run.error());
-  if (!options.is_quiet) fmt::print("{}", galactic::tableOf(*run));
+  // First, as printing fails where the terminal is gone.
   const Result<void> saved = saveReport(*run);
+  if (!options.is_quiet) fmt::print("{}", galactic::tableOf(*run));
   if (run->fault) return report(*run->fault);
   if (!saved) return report(saved.error());
   if (run->is_interrupted) return galactic::kExitInterrupted;

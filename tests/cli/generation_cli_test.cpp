@@ -10,10 +10,12 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "cli/bake_folder.h"
 #include "galactic/episode_set.h"
+#include "galactic/error.h"
 #include "galactic/pack.h"
 #include "galactic/world.h"
 #include "support/build_paths.h"
@@ -156,13 +158,18 @@ TEST_F(GenerationCli, GoesOnWhereItWasKilled) {
   EXPECT_FALSE(has("whole/out.pack.partial"));
   // Killed after the first of seven batches, and after one more.
   std::size_t kept = 0;
-  for (const std::size_t wanted : {2U, 3U}) {
+  for (const auto& [wanted, number] : {std::pair{2U, SIGTERM}, std::pair{3U, SIGKILL}}) {
     const test::StartedProgram program = startDrawing(to("out.pack"));
     for (int n = 0; n < 5000 && recordsOf("out.pack.partial").size() < wanted; ++n) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    program.signal(SIGKILL);
-    ASSERT_EQ(program.wait().exit_code, -1);
+    program.signal(number);
+    const ProgramRun ended = program.wait();
+    ASSERT_EQ(ended.exit_code, number == SIGKILL ? -1 : kExitInterrupted);
+    EXPECT_EQ(ended.err,
+              number == SIGKILL
+                  ? ""
+                  : "\ngalactic-bake: interrupted; the same command goes on where it was\n");
     EXPECT_FALSE(has("out.pack"));
     const std::vector<std::string> records = recordsOf("out.pack.partial");
     EXPECT_GE(records.size(), wanted);

@@ -133,7 +133,7 @@ TEST_F(PlanFaults, WhereFilesMayNotGrowSaysSoAndLeavesOldPacksAsTheyWere) {
 
 TEST_F(PlanFaults, StopsBetweenPacksAndGoesOnLater) {
   ASSERT_EQ(bake("whole").exit_code, 0);
-  for (const int number : {SIGINT, SIGTERM}) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     fs::remove_all(path("out"));
     const StartedProgram program = start("out", {"-j", "1"});
     const auto has_begun = [&] {

@@ -457,7 +457,7 @@ TEST_F(RenderCli, ASecondSignalEndsARunAtOnceThatHasMuchToFinish) {
   std::this_thread::sleep_for(std::chrono::seconds(1));
   started.signal(SIGTERM);
   const ProgramRun result = started.wait();
-  EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
+  EXPECT_EQ(result.exit_code, kExitInterrupted) << result.err;
   EXPECT_EQ(result.err, "\ngalactic-run: finishing what has begun; once more to stop at once\n");
   EXPECT_THAT(result.out, IsEmpty());
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "run.mp4"));

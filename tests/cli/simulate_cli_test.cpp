@@ -1,7 +1,12 @@
 // Simulations with galactic-run as a user meets them: table, report, recordings, exit codes.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -429,6 +434,34 @@ TEST_F(SimulateCli, RemovesWhatAKilledRunLeftOfTheSameFile) {
   EXPECT_THAT(files(), testing::Contains(StartsWith("run.rec.part-")));
   EXPECT_EQ(run({"--envs", "1", "--steps", "1", "--record", "run.rec"}).exit_code, 0);
   EXPECT_THAT(files(), Not(testing::Contains(HasSubstr(".part-"))));
+}
+
+TEST_F(SimulateCli, WritesItsFilesWhenItsTerminalCloses) {
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_TRUE(terminal >= 0 && ::grantpt(terminal) == 0 && ::unlockpt(terminal) == 0);
+  const std::string name = ::ptsname(terminal);
+  const std::string program = test::builtProgram("galactic-run");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    // Also where the tests were started with nohup.
+    std::signal(SIGHUP, SIG_DFL);
+    // The first one that a leader of a session opens is its terminal.
+    ::setsid();
+    const int end = ::open(name.c_str(), O_RDWR);
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(end, stream);
+    if (::chdir(folder_.path().c_str()) != 0) ::_exit(1);
+    ::execl(program.c_str(), program.c_str(), "world.pack", "--envs", "1", "--threads", "1",
+            "--steps", "100000000000", "--record", "run.rec", "--report", "run.json", nullptr);
+    ::_exit(1);
+  }
+  waitForRecording();
+  ::close(terminal);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), kExitInterrupted);
+  EXPECT_TRUE(RecordingReader::open(folder_.path() / "run.rec"));
+  EXPECT_EQ(json::parse(content("run.json"), nullptr, false).value("interrupted", false), true);
 }
 
 TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {

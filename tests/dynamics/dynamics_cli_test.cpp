@@ -68,11 +68,13 @@ class DynamicsCli : public testing::Test {
   }
   /// The scripted policy in closed loop, told to end when the first episode is done.
   [[nodiscard]] static ProgramRun interrupted(const std::string& report,
-                                              const std::string& data = sample()) {
+                                              const std::string& data = sample(),
+                                              const std::string& signal = "TERM") {
     const std::string script =
         "\"$@\" & tool=$!\n"
         "until grep -q number $report.partial 2> /dev/null; do :; done\n"
-        "kill -TERM $tool; wait $tool";
+        "kill -" +
+        signal + " $tool; wait $tool";
     return runProgram("/usr/bin/env", folder_->path(),
                       {"report=" + report, "sh", "-c", script, "sh",
                        builtProgram("galactic-dynamics"), "home.toml", "home.pack", "--data", data,
@@ -327,7 +329,7 @@ TEST_F(DynamicsCli, RefusesCollisionAssetsThatAreFarTooLarge) {
 }
 
 TEST_F(DynamicsCli, SaysHowToGoOnWhenItIsInterrupted) {
-  const ProgramRun stopped = interrupted("stopped.json");
+  const ProgramRun stopped = interrupted("stopped.json", sample(), "HUP");
   EXPECT_EQ(stopped.exit_code, kExitInterrupted) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("galactic-dynamics: interrupted after "));
   EXPECT_THAT(stopped.err, HasSubstr(" of 6 episodes; start it again to go on from there\n"));

@@ -50,10 +50,18 @@ class StartedProgram {
     posix_spawn_file_actions_addchdir_np(&actions, folder_.c_str());
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
+    // Whoever runs the tests may have these ignored: nohup, or a shell in the background.
+    sigset_t heard;
+    sigemptyset(&heard);
+    sigaddset(&heard, SIGHUP);
+    sigaddset(&heard, SIGINT);
+    posix_spawnattr_setsigdefault(&attributes, &heard);
+    int flags = POSIX_SPAWN_SETSIGDEF;
     if (group == ProgramGroup::kOwn) {
-      posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+      flags |= POSIX_SPAWN_SETPGROUP;
       posix_spawnattr_setpgroup(&attributes, 0);
     }
+    posix_spawnattr_setflags(&attributes, static_cast<short>(flags));
     const int spawned =
         posix_spawn(&child_, program.c_str(), &actions, &attributes, argv.data(), environ);
     posix_spawnattr_destroy(&attributes);
