@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pack_tool/command_line.h"
+#include "support/console/prepare_program.h"
 #include "support/console/standard_streams.h"
 #include "support/exception_error.h"
 
@@ -49,7 +50,7 @@ std::vector<char>& memoryToEndWith() {
 }  // namespace galactic::pack_tool
 
 int main(int argc, char** argv) {
-  galactic::prepareStandardStreams();
+  galactic::prepareProgram();
   const galactic::pack_tool::Console console{std::cout, std::cerr};
   try {
     (void)galactic::pack_tool::memoryToEndWith();

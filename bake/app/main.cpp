@@ -8,6 +8,7 @@
 #include "followers.h"
 #include "galactic/bake/robot_recipe.h"
 #include "outputs.h"
+#include "support/console/prepare_program.h"
 #include "support/console/standard_streams.h"
 #include "support/exception_error.h"
 #include "support/files/output_files.h"
@@ -87,7 +88,7 @@ int run(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   namespace bake = galactic::bake;
-  galactic::prepareStandardStreams();
+  galactic::prepareProgram();
   try {
     return galactic::flushStandardOutput("galactic-bake", bake::run(argc, argv));
   } catch (...) {

@@ -22,6 +22,7 @@
 #include "galactic/bake/assets.h"
 #include "galactic/bake/read_files.h"
 #include "run/recording.h"
+#include "support/console/prepare_program.h"
 #include "support/console/standard_streams.h"
 #include "support/console/stop_request.h"
 #include "support/exception_error.h"
@@ -189,7 +190,7 @@ int start(int argc, const char* const* argv) {
 
 int main(int argc, char** argv) {
   namespace dynamics = galactic::dynamics;
-  galactic::prepareStandardStreams();
+  galactic::prepareProgram();
   try {
     return galactic::flushStandardOutput("galactic-dynamics", dynamics::start(argc, argv));
   } catch (...) {

@@ -19,6 +19,7 @@
 #include "run/recording.h"
 #include "run/run_report.h"
 #include "run/simulate.h"
+#include "support/console/prepare_program.h"
 #include "support/console/standard_streams.h"
 #include "support/exception_error.h"
 #include "support/files/atomic_file.h"
@@ -154,7 +155,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  galactic::prepareStandardStreams();
+  galactic::prepareProgram();
   try {
     return galactic::flushStandardOutput("galactic-run", run(argc, argv));
   } catch (...) {

@@ -464,6 +464,20 @@ TEST_F(SimulateCli, WritesItsFilesWhenItsTerminalCloses) {
   EXPECT_EQ(json::parse(content("run.json"), nullptr, false).value("interrupted", false), true);
 }
 
+TEST_F(SimulateCli, NamesThePackThatIsCutShortWhileItRuns) {
+  const test::StartedProgram started(test::builtProgram("galactic-run"), folder_.path(),
+                                     {"world.pack", "--envs", "8", "--steps", "100000000000",
+                                      "--threads", "2", "--record", "run.rec"});
+  waitForRecording();
+  std::filesystem::resize_file(folder_.path() / "scenes/kitchen.pack", 0);
+  const ProgramRun result = started.wait();
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_THAT(result.err,
+              testing::MatchesRegex(
+                  "galactic-run: [^\n]*/scenes/kitchen.pack: was cut short while it was in use, "
+                  "[^\n]*\n"));
+}
+
 TEST_F(SimulateCli, EndsCleanlyWhenItIsInterrupted) {
   // timeout sends what Ctrl-C does; the run itself would take days.
   const ProgramRun result =

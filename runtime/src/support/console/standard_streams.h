@@ -3,10 +3,11 @@
 
 namespace galactic {
 
-/// What a program does first of all, so that an output that cannot be written ends it with an exit
-/// code. Fills the places of standard streams that the caller has closed, so that no file and no
-/// pipe that the program opens is taken for one of them; reading and writing them fails, as before.
-/// A file that grows beyond the limit of its size (ulimit -f) becomes an error of writing it.
+/// The part of prepareProgram() that has an output that cannot be written end a program with an
+/// exit code. Fills the places of standard streams that the caller has closed, so that no file and
+/// no pipe that the program opens is taken for one of them; reading and writing them fails, as
+/// before. A file that grows beyond the limit of its size (ulimit -f) becomes an error of writing
+/// it.
 void prepareStandardStreams() noexcept;
 
 /// Writes to standard error. Throws nothing: what cannot be written, such as behind a full disk, is
