@@ -54,10 +54,10 @@ def faults_of(command: list[str], knows: str) -> list[str]:
             return faults if refused else [f"{name} never lacked memory"]
         refused += 1
         line = done.stderr.strip()
-        told = re.fullmatch(rf"{name}: [^\n]+: [^\n]+", line) and re.search("memory| GB ", line) and "internal" not in line
+        told = re.fullmatch(rf"{name}: [^\n]+: [^\n]+", line) and re.search("memory| [GM]B ", line) and "internal" not in line
         if done.returncode not in CODES or not told:
             faults.append(f"{name} with {limit / MEGABYTE:.0f} MB ended with {done.returncode}: {line!r}")
-        foretold = foretold or re.search(rf": {re.escape(needing)}: \d+ {knows} need \d+\.\d GB", line) is not None
+        foretold = foretold or re.search(rf": {re.escape(needing)}: \d+ {knows} need \d+\.\d [GM]B", line) is not None
         limit = int(limit * STEP)
     return [*faults, f"{name} never had enough memory"]
 

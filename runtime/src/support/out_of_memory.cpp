@@ -8,11 +8,20 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <string>
 
 namespace galactic {
 namespace {
 
+constexpr double kMegabyte = 1e6;
 constexpr double kGigabyte = 1e9;
+
+/// "1.8 GB", and of little "2.3 MB".
+std::string memoryText(double bytes) {
+  constexpr double kLittle = 0.1 * kGigabyte;
+  return bytes < kLittle ? fmt::format("{:.1f} MB", bytes / kMegabyte)
+                         : fmt::format("{:.1f} GB", bytes / kGigabyte);
+}
 
 /// Bytes that are mapped now; 0 when unknown.
 double mappedBytes() {
@@ -43,9 +52,9 @@ double limitBytes() {
 Error outOfMemory() {
   return {
       ErrorCode::kUnsupported, "available memory",
-      fmt::format("this needs more than the {:.1f} GB that there are ({:.1f} GB are in use); "
+      fmt::format("this needs more than the {} that there are ({} are in use); "
                   "do less at once, or raise the limit (ulimit -v)",
-                  std::min(machineBytes(), limitBytes()) / kGigabyte, mappedBytes() / kGigabyte)};
+                  memoryText(std::min(machineBytes(), limitBytes())), memoryText(mappedBytes()))};
 }
 
 Result<void> checkMemory(double bytes, std::string_view what, std::string_view advice) {
@@ -54,8 +63,8 @@ Result<void> checkMemory(double bytes, std::string_view what, std::string_view a
   const double left = std::min(machineBytes(), limitBytes() - mappedBytes());
   if (bytes <= left) return {};
   return fail(ErrorCode::kUnsupported, "available memory",
-              fmt::format("{} need {:.1f} GB, and there are {:.1f} GB; {}", what, bytes / kGigabyte,
-                          std::max(0.0, left) / kGigabyte, advice));
+              fmt::format("{} need {}, and there are {}; {}", what, memoryText(bytes),
+                          memoryText(std::max(0.0, left)), advice));
 }
 
 }  // namespace galactic

@@ -4,7 +4,9 @@
 
 #include <limits>
 
+#include "support/limited_memory.h"
 #include "support/out_of_memory.h"
+#include "support/sanitized.h"
 #include "support/text/nearest_name.h"
 
 namespace galactic::number_text_test {
@@ -76,6 +78,17 @@ TEST(OutOfMemory, IsToldBeforehandWhereItIsKnown) {
   EXPECT_EQ(huge.error().message.find("3 things need 1000000000.0 GB, and there are "), 0U)
       << huge.error().message;
   EXPECT_NE(huge.error().message.find("; make fewer"), std::string::npos) << huge.error().message;
+}
+
+TEST(OutOfMemory, IsToldInMegabytesWhereItIsLittle) {
+  if (test::kIsSanitized) GTEST_SKIP() << "no limit of memory holds";
+  const test::LimitedMemory none(0);
+  const Result<void> few = checkMemory(2.34e6, "3 things", "make fewer");
+  ASSERT_FALSE(few.has_value());
+  EXPECT_EQ(few.error().message, "3 things need 2.3 MB, and there are 0.0 MB; make fewer");
+  const Result<void> more = checkMemory(2.34e8, "3 things", "make fewer");
+  ASSERT_FALSE(more.has_value());
+  EXPECT_EQ(more.error().message, "3 things need 0.2 GB, and there are 0.0 MB; make fewer");
 }
 
 }  // namespace
