@@ -9,8 +9,10 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -25,6 +27,20 @@ using pictures::Image;
 
 tl::unexpected<Error> failure(const std::filesystem::path& path, const std::string& message) {
   return fail(ErrorCode::kIo, path.string(), message);
+}
+
+/// Whether some folder of PATH that may be looked into has a file of this name.
+bool isOnPath(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  std::string folder;
+  std::error_code unknown;
+  while (std::getline(folders, folder, ':')) {
+    if (std::filesystem::is_regular_file(folder / std::filesystem::path(program), unknown)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::string textOf(int error) { return std::generic_category().message(error); }
@@ -105,7 +121,8 @@ class VideoPipe::Child {
     if (error == 0) return {};
     pid_ = 0;
     closeSocket();
-    if (error == ENOENT) {
+    // A folder of PATH that may not be looked into says no more than that it may not.
+    if (error == ENOENT || (error == EACCES && !isOnPath("ffmpeg"))) {
       return fail(ErrorCode::kUnsupported, path_.string(),
                   "needs ffmpeg, which is not on PATH; install it, or take --frames instead");
     }

@@ -29,6 +29,23 @@ TEST_F(Videos, AVideoNeedsFfmpegAndSaysSo) {
             "needs ffmpeg, which is not on PATH; install it, or take --frames instead");
 }
 
+TEST_F(Videos, AnFfmpegInAFolderThatMayNotBeLookedIntoIsNone) {
+  // Starting a folder is refused as looking into a closed one is, of root, too.
+  std::filesystem::create_directories(file("closed/ffmpeg"));
+  usePath(file("closed"));
+  const auto video = VideoPipe::start(file("run.mp4"), Image(2, 2, {}));
+  ASSERT_FALSE(video);
+  EXPECT_EQ(video.error().code, ErrorCode::kUnsupported);
+  EXPECT_THAT(video.error().message, HasSubstr("needs ffmpeg, which is not on PATH"));
+  // One that is there and may not be started is another matter.
+  fakeFfmpeg("");
+  std::filesystem::permissions(file("bin/ffmpeg"), std::filesystem::perms::owner_read);
+  usePath(file("closed") + ":" + file("bin"));
+  const auto refused = VideoPipe::start(file("run.mp4"), Image(2, 2, {}));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "cannot start ffmpeg: Permission denied");
+}
+
 TEST_F(Videos, AnFfmpegThatEndsEarlyIsAnErrorAndLeavesNothing) {
   fakeFfmpeg("for last; do :; done\nhead -c 1000 > \"$last\"\nexit 3\n");
   auto video = VideoPipe::start(file("run.mp4"), Image(256, 256, {}));
