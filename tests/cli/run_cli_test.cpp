@@ -95,7 +95,9 @@ TEST_F(RunCli, SaysHowManyEpisodesAndPacksThereAre) {
   const ProgramRun result = run({"tidy.pack", "world.pack"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(StartsWith("tidy.pack: 2 episodes \"tidy\", format 1"),
-                                HasSubstr("\nworld.pack: world of 4 packs, format 1")));
+                                HasSubstr("\nworld.pack: world of 4 packs, format 1"),
+                                HasSubstr("\n  the packs that it lists are not opened; "
+                                          "galactic-pack check opens them, too\n")));
 }
 
 TEST_F(RunCli, SkipsVerificationOnlyWhenTold) {

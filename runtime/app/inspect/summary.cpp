@@ -62,6 +62,9 @@ std::string summarize(const PackFile& pack, const OpenTimes& times) {
                                  titleOf(pack.root()), pack.header().format_version,
                                  clean(provenance.tool()), clean(provenance.tool_version()));
   text += openingLine(pack, times);
+  if (pack.kind() == PackKind::kWorld) {
+    text += "  the packs that it lists are not opened; galactic-pack check opens them, too\n";
+  }
   for (const flatbuffers::String* warning : *provenance.warnings()) {
     text += fmt::format("  warning: {}\n", clean(warning));
   }
