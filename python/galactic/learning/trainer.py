@@ -334,30 +334,36 @@ class Trainer:
         if score.is_below(self.best):
             return
         self.best = score
-        if self.folder and self.group.rank == 0:
-            checkpoint.save_policy(self._saved_policy(score), self.folder / BEST)
+        with self.group.together(OSError):
+            if self.folder and self.group.rank == 0:
+                checkpoint.save_policy(self._saved_policy(score), self.folder / BEST)
 
     def save(self) -> None:
-        """Writes a checkpoint; all ranks call it after the same update."""
+        """Writes a checkpoint; all ranks call it after the same update. Raises on all ranks what keeps one of them from
+        it: Error or OSError, as where the disk is full."""
         if self.validation is None:
             self._keep_if_best(self.recent.figures())
         if self.checkpoints is None:
             return
         with self.stopwatch.time("reports"):
-            if self.group.rank == 0:
-                self.checkpoints.begin(self.steps)
-            self.group.wait_for_all()
-            folder = self.checkpoints.unfinished(self.steps)
-            checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.source.state_dict())
-            if self.group.rank == 0:
-                checkpoint.save_policy(self._saved_policy(), folder / POLICY)
-                optimizer = {"optimizer": self.learner.optimizer.state_dict()}
-                # Those that it counts are there before it is.
-                rows = self.reports.curves.keep()
-                checkpoint.save(folder / "trainer.pt", self._state(rows).to_values(), optimizer)
-            self.group.wait_for_all()
-            if self.group.rank == 0:
-                self.checkpoints.finish(self.steps)
+            with self.group.together(OSError):
+                if self.group.rank == 0:
+                    self.checkpoints.begin(self.steps)
+            with self.group.together(OSError):
+                self._write_into(self.checkpoints.unfinished(self.steps))
+            with self.group.together(OSError):
+                if self.group.rank == 0:
+                    self.checkpoints.finish(self.steps)
+
+    def _write_into(self, folder: pathlib.Path) -> None:
+        """This rank's files of a checkpoint."""
+        checkpoint.save(folder / f"rank-{self.group.rank}.pt", {}, self.source.state_dict())
+        if self.group.rank == 0:
+            checkpoint.save_policy(self._saved_policy(), folder / POLICY)
+            optimizer = {"optimizer": self.learner.optimizer.state_dict()}
+            # Those that it counts are there before it is.
+            rows = self.reports.curves.keep()
+            checkpoint.save(folder / "trainer.pt", self._state(rows).to_values(), optimizer)
 
     def resume(self) -> None:
         """Takes up the latest checkpoint: what follows is what would have followed, on a processor

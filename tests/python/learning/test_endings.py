@@ -29,6 +29,7 @@ from programs import (
     command,
     files_of_at_most,
     needs_worlds,
+    run,
 )
 
 
@@ -282,6 +283,16 @@ def test_a_full_disk_is_one_sentence_and_leaves_what_was_saved(tmp_path: pathlib
     assert {file: file.read_bytes() for file in folder.rglob("*.pt") if file in saved} == saved
     again = call("train", "-o", folder, "--resume", "--pause-at", 2 * UPDATE)
     assert again.returncode == 0 and f"going on after {UPDATE} steps" in again.stderr
+
+
+@needs_worlds
+def test_a_full_disk_is_the_same_in_two_ranks(tmp_path: pathlib.Path) -> None:
+    """Whichever of them is over first."""
+    words = ["train", WORLD, "-o", tmp_path / "run", *SMALL_OF_ANY_RANKS, "--ranks", 2]
+    with files_of_at_most(100_000):
+        full = run(*words, "--steps", 9 * UPDATE, "--checkpoint-every", 2 * UPDATE)
+    assert full.returncode == 2, full.stderr
+    assert full.stderr.count("galactic.train: ") == full.stderr.count("cannot write the file") == 1
 
 
 def test_a_folder_is_locked_once(tmp_path: pathlib.Path) -> None:

@@ -111,7 +111,7 @@ def test_a_rank_that_is_ahead_is_not_taken_for_one_that_fails_now(
 
 @needs_worlds
 def test_what_is_refused_in_one_rank_ends_both_with_its_words(tmp_path: pathlib.Path) -> None:
-    """In every step before they learn, and the same ranks go on to learn when nothing is refused."""
+    """In every step before they learn and where they save, and the same ranks go on when nothing is refused."""
     script = str(HERE / "ranks_that_fail.py")
     assert launch(2, [sys.executable, "-B", script, str(tmp_path)]) == 0
     first, second = (
@@ -130,6 +130,11 @@ def test_what_is_refused_in_one_rank_ends_both_with_its_words(tmp_path: pathlib.
         "run": "0",
         "resume in 0": "CheckpointError: no optimizer",
         "resume in 1": "CheckpointError: no optimizer",
+        "best in 0": "Error: best.pt: is full",
+        "room in 0": "OSError: no room",
+        "save in 0": "Error: rank.pt: is full",
+        "save in 1": "Error: rank.pt: is full",
+        "finish in 0": "OSError: no names",
         "resumed": "0",
     }  # fmt: skip
 
@@ -144,13 +149,15 @@ def test_ranks_tell_once_what_went_wrong() -> None:
 
 
 @pytest.mark.parametrize(
-    "number, advice",
+    "number, code, advice",
     [
-        (signal.SIGKILL, "memory is lacking: take fewer --envs"),
-        (signal.SIGSEGV, "please report it"),
+        (signal.SIGKILL, galactic.ErrorCode.UNSUPPORTED, "memory is lacking: take fewer --envs"),
+        (signal.SIGSEGV, galactic.ErrorCode.INTERNAL, "please report it"),
     ],
 )
-def test_a_rank_that_a_signal_ends_is_missed_in_words(number: signal.Signals, advice: str) -> None:
+def test_a_rank_that_a_signal_ends_is_missed_in_words(
+    number: signal.Signals, code: galactic.ErrorCode, advice: str
+) -> None:
     """The other one fails on its own account, as those do that lose a rank."""
     work = (
         "import os, time\n"
@@ -158,8 +165,10 @@ def test_a_rank_that_a_signal_ends_is_missed_in_words(number: signal.Signals, ad
         "time.sleep(0.5)\n"
         "exit(4)"
     )
-    with pytest.raises(galactic.Error, match=f"^rank 1: was ended by {number.name}; .*{advice}"):
+    message = f"^rank 1: was ended by {number.name}; .*{advice}"
+    with pytest.raises(galactic.Error, match=message) as refused:
         launch(2, [sys.executable, "-c", work])
+    assert refused.value.code == code
 
 
 def test_no_rank_is_left_behind_where_not_all_can_start(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -262,6 +271,28 @@ def test_a_rank_that_fails_is_noticed_whichever_it_is(monkeypatch: pytest.Monkey
         processes = [subprocess.Popen(command) for command in commands]
         assert launching._wait(processes) == (failing, 1)
         assert all(process.returncode is not None for process in processes)
+
+
+@pytest.mark.parametrize(
+    "codes, wanted",
+    [
+        ((4, 2, 4), (1, 2)),
+        ((5, 4, 4), (0, 5)),
+        ((4, 0, 130), (2, 130)),
+        ((4, 4, 0), (0, 4)),
+        ((0, 0, 0), (0, 0)),
+        ((2, -9, 4), (1, -9)),
+    ],
+)
+def test_the_code_of_a_run_is_that_of_the_rank_that_failed_and_not_of_those_that_lost_it(
+    codes: tuple[int, ...], wanted: tuple[int, int]
+) -> None:
+    assert launching._failure(dict(enumerate(codes))) == wanted
+
+
+def test_ranks_that_lose_another_one_may_be_over_before_it() -> None:
+    work = "import os, time\nif os.environ['RANK'] == '0': time.sleep(1); exit(2)\nexit(4)"
+    assert launch(3, [sys.executable, "-c", work]) == 2
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import pathlib
 import signal
 import subprocess
 import time
-from typing import Any, Sequence
+from typing import Any, Mapping, Sequence
 
 import torch.distributed
 
@@ -29,10 +29,12 @@ LAUNCHER = "GALACTIC_LAUNCHER"
 GRACE = 30.0
 """Seconds that the other ranks have when one has failed, before they are killed."""
 
+_INTERNAL = int(galactic.ErrorCode.INTERNAL)
+
 
 def launch(ranks: int, command: Sequence[str]) -> int:
     """Runs `command` in `ranks` processes that find each other by torch.distributed's environment
-    variables, and waits for them. Returns the first code that is not 0, else 0. Interrupts reach
+    variables, and waits for them. Returns the code of the one that failed, else 0. Interrupts reach
     the ranks, which end as they see fit, and a terminal that closes asks them to end. Ctrl-Z stops
     them, too, until this process goes on. Raises galactic.Error where another signal has ended a
     rank, which could not say so itself. Ranks that call follow_launcher() do not outlive this
@@ -145,11 +147,12 @@ def _ended_by(number: signal.Signals, rank: int) -> int:
     """What there is to do about a rank that a signal has ended."""
     if number in (signal.SIGINT, signal.SIGTERM):
         return INTERRUPTED
-    advice = "please report it"
+    code, advice = galactic.ErrorCode.INTERNAL, "please report it"
     if number == signal.SIGKILL:
+        # As a lack of memory that the rank could have told.
+        code = galactic.ErrorCode.UNSUPPORTED
         advice = "the system does that where memory is lacking: take fewer --envs or --ranks"
-    message = f"was ended by {number.name}; {advice}"
-    raise galactic.Error(galactic.ErrorCode.INTERNAL, f"rank {rank}", message)
+    raise galactic.Error(code, f"rank {rank}", f"was ended by {number.name}; {advice}")
 
 
 def _of_libraries() -> dict[str, str]:
@@ -176,20 +179,28 @@ def _of_libraries() -> dict[str, str]:
 
 
 def _wait(processes: "Sequence[subprocess.Popen[bytes]]") -> tuple[int, int]:
-    """Rank and code of the first that failed, a code of 0 where none has. Of several, the one that a
-    signal has ended: its end is what the others noticed."""
-    failure = (0, 0)
+    """Rank and code of the one that failed, a code of 0 where none has. The others learn that it is gone and fail,
+    too, perhaps before it is over: all are waited for, and those killed that take more than GRACE.
+    """
+    killed: set[int] = set()
     deadline = float("inf")
     while True:
-        # All of them are asked: only then is it known how each of them ended.
-        are_over = all([process.poll() is not None for process in processes])
-        failed = [(one.returncode, rank) for rank, one in enumerate(processes) if one.returncode]
-        if failed and failure == (0, 0):
-            failure, deadline = min(failed), time.monotonic() + GRACE
-        if are_over:
-            code, rank = failure
-            return rank, code
+        codes = [process.poll() for process in processes]
+        if None not in codes:
+            ended = [rank for rank in range(len(processes)) if rank not in killed]
+            return _failure({rank: processes[rank].returncode for rank in ended})
+        if any(codes) and deadline == float("inf"):
+            deadline = time.monotonic() + GRACE
         if time.monotonic() > deadline:
-            for process in processes:
-                process.kill()
+            killed |= {rank for rank, code in enumerate(codes) if code is None}
+            for rank in killed:
+                processes[rank].kill()
         time.sleep(0.05)
+
+
+def _failure(codes: Mapping[int, int]) -> tuple[int, int]:
+    """Rank and code, of those of ranks that have ended by themselves. What a signal has ended is what the others
+    noticed, and says most. Code 4 says least: ranks that have lost another one have it, too."""
+    failed = [(code == _INTERNAL, code, rank) for rank, code in codes.items() if code != 0]
+    _, code, rank = min(failed, default=(False, 0, 0))
+    return rank, code
