@@ -346,14 +346,23 @@ class Trainer:
         if self.checkpoints is None:
             return
         with self.stopwatch.time("reports"):
-            with self.group.together(OSError):
+            try:
+                self._write_checkpoint(self.checkpoints)
+            except BaseException:
+                # Also Ctrl-C, which comes to all ranks.
                 if self.group.rank == 0:
-                    self.checkpoints.begin(self.steps)
-            with self.group.together(OSError):
-                self._write_into(self.checkpoints.unfinished(self.steps))
-            with self.group.together(OSError):
-                if self.group.rank == 0:
-                    self.checkpoints.finish(self.steps)
+                    self.checkpoints.give_up(self.steps)
+                raise
+
+    def _write_checkpoint(self, checkpoints: CheckpointFolder) -> None:
+        with self.group.together(OSError):
+            if self.group.rank == 0:
+                checkpoints.begin(self.steps)
+        with self.group.together(OSError):
+            self._write_into(checkpoints.unfinished(self.steps))
+        with self.group.together(OSError):
+            if self.group.rank == 0:
+                checkpoints.finish(self.steps)
 
     def _write_into(self, folder: pathlib.Path) -> None:
         """This rank's files of a checkpoint."""

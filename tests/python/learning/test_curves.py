@@ -315,3 +315,20 @@ def test_the_curves_show_standard_deviations_that_are_parameters(
     assert parameter is not None
     assert shown[-1] == pytest.approx(parameter.mean().item())
     assert shown[0] != shown[-1]
+
+
+def test_a_page_that_cannot_be_written_is_told_once_and_ends_no_run(
+    tmp_path: pathlib.Path, capsys: Any
+) -> None:
+    page = tmp_path / "curves.html"
+    page.mkdir()  # which no file can replace
+    trainer = make_trainer(tmp_path)
+    trainer.begin()
+    assert trainer.train() and (tmp_path / "report.json").is_file()
+    said = capsys.readouterr().err
+    assert said.count(f"{page}: cannot write the file: Is a directory; ") == 1
+    assert said.count("the run goes on, and tries again\n") == 1
+    assert len(curve(tmp_path)) == 8
+    page.rmdir()
+    trainer.reports.write(is_last=True)
+    assert page.is_file()

@@ -502,3 +502,24 @@ def test_a_rank_that_is_late_from_the_start_takes_one_step(tmp_path: pathlib.Pat
         trainer._iterate()
         assert trainer.source.rollout.steps == 1
     assert trainer.steps == 3 * SETTINGS.envs
+
+
+@pytest.mark.parametrize(
+    "fault", [galactic.Error(galactic.ErrorCode.IO, "trainer.pt", "is full"), KeyboardInterrupt()]
+)
+@pytest.mark.parametrize("fails", [(checkpoint, "save_policy"), (CheckpointFolder, "finish")])
+def test_nothing_is_left_of_a_checkpoint_that_cannot_be_written(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, fault: BaseException, fails: Any
+) -> None:
+    trainer = saved_run(tmp_path)
+    trainer.resume()
+
+    def refuse(*_: object) -> None:
+        raise fault
+
+    before = sorted(trainer.checkpoints.folder.iterdir())
+    monkeypatch.setattr(*fails, refuse)
+    monkeypatch.setattr(trainer, "_keep_if_best", lambda means: None)
+    with pytest.raises(type(fault)):
+        trainer.save()
+    assert sorted(trainer.checkpoints.folder.iterdir()) == before and len(before) == 2

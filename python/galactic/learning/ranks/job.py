@@ -178,7 +178,8 @@ def _tell_end(job: Job, trainer: Trainer, undisturbed: bool) -> int:
             f"with python3 -m galactic.train -o {job.folder} --resume"
         )
         return OK if undisturbed else INTERRUPTED
-    say(f"{job.folder}: curves.html, curves.csv, report.json, best.pt")
+    page = "curves.html, " if (job.folder / "curves.html").exists() else ""
+    say(f"{job.folder}: {page}curves.csv, report.json, best.pt")
     return OK
 
 

@@ -113,18 +113,25 @@ class Curves:
         return {}
 
     def write(self, settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]],
-              *, is_last: bool = True) -> None:  # fmt: skip
+              *, is_last: bool = True) -> Optional[Error]:  # fmt: skip
         """Brings curves.csv up to date, and curves.html: after the last row in any case, before it only
-        where that takes no more than PAGE_SHARE of the time. Nothing without a folder."""
+        where that takes no more than PAGE_SHARE of the time. Nothing without a folder. Raises Error where the
+        table cannot be written; returns the one of the page, which can be made again."""
         if self._folder is None:
-            return
+            return None
         self._write_table(self._folder / TABLE)
         begin = time.monotonic()
-        if is_last or begin >= self._next_page:
-            page = curves_page(self._title, self.columns, self.rows, settings, breakdown)
+        if not is_last and begin < self._next_page:
+            return None
+        page = curves_page(self._title, self.columns, self.rows, settings, breakdown)
+        try:
             write_atomically(self._folder / "curves.html", lambda file: file.write(page), "w")
+        except Error as error:
+            return error
+        finally:
             end = time.monotonic()
             self._next_page = end + (end - begin) / PAGE_SHARE
+        return None
 
     def keep(self) -> int:
         """Has all rows on the disk, for a checkpoint, from which take_up() goes on. Returns how many there are."""

@@ -32,6 +32,7 @@ class RunReports:
         # Seconds and steps when an update was told last.
         self._told = (0.0, 0)
         self._speed = 0.0
+        self._lacks_page = False
 
     @property
     def are_due(self) -> bool:
@@ -93,10 +94,13 @@ class RunReports:
         return row
 
     def write(self, *, is_last: bool) -> None:
-        """Brings the files of the curves up to date."""
+        """Brings the files of the curves up to date. Of a page that cannot be written, the first time is told."""
         with self._stopwatch.time("reports"):
             shares = self._stopwatch.shares(self._clock.seconds)
-            self.curves.write(self._settings.to_dict(), shares, is_last=is_last)
+            lost = self.curves.write(self._settings.to_dict(), shares, is_last=is_last)
+        if lost is not None and not self._lacks_page:
+            self._lacks_page = True
+            self.progress.say(f"{lost}; the run goes on, and tries again")
 
     def take_up(self, count: int, columns: Sequence[str], added: Mapping[str, float]) -> None:
         """Goes on behind so many rows, and with what a callback said after them, which has added `columns`. Raises

@@ -234,14 +234,18 @@ class CheckpointFolder:
 
     def begin(self, steps: int) -> pathlib.Path:
         """The folder to write into, for all ranks; the first one calls this before the others write."""
+        self.give_up(steps)
         unfinished = self.unfinished(steps)
-        shutil.rmtree(unfinished, ignore_errors=True)
         unfinished.mkdir(parents=True)
         return unfinished
 
     def unfinished(self, steps: int) -> pathlib.Path:
         """Where ranks write until all are done."""
         return self.folder / f".{steps:012d}.unfinished"
+
+    def give_up(self, steps: int) -> None:
+        """Removes what ranks have written of one that will not be whole; it may hold room that others need."""
+        shutil.rmtree(self.unfinished(steps), ignore_errors=True)
 
     def finish(self, steps: int) -> pathlib.Path:
         """Gives it its name and deletes the oldest; the first rank calls this when all have written.
