@@ -2,7 +2,8 @@
 while it works.
 
 While it loads, Ctrl-C ends it, quietly. Nothing has been done by then that there would be to save or to
-tell. Python alone would interrupt whatever is being loaded, and print where.
+tell. Python alone would interrupt whatever is being loaded, and print where. While it works, SIGTERM, which ends
+jobs, and SIGHUP, of a terminal that closes, are what Ctrl-C is.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import os
 import signal
 import threading
 from types import FrameType
-from typing import Callable, Iterator, Optional
+from typing import Any, Callable, Iterator, Mapping, Optional
 
 from galactic import programs
 
@@ -34,17 +35,30 @@ def _end(number: int, frame: Optional[FrameType]) -> None:
     os._exit(INTERRUPTED)
 
 
+_WHILE_LOADING = {
+    signal.SIGINT: _end,
+    signal.SIGTERM: signal.SIG_DFL,
+    signal.SIGHUP: signal.SIG_DFL,
+}
+"""What ends a program that loads, by which handler: libraries that hang while they are loaded let no other one run."""
+
+
 @contextlib.contextmanager
 def raised() -> Iterator[None]:
-    """Around the work of a program: there an interrupt is a KeyboardInterrupt again."""
-    if signal.getsignal(signal.SIGINT) != _end:
-        yield
-        return
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    """Around the work of a program: there an interrupt is a KeyboardInterrupt again. What is to be ignored, as nohup has
+    it with SIGHUP, is. Whoever calls the work without the program handles signals as they see fit.
+    """
+    before = {
+        number: handler
+        for number, handler in _WHILE_LOADING.items()
+        if programs.running() and signal.getsignal(number) == handler
+    }
+    for number in before:
+        signal.signal(number, signal.default_int_handler)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, _end)
+        _restore(before)
 
 
 @contextlib.contextmanager
@@ -57,8 +71,7 @@ def handled(handler: Callable[[int], None]) -> Iterator[None]:
     try:
         yield
     finally:
-        for number, one in before.items():
-            signal.signal(number, one)
+        _restore(before)
 
 
 @contextlib.contextmanager
@@ -68,11 +81,14 @@ def ended_at_once() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_DFL)
+    found = {number: signal.getsignal(number) for number in _WHILE_LOADING}
+    before = {number: one for number, one in found.items() if one != signal.SIG_IGN}
+    for number in before:
+        signal.signal(number, signal.SIG_DFL)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        _restore(before)
 
 
 @contextlib.contextmanager
@@ -84,3 +100,8 @@ def held_back() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _restore(handlers: Mapping[signal.Signals, Any]) -> None:
+    for number, handler in handlers.items():
+        signal.signal(number, handler)

@@ -15,6 +15,8 @@ from galactic.streams import put
 UNSUPPORTED = 5
 """The exit code where something is not there that a program needs."""
 
+_PROGRAMS = r"galactic\.(?:train|evaluate|export|demonstrate|compare)"
+
 _DEBIAN = {"numpy": "python3-numpy", "torch": "python3-torch"}
 """The libraries of all programs, and the packages that have them."""
 
@@ -25,9 +27,14 @@ def loading() -> Optional[str]:
     # This is what Python has there until it has found the module of -m.
     if sys.argv[:1] != ["-m"]:
         return None
-    names = "train|evaluate|export|demonstrate|compare"
-    found = (re.fullmatch(rf"(?:-\w*m)?(galactic\.(?:{names}))", word) for word in sys.orig_argv)
+    found = (re.fullmatch(rf"(?:-\w*m)?({_PROGRAMS})", word) for word in sys.orig_argv)
     return next((match[1] for match in found if match), None)
+
+
+def running() -> bool:
+    """Whether Python runs a program of the package, once it has loaded it."""
+    main = getattr(sys.modules.get("__main__"), "__spec__", None)
+    return main is not None and re.fullmatch(_PROGRAMS, main.name) is not None
 
 
 def end_without_libraries() -> None:

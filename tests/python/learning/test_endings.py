@@ -19,6 +19,7 @@ import galactic
 from galactic import files, train
 from galactic.learning.presets import preset
 from galactic.learning.ranks.launch import LAUNCHER, launch
+from galactic.learning.saving import checkpoint
 from galactic.learning.saving.runs import Run
 from programs import (
     SMALL,
@@ -31,6 +32,7 @@ from programs import (
     needs_worlds,
     run,
 )
+from trainers import make_trainer
 
 
 def wait_for(holds: Callable[[], Any], process: "subprocess.Popen[str] | None" = None) -> None:
@@ -242,6 +244,42 @@ def test_a_signal_to_all_processes_of_a_job_ends_a_run_that_saves(tmp_path: path
         _, said = process.communicate(timeout=120)
     assert process.returncode == 130 and "stopped and saved after" in said
     assert list((tmp_path / "run").glob("checkpoints/[0-9]*/rank-1.pt"))
+
+
+def signaled(
+    program: str, folder: pathlib.Path, number: signal.Signals, handler: signal.Handlers
+) -> "subprocess.CompletedProcess[str]":
+    """A program that sends itself a signal in its work, where it reads a task of one's own. `handler`: what it finds
+    there for the signal."""
+    task = folder / "task.py"
+    text = f"import os\nos.kill(os.getpid(), {int(number)})\nraise ValueError('goes on')\n"
+    task.write_text(text, encoding="utf-8")
+    words = [WORLD, "-o", folder / "out"]
+    if program == "evaluate":
+        words = [folder / "best.pt", WORLD]
+        checkpoint.save_policy(make_trainer(None)._saved_policy(), folder / "best.pt")
+    return subprocess.run(
+        command(program, *words, "--task", f"{task}:Own"),
+        preexec_fn=lambda: signal.signal(number, handler),
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("program", ["demonstrate", "evaluate", "train"])
+def test_what_ends_a_program_in_its_work_is_told(
+    tmp_path: pathlib.Path, program: str, number: signal.Signals
+) -> None:
+    done = signaled(program, tmp_path, number, signal.SIG_DFL)
+    assert (done.returncode, done.stderr) == (130, f"galactic.{program}: interrupted\n")
+
+
+def test_a_program_goes_on_where_a_hangup_is_to_be_ignored(tmp_path: pathlib.Path) -> None:
+    done = signaled("evaluate", tmp_path, signal.SIGHUP, signal.SIG_IGN)
+    assert done.returncode == 3 and done.stderr.endswith("ValueError: goes on\n")
 
 
 @pytest.mark.parametrize("is_ignored, ends", [(False, True), (True, False)])
