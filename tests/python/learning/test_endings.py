@@ -18,6 +18,7 @@ import pytest
 import galactic
 from galactic import files, train
 from galactic.learning.presets import preset
+import galactic.learning.ranks.launch as launching
 from galactic.learning.ranks.launch import LAUNCHER, launch
 from galactic.learning.saving import checkpoint
 from galactic.learning.saving.runs import Run
@@ -158,11 +159,16 @@ def test_ctrl_c_before_all_ranks_have_started_reaches_all_of_them(
 
 def has_ended(process: int) -> bool:
     """Also if nobody has asked yet how."""
+    return state_of(process) in ("", "Z")
+
+
+def state_of(process: int) -> str:
+    """A letter of Linux's; none where there is no such process."""
     try:
         stat = pathlib.Path(f"/proc/{process}/stat").read_text(encoding="utf-8")
     except (FileNotFoundError, ProcessLookupError):
-        return True
-    return stat.rpartition(")")[2].split()[0] == "Z"
+        return ""
+    return stat.rpartition(")")[2].split()[0]
 
 
 def ranks_of(process: "subprocess.Popen[str]") -> list[int]:
@@ -221,6 +227,84 @@ def test_a_folder_has_one_run_at_a_time_and_ranks_end_with_their_launcher(
         # The lock ends with the last of their threads, though its file is there.
         assert (folder / ".lock").is_file()
         wait_for(lambda: is_free(folder))
+
+
+class Signals:
+    """Sends this process signals, each when the ranks have told of the one before by a file each."""
+
+    def __init__(self, folder: pathlib.Path, ranks: int, *numbers: signal.Signals):
+        self._folder, self._ranks = folder, ranks
+        self._thread = threading.Thread(target=self._send, args=[numbers])
+
+    def __enter__(self) -> None:
+        self._thread.start()
+
+    def __exit__(self, *_: object) -> None:
+        self._thread.join()
+
+    def _send(self, numbers: tuple[signal.Signals, ...]) -> None:
+        for count, number in enumerate(numbers):
+            wait_for(lambda: len(list(self._folder.glob(f"*-{count}"))) == self._ranks)
+            os.kill(os.getpid(), number)
+
+
+STUBBORN = """
+import os, pathlib, signal, sys, time
+
+def tell(number, frame):
+    tell.count += 1
+    (pathlib.Path(sys.argv[1]) / f"{os.environ['RANK']}-{tell.count}").touch()
+
+tell.count = -1
+signal.signal(signal.SIGINT, tell)
+signal.signal(signal.SIGTERM, tell)
+signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+tell(0, None)
+"""
+"""Ranks that end by no signal, of which they tell by a file each."""
+
+
+@pytest.mark.parametrize("first", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("hurry, more", [(0.1, 0), (600.0, 1)])
+def test_a_second_ctrl_c_ends_ranks_that_are_stuck_and_a_third_at_once(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capfd: Any, first: signal.Signals,
+    hurry: float, more: int
+) -> None:  # fmt: skip
+    monkeypatch.setattr(launching, "HURRY", hurry)
+    work = STUBBORN + "while True: time.sleep(600)"
+    with Signals(tmp_path, 2, first, *[signal.SIGINT] * (1 + more)):
+        assert launch(2, [sys.executable, "-c", work, str(tmp_path)]) == 130
+    assert capfd.readouterr().err == "ranks that did not end were killed\n"
+
+
+def test_ranks_that_save_have_their_time_however_often_a_job_is_ended(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capfd: Any
+) -> None:
+    """Here until they have had the third signal, and one more second."""
+    monkeypatch.setattr(launching, "HURRY", 0.0)
+    work = STUBBORN + "while tell.count < 3: time.sleep(0.01)\ntime.sleep(1)\nexit(130)"
+    with Signals(tmp_path, 2, *[signal.SIGTERM] * 3):
+        assert launch(2, [sys.executable, "-c", work, str(tmp_path)]) == 130
+    assert capfd.readouterr().err == ""
+
+
+def test_a_rank_that_was_stopped_goes_on_to_its_end(tmp_path: pathlib.Path, capfd: Any) -> None:
+    work = STUBBORN + (
+        "print(os.getpid(), file=open(sys.argv[1] + '/rank', 'w'), flush=True)\n"
+        "os.kill(os.getpid(), signal.SIGSTOP)\nexit(130 if tell.count == 1 else 9)"
+    )
+    rank = tmp_path / "rank"
+
+    def end_it() -> None:
+        wait_for(lambda: rank.is_file() and rank.read_text("utf-8").endswith("\n"))
+        wait_for(lambda: state_of(int(rank.read_text("utf-8"))) == "T")
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    thread = threading.Thread(target=end_it)
+    thread.start()
+    assert launch(1, [sys.executable, "-c", work, str(tmp_path)]) == 130
+    thread.join()
+    assert capfd.readouterr().err == ""
 
 
 @needs_worlds

@@ -269,7 +269,8 @@ def test_a_rank_that_fails_is_noticed_whichever_it_is(monkeypatch: pytest.Monkey
     for failing in range(3):
         commands = [["false"] if rank == failing else ["sleep", "100"] for rank in range(3)]
         processes = [subprocess.Popen(command) for command in commands]
-        assert launching._wait(processes) == (failing, 1)
+        with launching._PassedOn(processes) as signals:
+            assert launching._wait(processes, signals) == (failing, 1)
         assert all(process.returncode is not None for process in processes)
 
 

@@ -14,6 +14,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import time
 from typing import Any, Mapping, Sequence
 
@@ -22,6 +23,7 @@ import torch.distributed
 import galactic
 from galactic import interrupts
 from galactic.interrupts import INTERRUPTED
+from galactic.streams import put
 
 LAUNCHER = "GALACTIC_LAUNCHER"
 """The environment variable with the process id of who launched a rank."""
@@ -29,15 +31,18 @@ LAUNCHER = "GALACTIC_LAUNCHER"
 GRACE = 30.0
 """Seconds that the other ranks have when one has failed, before they are killed."""
 
+HURRY = 10.0
+"""Seconds that ranks have after a second Ctrl-C, which ends them without saving, before they are killed."""
+
 _INTERNAL = int(galactic.ErrorCode.INTERNAL)
 
 
 def launch(ranks: int, command: Sequence[str]) -> int:
     """Runs `command` in `ranks` processes that find each other by torch.distributed's environment
     variables, and waits for them. Returns the code of the one that failed, else 0. Interrupts reach
-    the ranks, which end as they see fit, and a terminal that closes asks them to end. Ctrl-Z stops
-    them, too, until this process goes on. Raises galactic.Error where another signal has ended a
-    rank, which could not say so itself. Ranks that call follow_launcher() do not outlive this
+    the ranks, which end as they see fit, and a terminal that closes asks them to end. Those that do not, being stuck,
+    are killed: see _PassedOn. Ctrl-Z stops them, too, until this process goes on. Raises galactic.Error where another
+    signal has ended a rank, which could not say so itself. Ranks that call follow_launcher() do not outlive this
     process, whatever ends it."""
     store = torch.distributed.TCPStore("127.0.0.1", 0, is_master=True, wait_for_workers=False)
     environment = {
@@ -61,12 +66,15 @@ def launch(ranks: int, command: Sequence[str]) -> int:
                 with interrupts.held_back():
                     processes.append(subprocess.Popen(command, env=own, start_new_session=True))
             signals.all_have_started()
-            rank, code = _wait(processes)
+            rank, code = _wait(processes, signals)
         except BaseException:
             # Those that have started would wait for the others.
             for process in processes:
                 process.kill()
             raise
+    if signals.have_killed:
+        put(sys.stderr, "ranks that did not end were killed\n")
+        return INTERRUPTED
     return code if code >= 0 else _ended_by(signal.Signals(-code), rank)
 
 
@@ -84,7 +92,12 @@ def follow_launcher() -> None:
 
 
 class _PassedOn:
-    """While in force, signals reach the ranks, also those that come before all of them have started."""
+    """While in force, signals reach the ranks, also those that come before all of them have started.
+
+    Ranks end as they see fit, and have all the time that they need to save, however often SIGTERM comes: systemd and
+    Slurm repeat it, and kill them at last. Those that are stuck are killed by Ctrl-C: HURRY after a second one, at
+    once with a third one.
+    """
 
     # A rank has no terminal that could close.
     _AS = {
@@ -98,6 +111,10 @@ class _PassedOn:
         self._have_started = False
         self._early: list[int] = []
         self._before: dict[int, Any] = {}
+        self._was_asked = False
+        self._deadline = float("inf")
+        self.have_killed = False
+        """Whether ranks were killed that did not end."""
 
     def __enter__(self) -> "_PassedOn":
         for number in self._AS:
@@ -118,7 +135,17 @@ class _PassedOn:
         for number in self._early:
             self._send(number)
 
+    def kill_stuck(self) -> None:
+        """To be called now and then."""
+        if time.monotonic() > self._deadline:
+            self.have_killed = True
+            self._signal(signal.SIGKILL)
+
     def _pass_on(self, number: int, _: Any) -> None:
+        if number == signal.SIGINT and self._was_asked:
+            is_second = self._deadline == float("inf")
+            self._deadline = time.monotonic() + (HURRY if is_second else 0.0)
+        self._was_asked = True
         if number == signal.SIGHUP:
             # The system says it, and a shell says it again; two signals would end ranks without saving.
             signal.signal(number, signal.SIG_IGN)
@@ -136,6 +163,8 @@ class _PassedOn:
 
     def _send(self, number: int) -> None:
         self._signal(self._AS[signal.Signals(number)])
+        # One that somebody has stopped could not end.
+        self._signal(signal.SIGCONT)
 
     def _signal(self, number: int) -> None:
         for process in self._processes:
@@ -178,7 +207,7 @@ def _of_libraries() -> dict[str, str]:
     return {name: value for name, value in chosen.items() if name not in os.environ}
 
 
-def _wait(processes: "Sequence[subprocess.Popen[bytes]]") -> tuple[int, int]:
+def _wait(processes: "Sequence[subprocess.Popen[bytes]]", signals: _PassedOn) -> tuple[int, int]:
     """Rank and code of the one that failed, a code of 0 where none has. The others learn that it is gone and fail,
     too, perhaps before it is over: all are waited for, and those killed that take more than GRACE.
     """
@@ -195,6 +224,7 @@ def _wait(processes: "Sequence[subprocess.Popen[bytes]]") -> tuple[int, int]:
             killed |= {rank for rank, code in enumerate(codes) if code is None}
             for rank in killed:
                 processes[rank].kill()
+        signals.kill_stuck()
         time.sleep(0.05)
 
 
