@@ -173,6 +173,38 @@ TEST(Geodesic, PaysForTheWayThatIsBehind) {
   EXPECT_GT(paid, 0.5F);
 }
 
+TEST(Geodesic, PaysNothingInTheStepInWhichTheWayBeginsToLeadToTheGoal) {
+  const BoxWorld world({plainFloor()}, cartRobot(),
+                       episode({1.45F, 0.2F, 0.75F}, {2.25F, 0.05F, 2.25F}));
+  SimulationOptions plain = options();
+  plain.task.most_steps = 0;
+  SimulationOptions shaped = plain;
+  shaped.task.geodesic_weight = 2;
+  BatchSimulator without = BatchSimulator::create(world.world(), plain).value();
+  BatchSimulator with = BatchSimulator::create(world.world(), shaped).value();
+  const auto step = [&](const std::vector<float>& actions) {
+    without.step(actions);
+    with.step(actions);
+    return with.rewards()[0] - without.rewards()[0];
+  };
+  std::vector<float> actions(kCartActions, 0);
+  actions[0] = 1;
+  actions[kCartJoints + 2] = 1;
+  const float to_target = waysOf(with)[0];
+  float paid = 0;
+  for (int n = 0; n < 6 && with.envState(0).held < 0; ++n) paid = step(actions);
+  ASSERT_EQ(with.envState(0).held, 0);
+  const float to_goal = waysOf(with)[3];
+  EXPECT_GT(std::fabs(to_goal - to_target), 0.5F);
+  EXPECT_EQ(paid, 0);
+  // From then on the way to the goal counts.
+  actions[0] = 0;
+  actions[kCartJoints] = 1;
+  paid = step(actions);
+  EXPECT_NEAR(paid, 2 * (to_goal - waysOf(with)[3]), 1e-4F);
+  EXPECT_GT(std::fabs(paid), 0.01F);
+}
+
 TEST(Geodesic, IsRefusedBeforeItFillsTheMemory) {
   const BoxWorld world(walls(), cartRobot(), episode({0.75F, 0.05F, 2.25F}, {2.25F, 0.05F, 0.75F}));
   const auto motion =

@@ -239,6 +239,25 @@ TEST(Laser, LooksFromTheFloorOnWhichTheRobotStands) {
   expectNear(scanOf(batch, 1)[0], 3, 1.25F);
 }
 
+TEST(Laser, TakesFloorsForOneOnlyWithinABandOfTheLowest) {
+  // Steps of 9 cm: the third is two of them above the first, and has a plane of its own, in which
+  // the board is.
+  std::vector<Block> blocks = walls();
+  blocks.push_back({{0, 0, 1}, {1.25F, 0.09F, 3}});
+  blocks.push_back({{0, 0, 2}, {1.25F, 0.18F, 3}});
+  const std::vector<Vec3> none{{1.5F, 1.5F, 1.5F}};
+  const BoxWorld world(blocks, {{{0.75F, 0, 0.6F}, 0, none},
+                                {{0.75F, 0.09F, 1.5F}, 0, none},
+                                {{0.75F, 0.18F, 2.4F}, 0, none}});
+  SimulationOptions options = withLaser({.beams = 1, .heights = {at(0.33F)}, .range = 3});
+  options.envs = 3;
+  options.order = EpisodeOrder::kLinear;
+  const BatchSimulator batch = BatchSimulator::create(world.world(), options).value();
+  expectNear(scanOf(batch, 0)[0], 3, 2);
+  expectNear(scanOf(batch, 1)[0], 3, 2);
+  expectNear(scanOf(batch, 2)[0], 3, 1.25F);
+}
+
 TEST(Laser, HasNoiseOfTheGivenDeviation) {
   const BoxWorld world(walls(), {middle()});
   constexpr float kNoise = 0.02F;
@@ -271,6 +290,14 @@ TEST(Laser, HasNoiseOfTheGivenDeviation) {
               0.05 * static_cast<double>(kNoise));
   // A normal distribution has 31.7 % beyond one deviation.
   EXPECT_NEAR(static_cast<double>(beyond_one) / count, 0.317, 0.04);
+}
+
+TEST(Laser, HasNoNoiseWhereNothingReturns) {
+  const BoxWorld world(walls(), {middle()});
+  // The nearest wall is 1.25 m away.
+  SimulationOptions options = withLaser({.beams = 64, .range = 1, .noise = 0.05F});
+  const BatchSimulator batch = BatchSimulator::create(world.world(), options).value();
+  for (const float share : scanOf(batch)) EXPECT_EQ(share, 1);
 }
 
 TEST(Laser, HasNoiseOfTheDeviationThatAnEpisodeHasDrawn) {

@@ -359,13 +359,20 @@ TEST(Resets, OfEverythingAreAsGoodAsNew) {
   options.task.most_steps = 25;
   BatchSimulator used = made(world, options);
   for (std::uint32_t step = 0; step < 60; ++step) used.step(actionsFor(used, 0, step));
+  EXPECT_GT(used.statistics().refused, 0U);
+  EXPECT_GT(used.statistics().slid, 0U);
   options.seed = 99;
   BatchSimulator fresh = made(world, options);
   used.restart(99);
   BatchTrace of_used(used);
   BatchTrace of_fresh(fresh);
-  EXPECT_EQ(used.statistics().steps, 0U);
-  EXPECT_EQ(used.statistics().episodes, 0U);
+  const auto expect_same_statistics = [&] {
+    const SimulationStatistics a = used.statistics();
+    const SimulationStatistics b = fresh.statistics();
+    visitStatistics(
+        [&](const char* name, auto member) { EXPECT_EQ(a.*member, b.*member) << name; });
+  };
+  expect_same_statistics();
   for (std::uint32_t step = 0; step < 60; ++step) {
     used.step(actionsFor(used, 0, step));
     fresh.step(actionsFor(fresh, 0, step));
@@ -373,6 +380,7 @@ TEST(Resets, OfEverythingAreAsGoodAsNew) {
     of_fresh.add(fresh);
   }
   EXPECT_EQ(of_used.hashes(), of_fresh.hashes());
+  expect_same_statistics();
 }
 
 TEST(Episodes, InWhichTheRobotCannotStartAreSkippedAndListed) {

@@ -114,6 +114,20 @@ TEST(Holding, IsFreeAfterEachSlide) {
   sure.expectBothSides();
 }
 
+TEST(Holding, IsPushedOutAlongTheDriveWhereTheDriveIsNotToBlame) {
+  Cart cart;
+  cart.hold({0.3F, 0.1F, 0});
+  ASSERT_TRUE(cart.move(1.45F, 2));
+  // As if the arm had reached into the wall while the cart drove back a little.
+  cart.holdAt({0.5F, 0.1F, 0});
+  cart.put(1.43F, 2);
+  const Hindrance met = cart.hindranceHere();
+  ASSERT_EQ(met, Hindrance::kHeld);
+  EXPECT_TRUE(cart.slide(met));
+  EXPECT_FALSE(cart.heldIsInScene());
+  EXPECT_LT(cart.chunk().base(0).x, 1.42F);
+}
+
 /// Moves a robot whose cube was in the wall when it was taken.
 void leaveTheWall(Cart& cart) {
   // What was in the wall does not count; deeper in, more of it would be.

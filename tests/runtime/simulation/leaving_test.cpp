@@ -70,6 +70,15 @@ class Leaving : public testing::Test {
   std::unique_ptr<Model> model_;
 };
 
+/// Objects that not all of the robot's spheres have been free of since.
+std::uint32_t leftBy(OneRobot& robot) {
+  std::uint32_t left = 0;
+  for (std::uint32_t object = 0; object < kObjects; ++object) {
+    left += isEmpty(robot.state().leaving(0, object)) ? 0U : 1U;
+  }
+  return left;
+}
+
 TEST_F(Leaving, ARobotThatStandsStillIsNeverRefusedWhateverItLetGoOf) {
   constexpr std::uint32_t kSeed = 1510;
   std::printf("seed %u\n", kSeed);
@@ -101,11 +110,22 @@ TEST_F(Leaving, AnObjectThatTheRobotIsFreeOfCountsAgain) {
       robot.drive(uniformIn(random, -1, 1), uniformIn(random, -1, 1));
       // Never more than before: what counts again goes on counting.
       ASSERT_LE(robot.env().left, before);
+      ASSERT_EQ(robot.env().left, leftBy(robot));
       before = robot.env().left;
     }
     left.add(before == 0);
   }
   left.expectBothSides();
+}
+
+TEST_F(Leaving, WhatTheHandTakesAgainIsNotLeftAnyMore) {
+  OneRobot robot(*model_);
+  const Vec3 base = robot.base();
+  const Vec3 place{base.x + 0.05F, base.y + 0.02F, base.z};
+  ASSERT_TRUE(robot.release(3, place));
+  ASSERT_EQ(robot.env().left, 1U);
+  robot.take(3, place);
+  EXPECT_EQ(robot.env().left, 0U);
 }
 
 }  // namespace

@@ -477,6 +477,14 @@ TEST(LocalizationNoise, GrowsWithWhatTheRobotHasMoved) {
   const Spread aside = spreadOf(kEnvs, [&](std::size_t env) { return believed(env).aside; });
   // 0.1 m times the sum of headings, each of which goes on: sqrt(1 + 4 + ... + 81) of their steps.
   EXPECT_NEAR(aside.deviation, kForwardStep * 0.1 * kTurnStep * std::sqrt(204.0 + 81.0), 0.0015);
+  // A robot that takes itself to look too far to the left takes itself to have come to the left,
+  // which is -Z: the two grow together by 1 + 2 + ... + 9 of the variance of a step.
+  double together = 0;
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    together += believed(env).turn * believed(env).aside / kEnvs;
+  }
+  const double of_a_step = kForwardStep * 0.1 * kTurnStep * 0.1 * kTurnStep;
+  EXPECT_NEAR(together, -45 * of_a_step, 5 * of_a_step);
 }
 
 TEST(LocalizationNoise, ChangesNothingButWhatIsKnownOfPlaces) {

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -379,12 +382,70 @@ TEST(SavedState, OfAVersionWithoutPicksIsTakenWithNone) {
   EXPECT_FALSE(simulator.restoreState(mixed, alone));
 }
 
+TEST_F(DamagedState, WithActionsThatNobodyAskedForIsRefused) {
+  // NaN stands for what hands and terminations are asked before an episode, and for no other
+  // action.
+  constexpr float kAsked = 0.40625F;
+  const auto with = [&](std::size_t action, float instead) {
+    SmallHomeRow row{};
+    row[action] = kAsked;
+    std::vector<float> actions;
+    for (int env = 0; env < 3; ++env) actions.insert(actions.end(), row.begin(), row.end());
+    simulator_.step(actions);
+    trace_ = traceOf(simulator_);
+    Bytes changed = simulator_.saveState();
+    const auto asked = std::as_bytes(std::span(&kAsked, 1));
+    // The last one: of this step.
+    const auto found = std::ranges::find_end(changed, asked);
+    EXPECT_FALSE(found.empty());
+    std::memcpy(&*found.begin(), &instead, sizeof(instead));
+    sign(changed);
+    return changed;
+  };
+  const std::string why = "has a number that no simulation leaves; it is damaged";
+  expectRefused(with(kForward, 1.25F), why);
+  expectRefused(with(kForward, std::nanf("")), why);
+  expectRefused(with(kHand, -1.25F), why);
+  EXPECT_EQ(refusalOf(simulator_, with(kHand, std::nanf(""))), "");
+}
+
 TEST_F(DamagedState, WithAPickOfNoEndIsRefused) {
   ASSERT_EQ(simulator_.dones()[0], 0);
   Bytes other = state_;
   other[static_cast<std::size_t>(endOfNumbers(other)) - 4] = std::byte{1};
   sign(other);
   expectRefused(other, "env 0 has a wrong flag or count");
+}
+
+TEST_F(DamagedState, ThatLeavesWhatItHoldsIsRefused) {
+  WildRun run(3);
+  std::uint32_t env = 3;
+  for (int step = 0; step < 400 && env == 3; ++step) {
+    simulator_.step(run.act(simulator_));
+    for (std::uint32_t n = 0; n < 3; ++n) {
+      if (simulator_.envState(n).held >= 0 && simulator_.dones()[n] == 0) env = n;
+    }
+  }
+  ASSERT_LT(env, 3U) << "no hand holds anything";
+  trace_ = traceOf(simulator_);
+  const std::vector<std::uint32_t> alone{env};
+  const EnvState now = simulator_.envState(env);
+  Bytes state = simulator_.saveState(alone);
+  // At the end are the objects, and before them the spheres of the robot that leave each of them:
+  // as bits, in one word.
+  const std::size_t leaving =
+      state.size() - now.objects.size() * (sizeof(Pose) + sizeof(std::uint64_t));
+  const auto set = [&](std::size_t at, auto value) {
+    std::memcpy(state.data() + at, &value, sizeof(value));
+  };
+  // How many objects the robot leaves stands so many bytes before the end of the env's numbers.
+  constexpr std::size_t kLeftIsBeforeTheEnd = 196;
+  set(leaving + static_cast<std::size_t>(now.held) * sizeof(std::uint64_t), std::uint64_t{1});
+  set(static_cast<std::size_t>(endOfNumbers(state)) - kLeftIsBeforeTheEnd, std::uint32_t{1});
+  sign(state);
+  const Result<void> restored = simulator_.restoreState(state, alone);
+  ASSERT_FALSE(restored);
+  EXPECT_THAT(restored.error().message, HasSubstr("leaves other objects than it says"));
 }
 
 TEST_F(DamagedState, OfOtherOptionsIsRefusedByTheirNames) {

@@ -516,6 +516,15 @@ TEST(Hand, ReleasesOntoTheTable) {
   EXPECT_LE(rests.translation.y, kTableTop + 0.002F);
 }
 
+TEST(Hand, ReleasesAnywhereWhereNoTaskHasAGoal) {
+  Player player({.kind = TaskKind::kNone, .drop_fails = false});
+  player.fetchTarget();
+  player.carryAway();
+  player.release();
+  EXPECT_EQ(player.state().held, -1);
+  EXPECT_EQ(player.sum().drops, 1U);
+}
+
 TEST(Hand, PutsTheObjectBackWhereItWasWhenThereIsNoPlace) {
   SimulationOptions options;
   options.placement.attempts = 0;  // no place is looked for
