@@ -248,6 +248,19 @@ TEST(RenderCheck, RefusesWrongBoundsOfClusters) {
   });
 }
 
+TEST(RenderCheck, RefusesTheSameInARobot) {
+  const RobotPackFields robot = [] {
+    RobotPackFields fields = smallRobotPack();
+    fields.render_meshes = smallRenderMeshes({0, 1});
+    return fields;
+  }();
+  ASSERT_TRUE(PackFile::view(buildPack(robot).bytes(), "made.pack").has_value());
+  expectRefused(robot, std::vector<PackOffence<RobotPackFields>>{
+                           {"robot.render_meshes.models[1].part",
+                            "is 8 after 0, expected ascending numbers under 8",
+                            [](RobotPackFields& f) { f.render_meshes->models[1].part = 8; }}});
+}
+
 TEST(RenderCheck, RefusesTheSameInAScene) {
   const ScenePackFields scene = [] {
     ScenePackFields fields = smallScene();

@@ -180,6 +180,12 @@ TEST(RobotCheck, RefusesWrongGroups) {
       {"spheres[1]",
        "comes before its predecessor, expected descending radii, then ascending centers",
        [](Fields& r) { std::swap(r.spheres[0], r.spheres[1]); }},
+      {"spheres[1]",
+       "comes before its predecessor, expected descending radii, then ascending centers",
+       [](Fields& r) {
+         r.spheres[1] = r.spheres[0];
+         r.spheres[1].center.z -= 0.1F;
+       }},
       {"spheres", "has 5 elements, expected the 4 that the groups name",
        [](Fields& r) { r.spheres.push_back(r.spheres.back()); }},
       {"groups", "name 7 links, expected all 8, each once",

@@ -399,6 +399,12 @@ TEST(World, RefusesEpisodesOfWhatIsNotThere) {
   start_joint("hinge", "is not a joint with one position");
   start_joint("free", "is not a joint with one position");
   start_joint("grip", "follows another joint");
+  expectRefusedWorld(
+      [](WorldFields& f) {
+        f.robot.links[4].multiplier = 1;
+        f.episodes.start_joints[1] = "grip";
+      },
+      "tidy.pack: episode_set.start_joints[1]", "is \"grip\", which follows another joint" + joint);
   // A mimic that copies the joint exactly would still start one position twice.
   expectRefusedWorld(
       [](WorldFields& f) {

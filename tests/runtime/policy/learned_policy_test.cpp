@@ -21,6 +21,7 @@
 namespace galactic::test::learned_policy_test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// A batch of envs with a policy, and what is seen there: numbers that look random.
@@ -262,6 +263,52 @@ TEST(LearnedPolicy, DrawsOtherNumbersInEachStepEnvAndForEachSeed) {
   EXPECT_NE(first[0], first[acting.actions()]);
   EXPECT_NE(other.act({0, 0}, 0, {})[0], first[0]);
   EXPECT_NE(acting.act({0, 0}, 0, {})[0], first[0]);
+}
+
+TEST(LearnedPolicy, DrawsTheSameAgainAfterAReset) {
+  Acting acting(smallPolicy(), 3, {.seed = 6, .threads = 1});
+  const std::vector<float> first = acting.act({0, 1, 2}, 0, {});
+  EXPECT_NE(acting.act({0, 1, 2}, 0, {}), first);
+  acting.policy().reset();
+  EXPECT_EQ(acting.act({0, 1, 2}, 0, {}), first);
+}
+
+TEST(LearnedPolicy, RemembersItsActionsAsSimulationsClampThem) {
+  // It asks for 3 more than in the step before.
+  PolicyContent content;
+  content.interface.name = "counter";
+  content.layers = {{{}, layer::Constant{{3}}},
+                    {{}, layer::PreviousAction{}},
+                    {{0, 1}, layer::Sum{}},
+                    {{}, layer::Constant{{-5}}}};
+  content.continuous = {.count = 1, .mean = 2, .log_deviation = 3};
+  Acting acting(content, 1, kLikeliest);
+  EXPECT_THAT(acting.act({0}, 0, {}), ElementsAre(3));
+  EXPECT_THAT(acting.act({0}, 1, {}), ElementsAre(4));
+}
+
+TEST(LearnedPolicy, ReadsPartsWhereverTheyLieInTheObservation) {
+  const AlignedBytes file(encodePolicyPack(policyNetwork("state"), smallPolicyProvenance()));
+  const PackFile pack = PackFile::view(file.bytes(), "made.pack").value();
+  const PolicyBatch together = batchFor(policyInterface(pack).value(), 1);
+  PolicyBatch apart = together;
+  apart.observation_size = 0;
+  for (ObservationPart& part : apart.observation) {
+    part.first = apart.observation_size + 2;
+    apart.observation_size = part.first + part.size;
+  }
+  const std::vector<float> seen = WeightStream(3).take(together.observation_size, 2);
+  std::vector<float> spread(apart.observation_size, 1000);
+  for (std::size_t n = 0; n < apart.observation.size(); ++n) {
+    const auto& [name, first, size] = together.observation[n];
+    std::copy_n(seen.data() + first, size, spread.data() + apart.observation[n].first);
+  }
+  const auto acted = [&](const PolicyBatch& batch, const std::vector<float>& observations) {
+    std::vector<float> actions(batch.actions);
+    LearnedPolicy::create(pack, batch, kLikeliest)->act({observations, {}, {}, {}}, actions);
+    return actions;
+  };
+  EXPECT_EQ(acted(apart, spread), acted(together, seen));
 }
 
 TEST(LearnedPolicy, DrawsAnActionOfManyValuesByItsLogits) {

@@ -292,6 +292,12 @@ TEST_F(SoftBatch, CountsWhatItDrew) {
   EXPECT_EQ(all.instances, kViews * 20);
   EXPECT_EQ(all.clusters, all.clusters_drawn);
   EXPECT_GT(all.triangles_drawn, 0U);
+  // Of each batch anew.
+  renderViews(renderer, views_);
+  EXPECT_EQ(renderer.statistics().instances, all.instances);
+  EXPECT_EQ(renderer.statistics().clusters, all.clusters);
+  EXPECT_EQ(renderer.statistics().clusters_drawn, all.clusters_drawn);
+  EXPECT_EQ(renderer.statistics().triangles_drawn, all.triangles_drawn);
   options.culling = true;
   options.threads = 3;
   BatchRenderer culling = makeRenderer(library_, options);
