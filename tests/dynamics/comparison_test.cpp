@@ -167,6 +167,14 @@ TEST(BothWorlds, AgreeInAnEmptyRoomWithAKinematicArm) {
   }
 }
 
+TEST(BothWorlds, PartInTheFirstStepInWhichTheirHandsHoldOtherThings) {
+  const RecordedRun run(emptyRoom({}), wander());
+  dynamics::EpisodeTrace trace = run.traces().front();
+  for (std::size_t n = 5; n < 9; ++n) trace.steps.at(n).held = 0;
+  const EpisodeComparison replay = run.compare(trace, run.sources({}), ArmDrive::kKinematic);
+  EXPECT_EQ(replay.parted, 5U);
+}
+
 TEST(AMotorArm, FollowsTheSimulationCloselyInAnEmptyRoom) {
   const RecordedRun run(emptyRoom({}), wander());
   const EpisodeComparison replay = run.first(run.sources({}), ArmDrive::kMotors);
@@ -305,6 +313,7 @@ TEST(AClosedLoop, SolvesInTheDynamicsWhatItSolvesInTheSimulation) {
   EXPECT_EQ(first.end_in_dynamics, EpisodeEnd::kSuccess);
   EXPECT_TRUE(first.picked_in_dynamics);
   EXPECT_TRUE(first.success_settled);
+  EXPECT_EQ(first.disturbed, 0U) << "what the hand carried was not in its way";
   EXPECT_EQ(first.rests.size(), 1U);
   // What a lane did before changes nothing.
   static_cast<void>(play(1));

@@ -266,6 +266,28 @@ TEST(AMotor, BringsItsJointToTheTargetAndHoldsIt) {
   EXPECT_NEAR(errors.back(), 14.3 / (120 * 120) / 0.3, 2e-3);
 }
 
+TEST(AMotor, OfAJointThatFollowsAnotherIsNotTakenForIt) {
+  RobotPackFields fields = pendulumFields();
+  fields.links.push_back(fields.links[1]);
+  fields.links[2].parent_from_joint.translation.z = -0.5F;
+  fields.links[2].multiplier = -0.5F;
+  fields.links[2].offset = 0.2F;
+  fields.link_names.emplace_back("follower");
+  fields.joint_names.emplace_back("follow");
+  fields.spheres.push_back(fields.spheres.back());
+  fields.groups.push_back({2, {2}, 2, 1, SphereStatisticsFields{}});
+  const MadeRobot robot(fields);
+  dynamics::RobotParts parts = pendulumParts();
+  parts.body_of_link.push_back(2);
+  parts.links.push_back(parts.links[1]);
+  const RobotKit kit(*robot, parts);
+  DynamicsWorld world(flatFloor(), {}, {});
+  world.addRobot(kit.setup(kAbove));
+  world.drive(kAbove, std::vector<float>{1});
+  for (int n = 0; n < 30; ++n) world.step();
+  EXPECT_NEAR(world.positions()[0], 1, 0.02);
+}
+
 TEST(AMotor, ThatIsTooWeakDoesNotHoldTheArm) {
   const MadeRobot robot(pendulumFields());
   const RobotKit kit(*robot, pendulumParts());

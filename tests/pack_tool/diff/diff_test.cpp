@@ -88,6 +88,20 @@ TEST(CompareGrids, NamesTheFrameThatDiffersAndComparesNoColumns) {
   EXPECT_EQ(difference.columns, 0U);
 }
 
+TEST(CompareGrids, NamesEachPartOfAFrameThatDiffers) {
+  const auto a = GridBuilder(GridSpec{}).build();
+  const auto frame_of = [&](const GridSpec& spec) {
+    const auto b = GridBuilder(spec).build();
+    return compareGrids(a.view(), b.view(), 0).frame;
+  };
+  EXPECT_THAT(frame_of({.spacing = 0.5F}), ElementsAre(FieldDifference{"spacing", "1", "0.5"}));
+  EXPECT_THAT(frame_of({.min_z = 0.5F}), ElementsAre(FieldDifference{"min_z", "0", "0.5"}));
+  EXPECT_THAT(frame_of({.heights = {-1, 8}}),
+              ElementsAre(FieldDifference{"heights.lo", "0", "-1"}));
+  EXPECT_THAT(frame_of({.heights = {0, 9}}), ElementsAre(FieldDifference{"heights.hi", "8", "9"}));
+  EXPECT_THAT(frame_of({.columns_z = 5}), ElementsAre(FieldDifference{"columns_z", "3", "5"}));
+}
+
 TEST(CompareGrids, KeepsTheFiveWorstColumnsLargestFirst) {
   GridBuilder moved = GridBuilder(GridSpec{});
   GridBuilder original = GridBuilder(GridSpec{});
