@@ -181,6 +181,15 @@ TEST(FreeSpace, OfAClosedHouseInAGardenIsTheHouse) {
   EXPECT_NEAR(garden.yard, 28.38 * 26.38 - 6.02 * 5.02, 2);
 }
 
+TEST(FreeSpace, OfAWalledRoomWithoutACeilingIsFloorAndNoYard) {
+  MeshBuilder builder;
+  addRoom(builder, {0, 0, 0}, {5, 2.5F, 4}, false);
+  const FreeSpace free = chooseFreeSpace(columnsOf(builder.build(), 0.05F)).value();
+  const auto& room = *std::ranges::find(free.components, Region::kRoom, &Component::region);
+  EXPECT_NEAR(room.floor, 4.2 * 3.2, 0.5);
+  EXPECT_EQ(room.yard, 0);
+}
+
 TEST(FreeSpace, OfASmallHouseInAGardenIsTheHouseForAllRadii) {
   MeshBuilder builder;
   addRoom(builder, {0, 0, 0}, {3, 2.5F, 3}).box({-4, -0.3F, -4}, {7, -0.1F, 7});

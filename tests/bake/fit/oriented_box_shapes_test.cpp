@@ -131,6 +131,14 @@ TEST(OrientedBox, HoldsPointsFarFromTheOriginInFloatArithmetic) {
         ASSERT_LE(std::abs(local.x), box.half_extents.x);
         ASSERT_LE(std::abs(local.y), box.half_extents.y);
         ASSERT_LE(std::abs(local.z), box.half_extents.z);
+        // In another order of operations, which rounds otherwise.
+        const auto along = [&](const Vec3& axis) {
+          const Vec3 turned = rotate(box.pose.rotation, axis);
+          return std::abs(dot(turned, point) - dot(turned, box.pose.translation));
+        };
+        ASSERT_LE(along({1, 0, 0}), box.half_extents.x);
+        ASSERT_LE(along({0, 1, 0}), box.half_extents.y);
+        ASSERT_LE(along({0, 0, 1}), box.half_extents.z);
       }
     }
   }

@@ -259,8 +259,15 @@ TEST(StablePoses, OfALineLieAndOfAPointStayAsTheyAre) {
 TEST(StablePoses, IgnoreVerticesThatNoTriangleUses) {
   const auto points = test::cuboid({0.1F, 0.1F, 0.1F});
   TriangleMesh mesh = test::meshOf(points);
+  const auto wanted = findStablePoses(mesh);
   mesh.vertices.push_back({5, 5, 5});
-  EXPECT_EQ(findStablePoses(mesh).size(), 6U);
+  const auto found = findStablePoses(mesh);
+  ASSERT_EQ(found.size(), wanted.size());
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    EXPECT_EQ(found[n].rotation, wanted[n].rotation) << n;
+    EXPECT_EQ(found[n].height, wanted[n].height) << n;
+    EXPECT_EQ(found[n].likelihood, wanted[n].likelihood) << n;
+  }
 }
 
 TEST(StablePoses, AreTheSameBytesForAnyOrderAndOnAnyThread) {

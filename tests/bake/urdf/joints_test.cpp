@@ -126,6 +126,7 @@ TEST(UrdfJoints, ThatAreDoubtfulDrawWarnings) {
                           "counts",
                           "joint 'j': it is continuous, so its limits -1 to 1 are not used"));
   EXPECT_THAT(robot->links[1].axis, ElementsAre(0, 0.8, -0.6));
+  EXPECT_FALSE(robot->links[1].limits.has_value());
 }
 
 TEST(UrdfJoints, WithLimitsThatLookLikeDegreesDrawAWarning) {
