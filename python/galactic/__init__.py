@@ -11,6 +11,7 @@ import sys
 from galactic import interrupts, programs
 
 interrupts.end_while_loading()
+programs.end_without_room()
 programs.end_without_libraries()
 
 try:
