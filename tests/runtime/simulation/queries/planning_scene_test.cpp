@@ -223,6 +223,17 @@ TEST_F(PlanningSceneInTheSmallHome, IgnoresSpheresThatPenetrateUntilTheyAreFree)
   EXPECT_FALSE(scene_.isFree(base)) << "it has been free";
 }
 
+TEST_F(PlanningSceneInTheSmallHome, IgnoresNoMoreSpheresWhereItLooksWhichAreFree) {
+  fetchTarget();
+  std::vector<float> low = state().joint_positions;
+  low[kLift] -= 0.03F;
+  const BasePlace base = scene_.baseOf(state());
+  scene_.setJoints(low);
+  ASSERT_FALSE(scene_.isFree(base)) << "the object is in the table";
+  scene_.countFree(base);
+  EXPECT_FALSE(scene_.isFree(base)) << "what penetrates was not ignored before";
+}
+
 TEST_F(PlanningSceneInTheSmallHome, MeasuresDistancesToBoxes) {
   const std::uint32_t target = state().target;
   ASSERT_LT(target, scene_.objectCount());
