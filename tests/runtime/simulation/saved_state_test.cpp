@@ -396,9 +396,9 @@ TEST_F(DamagedState, WithActionsThatNobodyAskedForIsRefused) {
     Bytes changed = simulator_.saveState();
     const auto asked = std::as_bytes(std::span(&kAsked, 1));
     // The last one: of this step.
-    const auto found = std::ranges::find_end(changed, asked);
-    EXPECT_FALSE(found.empty());
-    std::memcpy(&*found.begin(), &instead, sizeof(instead));
+    const auto found = std::find_end(changed.begin(), changed.end(), asked.begin(), asked.end());
+    EXPECT_NE(found, changed.end());
+    std::memcpy(&*found, &instead, sizeof(instead));
     sign(changed);
     return changed;
   };
