@@ -137,7 +137,7 @@ class _PassedOn:
 
     def kill_stuck(self) -> None:
         """To be called now and then."""
-        if time.monotonic() > self._deadline:
+        if time.monotonic() > self._deadline and any(one.poll() is None for one in self._processes):
             self.have_killed = True
             self._signal(signal.SIGKILL)
 
