@@ -32,14 +32,17 @@ std::vector<PlacedObject> placed(const EpisodeTrace& trace, const ComparisonWorl
   return objects;
 }
 
-/// Whether the engine knows where everything is: what is pressed into other things may get lost.
-bool isKnown(const FollowedState& state) {
-  const auto is_finite = [](const Pose& pose) {
-    const auto& [x, y, z] = pose.translation;
-    const auto& [i, j, k, w] = pose.rotation;
-    return std::isfinite(x + y + z + i + j + k + w);
-  };
-  return is_finite(state.world_from_root) && std::ranges::all_of(state.objects, is_finite) &&
+/// Whether the engine knows where something is: what is pressed into other things may get lost.
+bool isKnown(const Pose& pose) {
+  const auto& [x, y, z] = pose.translation;
+  const auto& [i, j, k, w] = pose.rotation;
+  return std::isfinite(x + y + z + i + j + k + w);
+}
+
+/// Whether it knows where everything is.
+bool isAllKnown(const FollowedState& state) {
+  const auto is_known = [](const Pose& pose) { return isKnown(pose); };
+  return isKnown(state.world_from_root) && std::ranges::all_of(state.objects, is_known) &&
          std::ranges::all_of(state.joint_positions, [](float p) { return std::isfinite(p); });
 }
 
@@ -90,7 +93,7 @@ class Comparison {
       if (driven.grasped) was_held_[*driven.grasped] = true;
       const FollowedState now = reading.read(dynamics, driven, objects_.size());
       // Nothing can follow from that: the episode ends without a success.
-      if (!isKnown(now)) break;
+      if (!isAllKnown(now)) break;
       lane_.follow(actions, now);
       if (watch) watch(lane_.simulator(), actions);
       compare(n, dynamics, driver);
@@ -129,7 +132,8 @@ class Comparison {
     for (std::size_t n = 0; n < objects_.size(); ++n) {
       const Vec3 way =
           dynamics.objectPose(n).translation - objects_[n].world_from_object.translation;
-      if (!was_held_[n] && lengthOf(way) > kDisturbed) ++result_.disturbed;
+      // Not within it where the engine lost it, either.
+      if (!was_held_[n] && !(lengthOf(way) <= kDisturbed)) ++result_.disturbed;
     }
   }
 
@@ -142,7 +146,7 @@ class Comparison {
   }
 
   /// Lets each released object go where the simulation put it, among the others and without the
-  /// robot.
+  /// robot. One that the engine loses is where it was known last.
   void restAll() {
     std::vector<PlacedObject> objects = objects_;
     for (const TracedRelease& release : trace_.releases) {
@@ -151,9 +155,14 @@ class Comparison {
       for (std::size_t n = 0; n < objects.size(); ++n) {
         if (n != release.object) dynamics.sleep(n);
       }
-      for (int n = 0; n < kRestSteps; ++n) dynamics.step();
       const Pose& put = release.world_from_object;
-      const Pose now = dynamics.objectPose(release.object);
+      Pose now = put;
+      for (int n = 0; n < kRestSteps; ++n) {
+        dynamics.step();
+        const Pose next = dynamics.objectPose(release.object);
+        if (!isKnown(next)) break;
+        now = next;
+      }
       const Vec3 up = rotate(now.rotation * conjugate(put.rotation), {0, 1, 0});
       result_.rests.push_back({.displacement = lengthOf(now.translation - put.translation),
                                .lean = std::acos(std::clamp(up.y, -1.0F, 1.0F)),

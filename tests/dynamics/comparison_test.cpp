@@ -370,6 +370,28 @@ TEST(AnEpisode, EndsWithoutASuccessWhereTheEngineLosesTheRobotInItsFirstStep) {
   }
 }
 
+TEST(AReleasedObject, IsWhereTheEngineKnewItLast) {
+  const RecordedRun run(smallHomeWorld(), driveAhead());
+  SimulationOptions options = run.options();
+  options.task.most_steps = 300;
+  dynamics::Sources sources = run.sources({{{1, 0, 1}, {2, 0.7F, 2}}});
+  const auto box = boxPoints({0, 0.05F, 0}, {0.05F, 0.05F, 0.05F});
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (auto& [name, shape] : sources.objects) {
+    shape = dynamics::makeObjectShape({.hulls = {box}, .mass = kInfinite});
+  }
+  const auto lane = EpisodeLane::create(run.world(), options, dynamics::ClosedLoop{}).value();
+  const auto trace = traceOf(0, *lane).value();
+  const EpisodeComparison played =
+      compareEpisode(trace, *lane, {run.world(), options, sources, {}}, recordedActions(trace))
+          .value();
+  EXPECT_EQ(played.steps_in_dynamics, 0U) << "an object was lost, too";
+  EXPECT_EQ(played.disturbed, trace.start_objects.size());
+  ASSERT_EQ(played.rests.size(), 1U);
+  EXPECT_EQ(played.rests.front().world_from_object, trace.releases.front().world_from_object);
+  EXPECT_EQ(played.rests.front().displacement, 0.0F);
+}
+
 /// The n-th episode of a source in both worlds.
 EpisodeComparison compareOf(const dynamics::EpisodeSource& episodes, std::size_t n,
                             const RecordedRun& run, const dynamics::Sources& sources) {
