@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "galactic/drawn_number.h"
+#include "scripted/foresight.h"
 #include "scripted/plan_player.h"
 #include "scripted/planner.h"
 #include "support/call_check.h"
@@ -26,6 +26,15 @@ constexpr std::int32_t kNothingHeld = -1;
 /// How often the arm's part of a plan is planned again before all of it is.
 constexpr std::uint32_t kMostReaches = 6;
 
+/// What an env is in.
+struct Situation {
+  EnvState state;
+  /// How late actions arrive, steps.
+  std::uint32_t delay = 0;
+  /// The state that the next one meets.
+  EnvState ahead;
+};
+
 struct EnvPlan {
   /// What it was asked about last.
   std::uint32_t episode = kNoEpisode;
@@ -34,7 +43,15 @@ struct EnvPlan {
   /// Where motors were asked to bring the joints; empty where joints are where they were asked to
   /// be.
   scripted::Joints asked;
+  /// Plays nothing before the first plan is made.
   scripted::PlanPlayer player;
+  bool is_planned = false;
+  /// The number of the step before which the hand has done what it was asked to do last, and
+  /// whether it is closed then.
+  std::uint32_t hand_arrives = 0;
+  bool hand_closes = false;
+  /// For how many steps it has asked for nothing.
+  std::uint32_t waited = 0;
   /// Where the plan that is played ends, and where those ended that led to nothing.
   scripted::Stance stance;
   std::vector<scripted::Stance> failed;
@@ -125,11 +142,19 @@ class ScriptedPolicy::Impl {
       const std::size_t count = simulator_->actionCount();
       for (std::size_t env = next_++; env < envs_.size(); env = next_++) {
         if (simulator_->idle()[env] != 0 || (!where_.empty() && where_[env] == 0)) continue;
-        act(simulator_->envState(env), envs_[env], actions_.subspan(env * count, count), n);
+        act(situationOf(env), envs_[env], actions_.subspan(env * count, count), n);
       }
     } catch (...) {
       faults_[n] = std::current_exception();
     }
+  }
+
+  [[nodiscard]] Situation situationOf(std::size_t env) const {
+    Situation now{.state = simulator_->envState(env),
+                  .delay = simulator_->episodeNoise(env).action_delay,
+                  .ahead = {}};
+    now.ahead = scripted::foreseen(world_.robot(), now.state, simulator_->actionsUnderWay(env));
+    return now;
   }
 
   /// The planner of a thread: it takes a while to make, and memory.
@@ -139,12 +164,13 @@ class ScriptedPolicy::Impl {
     return *planner;
   }
 
-  void act(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
-    if (isAnotherEpisode(state, env)) begin(state, env, thread);
+  void act(const Situation& now, EnvPlan& env, std::span<float> actions, std::size_t thread) {
+    const EnvState& state = now.state;
+    if (isAnotherEpisode(state, env)) begin(now, env);
     env.episode = state.episode;
     env.begun = state.begun;
     env.step = state.step;
-    playOn(state, env, actions, thread);
+    playOn(now, env, actions, thread);
     if (env.asked.empty()) return;
     const std::span<const ControlledJoint> joints = world_.robot().controlledJoints();
     for (std::size_t n = 0; n < joints.size(); ++n) {
@@ -154,20 +180,56 @@ class ScriptedPolicy::Impl {
     }
   }
 
-  void playOn(const EnvState& state, EnvPlan& env, std::span<float> actions, std::size_t thread) {
+  void playOn(const Situation& now, EnvPlan& env, std::span<float> actions, std::size_t thread) {
+    const EnvState& state = now.state;
     while (true) {
-      std::ranges::fill(actions, 0.0F);
-      const scripted::ActionRow row = scripted::rowOf(ActionLayout::of(world_.robot()), actions);
-      // Grasping, letting go and terminating are steps of a plan.
-      row.grasp = state.held >= 0 ? decisions_.keep : decisions_.stay_open;
-      row.terminate = decisions_.go_on;
+      scripted::ActionRow row = holdStill(now, env, actions);
       if (env.phase == ScriptedPhase::kGaveUp) return;
-      const std::span<const float> asked = env.asked.empty() ? state.joint_positions : env.asked;
-      const Progress progress = env.player.play(arm_, *world_.robot().base(), state, asked, row);
-      if (progress == Progress::kActs) return;
+      const float hand = row.grasp;
+      const std::span<const float> asked =
+          env.asked.empty() ? now.ahead.joint_positions : env.asked;
+      const Progress progress =
+          env.player.play(arm_, *world_.robot().base(), now.ahead, asked, row);
+      if (progress == Progress::kActs) {
+        if (row.grasp != hand) decideHand(now, env);
+        env.waited = 0;
+        return;
+      }
+      // What comes next depends on what has come of the actions so far.
+      if (env.waited < now.delay) {
+        ++env.waited;
+        holdStill(now, env, actions);
+        return;
+      }
+      env.waited = 0;
       if (progress == Progress::kOff && reachFromHere(state, env, thread)) continue;
-      planNext(state, env, progress, thread);
+      if (env.is_planned) {
+        planNext(state, env, progress, thread);
+      } else {
+        plan(state, env, thread);
+      }
     }
+  }
+
+  /// Moves and decides nothing: grasping, letting go and terminating are steps of a plan.
+  scripted::ActionRow holdStill(const Situation& now, const EnvPlan& env,
+                                std::span<float> actions) const {
+    std::ranges::fill(actions, 0.0F);
+    const scripted::ActionRow row = scripted::rowOf(ActionLayout::of(world_.robot()), actions);
+    row.grasp = closesHand(now, env) ? decisions_.keep : decisions_.stay_open;
+    row.terminate = decisions_.go_on;
+    return row;
+  }
+
+  /// Whether the hand is closed when the next action arrives.
+  [[nodiscard]] static bool closesHand(const Situation& now, const EnvPlan& env) {
+    return now.state.step < env.hand_arrives ? env.hand_closes : now.state.held >= 0;
+  }
+
+  /// The next action opens the hand, or closes it.
+  static void decideHand(const Situation& now, EnvPlan& env) {
+    env.hand_closes = !closesHand(now, env);
+    env.hand_arrives = now.state.step + now.delay + 1;
   }
 
   [[nodiscard]] static bool isAnotherEpisode(const EnvState& state, const EnvPlan& env) {
@@ -176,10 +238,11 @@ class ScriptedPolicy::Impl {
   }
 
   /// An episode begins, or is met on its way.
-  void begin(const EnvState& state, EnvPlan& env, std::size_t thread) {
+  void begin(const Situation& now, EnvPlan& env) const {
     env = {};
-    if (lags_) env.asked = state.joint_positions;
-    plan(state, env, thread);
+    if (lags_) env.asked = now.state.joint_positions;
+    // Nothing is under way where an episode begins.
+    if (now.state.step == 0) env.waited = now.delay;
   }
 
   [[nodiscard]] bool isAtGoal(const EnvState& state) const {
@@ -252,6 +315,7 @@ class ScriptedPolicy::Impl {
   void plan(const EnvState& state, EnvPlan& env, std::size_t thread) {
     const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
     const bool holds_another = state.held >= 0 && !holds_target;
+    env.is_planned = true;
     if (holds_another) env.trouble = ScriptedTrouble::kMissed;
     if (isAtGoal(state)) {
       // Another time would change nothing: the simulation wants something else.
@@ -293,12 +357,6 @@ Result<ScriptedPolicy> ScriptedPolicy::create(const World& world,
   if (options.task.kind == TaskKind::kNone) {
     return fail(ErrorCode::kUnsupported, "scripted policy",
                 "the task is none, which has nothing to plan for; use rearrange or mobile pick");
-  }
-  if (options.noise.delaysActions()) {
-    return fail(ErrorCode::kUnsupported, "scripted policy",
-                "steers by what it sees, and can do nothing where actions arrive late: found an "
-                "action-delay of " +
-                    drawnText(options.noise.action_delay) + ", expected 0; use --action-delay 0");
   }
   ASSIGN_OR_RETURN(const scripted::Decisions decisions,
                    scripted::decisionsBy(options.action, options.task));

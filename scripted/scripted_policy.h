@@ -57,7 +57,8 @@ enum class ScriptedTrouble : std::uint8_t {
 /// Where the simulation moves the robot otherwise than planned, it steers back to the plan, lets
 /// the arm reach from where the base has come to, or plans again, a few times; when nothing is
 /// found it gives up: its actions are zero, but for the hand, which keeps what it holds. So it
-/// bears noise of motion (RobotNoise).
+/// bears noise of motion (RobotNoise). Where actions arrive late, it acts from where the robot will
+/// be when they do, and lets all of them arrive before it plans.
 ///
 /// Deterministic: what it does in an env depends on that env's states only. Plans take some tens of
 /// milliseconds and allocate; `options.threads` threads make them. Not safe to call from several
@@ -65,9 +66,8 @@ enum class ScriptedTrouble : std::uint8_t {
 class ScriptedPolicy {
  public:
   /// For a batch of `options.envs` envs that was made from the same world and options. Fails with
-  /// kUnsupported when the task is TaskKind::kNone, when actions arrive late
-  /// (RobotNoise::action_delay), or when thresholds of ActionOptions leave no value that decides,
-  /// or none that does not.
+  /// kUnsupported when the task is TaskKind::kNone, or when thresholds of ActionOptions leave no
+  /// value that decides, or none that does not.
   [[nodiscard]] static Result<ScriptedPolicy> create(const World& world,
                                                      const SimulationOptions& options);
   ~ScriptedPolicy();

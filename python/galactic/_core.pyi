@@ -211,6 +211,9 @@ class Simulator:
     def episode_noise(
         self, envs: Iterable[int] | None = None
     ) -> dict[str, NDArray[Any]]: ...  # (n,)
+    def actions_under_way(
+        self, env: int
+    ) -> NDArray[np.float32]: ...  # (action_delay, action_count)
     def sample_phases(self, every: int) -> None: ...
     def phase_times(self) -> dict[str, float]: ...
 

@@ -92,11 +92,10 @@ void bindScriptedPolicy(py::module_& module) {
   type.def(
       py::init<const py::object&, const py::object&>(), py::arg("simulator"), py::kw_only(),
       py::arg("most_plans") = ScriptedPolicy::kMostPlans, py::keep_alive<1, 2>(),
-      "simulator: in whose envs it acts; Error when its task is 'none', when actions arrive\n"
-      "late (action_delay), or when every action or none grasps, lets go or terminates\n"
-      "(grasp_from, release_below, terminate_from). most_plans: how often it plans in an episode\n"
-      "before it gives up. A plan takes some tens of milliseconds; as many threads as the\n"
-      "simulator has make them.");
+      "simulator: in whose envs it acts; Error when its task is 'none', or when every action or\n"
+      "none grasps, lets go or terminates (grasp_from, release_below, terminate_from).\n"
+      "most_plans: how often it plans in an episode before it gives up. A plan takes some tens of\n"
+      "milliseconds; as many threads as the simulator has make them.");
   type.doc() =
       "Solves Rearrange and Mobile Pick by a plan, made from the whole state of each env: an\n"
       "expert to imitate or to compare with. galactic-run's --policy scripted is the same.";

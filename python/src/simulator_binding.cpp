@@ -97,6 +97,16 @@ py::dict episodeNoise(Simulator& simulator, const py::object& envs) {
                   "laser_noise"_a = laser.array());
 }
 
+py::array_t<float> actionsUnderWay(Simulator& simulator, const py::object& env) {
+  const Confinement::Use use = simulator.readState();
+  const std::vector<float> actions = simulator.batch().actionsUnderWay(simulator.envNumber(env));
+  const std::size_t count = simulator.batch().actionCount();
+  Filled<float> rows(
+      {static_cast<py::ssize_t>(actions.size() / count), static_cast<py::ssize_t>(count)});
+  for (const float action : actions) rows.put(action);
+  return rows.array();
+}
+
 py::dict phaseTimes(Simulator& simulator) {
   const Confinement::Use use = simulator.readState();
   py::dict times;
@@ -272,6 +282,11 @@ void bindQueries(py::class_<Simulator>& type) {
            "The noise that the episode of each env, or of each of the numbers `envs`, has drawn\n"
            "where options give ranges: motion_noise, motion_bias, localization_noise,\n"
            "action_delay (uint32, others float32) and laser_noise, (n,), copies.");
+  type.def("actions_under_way", &actionsUnderWay, py::arg("env"),
+           "What an env was asked to do and has not done yet, as actions arrive late: float32\n"
+           "(action_delay of its episode, action_count), a copy, the action first that is due in\n"
+           "the next step. Of steps before the episode, nothing moves, and what is asked of hand\n"
+           "and terminate is NaN.");
   type.def(
       "sample_phases",
       [](Simulator& one, const py::object& every) {

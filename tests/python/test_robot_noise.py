@@ -202,6 +202,26 @@ def test_actions_arrive_as_late_as_each_episode_has_drawn(world, draw_actions) -
             np.testing.assert_array_equal(again.step(actions)[0], seen)
 
 
+def test_what_is_under_way_is_told(world, draw_actions) -> None:
+    simulator = Simulator(world, envs=2, threads=1, action_delay=3)
+    count = simulator.action_count
+    before = np.zeros((3, count), np.float32)
+    before[:, -2:] = np.nan
+    np.testing.assert_array_equal(simulator.actions_under_way(1), before)
+    asked = draw_actions(2, count)
+    simulator.step(asked)
+    under_way = simulator.actions_under_way(1)
+    assert under_way.dtype == np.float32
+    np.testing.assert_array_equal(under_way, [*before[1:], asked[1]])
+    assert Simulator(world, envs=1).actions_under_way(0).shape == (0, count)
+    with pytest.raises(galactic.Error, match="env: is 2, expected .* below 2"):
+        simulator.actions_under_way(2)
+    simulator.begin_step(asked)
+    with pytest.raises(RuntimeError, match="a step is under way"):
+        simulator.actions_under_way(0)
+    simulator.end_step()
+
+
 @pytest.mark.parametrize(
     "value", [-1, 101, 0.5, (3, 1), (0, 101), (0, 0.5), "0-", "1-2-3", "one", 10**12]
 )

@@ -159,20 +159,38 @@ TEST_F(ScriptedPolicyInTheSampleWorld, ActsByTheThresholdsOfActions) {
   other.envs = 4;
   other.action = {.grasp = 0, .release = -0.9F, .terminate = -0.5F};
   EXPECT_GE(play(world(), other).successCount(), 3U);
+  other.noise.action_delay = 2;
+  EXPECT_GE(play(world(), other).successCount(), 3U);
   other.action.release = -1;
   const auto policy = ScriptedPolicy::create(world(), other);
   ASSERT_FALSE(policy.has_value());
   EXPECT_EQ(policy.error().code, ErrorCode::kUnsupported);
 }
 
-TEST_F(ScriptedPolicyInTheSampleWorld, RefusesActionsThatArriveLate) {
+TEST_F(ScriptedPolicyInTheSampleWorld, ActsAheadOfWhatArrivesLate) {
+  const Outcomes prompt = play(world(), options());
+  SimulationOptions late = options();
+  for (const std::uint32_t delay : {1U, 5U}) {
+    late.noise.action_delay = delay;
+    const Outcomes outcomes = play(world(), late);
+    EXPECT_EQ(outcomes.successes, prompt.successes);
+    std::size_t alike = 0;
+    for (std::size_t env = 0; env < kEpisodes; ++env) {
+      // It waits for what comes of a grasp, of letting go and of the end, and is on its way else.
+      const std::uint32_t waits = outcomes.steps[env] - prompt.steps[env];
+      alike += waits == 3 * delay ? 1U : 0U;
+    }
+    EXPECT_GE(alike, kEpisodes * 8 / 10) << "others had to plan more often";
+  }
+}
+
+TEST_F(ScriptedPolicyInTheSampleWorld, BearsLateActionsThatAreNotDoneExactly) {
   SimulationOptions late = options();
   late.noise.action_delay = {0, 2};
-  const auto policy = ScriptedPolicy::create(world(), late);
-  ASSERT_FALSE(policy.has_value());
-  EXPECT_EQ(policy.error().code, ErrorCode::kUnsupported);
-  EXPECT_NE(policy.error().message.find("an action-delay of 0-2, expected 0"), std::string::npos)
-      << policy.error().message;
+  late.noise.motion = 0.1F;
+  late.noise.motion_bias = 0.1F;
+  const Outcomes outcomes = play(world(), late);
+  EXPECT_GE(outcomes.successCount(), kEpisodes * 8 / 10);
 }
 
 TEST_F(ScriptedPolicyInTheSampleWorld, RefusesToHaveNothingToDo) {
@@ -218,6 +236,34 @@ TEST(ScriptedPolicy, DrivesARobotThatCouldDriveSidewaysAheadOnly) {
   for (std::size_t n = layout.sideways(); n < with.actions.size(); n += layout.count()) {
     ASSERT_EQ(with.actions[n], 0);
   }
+}
+
+/// In how many steps the policy solves an episode in which others have driven away first.
+std::size_t stepsAfterOthers(const World& world, std::uint32_t delay) {
+  SimulationOptions options = optionsOf(1);
+  options.noise.action_delay = delay;
+  BatchSimulator simulator = MemoryPack::opened(BatchSimulator::create(world, options));
+  ScriptedPolicy policy = MemoryPack::opened(ScriptedPolicy::create(world, options));
+  std::vector<float> actions(simulator.actionCount());
+  actions[simulator.actionLayout().forward()] = -1;
+  actions[simulator.actionLayout().turn()] = 1;
+  constexpr int kOthers = 8;
+  for (int step = 0; step < kOthers; ++step) simulator.step(actions);
+  for (std::size_t steps = 1; steps < 400; ++steps) {
+    policy.act(simulator, actions);
+    simulator.step(actions);
+    if (simulator.dones()[0] != 0) return simulator.successes()[0] != 0 ? steps : 0;
+  }
+  return 0;
+}
+
+TEST(ScriptedPolicy, LetsWhatOthersAskedForArriveBeforeItPlans) {
+  const ScriptedWorld made = tableWorld(1.7F);
+  const std::size_t prompt = stepsAfterOthers(made.world(), 0);
+  ASSERT_GT(prompt, 0U);
+  constexpr std::uint32_t kDelay = 6;
+  // And, as ever, before it looks what has come of a grasp, of letting go and of the end.
+  EXPECT_EQ(stepsAfterOthers(made.world(), kDelay), prompt + 4 * kDelay);
 }
 
 TEST(ScriptedPolicy, GivesUpWhereThereIsNoWayAndStandsStill) {

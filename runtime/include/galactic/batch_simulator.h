@@ -376,6 +376,11 @@ class BatchSimulator {
   [[nodiscard]] EnvMoment envMoment(std::size_t env) const noexcept;
   /// The noise of the episode that an env is in.
   [[nodiscard]] EpisodeNoise episodeNoise(std::size_t env) const;
+  /// What an env was asked to do and has not done yet, as actions arrive late
+  /// (RobotNoise::action_delay): an action for each step of its episode's delay, the one that is due
+  /// in the next step first. Of steps before the episode, nothing moves and what the hand and
+  /// terminate ask for is NaN. Shape: EpisodeNoise::action_delay * actionCount(). Allocates.
+  [[nodiscard]] std::vector<float> actionsUnderWay(std::size_t env) const;
   /// A body is a group of links that no joint moves against each other in this run (joints that
   /// neither actions nor episodes move count as fixed). The root's is body 0.
   [[nodiscard]] std::size_t bodyCount() const;

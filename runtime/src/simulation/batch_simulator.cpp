@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "galactic/option_text.h"
+#include "simulation/phases/action_delay.h"
 #include "simulation/phases/chosen_state.h"
 #include "simulation/phases/chunk.h"
 #include "simulation/phases/episode_start.h"
@@ -502,6 +503,13 @@ EpisodeNoise BatchSimulator::episodeNoise(std::size_t env) const {
   impl_->requireIdle(kCall);
   detail::checkIndex(kCall, "env", env, envCount());
   return simulation::episodeNoiseIn(impl_->model(), envMoment(env));
+}
+
+std::vector<float> BatchSimulator::actionsUnderWay(std::size_t env) const {
+  constexpr const char* kCall = "BatchSimulator::actionsUnderWay";
+  impl_->requireIdle(kCall);
+  detail::checkIndex(kCall, "env", env, envCount());
+  return simulation::actionsUnderWay(impl_->model(), impl_->state(), env);
 }
 
 std::size_t BatchSimulator::bodyCount() const { return impl_->model().motion.nodes.size() + 1; }

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,8 @@ BatchSimulator made(const BoxWorld& world, const SimulationOptions& options) {
   return BatchSimulator::create(world.world(), options).value();
 }
 
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
 /// What reaches robots, as one would do it without the simulator.
 class LateActions {
  public:
@@ -52,6 +56,23 @@ class LateActions {
       arrived.insert(arrived.end(), due.begin(), due.end());
     }
     return arrived;
+  }
+
+  /// What is on its way to an env of `simulator`.
+  [[nodiscard]] std::vector<float> underWay(const BatchSimulator& simulator,
+                                            std::size_t env) const {
+    const bool has_begun = simulator.envState(env).step == 0;
+    const std::vector<std::vector<float>> none;
+    const std::vector<std::vector<float>>& asked = has_begun ? none : asked_[env];
+    std::vector<float> before(simulator.actionCount(), 0.0F);
+    before[simulator.actionLayout().hand()] = kNothing;
+    before[simulator.actionLayout().terminate()] = kNothing;
+    std::vector<float> actions;
+    for (std::size_t ago = simulator.episodeNoise(env).action_delay; ago > 0; --ago) {
+      const auto& action = ago <= asked.size() ? asked[asked.size() - ago] : before;
+      actions.insert(actions.end(), action.begin(), action.end());
+    }
+    return actions;
   }
 
  private:
@@ -77,6 +98,40 @@ TEST(ActionDelay, LetsRobotsDoWhatTheyWereAskedToStepsLater) {
     EXPECT_GT(late.statistics().grasps, 20U);
     EXPECT_GT(late.statistics().failures, 20U) << "released or terminated";
   }
+}
+
+/// Whether two arrays have the same bits, numbers that are none included.
+testing::AssertionResult areSame(const std::vector<float>& found,
+                                 const std::vector<float>& wanted) {
+  const bool same = found.size() == wanted.size() &&
+                    (found.empty() ||
+                     std::memcmp(found.data(), wanted.data(), found.size() * sizeof(float)) == 0);
+  return same ? testing::AssertionSuccess()
+              : testing::AssertionFailure() << testing::PrintToString(found) << ", expected "
+                                            << testing::PrintToString(wanted);
+}
+
+TEST(ActionDelay, TellsWhatIsUnderWay) {
+  const BoxWorld world = furnishedWorld();
+  constexpr std::uint32_t kEnvs = 21;
+  for (const std::uint32_t shown : {0U, 7U}) {
+    SimulationOptions options = delayed({0, 4}, kEnvs);
+    // More steps are kept than an action can be late by.
+    options.sensors.last_actions = shown;
+    BatchSimulator late = made(world, options);
+    LateActions oracle(kEnvs);
+    for (std::uint32_t step = 0; step < 40; ++step) {
+      const std::vector<float> actions = actionsFor(late, 0, step);
+      for (std::size_t env = 0; env < kEnvs; ++env) {
+        ASSERT_TRUE(areSame(late.actionsUnderWay(env), oracle.underWay(late, env)))
+            << "env " << env << ", step " << step;
+      }
+      static_cast<void>(oracle.arriving(late, actions));
+      late.step(actions);
+    }
+    EXPECT_GT(late.statistics().episodes, 10U);
+  }
+  EXPECT_TRUE(made(world, delayed(0, 1)).actionsUnderWay(0).empty());
 }
 
 TEST(ActionDelay, IsPaidForWhenItIsAsked) {

@@ -65,6 +65,8 @@ TEST_F(BatchCalls, WithNumbersOfNoEnvAreRefused) {
       simulator_, [&] { static_cast<void>(simulator_.linkOnBody(1000)); }, "link 1000");
   expectRefused(
       simulator_, [&] { static_cast<void>(simulator_.episodeNoise(kEnvs)); }, "env 20");
+  expectRefused(
+      simulator_, [&] { static_cast<void>(simulator_.actionsUnderWay(kEnvs)); }, "env 20");
   const std::vector<std::byte> two = simulator_.saveState(std::array<std::uint32_t, 2>{0, 1});
   expectRefused(
       simulator_, [&] { static_cast<void>(simulator_.restoreState(two, envs)); },
@@ -135,6 +137,7 @@ TEST_F(BatchCalls, ThatWouldMeetAHalfStepAreRefused) {
   refused([&] { static_cast<void>(simulator_.envState(0)); }, "envState");
   refused([&] { simulator_.follow(actions_, {}); }, "follow");
   refused([&] { static_cast<void>(simulator_.episodeNoise(0)); }, "episodeNoise");
+  refused([&] { static_cast<void>(simulator_.actionsUnderWay(0)); }, "actionsUnderWay");
   refused([&] { static_cast<void>(simulator_.statistics()); }, "statistics");
   refused([&] { static_cast<void>(simulator_.statistics(0)); }, "statistics");
   refused([&] { simulator_.samplePhases(1); }, "samplePhases");

@@ -57,4 +57,17 @@ std::span<const EnvRow> arrivedOf(const ChunkStep& step) noexcept {
   return step.model.options.noise.delaysActions() ? step.chunk.arrived() : step.chunk.actions();
 }
 
+std::vector<float> actionsUnderWay(const Model& model, const BatchState& state, std::size_t n) {
+  const EnvMoment moment = momentOf(model, state, n);
+  const std::size_t delay = drawnIn(moment, model.options.noise.action_delay, kDelayDraw);
+  std::vector<float> actions;
+  actions.reserve(delay * model.actionCount());
+  for (std::size_t ago = delay; ago > 0; --ago) {
+    for (const EnvRow& action : state.keptActions(n, moment.step + state.keptSteps() - ago)) {
+      actions.push_back(action.values[n % kChunk]);
+    }
+  }
+  return actions;
+}
+
 }  // namespace galactic::simulation
