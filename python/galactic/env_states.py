@@ -70,6 +70,10 @@ class EnvStates(NamedTuple):
     goal: Poses
     """Of n goals: where the targets are to be, in the world."""
 
+    def __repr__(self) -> str:
+        size = " x ".join(map(str, np.shape(self.object_kinds)))
+        return f"<galactic.EnvStates, envs x objects: {size}>"
+
     def select(self, rows: Any) -> EnvStates:
         """Copies of some of them, by their rows here: numbers, a mask, or whatever an array takes."""
         return _selected(self, np.arange(len(self.episode))[rows])

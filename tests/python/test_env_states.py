@@ -43,6 +43,12 @@ def test_arrays_hold_what_single_envs_say(played, world):
     assert len(counts) > 1 and states.objects.rotation.shape == (ENVS, max(counts), 4)
 
 
+def test_states_are_printed_on_one_line(played):
+    states = played.env_states()
+    most = states.object_kinds.shape[1]
+    assert repr(states) == f"<galactic.EnvStates, envs x objects: {ENVS} x {most}>"
+
+
 def test_some_envs_in_any_order(played, world):
     states = played.env_states([7, 2, 7])
     for row, env in enumerate([7, 2, 7]):
