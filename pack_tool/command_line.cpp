@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -17,6 +14,7 @@
 
 #include "galactic/error.h"
 #include "pack_tool/diff/report_diff.h"
+#include "pack_tool/option_values.h"
 #include "pack_tool/pictures/figure_picture.h"
 #include "support/text/help_lines.h"
 #include "support/text/nearest_name.h"
@@ -30,44 +28,6 @@ namespace {
 constexpr double kMostMeters = 1000;
 /// A million times as much.
 constexpr double kMostShare = 1e6;
-
-/// Exactly `Count` finite numbers separated by commas.
-template <std::size_t Count>
-std::array<double, Count> parseNumbers(const std::string& option, const std::string& text) {
-  std::array<double, Count> numbers{};
-  const char* from = text.data();
-  const char* const end = from + text.size();
-  bool good = true;
-  for (std::size_t n = 0; n < Count && good; ++n) {
-    if (n > 0) good = from != end && *from++ == ',';
-    const auto parsed = std::from_chars(from, end, numbers[n]);
-    good = good && parsed.ec == std::errc() && std::isfinite(numbers[n]);
-    from = parsed.ptr;
-  }
-  if (!good || from != end) {
-    throw CLI::ValidationError(
-        option, fmt::format("\"{}\" is not {} numbers separated by commas", text, Count));
-  }
-  return numbers;
-}
-
-/// Turns one of `names` into the number of its value. CLI's own transformer takes these numbers,
-/// too.
-template <class T>
-CLI::Validator choice(std::map<std::string, T> names) {
-  return CLI::Validator(
-      [names = std::move(names)](std::string& text) {
-        const auto found = names.find(text);
-        if (found != names.end()) {
-          text = std::to_string(static_cast<int>(found->second));
-          return std::string();
-        }
-        std::string wanted;
-        for (const auto& [name, value] : names) wanted += (wanted.empty() ? "" : ", ") + name;
-        return fmt::format("found \"{}\", expected one of {}", text, wanted);
-      },
-      "", "choice");
-}
 
 void checkSwitches(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -210,47 +170,6 @@ void addDiff(CLI::App& app, DiffOptions& options) {
   addJson(verb, options.form);
   addTrusted(verb, options.trust);
   verb.callback([&verb, &options] { checkDiff(verb, options); });
-}
-
-/// "name=value,name=value" as joint values.
-std::vector<JointValue> parseJoints(const std::string& text) {
-  std::vector<JointValue> joints;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    const std::string entry = text.substr(from, comma - from);
-    const std::size_t equals = entry.rfind('=');
-    JointValue joint{entry.substr(0, equals), 0};
-    const char* const end = entry.data() + entry.size();
-    const char* const number = equals == std::string::npos ? end : entry.data() + equals + 1;
-    const auto parsed = std::from_chars(number, end, joint.value);
-    if (joint.name.empty() || parsed.ec != std::errc() || parsed.ptr != end ||
-        !std::isfinite(joint.value)) {
-      throw CLI::ValidationError(
-          "--joints", fmt::format("\"{}\" is not joint=value, for example elbow=1.57", entry));
-    }
-    joints.push_back(std::move(joint));
-    from = comma + 1;
-  }
-  return joints;
-}
-
-LayerSet parseLayers(const std::string& text) {
-  const std::map<std::string, FigureLayer> names{{"mesh", FigureLayer::kMesh},
-                                                 {"spheres", FigureLayer::kSpheres},
-                                                 {"boxes", FigureLayer::kBoxes}};
-  LayerSet layers = LayerSet::none();
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    const std::string name = text.substr(from, comma - from);
-    const auto found = names.find(name);
-    if (found == names.end()) {
-      throw CLI::ValidationError("--what",
-                                 fmt::format("\"{}\" is not mesh, spheres or boxes", name));
-    }
-    layers.add(found->second);
-    from = comma + 1;
-  }
-  return layers;
 }
 
 /// What only objects and robots have: `figures` is filled when one of them is given.
