@@ -1,7 +1,8 @@
 """States of a VectorEnv as bytes: of all of its envs, or of some, which go on in any others.
 
-A state is an archive of numpy's. Of all envs, it has what HalfBatch.save_state() returns, each name with the
-number of the half behind it. Of some envs, it has
+A state is a header (_HEADER), a list of arrays as JSON, [[name, type, shape], ...] with types as numpy describes
+them in its files, and the arrays, little-endian, one after the other. Of all envs, it has what
+HalfBatch.save_state() returns, each name with the number of the half behind it. Of some envs, it has
 
     envs                       how many: n
     simulator_0, simulator_1   the states of those that were in each half's simulator, where any were
@@ -11,7 +12,9 @@ number of the half behind it. Of some envs, it has
 
 from __future__ import annotations
 
-import io
+import json
+import struct
+import zlib
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -24,8 +27,9 @@ from galactic.half_batch import HalfBatch, Piece
 
 Array = NDArray[Any]
 
-#: The first file of a zip archive, and the end of its directory, 22 bytes without a comment.
-_ARCHIVE_BEGINS, _ARCHIVE_ENDS = b"PK\x03\x04", b"PK\x05\x06"
+_MAGIC = b"GALENVS1"
+#: That, the CRC-32 of all that follows, and how many bytes the list of arrays takes.
+_HEADER = struct.Struct("<8sII")
 
 
 def state_of_all(halves: Sequence[HalfBatch]) -> bytes:
@@ -87,16 +91,10 @@ def _restore_all(halves: Sequence[HalfBatch], found: Mapping[str, Array]) -> Non
     before = [None if half.is_cut_off else half.save_state() for half in halves]
     try:
         for half, saved in zip(halves, arrays):
-            half.restore_state(_of_today(saved, half))
+            half.restore_state(saved)
     except BaseException:
         _put_back(halves, before)
         raise
-
-
-def _of_today(saved: Mapping[str, Array], half: HalfBatch) -> dict[str, Array]:
-    """States of earlier versions do not tell whether a reset() came before them; mostly one did. Nor do they tell
-    of progress."""
-    return {"is_new": np.array(False), "progress": np.array(half.progress), **saved}
 
 
 def _restore_some(
@@ -187,24 +185,48 @@ def _put_back(halves: Sequence[HalfBatch], before: Sequence[dict[str, Array] | N
 
 
 def _packed(arrays: Mapping[str, Array]) -> bytes:
-    file = io.BytesIO()
-    np.savez(file, **arrays)
-    return file.getvalue()
+    parts = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
+    listed = [
+        (name, np.lib.format.dtype_to_descr(array.dtype), np.shape(arrays[name]))
+        for name, array in parts.items()
+    ]
+    text = json.dumps(listed).encode()
+    body = b"".join([text, *(array.tobytes() for array in parts.values())])
+    return _HEADER.pack(_MAGIC, zlib.crc32(body), len(text)) + body
 
 
 def _unpacked(state: bytes) -> dict[str, Array]:
-    """Raises Error for bytes that are no such archive, from the first to the last."""
+    """Arrays that nobody can write. Raises Error for bytes that are none, from the first to the last."""
     found = bytes(memoryview(state))
-    if found[:4] != _ARCHIVE_BEGINS or found[-22:-18] != _ARCHIVE_ENDS:
+    if len(found) < _HEADER.size or not found.startswith(_MAGIC):
         raise _refused(
-            f"found {len(found)} bytes that do not begin and end as a state does; give what save_state() returned"
+            f"found {len(found)} bytes that do not begin as a state does; give what save_state() returned"
         )
+    _, checksum, length = _HEADER.unpack_from(found)
+    if zlib.crc32(memoryview(found)[_HEADER.size :]) != checksum:
+        raise _refused("does not have the checksum that it states; it is damaged")
+    at = _HEADER.size + length
+    arrays: dict[str, Array] = {}
     try:
-        archive = np.load(io.BytesIO(found), allow_pickle=False)
-        return {name: np.asarray(archive[name]) for name in archive.files}
-    except Exception as problem:  # numpy and zipfile raise whatever their readers do
-        message = f"cannot be read ({problem}); give what save_state() returned"
-        raise Error(ErrorCode.INVALID_INPUT, "saved state", message) from problem
+        for name, described, shape in json.loads(found[_HEADER.size : at]):
+            kind = _type_of(described)
+            # Of objects, bytes would be addresses; and -1 would be whatever is left.
+            if kind.hasobject or min(shape, default=0) < 0:
+                raise ValueError(f"found {name} as {kind} {shape}, expected numbers in a shape")
+            arrays[name] = np.ndarray(shape, kind, found, at)
+            at += arrays[name].nbytes
+    except Exception as problem:  # whatever is wrong with what somebody has signed
+        raise _refused(f"cannot be read ({problem}); give what save_state() returned") from problem
+    if at != len(found):
+        raise _refused(f"found {len(found)} bytes, expected {at}; it is damaged")
+    return arrays
+
+
+def _type_of(described: Any) -> np.dtype[Any]:
+    """Of what dtype_to_descr() returned, whose tuples have become lists."""
+    if isinstance(described, str):
+        return np.dtype(described)
+    return np.dtype([(name, _type_of(of), *map(tuple, shape)) for name, of, *shape in described])
 
 
 def _refused(message: str) -> Error:

@@ -246,8 +246,16 @@ void bindQueries(py::class_<Simulator>& type) {
       "thread_count", [](const Simulator& one) { return one.batch().threadCount(); },
       "How many threads step.");
   type.def_property_readonly(
-      "options", [](const Simulator& one) { return keywordsOf(one.batch().options()); },
-      "All options in force, as keywords of Simulator.");
+      "options",
+      [](const Simulator& one) {
+        const SimulationOptions& options = one.batch().options();
+        py::dict keywords;
+        keywords["auto_reset"] = options.auto_reset;
+        keywords["body_transforms"] = options.body_transforms;
+        keywords.attr("update")(keywordsOf(options));
+        return keywords;
+      },
+      "All options in force but the number of threads, as keywords of Simulator.");
   type.def_static(
       "check_options", [](const py::kwargs& options) { (void)taskTextsOf(options); },
       "Raises what a Simulator would for options that are wrong in any world: TypeError for an\n"

@@ -23,8 +23,10 @@ def test_options_are_those_of_the_option_table(world):
         order=None,
         laser_beams=4,
         laser_heights=[0.25, (0.4, np.float32(0.75))],
+        auto_reset=False,
     )
     options = simulator.options
+    assert (options["auto_reset"], options["body_transforms"]) == (False, False)
     assert options["task"] == "pick"
     assert options["no_distractors"] is True
     assert (options["safe_drop"], options["target_up"]) == (True, False)

@@ -1,9 +1,9 @@
 """States of some envs in others: to plan from where one env is, with the task's memory and all sums."""
 
-import io
 
 import numpy as np
 import pytest
+from packed_states import packed, unpacked
 
 from galactic import Error, ErrorCode, Simulator, VectorEnv
 from tasks import ACTIONS, Approach, drawing, played
@@ -35,6 +35,24 @@ def test_many_plans_begin_where_one_env_is(world, halves, task):
     # 0 where the step has ended the episode.
     assert set(lengths.tolist()) <= {9, 0} and lengths[4] == 9
     assert returns[4] == real._halves[0]._tally.returns[2]
+
+
+def test_plans_need_no_images_where_the_env_draws(world):
+    """States go from envs that draw to envs that do not, and back."""
+    images = {"width": 8, "height": 8}
+    options = {"task": "pick", "seed": 6, "threads": 1}
+    real = VectorEnv(world, 4, images=images, **options)
+    planner = VectorEnv(world, 10, halves=2, **options)
+    real.reset()
+    planner.reset()
+    played(real, drawing(1), 8)
+    planner.restore_state(real.save_state(envs=[2]))
+    np.testing.assert_array_equal(planner.observe(), np.tile(real.observe()["state"][2], (10, 1)))
+    played(planner, drawing(3), 5)
+    real.restore_state(planner.save_state(envs=[7, 0]), envs=[1, 3])
+    np.testing.assert_array_equal(real.observe()["state"][[1, 3]], planner.observe()[[7, 0]])
+    drawn = real.observe()["depth"]
+    assert (drawn[1] != drawn[3]).any()
 
 
 @pytest.mark.parametrize("halves", [1, 2])
@@ -92,11 +110,8 @@ def test_states_that_do_not_fit_are_refused_and_change_nothing(world):
     some, one = env.save_state(envs=[0, 1, 5]), env.save_state(envs=[4])
 
     def changed(state, **changes):
-        with np.load(io.BytesIO(state)) as archive:
-            arrays = {**archive, **changes}
-        file = io.BytesIO()
-        np.savez(file, **{name: array for name, array in arrays.items() if array is not None})
-        return file.getvalue()
+        arrays = {**unpacked(state), **changes}
+        return packed({name: array for name, array in arrays.items() if array is not None})
 
     other = made(world, 6, halves=2, seed=7)
     plain = made(world, 6, task="none", episode_steps=20)

@@ -158,9 +158,10 @@ class BatchSimulator::Impl {
 
   Result<void> restore(std::span<const std::byte> bytes) {
     requireIdle("BatchSimulator::restoreState");
-    ASSIGN_OR_RETURN(const SavedState saved, simulation::readState(model_, bytes));
+    ASSIGN_OR_RETURN(SavedState saved, simulation::readState(model_, bytes));
     const std::vector<std::uint32_t> all = allEnvs(envCount());
     if (Result<void> fits = checkCount(saved, all); !fits) return fits;
+    addBodies(saved);
     model_.options.seed = saved.seed;
     steps_ = saved.steps;
     put(saved, all);
@@ -174,7 +175,7 @@ class BatchSimulator::Impl {
       if (env != kNoEnv) detail::checkIndex(kCall, "env", env, envCount());
     }
     RETURN_IF_ERROR(requireDistinct(envs));
-    ASSIGN_OR_RETURN(const SavedState saved, simulation::readState(model_, bytes));
+    ASSIGN_OR_RETURN(SavedState saved, simulation::readState(model_, bytes));
     if (Result<void> fits = checkCount(saved, envs); !fits) return fits;
     if (saved.seed != model_.options.seed) {
       return fail(ErrorCode::kInvalidInput, "saved state",
@@ -182,6 +183,7 @@ class BatchSimulator::Impl {
                               "that seed",
                               saved.seed, model_.options.seed));
     }
+    addBodies(saved);
     put(saved, envs);
     return {};
   }
@@ -212,12 +214,12 @@ class BatchSimulator::Impl {
     for (const std::uint32_t env : envs) detail::checkIndex(kCall, "env", env, envCount());
     RETURN_IF_ERROR(requireDistinct(envs));
     RETURN_IF_ERROR(checkStates(states));
-    if (!chooser_) chooser_ = std::make_unique<simulation::StateChooser>(model_);
+    simulation::StateChooser& chooser = this->chooser();
     std::vector<std::uint8_t> were_set(envs.size());
     // Whatever needs memory comes before the first env changes.
     std::vector<std::optional<SavedEnv>> chosen(envs.size());
     for (std::size_t n = 0; n < envs.size(); ++n) {
-      chosen[n] = chooser_->choose(states[n]);
+      chosen[n] = chooser.choose(states[n]);
       if (chosen[n]) keepRecord(envs[n], choice, *chosen[n]);
     }
     for (std::size_t n = 0; n < envs.size(); ++n) {
@@ -297,6 +299,19 @@ class BatchSimulator::Impl {
                             saved.envs.size(), envs.size()));
   }
 
+  simulation::StateChooser& chooser() {
+    if (!chooser_) chooser_ = std::make_unique<simulation::StateChooser>(model_);
+    return *chooser_;
+  }
+
+  /// To envs that were saved without them, where this run wants them.
+  void addBodies(SavedState& saved) {
+    if (model_.bodyCount() == 0) return;
+    for (SavedEnv& env : saved.envs) {
+      if (env.bodies.empty()) chooser().addBodies(env);
+    }
+  }
+
   /// What an env has counted, and what its last step returned.
   void keepRecord(std::size_t env, EpisodeChoice choice, SavedEnv& chosen) const {
     chosen.counters = state_.counters(env);
@@ -352,7 +367,7 @@ class BatchSimulator::Impl {
   std::uint32_t sample_every_ = 0;
   bool measures_ = false;
   bool is_stepping_ = false;
-  /// Once somebody sets a state.
+  /// Once somebody sets a state, or restores one without bodies.
   std::unique_ptr<simulation::StateChooser> chooser_;
   std::unique_ptr<detail::Workers> workers_;
 };

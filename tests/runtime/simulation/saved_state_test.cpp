@@ -454,18 +454,77 @@ TEST_F(DamagedState, OfOtherOptionsIsRefusedByTheirNames) {
   BatchSimulator far = simulatorOf(home_.world(), options);
   EXPECT_THAT(refusalOf(far, state_), HasSubstr("expected success-distance=0.25, found "
                                                 "success-distance=0.1"));
-  // Where episodes end, their envs wait; in others they would end again.
-  options = homeOptions(3);
+}
+
+TEST(SavedState, GoesOnWhereEpisodesBeginByThemselvesAndWhereTheyWait) {
+  const SmallHome home;
+  SimulationOptions options = homeOptions(6);
+  options.task.most_steps = 30;
+  BatchSimulator goes_on = simulatorOf(home.world(), options);
   options.auto_reset = false;
-  BatchSimulator waiting = simulatorOf(home_.world(), options);
-  EXPECT_THAT(refusalOf(simulator_, waiting.saveState()),
-              HasSubstr("expected auto_reset=true, found auto_reset=false"));
-  options = homeOptions(3);
+  BatchSimulator waits = simulatorOf(home.world(), options);
+  WildRun run(6);
+  // Until they are out of time.
+  const auto motions = [&run, &waits] {
+    std::vector<float> actions = run.act(waits);
+    for (std::size_t n = 0; n < actions.size(); ++n) {
+      if (n % kSmallHomeActions >= waits.actionLayout().movingCount()) actions[n] = 0;
+    }
+    return actions;
+  };
+  for (int step = 0; step < 20; ++step) waits.step(motions());
+  ASSERT_TRUE(goes_on.restoreState(waits.saveState()));
+  for (int step = 0; step < 10; ++step) {
+    ASSERT_EQ(traceOf(goes_on), traceOf(waits)) << "step " << step;
+    const std::vector<float> actions = motions();
+    waits.step(actions);
+    goes_on.step(actions);
+  }
+  EXPECT_EQ(goes_on.dones()[0], 1);
+  // Who waits there would wait here for ever.
+  const Result<void> restored = goes_on.restoreState(waits.saveState());
+  ASSERT_FALSE(restored);
+  EXPECT_EQ(
+      restored.error().message,
+      "env 0 waits where its episode ended, which envs with auto_reset do not; begin its next "
+      "episode before you save it");
+  // The other way round, the next episode has begun.
+  ASSERT_TRUE(waits.restoreState(goes_on.saveState()));
+  const std::vector<float> actions = motions();
+  waits.step(actions);
+  goes_on.step(actions);
+  EXPECT_EQ(waits.envState(0).step, 1U);
+  EXPECT_EQ(waits.envState(0).joint_positions, goes_on.envState(0).joint_positions);
+}
+
+TEST(SavedState, HasBodiesWhereTheyAreWantedAndWereNotSaved) {
+  const SmallHome home;
+  constexpr std::uint32_t kEnvs = 20;
+  SimulationOptions options = homeOptions(kEnvs);
+  BatchSimulator plain = simulatorOf(home.world(), options);
   options.body_transforms = true;
-  BatchSimulator drawn = simulatorOf(home_.world(), options);
-  EXPECT_THAT(refusalOf(drawn, state_), HasSubstr("without body_transforms"));
-  // The other way round the bodies are left out.
-  EXPECT_EQ(refusalOf(simulator_, drawn.saveState()), "");
+  BatchSimulator drawn = simulatorOf(home.world(), options);
+  WildRun run(kEnvs);
+  for (int step = 0; step < 60; ++step) {
+    const std::vector<float> actions = run.act(plain);
+    plain.step(actions);
+    drawn.step(actions);
+  }
+  const std::vector<RigidTransform> wanted(drawn.bodyTransforms().begin(),
+                                           drawn.bodyTransforms().end());
+  drawn.restart(3);
+  ASSERT_TRUE(drawn.restoreState(plain.saveState()));
+  // Robots that slid were moved with their bodies.
+  constexpr float kRounding = 1e-5F;
+  for (std::size_t n = 0; n < wanted.size(); ++n) {
+    const RigidTransform& found = drawn.bodyTransforms()[n];
+    const Vec3 off = found.origin - wanted[n].origin;
+    const Vec3 turned = found.x_axis - wanted[n].x_axis;
+    ASSERT_LT(std::hypot(off.x, off.y, off.z) + std::hypot(turned.x, turned.y, turned.z), kRounding)
+        << "body " << n;
+  }
+  // The other way round, they are left out.
+  EXPECT_TRUE(plain.restoreState(drawn.saveState()));
 }
 
 TEST_F(DamagedState, OfAnotherSeedIsRefusedWhereItIsOnlyAPart) {

@@ -97,6 +97,23 @@ std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
   return taken(chosen);
 }
 
+void StateChooser::addBodies(SavedEnv& saved) {
+  restoreEnv(model_, state_, 0, saved);
+  const PoseArrays from = state_.poses(0);
+  const PoseArrays to = chunk_.candidates(0);
+  *to.x = *from.x;
+  *to.y = *from.y;
+  *to.z = *from.z;
+  *to.yaw = *from.yaw;
+  for (std::size_t v = 0; v < model_.variableCount(); ++v) {
+    to.variables[v * to.stride] = from.variables[v * from.stride];
+  }
+  placeBodies(step());
+  keepBodies(step(), {~std::uint32_t{0}});
+  const std::span<const RigidTransform> bodies = state_.bodyTransforms(0);
+  saved.bodies.assign(bodies.begin(), bodies.end());
+}
+
 /// By the wider of the rules by which hands grasp, so that states go from the one to the other.
 bool StateChooser::touchesHeld(const EnvState& chosen) const {
   const auto object = static_cast<std::uint32_t>(chosen.held);

@@ -14,7 +14,8 @@ namespace galactic::simulation {
 /// What is wrong with a state that need not be of this world; empty when nothing is.
 [[nodiscard]] std::string faultOf(const Model& model, const EnvState& state);
 
-/// Makes of states that somebody has chosen what envs go on from.
+/// Makes what envs go on from: of states that somebody has chosen, and of saved ones that lack the
+/// robot's bodies.
 class StateChooser {
  public:
   /// `model` must outlive it and stay where it is.
@@ -26,6 +27,10 @@ class StateChooser {
   /// base, where the robot penetrates the scene or a resting object that the hand could not have
   /// let go of there, or where the hand does not touch what it is to hold. `chosen`: without fault.
   [[nodiscard]] std::optional<SavedEnv> choose(const EnvState& chosen);
+
+  /// Where the robot's bodies are in a saved state, to within the rounding of steps, which move
+  /// bodies with a robot that slides.
+  void addBodies(SavedEnv& saved);
 
  private:
   [[nodiscard]] ChunkStep step() { return {model_, state_, chunk_, 0}; }

@@ -85,10 +85,13 @@ std::vector<OptionText> sharedOptions(const SimulationOptions& options) {
     return option.name == "envs" || option.name == "seed" || option.name == "rank" ||
            option.name == "ranks";
   });
-  // No option of programs, which always want it.
-  shared.push_back({"auto_reset", options.auto_reset ? "true" : "false"});
   return shared;
 }
+
+/// Behind them: whether envs begin their next episodes by themselves, which is no option of
+/// programs.
+constexpr std::string_view kBegins = "auto_reset=true\n";
+constexpr std::string_view kWaits = "auto_reset=false\n";
 
 std::string linesOf(const std::vector<OptionText>& options) {
   std::string lines;
@@ -361,16 +364,21 @@ Result<void> checkSubject(const Model& model, const Header& header, std::string_
         "instead of {}",
         option.name, defaults[n].value, option.value));
   }
-  if (!lines.empty()) return refused("was saved with options that this version does not know");
-  if (header.bodies != 0 || model.bodyCount() == 0) return {};
-  return refused("was saved without body_transforms, which this simulator has");
+  if (lines.empty() || lines == kBegins || lines == kWaits) return {};
+  return refused("was saved with options that this version does not know");
+}
+
+/// Whether an env waits for somebody to begin its next episode, which here none can do.
+bool waitsInVain(const Model& model, const SavedEnv& saved, std::string_view lines) {
+  return model.options.auto_reset && saved.is_idle && lines.ends_with(kWaits);
 }
 
 }  // namespace
 
 std::vector<std::byte> saveEnvs(const Model& model, const BatchState& state,
                                 std::span<const std::uint32_t> envs, std::uint64_t steps) {
-  const std::string lines = linesOf(sharedOptions(model.options));
+  std::string lines = linesOf(sharedOptions(model.options));
+  lines += model.options.auto_reset ? kBegins : kWaits;
   Header header{.envs = static_cast<std::uint32_t>(envs.size()),
                 .option_bytes = static_cast<std::uint32_t>(lines.size()),
                 .bodies = static_cast<std::uint32_t>(model.bodyCount()),
@@ -402,8 +410,9 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
   if (header.hash != hashOf(header, bytes.subspan(sizeof(header)))) {
     return refused("does not have the hash that it states; it is damaged");
   }
-  const std::vector<char> lines = in.takeMany<char>(header.option_bytes);
-  RETURN_IF_ERROR(checkSubject(model, header, std::string_view(lines.data(), lines.size())));
+  const std::vector<char> text = in.takeMany<char>(header.option_bytes);
+  const std::string_view lines(text.data(), text.size());
+  RETURN_IF_ERROR(checkSubject(model, header, lines));
   const std::size_t bodies = model.motion.nodes.size() + 1;
   if (header.bodies != 0 && header.bodies != bodies) {
     return refused(fmt::format("has {} bodies, expected {}; it is damaged", header.bodies, bodies));
@@ -411,6 +420,12 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
   SavedState saved{.seed = header.seed, .steps = header.steps, .envs = {}};
   for (std::uint32_t n = 0; n < header.envs; ++n) {
     ASSIGN_OR_RETURN(SavedEnv env, readEnv(model, header, n, in));
+    if (waitsInVain(model, env, lines)) {
+      return refused(
+          fmt::format("env {} waits where its episode ended, which envs with auto_reset "
+                      "do not; begin its next episode before you save it",
+                      n));
+    }
     saved.envs.push_back(std::move(env));
   }
   if (in.left() != 0) return refused("goes on behind its last env; it is damaged");

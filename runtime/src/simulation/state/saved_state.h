@@ -46,6 +46,7 @@ struct SavedEnv {
   std::vector<std::uint64_t> ignored;
   std::vector<std::uint64_t> leaving;
   std::vector<Pose> objects;
+  /// Empty where it was saved without them.
   std::vector<RigidTransform> bodies;
   /// Empty unless an episode ended.
   std::vector<float> final_observation;
