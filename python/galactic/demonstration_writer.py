@@ -26,7 +26,7 @@ EPISODES_WITH_IMAGES = 64
 """How many make a part: what an interrupt may cost, and what memory has to hold at a time."""
 
 # What a VectorEnv says itself, and no option of its simulators.
-_OF_VECTOR_ENV = ("envs", "seed", "order", "rank", "ranks")
+_OF_VECTOR_ENV = ("envs", "seed", "order", "rank", "ranks", "auto_reset", "body_transforms")
 # Options of a Renderer by which images are alike, but for their noise.
 _CAMERA = (
     "color",
@@ -52,8 +52,8 @@ class DemonstrationWriter:
                 writer.add(seen, actions, rewards, infos)
                 seen = then
 
-    Episodes are kept when they end; those of which the beginning was not added are left out. Where env has broken
-    off episodes, by reset() or by a state that was set or restored, say so: forget().
+    Episodes are kept when they end. Left out are those of which the beginning was not added, and those that env has
+    broken off, by reset() or by a state that was set or restored, or goes on with since.
 
     Args:
         folder: where to; it holds no demonstrations yet.
@@ -86,6 +86,7 @@ class DemonstrationWriter:
         self._actions = Actions("paper" if is_of_the_paper else "box", count)
         self._recorder = EpisodeRecorder(env.observation_parts)
         self._size = EPISODES_WITH_IMAGES if about.images else EPISODES_OF_PART
+        self._broken_off = env.broken_off
         self._kept: list[Demonstration] = []
         self._parts = 0
         self._count = 0
@@ -129,6 +130,9 @@ class DemonstrationWriter:
         for env in np.flatnonzero(playing & infos.get("_final_obs", False)).tolist():
             for name, one in self._seen("final_obs", infos["final_obs"][env], ()).items():
                 _require_finite(f"final_obs: {name}", one[np.newaxis], np.ones(1, np.bool_))
+        broken_off = self._env.broken_off
+        self._recorder.forget(np.flatnonzero(broken_off != self._broken_off))
+        self._broken_off = broken_off
         self._recorder.before_step(seen, rows, by_expert, playing)
         ended = self._recorder.after_step(paid, infos)
         self._kept += ended
@@ -136,10 +140,6 @@ class DemonstrationWriter:
         while len(self._kept) >= self._size:
             self._write(self._kept[: self._size])
             del self._kept[: self._size]
-
-    def forget(self, envs: Optional[Iterable[int]] = None) -> None:
-        """Drops what was added of the episodes under way, in all envs or in those with the numbers `envs`."""
-        self._recorder.forget(range(self._env.num_envs) if envs is None else envs)
 
     def close(self) -> None:
         """Writes the episodes that have ended since the last part."""

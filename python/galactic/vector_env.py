@@ -153,6 +153,7 @@ class VectorEnv(_Base):
         require_simulator_options(options)
         self._world = world if isinstance(world, World) else World(world)
         self.num_envs = num_envs
+        self._broken_off = np.zeros(num_envs, np.int64)
         self.render_mode = render_mode
         self._render_threads = threads
         self._is_evaluation = is_evaluation
@@ -229,6 +230,13 @@ class VectorEnv(_Base):
         self._require_idle()
         counts = [half.placements for half in self._halves]
         return Placements(*(sum(column) for column in zip(*counts)))
+
+    @property
+    def broken_off(self) -> NDArray[np.int64]:
+        """int64 (num_envs,), a copy: how often each env has gone on from elsewhere than where its last step led, by
+        reset(), set_states() or restore_state(). For whoever keeps what was seen and done step after step.
+        """
+        return self._broken_off.copy()
 
     @property
     def is_evaluation(self) -> bool:
@@ -325,6 +333,7 @@ class VectorEnv(_Base):
             for half in self._halves:
                 half.is_cut_off = True
             raise
+        self._broken_off[chosen[were_set]] += 1
         return were_set
 
     def rows(self, half: int) -> slice:
@@ -380,6 +389,7 @@ class VectorEnv(_Base):
             for half in done:
                 half.is_cut_off = True
             raise
+        self._broken_off[mask] += 1
         if seed is not None and _Base is not object:
             super().reset(seed=seed)
         return self.observe(), {}
@@ -477,6 +487,7 @@ class VectorEnv(_Base):
         self._require_idle()
         chosen = None if envs is None else distinct_envs(envs, self.num_envs)
         saved_states.restore(self._halves, state, chosen)
+        self._broken_off[slice(None) if chosen is None else chosen] += 1
 
     def close(self, **kwargs: Any) -> None:
         """Waits for what is under way, which recv() still returns, and frees simulators, renderers and

@@ -182,13 +182,15 @@ void bindStepping(py::class_<Simulator>& type) {
   type.def(
       "restore_state", &Simulator::restoreState, py::arg("state"), py::arg("envs") = py::none(),
       "Goes on from a state that a simulator of the same world and options saved, bit for bit\n"
-      "as that one would have; into all envs, or into those with the numbers `envs`, whose\n"
-      "random numbers and episodes to come stay their own; for that, the seed has to be the same.\n"
-      "A state of one env goes into each of them, to try many plans; of several, each goes into "
-      "the\n"
-      "env that stands in its place, and nowhere where that is None.\n"
-      "Error for bytes that are no such state, and where an env is named twice; nothing changes\n"
-      "then.");
+      "as that one would have (auto_reset and body_transforms may differ). Into all envs, with\n"
+      "the state's seed; or into those with the numbers `envs`, whose random numbers and\n"
+      "episodes to come stay their own, of a state of the same seed. A state of one env goes into\n"
+      "each of them, to try many plans; of several, each goes into the env that stands in its\n"
+      "place, and nowhere where that is None. With a state of many envs, each saved as often as\n"
+      "it is wanted, envs go on where others are: restore_state(save_state(envs=parents),\n"
+      "envs=range(n)).\n"
+      "Error for bytes that are no such state, where an env is named twice, and where one waits\n"
+      "for its next episode and none does here; nothing changes then.");
 }
 
 void bindResults(py::class_<Simulator>& type) {

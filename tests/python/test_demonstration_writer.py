@@ -175,20 +175,22 @@ def test_a_folder_says_that_episodes_may_be_there_often(tmp_path, world):
         Demonstrations(tmp_path)
 
 
-def test_episodes_that_were_broken_off_are_forgotten(tmp_path, world):
+@pytest.mark.parametrize("all_envs", [True, False])
+def test_episodes_that_were_broken_off_are_left_out(tmp_path, world, all_envs):
+    """Nothing is made of parts of two episodes, or of steps that were taken back."""
     env = VectorEnv(world, 4, task="pick", **OPTIONS)
     draw = drawing()
     seen, _ = env.reset()
     with DemonstrationWriter(tmp_path / "mine", env, expert="chance") as writer:
         for step in range(40):
             if step == 3:
-                state = env.save_state()
+                state = env.save_state(None if all_envs else [0, 3])
             if step == 5:
                 # Two steps of each episode were in vain; what was before is no beginning any more.
-                env.restore_state(state)
+                env.restore_state(state, None if all_envs else [0, 3])
                 seen = env.observe()
-                writer.forget([0, 2])
-                writer.forget()
+            if step == 12:
+                seen, _ = env.reset(options={"reset_mask": np.array([False, True, False, True])})
             actions = draw(4, ACTIONS)
             then, rewards, _, _, infos = env.step(actions)
             writer.add(seen, actions, rewards, infos)
@@ -201,6 +203,11 @@ def test_episodes_that_were_broken_off_are_forgotten(tmp_path, world):
         start = galactic.Simulator(world, 1, task="pick", **OPTIONS)
         start.reset(np.array([one.episode]))
         np.testing.assert_allclose(one.state[0], start.observations[0], atol=1e-6)
+        # And goes where its own actions lead.
+        for actions, state in zip(one.actions, one.state[1:]):
+            start.step(actions[np.newaxis])
+            if not start.endings[0]:
+                np.testing.assert_allclose(start.observations[0], state, atol=1e-6)
 
 
 FIVE = np.zeros((2, 5), np.float32)

@@ -330,13 +330,14 @@ class BatchSimulator {
   [[nodiscard]] std::vector<std::byte> saveState(std::span<const std::uint32_t> envs) const;
   /// What restoreState() takes for an env where a saved one is to become none.
   static constexpr std::uint32_t kNoEnv = ~std::uint32_t{0};
-  /// Goes on from a state that a simulator of the same world and the same options saved (the number
-  /// of threads may differ and, with `envs`, the number of envs, rank and ranks): bit for bit as
-  /// that one would have. The saved envs become all envs, or `envs`, in that order, and a single
-  /// one becomes each of them; the random numbers and episodes to come are those of the env that a
-  /// state is restored to. The bytes need not be trusted: fails with kInvalidInput or kUnsupported
-  /// and changes nothing if they are not such a state, are of another number of envs or, with
-  /// `envs`, of another seed, or where one is named twice.
+  /// Goes on from a state that a simulator of the same world and the same options saved (threads,
+  /// auto_reset and body_transforms may differ and, with `envs`, the number of envs, rank and
+  /// ranks): bit for bit as that one would have. The saved envs become all envs, or `envs`, in that
+  /// order, and a single one becomes each of them; the random numbers and episodes to come are
+  /// those of the env that a state is restored to. The bytes need not be trusted: fails with
+  /// kInvalidInput or kUnsupported and changes nothing if they are not such a state, are of another
+  /// number of envs or, with `envs`, of another seed, where one is named twice, or where one waits
+  /// for its next episode and none does here.
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state);
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state,
                                           std::span<const std::uint32_t> envs);
@@ -377,8 +378,8 @@ class BatchSimulator {
   /// The noise of the episode that an env is in.
   [[nodiscard]] EpisodeNoise episodeNoise(std::size_t env) const;
   /// What an env was asked to do and has not done yet, as actions arrive late
-  /// (RobotNoise::action_delay): an action for each step of its episode's delay, the one that is due
-  /// in the next step first. Of steps before the episode, nothing moves and what the hand and
+  /// (RobotNoise::action_delay): an action for each step of its episode's delay, the one that is
+  /// due in the next step first. Of steps before the episode, nothing moves and what the hand and
   /// terminate ask for is NaN. Shape: EpisodeNoise::action_delay * actionCount(). Allocates.
   [[nodiscard]] std::vector<float> actionsUnderWay(std::size_t env) const;
   /// A body is a group of links that no joint moves against each other in this run (joints that
