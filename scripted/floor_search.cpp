@@ -240,7 +240,7 @@ void FloorSearch::tryEntry(const BasePlace& start, std::uint32_t cell) {
   const float length = std::sqrt(way.x * way.x + way.z * way.z);
   if (length > kEntryReach) return;
   const bool stays = length < kOnLattice;
-  const float bearing = std::atan2(-way.z, way.x);
+  const float bearing = angleOf(-way.z, way.x);
   for (const float turned : {0.0F, 0.5F * kFullTurn}) {
     const float yaw = stays ? start.yaw : wrappedAngle(bearing + turned);
     const BasePlace facing{start.position, yaw};
@@ -320,7 +320,7 @@ FloorSearch::Verdict FloorSearch::offer(std::uint32_t node, const Judge& judge, 
   const Vec3 way = target_.point - place.position;
   const float distance = targetDistance(cell);
   if (distance < target_.nearest || distance > target_.farthest) return Verdict::kRejected;
-  const float facing = std::atan2(-way.z, way.x) - target_.bearing;
+  const float facing = angleOf(-way.z, way.x) - target_.bearing;
   for (const float beside : {0.0F, 0.44F, -0.44F, 0.87F, -0.87F}) {
     const std::uint32_t fine = fineOf(facing + beside);
     const std::size_t pose = static_cast<std::size_t>(cell) * fines_ + fine;

@@ -105,7 +105,7 @@ PlanPlayer::Way PlanPlayer::drive(const RobotBase& robot_base, const BasePlace& 
   const float left = dot(to_end, way);
   const Vec3 to_line = to_end - way * left;
   const Vec3 aim = (way * kLookAhead + to_line) * sign;
-  const float askew = wrappedAngle(std::atan2(-aim.z, aim.x) - at.yaw);
+  const float askew = wrappedAngle(angleOf(-aim.z, aim.x) - at.yaw);
   Way result;
   result.rest = kRoughRest;
   result.strays = dot(to_line, to_line) > kStray * kStray;

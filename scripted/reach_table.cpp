@@ -30,7 +30,7 @@ float meanBearing(std::span<const Pose> grips) {
     distances += std::sqrt(dot(away, away));
   }
   if (!(std::sqrt(dot(sum, sum)) > kOneSided * distances)) return 0;
-  return kRounding * std::round(std::atan2(-sum.z, sum.x) / kRounding);
+  return kRounding * std::round(angleOf(-sum.z, sum.x) / kRounding);
 }
 
 }  // namespace

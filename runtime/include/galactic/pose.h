@@ -83,10 +83,16 @@ inline constexpr float kFullTurn = 2 * std::numbers::pi_v<float>;
 /// The same angle from -pi to pi, radians.
 [[nodiscard]] inline float wrappedAngle(float angle) { return std::remainder(angle, kFullTurn); }
 
+/// The angle of (x, y) from +X toward +Y, radians, from -pi to pi. In double, and rounded: C
+/// libraries differ in the last bits of their functions of floats.
+[[nodiscard]] inline float angleOf(float y, float x) {
+  return static_cast<float>(std::atan2(static_cast<double>(y), static_cast<double>(x)));
+}
+
 /// How far a rotation turns about +Y, radians, counter-clockwise seen from above, from -2 pi to
 /// 2 pi: all of it where it is upright, as that of a robot's root.
 [[nodiscard]] inline float yawOf(const Quat& rotation) {
-  return 2 * std::atan2(rotation.y, rotation.w);
+  return 2 * angleOf(rotation.y, rotation.w);
 }
 
 /// The upright rotation with this yaw.

@@ -50,7 +50,7 @@ Result<void> mount(const Robot& robot, const simulation::MotionModel& motion,
   const Vec3 middle = to_base(rotate(laser.link_from_laser.rotation, {1, 0, 0}));
   settings.ahead = origin.x;
   settings.right = origin.z;
-  settings.yaw = std::atan2(-middle.z, middle.x);
+  settings.yaw = angleOf(-middle.z, middle.x);
   const float height = origin.y + motion.base.root_height;
   settings.heights = {{height, height}};
   settings.field_of_view = std::min(laser.field_of_view, kFullTurn);
