@@ -77,6 +77,8 @@ endfunction()
 
 if(NOT GALACTIC_TOOLS)
   message(STATUS "No programs are built: no man pages")
+elseif(CMAKE_CROSSCOMPILING)
+  message(STATUS "Programs are for another system: no man pages")
 elseif(GALACTIC_HELP2MAN AND NOT GALACTIC_SANITIZE)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
   foreach(tool IN LISTS GALACTIC_TOOLS)
