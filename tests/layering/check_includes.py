@@ -118,6 +118,9 @@ RULES = (
 FORBIDDEN_TARGETS = {"runtime": ("bake", "dynamics", "pack_tool", "tests", "benchmarks"),
                      "runtime/pictures": ("runtime/src", "runtime/app"),
                      "runtime/app": ("runtime/src",),
+                     # Below a step's phases is what they work on, above them what runs, makes and keeps simulations.
+                     "runtime/src/simulation/state": ("runtime/src/simulation/phases", "runtime/src/simulation/simulator"),
+                     "runtime/src/simulation/phases": ("runtime/src/simulation/simulator",),
                      "scripted": ("bake", "dynamics", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "view": ("bake", "dynamics", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "python": ("bake", "dynamics", "pack_tool", "view", "tests", "benchmarks", "runtime/src",

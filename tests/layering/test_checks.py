@@ -104,6 +104,13 @@ class IncludesTest(PlantedTree):
         self.plant("runtime/src/simulation/step.h", "")
         self.assert_refused("pack_tool/a.cpp", '#include "simulation/step.h"\n', "may not know runtime/src")
 
+    def test_refuses_the_phases_of_a_step_in_what_they_work_on(self):
+        self.plant("runtime/src/simulation/phases/task.h", '#include "simulation/state/model.h"\n')
+        self.plant("runtime/src/simulation/state/model.h", "")
+        self.assertEqual(check_includes.check_tree(self.root)[0], [])
+        self.assert_refused("runtime/src/simulation/state/model.cpp", '#include "simulation/phases/task.h"\n',
+                            "runtime/src/simulation/state may not know runtime/src/simulation/phases")
+
     def test_refuses_a_json_parser_in_the_runtime(self):
         self.assert_refused("runtime/src/a.cpp", "#include <nlohmann/json.hpp>\n", "may include")
 

@@ -11,6 +11,7 @@
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/hand.h"
 #include "simulation/phases/move.h"
+#include "simulation/simulator/model_making.h"
 
 namespace galactic::test {
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "galactic/batch_simulator.h"
-#include "galactic/error.h"
 #include "galactic/simulation_options.h"
 #include "galactic/world.h"
 #include "sensors/geodesic.h"
@@ -131,8 +130,5 @@ struct Model {
     return world->objectOf(placements(episodeOf(start))[number]);
   }
 };
-
-/// See BatchSimulator::create for how it fails. Tries every episode once.
-[[nodiscard]] Result<Model> makeModel(const World& world, const SimulationOptions& options);
 
 }  // namespace galactic::simulation

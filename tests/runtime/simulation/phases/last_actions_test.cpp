@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "batch_trace.h"
+#include "runtime/simulation/batch_trace.h"
 
 namespace galactic::test::last_actions_test {
 namespace {

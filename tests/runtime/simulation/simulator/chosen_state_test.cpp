@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "batch_trace.h"
+#include "runtime/simulation/batch_trace.h"
 #include "support/homes/small_home_actor.h"
 #include "support/homes/task_twins.h"
 

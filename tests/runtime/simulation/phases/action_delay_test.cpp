@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "batch_trace.h"
+#include "runtime/simulation/batch_trace.h"
 
 namespace galactic::test::action_delay_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "simulation/state/floor_maps.h"
+#include "simulation/simulator/floor_maps.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "simulation/state/saved_state.h"
+#include "simulation/simulator/saved_state.h"
 
 #define XXH_INLINE_ALL
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "simulation/phases/chosen_state.h"
+#include "simulation/simulator/chosen_state.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "batch_trace.h"
+#include "runtime/simulation/batch_trace.h"
 
 namespace galactic::test::sideways_test {
 namespace {

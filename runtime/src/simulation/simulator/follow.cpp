@@ -1,4 +1,4 @@
-#include "simulation/phases/follow.h"
+#include "simulation/simulator/follow.h"
 
 #include <algorithm>
 

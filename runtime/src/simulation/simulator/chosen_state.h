@@ -5,9 +5,9 @@
 
 #include "galactic/batch_simulator.h"
 #include "simulation/phases/chunk.h"
+#include "simulation/simulator/saved_state.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/model.h"
-#include "simulation/state/saved_state.h"
 
 namespace galactic::simulation {
 
