@@ -28,7 +28,7 @@ void placeRobot(const Model& model, BatchState& state, std::size_t n, std::uint3
   std::ranges::copy(std::span(model.start_bodies).subspan(start * bodies, bodies),
                     state.bodyTransforms(n).begin());
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) state.setLastAction(j, n, 0);
-  beginOdometry(state, n);
+  beginOdometry(model, state, n);
   beginDelay(model, state, n);
 }
 

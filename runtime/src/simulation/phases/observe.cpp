@@ -213,7 +213,7 @@ void observe(const Model& model, BatchState& state, std::size_t first) noexcept 
                                                        static_cast<float>(task.most_steps);
   }
   const bool is_target_wanted =
-      task.observes_current_target || sensors.target_goal || state.hasOdometry();
+      task.observes_current_target || sensors.target_goal || model.hasOdometry();
   PointRows now;
   if (is_target_wanted) now = targetsNow(state, first);
   ObserveBatch batch{
@@ -233,7 +233,7 @@ void observe(const Model& model, BatchState& state, std::size_t first) noexcept 
       .out_stride = model.observation_size,
       .envs = kChunk};
   BelievedPoints believed;
-  if (state.hasOdometry()) believed.put(state, first, batch);
+  if (model.hasOdometry()) believed.put(state, first, batch);
   model.kernels.observe(batch);
 }
 

@@ -74,14 +74,14 @@ std::span<const EnvRow> motionsOf(const ChunkStep& step) noexcept {
   return step.chunk.motions();
 }
 
-void beginOdometry(BatchState& state, std::size_t n) noexcept {
-  if (!state.hasOdometry()) return;
+void beginOdometry(const Model& model, BatchState& state, std::size_t n) noexcept {
+  if (!model.hasOdometry()) return;
   const PlanarPose known = state.planarPose(n);
   state.setOdometry(n, {known, known});
 }
 
 void followOdometry(const ChunkStep& step) noexcept {
-  if (!step.state.hasOdometry()) return;
+  if (!step.model.hasOdometry()) return;
   const RobotBase& steps = step.model.motion.base;
   for (std::size_t n = step.first; n < step.first + kChunk; ++n) {
     const auto [was, believed] = step.state.odometry(n);

@@ -10,7 +10,7 @@ namespace galactic::simulation {
 [[nodiscard]] std::span<const EnvRow> motionsOf(const ChunkStep& step) noexcept;
 
 /// The robot of an env knows where it is: its episode begins.
-void beginOdometry(BatchState& state, std::size_t n) noexcept;
+void beginOdometry(const Model& model, BatchState& state, std::size_t n) noexcept;
 
 /// Adds what the robots of a chunk have moved to where they take themselves to be. Only where there
 /// is odometry.

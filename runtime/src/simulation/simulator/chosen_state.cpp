@@ -12,6 +12,7 @@
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/move.h"
 #include "simulation/phases/object_placement.h"
+#include "simulation/simulator/restoring.h"
 #include "simulation/state/env_state.h"
 #include "simulation/state/grip_frame.h"
 

@@ -14,7 +14,6 @@
 #include <type_traits>
 
 #include "galactic/option_text.h"
-#include "simulation/phases/episode_start.h"
 #include "simulation/state/plain_numbers.h"
 #include "support/try.h"
 
@@ -25,8 +24,6 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'S', 'T', 'A', 'T', 'E'};
 constexpr std::uint32_t kVersion = 9;
-/// The one before, without EnvRecord::picks and what is behind it.
-constexpr std::uint32_t kVersionWithoutPicks = 8;
 constexpr const char* kWhere = "saved state";
 
 struct Header {
@@ -47,7 +44,7 @@ static_assert(sizeof(Header) == 64);
 
 /// The numbers of an env in one piece.
 struct EnvRecord {
-  std::uint64_t ordinal = 0;
+  std::uint64_t begun = 0;
   std::uint64_t turns = 0;
   std::uint64_t nan_actions = 0;
   std::uint64_t idle_steps = 0;
@@ -171,7 +168,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
   const EnvCounters& counters = state.counters(n);
   const MoveCounters& moves = state.moves(n);
   out.add(EnvRecord{
-      .ordinal = counters.begun,
+      .begun = counters.begun,
       .turns = counters.turns,
       .nan_actions = counters.nan_actions,
       .idle_steps = counters.idle_steps,
@@ -198,8 +195,8 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
       .had_picked = state.picks()[n]});
   for (std::size_t v = 0; v < model.variableCount(); ++v) out.add(state.variable(v, n));
   for (std::size_t j = 0; j < model.motion.controlled.size(); ++j) out.add(state.lastAction(j, n));
-  if (state.hasOdometry()) out.add(state.odometry(n).believed);
-  for (std::size_t k = 0; k < state.keptSteps(); ++k) {
+  if (model.hasOdometry()) out.add(state.odometry(n).believed);
+  for (std::size_t k = 0; k < model.keptSteps(); ++k) {
     for (const EnvRow& action : state.keptActions(n, env.step + k)) {
       out.add(action.values[n % kChunk]);
     }
@@ -212,7 +209,7 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
 }
 
 /// What is wrong with an env's record in a world that it may not be of; empty when nothing is.
-std::string faultOf(const Model& model, const EnvRecord& record) {
+std::string faultOfRecord(const Model& model, const EnvRecord& record) {
   if (!model.startOf(record.episode)) {
     return fmt::format("is in episode {}, which cannot be started", record.episode);
   }
@@ -224,7 +221,7 @@ std::string faultOf(const Model& model, const EnvRecord& record) {
   if (record.ending >= kEpisodeEnds) return fmt::format("ended in way {}", record.ending);
   if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 ||
       record.is_named > 1 || record.had_picked > (record.ending != 0 ? 1U : 0U) ||
-      record.ordinal == 0 || record.turns > record.ordinal)
+      record.begun == 0 || record.turns > record.begun)
     return "has a wrong flag or count";
   const bool is_held_plain = record.held < 0 || isPlain(record.grip_from_held);
   if (!isPlain(record.goal) || !isPlain(record.target_start) || !isPlain(record.base) ||
@@ -239,7 +236,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   const auto& [refused, slid, grasps, drops, restored, episodes, successes, failures] =
       record.counts;
   SavedEnv saved;
-  // faultOf() has looked whether there is one.
+  // faultOfRecord() has looked whether there is one.
   saved.env.start = *model.startOf(record.episode);
   saved.env.step = record.step;
   saved.env.held = record.held;
@@ -251,7 +248,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
       static_cast<std::uint32_t>(model.placements(model.episodeOf(saved.env.start)).size());
   saved.is_idle = record.is_idle != 0;
   saved.env.reward_sum = record.reward_sum;
-  saved.counters = {.begun = record.ordinal,
+  saved.counters = {.begun = record.begun,
                     .turns = record.turns,
                     .grasps = grasps,
                     .drops = drops,
@@ -305,16 +302,14 @@ tl::unexpected<Error> refused(std::string message) {
 /// Env number `n` of the state.
 Result<SavedEnv> readEnv(const Model& model, const Header& header, std::size_t n, Reader& in) {
   EnvRecord record;
-  const bool knows_picks = header.version != kVersionWithoutPicks;
-  in.take(std::as_writable_bytes(std::span(&record, 1))
-              .first(knows_picks ? sizeof(record) : offsetof(EnvRecord, picks)));
+  in.take(record);
   if (in.isExhausted()) return refused("ends before its last env; it is damaged");
-  const std::string fault = faultOf(model, record);
+  const std::string fault = faultOfRecord(model, record);
   if (!fault.empty()) return refused(fmt::format("env {} {}; it is damaged", n, fault));
   SavedEnv saved = envOf(model, record);
   saved.variables = in.takeMany<float>(model.variableCount());
   saved.last_actions = in.takeMany<float>(model.motion.controlled.size());
-  if (model.options.noise.localization.most > 0) in.take(saved.believed);
+  if (model.hasOdometry()) in.take(saved.believed);
   saved.kept_actions = in.takeMany<float>(model.keptSteps() * model.actionCount());
   saved.ignored = in.takeMany<std::uint64_t>(model.heldWords());
   saved.leaving = in.takeMany<std::uint64_t>(saved.env.objects * model.bodyWords());
@@ -402,7 +397,7 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
   if (in.isExhausted() || header.magic != kMagic) {
     return refused("is none; give what saving a state returned");
   }
-  if (header.version != kVersion && header.version != kVersionWithoutPicks) {
+  if (header.version != kVersion) {
     return fail(ErrorCode::kUnsupported, kWhere,
                 fmt::format("has format version {}, expected {}; use the version that saved it",
                             header.version, kVersion));
@@ -430,70 +425,6 @@ Result<SavedState> readState(const Model& model, std::span<const std::byte> byte
   }
   if (in.left() != 0) return refused("goes on behind its last env; it is damaged");
   return saved;
-}
-
-void restoreEnv(const Model& model, BatchState& state, std::size_t n, const SavedEnv& saved) {
-  // Brings what the episode says; all that has changed since follows.
-  beginEpisode(model, state, n, saved.env.start, EpisodeChoice::kDrawn);
-  Env& env = state.env(n);
-  env.step = saved.env.step;
-  env.held = saved.env.held;
-  state.held(n) = saved.held;
-  if (env.held >= 0) measureHeld(heldModel(model, env), state.held(n));
-  env.has_picked = saved.env.has_picked;
-  env.refused = saved.env.refused;
-  env.left = saved.env.left;
-  env.reward_sum = saved.env.reward_sum;
-  state.setErrand(n, env.target, saved.goal);
-  state.setTargetStart(n, saved.target_start);
-  state.counters(n) = saved.counters;
-  state.moves(n) = saved.moves;
-  const PoseArrays to = state.poses(n);
-  *to.x = saved.base.x;
-  *to.y = saved.base.y;
-  *to.z = saved.base.z;
-  *to.yaw = saved.yaw;
-  for (std::size_t v = 0; v < saved.variables.size(); ++v) {
-    to.variables[v * to.stride] = saved.variables[v];
-  }
-  state.setGrip(n, saved.grip);
-  if (state.hasOdometry()) state.setOdometry(n, {state.planarPose(n), saved.believed});
-  const std::size_t actions = model.actionCount();
-  for (std::size_t k = 0; k < saved.kept_actions.size(); ++k) {
-    state.keptActions(n, env.step + k / actions)[k % actions].values[n % kChunk] =
-        saved.kept_actions[k];
-  }
-  for (std::size_t j = 0; j < saved.last_actions.size(); ++j) {
-    state.setLastAction(j, n, saved.last_actions[j]);
-  }
-  std::ranges::copy(saved.ignored, state.ignored(n).begin());
-  env.ignores = env.held >= 0 &&
-                std::ranges::any_of(saved.ignored, [](std::uint64_t word) { return word != 0; });
-  std::ranges::copy(saved.leaving, state.leaving(n).begin());
-  if (!state.bodyTransforms(n).empty()) {
-    std::ranges::copy(saved.bodies, state.bodyTransforms(n).begin());
-  }
-  RestingObjects& resting = state.resting(n);
-  for (std::uint32_t object = 0; object < env.objects; ++object) {
-    const Pose& pose = saved.objects[object];
-    const bool is_held = static_cast<std::int32_t>(object) == env.held;
-    const bool has_moved = !(pose == state.objects(n)[object]);
-    // While nobody has moved any, they are shared with other envs.
-    if (has_moved && !is_held) {
-      restObject(model, state, n, object, pose);
-      continue;
-    }
-    state.setObjectPose(n, object, pose);
-    if (is_held) resting.remove(object);
-  }
-  state.idle()[n] = saved.is_idle ? 1 : 0;
-  state.rewards()[n] = saved.reward;
-  state.endings()[n] = saved.ending;
-  state.dones()[n] = saved.ending == EpisodeEnd::kNone ? 0 : 1;
-  state.successes()[n] = saved.ending == EpisodeEnd::kSuccess ? 1 : 0;
-  state.picks()[n] = saved.had_picked ? 1 : 0;
-  std::ranges::copy(saved.final_observation, state.finalObservation(n).begin());
-  takeStock(model, state, n);
 }
 
 }  // namespace galactic::simulation

@@ -63,7 +63,4 @@ struct SavedState {
 /// simulation leaves).
 [[nodiscard]] Result<SavedState> readState(const Model& model, std::span<const std::byte> bytes);
 
-/// Env `n` goes on from `saved`.
-void restoreEnv(const Model& model, BatchState& state, std::size_t n, const SavedEnv& saved);
-
 }  // namespace galactic::simulation

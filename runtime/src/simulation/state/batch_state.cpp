@@ -8,9 +8,7 @@
 namespace galactic::simulation {
 namespace {
 
-std::size_t odometryRows(const Model& model) {
-  return model.options.noise.localization.most > 0 ? kOdometryRows : 0;
-}
+std::size_t odometryRows(const Model& model) { return model.hasOdometry() ? kOdometryRows : 0; }
 
 /// Rows of a chunk: its robots, three points, the joint actions of the step before, and odometry.
 std::size_t rowCount(const Model& model) {
@@ -113,7 +111,6 @@ BatchState::BatchState(const Model& model, std::size_t envs)
       body_words_(model.bodyWords()),
       variable_count_(model.variableCount()),
       row_count_(rowCount(model)),
-      has_odometry_(odometryRows(model) != 0),
       action_count_(model.actionCount()),
       kept_steps_(model.keptSteps()),
       observation_size_(model.observation_size),

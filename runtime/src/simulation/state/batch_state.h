@@ -249,8 +249,7 @@ class BatchState {
   void setLastAction(std::size_t joint, std::size_t n, float action) {
     *number(lastActionRow() + joint, n) = action;
   }
-  /// Whether robots know by odometry alone where they are; else nobody may ask for any.
-  [[nodiscard]] bool hasOdometry() const { return has_odometry_; }
+  /// Only where Model::hasOdometry().
   [[nodiscard]] Odometry odometry(std::size_t n) const {
     const float* row = number(row_count_ - kOdometryRows, n);
     return {.was = {row[0], row[kChunk], row[2 * kChunk]},
@@ -407,7 +406,6 @@ class BatchState {
   std::size_t variable_count_ = 0;
   /// Of a chunk.
   std::size_t row_count_ = 0;
-  bool has_odometry_ = false;
   std::size_t action_count_ = 0;
   std::size_t kept_steps_ = 0;
   /// Whether steps ask the memory ahead: where there is much to read.

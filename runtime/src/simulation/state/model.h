@@ -89,6 +89,8 @@ struct Model {
   }
   [[nodiscard]] std::size_t actionCount() const { return actionLayout().count(); }
   [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }
+  /// Whether robots know by odometry alone where they are.
+  [[nodiscard]] bool hasOdometry() const { return options.noise.localization.most > 0; }
   /// Of how many steps, the last ones, actions are kept: they may arrive late, or be observed.
   [[nodiscard]] std::size_t keptSteps() const {
     return std::max(options.noise.action_delay.most, options.sensors.last_actions);

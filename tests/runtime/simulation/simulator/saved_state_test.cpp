@@ -277,8 +277,8 @@ TEST_F(DamagedState, IsRefusedWithWhatIsWrong) {
   other[0] = std::byte{'g'};
   expectRefused(other, "is none");
   other = state_;
-  other[8] = std::byte{7};
-  expectRefused(other, "has format version 7, expected 9");
+  other[8] = std::byte{8};
+  expectRefused(other, "has format version 8, expected 9; use the version that saved it");
   other = state_;
   other[40] ^= std::byte{1};
   sign(other);
@@ -334,52 +334,6 @@ std::ptrdiff_t endOfNumbers(const Bytes& state) {
   std::uint32_t option_bytes = 0;
   std::memcpy(&option_bytes, state.data() + kOptionBytesAt, sizeof(option_bytes));
   return static_cast<std::ptrdiff_t>(kHeaderBytes + option_bytes + kRecordBytes);
-}
-constexpr std::ptrdiff_t kPickBytes = 8;
-
-/// The state of one env as version 8 saved it, which did not know of picks.
-Bytes withoutPicks(const Bytes& state) {
-  constexpr std::size_t kVersionAt = 8;
-  Bytes older = state;
-  const auto behind = older.begin() + endOfNumbers(state);
-  older.erase(behind - kPickBytes, behind);
-  older[kVersionAt] = std::byte{8};
-  sign(older);
-  return older;
-}
-
-TEST(SavedState, OfAVersionWithoutPicksIsTakenWithNone) {
-  const SmallHome home;
-  constexpr std::uint32_t kEnvs = 37;
-  BatchSimulator simulator = simulatorOf(home.world(), homeOptions(kEnvs));
-  WildRun run(kEnvs);
-  for (int step = 0; step < 70 || std::ranges::count(simulator.picks(), 1) == 0; ++step) {
-    simulator.step(run.act(simulator));
-  }
-  const auto first = std::ranges::find(simulator.picks(), 1) - simulator.picks().begin();
-  const auto env = static_cast<std::uint32_t>(first);
-  const std::vector<std::uint32_t> alone{env};
-  const Bytes state = simulator.saveState(alone);
-  const SimulationStatistics counted = simulator.statistics(env);
-  EXPECT_GT(counted.picks, 0U);
-  ASSERT_TRUE(simulator.restoreState(withoutPicks(state), alone));
-  EXPECT_EQ(simulator.picks()[env], 0);
-  SimulationStatistics wanted = counted;
-  wanted.picks = 0;
-  expectSameStatistics(simulator.statistics(env), wanted);
-  // All else is as it was.
-  Bytes none = state;
-  std::fill_n(none.begin() + endOfNumbers(state) - kPickBytes, kPickBytes, std::byte{0});
-  sign(none);
-  EXPECT_EQ(simulator.saveState(alone), none);
-  ASSERT_TRUE(simulator.restoreState(state, alone));
-  EXPECT_EQ(simulator.picks()[env], 1);
-  expectSameStatistics(simulator.statistics(env), counted);
-  // What says of itself that it knows them has to have them.
-  Bytes mixed = withoutPicks(state);
-  mixed[8] = std::byte{9};
-  sign(mixed);
-  EXPECT_FALSE(simulator.restoreState(mixed, alone));
 }
 
 TEST_F(DamagedState, WithActionsThatNobodyAskedForIsRefused) {
