@@ -41,6 +41,22 @@ void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
 
 namespace {
 
+/// See finishStep(). Tells `lap` after each phase.
+template <class Lap>
+void runLastPhases(const ChunkStep& step, std::span<const std::int32_t> resets,
+                   const Lap& lap) noexcept {
+  judge(step, resets);
+  lap(Phase::kTask);
+  followOdometry(step);
+  observe(step.model, step.state, step.first);
+  lap(Phase::kObserve);
+  senseAll(step);
+  lap(Phase::kSense);
+  renewEpisodes(step);
+  resetEpisodes(step, resets);
+  lap(Phase::kRenew);
+}
+
 /// Runs the phases, telling `lap` after each of them.
 template <class Lap>
 void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) noexcept {
@@ -58,19 +74,14 @@ void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) no
   lap(Phase::kCollide);
   useHands(step);
   lap(Phase::kHands);
-  judge(step, input.resets);
-  lap(Phase::kTask);
-  followOdometry(step);
-  observe(step.model, step.state, step.first);
-  lap(Phase::kObserve);
-  senseAll(step);
-  lap(Phase::kSense);
-  renewEpisodes(step);
-  resetEpisodes(step, input.resets);
-  lap(Phase::kRenew);
+  runLastPhases(step, input.resets, lap);
 }
 
 }  // namespace
+
+void finishStep(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
+  runLastPhases(step, resets, [](Phase) {});
+}
 
 void stepChunk(const ChunkStep& step, const StepInput& input) noexcept {
   runPhases(step, input, [](Phase) {});

@@ -41,6 +41,11 @@ using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 /// Envs that are only padding get 0.
 void readActions(const ChunkStep& step, std::span<const float> all) noexcept;
 
+/// The end of a step, once robots and hands are where it leaves them: judges and observes it, and
+/// begins the next episodes of those that ended and those that the caller asks for (`resets`:
+/// empty, or one per env of the batch).
+void finishStep(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept;
+
 /// One step of the chunk's envs.
 void stepChunk(const ChunkStep& step, const StepInput& input) noexcept;
 

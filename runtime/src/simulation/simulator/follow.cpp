@@ -3,13 +3,9 @@
 #include <algorithm>
 
 #include "simulation/phases/action_delay.h"
-#include "simulation/phases/episode_start.h"
 #include "simulation/phases/hand.h"
 #include "simulation/phases/move.h"
-#include "simulation/phases/observe.h"
-#include "simulation/phases/robot_noise.h"
 #include "simulation/phases/step.h"
-#include "simulation/phases/task.h"
 #include "simulation/state/grip_frame.h"
 
 namespace galactic::simulation {
@@ -103,11 +99,7 @@ void followChunk(const ChunkStep& step, std::span<const float> actions,
     restObjects(step.model, step.state, n, state.objects, step.state.env(n).held);
     followHand(step, e, state);
   }
-  judge(step, {});
-  followOdometry(step);
-  observe(step.model, step.state, step.first);
-  senseAll(step);
-  renewEpisodes(step);
+  finishStep(step, {});
 }
 
 }  // namespace galactic::simulation
