@@ -27,8 +27,9 @@ EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transpo
   return EpisodeEnd::kNone;
 }
 
-/// Small, and called from one loop: see endOf().
-inline EpisodeEnd findEnd(const TaskOptions& task, const Env& env, float transport) {
+/// How the rules of a task end the episode (paper, appendix A), apart from its time. `transport` is
+/// the distance of target and goal after the step, in meters.
+inline EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) {
   EpisodeEnd end = EpisodeEnd::kNone;
   switch (task.kind) {
     case TaskKind::kRearrange:
@@ -40,15 +41,16 @@ inline EpisodeEnd findEnd(const TaskOptions& task, const Env& env, float transpo
     case TaskKind::kNone:
       break;
   }
-  const bool fails = task.kind != TaskKind::kNone && task.drop_fails && holdsAnother(env);
-  if (end == EpisodeEnd::kNone && fails) return EpisodeEnd::kWrongObject;
-  const bool is_late = task.most_steps != 0 && env.step >= task.most_steps;
-  return end == EpisodeEnd::kNone && is_late ? EpisodeEnd::kTimeOut : end;
+  const bool fails = task.drop_fails && holdsAnother(env);
+  return end == EpisodeEnd::kNone && fails ? EpisodeEnd::kWrongObject : end;
+}
+
+bool isLate(const TaskOptions& task, const Env& env) {
+  return task.most_steps != 0 && env.step >= task.most_steps;
 }
 
 float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& now,
                float action_change) {
-  if (task.kind == TaskKind::kNone) return 0;
   const float pick = env.events.picked ? task.pick_reward : 0;
   const bool is_overlooked = !task.drop_fails && (env.events.kept_target || holdsAnother(env));
   return pick + task.reach_weight * (env.reach - now.reach) +
@@ -61,7 +63,7 @@ float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& n
 /// lead elsewhere counts nothing, nor one from or to a place without a way.
 float shapingOf(const TaskOptions& task, const Env& env, const WayLeft& way) {
   const bool is_one_way = env.is_way_to_goal == way.is_to_goal && env.way >= 0 && way.length >= 0;
-  if (task.kind == TaskKind::kNone || !is_one_way) return 0;
+  if (!is_one_way) return 0;
   return task.geodesic_weight * (env.way - way.length);
 }
 
@@ -94,10 +96,6 @@ Vec3 targetUp(const Model& model, const BatchState& state, std::size_t n) noexce
   const Quat now = (holdsTarget(env) ? state.heldPose(n) : resting).rotation;
   const Placement& start = model.placements(model.episodeOf(env.start))[env.target];
   return rotate(now, rotate(conjugate(start.pose.rotation), {0, 1, 0}));
-}
-
-EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept {
-  return findEnd(task, env, transport);
 }
 
 WayLeft measureWay(const Model& model, const BatchState& state, std::size_t env_number) noexcept {
@@ -184,8 +182,10 @@ float payForTilt(const ChunkStep& step, std::size_t n) {
 
 void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   const TaskOptions& task = step.model.options.task;
-  const bool pays_for_ways = task.geodesic_weight != 0;
-  const bool pays_for_tilt = task.kind != TaskKind::kNone && task.tilt_penalty != 0;
+  // Without a task nothing is earned, and episodes end with their time alone.
+  const bool has_task = task.kind != TaskKind::kNone;
+  const bool pays_for_ways = has_task && task.geodesic_weight != 0;
+  const bool pays_for_tilt = has_task && task.tilt_penalty != 0;
   const std::uint8_t* idle = step.state.idle().data() + step.first;
   // Those of the next chunk come nearer in the meantime.
   if (step.first + kChunk < resets.size()) __builtin_prefetch(&resets[step.first + kChunk]);
@@ -201,8 +201,9 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     const float change = env.step == 0 ? 0 : measured.change.values[e];
     ++env.step;
     const TargetDistances now{measured.reach.values[e], measured.transport.values[e]};
-    const EpisodeEnd end = findEnd(task, env, now.transport);
-    float reward = rewardOf(task, env, now, change);
+    EpisodeEnd end = has_task ? endOf(task, env, now.transport) : EpisodeEnd::kNone;
+    if (end == EpisodeEnd::kNone && isLate(task, env)) end = EpisodeEnd::kTimeOut;
+    float reward = has_task ? rewardOf(task, env, now, change) : 0;
     if (pays_for_ways) reward += earnOfWay(step, n, env);
     if (pays_for_tilt) reward -= payForTilt(step, n);
     if (end == EpisodeEnd::kSuccess) reward += task.success_reward;

@@ -29,10 +29,6 @@ struct WayLeft {
 [[nodiscard]] WayLeft measureWay(const Model& model, const BatchState& state,
                                  std::size_t env) noexcept;
 
-/// How the rules of the task end the episode (paper, appendix A). `transport` is the distance of
-/// target and goal after the step, in meters.
-[[nodiscard]] EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) noexcept;
-
 /// Counts the step; rewards (paper, equation 1), dones, successes, endings and picks of it. Envs of
 /// the batch that the caller resets (`resets`: empty, or a number with a start where so) get none:
 /// their episode is neither rewarded nor counted.
