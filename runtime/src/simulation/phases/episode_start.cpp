@@ -52,7 +52,7 @@ void takeStock(const Model& model, BatchState& state, std::size_t n) noexcept {
   env.is_way_to_goal = way.is_to_goal;
   // Those of the other envs of the chunk stay as they are.
   observe(model, state, n / kChunk * kChunk);
-  sense(model, state, n, state.observation(n));
+  sense(model, state, {n, 1});
 }
 
 void beginEpisode(const Model& model, BatchState& state, std::size_t n, std::uint32_t start,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 
 #include "simulation/phases/robot_noise.h"
@@ -14,6 +13,9 @@
 
 namespace galactic::simulation {
 namespace {
+
+/// Objects that are further from the hand than this are not observed, meters.
+constexpr float kFarthestSeen = 1;
 
 /// Appends numbers to a row.
 class Row {
@@ -93,6 +95,23 @@ void senseNearObjects(const Model& model, const BatchState& state, std::size_t n
   }
 }
 
+/// How far it is to what is around.
+void senseLaser(const Model& model, const BatchState& state, std::size_t n, std::span<float> part) {
+  // Apart from the numbers that place objects.
+  constexpr std::uint64_t kLaserSalt = 0x6C617365722D2D31ULL;
+  const GripFrame grip = state.grip(n);
+  const EnvMoment moment = momentOf(model, state, n);
+  model.laser.scan(
+      {.scene = state.env(n).scene,
+       .base = state.base(n),
+       .cosine = headingCosine(grip),
+       .sine = headingSine(grip),
+       .objects = state.resting(n),
+       .noise = drawnIn(moment, model.laser.noise(), kLaserDraw),
+       .random = RandomStream(moment.seed ^ kLaserSalt, moment.env, moment.episode, moment.step)},
+      part);
+}
+
 /// The ways to target and goal.
 void senseWays(const Model& model, const BatchState& state, std::size_t n, std::span<float> part) {
   const Env& env = state.env(n);
@@ -124,6 +143,67 @@ void senseLastActions(const Model& model, const BatchState& state, std::size_t n
     }
   }
 }
+
+/// What the sizes of parts depend on.
+struct Asked {
+  const SensorOptions& sensors;
+  std::size_t joints = 0;
+  std::size_t actions = 0;
+  /// Elements of a scan.
+  std::size_t laser = 0;
+};
+
+/// A part of an observation.
+struct ObservedPart {
+  const char* name;
+  /// Elements; 0: not observed.
+  std::size_t (*size)(const Asked& asked);
+  /// See SensedPart. Null: the kernels write it.
+  void (*write)(const Model& model, BatchState& state, EnvRange envs,
+                const SensedPart& part) = nullptr;
+};
+
+/// Writes a part of some envs by what writes that of one.
+template <auto kSense>
+void each(const Model& model, BatchState& state, EnvRange envs, const SensedPart& part) {
+  for (std::size_t n = envs.first; n < envs.first + envs.count; ++n) {
+    kSense(model, state, n, state.observation(n).subspan(part.first, part.size));
+  }
+}
+
+template <std::size_t kCount>
+std::size_t always(const Asked& /*asked*/) {
+  return kCount;
+}
+
+template <std::size_t kCount, bool SensorOptions::*kOption>
+std::size_t where(const Asked& asked) {
+  return asked.sensors.*kOption ? kCount : 0;
+}
+
+/// In their order. The kernels write the first ones of a row, in theirs.
+constexpr std::array kParts{
+    ObservedPart{"robot_target", always<3>},
+    ObservedPart{"grip_target", always<3>},
+    ObservedPart{"robot_grip", always<3>},
+    ObservedPart{"robot_goal", always<3>},
+    ObservedPart{"grip_goal", always<3>},
+    ObservedPart{"is_holding", always<1>},
+    ObservedPart{"joints", [](const Asked& asked) { return asked.joints; }},
+    ObservedPart{"time", always<3>},
+    ObservedPart{"bump", where<1, &SensorOptions::bump>},
+    ObservedPart{"target_goal", where<3, &SensorOptions::target_goal>},
+    ObservedPart{"target_up", where<3, &SensorOptions::target_up>, each<senseUp>},
+    ObservedPart{"near_objects",
+                 [](const Asked& asked) { return std::size_t{3} * asked.sensors.near_objects; },
+                 each<senseNearObjects>},
+    ObservedPart{"laser", [](const Asked& asked) { return asked.laser; }, each<senseLaser>},
+    ObservedPart{"geodesic", where<sensors::kGeodesicSize, &SensorOptions::geodesic>,
+                 each<senseWays>},
+    ObservedPart{"last_actions",
+                 [](const Asked& asked) { return asked.actions * asked.sensors.last_actions; },
+                 each<senseLastActions>},
+};
 
 /// Room for points as robots see them that know by odometry alone where they are.
 class BelievedPoints {
@@ -168,34 +248,19 @@ class BelievedPoints {
 
 }  // namespace
 
-std::vector<ObservationPart> observationParts(std::size_t joints, const SensorSizes& sensors) {
-  std::vector<ObservationPart> parts;
-  std::size_t first = 0;
-  const auto add = [&](const char* name, std::size_t size) {
-    parts.push_back({name, first, size});
-    first += size;
-  };
-  add("robot_target", 3);
-  add("grip_target", 3);
-  add("robot_grip", 3);
-  add("robot_goal", 3);
-  add("grip_goal", 3);
-  add("is_holding", 1);
-  add("joints", joints);
-  add("time", 3);
-  if (sensors.bump != 0) add("bump", sensors.bump);
-  if (sensors.target_goal != 0) add("target_goal", sensors.target_goal);
-  if (sensors.target_up != 0) add("target_up", sensors.target_up);
-  if (sensors.near_objects != 0) add("near_objects", sensors.near_objects);
-  if (sensors.laser != 0) add("laser", sensors.laser);
-  if (sensors.geodesic != 0) add("geodesic", sensors.geodesic);
-  if (sensors.last_actions != 0) add("last_actions", sensors.last_actions);
-  return parts;
-}
-
-std::size_t sensedSize(const SensorSizes& sensors) {
-  return sensors.target_up + sensors.near_objects + sensors.laser + sensors.geodesic +
-         sensors.last_actions;
+void layOutObservation(std::size_t laser_size, Model& model) {
+  const Asked asked{.sensors = model.options.sensors,
+                    .joints = model.motion.controlled.size(),
+                    .actions = model.actionCount(),
+                    .laser = laser_size};
+  for (const ObservedPart& part : kParts) {
+    const std::size_t size = part.size(asked);
+    if (size == 0) continue;
+    const std::size_t first = model.observation_size;
+    model.observation.push_back({part.name, first, size});
+    model.observation_size += size;
+    if (part.write != nullptr) model.sensed.push_back({first, size, part.write});
+  }
 }
 
 void observe(const Model& model, BatchState& state, std::size_t first) noexcept {
@@ -237,48 +302,8 @@ void observe(const Model& model, BatchState& state, std::size_t first) noexcept 
   model.kernels.observe(batch);
 }
 
-void sense(const Model& model, const BatchState& state, std::size_t env_number,
-           std::span<float> out) noexcept {
-  // Apart from the numbers that place objects.
-  constexpr std::uint64_t kLaserSalt = 0x6C617365722D2D31ULL;
-  if (model.sensors_first == out.size()) return;
-  const Env& env = state.env(env_number);
-  const GripFrame grip = state.grip(env_number);
-  std::span<float> rest = out.subspan(model.sensors_first);
-  // The parts in the order of observationParts.
-  const auto next = [&](std::size_t size) {
-    const std::span<float> part = rest.first(size);
-    rest = rest.subspan(size);
-    return part;
-  };
-  const SensorOptions& sensors = model.options.sensors;
-  const EnvMoment moment = momentOf(model, state, env_number);
-  if (sensors.target_up) senseUp(model, state, env_number, next(kTargetUpSize));
-  if (sensors.near_objects != 0) {
-    senseNearObjects(model, state, env_number, next(kWaySize * sensors.near_objects));
-  }
-  model.laser.scan(
-      {.scene = env.scene,
-       .base = state.base(env_number),
-       .cosine = headingCosine(grip),
-       .sine = headingSine(grip),
-       .objects = state.resting(env_number),
-       .noise = drawnIn(moment, model.laser.noise(), kLaserDraw),
-       .random = RandomStream(moment.seed ^ kLaserSalt, moment.env, moment.episode, moment.step)},
-      next(model.laser.size()));
-  if (sensors.geodesic) senseWays(model, state, env_number, next(sensors::kGeodesicSize));
-  if (sensors.last_actions != 0) {
-    senseLastActions(model, state, env_number, next(model.actionCount() * sensors.last_actions));
-  }
-  assert(rest.empty());
-}
-
-void senseAll(const ChunkStep& step) noexcept {
-  if (step.model.sensors_first == step.model.observation_size) return;
-  for (std::size_t e = 0; e < kChunk; ++e) {
-    const std::size_t n = step.first + e;
-    sense(step.model, step.state, n, step.state.observation(n));
-  }
+void sense(const Model& model, BatchState& state, EnvRange envs) noexcept {
+  for (const SensedPart& part : model.sensed) part.write(model, state, envs, part);
 }
 
 }  // namespace galactic::simulation

@@ -50,7 +50,7 @@ void runLastPhases(const ChunkStep& step, std::span<const std::int32_t> resets,
   followOdometry(step);
   observe(step.model, step.state, step.first);
   lap(Phase::kObserve);
-  senseAll(step);
+  sense(step.model, step.state, {step.first, kChunk});
   lap(Phase::kSense);
   renewEpisodes(step);
   resetEpisodes(step, resets);

@@ -223,16 +223,7 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
   model.tables = motionTables(model.motion);
   ASSIGN_OR_RETURN(const sensors::LaserSettings laser,
                    sensors::laserSettings(options.sensors.laser, world.robot(), model.motion));
-  const SensorSizes sensors{.bump = options.sensors.bump ? 1U : 0U,
-                            .target_goal = options.sensors.target_goal ? 3U : 0U,
-                            .target_up = options.sensors.target_up ? kTargetUpSize : 0,
-                            .near_objects = kWaySize * options.sensors.near_objects,
-                            .laser = laser.size(),
-                            .geodesic = options.sensors.geodesic ? sensors::kGeodesicSize : 0,
-                            .last_actions = model.actionCount() * options.sensors.last_actions};
-  model.observation = observationParts(model.motion.controlled.size(), sensors);
-  model.observation_size = model.observation.back().first + model.observation.back().size;
-  model.sensors_first = model.observation_size - sensedSize(sensors);
+  layOutObservation(laser.size(), model);
   measure(world, model);
   model.groups = spheresByEights(model.motion.ranges);
   model.slices = FreeSlices(model.groups);

@@ -28,6 +28,25 @@ namespace galactic::simulation {
 /// world_from_grip and the base's heading, as the motion kernels write them: see BodyArrays.
 using GripFrame = std::array<float, kGripStride>;
 
+struct Model;
+class BatchState;
+
+/// Some envs of a batch.
+struct EnvRange {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+/// A part of an observation that the kernels do not write.
+struct SensedPart {
+  /// Of the elements of a row.
+  std::size_t first = 0;
+  std::size_t size = 0;
+  /// Writes it, `part`, to the observations of `envs`.
+  void (*write)(const Model& model, BatchState& state, EnvRange envs,
+                const SensedPart& part) = nullptr;
+};
+
 /// How an env stands when an episode begins.
 struct EpisodeStart {
   /// Index into the episode set.
@@ -76,8 +95,8 @@ struct Model {
   std::size_t most_held_spheres = 0;
   std::vector<ObservationPart> observation;
   std::size_t observation_size = 0;
-  /// First element of `observation` that a sensor writes.
-  std::size_t sensors_first = 0;
+  /// The last ones of a row.
+  std::vector<SensedPart> sensed;
   sensors::Laser laser;
   /// By start; off unless it is observed or rewarded.
   sensors::Geodesic geodesic;
