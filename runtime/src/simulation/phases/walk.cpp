@@ -68,7 +68,9 @@ class Walker {
  private:
   enum class Progress : std::uint8_t { kFree, kSlid, kBlocked };
 
-  /// A step in whose chunk this lane stands for the env: all lanes do.
+  /// A step in whose chunk this lane stands for the env: all lanes do. For the first envs of a
+  /// batch the step begins below 0, as unsigned numbers wrap, and the lane added to that is the env
+  /// again. So nobody may ask such a step for its first env.
   [[nodiscard]] ChunkStep at(std::size_t lane) const {
     return {step_.model, step_.state, *step_.between, step_.first + e_ - lane};
   }
