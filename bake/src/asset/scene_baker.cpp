@@ -101,23 +101,24 @@ class RegionWarnings {
 
   [[nodiscard]] std::vector<std::string> take() {
     if (!full_.empty()) {
-      closed_.push_back(fmt::format("radius {} m: no free space at all", fmt::join(full_, " m, ")));
+      warnings_.push_back(
+          fmt::format("radius {} m: no free space at all", fmt::join(full_, " m, ")));
     }
     if (!full_rooms_.empty()) {
-      closed_.push_back(
+      warnings_.push_back(
           fmt::format("radius {} m: no free space in the room; what is free outside of it is left "
                       "out, keep it with `inside`",
                       fmt::join(full_rooms_, " m, ")));
     }
     if (!open_.empty()) {
       if (open_room_) way_out_ = narrowestWay(*open_room_);
-      closed_.push_back(fmt::format(
+      warnings_.push_back(fmt::format(
           "radius {} m: the room is one with the outside, and all of it is stored: {}; a scan with "
           "an open door or window works as it is, and for grids of the room alone close it in the "
           "mesh",
           fmt::join(open_, " m, "), way_out_));
     }
-    return std::move(closed_);
+    return std::move(warnings_);
   }
 
  private:
@@ -150,7 +151,7 @@ class RegionWarnings {
     }
     if (is_yard_known_ || !(outside.yard > 0.5 * floor)) return;
     is_yard_known_ = true;
-    closed_.push_back(
+    warnings_.push_back(
         fmt::format("radius {} m: the outside, with {:.1f} m2 of floor under the sky, is left out "
                     "(room: {:.1f} m2 of floor); keep it with `inside` or `keep-components`",
                     radius, outside.yard, floor));
@@ -166,7 +167,7 @@ class RegionWarnings {
     });
     if (is_known) return;
     known_.push_back(bounds);
-    closed_.push_back(fmt::format(
+    warnings_.push_back(fmt::format(
         "radius {} m: a closed part of {:.1f} m3 (room: {:.1f} m3) from ({:.2f}, {:.2f}, {:.2f}) "
         "to ({:.2f}, {:.2f}, {:.2f}) is left out; keep it with `inside` or `keep-components`",
         radius, part.volume, room, bounds.min.x, bounds.min.y, bounds.min.z, bounds.max.x,
@@ -183,7 +184,7 @@ class RegionWarnings {
   std::optional<Columns> open_room_;
   std::vector<Bounds> known_;
   bool is_yard_known_ = false;
-  std::vector<std::string> closed_;
+  std::vector<std::string> warnings_;
 };
 
 class SceneBaker {

@@ -33,9 +33,9 @@ SourceEpisodes alone(const SourceEpisodes& all, std::size_t number) {
 }
 
 /// How an episode ended; empty: solved.
-using EpisodeEnd = std::string;
+using Outcome = std::string;
 
-Result<EpisodeEnd> play(const World& world, std::uint32_t most_steps) {
+Result<Outcome> play(const World& world, std::uint32_t most_steps) {
   SimulationOptions options;
   options.envs = 1;
   options.threads = 1;
@@ -43,7 +43,7 @@ Result<EpisodeEnd> play(const World& world, std::uint32_t most_steps) {
   auto simulator = BatchSimulator::create(world, options);
   if (!simulator) {
     // The only episode is one that the robot cannot start in.
-    if (simulator.error().code == ErrorCode::kInvalidInput) return EpisodeEnd("does not start");
+    if (simulator.error().code == ErrorCode::kInvalidInput) return Outcome("does not start");
     return tl::unexpected(simulator.error());
   }
   ASSIGN_OR_RETURN(auto policy, ScriptedPolicy::create(world, options));
@@ -52,10 +52,9 @@ Result<EpisodeEnd> play(const World& world, std::uint32_t most_steps) {
     policy.act(*simulator, actions);
     simulator->step(actions);
   } while (simulator->dones()[0] == 0);
-  if (simulator->successes()[0] != 0) return EpisodeEnd();
+  if (simulator->successes()[0] != 0) return Outcome();
   const ScriptedTrouble trouble = policy.trouble(0);
-  return trouble == ScriptedTrouble::kNone ? EpisodeEnd("out of time")
-                                           : EpisodeEnd(nameOf(trouble));
+  return trouble == ScriptedTrouble::kNone ? Outcome("out of time") : Outcome(nameOf(trouble));
 }
 
 }  // namespace
@@ -65,19 +64,19 @@ Result<SolvedSample> solveSample(std::span<const PackFile* const> packs,
                                  const EpisodeSolvingOptions& options, unsigned threads) {
   const std::size_t all = episodes.episodes.size();
   const std::size_t count = std::min<std::size_t>(options.most_episodes, all);
-  std::vector<Result<EpisodeEnd>> ends(count);
+  std::vector<Result<Outcome>> outcomes(count);
   parallelFor(threads, count, [&](std::size_t n) {
     const auto world = MemoryWorld::open(packs, alone(episodes, n * all / count));
-    ends[n] = world ? play(**world, options.most_steps) : tl::unexpected(world.error());
+    outcomes[n] = world ? play(**world, options.most_steps) : tl::unexpected(world.error());
   });
   SolvedSample sample;
   sample.episodes = static_cast<std::uint32_t>(count);
-  for (const Result<EpisodeEnd>& end : ends) {
-    if (!end) return tl::unexpected(end.error());
-    if (end->empty()) {
+  for (const Result<Outcome>& outcome : outcomes) {
+    if (!outcome) return tl::unexpected(outcome.error());
+    if (outcome->empty()) {
       ++sample.solved;
     } else {
-      ++sample.unsolved[*end];
+      ++sample.unsolved[*outcome];
     }
   }
   return sample;

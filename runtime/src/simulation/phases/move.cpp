@@ -64,8 +64,9 @@ void acceptPoses(const ChunkStep& step, const EnvMask& accepted) {
   }
 }
 
-/// The floors under some candidates in one scene.
-void followFloor(const ChunkStep& step, const Scene& scene, std::size_t first, std::size_t count) {
+/// Puts candidates in one scene on the floors under them.
+void followFloorsOf(const Scene& scene, const ChunkStep& step, std::size_t first,
+                    std::size_t count) {
   static_assert(kChunk <= kMostBases);
   std::array<Vec3, kChunk> bases;
   for (std::size_t n = 0; n < count; ++n) bases[n] = step.chunk.base(first + n);
@@ -152,11 +153,11 @@ void followFloor(const ChunkStep& step) noexcept {
     return step.model.scenes[step.state.env(step.first + e).scene];
   };
   if (followLevelFloors(step, 0, kChunk)) return;
-  if (areInOneScene(step, 0, kChunk)) return followFloor(step, scene_of(0), 0, kChunk);
+  if (areInOneScene(step, 0, kChunk)) return followFloorsOf(scene_of(0), step, 0, kChunk);
   for (std::size_t first = 0; first < kChunk; first += kLanes) {
     if (followLevelFloors(step, first, kLanes)) continue;
     if (areInOneScene(step, first, kLanes)) {
-      followFloor(step, scene_of(first), first, kLanes);
+      followFloorsOf(scene_of(first), step, first, kLanes);
       continue;
     }
     for (std::size_t e = first; e < first + kLanes; ++e) {

@@ -106,13 +106,13 @@ class Walker {
                 ? wrappedAngle(between(from, from + wrappedAngle(to - from)))
                 : between(from, to);
       }
-      followFloor(places, lane);
+      putOnFloor(places, lane);
     }
     step_.model.kernels.place(step_.model.tables,
                               {.pose = places, .body = step_.between->bodies(0)});
   }
 
-  void followFloor(const PoseArrays& places, std::size_t lane) {
+  void putOnFloor(const PoseArrays& places, std::size_t lane) {
     const float from = heights_[lane == 0 ? 0 : lane - 1];
     const FloorUnder under =
         floorUnder(scene_, {places.x[lane], from, places.z[lane]}, step_.model.options.ground);
