@@ -11,6 +11,7 @@
 
 #include "arrays.h"
 #include "bindings.h"
+#include "env_states.h"
 #include "galactic/planning_scene.h"
 #include "simulator.h"
 
@@ -38,8 +39,7 @@ class EnvScene {
   }
 
   void update(const py::object& env) {
-    const Confinement::Use use = simulator_->readState();
-    const EnvState state = simulator_->batch().envState(simulator_->envNumber(env));
+    const EnvState state = stateOf(env);
     scene_.update(state);
     scene_.setJoints(state.joint_positions);
     base_ = scene_.baseOf(state);
@@ -86,6 +86,8 @@ class EnvScene {
   }
   void putBack() { scene_.putBack(); }
   [[nodiscard]] bool isHolding() const { return scene_.isHolding(); }
+  void ignorePenetrating(const py::object& base) { scene_.ignorePenetrating(placeOf(base)); }
+  void countFree(const py::object& base) { scene_.countFree(placeOf(base)); }
   [[nodiscard]] std::optional<Pose> landing(const py::object& base) {
     return scene_.landing(placeOf(base));
   }
@@ -95,6 +97,13 @@ class EnvScene {
   static BasePlace placeOf(const py::object& base) {
     const std::vector<float> numbers = finiteNumbers(base, "base", 4);
     return {{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+  }
+
+  /// A state itself, or that of an env.
+  [[nodiscard]] EnvState stateOf(const py::object& env) const {
+    if (py::isinstance<NamedEnvState>(env)) return env.cast<const NamedEnvState&>();
+    const Confinement::Use use = simulator_->readState();
+    return simulator_->batch().envState(simulator_->envNumber(env));
   }
 
   Simulator* simulator_;
@@ -108,7 +117,7 @@ void bindPlanningScene(py::module_& module) {
   py::class_<EnvScene> type(module, "PlanningScene");
   type.def(py::init<const py::object&, const py::object&>(), py::arg("simulator"),
            py::arg("env") = 0, py::keep_alive<1, 2>(),
-           "Takes over the state of an env, as update() does.");
+           "Of the world and the options of a simulator. Takes over a state, as update() does.");
   type.doc() =
       "What a planner asks about one env: is a pose of the robot free, where is the hand,\n"
       "what would it grasp, where would an object land? By the rules of the simulation,\n"
@@ -116,8 +125,13 @@ void bindPlanningScene(py::module_& module) {
       "Bases are four numbers: x, y, z of the point on the floor under the robot's root,\n"
       "meters, and the yaw, radians. Answers are about the env and the joints that update()\n"
       "and set_joints() took over last.";
-  type.def("update", &EnvScene::update, py::arg("env"),
-           "Takes over the state of an env: its objects, what it holds, its joints.")
+  type.def(
+          "update", &EnvScene::update, py::arg("env"),
+          "Takes over a state: its objects, what the robot holds, its joints.\n\n"
+          "env: number of an env, as it is now, or an EnvState of the same world. What penetrates\n"
+          "something there does not count, until count_free(): of the held object all, of the\n"
+          "robot what is in resting objects. So has the simulation it after a grasp and after a\n"
+          "release.")
       .def("set_joints", &EnvScene::setJoints, py::arg("joint_positions"),
            "Joint positions for what is asked next: (positions,), as in EnvState, radians or\n"
            "meters. Limits are not enforced.")
@@ -138,13 +152,21 @@ void bindPlanningScene(py::module_& module) {
            "cannot stand.")
       .def("grasped_at", &EnvScene::graspedAt, py::arg("base"),
            "Index of the object that a hand grasps that closes here, or None.")
-      .def(
-          "hold", &EnvScene::hold, py::arg("object"), py::arg("base"),
-          "Holds an object as if it were grasped here. galactic.Error where the hand is not empty.")
+      .def("hold", &EnvScene::hold, py::arg("object"), py::arg("base"),
+           "Holds an object as if it were grasped here: spheres of it that penetrate something do\n"
+           "not count, see ignore_penetrating(). galactic.Error where the hand is not empty.")
       .def("put_back", &EnvScene::putBack,
            "Puts what hold() took back to where it rested. galactic.Error where it took nothing.")
       .def_property_readonly("is_holding", &EnvScene::isHolding,
                              "Whether something is in the hand, in the env or by hold().")
+      .def("ignore_penetrating", &EnvScene::ignorePenetrating, py::arg("base"),
+           "Of the held object, those spheres do not count from now on that penetrate something\n"
+           "here, and all others do. update() and hold() have done so where the robot of the env\n"
+           "is, or where the object was grasped. Nothing happens where the hand is empty.")
+      .def("count_free", &EnvScene::countFree, py::arg("base"),
+           "What does not count and is free here counts again, of the held object and of the\n"
+           "robot. The simulation does so in each place that a robot comes to: call this along a\n"
+           "way from where an object was grasped or released.")
       .def("landing", &EnvScene::landing, py::arg("base"),
            "Pose in which the held object comes to rest if it is released here, without random\n"
            "jitters, or None when it finds no place. galactic.Error where the hand is empty.");

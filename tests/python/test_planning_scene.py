@@ -1,11 +1,12 @@
 """PlanningScene: what it answers is what the simulator then does."""
 
 import copy
+import pickle
 
 import numpy as np
 import pytest
 
-from galactic import Error, PlanningScene, Simulator
+from galactic import Error, PlanningScene, ScriptedPolicy, Simulator
 
 LIFT, FORWARD, ACTIONS = 0, 4, 8
 
@@ -27,7 +28,7 @@ def test_hand_and_root_are_where_the_simulator_has_them(simulator, draw_actions)
                 (scene.world_from_root(scene.base), state.world_from_root),
             ):
                 assert found.translation == pytest.approx(wanted.translation, abs=1e-5)
-            assert scene.is_holding or scene.is_free(scene.base)
+            assert scene.is_free(scene.base)
 
 
 def test_a_drive_is_refused_where_the_pose_is_not_free(simulator):
@@ -105,6 +106,55 @@ def test_objects_are_held_put_back_and_land(simulator):
     assert scene.grasped_at(base) == state.target
     with pytest.raises(Error, match="found no object in the hand that hold"):
         scene.put_back()
+
+
+def test_what_was_just_grasped_is_free_until_it_was_free(world):
+    simulator = Simulator(world, envs=8, threads=1, task="rearrange", order="linear")
+    expert = ScriptedPolicy(simulator)
+    scene = PlanningScene(simulator)
+    grasps = 0
+    for _ in range(80):
+        held = simulator.env_states().held
+        simulator.step(expert.act())
+        for env in np.flatnonzero((held < 0) & (simulator.env_states().held >= 0)):
+            scene.update(env)
+            assert scene.is_holding and scene.is_free(scene.base)
+            joints = simulator.env_state(env).joint_positions
+            grasps += 1
+    assert grasps >= 3
+    # Sunk into the table, and as deep again after it was free.
+    table = next(depth for depth in np.arange(0, 0.2, 0.01) if not free_below(scene, joints, depth))
+    below = joints - [table, 0, 0, 0]
+    scene.set_joints(below)
+    scene.ignore_penetrating(scene.base)
+    assert scene.is_free(scene.base)
+    scene.set_joints(joints + [0.1, 0, 0, 0])
+    scene.count_free(scene.base)
+    scene.set_joints(below)
+    assert not scene.is_free(scene.base)
+
+
+def free_below(scene, joints, depth):
+    scene.set_joints(joints - [depth, 0, 0, 0])
+    return scene.is_free(scene.base)
+
+
+def test_a_scene_takes_over_states_that_are_no_longer(simulator, draw_actions):
+    before = simulator.env_state(1)
+    for _ in range(5):
+        simulator.step(draw_actions(2, ACTIONS))
+    scene = PlanningScene(simulator, pickle.loads(pickle.dumps(before)))
+    root = scene.world_from_root(scene.base)
+    assert root.translation == pytest.approx(before.world_from_root.translation, abs=1e-5)
+    scene.update(1)
+    root = scene.world_from_root(scene.base)
+    assert root.translation != pytest.approx(before.world_from_root.translation, abs=1e-5)
+    scene.update(before)
+    root = scene.world_from_root(scene.base)
+    assert root.translation == pytest.approx(before.world_from_root.translation, abs=1e-5)
+    for none in ("0", None, simulator.env_states()):
+        with pytest.raises(TypeError):
+            scene.update(none)
 
 
 def test_what_makes_no_sense_is_refused(simulator):

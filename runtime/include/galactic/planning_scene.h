@@ -49,8 +49,11 @@ class PlanningScene {
   PlanningScene(PlanningScene&&) noexcept;
   PlanningScene& operator=(PlanningScene&&) noexcept;
 
-  /// Takes over an env's scene, its objects and what its robot holds, all of whose spheres count
-  /// again. `state`: of the same world, and with the objects that TaskOptions::distractors says.
+  /// Takes over an env's scene, its objects and what its robot holds. As the simulation has it
+  /// after a grasp and after a release, spheres of the held object that penetrate something where
+  /// the robot of `state` is do not count, nor do spheres of the robot against resting objects that
+  /// they penetrate there, until countFree(). `state`: of the same world, and with the objects that
+  /// TaskOptions::distractors says.
   /// Refused where the world has no such scene or episode, or the episode is in another scene,
   /// where the episode or the robot has another number of objects or positions, where
   /// EnvState::held is no index of an object nor -1, and where a number is not finite or a rotation
@@ -103,8 +106,8 @@ class PlanningScene {
   /// no such object.
   [[nodiscard]] std::optional<std::uint32_t> graspedAt(const BasePlace& base) const;
 
-  /// Holds an object that rests, as if it were grasped here, a place of finite numbers; all its
-  /// spheres count. The hand must be empty.
+  /// Holds an object that rests, as if it were grasped here, a place of finite numbers: spheres of
+  /// it that penetrate something do not count, see ignorePenetrating(). The hand must be empty.
   void hold(std::uint32_t object, const BasePlace& base);
   /// Puts what hold() holds back to where it rested. Refused where hold() has taken nothing since
   /// the last update() or putBack(): what the robot of the env holds rests nowhere.
@@ -114,11 +117,14 @@ class PlanningScene {
   /// Of the held object; refused where the hand is empty.
   [[nodiscard]] const Pose& gripFromObject() const;
 
-  /// Spheres of the held object that penetrate something here do not count from now on. The
-  /// simulation does the same when an object is grasped: its spheres reach further than the box as
-  /// which it rested. Without a held object nothing happens.
+  /// Of the held object, those spheres do not count from now on that penetrate something here, and
+  /// all others do. The simulation does the same when an object is grasped: its spheres reach
+  /// further than the box as which it rested. update() and hold() have done so where the robot of
+  /// the env is, or where the object was grasped. Without a held object nothing happens.
   void ignorePenetrating(const BasePlace& base);
-  /// Spheres that are ignored and free here count again.
+  /// Spheres that do not count, of the held object and of the robot, and that are free here count
+  /// again. The simulation does the same in each place that a robot comes to, so call this along a
+  /// way from where an object was grasped or released.
   void countFree(const BasePlace& base);
 
   /// world_from_object of the held object after a release here: where it comes to rest, placed as

@@ -26,6 +26,25 @@ namespace {
 
 constexpr std::size_t kBitsPerWord = 64;
 
+/// One bit for each sphere.
+std::size_t wordsFor(const simulation::SphereCloud& cloud) {
+  return (cloud.paddedCount() + kBitsPerWord - 1) / kBitsPerWord;
+}
+
+/// Whether a bit is set that is not ignored.
+bool anyCounts(std::span<const std::uint64_t> bits, std::span<const std::uint64_t> ignored) {
+  std::uint64_t any = 0;
+  for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
+  return any != 0;
+}
+
+/// Bits that are not among `bits` are no more; whether some are left.
+bool keepOf(std::span<const std::uint64_t> bits, std::span<std::uint64_t> kept) {
+  std::uint64_t any = 0;
+  for (std::size_t w = 0; w < kept.size(); ++w) any |= kept[w] &= bits[w];
+  return any != 0;
+}
+
 using simulation::SphereCloud;
 
 SphereCloud cloudOf(const Robot& robot) {
@@ -66,6 +85,7 @@ class PlanningScene::Impl {
       : world_(world),
         options_(checked(options)),
         root_height_(world.robot().base()->root_height),
+        joints_(world.robot().positionCount()),
         links_(world.robot().links().size()),
         robot_(cloudOf(world.robot())),
         // Whatever asks for objects: spheres, and the hand.
@@ -75,6 +95,7 @@ class PlanningScene::Impl {
         placement_(mostSpheres(world), world.radii()) {
     // A jitter is random; what is planned shall not be.
     options_.placement.attempts = 1;
+    overlapping_.resize(wordsFor(robot_));
   }
 
   void update(const EnvState& state);
@@ -94,16 +115,18 @@ class PlanningScene::Impl {
   [[nodiscard]] bool isRobotFreeOfScene(const BasePlace& base);
   [[nodiscard]] bool isFreeOfAllElse(const BasePlace& base);
 
-  /// Finds the held object's spheres that penetrate something.
-  [[nodiscard]] std::span<const std::uint64_t> findPenetrating(const BasePlace& base);
   void ignorePenetrating(const BasePlace& base);
   void countFree(const BasePlace& base);
 
   [[nodiscard]] std::optional<Pose> landing(const BasePlace& base);
 
+  [[nodiscard]] BasePlace baseOf(const EnvState& state) const {
+    return {state.world_from_root.translation - Vec3{0, root_height_, 0},
+            yawOf(state.world_from_root.rotation)};
+  }
+
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const SimulationOptions& options() const { return options_; }
-  [[nodiscard]] float rootHeight() const { return root_height_; }
   /// Of an env that was taken over.
   [[nodiscard]] const Scene& scene() const { return *scene_; }
   [[nodiscard]] std::span<const Pose> links() const { return links_; }
@@ -145,14 +168,24 @@ class PlanningScene::Impl {
   [[nodiscard]] simulation::Obstacles obstacles() const { return {scene(), resting_}; }
   /// Whether an object's bounds lie within the robot's, over a base at `position`.
   [[nodiscard]] bool isAnyNear(const Vec3& position) const;
-  void take(std::uint32_t object, const Pose& grip_from_object);
+  /// Puts links and spheres to where these joints have them.
+  void assemble(std::span<const float> positions);
   void assembleHeld();
+  void take(std::uint32_t object, const Pose& grip_from_object);
+  /// What penetrates something as the robot of an env is does not count from now on.
+  void ignoreAsIn(const EnvState& state);
+  /// The robot's spheres that penetrate resting objects here do not count against these.
+  void leavePenetrating(const BasePlace& base);
+  /// Finds the held object's spheres that penetrate something.
+  [[nodiscard]] std::span<const std::uint64_t> findPenetrating(const BasePlace& base);
+  [[nodiscard]] bool touchesResting(const BasePlace& base);
   [[nodiscard]] bool isHeldFree(const BasePlace& base);
 
   World world_;
   SimulationOptions options_;
   float root_height_ = 0;
-  /// root_from_link for the current joints.
+  /// The current joints, and root_from_link for these.
+  std::vector<float> joints_;
   std::vector<Pose> links_;
   SphereCloud robot_;
   float reach_ = 0;
@@ -175,6 +208,15 @@ class PlanningScene::Impl {
   /// One bit per sphere of the held object.
   std::vector<std::uint64_t> penetrating_;
   std::vector<std::uint64_t> ignored_;
+
+  /// A resting object that the robot leaves, and which of its spheres do not count against it.
+  struct Left {
+    std::uint32_t object = 0;
+    std::vector<std::uint64_t> spheres;
+  };
+  std::vector<Left> left_;
+  /// One bit per sphere of the robot.
+  std::vector<std::uint64_t> overlapping_;
 
   simulation::CollisionScratch collision_;
   simulation::PlacementScratch placement_;
@@ -199,9 +241,30 @@ void PlanningScene::Impl::update(const EnvState& state) {
   }
   poses_ = state.objects;
   is_pretended_ = false;
-  if (state.held < 0) return;
-  const auto held = static_cast<std::uint32_t>(state.held);
-  take(held, inverse(state.world_from_grip) * state.objects[held]);
+  left_.clear();
+  if (state.held >= 0) {
+    const auto held = static_cast<std::uint32_t>(state.held);
+    take(held, inverse(state.world_from_grip) * state.objects[held]);
+  }
+  ignoreAsIn(state);
+}
+
+void PlanningScene::Impl::ignoreAsIn(const EnvState& state) {
+  assemble(state.joint_positions);
+  const BasePlace base = baseOf(state);
+  ignorePenetrating(base);
+  leavePenetrating(base);
+  if (has_joints_) assemble(joints_);
+}
+
+void PlanningScene::Impl::leavePenetrating(const BasePlace& base) {
+  const simulation::SphereBatch spheres = robot_.at(base, root_height_);
+  if (!resting_.touches(spheres)) return;
+  for (std::uint32_t n = 0; n < resting_.capacity(); ++n) {
+    if (!resting_.isResting(n)) continue;
+    if (!simulation::overlapping(resting_.box(n), spheres, overlapping_)) continue;
+    left_.push_back({n, overlapping_});
+  }
 }
 
 void PlanningScene::Impl::setJoints(std::span<const float> positions) {
@@ -215,6 +278,11 @@ void PlanningScene::Impl::setJoints(std::span<const float> positions) {
   }
   has_joints_ = true;
   is_ready_ = scene_ != nullptr;
+  std::ranges::copy(positions, joints_.begin());
+  assemble(joints_);
+}
+
+void PlanningScene::Impl::assemble(std::span<const float> positions) {
   forwardKinematics(world_.robot().links(), {}, positions, links_);
   robot_.assemble(links_);
   reach_ = robot_.reach();
@@ -229,9 +297,8 @@ void PlanningScene::Impl::take(std::uint32_t object, const Pose& grip_from_objec
   spheres.reserve(held_->spheres.size());
   for (const SetSphere& sphere : held_->spheres) spheres.push_back({0, sphere});
   held_spheres_ = SphereCloud(spheres, world_.radii());
-  const std::size_t words = (held_spheres_.paddedCount() + kBitsPerWord - 1) / kBitsPerWord;
-  penetrating_.assign(words, 0);
-  ignored_.assign(words, 0);
+  penetrating_.assign(wordsFor(held_spheres_), 0);
+  ignored_.assign(wordsFor(held_spheres_), 0);
   assembleHeld();
 }
 
@@ -259,6 +326,7 @@ void PlanningScene::Impl::hold(std::uint32_t object, const BasePlace& base) {
   const Pose world_from_grip = worldFromRoot(base) * rootFromGrip();
   resting_.remove(object);
   take(object, inverse(world_from_grip) * poses_[object]);
+  ignorePenetrating(base);
   is_pretended_ = true;
 }
 
@@ -275,7 +343,11 @@ void PlanningScene::Impl::putBack() {
 
 bool PlanningScene::Impl::isFree(const BasePlace& base) {
   requireReady("PlanningScene::isFree");
-  if (simulation::penetrates(obstacles(), robot_.at(base, root_height_))) return false;
+  if (left_.empty()) {
+    if (simulation::penetrates(obstacles(), robot_.at(base, root_height_))) return false;
+  } else if (!isRobotFreeOfScene(base) || touchesResting(base)) {
+    return false;
+  }
   return isHeldFree(base);
 }
 
@@ -293,8 +365,21 @@ bool PlanningScene::Impl::isRobotFreeOfScene(const BasePlace& base) {
 
 bool PlanningScene::Impl::isFreeOfAllElse(const BasePlace& base) {
   requireReady("PlanningScene::isFreeOfAllElse");
-  if (isAnyNear(base.position) && resting_.touches(robot_.at(base, root_height_))) return false;
+  if (isAnyNear(base.position) && touchesResting(base)) return false;
   return isHeldFree(base);
+}
+
+bool PlanningScene::Impl::touchesResting(const BasePlace& base) {
+  const simulation::SphereBatch spheres = robot_.at(base, root_height_);
+  if (!resting_.touches(spheres)) return false;
+  if (left_.empty()) return true;
+  for (std::uint32_t n = 0; n < resting_.capacity(); ++n) {
+    if (!resting_.isResting(n)) continue;
+    if (!simulation::overlapping(resting_.box(n), spheres, overlapping_)) continue;
+    const auto left = std::ranges::find(left_, n, &Left::object);
+    if (left == left_.end() || anyCounts(overlapping_, left->spheres)) return true;
+  }
+  return false;
 }
 
 bool PlanningScene::Impl::isAnyNear(const Vec3& position) const {
@@ -313,11 +398,7 @@ bool PlanningScene::Impl::isAnyNear(const Vec3& position) const {
 bool PlanningScene::Impl::isHeldFree(const BasePlace& base) {
   if (held_ == nullptr) return true;
   if (!simulation::penetrates(obstacles(), held_spheres_.at(base, root_height_))) return true;
-  const std::span<const std::uint64_t> penetrating = findPenetrating(base);
-  for (std::size_t w = 0; w < penetrating.size(); ++w) {
-    if ((penetrating[w] & ~ignored_[w]) != 0) return false;
-  }
-  return true;
+  return !anyCounts(findPenetrating(base), ignored_);
 }
 
 std::span<const std::uint64_t> PlanningScene::Impl::findPenetrating(const BasePlace& base) {
@@ -327,16 +408,20 @@ std::span<const std::uint64_t> PlanningScene::Impl::findPenetrating(const BasePl
 }
 
 void PlanningScene::Impl::ignorePenetrating(const BasePlace& base) {
-  requireReady("PlanningScene::ignorePenetrating");
   if (held_ == nullptr) return;
   std::ranges::copy(findPenetrating(base), ignored_.begin());
 }
 
 void PlanningScene::Impl::countFree(const BasePlace& base) {
-  requireReady("PlanningScene::countFree");
-  if (held_ == nullptr) return;
-  const std::span<const std::uint64_t> penetrating = findPenetrating(base);
-  for (std::size_t w = 0; w < ignored_.size(); ++w) ignored_[w] &= penetrating[w];
+  if (held_ != nullptr) keepOf(findPenetrating(base), ignored_);
+  if (left_.empty()) return;
+  const simulation::SphereBatch spheres = robot_.at(base, root_height_);
+  std::erase_if(left_, [&](Left& left) {
+    // One in the hand is back where it rested after putBack().
+    if (!resting_.isResting(left.object)) return false;
+    simulation::overlapping(resting_.box(left.object), spheres, overlapping_);
+    return !keepOf(overlapping_, left.spheres);
+  });
 }
 
 std::optional<Pose> PlanningScene::Impl::landing(const BasePlace& base) {
@@ -376,10 +461,7 @@ float PlanningScene::reach() const {
   return impl_->reach();
 }
 
-BasePlace PlanningScene::baseOf(const EnvState& state) const {
-  return {state.world_from_root.translation - Vec3{0, impl_->rootHeight(), 0},
-          yawOf(state.world_from_root.rotation)};
-}
+BasePlace PlanningScene::baseOf(const EnvState& state) const { return impl_->baseOf(state); }
 
 Pose PlanningScene::worldFromRoot(const BasePlace& base) const {
   return impl_->worldFromRoot(base);
@@ -441,8 +523,14 @@ const Pose& PlanningScene::gripFromObject() const {
   impl_->requireHeld("PlanningScene::gripFromObject");
   return impl_->gripFromObject();
 }
-void PlanningScene::ignorePenetrating(const BasePlace& base) { impl_->ignorePenetrating(base); }
-void PlanningScene::countFree(const BasePlace& base) { impl_->countFree(base); }
+void PlanningScene::ignorePenetrating(const BasePlace& base) {
+  impl_->requireReady("PlanningScene::ignorePenetrating");
+  impl_->ignorePenetrating(base);
+}
+void PlanningScene::countFree(const BasePlace& base) {
+  impl_->requireReady("PlanningScene::countFree");
+  impl_->countFree(base);
+}
 std::optional<Pose> PlanningScene::landing(const BasePlace& base) { return impl_->landing(base); }
 
 }  // namespace galactic

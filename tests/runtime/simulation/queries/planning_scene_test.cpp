@@ -203,9 +203,96 @@ TEST_F(PlanningSceneInTheSmallHome, FindsNoPlaceForAnObjectAboveNothing) {
   EXPECT_FALSE(scene_.floorAt(50, 50, 0));
 }
 
+/// The home in a state of its own, and what its scene says of it.
+class AStateThatPenetrates : public PlanningSceneInTheSmallHome {
+ protected:
+  void set(const EnvState& state) {
+    const std::array<std::uint32_t, 1> envs{0};
+    ASSERT_EQ(orThrow(simulator_.setStates(envs, std::span(&state, 1))).front(), 1);
+    look();
+  }
+  [[nodiscard]] bool isFreeHere() { return scene_.isFree(scene_.baseOf(state())); }
+  /// The joints of the state with another lift.
+  void liftBy(float way) {
+    std::vector<float> joints = state().joint_positions;
+    joints[kLift] += way;
+    scene_.setJoints(joints);
+  }
+  /// Moves the lift as far as steps can, all the way; whether the simulation refused none of them.
+  bool liftInSteps(float way, int steps) {
+    const std::uint64_t refused = simulator_.statistics().refused;
+    SmallHomeRow row{};
+    row[kLift] = way;
+    row[kHand] = state().held >= 0 ? 1.0F : -1.0F;
+    for (int n = 0; n < steps; ++n) step(row);
+    return simulator_.statistics().refused == refused;
+  }
+};
+
+TEST_F(AStateThatPenetrates, IsFreeWhereTheHeldObjectDoesUntilItIsFreeOnce) {
+  fetchTarget();
+  EnvState low = state();
+  low.objects[low.target].translation.y -= 0.03F;
+  set(low);
+  EXPECT_TRUE(isFreeHere()) << "the simulation lets it be there";
+  const BasePlace base = scene_.baseOf(state());
+  liftBy(0.2F);
+  EXPECT_TRUE(scene_.isFree(base));
+  // The simulation and the scene say the same of the way back.
+  ASSERT_TRUE(liftInSteps(1, 3));
+  EXPECT_TRUE(isFreeHere());
+  liftBy(-(state().joint_positions[kLift] - low.joint_positions[kLift]));
+  EXPECT_FALSE(scene_.isFree(base));
+  EXPECT_FALSE(liftInSteps(-1, 3));
+}
+
+TEST_F(AStateThatPenetrates, IsFreeWhereTheRobotTouchesWhatItHasJustLetGoOf) {
+  for (int n = 0; n < kPatience && !scene_.graspedAt(scene_.baseOf(state())); ++n) {
+    SmallHomeRow towards = fetch(state(), state().target);
+    towards[kHand] = -1;
+    step(towards);
+  }
+  EnvState around = state();
+  // Around the sphere of the hand, which is behind the grip.
+  around.objects[around.target].translation = around.world_from_grip * Vec3{-0.04F, 0, 0};
+  set(around);
+  const BasePlace base = scene_.baseOf(state());
+  EXPECT_TRUE(isFreeHere());
+  EXPECT_TRUE(scene_.isFreeOfAllElse(base));
+  // Away and back: it counts from where it is free on.
+  liftBy(0.2F);
+  EXPECT_TRUE(scene_.isFree(base));
+  scene_.countFree(base);
+  liftBy(0);
+  EXPECT_FALSE(scene_.isFree(base));
+  EXPECT_FALSE(scene_.isFreeOfAllElse(base));
+  look();
+  EXPECT_TRUE(isFreeHere()) << "update() looks anew";
+  // What is taken in the hand is in nobody's way, and put back it is left as before.
+  scene_.hold(around.target, base);
+  EXPECT_TRUE(scene_.isFree(base));
+  scene_.putBack();
+  EXPECT_TRUE(isFreeHere());
+}
+
+TEST_F(PlanningSceneInTheSmallHome, HoldsWhatItWouldGraspInATable) {
+  for (int n = 0; n < kPatience && !scene_.graspedAt(scene_.baseOf(state())); ++n) {
+    SmallHomeRow towards = fetch(state(), state().target);
+    towards[kHand] = -1;
+    step(towards);
+  }
+  EnvState sunken = state();
+  sunken.objects[sunken.target].translation.y -= 0.01F;
+  scene_.update(sunken);
+  const BasePlace base = scene_.baseOf(sunken);
+  scene_.hold(sunken.target, base);
+  EXPECT_TRUE(scene_.isFree(base)) << "as after a grasp";
+}
+
 TEST_F(PlanningSceneInTheSmallHome, IgnoresSpheresThatPenetrateUntilTheyAreFree) {
   fetchTarget();
-  // Lowered into the table, held object and all: the arm's own spheres are higher.
+  // From where all of them are free: lowered into the table, held object and all: the arm's own
+  // spheres are higher.
   std::vector<float> low = state().joint_positions;
   std::vector<float> high = low;
   high[kLift] += 0.2F;
