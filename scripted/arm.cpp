@@ -24,24 +24,10 @@ bool isPeriodic(const Robot& robot, const ControlledJoint& joint) {
   return is_continuous;
 }
 
-/// Whether any sphere of `a` overlaps one of `b`.
-bool overlap(const SphereGroup& a, const Pose& root_from_a, const SphereGroup& b,
-             const Pose& root_from_b, std::span<const float> radii) {
-  const Pose a_from_b = inverse(root_from_a) * root_from_b;
-  for (const SetSphere& other : b.spheres) {
-    const Vec3 center = a_from_b * other.center;
-    for (const SetSphere& own : a.spheres) {
-      const Vec3 away = center - own.center;
-      const float reach = radii[own.radius_index] + radii[other.radius_index];
-      if (dot(away, away) < reach * reach) return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
-Arm::Arm(const Robot& robot) : robot_(&robot), links_(robot.links().size()) {
+Arm::Arm(const Robot& robot)
+    : robot_(&robot), self_collision_(robot), links_(robot.links().size()) {
   joints_.reserve(robot.controlledJoints().size());
   for (const ControlledJoint& joint : robot.controlledJoints()) {
     joints_.push_back(
@@ -59,9 +45,6 @@ Arm::Arm(const Robot& robot) : robot_(&robot), links_(robot.links().size()) {
     }
   }
   joinTelescopes();
-  const std::span<const Pose> at_start = placeLinks(robot.startPositions());
-  tested_pairs_ = robot.testedPairs();
-  std::erase_if(tested_pairs_, [&](const GroupPair& pair) { return overlaps(pair, at_start); });
 }
 
 void Arm::joinTelescopes() {
@@ -170,17 +153,6 @@ void Arm::move(std::size_t joint, float by, Joints& positions) const {
   float& position = positions[arm_joint.position];
   position = arm_joint.wraps ? wrappedAngle(position + by)
                              : std::clamp(position + by, arm_joint.lower, arm_joint.upper);
-}
-
-bool Arm::overlaps(const GroupPair& pair, std::span<const Pose> links) const {
-  const SphereGroup& first = robot_->groups()[pair.first];
-  const SphereGroup& second = robot_->groups()[pair.second];
-  return overlap(first, links[first.link], second, links[second.link], robot_->radii());
-}
-
-bool Arm::touchesItself(std::span<const Pose> links) const {
-  return std::ranges::any_of(tested_pairs_,
-                             [&](const GroupPair& pair) { return overlaps(pair, links); });
 }
 
 }  // namespace galactic::scripted

@@ -6,6 +6,7 @@
 
 #include "galactic/pose.h"
 #include "galactic/robot.h"
+#include "galactic/self_collision.h"
 #include "support/random_stream.h"
 
 namespace galactic::scripted {
@@ -71,13 +72,13 @@ class Arm {
   /// Adds `by` to a joint, within its limits.
   void move(std::size_t joint, float by, Joints& positions) const;
 
-  /// Whether spheres of a tested pair of groups overlap. Pairs that overlap where an episode starts
-  /// do not count: spheres stick out of what they cover, and some overlap in every position.
-  [[nodiscard]] bool touchesItself(std::span<const Pose> links) const;
+  /// See SelfCollision.
+  [[nodiscard]] bool touchesItself(std::span<const Pose> links) const {
+    return self_collision_.touches(links);
+  }
 
  private:
   void joinTelescopes();
-  [[nodiscard]] bool overlaps(const GroupPair& pair, std::span<const Pose> links) const;
 
   const Robot* robot_;
   std::vector<ArmJoint> joints_;
@@ -87,7 +88,7 @@ class Arm {
     std::size_t joint = 0;
   };
   std::vector<Mover> movers_;
-  std::vector<GroupPair> tested_pairs_;
+  SelfCollision self_collision_;
   std::vector<Pose> links_;
 };
 

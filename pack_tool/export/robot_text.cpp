@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
+#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "galactic/position_names.h"
+#include "galactic/self_collision.h"
 #include "pack_tool/support/xml_text.h"
 
 namespace galactic::pack_tool {
@@ -159,6 +164,56 @@ class UrdfWriter {
 
 }  // namespace
 
+namespace {
+
+/// Why MoveIt need not test a pair; empty where it has to.
+std::string_view reasonOf(const GroupPair& pair, std::span<const GroupPair> tested) {
+  const auto is_same = [&](const GroupPair& other) {
+    return other.first == pair.first && other.second == pair.second;
+  };
+  switch (pair.kind) {
+    case PairKind::kTested:
+      return std::ranges::any_of(tested, is_same) ? "" : "Default";
+    case PairKind::kAdjacent:
+      return "Adjacent";
+    case PairKind::kAlways:
+      return "Always";
+    case PairKind::kNever:
+      return "Never";
+    case PairKind::kIgnored:
+      return "User";
+  }
+  return "";
+}
+
+/// The pairs of links that are not to be tested, ascending, each with its reason.
+std::map<std::pair<std::uint32_t, std::uint32_t>, std::string_view> untestedLinks(
+    const Robot& robot) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::string_view> reasons;
+  const auto add = [&](const SphereGroup& first, const SphereGroup& second,
+                       std::string_view reason) {
+    for (const std::uint32_t a : first.links) {
+      for (const std::uint32_t b : second.links) {
+        if (a != b) reasons.try_emplace(std::minmax(a, b), reason);
+      }
+    }
+  };
+  for (std::uint32_t link = 1; link < robot.links().size(); ++link) {
+    const auto parent = static_cast<std::uint32_t>(robot.links()[link].parent);
+    reasons.try_emplace({parent, link}, "Adjacent");
+  }
+  for (const SphereGroup& group : robot.groups()) add(group, group, "Adjacent");
+  const SelfCollision self_collision(robot);
+  for (const GroupPair& pair : robot.groupPairs()) {
+    const std::string_view reason = reasonOf(pair, self_collision.pairs());
+    if (reason.empty()) continue;
+    add(robot.groups()[pair.first], robot.groups()[pair.second], reason);
+  }
+  return reasons;
+}
+
+}  // namespace
+
 std::string srdfText(const Robot& robot) {
   std::vector<std::span<const SetSphere>> spheres(robot.links().size());
   for (const SphereGroup& group : robot.groups()) spheres[group.link] = group.spheres;
@@ -173,6 +228,11 @@ std::string srdfText(const Robot& robot) {
     }
     if (spheres[n].empty()) text += "    <sphere center=\"0 0 0\" radius=\"0\"/>\n";
     text += "  </link_sphere_approximation>\n";
+  }
+  for (const auto& [links, reason] : untestedLinks(robot)) {
+    text += fmt::format("  <disable_collisions link1=\"{}\" link2=\"{}\" reason=\"{}\"/>\n",
+                        xmlEscaped(robot.linkName(links.first)),
+                        xmlEscaped(robot.linkName(links.second)), reason);
   }
   return text + "</robot>\n";
 }

@@ -73,6 +73,9 @@ class PlanningScene {
   [[nodiscard]] Pose rootFromGrip() const;
   /// How far spheres of the robot reach from its root's vertical axis, meters.
   [[nodiscard]] float reach() const;
+  /// Whether the robot touches itself with these joints, or comes nearer to that than `margin`,
+  /// meters, as SelfCollision has it. What is held plays no part.
+  [[nodiscard]] bool touchesItself(float margin = 0) const;
 
   /// Where the base of the robot of `state` stands.
   [[nodiscard]] BasePlace baseOf(const EnvState& state) const;
@@ -84,7 +87,8 @@ class PlanningScene {
 
   /// Whether neither the robot nor what it holds penetrates the static scene or an object at rest.
   /// A place that the column grids do not know counts as penetrated. Whether the robot touches
-  /// itself is not asked: BatchSimulator does not ask either.
+  /// itself is another question, touchesItself(): BatchSimulator does not ask it. What carries the
+  /// base is another one, too, floorAt(): half a meter above the floor, a base is free.
   [[nodiscard]] bool isFree(const BasePlace& base);
   /// The two parts of isFree(), for planners that remember what they know of the static scene: the
   /// robot against the scene, and everything else. The robot meets nothing else at a place with

@@ -31,10 +31,21 @@ struct ControlledJoint {
   float upper = 0;
 };
 
-/// Two groups of links that can touch: first < second.
+/// What two groups of links do to each other, by their spheres, as the bake found it in some
+/// thousand positions that it drew within the limits.
+enum class PairKind : std::uint8_t {
+  kTested = 0,    ///< They touch in some of these positions.
+  kAdjacent = 1,  ///< A joint joins them: nobody looked.
+  kAlways = 2,    ///< They touch in all of them.
+  kNever = 3,     ///< They touch in none of them.
+  kIgnored = 4,   ///< The recipe says that they may touch: nobody looked.
+};
+
+/// Two groups of links that have spheres: first < second.
 struct GroupPair {
   std::uint16_t first = 0;
   std::uint16_t second = 0;
+  PairKind kind = PairKind::kTested;
 };
 
 /// Links that no joint moves against each other, as one rigid body of spheres.
@@ -42,6 +53,8 @@ struct SphereGroup {
   /// The link in whose frame the spheres are.
   std::uint32_t link = 0;
   std::span<const SetSphere> spheres;
+  /// All links of the group, ascending; `link` is the first.
+  std::span<const std::uint32_t> links;
 };
 
 struct EndEffector {
@@ -119,7 +132,11 @@ class Robot {
 
   [[nodiscard]] std::span<const SetSphere> spheres() const { return spheres_; }
   [[nodiscard]] const std::vector<SphereGroup>& groups() const { return groups_; }
-  /// Pairs of groups that a self-collision test has to look at.
+  /// All pairs of groups that have spheres, ascending.
+  [[nodiscard]] std::span<const GroupPair> groupPairs() const { return group_pairs_; }
+  /// Those that touch in some positions and are apart in others (PairKind::kTested). Spheres stick
+  /// out of what they cover, so some of these touch nearly everywhere, also where the robot does
+  /// not: parts of a telescope, or two fingers. SelfCollision tells which can be tested.
   [[nodiscard]] const std::vector<GroupPair>& testedPairs() const { return tested_pairs_; }
 
   /// In the order of the actions.
@@ -142,6 +159,7 @@ class Robot {
   std::span<const float> start_positions_;
   std::span<const SetSphere> spheres_;
   std::vector<SphereGroup> groups_;
+  std::vector<GroupPair> group_pairs_;
   std::vector<GroupPair> tested_pairs_;
   std::span<const ControlledJoint> controlled_;
   std::optional<EndEffector> end_effector_;

@@ -10,6 +10,12 @@ namespace galactic {
 static_assert(sizeof(LinkFrame) == sizeof(schema::LinkFrame));
 static_assert(sizeof(PositionLimits) == sizeof(schema::PositionLimits));
 static_assert(sizeof(ControlledJoint) == sizeof(schema::ControlledJoint));
+static_assert(static_cast<int>(PairKind::kTested) == static_cast<int>(schema::PairKind::Tested));
+static_assert(static_cast<int>(PairKind::kAdjacent) ==
+              static_cast<int>(schema::PairKind::Adjacent));
+static_assert(static_cast<int>(PairKind::kAlways) == static_cast<int>(schema::PairKind::Always));
+static_assert(static_cast<int>(PairKind::kNever) == static_cast<int>(schema::PairKind::Never));
+static_assert(static_cast<int>(PairKind::kIgnored) == static_cast<int>(schema::PairKind::Ignored));
 
 namespace {
 
@@ -66,12 +72,15 @@ Result<Robot> Robot::from(const PackFile& pack) {
   robot.start_positions_ = detail::inPlace<float>(stored->start_positions());
   robot.spheres_ = detail::inPlace<SetSphere>(stored->spheres());
   for (const schema::SphereGroup* group : *stored->groups()) {
-    robot.groups_.push_back(
-        {group->link(), robot.spheres_.subspan(group->first_sphere(), group->sphere_count())});
+    robot.groups_.push_back({group->link(),
+                             robot.spheres_.subspan(group->first_sphere(), group->sphere_count()),
+                             detail::inPlace<std::uint32_t>(group->links())});
   }
   for (const schema::GroupPair* pair : *stored->group_pairs()) {
+    robot.group_pairs_.push_back(
+        {pair->first(), pair->second(), static_cast<PairKind>(pair->kind())});
     if (pair->kind() == schema::PairKind::Tested) {
-      robot.tested_pairs_.push_back({pair->first(), pair->second()});
+      robot.tested_pairs_.push_back(robot.group_pairs_.back());
     }
   }
   robot.controlled_ = detail::inPlace<ControlledJoint>(stored->controlled_joints());

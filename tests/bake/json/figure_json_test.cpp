@@ -95,7 +95,7 @@ bake::RobotFigures robotFigures() {
           .controlled_joints = 3,
           .groups = {{"hand", {"hand", "finger"}, true, 0.02F, 0.04F, sphereFigures(), true},
                      {"cover", {"cover"}, false, 0.02F, 0.04F, sphereFigures(), false}},
-          .pairs = {{"hand", "cover", bake::PairKind::kNever}},
+          .pairs = {{"hand", "cover", PairKind::kNever}},
           .meshes = {"hand.stl: found"},
           .seconds = {.import = 1, .bake = {.spheres = 2}, .write = 0.5, .all = 4},
           .warnings = {"no laser"}};

@@ -15,7 +15,6 @@ namespace {
 using bake::BakedPair;
 using bake::BakedRobot;
 using bake::classifyPairs;
-using bake::PairKind;
 
 /// A robot of spheres of radius 0.1 (index 1) and 0.05 m (index 0), each link a group of its own.
 class BallRobot {

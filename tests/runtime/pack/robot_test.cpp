@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/packs/object_pack_builder.h"
 #include "support/packs/robot_pack_builder.h"
 
@@ -57,7 +59,11 @@ TEST(Robot, ShowsTheSpheresOfEachGroupAndOnlyThePairsToTest) {
     EXPECT_EQ(robot->groups()[n].spheres.size(), fields.groups[n].sphere_count);
     EXPECT_EQ(robot->groups()[n].spheres.data(),
               robot->spheres().data() + fields.groups[n].first_sphere);
+    EXPECT_TRUE(std::ranges::equal(robot->groups()[n].links, fields.groups[n].links));
   }
+  ASSERT_EQ(robot->groupPairs().size(), 3U);
+  EXPECT_EQ(robot->groupPairs()[1].kind, PairKind::kNever);
+  EXPECT_EQ(robot->groupPairs()[2].kind, PairKind::kAdjacent);
   ASSERT_EQ(robot->testedPairs().size(), 1U);
   EXPECT_EQ(robot->testedPairs()[0].first, 0);
   EXPECT_EQ(robot->testedPairs()[0].second, 2);

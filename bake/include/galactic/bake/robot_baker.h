@@ -48,9 +48,6 @@ struct BakedGroup {
   bool measured = false;
 };
 
-/// What two groups of links do.
-enum class PairKind : std::uint8_t { kTested, kAdjacent, kAlways, kNever, kIgnored };
-
 struct BakedPair {
   std::uint16_t first = 0;
   std::uint16_t second = 0;

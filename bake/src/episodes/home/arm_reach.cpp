@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "common/random.h"
-#include "episodes/home/robot_body.h"
+#include "galactic/self_collision.h"
 
 namespace galactic::bake {
 namespace {
@@ -30,16 +30,19 @@ float drawPosition(const ControlledJoint& joint, Random& random) {
 
 ArmReach::ArmReach(const Robot& robot) : position_count_(robot.positionCount()) {
   Random random(kSeed);
-  const std::vector<GroupPair> tested = pairsApartAtStart(robot);
+  const SelfCollision self_collision(robot);
+  const EndEffector& hand = *robot.endEffector();
+  const Pose ground_from_root{{0, robot.base()->root_height, 0}, {}};
+  std::vector<Pose> ground_from_link(robot.links().size());
   const std::span<const float> start = robot.startPositions();
   std::vector<float> positions(start.begin(), start.end());
   for (std::size_t n = 0; n < kSamples; ++n) {
     for (const ControlledJoint& joint : robot.controlledJoints()) {
       positions[joint.position] = drawPosition(joint, random);
     }
-    const RobotBody body = robotBody(robot, {}, positions);
-    if (anyOverlaps(tested, body.spheres)) continue;
-    const Vec3& point = body.grasp_point;
+    forwardKinematics(robot.links(), ground_from_root, positions, ground_from_link);
+    if (self_collision.touches(ground_from_link)) continue;
+    const Vec3 point = ground_from_link[hand.link] * hand.grasp_point;
     samples_.push_back({.grasp_point = point,
                         .distance = std::hypot(point.x, point.z),
                         .row = static_cast<std::uint32_t>(rows_.size() / position_count_)});

@@ -22,7 +22,7 @@ struct ArmSample {
 class ArmReach {
  public:
   /// Draws from a stream of its own, so that the samples depend on the robot only. Samples in which
-  /// the robot touches itself are left out; pairs of links that overlap at the start do not count.
+  /// the robot touches itself (SelfCollision) are left out.
   explicit ArmReach(const Robot& robot);
 
   /// By rising height of the grasp point.

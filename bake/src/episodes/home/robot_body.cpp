@@ -3,23 +3,6 @@
 #include <algorithm>
 
 namespace galactic::bake {
-namespace {
-
-/// Whether a sphere of one group overlaps one of the other.
-bool overlap(std::span<const BodySphere> spheres, std::uint32_t first, std::uint32_t second) {
-  for (const BodySphere& a : spheres) {
-    if (a.group != first) continue;
-    for (const BodySphere& b : spheres) {
-      const Vec3 between = a.center - b.center;
-      const float reach = a.radius + b.radius;
-      if (b.group == second && dot(between, between) < reach * reach) return true;
-    }
-  }
-  return false;
-}
-
-}  // namespace
-
 RobotBody robotBody(const Robot& robot, const Pose& world_from_ground,
                     std::span<const float> positions) {
   const Pose ground_from_root{{0, robot.base()->root_height, 0}, {}};
@@ -28,13 +11,11 @@ RobotBody robotBody(const Robot& robot, const Pose& world_from_ground,
                     world_from_link);
   RobotBody body;
   body.spheres.reserve(robot.spheres().size());
-  for (std::uint32_t group = 0; group < robot.groups().size(); ++group) {
-    const SphereGroup& spheres = robot.groups()[group];
-    for (const SetSphere& sphere : spheres.spheres) {
-      body.spheres.push_back({.center = world_from_link[spheres.link] * sphere.center,
+  for (const SphereGroup& group : robot.groups()) {
+    for (const SetSphere& sphere : group.spheres) {
+      body.spheres.push_back({.center = world_from_link[group.link] * sphere.center,
                               .radius = robot.radii()[sphere.radius_index],
-                              .radius_index = sphere.radius_index,
-                              .group = group});
+                              .radius_index = sphere.radius_index});
     }
   }
   std::stable_sort(body.spheres.begin(), body.spheres.end(),
@@ -49,20 +30,6 @@ bool isFree(const Scene& scene, std::span<const BodySphere> spheres, const Vec3&
     const ColumnGrid& grid = scene.grids()[sphere.radius_index];
     return grid.clearance(sphere.center + offset) == Clearance::kFree;
   });
-}
-
-bool anyOverlaps(std::span<const GroupPair> pairs, std::span<const BodySphere> spheres) {
-  return std::any_of(pairs.begin(), pairs.end(), [&](const GroupPair& pair) {
-    return overlap(spheres, pair.first, pair.second);
-  });
-}
-
-std::vector<GroupPair> pairsApartAtStart(const Robot& robot) {
-  const RobotBody body = robotBody(robot, {}, robot.startPositions());
-  std::vector<GroupPair> pairs = robot.testedPairs();
-  std::erase_if(
-      pairs, [&](const GroupPair& pair) { return overlap(body.spheres, pair.first, pair.second); });
-  return pairs;
 }
 
 }  // namespace galactic::bake

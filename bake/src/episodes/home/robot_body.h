@@ -14,7 +14,6 @@ struct BodySphere {
   Vec3 center;
   float radius = 0;
   std::uint32_t radius_index = 0;
-  std::uint32_t group = 0;
 };
 
 /// The robot in one configuration.
@@ -39,13 +38,5 @@ struct RobotBody {
 /// scene's radii must be the robot's. Spheres outside the grid are not free.
 [[nodiscard]] bool isFree(const Scene& scene, std::span<const BodySphere> spheres,
                           const Vec3& offset = {});
-
-/// The pairs of groups whose spheres do not overlap where an episode starts. Spheres stick out of
-/// what they cover: those of neighbors may overlap in every position.
-[[nodiscard]] std::vector<GroupPair> pairsApartAtStart(const Robot& robot);
-
-/// Whether the two groups of any of the pairs overlap.
-[[nodiscard]] bool anyOverlaps(std::span<const GroupPair> pairs,
-                               std::span<const BodySphere> spheres);
 
 }  // namespace galactic::bake

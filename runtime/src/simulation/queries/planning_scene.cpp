@@ -10,6 +10,7 @@
 #include "galactic/kinematics.h"
 #include "galactic/option_text.h"
 #include "galactic/robot.h"
+#include "galactic/self_collision.h"
 #include "simulation/collision/collision.h"
 #include "simulation/collision/floor_query.h"
 #include "simulation/collision/grasp_query.h"
@@ -88,6 +89,7 @@ class PlanningScene::Impl {
         joints_(world.robot().positionCount()),
         links_(world.robot().links().size()),
         robot_(cloudOf(world.robot())),
+        self_collision_(world_.robot()),
         // Whatever asks for objects: spheres, and the hand.
         resting_(world.mostObjects(),
                  std::max(world.radii().back(), world.robot().endEffector()->grasp_radius)),
@@ -131,6 +133,9 @@ class PlanningScene::Impl {
   [[nodiscard]] const Scene& scene() const { return *scene_; }
   [[nodiscard]] std::span<const Pose> links() const { return links_; }
   [[nodiscard]] float reach() const { return reach_; }
+  [[nodiscard]] bool touchesItself(float margin) const {
+    return self_collision_.touches(links_, margin);
+  }
   [[nodiscard]] const simulation::RestingObjects& resting() const { return resting_; }
   [[nodiscard]] const std::vector<const ObjectModel*>& models() const { return models_; }
   [[nodiscard]] const Pose& poseOf(std::size_t object) const { return poses_[object]; }
@@ -188,6 +193,7 @@ class PlanningScene::Impl {
   std::vector<float> joints_;
   std::vector<Pose> links_;
   SphereCloud robot_;
+  SelfCollision self_collision_;
   float reach_ = 0;
 
   /// None before update().
@@ -459,6 +465,11 @@ Pose PlanningScene::rootFromGrip() const {
 float PlanningScene::reach() const {
   impl_->requireJoints("PlanningScene::reach");
   return impl_->reach();
+}
+
+bool PlanningScene::touchesItself(float margin) const {
+  impl_->requireJoints("PlanningScene::touchesItself");
+  return impl_->touchesItself(margin);
 }
 
 BasePlace PlanningScene::baseOf(const EnvState& state) const { return impl_->baseOf(state); }

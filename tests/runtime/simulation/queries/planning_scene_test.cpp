@@ -434,7 +434,8 @@ std::vector<NamedCall> questionsOfEnvs(PlanningScene& scene) {
 std::vector<NamedCall> questionsOfJoints(PlanningScene& scene) {
   return {{"rootFromLinks", [&] { static_cast<void>(scene.rootFromLinks()); }},
           {"rootFromGrip", [&] { static_cast<void>(scene.rootFromGrip()); }},
-          {"reach", [&] { static_cast<void>(scene.reach()); }}};
+          {"reach", [&] { static_cast<void>(scene.reach()); }},
+          {"touchesItself", [&] { static_cast<void>(scene.touchesItself()); }}};
 }
 /// Questions about places of the robot in an env.
 std::vector<NamedCall> questionsOfPlaces(PlanningScene& scene) {
