@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from galactic.cast_hits import CastHits
-from galactic.env_states import EnvStates
+from galactic.env_states import EnvStates, Poses
 from galactic.episode_table import EpisodeTable
 
 __version__: str
@@ -81,6 +81,8 @@ class World:
     def joints(self) -> tuple[str, ...]: ...
     @property
     def positions(self) -> tuple[str, ...]: ...
+    @property
+    def limits(self) -> NDArray[np.float32]: ...  # (len(positions), 2): lower, upper
     @property
     def actions(self) -> tuple[Action, ...]: ...
     @property
@@ -230,7 +232,29 @@ class PlanningScene:
     def world_from_root(self, base: ArrayLike) -> Pose: ...
     def world_from_grip(self, base: ArrayLike) -> Pose: ...
     def is_free(self, base: ArrayLike) -> bool: ...
+    def are_free(
+        self, bases: ArrayLike, joint_positions: ArrayLike, *, threads: int = 1
+    ) -> NDArray[np.bool_]: ...  # (n,)
+    def motions_free(
+        self,
+        bases: ArrayLike,
+        joint_positions: ArrayLike,
+        to_bases: ArrayLike,
+        to_joint_positions: ArrayLike,
+        *,
+        threads: int = 1,
+    ) -> NDArray[np.bool_]: ...  # (n,)
+    def touches_itself(self, margin: float = 0.0) -> bool: ...
+    def touch_themselves(
+        self, joint_positions: ArrayLike, margin: float = 0.0
+    ) -> NDArray[np.bool_]: ...  # (n,)
+    def world_from_links(
+        self, bases: ArrayLike, joint_positions: ArrayLike
+    ) -> Poses: ...  # (n, links)
+    def world_from_grips(self, bases: ArrayLike, joint_positions: ArrayLike) -> Poses: ...  # (n,)
+    def bases_of(self, states: EnvStates) -> NDArray[np.float32]: ...  # (n, 4)
     def floor_at(self, x: float, z: float, from_height: float) -> float | None: ...
+    def floors_at(self, bases: ArrayLike) -> NDArray[np.float32]: ...  # (n,)
     def grasped_at(self, base: ArrayLike) -> int | None: ...
     def hold(self, object: int, base: ArrayLike) -> None: ...
     def put_back(self) -> None: ...

@@ -6,13 +6,21 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
+#include <limits>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "arrays.h"
 #include "bindings.h"
 #include "env_states.h"
+#include "filled.h"
+#include "galactic/kinematics.h"
 #include "galactic/planning_scene.h"
+#include "galactic/self_collision.h"
+#include "options.h"
 #include "simulator.h"
 
 namespace galactic::python {
@@ -20,7 +28,8 @@ namespace {
 
 /// `given` as `count` finite numbers; ValueError when it is anything else.
 std::vector<float> finiteNumbers(const py::handle& given, const char* name, std::size_t count) {
-  const auto array = inputOf<float>(given, name, {static_cast<py::ssize_t>(count)});
+  const auto array =
+      inputOf<float>(numbersIn(given, name), name, {static_cast<py::ssize_t>(count)});
   std::vector<float> numbers(array.data(), array.data() + count);
   if (!std::ranges::all_of(numbers, [](float number) { return std::isfinite(number); })) {
     throw py::value_error(fmt::format("{} holds a number that is not finite", name));
@@ -28,13 +37,86 @@ std::vector<float> finiteNumbers(const py::handle& given, const char* name, std:
   return numbers;
 }
 
-/// galactic.PlanningScene: a PlanningScene of one env of a simulator, which it keeps. Nothing here
-/// gives the interpreter's lock away, so calls of several threads come one after the other.
+/// Rows of `columns` finite numbers, (n, columns), or one for all, (columns,).
+class Rows {
+ public:
+  Rows(const py::handle& given, const char* name, std::size_t columns) : columns_(columns) {
+    const py::array numbers = numbersIn(given, name);
+    const auto width = static_cast<py::ssize_t>(columns);
+    is_one_ = numbers.ndim() == 1;
+    const py::ssize_t rows = numbers.ndim() == 0 ? 0 : numbers.shape(0);
+    array_ = inputOf<float>(numbers, name, is_one_ ? Shape{width} : Shape{rows, width});
+    count_ = is_one_ ? 1 : static_cast<std::size_t>(rows);
+    const float* first = array_.data();
+    const float* wrong = std::find_if_not(first, first + array_.size(),
+                                          [](float one) { return std::isfinite(one); });
+    if (wrong == first + array_.size()) return;
+    throw py::value_error(fmt::format("{}[{}] holds a number that is not finite", name,
+                                      static_cast<std::size_t>(wrong - first) / columns));
+  }
+
+  [[nodiscard]] bool isOne() const { return is_one_; }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] std::span<const float> operator[](std::size_t row) const {
+    return {array_.data() + (is_one_ ? 0 : row * columns_), columns_};
+  }
+
+ private:
+  py::array_t<float, py::array::c_style | py::array::forcecast> array_;
+  std::size_t columns_;
+  std::size_t count_ = 0;
+  bool is_one_ = false;
+};
+
+/// How many rows arrays of such names have together, where one may be for all of the others.
+std::size_t countOf(std::initializer_list<std::pair<const char*, const Rows*>> arrays) {
+  const std::pair<const char*, const Rows*>* first = nullptr;
+  for (const auto& array : arrays) {
+    if (array.second->isOne()) continue;
+    if (first == nullptr) first = &array;
+    if (array.second->count() == first->second->count()) continue;
+    throw py::value_error(fmt::format("{} has {} rows, and {} has {}", first->first,
+                                      first->second->count(), array.first, array.second->count()));
+  }
+  return first == nullptr ? 1 : first->second->count();
+}
+
+/// Poses of a robot, for C++.
+class GivenPoses {
+ public:
+  GivenPoses(const Rows& bases, const Rows& joints, std::size_t count) {
+    bases_.reserve(count);
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::span<const float> base = bases[n];
+      bases_.push_back({{base[0], base[1], base[2]}, base[3]});
+      joints_.insert(joints_.end(), joints[n].begin(), joints[n].end());
+    }
+  }
+  [[nodiscard]] RobotPoses view() const { return {bases_, joints_}; }
+
+ private:
+  std::vector<BasePlace> bases_;
+  std::vector<float> joints_;
+};
+
+constexpr std::size_t kBaseNumbers = 4;
+
+/// Answers of C++ as numpy's.
+py::array_t<bool> truths(const std::vector<std::uint8_t>& answers) {
+  py::array_t<bool> array(static_cast<py::ssize_t>(answers.size()));
+  std::ranges::transform(answers, array.mutable_data(), [](std::uint8_t one) { return one != 0; });
+  return array;
+}
+
+/// galactic.PlanningScene: a PlanningScene of one env of a simulator, which it keeps. Calls of
+/// several threads come one after the other, under the interpreter's lock; what gives it away works
+/// with a copy.
 class EnvScene {
  public:
   EnvScene(const py::object& simulator, const py::object& env)
       : simulator_(&simulatorOf(simulator)),
-        scene_(simulator_->world(), simulator_->batch().options()) {
+        scene_(simulator_->world(), simulator_->batch().options()),
+        self_collision_(simulator_->world().robot()) {
     update(env);
   }
 
@@ -74,6 +156,110 @@ class EnvScene {
     return scene_.floorAt(x, z, from);
   }
 
+  [[nodiscard]] py::array_t<bool> areFree(const py::object& bases, const py::object& joints,
+                                          const py::object& threads) const {
+    const Rows places(bases, "bases", kBaseNumbers);
+    const Rows positions(joints, "joint_positions", positionCount());
+    const std::size_t count = countOf({{"bases", &places}, {"joint_positions", &positions}});
+    const GivenPoses poses(places, positions, count);
+    const std::uint32_t wanted = threadsOf(threads);
+    const PlanningScene scene(scene_);
+    std::vector<std::uint8_t> free(count);
+    {
+      const py::gil_scoped_release unlocked;
+      scene.areFree(poses.view(), free, wanted);
+    }
+    return truths(free);
+  }
+  [[nodiscard]] py::array_t<bool> areMotionsFree(const py::object& bases, const py::object& joints,
+                                                 const py::object& to_bases,
+                                                 const py::object& to_joints,
+                                                 const py::object& threads) const {
+    const Rows from(bases, "bases", kBaseNumbers);
+    const Rows positions(joints, "joint_positions", positionCount());
+    const Rows to(to_bases, "to_bases", kBaseNumbers);
+    const Rows to_positions(to_joints, "to_joint_positions", positionCount());
+    const std::size_t count = countOf({{"bases", &from},
+                                       {"joint_positions", &positions},
+                                       {"to_bases", &to},
+                                       {"to_joint_positions", &to_positions}});
+    const GivenPoses begins(from, positions, count);
+    const GivenPoses ends(to, to_positions, count);
+    const std::uint32_t wanted = threadsOf(threads);
+    const PlanningScene scene(scene_);
+    std::vector<std::uint8_t> free(count);
+    {
+      const py::gil_scoped_release unlocked;
+      scene.areMotionsFree(begins.view(), ends.view(), free, wanted);
+    }
+    return truths(free);
+  }
+
+  [[nodiscard]] bool touchesItself(float margin) const {
+    requireFinite(margin);
+    return scene_.touchesItself(margin);
+  }
+  [[nodiscard]] py::array_t<bool> touchThemselves(const py::object& joints, float margin) const {
+    requireFinite(margin);
+    const Rows positions(joints, "joint_positions", positionCount());
+    std::vector<std::uint8_t> touching(positions.count());
+    {
+      const py::gil_scoped_release unlocked;
+      std::vector<Pose> links(robot().links().size());
+      for (std::size_t n = 0; n < touching.size(); ++n) {
+        forwardKinematics(robot().links(), {}, positions[n], links);
+        touching[n] = self_collision_.touches(links, margin) ? 1 : 0;
+      }
+    }
+    return truths(touching);
+  }
+
+  [[nodiscard]] py::object worldFromLinks(const py::object& bases, const py::object& joints) const {
+    const std::size_t links = robot().links().size();
+    return posesOf(bases, joints, links, [](std::span<const Pose> world_from_links, auto& poses) {
+      for (const Pose& pose : world_from_links) poses.put(pose);
+    });
+  }
+  [[nodiscard]] py::object worldFromGrips(const py::object& bases, const py::object& joints) const {
+    const EndEffector& hand = *robot().endEffector();
+    return posesOf(bases, joints, 0, [&](std::span<const Pose> world_from_links, auto& poses) {
+      poses.put(world_from_links[hand.link] * Pose{hand.grasp_point, {}});
+    });
+  }
+  [[nodiscard]] py::array_t<float> basesOf(const py::object& states) const {
+    const py::object type = py::module_::import("galactic.env_states").attr("EnvStates");
+    if (!py::isinstance(states, type)) {
+      throw py::type_error(
+          fmt::format("states is a {}, expected galactic.EnvStates, such as env_states() returns",
+                      typeName(states)));
+    }
+    const py::object roots = states.attr("world_from_root");
+    const Rows places(roots.attr("translation"), "states.world_from_root.translation", 3);
+    const Rows rotations(roots.attr("rotation"), "states.world_from_root.rotation", kBaseNumbers);
+    const std::size_t count = countOf({{"states.world_from_root.translation", &places},
+                                       {"states.world_from_root.rotation", &rotations}});
+    Filled<float> bases({static_cast<py::ssize_t>(count), kBaseNumbers});
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::span<const float> t = places[n];
+      const std::span<const float> q = rotations[n];
+      EnvState state;
+      state.world_from_root = {{t[0], t[1], t[2]}, {.x = q[1], .y = q[2], .z = q[3], .w = q[0]}};
+      const BasePlace base = scene_.baseOf(state);
+      bases.put(std::array{base.position.x, base.position.y, base.position.z, base.yaw});
+    }
+    return bases.array();
+  }
+  [[nodiscard]] py::array_t<float> floorsAt(const py::object& bases) const {
+    const Rows places(bases, "bases", kBaseNumbers);
+    Filled<float> heights({static_cast<py::ssize_t>(places.count())});
+    for (std::size_t n = 0; n < places.count(); ++n) {
+      const std::span<const float> base = places[n];
+      constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+      heights.put(scene_.floorAt(base[0], base[2], base[1]).value_or(kNone));
+    }
+    return heights.array();
+  }
+
   [[nodiscard]] std::optional<std::uint32_t> graspedAt(const py::object& base) const {
     return scene_.graspedAt(placeOf(base));
   }
@@ -95,8 +281,38 @@ class EnvScene {
  private:
   /// Of x, y, z and yaw.
   static BasePlace placeOf(const py::object& base) {
-    const std::vector<float> numbers = finiteNumbers(base, "base", 4);
+    const std::vector<float> numbers = finiteNumbers(base, "base", kBaseNumbers);
     return {{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+  }
+
+  [[nodiscard]] const Robot& robot() const { return simulator_->world().robot(); }
+  [[nodiscard]] std::size_t positionCount() const { return robot().positionCount(); }
+  static void requireFinite(float margin) {
+    if (!std::isfinite(margin)) throw py::value_error("margin is not a finite number");
+  }
+
+  /// galactic.Poses of (n, `each`), or of (n,) where that is 0: what `put` makes of the links of
+  /// each row.
+  template <class Put>
+  [[nodiscard]] py::object posesOf(const py::object& bases, const py::object& joints,
+                                   std::size_t each, const Put& put) const {
+    const Rows places(bases, "bases", kBaseNumbers);
+    const Rows positions(joints, "joint_positions", positionCount());
+    const std::size_t count = countOf({{"bases", &places}, {"joint_positions", &positions}});
+    Shape shape{static_cast<py::ssize_t>(count)};
+    if (each > 0) shape.push_back(static_cast<py::ssize_t>(each));
+    FilledPoses poses(shape);
+    {
+      const py::gil_scoped_release unlocked;
+      std::vector<Pose> links(robot().links().size());
+      for (std::size_t n = 0; n < count; ++n) {
+        const std::span<const float> base = places[n];
+        const Pose world_from_root = scene_.worldFromRoot({{base[0], base[1], base[2]}, base[3]});
+        forwardKinematics(robot().links(), world_from_root, positions[n], links);
+        put(links, poses);
+      }
+    }
+    return poses.poses(py::module_::import("galactic.env_states"));
   }
 
   /// A state itself, or that of an env.
@@ -108,6 +324,7 @@ class EnvScene {
 
   Simulator* simulator_;
   PlanningScene scene_;
+  SelfCollision self_collision_;
   BasePlace base_;
 };
 
@@ -145,11 +362,50 @@ void bindPlanningScene(py::module_& module) {
       .def("world_from_root", &EnvScene::worldFromRoot, py::arg("base"), "Pose of the root link.")
       .def("world_from_grip", &EnvScene::worldFromGrip, py::arg("base"),
            "Origin at the grasp point, axes of the end effector's link.")
-      .def("is_free", &EnvScene::isFree, py::arg("base"),
-           "Whether neither the robot nor what it holds penetrates anything.")
+      .def(
+          "is_free", &EnvScene::isFree, py::arg("base"),
+          "Whether neither the robot nor what it holds penetrates anything. What carries the base\n"
+          "is another question, floor_at(): half a meter above the floor, a base is free.")
       .def("floor_at", &EnvScene::floorAt, py::arg("x"), py::arg("z"), py::arg("from_height"),
            "Height of the floor for a base that comes from a height, meters; None where it\n"
            "cannot stand.")
+      .def("are_free", &EnvScene::areFree, py::arg("bases"), py::arg("joint_positions"),
+           py::kw_only(), py::arg("threads") = 1,
+           "is_free() of many poses, whatever set_joints() has said: bool (n,).\n\n"
+           "bases: (n, 4), or (4,) for all. joint_positions: (n, positions), or (positions,) for\n"
+           "all. threads: 0 for all; the interpreter goes on meanwhile.")
+      .def(
+          "motions_free", &EnvScene::areMotionsFree, py::arg("bases"), py::arg("joint_positions"),
+          py::arg("to_bases"), py::arg("to_joint_positions"), py::kw_only(), py::arg("threads") = 1,
+          "Whether the robot gets from one pose to another on the straight way, both ends\n"
+          "included: bool (n,).\n\n"
+          "Arrays: as of are_free(). The base drives along a line, turning the shorter way round,\n"
+          "and joints move evenly, those without limits the shorter way round. As with\n"
+          "continuous_collision=True, no sphere moves further than its radius from one place that\n"
+          "is looked at to the next; each has to be free, on a floor that carries the base from\n"
+          "one to the next. The height of `bases` says which floor, that of `to_bases` where the\n"
+          "way ends. What update() or hold() ignored counts from where it is free on.")
+      .def("touches_itself", &EnvScene::touchesItself, py::arg("margin") = 0.0F,
+           "Whether the robot touches itself with these joints, or comes nearer to that than\n"
+           "`margin`, meters. Spheres of links that touch where an episode starts do not count.\n"
+           "The simulation does not ask: its robots pass through themselves.")
+      .def("touch_themselves", &EnvScene::touchThemselves, py::arg("joint_positions"),
+           py::arg("margin") = 0.0F,
+           "touches_itself() for many joint positions, (n, positions): bool (n,).")
+      .def("world_from_links", &EnvScene::worldFromLinks, py::arg("bases"),
+           py::arg("joint_positions"),
+           "The poses of all links in many poses of the robot: Poses of (n, links), in the order "
+           "of\n"
+           "World.links. Arrays: as of are_free().")
+      .def("world_from_grips", &EnvScene::worldFromGrips, py::arg("bases"),
+           py::arg("joint_positions"),
+           "The poses of the hand in them, as world_from_grip() has one: Poses of (n,).")
+      .def("bases_of", &EnvScene::basesOf, py::arg("states"),
+           "The bases of n envs, of an EnvStates, whatever scenes they are in: float32 (n, 4).")
+      .def("floors_at", &EnvScene::floorsAt, py::arg("bases"),
+           "Heights of the floor for bases, (n, 4), that come from their y: float32 (n,), NaN "
+           "where\n"
+           "one cannot stand. The yaw plays no part.")
       .def("grasped_at", &EnvScene::graspedAt, py::arg("base"),
            "Index of the object that a hand grasps that closes here, or None.")
       .def("hold", &EnvScene::hold, py::arg("object"), py::arg("base"),

@@ -145,6 +145,18 @@ py::tuple namesOfPositions(const World& world) {
   return py::tuple(names);
 }
 
+/// float32 (positions, 2).
+py::array_t<float> limitsOfPositions(const World& world) {
+  const std::span<const PositionLimits> limits = world.robot().limits();
+  Filled<float> rows({static_cast<py::ssize_t>(limits.size()), 2});
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const PositionLimits& one : limits) {
+    rows.put(limitOf(one.lower).value_or(-kInfinity));
+    rows.put(limitOf(one.upper).value_or(kInfinity));
+  }
+  return rows.array();
+}
+
 py::str actionText(const Action& action) {
   std::string text = fmt::format("<galactic.Action {}", action.name);
   if (action.step && action.unit) {
@@ -167,10 +179,12 @@ void bindAction(py::module_& module) {
       .def_readonly("step", &Action::step,
                     "How far an action of 1 moves in a step, in `unit`; None where nothing moves.")
       .def_readonly("unit", &Action::unit, "'rad' or 'm'; None for what has none.")
-      .def_readonly("lower", &Action::lower,
-                    "The joint's lower limit, in `unit`; None for no limit.")
-      .def_readonly("upper", &Action::upper,
-                    "The joint's upper limit, in `unit`; None for no limit.")
+      .def_readonly(
+          "lower", &Action::lower,
+          "The joint's lower limit, in `unit`; None for no limit, as of continuous joints.")
+      .def_readonly(
+          "upper", &Action::upper,
+          "The joint's upper limit, in `unit`; None for no limit, as of continuous joints.")
       .def_readonly("position", &Action::position,
                     "The joint's index in EnvState.joint_positions; None for what is no joint.");
   type.def("__repr__", &actionText);
@@ -212,6 +226,10 @@ void bindWorld(py::module_& module) {
           "What the columns of joint_positions are: the names of the whole robot's joints, "
           "without\n"
           "those that follow others; with .x, .y and .angle or .x to .qw where one has several.")
+      .def_property_readonly(
+          "limits", &limitsOfPositions,
+          "Of the columns of joint_positions, lower and upper: float32 (positions, 2), radians or\n"
+          "meters, -inf and inf where there is none. Actions may keep to narrower ones: `actions`.")
       .def_property_readonly(
           "actions", [](const World& world) { return py::tuple(py::cast(actionsOf(world))); },
           "What the columns of the actions do: an Action for each, joints first, then forward,\n"

@@ -157,6 +157,128 @@ def test_a_scene_takes_over_states_that_are_no_longer(simulator, draw_actions):
             scene.update(none)
 
 
+@pytest.fixture
+def poses(world):
+    """A function that draws so many poses of the robot of the small home: bases and joint positions."""
+    generator = np.random.default_rng(20240612)
+
+    def draw(count):
+        bases = generator.uniform([-1.2, 0, -1.2, -3], [1.2, 0, 1.2, 3], (count, 4))
+        lower, upper = np.clip(world.limits, -3, 3).T
+        return bases, generator.uniform(lower, upper, (count, len(world.positions)))
+
+    return draw
+
+
+def test_limits_are_those_of_the_positions(world):
+    assert world.limits.dtype == np.float32
+    assert world.limits == pytest.approx(
+        np.array([[0, 0.8], [-np.inf, np.inf], [0, 0.6], [-1, 1]], np.float32)
+    )
+    for action in world.actions[:4]:
+        for limit, found in zip((action.lower, action.upper), world.limits[action.position]):
+            assert limit is None if np.isinf(found) else limit == pytest.approx(found)
+
+
+def test_many_poses_are_answered_for_as_one(simulator, poses):
+    scene = PlanningScene(simulator)
+    bases, joints = poses(500)
+    before = scene.world_from_grip(scene.base).translation
+    free = scene.are_free(bases, joints)
+    assert free.shape == (500,) and free.dtype == bool and 50 < free.sum() < 450
+    links, grips = scene.world_from_links(bases, joints), scene.world_from_grips(bases, joints)
+    touching = scene.touch_themselves(joints, margin=0.15)
+    floors = scene.floors_at(bases + [0, 0.02, 0, 0])
+    assert (scene.world_from_grip(scene.base).translation == before).all()
+    assert (scene.are_free(bases, joints, threads=3) == free).all()
+    assert links.translation.shape == (500, len(simulator.env_state(0).joint_positions) + 1, 3)
+    for n in range(500):
+        scene.set_joints(joints[n])
+        assert scene.is_free(bases[n]) == free[n]
+        assert scene.touches_itself(0.15) == touching[n]
+        one = scene.world_from_grip(bases[n])
+        assert grips.translation[n] == pytest.approx(one.translation, abs=1e-5)
+        root = scene.world_from_root(bases[n]).matrix
+        if n % 50 == 0:
+            assert links.matrix[n] == pytest.approx(
+                np.array([root @ link.matrix for link in scene.root_from_links]), abs=1e-5
+            )
+        x, _, z, _ = bases[n]
+        floor = scene.floor_at(x, z, 0.02)
+        assert np.isnan(floors[n]) if floor is None else floor == floors[n]
+    assert 50 < np.isnan(floors).sum() < 450
+    # One base, or one row of joints, for all.
+    assert (scene.are_free(bases[0], joints) == scene.are_free([bases[0]] * 500, joints)).all()
+    assert (scene.are_free(bases, joints[0]) == scene.are_free(bases, [joints[0]] * 500)).all()
+    assert scene.are_free(bases[7], joints[7]).tolist() == [free[7]]
+    assert scene.are_free(np.zeros((0, 4)), joints[0]).shape == (0,)
+
+
+def test_the_links_of_a_whole_batch(played):
+    states = played.env_states()
+    scene = PlanningScene(played)
+    bases = scene.bases_of(states)
+    grips = scene.world_from_grips(bases, states.joint_positions)
+    assert grips.translation == pytest.approx(states.world_from_grip.translation, abs=1e-5)
+    links = scene.world_from_links(bases, states.joint_positions)
+    assert links.translation[:, 0] == pytest.approx(states.world_from_root.translation, abs=1e-5)
+    for env in range(played.num_envs):
+        scene.update(env)
+        assert scene.base == pytest.approx(bases[env], abs=1e-5)
+    with pytest.raises(TypeError, match="states is a EnvState, expected galactic.EnvStates"):
+        scene.bases_of(played.env_state(0))
+
+
+def test_motions_are_free_where_all_of_their_places_are(simulator, poses):
+    scene = PlanningScene(simulator)
+    bases, joints = poses(6000)
+    free = np.flatnonzero(scene.are_free(bases, joints))[:400]
+    bases, joints = bases[free], joints[free]
+    begin, end = slice(0, 400, 2), slice(1, 400, 2)
+    motions = scene.motions_free(bases[begin], joints[begin], bases[end], joints[end])
+    assert 5 < motions.sum() < 195
+    turn = (bases[end, 3] - bases[begin, 3] + np.pi) % (2 * np.pi) - np.pi
+    way = joints[end] - joints[begin]
+    way[:, 1] = (way[:, 1] + np.pi) % (2 * np.pi) - np.pi  # a continuous joint
+    all_free = np.ones(200, bool)
+    for share in np.linspace(0, 1, 400):
+        between = bases[begin] + share * (bases[end] - bases[begin])
+        between[:, 3] = bases[begin, 3] + share * turn
+        all_free &= scene.are_free(between, joints[begin] + share * way)
+    # Corners are cut by less than a radius.
+    assert (motions != all_free).sum() <= 4
+    again = scene.motions_free(bases[begin], joints[begin], bases[end], joints[end], threads=2)
+    assert (again == motions).all()
+    # From one place in all directions.
+    here = simulator.env_state(0).joint_positions
+    ahead = scene.motions_free(scene.base, here, bases[end], here)
+    assert ahead.shape == (200,) and 0 < ahead.sum() < 200
+
+
+def test_arrays_that_make_no_sense_are_refused(simulator):
+    scene = PlanningScene(simulator)
+    bases, joints = np.zeros((3, 4)), np.zeros((3, 4))
+    wrong = [
+        ((bases[:, :3], joints), ValueError, "bases has the shape"),
+        ((bases[:2], joints), ValueError, "bases has 2 rows, and joint_positions has 3"),
+        ((bases, joints + np.array([[0], [np.nan], [0]])), ValueError, r"joint_positions\[1\]"),
+        ((bases * 1j, joints), TypeError, "bases has the type complex128, expected numbers"),
+        ((bases, "joints"), TypeError, "joint_positions"),
+        ((bases, None), TypeError, "joint_positions"),
+        ((bases[0, 0], joints), ValueError, "bases"),
+    ]
+    for arguments, error, message in wrong:
+        for call in (scene.are_free, scene.world_from_links, scene.world_from_grips):
+            with pytest.raises(error, match=message):
+                call(*arguments)
+    with pytest.raises(ValueError, match="bases has 3 rows, and to_bases has 2"):
+        scene.motions_free(bases, joints, bases[:2], joints)
+    with pytest.raises(TypeError, match="complex128"):
+        scene.set_joints(joints[0] + 1j)
+    with pytest.raises(ValueError, match="margin"):
+        scene.touches_itself(float("nan"))
+
+
 def test_what_makes_no_sense_is_refused(simulator):
     scene = PlanningScene(simulator, env=1)
     for base in ([0, 0, 0], [0, 0, float("nan"), 0], "here", [0, 0, 0, float("inf")]):

@@ -23,6 +23,20 @@ struct BasePlace {
   float yaw = 0;
 };
 
+/// One pose of a robot.
+struct RobotPose {
+  BasePlace base;
+  /// Joint positions, as PlanningScene::setJoints() takes them.
+  std::span<const float> joints;
+};
+
+/// Many of them: two arrays.
+struct RobotPoses {
+  std::span<const BasePlace> bases;
+  /// A row of Robot::positionCount() joint positions for each base. Shape: bases * positions.
+  std::span<const float> joints;
+};
+
 /// The direction in which a base of this yaw drives forward: a unit vector of the world frame.
 [[nodiscard]] Vec3 headingOf(float yaw);
 
@@ -33,7 +47,8 @@ struct BasePlace {
 ///
 /// Take over an env with update(), choose joint positions with setJoints(), then ask about places
 /// of the base. Every answer depends on these and on the arguments only. Memory is allocated by
-/// the constructor, update() and hold(). Not safe to share between threads; use one for each.
+/// the constructor, update(), hold(), copies and questions about many poses. Not safe to share
+/// between threads; make a copy for each, or ask about many poses at once.
 ///
 /// Calls that do not keep to what is said of them throw ErrorException with kInvalidInput and
 /// change nothing: questions about an env before update(), those about links, hand or places before
@@ -46,6 +61,9 @@ class PlanningScene {
   /// their ranges (checkOptions).
   PlanningScene(const World& world, const SimulationOptions& options);
   ~PlanningScene();
+  /// Knows what the other one knows.
+  PlanningScene(const PlanningScene& other);
+  PlanningScene& operator=(const PlanningScene& other);
   PlanningScene(PlanningScene&&) noexcept;
   PlanningScene& operator=(PlanningScene&&) noexcept;
 
@@ -95,6 +113,27 @@ class PlanningScene {
   /// numbers that are not finite: it is the first that says that this is no place.
   [[nodiscard]] bool isRobotFreeOfScene(const BasePlace& base);
   [[nodiscard]] bool isFreeOfAllElse(const BasePlace& base);
+
+  /// Whether the robot gets from one pose to another on the straight way, both ends included: the
+  /// base along a line, turning the shorter way round; joints evenly, those that wrap around the
+  /// shorter way round. As with SimulationOptions::continuous_collision, places on the way are
+  /// looked at that are so close to each other that no sphere, of the robot or of what it holds,
+  /// moves further than its radius from one to the next. In each of them isFree() has to be true,
+  /// and the base is on the floor, which carries it from one place to the next: the height of
+  /// `from` says which floor, to which the base may rise or drop (GroundOptions), and that of `to`
+  /// where the way has to end. What does not count at the beginning counts from where it is free on
+  /// (countFree()). Limits of joints are not asked for, nor whether the robot touches itself. What
+  /// setJoints(), ignorePenetrating() and countFree() have said stays.
+  [[nodiscard]] bool isMotionFree(const RobotPose& from, const RobotPose& to);
+
+  /// isFree() of many poses, whatever setJoints() has said. `free`: 1 or 0 for each, overwritten.
+  /// Uses up to `threads` threads (0: as many as there are processors). Refused, before anything is
+  /// written, where lengths differ or a joint position is not finite. Allocates.
+  void areFree(const RobotPoses& poses, std::span<std::uint8_t> free,
+               std::uint32_t threads = 1) const;
+  /// isMotionFree() of many motions, in the same way.
+  void areMotionsFree(const RobotPoses& from, const RobotPoses& to, std::span<std::uint8_t> free,
+                      std::uint32_t threads = 1) const;
 
   /// Objects of the episode, in the order of EnvState::objects; without distractors the target
   /// alone.

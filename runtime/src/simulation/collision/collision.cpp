@@ -82,6 +82,19 @@ CollisionScratch::CollisionScratch(std::size_t most_spheres) {
   hits_.resize(kHitsPerSphere * most_spheres);
 }
 
+float farthestMove(const SphereBatch& from, const SphereBatch& to) noexcept {
+  float farthest = 0;
+  for (const RadiusRange& range : from.ranges) {
+    float squared = 0;
+    for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
+      const Vec3 way{to.x[n] - from.x[n], to.y[n] - from.y[n], to.z[n] - from.z[n]};
+      squared = std::max(squared, dot(way, way));
+    }
+    farthest = std::max(farthest, std::sqrt(squared) / range.radius);
+  }
+  return farthest;
+}
+
 std::vector<EightSpheres> spheresByEights(std::span<const RadiusRange> ranges) {
   std::vector<EightSpheres> groups;
   for (const RadiusRange& range : ranges) {

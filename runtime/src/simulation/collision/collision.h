@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -29,6 +30,10 @@ class CollisionScratch {
   std::vector<SphereHit> hits_;
 };
 
+/// The farthest way of a sphere from one batch to the other, in radii of the sphere that goes it.
+/// Both have the same ranges.
+[[nodiscard]] float farthestMove(const SphereBatch& from, const SphereBatch& to) noexcept;
+
 /// The groups of a batch with these ranges, in order.
 [[nodiscard]] std::vector<EightSpheres> spheresByEights(std::span<const RadiusRange> ranges);
 
@@ -56,6 +61,28 @@ struct Obstacles {
 /// already when it was grasped (its spheres reach further than the box as which it rested), until
 /// they are free. Empty: all count.
 using IgnoredSpheres = std::span<const std::uint64_t>;
+
+[[nodiscard]] inline bool isEmpty(std::span<const std::uint64_t> bits) {
+  return std::ranges::all_of(bits, [](std::uint64_t word) { return word == 0; });
+}
+
+/// Whether a bit is set that is not ignored.
+[[nodiscard]] inline bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
+  std::uint64_t any = 0;
+  for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
+  return any != 0;
+}
+
+/// Spheres that are free now, which do not have their bit, count from now on; whether some still do
+/// not.
+inline bool keepPenetrating(std::span<std::uint64_t> ignored, std::span<const std::uint64_t> bits) {
+  std::uint64_t any = 0;
+  for (std::size_t w = 0; w < ignored.size(); ++w) {
+    ignored[w] &= bits[w];
+    any |= ignored[w];
+  }
+  return any != 0;
+}
 
 /// The way out of resting objects for all spheres that penetrate some and are not ignored. Returns
 /// their number.

@@ -110,19 +110,6 @@ class Folding {
   std::vector<Attached> attached_;
 };
 
-/// Whether a whole turn more or less changes nothing: a continuous joint, followed by none that
-/// slides or turns by another part of a turn.
-bool isPeriodic(const Robot& robot, std::uint32_t position) {
-  bool is_continuous = false;
-  for (const LinkFrame& link : robot.links()) {
-    if (link.position != static_cast<std::int32_t>(position)) continue;
-    const bool turns = link.type == JointType::kContinuous || link.type == JointType::kRevolute;
-    if (!turns || link.multiplier != std::round(link.multiplier)) return false;
-    is_continuous = is_continuous || link.type == JointType::kContinuous;
-  }
-  return is_continuous;
-}
-
 void addVariables(const Robot& robot, std::span<const std::uint32_t> also_variable,
                   MotionModel& model) {
   for (const ControlledJoint& joint : robot.controlledJoints()) {
@@ -247,6 +234,17 @@ void addSpheres(const Robot& robot, const std::vector<Attached>& links, MotionMo
 }
 
 }  // namespace
+
+bool isPeriodic(const Robot& robot, std::uint32_t position) {
+  bool is_continuous = false;
+  for (const LinkFrame& link : robot.links()) {
+    if (link.position != static_cast<std::int32_t>(position)) continue;
+    const bool turns = link.type == JointType::kContinuous || link.type == JointType::kRevolute;
+    if (!turns || link.multiplier != std::round(link.multiplier)) return false;
+    is_continuous = is_continuous || link.type == JointType::kContinuous;
+  }
+  return is_continuous;
+}
 
 Result<MotionModel> makeMotionModel(const Robot& robot,
                                     std::span<const std::uint32_t> also_variable) {

@@ -30,6 +30,10 @@ struct MotionVariable {
   bool wraps = false;
 };
 
+/// Whether a whole turn more or less of a position changes nothing: that of a continuous joint,
+/// followed by none that slides or turns by another part of a turn.
+[[nodiscard]] bool isPeriodic(const Robot& robot, std::uint32_t position);
+
 /// The nearest value that a variable takes.
 [[nodiscard]] inline float within(const MotionVariable& variable, float value) {
   return variable.wraps ? wrappedAngle(value) : std::clamp(value, variable.lower, variable.upper);

@@ -11,13 +11,6 @@
 namespace galactic::simulation {
 namespace {
 
-/// Whether a bit is set that is not ignored.
-bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
-  std::uint64_t any = 0;
-  for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
-  return any != 0;
-}
-
 bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
   const RestingObjects& objects = step.state.resting(n);

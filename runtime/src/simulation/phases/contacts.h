@@ -73,10 +73,6 @@ InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight,
 /// Whether the last look at what the candidate holds says that all its spheres are free.
 [[nodiscard]] bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept;
 
-[[nodiscard]] inline bool isEmpty(std::span<const std::uint64_t> bits) {
-  return std::ranges::all_of(bits, [](std::uint64_t word) { return word == 0; });
-}
-
 /// Calls visit(object) for each resting object that the robot leaves.
 template <class Visit>
 void forEachLeft(const ChunkStep& step, std::size_t e, const Visit& visit) {

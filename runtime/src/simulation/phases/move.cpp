@@ -13,16 +13,6 @@
 namespace galactic::simulation {
 namespace {
 
-/// Spheres that are free now count from now on; whether some still do not.
-bool keepPenetrating(std::span<std::uint64_t> ignored, std::span<const std::uint64_t> bits) {
-  std::uint64_t any = 0;
-  for (std::size_t w = 0; w < ignored.size(); ++w) {
-    ignored[w] &= bits[w];
-    any |= ignored[w];
-  }
-  return any != 0;
-}
-
 /// The candidate is the robot's from now on, apart from its pose, grip and bodies.
 void accept(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;

@@ -15,25 +15,14 @@ namespace {
 /// The lane of `step.between` in which slides are looked at on their way.
 constexpr std::size_t kSpareLane = kLanes;
 
-/// How spheres move from one batch to the other.
-struct SphereMoves {
-  /// The farthest way, in radii of the sphere that goes it.
-  float farthest = 0;
-  /// Meters.
-  float smallest_radius = HUGE_VALF;
-
-  void include(const SphereBatch& from, const SphereBatch& to) {
-    for (const RadiusRange& range : from.ranges) {
-      float squared = 0;
-      for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
-        const Vec3 way{to.x[n] - from.x[n], to.y[n] - from.y[n], to.z[n] - from.z[n]};
-        squared = std::max(squared, dot(way, way));
-      }
-      farthest = std::max(farthest, std::sqrt(squared) / range.radius);
-      if (range.count > 0) smallest_radius = std::min(smallest_radius, range.radius);
-    }
+/// Meters.
+float smallestRadius(const SphereBatch& spheres) {
+  float smallest = HUGE_VALF;
+  for (const RadiusRange& range : spheres.ranges) {
+    if (range.count > 0) smallest = std::min(smallest, range.radius);
   }
-};
+  return smallest;
+}
 
 /// One env's robot on its way. The lanes of `step.between` are places one after the other: lane 0
 /// is where the robot is, the others are the next parts.
@@ -76,13 +65,15 @@ class Walker {
   }
 
   void cutInParts() {
-    SphereMoves moves;
-    moves.include(step_.between->spheres(0), step_.chunk.spheres(e_));
+    const SphereBatch robot = step_.between->spheres(0);
+    float farthest = farthestMove(robot, step_.chunk.spheres(e_));
+    smallest_radius_ = smallestRadius(robot);
     if (step_.state.env(step_.first + e_).held >= 0) {
-      moves.include(heldSpheres(at(0), 0), heldSpheres(step_, e_));
+      const SphereBatch held = heldSpheres(at(0), 0);
+      farthest = std::max(farthest, farthestMove(held, heldSpheres(step_, e_)));
+      smallest_radius_ = std::min(smallest_radius_, smallestRadius(held));
     }
-    parts_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(moves.farthest)));
-    smallest_radius_ = moves.smallest_radius;
+    parts_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(farthest)));
   }
 
   /// Puts the robot to where it is and to the next parts of its way.
