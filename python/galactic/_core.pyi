@@ -329,6 +329,9 @@ class RayCaster:
         *,
         threads: int = 1,
     ) -> CastHits: ...
+    def spheres_free(
+        self, radius: float, centers: ArrayLike, *, threads: int = 1
+    ) -> NDArray[np.bool_]: ...  # (n,)
     @staticmethod
     def cast_rays_in_envs(
         simulator: Simulator,

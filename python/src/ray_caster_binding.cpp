@@ -1,6 +1,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -44,7 +45,7 @@ class Lines {
   /// For casts through one home.
   explicit Lines(const GivenLines& given)
       : origins_(pointsOf(given.origins, "origins")),
-        directions_(pointsOf(given.directions, "directions")),
+        directions_(directionsOf(given.directions, origins_.size())),
         shape_{static_cast<py::ssize_t>(origins_.size())} {
     readLengths(given.lengths);
   }
@@ -79,6 +80,13 @@ class Lines {
   }
 
  private:
+  /// One direction for all lines, or one for each.
+  static std::vector<Vec3> directionsOf(const py::object& given, std::size_t count) {
+    const py::array array = numbersIn(given, "directions");
+    if (array.ndim() != 1 || array.size() == 0) return pointsOf(given, "directions");
+    const auto one = inputOf<float>(array, "directions", {3});
+    return std::vector<Vec3>(count, Vec3{one.data()[0], one.data()[1], one.data()[2]});
+  }
   /// One length for all lines, or one for each.
   void readLengths(const py::object& given) {
     const py::array array = numbersIn(given, "lengths");
@@ -114,6 +122,20 @@ py::object sweepSpheres(const RayCaster& caster, float radius, const py::object&
       .hitsOf([&](const CastLines& lines, std::span<CastHit> hits) {
         caster.sweepSpheres(radius, lines, hits, count);
       });
+}
+
+py::array_t<bool> spheresFree(const RayCaster& caster, float radius, const py::object& centers,
+                              const py::object& threads) {
+  const std::uint32_t count = threadsOf(threads);
+  const std::vector<Vec3> points = pointsOf(centers, "centers");
+  std::vector<std::uint8_t> free(points.size());
+  {
+    const py::gil_scoped_release unlocked;
+    caster.areSpheresFree(radius, points, free, count);
+  }
+  py::array_t<bool> answer(static_cast<py::ssize_t>(free.size()));
+  std::ranges::transform(free, answer.mutable_data(), [](std::uint8_t one) { return one != 0; });
+  return answer;
 }
 
 py::object castRaysInAll(Simulator& simulator, const py::object& origins,
@@ -157,19 +179,23 @@ void bindRayCaster(py::module_& module) {
                   py::arg("robot").noconvert() = false,
                   "Of an env as it is now: with its objects where they are and, with robot=True,\n"
                   "the robot and what it holds. Make another one after a step.")
-      .def(
-          "cast_rays", &castRays, py::arg("origins"), py::arg("directions"),
-          py::arg("lengths") = infinity, py::kw_only(), py::arg("threads") = 1,
-          "How far rays get, from origins, (n, 3), in directions, (n, 3), of any length but zero:\n"
-          "CastHits.\n\n"
-          "lengths: how far to go at most, meters, for all or (n,). Boxes of objects and spheres\n"
-          "of the robot are hit on their surfaces; the scene is what the grid of the smallest\n"
-          "radius says: where a sphere of that radius would touch it. threads: 0 for all.")
+      .def("cast_rays", &castRays, py::arg("origins"), py::arg("directions"),
+           py::arg("lengths") = infinity, py::kw_only(), py::arg("threads") = 1,
+           "How far rays get, from origins, (n, 3), in directions, (n, 3) or (3,) for all, of any\n"
+           "length but zero: CastHits.\n\n"
+           "lengths: how far to go at most, meters, for all or (n,). Boxes of objects and spheres\n"
+           "of the robot are hit on their surfaces; the scene is what the grid of the smallest\n"
+           "radius says: where a sphere of that radius would touch it. threads: 0 for all.")
       .def("sweep_spheres", &sweepSpheres, py::arg("radius"), py::arg("origins"),
            py::arg("directions"), py::arg("lengths") = infinity, py::kw_only(),
            py::arg("threads") = 1,
            "How far spheres get before they touch something: CastHits, as of cast_rays().\n\n"
            "radius: one of World.radii. origins: where their centers begin.")
+      .def("spheres_free", &spheresFree, py::arg("radius"), py::arg("centers"), py::kw_only(),
+           py::arg("threads") = 1,
+           "Whether spheres touch nothing where they are: bool (n,), what sweep_spheres() says of\n"
+           "ways without length. False also where the grid does not know.\n\n"
+           "radius: one of World.radii. centers: (n, 3), world frame, meters. threads: 0 for all.")
       .def_static("cast_rays_in_envs", &castRaysInAll, py::arg("simulator"), py::arg("origins"),
                   py::arg("directions"), py::arg("lengths") = infinity, py::kw_only(),
                   py::arg("robot").noconvert() = false, py::arg("threads") = 1,

@@ -163,7 +163,7 @@ def poses(world):
     generator = np.random.default_rng(20240612)
 
     def draw(count):
-        bases = generator.uniform([-1.2, 0, -1.2, -3], [1.2, 0, 1.2, 3], (count, 4))
+        bases = generator.uniform([0.2, 0, 0.2, -3], [2.8, 0, 2.8, 3], (count, 4))
         lower, upper = np.clip(world.limits, -3, 3).T
         return bases, generator.uniform(lower, upper, (count, len(world.positions)))
 

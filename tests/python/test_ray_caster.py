@@ -42,6 +42,33 @@ def test_rays_meet_floor_table_and_the_end_of_the_grid(world, caster):
     assert level.distance[0] == pytest.approx(0.5 - 0.12, abs=0.016)
 
 
+def test_directions_are_for_all_or_for_each(caster):
+    origins = np.full((4, 3), 1, np.float32) - [0.5, 0, 0.5]
+    each = caster.cast_rays(origins, [DOWN] * 4)
+    for one in (DOWN, np.array(DOWN), np.array(DOWN, np.float64) * 3):
+        np.testing.assert_array_equal(caster.cast_rays(origins, one).distance, each.distance)
+    assert caster.cast_rays(np.zeros((0, 3)), DOWN).distance.shape == (0,)
+    for wrong in ([0, -1], [0, 0, 0], [0, np.nan, 0], 1.0):
+        with pytest.raises((ValueError, galactic.Error)):
+            caster.cast_rays(origins, wrong)
+
+
+def test_spheres_are_free_where_they_touch_nothing(world, simulator):
+    generator = np.random.default_rng(4)
+    centers = generator.uniform([-0.2, 0, -0.2], [3.2, 1.2, 3.2], (1000, 3))
+    caster = galactic.RayCaster.of_env(simulator, robot=True)
+    for radius in world.radii:
+        free = caster.spheres_free(radius, centers)
+        swept = caster.sweep_spheres(radius, centers, DOWN, lengths=0)
+        assert free.dtype == bool and (free == (swept.end == CastEnd.NOTHING)).all()
+        assert 100 < free.sum() < 900
+        assert (caster.spheres_free(radius, centers, threads=2) == free).all()
+    with pytest.raises(galactic.Error, match="found the radius 0.3 m"):
+        caster.spheres_free(0.3, centers)
+    with pytest.raises(ValueError, match="centers"):
+        caster.spheres_free(radius, [[0, np.nan, 0]])
+
+
 def test_lengths_are_for_all_or_for_each(caster):
     origins, directions = np.full((4, 3), 1, np.float32) - [0.5, 0, 0.5], np.tile(DOWN, (4, 1))
     for lengths in (0.25, [0.25] * 4, np.float64(0.25), np.full(4, 0.25), np.array(0.25)):

@@ -80,6 +80,13 @@ class RayCaster {
   void sweepSpheres(float radius, const CastLines& lines, std::span<CastHit> hits,
                     std::uint32_t threads = 1) const;
 
+  /// Whether spheres of a radius of the working set touch nothing where they are: what
+  /// sweepSpheres() says of ways without length. `centers`: world frame, meters, finite. `free`: 1
+  /// or 0 for each, overwritten; 0 also where the grid does not know. Threads and errors are those
+  /// of sweepSpheres().
+  void areSpheresFree(float radius, std::span<const Vec3> centers, std::span<std::uint8_t> free,
+                      std::uint32_t threads = 1) const;
+
  private:
   class Impl;
   std::shared_ptr<const Impl> impl_;

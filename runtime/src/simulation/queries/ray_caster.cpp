@@ -152,6 +152,10 @@ class RayCaster::Impl {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
+  /// Whether spheres of the grid's radius touch nothing.
+  void find(const ColumnGrid& grid, std::span<const Vec3> centers, std::span<std::uint8_t> free,
+            std::uint32_t threads) const;
+
   /// What moves is met by a ball of `radius`, the scene by that of the grid.
   void cast(const ColumnGrid& grid, float radius, const CastLines& lines, std::span<CastHit> hits,
             std::uint32_t threads) const;
@@ -241,6 +245,19 @@ void RayCaster::Impl::cast(const ColumnGrid& grid, float radius, const CastLines
   });
 }
 
+void RayCaster::Impl::find(const ColumnGrid& grid, std::span<const Vec3> centers,
+                           std::span<std::uint8_t> free, std::uint32_t threads) const {
+  const std::size_t parts = (centers.size() + kLinesOfAPart - 1) / kLinesOfAPart;
+  detail::forEachPart(detail::threadCount(threads), parts, [&](std::size_t part) {
+    const std::size_t end = std::min(centers.size(), (part + 1) * kLinesOfAPart);
+    for (std::size_t n = part * kLinesOfAPart; n < end; ++n) {
+      const CastHit hit =
+          castOne(grid, grid.radius(), detail::straightLine(centers[n], {0, 1, 0}, 0));
+      free[n] = hit.end == CastEnd::kNothing ? 1 : 0;
+    }
+  });
+}
+
 RayCaster::RayCaster(const Scene& scene) : impl_(std::make_shared<const Impl>(scene)) {}
 
 RayCaster::RayCaster(const World& world, const EnvState& state, CastRobot robot)
@@ -258,6 +275,17 @@ void RayCaster::sweepSpheres(float radius, const CastLines& lines, std::span<Cas
   checkLines(kCall, lines, hits.size());
   const ColumnGrid& grid = gridOf(kCall, impl_->scene(), radius);
   impl_->cast(grid, grid.radius(), lines, hits, threads);
+}
+
+void RayCaster::areSpheresFree(float radius, std::span<const Vec3> centers,
+                               std::span<std::uint8_t> free, std::uint32_t threads) const {
+  constexpr const char* kCall = "RayCaster::areSpheresFree";
+  detail::checkLength(kCall, "free", free.size(), centers.size());
+  for (std::size_t n = 0; n < centers.size(); ++n) {
+    if (isFinite(centers[n])) continue;
+    detail::refuseCall(kCall, fmt::format("centers[{}] holds a number that is not finite", n));
+  }
+  impl_->find(gridOf(kCall, impl_->scene(), radius), centers, free, threads);
 }
 
 void castRaysInEnvs(const BatchSimulator& simulator, const CastLines& lines,

@@ -14,8 +14,7 @@
 #include <vector>
 
 #include "galactic/self_collision.h"
-#include "support/homes/small_home_actor.h"
-#include "support/homes/task_twins.h"
+#include "runtime/simulation/queries/planned_home.h"
 #include "support/oracles/task_oracle.h"
 
 namespace galactic::test::planning_scene_test {
@@ -23,78 +22,6 @@ namespace {
 
 /// Poses go through quaternions and back, meters and components.
 constexpr float kTolerance = 1e-5F;
-/// Far more steps than any part of the task takes.
-constexpr int kPatience = 150;
-/// Both answers of a question come up at least this often.
-constexpr double kLeastShare = 0.1;
-
-SimulationOptions oneEnv() {
-  SimulationOptions options;
-  options.envs = 1;
-  options.threads = 1;
-  options.order = EpisodeOrder::kLinear;
-  options.task.most_steps = 0;
-  // What is refused stays where it was.
-  options.slide.attempts = 0;
-  options.placement.attempts = 1;
-  return options;
-}
-
-/// Poses of the small home's robot: everywhere in the room, joints within their limits.
-class DrawnPoses {
- public:
-  explicit DrawnPoses(std::uint32_t seed) : random_(seed) {}
-
-  void add(std::size_t count) {
-    for (std::size_t n = 0; n < count; ++n) {
-      bases.push_back({{between(-1.2F, 1.2F), 0, between(-1.2F, 1.2F)}, between(-3, 3)});
-      joints.insert(joints.end(),
-                    {between(0, 0.8F), between(-3, 3), between(0, 0.6F), between(-1, 1)});
-    }
-  }
-  [[nodiscard]] RobotPoses poses() const { return {bases, joints}; }
-  [[nodiscard]] RobotPose operator[](std::size_t n) const {
-    return {bases[n], std::span(joints).subspan(4 * n, 4)};
-  }
-  float between(float least, float most) {
-    return std::uniform_real_distribution(least, most)(random_);
-  }
-
-  std::vector<BasePlace> bases;
-  std::vector<float> joints;
-
- private:
-  std::minstd_rand random_;
-};
-
-/// A simulator of one env, and the scene that is asked about it.
-class PlanningSceneInTheSmallHome : public testing::Test {
- protected:
-  PlanningSceneInTheSmallHome()
-      : simulator_(simulatorOf(home_.world(), oneEnv())), scene_(home_.world(), oneEnv()) {
-    look();
-  }
-
-  [[nodiscard]] EnvState state() const { return simulator_.envState(0); }
-  void look() {
-    const EnvState now = state();
-    scene_.update(now);
-    scene_.setJoints(now.joint_positions);
-  }
-  void step(const SmallHomeRow& row) {
-    simulator_.step(row);
-    look();
-  }
-  void fetchTarget() {
-    for (int n = 0; n < kPatience && state().held < 0; ++n) step(fetch(state(), state().target));
-    ASSERT_EQ(state().held, static_cast<std::int32_t>(state().target));
-  }
-  [[nodiscard]] DrawnPoses freePoses(std::uint32_t seed, std::size_t count);
-
-  SmallHome home_;
-  BatchSimulator simulator_;
-  PlanningScene scene_;
-};
 
 void expectNear(const Pose& a, const Pose& b) {
   EXPECT_LT(distance(a.translation, b.translation), kTolerance);
@@ -161,177 +88,6 @@ TEST_F(PlanningSceneInTheSmallHome, FindsFreeWhatTheSimulationAccepts) {
   }
   EXPECT_GE(accepted, kLeastShare * kMoves);
   EXPECT_LE(accepted, (1 - kLeastShare) * kMoves);
-}
-
-TEST_F(PlanningSceneInTheSmallHome, SaysOfManyPosesWhatItSaysOfEach) {
-  fetchTarget();
-  constexpr std::size_t kCount = 1000;
-  DrawnPoses drawn(3);
-  drawn.add(kCount);
-  std::vector<std::uint8_t> free(kCount, 2);
-  scene_.areFree(drawn.poses(), free);
-  const Pose grip = scene_.rootFromGrip();
-  std::size_t count = 0;
-  for (std::size_t n = 0; n < kCount; ++n) {
-    scene_.setJoints(drawn[n].joints);
-    EXPECT_EQ(free[n], scene_.isFree(drawn.bases[n]) ? 1 : 0) << n;
-    count += free[n];
-  }
-  EXPECT_GE(count, kLeastShare * kCount);
-  EXPECT_LE(count, (1 - kLeastShare) * kCount);
-  look();
-  EXPECT_EQ(scene_.rootFromGrip(), grip);
-  for (const std::uint32_t threads : {2U, 7U, 0U}) {
-    std::vector<std::uint8_t> again(kCount, 2);
-    scene_.areFree(drawn.poses(), again, threads);
-    EXPECT_EQ(again, free);
-  }
-  scene_.areFree({}, {});
-}
-
-/// So many drawn poses in which the robot is free.
-DrawnPoses PlanningSceneInTheSmallHome::freePoses(std::uint32_t seed, std::size_t count) {
-  DrawnPoses drawn(seed);
-  DrawnPoses free(0);
-  while (free.bases.size() < count) {
-    drawn.add(1);
-    const RobotPose last = drawn[drawn.bases.size() - 1];
-    scene_.setJoints(last.joints);
-    if (!scene_.isFree(last.base)) continue;
-    free.bases.push_back(last.base);
-    free.joints.insert(free.joints.end(), last.joints.begin(), last.joints.end());
-  }
-  return free;
-}
-
-TEST_F(PlanningSceneInTheSmallHome, FindsMotionsFreeOnTheWholeOfWhichItIsFree) {
-  constexpr std::size_t kCount = 600;
-  // Motions cut corners by less than a radius from one place to the next: the few that differ.
-  constexpr std::size_t kMostUnsure = kCount / 100;
-  constexpr int kPlaces = 1000;
-  const DrawnPoses drawn = freePoses(4, 2 * kCount);
-  DrawnPoses from(0);
-  DrawnPoses to(0);
-  for (std::size_t n = 0; n < kCount; ++n) {
-    // Long ones and short ones, some of which end in something.
-    const float share = n % 2 == 0 ? 1.0F : 0.2F;
-    const BasePlace& begin = drawn.bases[2 * n];
-    const BasePlace& end = drawn.bases[2 * n + 1];
-    from.bases.push_back(begin);
-    to.bases.push_back({begin.position + (end.position - begin.position) * share,
-                        begin.yaw + share * (end.yaw - begin.yaw)});
-    for (std::size_t k = 0; k < 4; ++k) {
-      const float joint = drawn[2 * n].joints[k];
-      from.joints.push_back(joint);
-      to.joints.push_back(joint + share * (drawn[2 * n + 1].joints[k] - joint));
-    }
-  }
-  std::vector<std::uint8_t> free(kCount, 2);
-  scene_.areMotionsFree(from.poses(), to.poses(), free);
-  std::size_t unsure = 0;
-  std::size_t count = 0;
-  std::size_t through = 0;
-  for (std::size_t n = 0; n < kCount; ++n) {
-    bool all = true;
-    for (int place = 0; place <= kPlaces && all; ++place) {
-      const float share = static_cast<float>(place) / kPlaces;
-      std::vector<float> joints(4);
-      for (std::size_t k = 0; k < 4; ++k) {
-        const float way = to[n].joints[k] - from[n].joints[k];
-        // The shoulder is a continuous joint.
-        joints[k] = from[n].joints[k] + share * (k == kShoulder ? wrappedAngle(way) : way);
-      }
-      scene_.setJoints(joints);
-      const Vec3 way = to.bases[n].position - from.bases[n].position;
-      const float turn = wrappedAngle(to.bases[n].yaw - from.bases[n].yaw);
-      all = scene_.isFree({from.bases[n].position + way * share, from.bases[n].yaw + share * turn});
-    }
-    unsure += all == (free[n] != 0) ? 0U : 1U;
-    count += free[n];
-    const bool ends = (scene_.setJoints(from[n].joints), scene_.isFree(from.bases[n])) &&
-                      (scene_.setJoints(to[n].joints), scene_.isFree(to.bases[n]));
-    through += ends && free[n] == 0 ? 1U : 0U;
-    EXPECT_EQ(scene_.isMotionFree(from[n], to[n]), free[n] != 0);
-  }
-  EXPECT_LE(unsure, kMostUnsure);
-  EXPECT_GE(count, kLeastShare * kCount);
-  EXPECT_LE(count, (1 - kLeastShare) * kCount);
-  EXPECT_GE(through, 20U) << "of these the ends alone say nothing";
-  std::vector<std::uint8_t> again(kCount, 2);
-  scene_.areMotionsFree(from.poses(), to.poses(), again, 3);
-  EXPECT_EQ(again, free);
-}
-
-TEST_F(PlanningSceneInTheSmallHome, FindsMotionsFreeThatTheSimulationMakesInOneStep) {
-  SimulationOptions options = oneEnv();
-  options.continuous_collision = true;
-  simulator_ = simulatorOf(home_.world(), options);
-  look();
-  std::minstd_rand random(6);
-  std::uniform_real_distribution<float> number(-1, 1);
-  constexpr int kMoves = 600;
-  // Both look at places on the way, not at the same ones.
-  constexpr int kMostUnsure = kMoves / 100;
-  int made = 0;
-  int unsure = 0;
-  for (int n = 0; n < kMoves; ++n) {
-    const EnvState before = state();
-    SmallHomeRow row{};
-    for (const SmallHomeAction action : {kLift, kShoulder, kArm, kWrist})
-      row[action] = number(random);
-    row[kForward] = (n / 25) % 2 == 0 ? 1.0F : -1.0F;
-    row[kTurn] = n % 25 == 0 ? number(random) : 0.0F;
-    std::vector<float> joints = before.joint_positions;
-    const std::span<const ControlledJoint> controlled = home_.world().robot().controlledJoints();
-    for (std::size_t k = 0; k < controlled.size(); ++k) {
-      float& joint = joints[controlled[k].position];
-      joint =
-          std::clamp(joint + controlled[k].step * row[k], controlled[k].lower, controlled[k].upper);
-    }
-    const RobotBase& robot_base = *home_.world().robot().base();
-    const BasePlace from = scene_.baseOf(before);
-    BasePlace to = from;
-    to.yaw -= robot_base.turn_step * row[kTurn];
-    to.position = to.position + headingOf(to.yaw) * (robot_base.forward_step * row[kForward]);
-    const bool is_free = scene_.isMotionFree({from, before.joint_positions}, {to, joints});
-    const SimulationStatistics was = simulator_.statistics();
-    step(row);
-    const SimulationStatistics is = simulator_.statistics();
-    const bool is_made = is.refused == was.refused && is.slid == was.slid;
-    unsure += is_made == is_free ? 0 : 1;
-    made += is_made ? 1 : 0;
-  }
-  EXPECT_LE(unsure, kMostUnsure);
-  EXPECT_GE(made, kLeastShare * kMoves);
-  EXPECT_LE(made, (1 - kLeastShare) * kMoves);
-}
-
-TEST_F(PlanningSceneInTheSmallHome, MovesBasesAlongTheFloorOnly) {
-  const std::vector<float> joints = state().joint_positions;
-  const BasePlace here = scene_.baseOf(state());
-  BasePlace there = here;
-  there.position = there.position + headingOf(there.yaw) * -0.2F;
-  EXPECT_TRUE(scene_.isMotionFree({here, joints}, {there, joints}));
-  for (const float height : {0.5F, -0.5F, std::nanf("")}) {
-    BasePlace off = there;
-    off.position.y += height;
-    EXPECT_FALSE(scene_.isMotionFree({here, joints}, {off, joints})) << height;
-    EXPECT_FALSE(scene_.isMotionFree({off, joints}, {here, joints})) << height;
-  }
-}
-
-TEST_F(PlanningSceneInTheSmallHome, CopiesAnswerForThemselves) {
-  const BasePlace base = scene_.baseOf(state());
-  PlanningScene copy(scene_);
-  copy.hold(state().target, base);
-  EXPECT_TRUE(copy.isHolding());
-  EXPECT_FALSE(scene_.isHolding());
-  EXPECT_EQ(copy.rootFromGrip(), scene_.rootFromGrip());
-  scene_ = copy;
-  EXPECT_TRUE(scene_.isHolding());
-  copy.putBack();
-  EXPECT_TRUE(scene_.isHolding());
-  EXPECT_EQ(scene_.gripFromObject(), (PlanningScene(scene_)).gripFromObject());
 }
 
 TEST_F(PlanningSceneInTheSmallHome, SaysWhetherTheRobotTouchesItself) {
@@ -621,17 +377,6 @@ TEST(AGrasp, ReachesAsFarAsALargeHand) {
   }
 }
 
-/// Why a call is refused; empty where it is not.
-std::string refusalOf(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const ErrorException& refused) {
-    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
-    return refused.error().text();
-  }
-  return {};
-}
-
 /// A call by its name.
 struct NamedCall {
   std::string name;
@@ -786,34 +531,6 @@ TEST_F(PlanningSceneInTheSmallHome, KeepsWhatItHasWhenWrongStatesAndJointsAreRef
   EXPECT_EQ(scene_.objectCount(), 2U);
   EXPECT_EQ(scene_.rootFromGrip(), grip);
   EXPECT_TRUE(scene_.isFree(base));
-}
-
-TEST_F(PlanningSceneInTheSmallHome, RefusesArraysOfOtherLengthsAndJointsThatAreNone) {
-  const std::vector<BasePlace> bases(2);
-  std::vector<float> joints(8);
-  std::vector<std::uint8_t> free(2, 2);
-  const RobotPoses both{bases, joints};
-  EXPECT_EQ(refusalOf([&] {
-              scene_.areFree({bases, std::span(joints).first(7)}, free);
-            }),
-            "PlanningScene::areFree: \"joints\" has the length 7, expected 8");
-  EXPECT_EQ(refusalOf([&] { scene_.areFree(both, std::span(free).first(1)); }),
-            "PlanningScene::areFree: \"free\" has the length 1, expected 2");
-  EXPECT_EQ(
-      refusalOf([&] {
-        scene_.areMotionsFree(both, {std::span(bases).first(1), std::span(joints).first(4)}, free);
-      }),
-      "PlanningScene::areMotionsFree: \"to.bases\" has the length 1, expected 2");
-  joints[5] = std::nanf("");
-  EXPECT_EQ(refusalOf([&] { scene_.areMotionsFree(both, both, free); }),
-            "PlanningScene::areMotionsFree: found from.joints[5] nan, expected a finite number of "
-            "at most 1e+06");
-  EXPECT_EQ(free, std::vector<std::uint8_t>(2, 2));
-  EXPECT_EQ(
-      refusalOf([&] {
-        static_cast<void>(scene_.isMotionFree({{}, std::span(joints).first(4)}, {{}, joints}));
-      }),
-      "PlanningScene::isMotionFree: \"to.joints\" has the length 8, expected 4");
 }
 
 TEST_F(PlanningSceneInTheSmallHome, TakesTheObjectsThatItsOptionsSay) {

@@ -372,6 +372,44 @@ std::string refusal(const std::function<void()>& call) {
   return "";
 }
 
+TEST_F(RayCasterInTheSmallHome, FindsSpheresFreeThatTouchNothing) {
+  SimulationOptions options;
+  options.envs = 1;
+  const BatchSimulator batch = BatchSimulator::create(world(), options).value();
+  const RayCaster caster(world(), batch.envState(0), CastRobot::kIsSeen);
+  std::minstd_rand random(7);
+  std::uniform_real_distribution<float> number(-0.2F, 3.2F);
+  Lines lines;
+  constexpr std::size_t kCount = 2000;
+  for (std::size_t n = 0; n < kCount; ++n) {
+    lines.add({number(random), number(random) * 0.4F, number(random)}, {0, -1, 0});
+  }
+  std::ranges::fill(lines.lengths, 0.0F);
+  for (const float radius : world().radii()) {
+    std::vector<CastHit> hits(kCount);
+    caster.sweepSpheres(radius, lines.view(), hits);
+    std::vector<std::uint8_t> free(kCount, 2);
+    caster.areSpheresFree(radius, lines.origins, free, 2);
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < kCount; ++n) {
+      EXPECT_EQ(free[n], hits[n].end == CastEnd::kNothing ? 1 : 0);
+      count += free[n];
+    }
+    EXPECT_GE(count, kCount / 10);
+    EXPECT_LE(count, kCount - kCount / 10);
+  }
+  std::vector<std::uint8_t> free(1, 2);
+  const std::vector<Vec3> nowhere{{1, std::nanf(""), 1}};
+  EXPECT_EQ(refusal([&] { caster.areSpheresFree(0.05F, nowhere, free); }),
+            "RayCaster::areSpheresFree: centers[0] holds a number that is not finite");
+  EXPECT_EQ(refusal([&] { caster.areSpheresFree(0.05F, lines.origins, free); }),
+            "RayCaster::areSpheresFree: \"free\" has the length 1, expected 2000");
+  EXPECT_EQ(refusal([&] { caster.areSpheresFree(0.03F, std::span(lines.origins).first(1), free); }),
+            "RayCaster::areSpheresFree: found the radius 0.03 m, expected one that the scene has a "
+            "grid for: 0.016, 0.05, 0.12");
+  EXPECT_EQ(free[0], 2);
+}
+
 TEST_F(RayCasterInTheSmallHome, RefusesWhatIsNoLine) {
   const RayCaster caster(world().scenes()[0]);
   const auto refused = [&](const Vec3& origin, const Vec3& direction, float length) {
