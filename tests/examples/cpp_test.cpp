@@ -56,6 +56,12 @@ TEST_F(CppExamples, QuerySceneAsksAGrid) {
   EXPECT_THAT(said("query_scene", {room.string()}), HasSubstr("outside the grid\n"));
 }
 
+TEST_F(CppExamples, PlanMotionFindsMotions) {
+  const std::string found = said("plan_motion", {world_.string()});
+  EXPECT_THAT(found, AllOf(HasSubstr(" motions, shortened from "), HasSubstr("\nfound 8 of 8, "),
+                           HasSubstr(" questions, ")));
+}
+
 TEST_F(CppExamples, StepHomesStepsAndSaysWhereThingsAre) {
   EXPECT_THAT(said("step_homes", {world_.string()}),
               AllOf(HasSubstr("reward "), HasSubstr("the robot is at "), HasSubstr(" m high\n"),
@@ -76,7 +82,8 @@ TEST_F(CppExamples, PlayPolicyPlays) {
 
 TEST_F(CppExamples, ProgramsSayWhatTheyWereNotGivenAndWhatTheyCannotOpen) {
   const std::string missing = (folder_.path() / "missing.pack").string();
-  for (const char* name : {"query_scene", "step_homes", "draw_views", "play_policy"}) {
+  for (const char* name :
+       {"query_scene", "plan_motion", "step_homes", "draw_views", "play_policy"}) {
     const ProgramRun without = run(name, {});
     EXPECT_EQ(without.exit_code, 1);
     EXPECT_THAT(without.err, HasSubstr("usage: " + std::string(name)));

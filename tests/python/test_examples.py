@@ -91,6 +91,13 @@ def test_cameras(world_path, tmp_path):
     assert not (seen == seen[..., :1]).all() and not (behind == behind[..., :1]).all()
 
 
+def test_mppi(world_path):
+    """Of the four episodes, the robot cannot start in one."""
+    printed = output_of("mppi.py", world_path, "--plans", "64")
+    assert re.findall(r"episode (\d): SUCCESS after \d+ steps\n", printed) == ["0", "1", "3"]
+    assert re.search(r"solved 3, [\d,]+ planned steps a second\n", printed)
+
+
 def test_ray_casts(world_path, tmp_path):
     """The home is 3 m wide, and the robot, the table and what stands on it can be seen from above."""
     image = pytest.importorskip("PIL.Image")

@@ -81,7 +81,7 @@ TEST(SrdfText, SaysWhichLinksAreNotTestedAgainstEachOtherAndWhy) {
   // Now they touch at the start.
   std::vector<Pose> links(fields.links.size());
   forwardKinematics(fields.links, {}, fields.start_positions, links);
-  fields.spheres[0].center = links[2] * fields.spheres[2].center;
+  fields.spheres[0].center = inverse(links[0]) * (links[2] * fields.spheres[2].center);
   text = text_for(PairKind::kTested, PairKind::kAlways);
   for (const std::string& two : {base_arm, arm_lid}) EXPECT_THAT(text, line(two, "Default"));
 }
