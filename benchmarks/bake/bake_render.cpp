@@ -14,7 +14,7 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/render_baker.h"
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 #include "render/render_source.h"
 #include "support/try.h"
 
@@ -80,9 +80,9 @@ Result<Row> bakeRow(const MakeSource& make_source, const Options& options) {
 
 Result<Row> bakeFile(const std::filesystem::path& file, const Options& options) {
   if (file.extension() == ".urdf") {
-    UrdfImportOptions import;
+    RobotImportOptions import;
     import.allow_missing = true;
-    ASSIGN_OR_RETURN(const auto robot, importUrdf(file, import));
+    ASSIGN_OR_RETURN(const auto robot, importRobot(file, import));
     return bakeRow(
         [&] {
           return robotRenderSource(robot, file.parent_path(), options.textures, options.threads);

@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "galactic/bake/robot_baker.h"
+#include "galactic/bake/robot_import.h"
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/bake/urdf_import.h"
 #include "recipe/collection_import.h"
 #include "support/try.h"
 
@@ -119,9 +119,9 @@ Result<void> printRow(const std::string& label, const SourceRobot& source,
 }
 
 Result<void> printTable(const Request& request) {
-  UrdfImportOptions import;
+  RobotImportOptions import;
   import.allow_missing = true;
-  ASSIGN_OR_RETURN(const auto source, importUrdf(request.urdf, import));
+  ASSIGN_OR_RETURN(const auto source, importRobot(request.urdf, import));
   RobotBakeOptions options;
   fmt::print(
       "| set | spheres | gap | protrusion | volume | seconds |\n|---|---|---|---|---|---|\n");

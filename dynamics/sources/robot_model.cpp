@@ -94,7 +94,7 @@ bool canBeMoments(const std::array<double, 6>& moments) {
          principal[2] <= (principal[0] + principal[1]) * (1 + kMomentSlack);
 }
 
-/// (x, y, z) becomes (x, z, -y), as importUrdf has it.
+/// (x, y, z) becomes (x, z, -y), as importRobot has it.
 Inertia yUp(const bake::LinkInertial& stated) {
   const auto& [x, y, z] = stated.center;
   const auto& [xx, yy, zz, xy, xz, yz] = stated.moments;

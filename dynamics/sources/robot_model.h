@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dynamics/sources/hull_points.h"
+#include "galactic/bake/robot_import.h"
 #include "galactic/bake/source_robot.h"
-#include "galactic/bake/urdf_import.h"
 #include "galactic/error.h"
 #include "galactic/kinematics.h"
 #include "galactic/pose.h"

@@ -14,8 +14,8 @@
 #include "dynamics/sources/pack_sources.h"
 #include "galactic/bake/assets.h"
 #include "galactic/bake/job_lists.h"
+#include "galactic/bake/robot_import.h"
 #include "galactic/bake/triangle_mesh.h"
-#include "galactic/bake/urdf_import.h"
 #include "support/try.h"
 
 namespace galactic::dynamics {

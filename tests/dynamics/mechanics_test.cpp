@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dynamics/made_robot.h"
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 #include "support/scratch_folder.h"
 #include "support/test_meshes.h"
 
@@ -212,7 +212,7 @@ TEST(APendulum, SwingsWithThePeriodOfItsUrdfsInertia) {
   const ScratchFolder folder;
   const auto path = folder.write("pendulum.urdf", kUrdf);
   const MadeRobot robot(pendulumFields());
-  const dynamics::RobotSource source{"pendulum.urdf", bake::importUrdf(path).value(),
+  const dynamics::RobotSource source{"pendulum.urdf", bake::importRobot(path).value(),
                                      bake::readInertials(path).value()};
   const dynamics::RobotParts parts = dynamics::robotParts(source, *robot).value();
   EXPECT_TRUE(parts.warnings.empty());

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/made_robot.h"
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::test::robot_model_test {
@@ -27,7 +27,7 @@ dynamics::RobotSource sourceWith(const std::string& inertial) {
       R"(</link><joint name="swing" type="continuous"><parent link="base"/><child link="arm"/>)"
       R"(<origin xyz="0 0 1"/><axis xyz="0 0 1"/></joint></robot>)";
   const auto path = folder.write("r.urdf", text);
-  return {"r.urdf", bake::importUrdf(path).value(), bake::readInertials(path).value()};
+  return {"r.urdf", bake::importRobot(path).value(), bake::readInertials(path).value()};
 }
 
 RobotPackFields packFields() {

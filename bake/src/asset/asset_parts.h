@@ -9,7 +9,7 @@
 
 #include "asset/scene_source.h"
 #include "galactic/bake/assets.h"
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 #include "render/render_source.h"
 #include "support/files/journal.h"
 #include "support/threads/stopwatch.h"
@@ -50,7 +50,7 @@ template <class Outcome, class Bake>
                                                            const BakeContext& context);
 
 /// How the URDF of a robot's job is read.
-[[nodiscard]] UrdfImportOptions urdfOptionsOf(const RobotJob& job);
+[[nodiscard]] RobotImportOptions robotOptionsOf(const RobotJob& job);
 
 /// Render meshes of one asset, or none where none are wanted.
 using OptionalMeshes = std::optional<BakedRenderMeshes>;

@@ -31,7 +31,7 @@ Result<std::optional<HandSpheres>> readSpheres(const std::filesystem::path& path
                                                SourceRobot& robot) {
   if (path.empty()) return std::nullopt;
   ASSIGN_OR_RETURN(auto spheres,
-                   path.extension() == ".srdf" ? readSrdfSpheres(path) : readSpherizedUrdf(path));
+                   path.extension() == ".srdf" ? readSrdfSpheres(path) : readSpherizedRobot(path));
   append(spheres.warnings, robot.warnings);
   return spheres;
 }
@@ -96,8 +96,8 @@ Result<BakedPack> makeRobotPack(const RobotJob& job, const BakeContext& context)
 
 }  // namespace
 
-UrdfImportOptions urdfOptionsOf(const RobotJob& job) {
-  UrdfImportOptions import;
+RobotImportOptions robotOptionsOf(const RobotJob& job) {
+  RobotImportOptions import;
   import.allow_outside = job.allow_outside;
   import.packages = job.packages;
   import.search_roots = rosPackagePath();
@@ -106,7 +106,7 @@ UrdfImportOptions urdfOptionsOf(const RobotJob& job) {
 }
 
 Result<SourceRobot> readRobotFile(const RobotJob& job) {
-  return importUrdf(job.input, urdfOptionsOf(job));
+  return importRobot(job.input, robotOptionsOf(job));
 }
 
 Result<BakedPack> bakeRobotFile(const RobotJob& job, BakeContext& context) {

@@ -10,8 +10,8 @@
 
 #include "asset/asset_parts.h"
 #include "common/folder_entries.h"
+#include "robot_description/named_files.h"
 #include "support/try.h"
-#include "urdf/named_files.h"
 
 namespace galactic::bake {
 namespace {
@@ -33,9 +33,9 @@ const std::vector<float>* radiiOf(const Job& job) {
 }
 
 /// How the URDF of the job, if it has one, is read.
-UrdfImportOptions importOptionsOf(const Job& job) {
+RobotImportOptions importOptionsOf(const Job& job) {
   const auto* robot = std::get_if<RobotJob>(&job);
-  return robot == nullptr ? UrdfImportOptions() : urdfOptionsOf(*robot);
+  return robot == nullptr ? RobotImportOptions() : robotOptionsOf(*robot);
 }
 
 std::string inputOf(const PackJob& pack) { return filesOf(pack.job).front().string(); }

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 
 namespace galactic::bake {
 namespace {
@@ -177,12 +177,12 @@ Result<std::shared_ptr<const SourceAsset>> MeshLibrary::load(const fs::path& fil
 }
 
 Result<std::shared_ptr<const SourceRobot>> MeshLibrary::loadFurniture(const fs::path& urdf) {
-  UrdfImportOptions options;
+  RobotImportOptions options;
   options.up = UpAxis::kY;
   options.allow_missing = true;
   options.allow_outside = state_->options.allow_outside;
   return state_->load<SourceRobot>(state_->furniture, keyOf(urdf),
-                                   [&] { return importUrdf(urdf, options); });
+                                   [&] { return importRobot(urdf, options); });
 }
 
 }  // namespace galactic::bake

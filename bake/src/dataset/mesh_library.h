@@ -26,7 +26,7 @@ class MeshLibrary {
   /// Fails with the errors of importMesh, the same each time.
   [[nodiscard]] Result<std::shared_ptr<const SourceAsset>> load(const std::filesystem::path& file);
 
-  /// Furniture with joints, read by importUrdf as Y up, meshes that are missing allowed; the same
+  /// Furniture with joints, read by importRobot as Y up, meshes that are missing allowed; the same
   /// otherwise. `options` do not apply.
   [[nodiscard]] Result<std::shared_ptr<const SourceRobot>> loadFurniture(
       const std::filesystem::path& urdf);

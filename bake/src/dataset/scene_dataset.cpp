@@ -16,9 +16,9 @@
 #include "dataset/scene_layout.h"
 #include "dataset/unique_names.h"
 #include "galactic/bake/read_files.h"
+#include "robot_description/named_files.h"
 #include "support/text/nearest_name.h"
 #include "support/try.h"
-#include "urdf/named_files.h"
 
 namespace galactic::bake {
 

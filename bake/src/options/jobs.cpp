@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/overload.h"
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 
 namespace galactic::bake {
 namespace {

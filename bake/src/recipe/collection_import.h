@@ -9,7 +9,7 @@
 #include "galactic/bake/robot_recipe.h"
 #include "galactic/bake/source_robot.h"
 #include "galactic/error.h"
-#include "urdf/hand_spheres.h"
+#include "robot_description/hand_spheres.h"
 
 namespace galactic::bake {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "galactic/bake/robot_recipe.h"
+#include "robot_description/mimics.h"
 #include "support/text/nearest_name.h"
 #include "support/try.h"
-#include "urdf/mimics.h"
 
 namespace galactic::bake {
 namespace {

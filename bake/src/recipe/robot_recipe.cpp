@@ -6,8 +6,8 @@
 
 #include "import/affine.h"
 #include "recipe/recipe_keys.h"
+#include "robot_description/frames.h"
 #include "support/try.h"
-#include "urdf/urdf_frames.h"
 
 namespace galactic::bake {
 namespace {

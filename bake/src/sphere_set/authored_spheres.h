@@ -5,7 +5,7 @@
 #include "galactic/bake/triangle_mesh.h"
 #include "galactic/error.h"
 #include "galactic/shapes.h"
-#include "urdf/hand_spheres.h"
+#include "robot_description/hand_spheres.h"
 
 namespace galactic::bake {
 

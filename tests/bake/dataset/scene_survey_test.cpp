@@ -4,7 +4,7 @@
 
 #include "bake/dataset/small_dataset.h"
 #include "galactic/bake/job_lists.h"
-#include "urdf/named_files.h"
+#include "robot_description/named_files.h"
 
 namespace galactic::test::scene_survey_test {
 namespace {

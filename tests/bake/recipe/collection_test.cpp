@@ -5,7 +5,7 @@
 #include <ostream>
 
 #include "bake/recipe/recipe_helpers.h"
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 #include "recipe/collection_import.h"
 #include "support/asset_mesh.h"
 
@@ -221,9 +221,9 @@ TEST(PublishedCollections, BecomeTheFetchRecipe) {
   const auto collection = bake::readCollection(assetsFolder() / kPublished);
   ASSERT_TRUE(collection.has_value()) << collection.error().message;
   EXPECT_EQ(collection->objects.size(), 10U);
-  bake::UrdfImportOptions options;
+  bake::RobotImportOptions options;
   options.allow_missing = true;
-  const auto robot = bake::importUrdf(assetsFolder() / kFetch, options);
+  const auto robot = bake::importRobot(assetsFolder() / kFetch, options);
   ASSERT_TRUE(robot.has_value()) << robot.error().message;
   const auto made = bake::recipeFromCollection(*collection, *robot);
   ASSERT_TRUE(made.has_value()) << made.error().text();

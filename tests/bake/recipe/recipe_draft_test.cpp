@@ -13,7 +13,7 @@
 #include "bake/recipe/recipe_helpers.h"
 #include "bake/robot/tiny_robots.h"
 #include "galactic/bake/robot_baker.h"
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 #include "support/assets.h"
 #include "support/build_paths.h"
 
@@ -362,11 +362,11 @@ std::vector<std::filesystem::path> knownUrdfs() {
 }
 
 TEST(RecipeDraft, BakesForEveryUrdfThatBakesWithoutOne) {
-  bake::UrdfImportOptions options;
+  bake::RobotImportOptions options;
   options.allow_missing = true;
   int baked = 0;
   for (const std::filesystem::path& urdf : knownUrdfs()) {
-    const auto robot = bake::importUrdf(urdf, options);
+    const auto robot = bake::importRobot(urdf, options);
     if (!robot) continue;
     const RobotRecipe recipe = draftOf(*robot);
     const auto with_draft = bakeQuickly(*robot, &recipe);

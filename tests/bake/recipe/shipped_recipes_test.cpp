@@ -4,8 +4,8 @@
 #include <cmath>
 #include <ostream>
 
+#include "galactic/bake/robot_import.h"
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/bake/urdf_import.h"
 #include "recipe/collection_import.h"
 #include "support/asset_mesh.h"
 #include "support/build_paths.h"
@@ -40,7 +40,7 @@ TEST_P(ShippedRecipes, Read) {
 TEST_P(ShippedRecipes, FitTheirRobot) {
   if (!hasAsset(GetParam().urdf)) GTEST_SKIP() << "no asset " << GetParam().urdf;
   const auto recipe = read();
-  const auto robot = bake::importUrdf(assetsFolder() / GetParam().urdf);
+  const auto robot = bake::importRobot(assetsFolder() / GetParam().urdf);
   ASSERT_TRUE(recipe.has_value());
   ASSERT_TRUE(robot.has_value()) << robot.error().text();
   const auto checked = bake::checkRecipe(*recipe, *robot);
@@ -67,9 +67,9 @@ TEST(TheFetchRecipe, IsThePublishedOne) {
   }
   const auto ours = bake::readRobotRecipe(test::sourceFolder() / "packs/robots/fetch.toml");
   const auto collection = bake::readCollection(assetsFolder() / kPublished);
-  bake::UrdfImportOptions options;
+  bake::RobotImportOptions options;
   options.allow_missing = true;
-  const auto robot = bake::importUrdf(assetsFolder() / kPublishedFetch, options);
+  const auto robot = bake::importRobot(assetsFolder() / kPublishedFetch, options);
   ASSERT_TRUE(ours.has_value() && collection.has_value() && robot.has_value());
   const auto published = bake::recipeFromCollection(*collection, *robot);
   ASSERT_TRUE(published.has_value()) << published.error().message;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 #include "robot/robot_parts.h"
 #include "support/asset_mesh.h"
 #include "support/oracles/chain_oracle.h"
@@ -147,9 +147,9 @@ class RealKinematics : public testing::TestWithParam<const char*> {};
 
 TEST_P(RealKinematics, AgreeWithADoubleChainAndWithBullet) {
   if (!hasAsset(GetParam())) GTEST_SKIP() << "no asset " << GetParam();
-  bake::UrdfImportOptions options;
+  bake::RobotImportOptions options;
   options.allow_missing = true;
-  const auto robot = bake::importUrdf(assetsFolder() / GetParam(), options);
+  const auto robot = bake::importRobot(assetsFolder() / GetParam(), options);
   ASSERT_TRUE(robot.has_value()) << robot.error().text();
   const bake::FlatKinematics flat = bake::flattenKinematics(*robot, nullptr);
   const std::vector<OracleLink> oracle = oracleOf(*robot);

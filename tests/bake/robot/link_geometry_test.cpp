@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "bake/urdf/link_points.h"
+#include "bake/robot_description/link_points.h"
 #include "robot/robot_parts.h"
 
 namespace galactic::test::link_geometry_test {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/robot/tiny_robots.h"
-#include "bake/urdf/link_points.h"
+#include "bake/robot_description/link_points.h"
 #include "robot/robot_parts.h"
 
 namespace galactic::test::rigid_groups_test {

@@ -8,11 +8,11 @@
 #include <random>
 
 #include "galactic/bake/robot_baker.h"
-#include "galactic/bake/urdf_import.h"
+#include "galactic/bake/robot_import.h"
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/export/robot_text.h"
+#include "robot_description/hand_spheres.h"
 #include "support/scratch_folder.h"
-#include "urdf/hand_spheres.h"
 
 namespace galactic::pack_tool::robot_round_trip_test {
 namespace {
@@ -30,8 +30,8 @@ Robot robotOf(const ToyPack& pack) { return *Robot::from(*pack); }
 /// The robot as the bake makes it of its own export.
 bake::BakedRobot bakedAgain(const ScratchFolder& folder, const Robot& robot) {
   const auto path = folder.write("again.urdf", spherizedUrdfText(robot));
-  const auto source = bake::importUrdf(path);
-  const auto spheres = bake::readSpherizedUrdf(path);
+  const auto source = bake::importRobot(path);
+  const auto spheres = bake::readSpherizedRobot(path);
   EXPECT_TRUE(source.has_value()) << source.error().message;
   EXPECT_TRUE(spheres.has_value()) << spheres.error().message;
   bake::RobotBakeOptions options;

@@ -10,8 +10,8 @@
 
 #include "galactic/bake/mesh_import.h"
 #include "galactic/bake/packs.h"
+#include "galactic/bake/robot_import.h"
 #include "galactic/bake/robot_recipe.h"
-#include "galactic/bake/urdf_import.h"
 #include "galactic/object_set.h"
 #include "galactic/robot.h"
 #include "galactic/scene.h"
@@ -92,7 +92,7 @@ inline MemoryPack bakeSampleObjects() {
 /// The robot of packs/sample as a robot pack; some seconds.
 inline MemoryPack bakeSampleRobot() {
   const std::filesystem::path folder = test::sourceFolder() / "packs/sample/robot";
-  const auto source = MemoryPack::opened(bake::importUrdf(folder / "porter.urdf"));
+  const auto source = MemoryPack::opened(bake::importRobot(folder / "porter.urdf"));
   const auto recipe = MemoryPack::opened(bake::readRobotRecipe(folder / "robot.toml"));
   const auto robot = MemoryPack::opened(bake::bakeRobot(source, &recipe, {}));
   if (!source.warnings.empty() || !robot.warnings.empty()) {
