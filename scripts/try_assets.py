@@ -114,13 +114,20 @@ def name_of(path: pathlib.Path, assets: pathlib.Path) -> str:
     )
 
 
-def package_of(urdf: pathlib.Path) -> pathlib.Path:
-    return urdf.parent.parent if urdf.parent.name in ("urdf", "robots") else urdf.parent
+def package_of(robot: pathlib.Path) -> pathlib.Path:
+    return robot.parent.parent if robot.parent.name in ("urdf", "robots") else robot.parent
 
 
-def recipe_of(urdf: pathlib.Path) -> pathlib.Path | None:
+def is_robot(path: pathlib.Path) -> bool:
+    """A URDF, or an MJCF among other XML."""
+    if path.suffix in (".xml", ".mjcf"):
+        return re.search(r"<mujoco[\s>]", path.read_text(errors="replace")) is not None
+    return path.suffix == ".urdf"
+
+
+def recipe_of(robot: pathlib.Path) -> pathlib.Path | None:
     """The recipe of the project whose robot has the name of this one."""
-    found = re.search(r"<robot[^>]*\bname\s*=\s*[\"']([^\"']*)", urdf.read_text(errors="replace"))
+    found = re.search(r"<(?:robot|mujoco)[^>]*\b(?:name|model)\s*=\s*[\"']([^\"']*)", robot.read_text(errors="replace"))
     for recipe in sorted((ROOT / "packs/robots").glob("*.toml")):
         if found and tomllib.loads(recipe.read_text()).get("name") == found.group(1):
             return recipe
@@ -137,7 +144,7 @@ def find_assets(assets: pathlib.Path, out: pathlib.Path) -> Iterator[Asset]:
     datasets = [path for path in files if path.name.endswith(DATASET_SUFFIX)]
     yield from (asset("dataset", path, []) for path in datasets)
     folders = [path.parent for path in datasets]
-    robots = [path for path in files if path.suffix == ".urdf" and not below(path, folders)]
+    robots = [path for path in files if is_robot(path) and not below(path, folders)]
     for path in robots:
         recipe = recipe_of(path)
         yield asset("robot", path, ["--allow-missing", *(["--recipe", str(recipe)] if recipe else [])])

@@ -143,18 +143,20 @@ class CommandLine {
     app_.formatter(std::make_shared<HelpLines<CLI::Formatter, CLI::Option>>());
     app_.get_formatter()->column_width(34);
     app_.add_option("INPUT", inputs_,
-                    "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, URDF robots, "
-                    "published episodes (episode sets, Habitat's), a scene dataset, a folder of "
-                    "scans, a world's recipe, or packs")
+                    "Meshes (GLB, glTF, OBJ, PLY, STL, DAE, ...), folders of objects, robots "
+                    "(URDF, MJCF), published episodes (episode sets, Habitat's), a scene dataset, "
+                    "a folder of scans, a world's recipe, or packs")
         ->type_name("");
     app_.add_option("--as", as_,
-                    "What to make (default: robot of .urdf, episodes of .episode_set.json and "
-                    ".json.gz, dataset of .scene_dataset_config.json, world of .toml, else scene)")
+                    "What to make (default: robot of .urdf, .xml and .mjcf, episodes of "
+                    ".episode_set.json and .json.gz, dataset of .scene_dataset_config.json, world "
+                    "of .toml, else scene)")
         ->option_text("scene|object|robot|episodes|dataset|world");
     app_.add_option("--config", config_, "Read options from a TOML file")->option_text("FILE");
-    app_.add_flag("--print-recipe", prints_recipe_,
-                  "Print a robot recipe: with every key explained, or a draft for the URDF that is "
-                  "given")
+    app_.add_flag(
+            "--print-recipe", prints_recipe_,
+            "Print a robot recipe: with every key explained, or a draft for the robot that is "
+            "given")
         ->check(switchCheck());
     app_.set_version_flag("--version", "galactic-bake " GALACTIC_VERSION);
     Registrar registrar(app_);
@@ -246,7 +248,7 @@ class CommandLine {
   /// What --as says, or what the inputs look like.
   Result<AssetKind> chooseKind(const std::vector<std::filesystem::path>& inputs) {
     AssetKind kind = AssetKind::kScene;
-    if (allEndWithOneOf(inputs, {".urdf"})) kind = AssetKind::kRobot;
+    if (allEndWithOneOf(inputs, {".urdf", ".xml", ".mjcf"})) kind = AssetKind::kRobot;
     // Nothing but episodes comes compressed.
     if (allEndWithOneOf(inputs, {kEpisodeSetSuffix, ".json.gz"})) kind = AssetKind::kEpisodes;
     if (allEndWithOneOf(inputs, {kDatasetSuffix})) kind = AssetKind::kDataset;
@@ -317,7 +319,7 @@ class CommandLine {
     const bool is_robot = job != nullptr && std::holds_alternative<RobotJob>(*job);
     if (!is_robot || command.inputs.size() != 1) {
       return fail(ErrorCode::kInvalidInput, "--print-recipe",
-                  "drafts a recipe of one URDF; give one, or no input to see every key");
+                  "drafts a recipe of one robot; give its file, or no input to see every key");
     }
     for (const char* ignored : {"out", "recipe", "spheres", "report"}) {
       if (!given.isGiven(ignored)) continue;

@@ -49,7 +49,7 @@ void printTable(const RobotFigures& robot, const PackFigures& pack, Verbosity ve
              counted(robot.controlled_joints, "controlled joint"), counted(spheres, "sphere"));
   if (robot.controlled_joints == 0) {
     fmt::print(
-        "  no action moves it: --print-recipe, given this URDF, drafts a recipe that does\n");
+        "  no action moves it: --print-recipe, given this robot, drafts a recipe that does\n");
   }
   fmt::print("  {:<{}} {:>5} {:>9} {:>4} {:>16} {:>16} {:>6} {:>5}\n", "group", name_width, "links",
              "spheres", "all", "gap mm", "protrusion mm", "volume", "thin");

@@ -86,7 +86,7 @@ class SourceReader {
                              .name = world_.robot().name(),
                              .files = robot.read.files,
                              .named = {job.recipe, job.spheres}}));
-    ASSIGN_OR_RETURN(auto inertials, bake::readInertials(job.input));
+    ASSIGN_OR_RETURN(auto inertials, bake::readInertials(job.input, bake::robotOptionsOf(job)));
     ASSIGN_OR_RETURN(sources_.robot, robotParts({job.input.filename().string(), std::move(robot),
                                                  std::move(inertials)},
                                                 world_.robot()));

@@ -107,6 +107,85 @@ TEST_F(RobotCli, BakesAUrdfWithItsRecipe) {
   EXPECT_THAT(opened.robot->startPositions(), ElementsAre(0, 0.05F));
 }
 
+/// The same arm for MuJoCo, its hand in a file of its own.
+constexpr const char* kArmMjcf = R"(<mujoco model="arm"><worldbody><body name="post">
+<geom type="box" size="0.04 0.04 0.05" pos="0 0 0.05"/>
+<body name="boom" pos="0 0 0.15"><joint name="turn" axis="0 0 1"/>
+<geom type="box" size="0.1 0.03 0.03" pos="0.1 0 0"/><include file="hand.xml"/></body></body></worldbody>
+<keyframe><key name="home" qpos="0.25 0.075"/></keyframe></mujoco>
+)";
+constexpr const char* kHandMjcf = R"(<mujocoinclude><body name="hand" pos="0.25 0 0">
+<joint name="slide" type="slide" axis="1 0 0" range="0 0.1"/><geom type="box" size="0.03 0.03 0.03"/>
+</body></mujocoinclude>)";
+
+TEST_F(RobotCli, BakesAnMjcfWithTheSameRecipe) {
+  write("arm.xml", kArmMjcf);
+  write("hand.xml", kHandMjcf);
+  const ProgramRun baked = bake({"arm.xml", "--recipe", "arm.toml"});
+  EXPECT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_THAT(baked.out,
+              AllOf(HasSubstr("arm.xml -> arm.pack"),
+                    HasSubstr("helper: 3 links, 2 joint positions, 1 controlled joint")));
+  EXPECT_THAT(baked.err, IsEmpty());
+  const Opened opened = open("arm.pack");
+  ASSERT_TRUE(opened.robot);
+  // The recipe says where the hand starts, the file where the boom does.
+  EXPECT_THAT(opened.robot->startPositions(), ElementsAre(0.25F, 0.05F));
+  std::vector<std::string> names;
+  for (const schema::SourceFile* file : *opened.pack->root().provenance()->sources()) {
+    names.push_back(file->name()->str());
+  }
+  EXPECT_THAT(names, ElementsAre("arm.xml", "hand.xml", "arm.toml"));
+  ASSERT_EQ(bake({"arm.urdf", "--recipe", "arm.toml", "-o", "urdf.pack"}).exit_code, 0);
+  const Opened twin = open("urdf.pack");
+  ASSERT_TRUE(twin.robot);
+  ASSERT_EQ(twin.robot->groups().size(), opened.robot->groups().size());
+  for (std::size_t n = 0; n < twin.robot->groups().size(); ++n) {
+    EXPECT_TRUE(
+        std::ranges::equal(twin.robot->groups()[n].spheres, opened.robot->groups()[n].spheres));
+  }
+}
+
+TEST_F(RobotCli, DraftsARecipeOfAnMjcf) {
+  write("arm.xml", kArmMjcf);
+  write("hand.xml", kHandMjcf);
+  const ProgramRun drafted = run({"arm.xml", "--print-recipe"});
+  EXPECT_EQ(drafted.exit_code, 0) << drafted.err;
+  EXPECT_THAT(drafted.out, AllOf(HasSubstr("link = \"hand\""), HasSubstr("\"slide\" = 0.075")));
+  write("draft.toml", drafted.out);
+  EXPECT_EQ(bake({"arm.xml", "--recipe", "draft.toml"}).exit_code, 0);
+}
+
+TEST_F(RobotCli, DraftsOneStepForTheStagesOfATelescopeThatAnMjcfCouples) {
+  std::string text = "<mujoco><worldbody><body name=\"base\"><geom size=\"0.1\"/>";
+  for (int stage = 1; stage <= 4; ++stage) {
+    text += fmt::format(
+        "<body name=\"stage{0}\" pos=\"0.1 0 0\"><joint name=\"slide{0}\" "
+        "type=\"slide\" axis=\"1 0 0\" range=\"0 1\"/><geom size=\"0.03\"/>",
+        stage);
+  }
+  text += "<body name=\"gripper\"><geom size=\"0.02\"/><camera name=\"camera\"/></body>";
+  for (int stage = 0; stage <= 4; ++stage) text += "</body>";
+  text +=
+      "</worldbody><equality><joint joint1=\"slide1\" joint2=\"slide2\"/>"
+      "<joint joint1=\"slide2\" joint2=\"slide3\"/>"
+      "<joint joint1=\"slide3\" joint2=\"slide4\"/></equality></mujoco>";
+  write("telescope.xml", text);
+  const ProgramRun drafted = run({"telescope.xml", "--print-recipe"});
+  EXPECT_EQ(drafted.exit_code, 0) << drafted.err;
+  EXPECT_THAT(drafted.out,
+              AllOf(HasSubstr("[[joints]]\nname = \"slide4\"\nstep = 0.0125"),
+                    Not(HasSubstr("[mimic]")), HasSubstr("[camera]\nlink = \"camera\"")));
+}
+
+TEST_F(RobotCli, TellsWhatAnotherXmlFileIs) {
+  write("world.xml", "<?xml version=\"1.0\"?><sdf version=\"1.9\"><world/></sdf>");
+  const ProgramRun refused = run({"world.xml"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("its outermost element is <sdf>, expected <robot> (URDF) or "
+                                     "<mujoco> (MJCF)"));
+}
+
 TEST_F(RobotCli, NamesEveryFileThatItReadInThePack) {
   write("hands/arm.srdf",
         "<robot name=\"arm\"><link_sphere_approximation link=\"boom\"><sphere center=\"0.1 0 0\" "
@@ -217,13 +296,14 @@ TEST_F(RobotCli, BakesARobotOfOtherSimulatorsWithWarnings) {
   EXPECT_THAT(
       baked.out,
       AllOf(HasSubstr("warning: joint 'x': it hangs from a link 'world'"),
-            HasSubstr("warning: joint 'x': the URDF states no limits for it; -1 to 1 m are "
+            HasSubstr("warning: joint 'x': the robot's file states no limits for it; -1 to 1 m are "
                       "assumed"),
-            HasSubstr("warning: joint 'ja': the URDF states no limits for it; -3.14 to 3.14 rad "
-                      "are assumed, [limits] of the recipe may state others (and 3 more of this "
-                      "kind; -v lists them)"),
+            HasSubstr(
+                "warning: joint 'ja': the robot's file states no limits for it; -3.14 to 3.14 rad "
+                "are assumed, [limits] of the recipe may state others (and 3 more of this "
+                "kind; -v lists them)"),
             Not(HasSubstr("'jb'"))));
-  EXPECT_THAT(bake({"cart.urdf", "-v"}).out, HasSubstr("'jd': the URDF states no limits"));
+  EXPECT_THAT(bake({"cart.urdf", "-v"}).out, HasSubstr("'jd': the robot's file states no limits"));
 }
 
 TEST_F(RobotCli, TakesHandMadeSpheresAndWarnsOfOtherRadii) {
@@ -294,8 +374,8 @@ TEST_F(RobotCli, ExplainsEveryRefusal) {
        "--recipe: does not go with --as scene"},
       {{"arm.urdf", "arm.urdf", "--print-recipe"},
        1,
-       "--print-recipe: drafts a recipe of one URDF; give one, or no input to see every key"},
-      {{"--print-recipe", "arm.stl"}, 1, "--print-recipe: drafts a recipe of one URDF"},
+       "--print-recipe: drafts a recipe of one robot; give its file, or no input to see every key"},
+      {{"--print-recipe", "arm.stl"}, 1, "--print-recipe: drafts a recipe of one robot"},
       {{"arm.urdf", "--print-recipe", "-o", "r.toml"},
        1,
        "--out: does not go with --print-recipe, which prints a recipe and bakes nothing; leave it "

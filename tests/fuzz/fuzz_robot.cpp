@@ -1,5 +1,6 @@
-// Any bytes as the text of a URDF, with no mesh at hand. The import has to give an error or a sound
-// robot: a tree whose numbers are finite. A crash of the XML parser is an error like others.
+// Any bytes as the text of a URDF or an MJCF, with no mesh at hand. The import has to give an error
+// or a sound robot: a tree whose numbers are finite. A crash of the XML parser is an error like
+// others.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -52,7 +53,7 @@ void checkLink(const SourceRobot& robot, std::size_t index) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const galactic::test::ScratchFolder folder;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const auto path = folder.write("robot.urdf", text);
+  const auto path = folder.write("robot.xml", text);
   galactic::bake::RobotImportOptions options;
   options.allow_missing = true;
   options.time_limit = std::chrono::seconds(5);

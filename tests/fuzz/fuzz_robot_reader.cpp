@@ -1,12 +1,12 @@
-// Any bytes as the text of a URDF and of an SRDF, parsed in the fuzzer's own process, so that it
-// sees how far an input gets: what is made of the parser's result is ours, and so is the order of
-// links. Elsewhere the parser runs in a process of its own; texts that it must not see are refused
-// before, here as there.
+// Any bytes as the text of a URDF, an MJCF or an SRDF, parsed in the fuzzer's own process, so that
+// it sees how far an input gets: what is made of the parser's result is ours, and so is the order
+// of links. Elsewhere the parser runs in a process of its own; texts that it must not see are
+// refused before, here as there.
 #include <cstdint>
 #include <string>
 
 #include "finding.h"
-#include "robot_description/description_process.h"
+#include "robot_description/description_reader.h"
 #include "robot_description/link_tree.h"
 #include "robot_description/mimics.h"
 #include "robot_description/urdf/urdf_reader.h"
@@ -22,7 +22,7 @@ using namespace galactic::bake;
 using galactic::test::expectGoodError;
 using galactic::test::reportFinding;
 
-constexpr const char* kWhere = "robot.urdf";
+constexpr const char* kWhere = "robot.xml";
 
 void checkOrder(const RobotDescription& model, const std::vector<TreeLink>& tree) {
   if (tree.size() != model.links.size()) reportFinding("links that are lost");
@@ -34,8 +34,8 @@ void checkOrder(const RobotDescription& model, const std::vector<TreeLink>& tree
   }
 }
 
-void readRobot(const std::string& text) {
-  auto model = parseUrdf(text, kWhere);
+void readRobot(const std::string& text, DescriptionPart part) {
+  auto model = parseDescription(text, kWhere, {.part = part});
   if (!model) return expectGoodError(model.error());
   const auto tree = orderTree(*model, kWhere);
   if (!tree) return expectGoodError(tree.error());
@@ -63,7 +63,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     expectGoodError(fits.error());
     return 0;
   }
-  readRobot(text);
+  readRobot(text, DescriptionPart::kShapesAndJoints);
+  readRobot(text, DescriptionPart::kMasses);
   const auto spheres = parseSrdf(text, kWhere);
   if (!spheres) expectGoodError(spheres.error());
   return 0;

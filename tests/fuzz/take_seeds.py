@@ -34,6 +34,8 @@ def seeds_of(path: pathlib.Path) -> list[tuple[str, bytes]]:
         seeds += [("fuzz_mesh_import", first), ("fuzz_mesh_reader", first)]
     if suffix in (".urdf", ".srdf"):
         seeds += [("fuzz_urdf", b""), ("fuzz_urdf_reader", b"")]
+    if suffix in (".xml", ".mjcf"):
+        seeds += [("fuzz_mjcf", b""), ("fuzz_mjcf_reader", b"")]
     if suffix in (".png", ".jpg", ".jpeg"):
         seeds.append(("fuzz_image", b"0"))
     if suffix == ".toml":

@@ -49,7 +49,7 @@ HEAVY_LIBRARIES = (
                  re.compile(r"bake/src/engines/embree[^/]*$")),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
                  re.compile(r"\b(urdf::|TiXml\w+|console_bridge::)"),
-                 re.compile(r"bake/src/robot_description/urdf/urdf_reader[^/]*$")),
+                 re.compile(r"bake/src/robot_description/(urdf/urdf_reader[^/]*|mjcf/xml_tree\.cpp)$")),
     HeavyLibrary("meshoptimizer", re.compile(r"meshoptimizer\.h"), re.compile(r"\bmeshopt_\w+"),
                  re.compile(r"bake/src/render/mesh_optimizer\.cpp$")),
     HeavyLibrary("OpenGL", re.compile(r"(epoxy|EGL|GL|KHR)/"),

@@ -9,7 +9,6 @@
 
 #include "asset/scene_source.h"
 #include "galactic/bake/assets.h"
-#include "galactic/bake/robot_import.h"
 #include "render/render_source.h"
 #include "support/files/journal.h"
 #include "support/threads/stopwatch.h"
@@ -48,9 +47,6 @@ template <class Outcome, class Bake>
 [[nodiscard]] Result<std::unique_ptr<Journal>> openJournal(const Job& job,
                                                            std::span<const SourceFile> files,
                                                            const BakeContext& context);
-
-/// How the URDF of a robot's job is read.
-[[nodiscard]] RobotImportOptions robotOptionsOf(const RobotJob& job);
 
 /// Render meshes of one asset, or none where none are wanted.
 using OptionalMeshes = std::optional<BakedRenderMeshes>;

@@ -51,11 +51,11 @@ class MissingFiles {
   void lookInto(const RobotJob& job) {
     const auto robot = readRobotFile(job);
     if (!robot) return add(sentenceOf(robot.error()));
-    const std::string urdf = job.input.string();
+    const std::string file = job.input.string();
     for (const std::string& mesh : robot->missing) {
-      add(fmt::format("{}: mesh '{}' is missing: it is left out", urdf, mesh));
+      add(fmt::format("{}: mesh '{}' is missing: it is left out", file, mesh));
     }
-    for (const std::string& mesh : robot->unreadable) add(fmt::format("{}: {}", urdf, mesh));
+    for (const std::string& mesh : robot->unreadable) add(fmt::format("{}: {}", file, mesh));
     for (const SourceAsset& mesh : robot->meshes) {
       addLooks(mesh, job.input.parent_path() / mesh.read.files.front().name);
     }

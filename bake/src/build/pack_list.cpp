@@ -32,7 +32,7 @@ const std::vector<float>* radiiOf(const Job& job) {
   return nullptr;
 }
 
-/// How the URDF of the job, if it has one, is read.
+/// How the robot's file of the job, if it has one, is read.
 RobotImportOptions importOptionsOf(const Job& job) {
   const auto* robot = std::get_if<RobotJob>(&job);
   return robot == nullptr ? RobotImportOptions() : robotOptionsOf(*robot);

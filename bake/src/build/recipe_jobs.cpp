@@ -94,7 +94,7 @@ class RecipeJobs {
     if (auto read = readOptions(assets, "`as` robot", job); !read) return read;
     if (inputs.size() != 1) {
       return fail(ErrorCode::kInvalidInput, assets.place,
-                  fmt::format("[robot] names {} files, expected one URDF", inputs.size()));
+                  fmt::format("[robot] names {} files, expected one URDF or MJCF", inputs.size()));
     }
     job.input = inputs.front();
     packs_.add("robot", job, job.input);

@@ -279,9 +279,10 @@ void visitOptions(RobotJob& job, OptionVisitor& v) {
   v.option(
       {"recipe", "FILE", "Robot recipe (TOML, see `print-recipe`) or published *.collection.json"},
       path(recipe));
-  v.option({"spheres", "FILE",
-            "Hand-made spheres: a spherized URDF or an SRDF; they replace the fitted ones"},
-           path(spheres));
+  v.option(
+      {"spheres", "FILE",
+       "Hand-made spheres: a spherized URDF or MJCF, or an SRDF; they replace the fitted ones"},
+      path(spheres));
   v.option({"package", "NAME=DIR", "Folder of a ROS package (may be repeated)"},
            namedPaths(packages, "NAME=DIR"));
   v.option({"allow-missing", "", "Links that lost all their geometry are warnings, not errors"},

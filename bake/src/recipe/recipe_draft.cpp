@@ -58,10 +58,16 @@ class RecipeDraft {
   }
 
  private:
-  /// How many joints one action on a joint moves.
+  /// How many joints that lead to the hand one action on a joint moves.
   [[nodiscard]] std::size_t movedBy(std::size_t leader) const {
-    return 1 + static_cast<std::size_t>(
-                   std::ranges::count(guess_.followers, leader, &RobotGuess::Follower::leader));
+    auto moved = 1 + static_cast<std::size_t>(std::ranges::count(guess_.followers, leader,
+                                                                 &RobotGuess::Follower::leader));
+    for (int at = static_cast<int>(guess_.end_effector); at >= 0;) {
+      const SourceLink& link = robot_.links[static_cast<std::size_t>(at)];
+      if (link.mimic && link.mimic->link == leader) ++moved;
+      at = link.parent;
+    }
+    return moved;
   }
 
   [[nodiscard]] std::string namesOf(const std::vector<std::size_t>& links) const {
@@ -75,10 +81,10 @@ class RecipeDraft {
 
   void addHead() {
     text_ += fmt::format(
-        "# A draft of a robot recipe: guessed from the URDF. Read what is marked 'guess', look at\n"
+        "# A draft of a robot recipe: guessed from its file. Read what is marked 'guess', look at\n"
         "# the picture of the pack (galactic-pack picture), and correct it here. Every other key "
         "is\n"
-        "# explained by `galactic-bake --print-recipe` without a URDF.\n\nname = {}\n\n",
+        "# explained by `galactic-bake --print-recipe` without a robot.\n\nname = {}\n\n",
         tomlText(robot_.name.empty() ? "robot" : robot_.name));
     text_ +=
         "# What grasps: a sphere at a point of a link. Guess, by the links' names and the tree.\n";
@@ -205,7 +211,7 @@ class RecipeDraft {
     if (!any_assumed && guess_.locked.empty()) return;
     text_ += "[limits]\n";
     if (any_assumed) {
-      text_ += "# The URDF states no limits for these: guesses, radians or meters.\n";
+      text_ += "# The robot's file states no limits for these: guesses, radians or meters.\n";
     }
     for (const SourceLink& link : robot_.links) {
       if (!assumed(link)) continue;
@@ -214,7 +220,8 @@ class RecipeDraft {
     }
     if (!guess_.locked.empty()) {
       text_ +=
-          "# Both limits of these are the same in the URDF: they cannot move. If they can, "
+          "# Both limits of these are the same in the robot's file: they cannot move. If they "
+          "can, "
           "as\n# fingers may, give them limits, radians or meters, and a place in [start_pose]. "
           "Examples:\n";
     }
@@ -233,8 +240,9 @@ class RecipeDraft {
   void addStarts(const std::vector<std::size_t>& links) {
     for (const std::size_t n : links) {
       const SourceLink& link = robot_.links[n];
+      const double rest = link.rest.value_or(0);
       const double start =
-          link.limits ? std::clamp(0.0, link.limits->lower, link.limits->upper) : 0;
+          link.limits ? std::clamp(rest, link.limits->lower, link.limits->upper) : rest;
       text_ += fmt::format("{} = {}", tomlText(link.joint_name), start);
       if (link.limits) text_ += rangeOf(*link.limits);
       text_ += '\n';

@@ -91,7 +91,7 @@ void visitKeys(RecipeJoint& joint, V& v) {
   v.name({"name", "", "shoulder_pan_joint"}, joint.joint);
   v.number({"step", "farthest move of one action", "0.196", true}, joint.step,
            {1e-4, 3.2, "(radians or meters)"});
-  v.number({"min", "narrower limits than the URDF's; default: the URDF's", "-1.5"}, joint.min,
+  v.number({"min", "narrower limits than the robot's; default: the robot's", "-1.5"}, joint.min,
            kJointPosition);
   v.number({"max", "", "1.5"}, joint.max, kJointPosition);
 }
@@ -159,7 +159,7 @@ void visitKeys(RobotRecipe& recipe, V& v) {
            "moves may carry it."},
           recipe.laser);
   v.table({.name = "base",
-           .help = "The base: the root link of the URDF, which drives and turns on the ground.",
+           .help = "The base: the root link of the robot, which drives and turns on the ground.",
            .is_required = true},
           recipe.base);
   v.joints({"joints",
@@ -167,7 +167,7 @@ void visitKeys(RobotRecipe& recipe, V& v) {
             "prismatic."},
            recipe.joints);
   v.limits({"limits",
-            "Limits that replace the URDF's or stand in for missing ones: lower, upper; of any "
+            "Limits that replace the robot's or stand in for missing ones: lower, upper; of any "
             "revolute or prismatic joint. Without both, a revolute joint has -pi to pi and a "
             "prismatic one -1 to 1 m, with a warning.",
             "torso_lift_joint = [0.0, 0.38]"},
@@ -179,7 +179,9 @@ void visitKeys(RobotRecipe& recipe, V& v) {
        "bellows_joint"},
       recipe.mimics);
   v.positions(
-      {"start_pose", "Where joints start, controlled or not; default 0, or the limit nearest to 0.",
+      {"start_pose",
+       "Where joints start, controlled or not; default where an MJCF's keyframe home has them, "
+       "else 0, or the limit nearest to it.",
        "torso_lift_joint = 0.2"},
       recipe.start_pose);
   v.table({"spheres", "The collision spheres."}, recipe.spheres);

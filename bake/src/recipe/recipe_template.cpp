@@ -15,8 +15,9 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::string_view kPreamble =
-    "Robot recipe: what a URDF does not say. Every key is shown; those with a default may be left "
-    "out. Positions and rotations are in frames of the URDF (X forward, Y left, Z up); meters, "
+    "Robot recipe: what a robot's file does not say. Every key is shown; those with a default may "
+    "be left "
+    "out. Positions and rotations are in frames of that file (X forward, Y left, Z up); meters, "
     "radians unless a key says degrees.";
 
 /// Writes a recipe with every key explained: an example or the default of each, and what it means.

@@ -173,7 +173,7 @@ class RobotGuesser {
     return resting;
   }
 
-  /// The URDF says that these turn or slide, and then where to.
+  /// The robot's file says that these turn or slide, and then where to.
   [[nodiscard]] std::vector<std::size_t> lockedJoints() const {
     std::vector<std::size_t> locked;
     for (std::size_t n = 0; n < robot_.links.size(); ++n) {
@@ -244,7 +244,7 @@ class RobotGuesser {
     const auto in_root = [&, pose = startPoses()[link]](const Vec3& v) {
       return rotate(pose.rotation, v);
     };
-    // Of the URDF's axes: forward is Z, up is -Y; else forward is X, up is Z.
+    // Of the file's axes: forward is Z, up is -Y; else forward is X, up is Z.
     const Vec3 forward = in_root(is_optical ? Vec3{0, 1, 0} : Vec3{1, 0, 0});
     const Vec3 up = in_root(is_optical ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
     const Vec3 left = cross(up, forward);

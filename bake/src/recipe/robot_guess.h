@@ -35,7 +35,8 @@ struct RobotGuess {
   /// Links that may carry a camera, or a laser, the likeliest first.
   std::vector<std::size_t> cameras;
   std::vector<std::size_t> lasers;
-  /// Whether the first camera's link has an optical frame: Z forward and Y down, as a URDF has it.
+  /// Whether the first camera's link has an optical frame: Z forward and Y down, as robots' files
+  /// have it.
   bool camera_is_optical = false;
   /// By how many degrees, a quarter or half of a turn, that camera is turned about its view for an
   /// image that is upright at the start pose.

@@ -51,6 +51,20 @@ std::uint32_t MaterialList::addColor(const std::array<float, 4>& color, bool two
   return entry->second;
 }
 
+std::uint32_t MaterialList::addImage(const std::string& image, const std::array<float, 4>& tint,
+                                     bool two_sided) {
+  const auto [entry, fresh] = images_.try_emplace({image, tint, two_sided}, 0);
+  if (fresh) {
+    SourceMaterial material;
+    material.name = image;
+    material.base_color = tint;
+    material.base_color_texture = image;
+    material.two_sided = two_sided;
+    entry->second = append(std::move(material));
+  }
+  return entry->second;
+}
+
 Result<void> MaterialList::bake(const TextureFiles& files, const TextureBakeOptions& options,
                                 unsigned threads, TextureLibrary* library) {
   of_asset_.clear();

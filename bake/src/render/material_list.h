@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,6 +27,11 @@ class MaterialList {
   /// A plain color, linear RGBA.
   std::uint32_t addColor(const std::array<float, 4>& color, bool two_sided);
 
+  /// An image on a mesh of texture coordinates, tinted by a linear RGBA; its path is relative to
+  /// the folder of the robot's file.
+  std::uint32_t addImage(const std::string& image, const std::array<float, 4>& tint,
+                         bool two_sided);
+
   /// Bakes what was added since the last call, as bakeMaterials does; `files`: the images of the
   /// asset that it came from.
   Result<void> bake(const TextureFiles& files, const TextureBakeOptions& options, unsigned threads,
@@ -35,6 +42,7 @@ class MaterialList {
 
   RenderSource& source_;
   std::map<std::pair<std::array<float, 4>, bool>, std::uint32_t> colors_;
+  std::map<std::tuple<std::string, std::array<float, 4>, bool>, std::uint32_t> images_;
   /// Of the asset at hand: by material, and whether without its texture.
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> of_asset_;
 };

@@ -18,6 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Tints nothing.
+constexpr std::array<float, 4> kWhite{1, 1, 1, 1};
+
 /// Semantic ids of names, in the order in which they come.
 class SemanticNames {
  public:
@@ -103,9 +106,13 @@ class RobotPlacer {
   std::uint32_t materialOf(const LinkShape& shape, const SourceAsset& asset, const SourceMesh& mesh,
                            bool stands_in) {
     if (stands_in) return materials_.addColor(kPlainColor, isTwoSided(asset, mesh));
-    const bool urdf_color = shape.color && !hasLooks(asset, mesh);
-    return urdf_color ? materials_.addColor(*shape.color, isTwoSided(asset, mesh))
-                      : materials_.add(asset, mesh);
+    const bool is_two_sided = isTwoSided(asset, mesh);
+    if (!shape.texture.empty() && !mesh.uvs.empty()) {
+      return materials_.addImage(shape.texture, shape.color.value_or(kWhite), is_two_sided);
+    }
+    const bool has_own_color = shape.color && (shape.hides_looks || !hasLooks(asset, mesh));
+    return has_own_color ? materials_.addColor(*shape.color, is_two_sided)
+                         : materials_.add(asset, mesh);
   }
 
   void placePrimitives(std::size_t link) {

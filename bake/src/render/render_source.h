@@ -28,8 +28,9 @@ namespace galactic::bake {
                                                       TextureLibrary* library = nullptr);
 
 /// A part for each link that is drawn (drawnShapes), in the link's frame: meshes with their
-/// materials, and primitives. A semantic id per link. The URDF's color is taken for primitives and
-/// for meshes that have none of their own: neither named material nor texture nor vertex colors.
+/// materials, and primitives. A semantic id per link. The color of the robot's file is taken for
+/// primitives and for meshes that have none of their own (neither named material nor texture nor
+/// vertex colors) or whose looks it hides (LinkShape::hides_looks).
 [[nodiscard]] Result<RenderSource> robotRenderSource(const SourceRobot& robot,
                                                      const std::filesystem::path& folder,
                                                      const TextureBakeOptions& options,

@@ -15,7 +15,7 @@ Vec3 vectorOf(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-/// The nearest float; some URDFs write limits beyond all floats for none.
+/// The nearest float; some files write limits beyond all floats for none.
 float nearestFloat(double value) {
   constexpr auto kLargest = static_cast<double>(kUnlimited);
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
@@ -28,8 +28,9 @@ PositionLimits positionLimits(const SourceLink& link, const RobotRecipe* recipe)
   return {nearestFloat(limits->lower), nearestFloat(limits->upper)};
 }
 
-float nearestToZero(const PositionLimits& limits) {
-  return std::clamp(0.0F, limits.lower, limits.upper);
+/// Where the robot's file has a joint rest, else 0, or the limit nearest to it.
+float startOf(const SourceLink& link, const PositionLimits& limits) {
+  return std::clamp(nearestFloat(link.rest.value_or(0)), limits.lower, limits.upper);
 }
 
 void addPositions(const SourceLink& link, const RobotRecipe* recipe, LinkFrame& frame,
@@ -39,7 +40,7 @@ void addPositions(const SourceLink& link, const RobotRecipe* recipe, LinkFrame& 
   frame.position = static_cast<std::int32_t>(flat.limits.size());
   for (std::uint32_t n = 0; n < count; ++n) {
     flat.limits.push_back(positionLimits(link, recipe));
-    flat.start_positions.push_back(nearestToZero(flat.limits.back()));
+    flat.start_positions.push_back(startOf(link, flat.limits.back()));
   }
   // The quaternion of a floating joint starts as no rotation.
   if (link.joint_type == JointType::kFloating) flat.start_positions.back() = 1;

@@ -132,7 +132,8 @@ class RobotBaker {
   }
 
  private:
-  /// Of limits that the URDF leaves out, or that let nothing move, unless the recipe states others.
+  /// Of limits that the robot's file leaves out, or that let nothing move, unless the recipe states
+  /// others.
   void warnOfLimits() {
     for (const SourceLink& link : robot_.links) {
       if (!link.limits || link.mimic) continue;
@@ -142,11 +143,11 @@ class RobotBaker {
                       [&](const RecipeLimits& l) { return l.joint.name == link.joint_name; });
       if (is_given) continue;
       if (link.limits_are_assumed) {
-        baked_.warnings.push_back(
-            fmt::format("joint '{}': the URDF states no limits for it; {:.3g} to {:.3g} {} are "
-                        "assumed, [limits] of the recipe may state others",
-                        link.joint_name, link.limits->lower, link.limits->upper,
-                        link.joint_type == JointType::kPrismatic ? "m" : "rad"));
+        baked_.warnings.push_back(fmt::format(
+            "joint '{}': the robot's file states no limits for it; {:.3g} to {:.3g} {} are "
+            "assumed, [limits] of the recipe may state others",
+            link.joint_name, link.limits->lower, link.limits->upper,
+            link.joint_type == JointType::kPrismatic ? "m" : "rad"));
       } else if (link.limits->lower == link.limits->upper) {
         baked_.warnings.push_back(
             fmt::format("joint '{}': its limits are both {}, so it cannot move; [limits] of the "
@@ -206,7 +207,7 @@ class RobotBaker {
   }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ignoredPairs() const {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs = robot_.may_touch;
     if (recipe_ == nullptr) return pairs;
     for (const auto& [first, second] : recipe_->ignored_pairs) {
       pairs.emplace_back(linkIndex(robot_, first.name), linkIndex(robot_, second.name));

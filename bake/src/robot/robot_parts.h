@@ -51,8 +51,9 @@ struct RigidGroup {
 [[nodiscard]] Pose poseOf(const Affine& rigid);
 
 /// Links, limits and start positions of `robot` as the runtime reads them. A joint that mimics
-/// another has no position of its own. Joints start at 0, or at their limit nearest to it, those of
-/// `recipe` (may be null) included, unless the recipe's start pose says otherwise.
+/// another has no position of its own. Joints start where the robot's file has them
+/// rest, else at 0, or at their limit nearest to it, those of `recipe` (may be null) included,
+/// unless the recipe's start pose says otherwise.
 [[nodiscard]] FlatKinematics flattenKinematics(const SourceRobot& robot, const RobotRecipe* recipe);
 
 /// Joint vectors tried to find out which groups can touch.

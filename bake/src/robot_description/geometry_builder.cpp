@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/srgb.h"
+#include "fit/convex_hull.h"
 #include "galactic/bake/triangle_mesh.h"
 #include "import/asset_extents.h"
 #include "import/source_files.h"
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr double kSmallestPart = 0.002;
 constexpr double kLargestPart = 10;
 
-/// Colors of URDFs are those on a screen.
+/// Colors of robots' files are those on a screen.
 std::array<float, 4> linearColor(const std::array<double, 4>& c) {
   const auto channel = [&](std::size_t n) {
     return static_cast<float>(srgbDecoded(std::clamp(c[n], 0.0, 1.0)));
@@ -40,6 +41,7 @@ std::size_t sizeCount(DescribedGeometry geometry) {
     case DescribedGeometry::kCylinder:
       return 2;
     case DescribedGeometry::kBox:
+    case DescribedGeometry::kEllipsoid:
     case DescribedGeometry::kMesh:
       return 3;
   }
@@ -54,6 +56,8 @@ std::string_view sizeName(DescribedGeometry geometry) {
       return "cylinder of radius and length";
     case DescribedGeometry::kBox:
       return "box of size";
+    case DescribedGeometry::kEllipsoid:
+      return "ellipsoid of half axes";
     case DescribedGeometry::kMesh:
       return "mesh with scale";
   }
@@ -101,6 +105,31 @@ std::array<double, 3> sizeInFile(const SourceAsset& asset) {
   return {size[0], size[2], size[1]};
 }
 
+/// A mesh that stands in the robot's file, as importMesh would give it: its convex hull where it
+/// has points only, as in MuJoCo.
+SourceAsset assetOf(const DescribedMesh& described) {
+  SourceAsset asset;
+  asset.name = described.name;
+  SourceMesh& mesh = asset.meshes.emplace_back();
+  mesh.name = described.name;
+  for (const auto& [x, y, z] : described.points) {
+    mesh.positions.push_back(
+        {static_cast<float>(x), static_cast<float>(z), static_cast<float>(-y)});
+  }
+  mesh.triangles = described.triangles;
+  if (mesh.triangles.empty()) {
+    const fit::ConvexHull hull = fit::convexHull(mesh.positions);
+    for (const std::vector<std::uint32_t>& face : hull.faces) {
+      for (std::size_t n = 2; n < face.size(); ++n) {
+        mesh.triangles.push_back({hull.corners[face[0]].source, hull.corners[face[n - 1]].source,
+                                  hull.corners[face[n]].source});
+      }
+    }
+  }
+  asset.instances.push_back({.name = mesh.name, .mesh = 0, .world_from_mesh = kIdentityAffine});
+  return asset;
+}
+
 bool hasSize(const DescribedShape& shape) {
   return std::all_of(shape.size.begin(), shape.size.begin() + sizeCount(shape.geometry),
                      [](double size) { return size != 0; });
@@ -108,21 +137,22 @@ bool hasSize(const DescribedShape& shape) {
 
 }  // namespace
 
-GeometryBuilder::GeometryBuilder(const fs::path& urdf, const RobotImportOptions& options,
-                                 SourceRobot& robot)
-    : urdf_(urdf),
+GeometryBuilder::GeometryBuilder(const fs::path& path, std::span<const DescribedMesh> own_meshes,
+                                 const RobotImportOptions& options, SourceRobot& robot)
+    : path_(path),
+      own_meshes_(own_meshes),
       options_(options),
       robot_(robot),
-      resolver_(urdf, options),
-      up_from_urdf_(options.up == UpAxis::kZ ? kYUpFromZUp : kIdentityAffine) {}
+      resolver_(path, options),
+      up_from_file_(options.up == UpAxis::kZ ? kYUpFromZUp : kIdentityAffine) {}
 
-std::string GeometryBuilder::withoutUrdf(const std::string& place) const {
-  const std::string prefix = urdf_.string() + ": ";
+std::string GeometryBuilder::withoutFile(const std::string& place) const {
+  const std::string prefix = path_.string() + ": ";
   return place.starts_with(prefix) ? place.substr(prefix.size()) : place;
 }
 
 void GeometryBuilder::warn(const std::string& place, const std::string& message) {
-  robot_.warnings.push_back(fmt::format("{}: {}", withoutUrdf(place), message));
+  robot_.warnings.push_back(fmt::format("{}: {}", withoutFile(place), message));
 }
 
 Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& file) {
@@ -135,32 +165,55 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
   if (!asset) {
     if (asset.error().code == ErrorCode::kInternal) return tl::unexpected(asset.error());
     robot_.read.is_settled = false;
-    if (describeFile(file)) robot_.read.files.push_back({.name = nameRelativeTo(urdf_, file)});
+    if (describeFile(file)) robot_.read.files.push_back({.name = nameRelativeTo(path_, file)});
     std::string failure =
-        fmt::format("mesh '{}' does not load: {}", nameRelativeTo(urdf_, asset.error().where),
+        fmt::format("mesh '{}' does not load: {}", nameRelativeTo(path_, asset.error().where),
                     asset.error().message);
     robot_.unreadable.push_back(failure);
     return LoadedMesh{.index = {}, .failure = std::move(failure)};
   }
   const fs::path folder = file.parent_path();
   for (SourceFile& source : asset->read.files) {
-    source.name = nameRelativeTo(urdf_, folder / source.name);
+    source.name = nameRelativeTo(path_, folder / source.name);
     robot_.read.files.push_back(source);
   }
   for (const std::string& absent : asset->read.absent) {
-    robot_.read.absent.push_back(nameRelativeTo(urdf_, folder / absent));
+    robot_.read.absent.push_back(nameRelativeTo(path_, folder / absent));
   }
   for (SourceMaterial& material : asset->materials) {
     std::string& texture = material.base_color_texture;
     std::error_code ignored;
     if (texture.empty() || texture.starts_with('*')) continue;
-    if (fs::exists(folder / texture, ignored)) texture = nameRelativeTo(urdf_, folder / texture);
+    if (fs::exists(folder / texture, ignored)) texture = nameRelativeTo(path_, folder / texture);
   }
-  for (const std::string& warning : asset->warnings) warn(nameRelativeTo(urdf_, file), warning);
+  for (const std::string& warning : asset->warnings) warn(nameRelativeTo(path_, file), warning);
   robot_.meshes.push_back(std::move(*asset));
   return LoadedMesh{.index = static_cast<std::uint32_t>(robot_.meshes.size() - 1),
                     .size = sizeInFile(robot_.meshes.back()),
                     .failure = {}};
+}
+
+GeometryBuilder::LoadedMesh& GeometryBuilder::loadOwn(const DescribedShape& shape) {
+  const auto [entry, is_new] = loaded_own_.try_emplace(shape.own_mesh);
+  if (!is_new) return entry->second;
+  robot_.meshes.push_back(assetOf(own_meshes_[shape.own_mesh]));
+  entry->second.index = static_cast<std::uint32_t>(robot_.meshes.size() - 1);
+  entry->second.size = sizeInFile(robot_.meshes.back());
+  return entry->second;
+}
+
+std::string GeometryBuilder::findTexture(const DescribedShape& shape, const std::string& place) {
+  if (shape.texture.empty()) return {};
+  const MeshResolution resolution = resolver_.resolve(shape.texture);
+  if (resolution.file.empty()) {
+    warn(place, fmt::format("the texture '{}' of its material is missing; looked for {}; its color "
+                            "is drawn",
+                            shape.texture, resolution.how));
+    return {};
+  }
+  std::string name = nameRelativeTo(path_, resolution.file);
+  robot_.read.files.push_back({.name = name});
+  return name;
 }
 
 const MeshResolution& GeometryBuilder::resolve(const std::string& reference,
@@ -170,7 +223,7 @@ const MeshResolution& GeometryBuilder::resolve(const std::string& reference,
   if (!is_new) return resolution;
   resolution = resolver_.resolve(reference);
   if (resolution.file.empty()) return resolution;
-  const std::string file = nameRelativeTo(urdf_, resolution.file);
+  const std::string file = nameRelativeTo(path_, resolution.file);
   robot_.resolutions.push_back(fmt::format("{}: {} ({})", reference, file, resolution.how));
   if (resolution.guessed) {
     warn(place,
@@ -184,6 +237,9 @@ const MeshResolution& GeometryBuilder::resolve(const std::string& reference,
 Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const DescribedShape& shape,
                                                                const std::string& place,
                                                                std::vector<LostShape>& lost) {
+  if (shape.mesh.empty() && shape.own_mesh < own_meshes_.size()) {
+    return checkedMesh(shape, place, loadOwn(shape));
+  }
   const MeshResolution& resolution = resolve(shape.mesh, place);
   if (resolution.file.empty()) {
     robot_.missing.push_back(shape.mesh);
@@ -201,14 +257,21 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const DescribedSh
     lost.push_back({place, mesh.failure});
     return std::nullopt;
   }
+  return checkedMesh(shape, place, mesh);
+}
+
+std::optional<std::uint32_t> GeometryBuilder::checkedMesh(const DescribedShape& shape,
+                                                          const std::string& place,
+                                                          const LoadedMesh& mesh) {
   double largest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     largest = std::max(largest, mesh.size[i] * std::abs(shape.size[i]));
   }
   if (largest < kSmallestPart || largest > kLargestPart) {
-    warn(place, fmt::format("mesh '{}' is {:.3g} m large: is its unit the meter? Correct the scale "
-                            "of the <mesh>",
-                            shape.mesh, largest));
+    warn(place,
+         fmt::format("mesh '{}' is {:.3g} m large: is its unit the meter? Correct the scale "
+                     "of the <mesh>",
+                     shape.mesh.empty() ? own_meshes_[shape.own_mesh].name : shape.mesh, largest));
   }
   return mesh.index;
 }
@@ -234,6 +297,13 @@ Result<std::optional<LinkShape>> GeometryBuilder::convert(const DescribedShape& 
     case DescribedGeometry::kSphere:
       converted.geometry = SphereShape{s[0]};
       break;
+    case DescribedGeometry::kEllipsoid: {
+      const double longest = std::max({s[0], s[1], s[2]});
+      converted.geometry = SphereShape{longest};
+      link_from_shape = compose(link_from_shape, {s[0] / longest, 0, 0, 0, 0, s[1] / longest, 0, 0,
+                                                  0, 0, s[2] / longest, 0});
+      break;
+    }
     case DescribedGeometry::kMesh: {
       const auto mesh = loadMesh(shape, place, lost);
       if (!mesh) return tl::unexpected(mesh.error());
@@ -244,9 +314,12 @@ Result<std::optional<LinkShape>> GeometryBuilder::convert(const DescribedShape& 
     }
   }
   // Primitives and meshes are Y up in their own frame, too.
-  converted.link_from_shape = conjugate(up_from_urdf_, link_from_shape, kZUpFromYUp);
+  converted.link_from_shape = conjugate(up_from_file_, link_from_shape, kZUpFromYUp);
   if (shape.has_color) converted.color = linearColor(shape.color);
-  if (!shape.texture.empty()) {
+  converted.hides_looks = shape.hides_looks;
+  if (shape.hides_looks && shape.geometry == DescribedGeometry::kMesh) {
+    converted.texture = findTexture(shape, place);
+  } else if (!shape.texture.empty()) {
     warn(place, fmt::format("the texture '{}' of its material is not used", shape.texture));
   }
   return converted;
@@ -257,7 +330,7 @@ Result<std::vector<GeometryBuilder::LostShape>> GeometryBuilder::addList(const D
   std::vector<LostShape> lost;
   for (std::size_t i = 0; i < list.from.size(); ++i) {
     const std::string place =
-        fmt::format("{}: link '{}' {} {}", urdf_.string(), link.name, list.kind, i + 1);
+        fmt::format("{}: link '{}' {} {}", path_.string(), link.name, list.kind, i + 1);
     auto shape = convert(list.from[i], place, lost);
     if (!shape) return tl::unexpected(shape.error());
     if (*shape) list.to.push_back(**shape);
@@ -268,10 +341,10 @@ Result<std::vector<GeometryBuilder::LostShape>> GeometryBuilder::addList(const D
 void GeometryBuilder::noteSearch() {
   if (resolver_.hasSearched()) robot_.read.is_settled = false;
   for (const fs::path& file : resolver_.packageFiles()) {
-    robot_.read.files.push_back({.name = nameRelativeTo(urdf_, file)});
+    robot_.read.files.push_back({.name = nameRelativeTo(path_, file)});
   }
   for (const fs::path& absent : resolver_.search().absent()) {
-    robot_.read.absent.push_back(nameRelativeTo(urdf_, absent));
+    robot_.read.absent.push_back(nameRelativeTo(path_, absent));
   }
 }
 
@@ -291,13 +364,13 @@ Result<void> GeometryBuilder::addShapes(const DescribedLink& from, SourceLink& t
   const auto& lost = from.collisions.empty() ? lost_visuals : lost_collisions;
   const bool lost_all =
       !lost.empty() && (from.collisions.empty() ? to.visuals : to.collisions).empty();
-  const std::string place = fmt::format("{}: link '{}'", urdf_.string(), from.name);
+  const std::string place = fmt::format("{}: link '{}'", path_.string(), from.name);
   if (lost_all && !options_.allow_missing) {
     return fail(ErrorCode::kInvalidInput, place,
                 fmt::format("it lost all its {} geometry: {}: {}; name the package's folder "
                             "(`package` NAME=DIR), put the file there, or give `allow-missing`",
                             from.collisions.empty() ? "visual" : "collision",
-                            withoutUrdf(lost.front().place), lost.front().reason));
+                            withoutFile(lost.front().place), lost.front().reason));
   }
   if (lost_all) {
     warn(place, "it lost all its geometry and collides with nothing");

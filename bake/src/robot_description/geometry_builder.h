@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,14 @@
 
 namespace galactic::bake {
 
-/// Turns the shapes of a URDF's links into those of a SourceRobot, loading each mesh file once.
+/// Turns the shapes of a description's links into those of a SourceRobot, loading each mesh file
+/// once.
 class GeometryBuilder {
  public:
-  /// Fills in the meshes, files, warnings and resolutions of `robot`.
-  GeometryBuilder(const std::filesystem::path& urdf, const RobotImportOptions& options,
-                  SourceRobot& robot);
+  /// Fills in the meshes, files, warnings and resolutions of `robot`. `own_meshes` are those that
+  /// stand in the robot's file, at `path`.
+  GeometryBuilder(const std::filesystem::path& path, std::span<const DescribedMesh> own_meshes,
+                  const RobotImportOptions& options, SourceRobot& robot);
 
   /// Fills in the shapes of `to`. Fails with kInvalidInput on broken numbers, and when the link
   /// lost all the geometry that it had, unless the options allow it.
@@ -56,20 +59,29 @@ class GeometryBuilder {
   Result<std::optional<std::uint32_t>> loadMesh(const DescribedShape& shape,
                                                 const std::string& place,
                                                 std::vector<LostShape>& lost);
+  /// The index of a mesh that is there; warns where its size is odd.
+  std::optional<std::uint32_t> checkedMesh(const DescribedShape& shape, const std::string& place,
+                                           const LoadedMesh& mesh);
   /// Where the reference leads; says so the first time.
   const MeshResolution& resolve(const std::string& reference, const std::string& place);
   Result<LoadedMesh> loadFile(const std::filesystem::path& file);
-  /// The place without the URDF's name, which every warning would repeat.
-  [[nodiscard]] std::string withoutUrdf(const std::string& place) const;
+  /// The mesh of the shape, one that stands in the robot's file.
+  LoadedMesh& loadOwn(const DescribedShape& shape);
+  /// The image that the shape is to be drawn with; empty, with a warning, where there is none.
+  std::string findTexture(const DescribedShape& shape, const std::string& place);
+  /// The place without the name of the robot's file, which every warning would repeat.
+  [[nodiscard]] std::string withoutFile(const std::string& place) const;
   void warn(const std::string& place, const std::string& message);
 
-  const std::filesystem::path& urdf_;
+  const std::filesystem::path& path_;
+  std::span<const DescribedMesh> own_meshes_;
   const RobotImportOptions& options_;
   SourceRobot& robot_;
   MeshResolver resolver_;
-  Affine up_from_urdf_;
+  Affine up_from_file_;
   std::map<std::string, MeshResolution> resolutions_;
   std::map<std::filesystem::path, LoadedMesh> loaded_;
+  std::map<std::uint32_t, LoadedMesh> loaded_own_;
 };
 
 }  // namespace galactic::bake

@@ -50,7 +50,7 @@ Result<HandSpheres> finish(HandSpheres spheres, const fs::path& path, std::strin
 }  // namespace
 
 Result<HandSpheres> readSpherizedRobot(const fs::path& path) {
-  ASSIGN_OR_RETURN(const auto model, readDescription(path, kTimeLimit));
+  ASSIGN_OR_RETURN(const auto model, readDescription(path, {}, kTimeLimit));
   HandSpheres spheres;
   for (const DescribedLink& link : model.links) {
     LinkSpheres& set = spheres.links.emplace_back();

@@ -95,10 +95,10 @@ void searchPackage(const fs::path& root, const std::string& package, std::vector
 
 }  // namespace
 
-MeshResolver::MeshResolver(const fs::path& urdf, const RobotImportOptions& options)
+MeshResolver::MeshResolver(const fs::path& path, const RobotImportOptions& options)
     : options_(options) {
   std::error_code ignored;
-  fs::path folder = fs::absolute(urdf, ignored).lexically_normal().parent_path();
+  fs::path folder = fs::absolute(path, ignored).lexically_normal().parent_path();
   while (true) {
     ancestors_.push_back(folder);
     if (folder == folder.parent_path()) break;
@@ -167,7 +167,7 @@ MeshResolution MeshResolver::notFound(const std::vector<fs::path>& tried) const 
   const std::size_t left = places.size() - std::min(places.size(), kMostNamed);
   places.resize(places.size() - left);
   return {.file = {},
-          .how = fmt::format("{}{} (from the URDF's folder){}", fmt::join(places, ", "),
+          .how = fmt::format("{}{} (from the robot's folder){}", fmt::join(places, ", "),
                              left == 0 ? "" : fmt::format(" and {} more", left), other_case),
           .guessed = false};
 }
@@ -194,21 +194,23 @@ std::optional<MeshResolution> MeshResolver::resolveIn(const fs::path& folder, Wa
   return std::nullopt;
 }
 
-std::optional<MeshResolution> MeshResolver::resolveAboveUrdf(Wanted& wanted) {
+std::optional<MeshResolution> MeshResolver::resolveAbove(Wanted& wanted) {
   for (const fs::path& ancestor : ancestors_) {
     if (isPackageAbove(ancestor, wanted.package)) {
-      if (auto found = resolveIn(ancestor, wanted, "package above the URDF")) return found;
+      if (auto found = resolveIn(ancestor, wanted, "package above the robot's file")) return found;
     }
     const fs::path beside = ancestor / wanted.package;
     if (search_.findsFolder(beside)) {
-      if (auto found = resolveIn(beside, wanted, "package beside the URDF's folders")) return found;
+      if (auto found = resolveIn(beside, wanted, "package beside the robot's folders"))
+        return found;
     }
   }
   for (const fs::path& ancestor : ancestors_) {
     if (auto file = fileIn(ancestor, wanted.rest); file && isBelow(*file, ancestor)) {
       return MeshResolution{
           .file = *file,
-          .how = fmt::format("no package '{}'; by its path from above the URDF", wanted.package),
+          .how = fmt::format("no package '{}'; by its path from above the robot's file",
+                             wanted.package),
           .guessed = true};
     }
   }
@@ -225,11 +227,11 @@ MeshResolution MeshResolver::resolvePackage(const std::string& package, const st
   for (const fs::path& folder : foldersOf(package)) {
     if (auto found = resolveIn(folder, wanted, "package search path")) return *found;
   }
-  if (auto found = resolveAboveUrdf(wanted)) return *found;
+  if (auto found = resolveAbove(wanted)) return *found;
   if (!wanted.tried.empty()) return notFound(wanted.tried);
   return {.file = {},
           .how = fmt::format("a folder '{}' or a package.xml of that name in the search path and "
-                             "above the URDF",
+                             "above the robot's file",
                              package),
           .guessed = false};
 }
@@ -240,7 +242,7 @@ MeshResolution MeshResolver::resolveRelative(const std::string& reference) {
   const auto out_of_reach = [this](const fs::path& file) {
     MeshResolution resolution = notFound({file});
     resolution.how +=
-        ", which is there, but outside the URDF's folders and packages; give `package` "
+        ", which is there, but outside the robot's folders and packages; give `package` "
         "NAME=DIR or `allow-outside`";
     return resolution;
   };
@@ -252,12 +254,13 @@ MeshResolution MeshResolver::resolveRelative(const std::string& reference) {
   }
   if (auto file = fileIn(ancestors_.front(), reference)) {
     if (!isInReach(*file)) return out_of_reach(*file);
-    return {.file = *file, .how = "relative to the URDF"};
+    return {.file = *file, .how = "relative to the robot's file"};
   }
   if (*path.begin() != "..") {
     for (const fs::path& ancestor : ancestors_) {
       if (auto file = fileIn(ancestor, reference)) {
-        return {.file = *file, .how = "relative to a folder above the URDF", .guessed = true};
+        return {
+            .file = *file, .how = "relative to a folder above the robot's file", .guessed = true};
       }
     }
   }

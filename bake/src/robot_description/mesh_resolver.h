@@ -11,7 +11,7 @@
 
 namespace galactic::bake {
 
-/// What a reference of a URDF means.
+/// What a reference of a robot's file means.
 struct MeshResolution {
   /// Empty when the file was not found.
   std::filesystem::path file;
@@ -21,18 +21,18 @@ struct MeshResolution {
   bool guessed = false;
 };
 
-/// Turns references of one URDF into files: see importRobot for the order.
+/// Turns references of one robot's file into files: see importRobot for the order.
 class MeshResolver {
  public:
-  MeshResolver(const std::filesystem::path& urdf, const RobotImportOptions& options);
+  MeshResolver(const std::filesystem::path& path, const RobotImportOptions& options);
 
   [[nodiscard]] MeshResolution resolve(const std::string& reference);
 
   /// Where the references so far were looked for; below the search roots, only in the folder that
   /// has the package's name.
   [[nodiscard]] const FileSearch& search() const { return search_; }
-  /// The package.xml files above the URDF that were looked into: another content of them, or none,
-  /// may lead elsewhere.
+  /// The package.xml files above the robot's file that were looked into: another content of them,
+  /// or none, may lead elsewhere.
   [[nodiscard]] const std::set<std::filesystem::path>& packageFiles() const {
     return package_files_;
   }
@@ -53,8 +53,8 @@ class MeshResolver {
   /// The file in a folder that may be its package's.
   [[nodiscard]] std::optional<MeshResolution> resolveIn(const std::filesystem::path& folder,
                                                         Wanted& wanted, std::string how);
-  /// The file in the folders above the URDF, and beside these.
-  [[nodiscard]] std::optional<MeshResolution> resolveAboveUrdf(Wanted& wanted);
+  /// The file in the folders above the robot's file, and beside these.
+  [[nodiscard]] std::optional<MeshResolution> resolveAbove(Wanted& wanted);
   [[nodiscard]] MeshResolution resolveRelative(const std::string& reference);
   /// A resolution without file that lists where it was looked for.
   [[nodiscard]] MeshResolution notFound(const std::vector<std::filesystem::path>& tried) const;
@@ -67,9 +67,9 @@ class MeshResolver {
   /// `folder / name`, also with %20 and backslashes undone, if it is a file.
   [[nodiscard]] std::optional<std::filesystem::path> fileIn(const std::filesystem::path& folder,
                                                             const std::string& name);
-  /// Whether there is a package.xml in `folder`, one above the URDF, that can be read.
+  /// Whether there is a package.xml in `folder`, one above the robot's file, that can be read.
   [[nodiscard]] bool findsPackageFile(const std::filesystem::path& folder);
-  /// Whether `folder`, one above the URDF, is the package by its name or its package.xml.
+  /// Whether `folder`, one above the robot's file, is the package by its name or its package.xml.
   [[nodiscard]] bool isPackageAbove(const std::filesystem::path& folder,
                                     const std::string& package);
 
@@ -77,7 +77,7 @@ class MeshResolver {
   FileSearch search_;
   std::set<std::filesystem::path> package_files_;
   bool has_searched_ = false;
-  /// The URDF's folder and its parents, nearest first.
+  /// The robot's folder and its parents, nearest first.
   std::vector<std::filesystem::path> ancestors_;
   std::map<std::string, std::vector<std::filesystem::path>> folders_of_package_;
 };

@@ -1,9 +1,12 @@
 #include "robot_description/named_files.h"
 
+#include <algorithm>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "common/lower_case.h"
 #include "import/source_files.h"
@@ -43,37 +46,72 @@ void addNamedByGltf(const fs::path& gltf, std::set<fs::path>& files) {
   }
 }
 
-/// The values of all attributes called filename.
-std::set<std::string> referencesIn(std::string_view urdf) {
-  constexpr std::string_view kName = "filename";
-  std::set<std::string> references;
-  for (std::size_t at = urdf.find(kName); at != std::string_view::npos; at = urdf.find(kName, at)) {
-    at += kName.size();
-    const std::size_t open = urdf.find_first_not_of(" \t\r\n=", at);
+/// The values of all attributes of these names, in the order of the text.
+std::vector<std::string> valuesOf(std::string_view text,
+                                  std::initializer_list<std::string_view> names) {
+  std::vector<std::string> values;
+  constexpr std::string_view kBlanks = " \t\r\n";
+  for (std::size_t at = text.find('='); at != std::string_view::npos; at = text.find('=', at + 1)) {
+    const std::size_t open = text.find_first_not_of(kBlanks, at + 1);
     if (open == std::string_view::npos) break;
-    if (urdf[open] != '"' && urdf[open] != '\'') continue;
-    const std::size_t close = urdf.find(urdf[open], open + 1);
+    if (text[open] != '"' && text[open] != '\'') continue;
+    const std::size_t close = text.find(text[open], open + 1);
     if (close == std::string_view::npos) break;
-    references.emplace(urdf.substr(open + 1, close - open - 1));
+    std::string_view name = text.substr(0, at);
+    name = name.substr(0, name.find_last_not_of(kBlanks) + 1);
+    const std::size_t before = name.find_last_of(kBlanks);
+    if (before != std::string_view::npos) name.remove_prefix(before + 1);
+    if (std::ranges::find(names, name) != names.end()) {
+      values.emplace_back(text.substr(open + 1, close - open - 1));
+    }
     at = close;
   }
-  return references;
+  return values;
 }
 
-void addNamedByUrdf(const fs::path& urdf, const RobotImportOptions& options,
-                    std::set<fs::path>& files) {
-  if (sizeOf(urdf) > kMaxRobotFileBytes) return;
-  const auto mapped = MappedFile::open(urdf);
-  if (!mapped) return;
-  const auto bytes = mapped->bytes();
-  MeshResolver resolver(urdf, options);
-  for (const std::string& reference :
-       referencesIn({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
-    const fs::path mesh = resolver.resolve(reference).file;
-    if (mesh.empty() || !files.insert(mesh).second) continue;
-    if (lowerCase(mesh.extension().string()) == ".gltf") addNamedByGltf(mesh, files);
-  }
+bool isMjcf(const fs::path& path) {
+  const std::string extension = lowerCase(path.extension().string());
+  return extension == ".xml" || extension == ".mjcf";
 }
+
+/// What a robot's file names.
+class RobotSearch {
+ public:
+  RobotSearch(const fs::path& path, const RobotImportOptions& options, std::set<fs::path>& files)
+      : resolver_(path, options), files_(files) {}
+
+  void addNamedBy(const fs::path& robot) {
+    if (sizeOf(robot) > kMaxRobotFileBytes) return;
+    const auto mapped = MappedFile::open(robot);
+    if (!mapped) return;
+    const auto bytes = mapped->bytes();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    // Where an MJCF's meshes and textures are.
+    std::vector<std::string> folders{""};
+    for (std::string& folder : valuesOf(text, {"meshdir", "assetdir", "texturedir"})) {
+      folders.push_back(std::move(folder));
+    }
+    for (const std::string& reference : valuesOf(text, {"filename", "file"})) {
+      for (const std::string& folder : folders) {
+        if (add(folder.empty() ? reference : (fs::path(folder) / reference).string())) break;
+      }
+    }
+  }
+
+ private:
+  /// Whether there is such a file.
+  bool add(const std::string& reference) {
+    const fs::path file = resolver_.resolve(reference).file;
+    if (file.empty()) return false;
+    if (!files_.insert(file).second) return true;
+    if (lowerCase(file.extension().string()) == ".gltf") addNamedByGltf(file, files_);
+    if (isMjcf(file)) addNamedBy(file);
+    return true;
+  }
+
+  MeshResolver resolver_;
+  std::set<fs::path>& files_;
+};
 
 }  // namespace
 
@@ -81,7 +119,7 @@ std::set<fs::path> namedFiles(const fs::path& input, const RobotImportOptions& o
   std::set<fs::path> files;
   const std::string extension = lowerCase(input.extension().string());
   if (extension == ".gltf") addNamedByGltf(input, files);
-  if (extension == ".urdf") addNamedByUrdf(input, options, files);
+  if (extension == ".urdf" || isMjcf(input)) RobotSearch(input, options, files).addNamedBy(input);
   return files;
 }
 

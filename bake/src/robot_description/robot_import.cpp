@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <numbers>
@@ -48,8 +49,8 @@ std::vector<JointMimic> mimicsOf(const RobotDescription& model, const std::vecto
 void addJoints(const RobotDescription& model, const std::vector<TreeLink>& tree,
                const std::vector<std::optional<Mimic>>& mimics, UpAxis up, SourceRobot& robot) {
   const bool z_up = up == UpAxis::kZ;
-  const Affine& up_from_urdf = z_up ? kYUpFromZUp : kIdentityAffine;
-  const Affine& urdf_from_up = z_up ? kZUpFromYUp : kIdentityAffine;
+  const Affine& up_from_file = z_up ? kYUpFromZUp : kIdentityAffine;
+  const Affine& file_from_up = z_up ? kZUpFromYUp : kIdentityAffine;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     SourceLink& link = robot.links[i];
     link.name = model.links[tree[i].link].name;
@@ -59,8 +60,8 @@ void addJoints(const RobotDescription& model, const std::vector<TreeLink>& tree,
     const DescribedJoint& joint = model.joints[*tree[i].joint];
     link.joint_name = joint.name;
     link.joint_type = joint.type;
-    link.parent_from_joint = conjugate(up_from_urdf, joint.parent_from_joint, urdf_from_up);
-    link.axis = transformed(up_from_urdf, joint.axis);
+    link.parent_from_joint = conjugate(up_from_file, joint.parent_from_joint, file_from_up);
+    link.axis = transformed(up_from_file, joint.axis);
     if (joint.has_limits) {
       link.limits = JointLimits{joint.lower, joint.upper};
     } else if (joint.type == JointType::kRevolute || joint.type == JointType::kPrismatic) {
@@ -68,12 +69,30 @@ void addJoints(const RobotDescription& model, const std::vector<TreeLink>& tree,
       link.limits_are_assumed = true;
     }
     link.mimic = mimics[i];
+    if (joint.has_rest) link.rest = joint.rest;
   }
 }
 
-/// Sorts and hashes the URDF and the files that its meshes named.
-Result<void> finishFiles(SourceRobot& robot, const fs::path& path) {
+/// Finds the links that the model allows to touch.
+void addTouching(const RobotDescription& model, SourceRobot& robot) {
+  const auto index_of = [&](const std::string& name) {
+    return static_cast<std::uint32_t>(std::ranges::find(robot.links, name, &SourceLink::name) -
+                                      robot.links.begin());
+  };
+  for (const auto& [first, second] : model.touching) {
+    robot.may_touch.emplace_back(index_of(first), index_of(second));
+  }
+}
+
+/// Sorts and hashes the robot's file and the files that it and its meshes named.
+Result<void> finishFiles(const RobotDescription& model, SourceRobot& robot, const fs::path& path) {
   robot.read.files.push_back({.name = nameRelativeTo(path, path)});
+  for (const std::string& file : model.included) {
+    robot.read.files.push_back({.name = nameRelativeTo(path, file)});
+  }
+  for (const std::string& file : model.absent) {
+    robot.read.absent.push_back(nameRelativeTo(path, file));
+  }
   return hashFiles(robot.read.files, path);
 }
 
@@ -94,9 +113,10 @@ std::vector<fs::path> rosPackagePath() {
 Result<SourceRobot> importRobot(const fs::path& path, const RobotImportOptions& options) {
   if (options.up != UpAxis::kZ && options.up != UpAxis::kY) {
     return fail(ErrorCode::kUnsupported, path.string(),
-                "the up axis of a URDF can only be Z or Y; turn the robot's root otherwise");
+                "the up axis of a robot can only be Z or Y; turn the robot's root otherwise");
   }
-  ASSIGN_OR_RETURN(auto model, readDescription(path, options.time_limit));
+  ASSIGN_OR_RETURN(auto model, readDescription(path, {.allow_outside = options.allow_outside},
+                                               options.time_limit));
   SourceRobot robot;
   robot.name = model.name;
   robot.warnings = std::move(model.warnings);
@@ -106,12 +126,13 @@ Result<SourceRobot> importRobot(const fs::path& path, const RobotImportOptions& 
   ASSIGN_OR_RETURN(const auto mimics, resolveMimics(mimicsOf(model, tree), where));
   robot.links.resize(tree.size());
   addJoints(model, tree, mimics, options.up, robot);
-  GeometryBuilder geometry(path, options, robot);
+  addTouching(model, robot);
+  GeometryBuilder geometry(path, model.meshes, options, robot);
   for (std::size_t i = 0; i < tree.size(); ++i) {
     RETURN_IF_ERROR(geometry.addShapes(model.links[tree[i].link], robot.links[i]));
   }
   geometry.noteSearch();
-  RETURN_IF_ERROR(finishFiles(robot, path));
+  RETURN_IF_ERROR(finishFiles(model, robot, path));
   return robot;
 }
 

@@ -106,6 +106,27 @@ TEST(RenderSource, OfARobotHasAPartForEachLinkThatIsSeen) {
   EXPECT_EQ(colorOf(source->parts[1].meshes[1]), 0xFFFFFFFFU);
 }
 
+TEST(RenderSource, OfARobotThatHidesLooksHasItsColorsAndImages) {
+  bake::SourceRobot made = robot();
+  auto& visuals = made.links[2].visuals;
+  for (bake::LinkShape& shape : visuals) {
+    shape.hides_looks = true;
+    shape.texture = "wood.png";
+  }
+  made.meshes[1].meshes[0].uvs.assign(made.meshes[1].meshes[0].positions.size(), {0.5F, 0.5F});
+  visuals.push_back(visuals.back());
+  visuals.back().texture.clear();
+  const auto source = bake::robotRenderSource(made, "nowhere", {});
+  ASSERT_TRUE(source);
+  const auto& meshes = source->parts[1].meshes;
+  ASSERT_EQ(meshes.size(), 4U);
+  // Without texture coordinates, with them, and without an image.
+  EXPECT_EQ(source->materials[meshes[0].material].base_color_texture, "");
+  EXPECT_EQ(source->baked.materials[meshes[0].material].color, 0xFFFF0000U);
+  EXPECT_EQ(source->materials[meshes[1].material].base_color_texture, "wood.png");
+  EXPECT_EQ(source->baked.materials[meshes[2].material].color, 0xFFFF0000U);
+}
+
 TEST(RenderSource, OfALinkThatLostItsVisualsIsItsCollisionGeometryInGray) {
   bake::SourceRobot made = robot();
   for (bake::SourceLink& link : made.links) {

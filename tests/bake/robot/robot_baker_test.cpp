@@ -278,10 +278,11 @@ TEST(RobotBaker, WarnsOfAssumedLimitsUntilTheRecipeStatesThem) {
   const std::string joint = robot.links[1].joint_name;
   RobotRecipe recipe = recipeFor("hand");
   const BakedRobot guessed = bakeWell(robot, &recipe, coarse());
-  EXPECT_THAT(guessed.warnings,
-              ElementsAre("joint '" + joint +
-                          "': the URDF states no limits for it; -1 to 1 m are assumed, [limits] of "
-                          "the recipe may state others"));
+  EXPECT_THAT(
+      guessed.warnings,
+      ElementsAre("joint '" + joint +
+                  "': the robot's file states no limits for it; -1 to 1 m are assumed, [limits] of "
+                  "the recipe may state others"));
   recipe.limits.push_back({{joint, ""}, {0.25, 0.5}});
   const BakedRobot stated = bakeWell(robot, &recipe, coarse());
   EXPECT_THAT(stated.warnings, IsEmpty());

@@ -38,9 +38,9 @@ std::vector<Fault> syntaxFaults() {
       {"UnclosedElement", "<robot name=\"r\">\n<link name=\"a\"/>", "r.urdf",
        "it is not well-formed XML: Error reading Element value; repair or generate it again"},
       {"OtherRoot", "<sdf version=\"1.7\"/>", "r.urdf",
-       "its outermost element is <sdf>, expected <robot>"},
+       "its outermost element is <sdf>, expected <robot> (URDF) or <mujoco> (MJCF)"},
       {"ZeroBytes", std::string("<robot\0", 7), "r.urdf",
-       "it has NUL bytes, so it is no XML text; is it a URDF?"},
+       "it has NUL bytes, so it is no XML text; is it a URDF or an MJCF?"},
       {"NoRobotName", "<robot><link name=\"a\"/></robot>", "r.urdf",
        "the URDF parser refuses it: No name given for the robot"},
       {"Xacro", "<robot name=\"r\">\n<xacro:macro name=\"m\"/><link name=\"a\"/></robot>",
@@ -212,14 +212,15 @@ std::vector<Fault> geometryFaults() {
        "r.urdf: link 'a' collision 1", "a mesh with scale 1 0 1: a scale of 0 flattens it"},
       {"MeshMissing", robotText(linkText("a", "<mesh filename=\"m.stl\"/>")), "r.urdf: link 'a'",
        "it lost all its collision geometry: link 'a' collision 1: mesh 'm.stl' is missing; looked "
-       "for m.stl (from the URDF's folder); name the package's folder (`package` NAME=DIR), put "
+       "for m.stl (from the robot's folder); name the package's folder (`package` NAME=DIR), put "
        "the file there, or give `allow-missing`"},
       {"MeshOfUnknownPackage",
        robotText(linkText("a", "<mesh filename=\"package://no_such_package/m.stl\"/>")),
        "r.urdf: link 'a'",
        "it lost all its collision geometry: link 'a' collision 1: mesh "
        "'package://no_such_package/m.stl' is missing; looked for a folder 'no_such_package' or a "
-       "package.xml of that name in the search path and above the URDF; name the package's folder "
+       "package.xml of that name in the search path and above the robot's file; name the package's "
+       "folder "
        "(`package` NAME=DIR), put the file there, or give `allow-missing`"},
   };
 }
@@ -305,7 +306,8 @@ TEST(UrdfFiles, ThatAreFoldersAreAnIoError) {
   const auto robot = bake::importRobot(folder.path());
   ASSERT_FALSE(robot.has_value());
   EXPECT_EQ(robot.error().code, ErrorCode::kIo);
-  EXPECT_EQ(robot.error().message, "it is a folder; give the path of a URDF file");
+  EXPECT_EQ(robot.error().message,
+            "it is a folder; give the path of a robot's file (URDF or MJCF)");
 }
 
 TEST(UrdfFiles, BeyondTheLimitAreRefusedUnread) {
@@ -316,7 +318,7 @@ TEST(UrdfFiles, BeyondTheLimitAreRefusedUnread) {
   ASSERT_FALSE(robot.has_value());
   EXPECT_EQ(robot.error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(robot.error().message,
-            "it has 67108865 bytes, at most 67108864 are read; is it a URDF?");
+            "it has 67108865 bytes, at most 67108864 are read; is it a URDF or an MJCF?");
 }
 
 TEST(UrdfFiles, ThatNestDeeperThanAnyStackAreRefusedUnread) {
@@ -326,7 +328,8 @@ TEST(UrdfFiles, ThatNestDeeperThanAnyStackAreRefusedUnread) {
   const auto robot = importText(folder, text);
   ASSERT_FALSE(robot.has_value());
   EXPECT_EQ(robot.error().code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(robot.error().message, "its elements are nested more than 100 deep; is it a URDF?");
+  EXPECT_EQ(robot.error().message,
+            "its elements are nested more than 100 deep; is it a URDF or an MJCF?");
 }
 
 TEST(UrdfFiles, WithEntityBombsAreRefused) {
@@ -340,7 +343,8 @@ TEST(UrdfFiles, WithEntityBombsAreRefused) {
   text += "]><robot name=\"r\"><link name=\"&z;\"/></robot>";
   const auto robot = importText(folder, text);
   ASSERT_FALSE(robot.has_value());
-  EXPECT_EQ(robot.error().message, "its outermost element is missing, expected <robot>");
+  EXPECT_EQ(robot.error().message,
+            "its outermost element is missing, expected <robot> (URDF) or <mujoco> (MJCF)");
 }
 
 TEST(UrdfOptions, RefuseUpAxesThatAreNeitherYNorZ) {

@@ -118,10 +118,10 @@ constexpr const char* kLostVisual =
 constexpr const char* kLostCollision =
     "<collision><geometry><mesh filename=\"lost.stl\"/></geometry></collision>";
 constexpr const char* kLostVisualWarning =
-    "link 'a' visual 1: mesh 'lost.dae' is missing; looked for lost.dae (from the URDF's folder)";
+    "link 'a' visual 1: mesh 'lost.dae' is missing; looked for lost.dae (from the robot's folder)";
 constexpr const char* kBoxVisual = "<visual><geometry><box size=\"1 1 1\"/></geometry></visual>";
 constexpr const char* kLostCollisionWarning =
-    "link 'a' collision 1: mesh 'lost.stl' is missing; looked for lost.stl (from the URDF's "
+    "link 'a' collision 1: mesh 'lost.stl' is missing; looked for lost.stl (from the robot's "
     "folder)";
 
 std::string linkWith(std::string_view inside) {

@@ -76,7 +76,7 @@ TEST_F(MeshReferences, ToThePackageOfTheUrdfAreFoundByFolderName) {
   const fs::path mesh = put("ws/src/pkg_description/meshes/m.stl");
   const MeshResolution found = resolve("package://pkg_description/meshes/m.stl");
   EXPECT_EQ(found.file, mesh);
-  EXPECT_EQ(found.how, "package above the URDF");
+  EXPECT_EQ(found.how, "package above the robot's file");
   EXPECT_EQ(resolve("model://pkg_description/meshes/m.stl").file, mesh);
 }
 
@@ -86,7 +86,7 @@ TEST_F(MeshReferences, ToThePackageOfTheUrdfAreFoundByItsPackageFile) {
                       "<package>\n  <name> renamed </name>\n</package>");
   const MeshResolution found = resolve("package://renamed/meshes/m.stl");
   EXPECT_EQ(found.file, mesh);
-  EXPECT_EQ(found.how, "package above the URDF");
+  EXPECT_EQ(found.how, "package above the robot's file");
 }
 
 TEST_F(MeshReferences, ToPackagesDeepInASearchRootAreFoundByTheirPackageFile) {
@@ -114,7 +114,7 @@ TEST_F(MeshReferences, ByPathAreRelativeToTheUrdf) {
   const fs::path mesh = put("ws/src/pkg_description/meshes/m.stl");
   const fs::path beside = put("ws/src/pkg_description/robots/beside.stl");
   EXPECT_EQ(resolve("../meshes/m.stl").file, mesh);
-  EXPECT_EQ(resolve("../meshes/m.stl").how, "relative to the URDF");
+  EXPECT_EQ(resolve("../meshes/m.stl").how, "relative to the robot's file");
   EXPECT_EQ(resolve("beside.stl").file, beside);
   EXPECT_EQ(resolve("./beside.stl").file, beside);
   EXPECT_EQ(resolve("..\\meshes\\m.stl").file, mesh);
@@ -156,10 +156,10 @@ TEST_F(MeshReferences, ThatLeadNowhereSayWhereTheyWereLookedFor) {
   options_.packages["of_this_test"] = folder_.path() / "elsewhere";
   const MeshResolution named = resolve("package://of_this_test/meshes/m.stl");
   EXPECT_TRUE(named.file.empty());
-  EXPECT_EQ(named.how, "../../../../elsewhere/meshes/m.stl (from the URDF's folder)");
+  EXPECT_EQ(named.how, "../../../../elsewhere/meshes/m.stl (from the robot's folder)");
   const MeshResolution unknown = resolve("package://other/m.stl");
   EXPECT_THAT(unknown.how, HasSubstr("a folder 'other' or a package.xml of that name"));
-  EXPECT_EQ(resolve("../m.stl").how, "../m.stl (from the URDF's folder)");
+  EXPECT_EQ(resolve("../m.stl").how, "../m.stl (from the robot's folder)");
   for (const char* odd : {"", "package://", "package:///", "package://nowhere", "http://host/m.stl",
                           "/", "..", "file://"}) {
     SCOPED_TRACE(odd);

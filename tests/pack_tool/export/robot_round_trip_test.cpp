@@ -7,11 +7,13 @@
 #include <map>
 #include <random>
 
+#include "galactic/bake/packs.h"
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/robot_import.h"
 #include "pack_tool/asset_packs.h"
 #include "pack_tool/export/robot_text.h"
 #include "robot_description/hand_spheres.h"
+#include "support/homes/sample_world.h"
 #include "support/scratch_folder.h"
 
 namespace galactic::pack_tool::robot_round_trip_test {
@@ -91,6 +93,47 @@ TEST(ExportedUrdf, MovesAsThePackDoesWhateverTheRotations) {
     const ToyPack pack{ToyRobot{.upper_rotation = rotation}};
     const Robot robot = robotOf(pack);
     expectSameMotion(robot, bakedAgain(folder, robot), random);
+  }
+}
+
+/// A body with two hinges, one of them beside its origin, whose zero is not where the text places
+/// it, and fingers that follow each other.
+constexpr const char* kMjcf = R"(<mujoco model="m"><compiler angle="radian"/><worldbody>
+<body name="base"><freejoint/><geom type="box" size=".2 .2 .1"/>
+<body name="arm" pos="0 0 .3" euler=".3 .2 .1">
+<joint name="pan" axis="0 0 1" pos=".1 0 0" ref=".4" range="-1 2"/>
+<joint name="tilt" axis="0 1 1" pos="0 .1 0" range="-1 1"/><geom type="capsule" size=".05 .2"/>
+<body name="left" pos=".3 .05 0"><joint name="l" type="slide" axis="0 1 0" range="0 .05"/>
+<geom type="box" size=".05 .01 .02"/></body>
+<body name="right" pos=".3 -.05 0"><joint name="r" type="slide" axis="0 -1 0" range="0 .05"/>
+<geom type="box" size=".05 .01 .02"/></body></body></body></worldbody>
+<equality><joint joint1="r" joint2="l"/></equality></mujoco>)";
+
+TEST(ExportedUrdf, OfARobotThatWasAnMjcfMovesAsItDoes) {
+  const ScratchFolder folder;
+  const auto source = bake::importRobot(folder.write("m.xml", kMjcf));
+  ASSERT_TRUE(source.has_value()) << source.error().text();
+  bake::RobotBakeOptions options;
+  options.radii = {0.02F, 0.1F};
+  const auto baked = bake::bakeRobot(*source, nullptr, options);
+  ASSERT_TRUE(baked.has_value()) << baked.error().text();
+  const test::MemoryPack pack(
+      PackKind::kRobot,
+      test::MemoryPack::opened(bake::encodeRobotPack(*baked, test::testProvenance("m.xml"))), "m");
+  const Robot robot = *Robot::from(pack.pack());
+  const bake::BakedRobot again = bakedAgain(folder, robot);
+  ASSERT_EQ(again.kinematics.limits.size(), 3U);
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < robot.links().size(); ++n) names.emplace_back(robot.linkName(n));
+  for (const std::vector<float>& positions :
+       {std::vector<float>{0, 0, 0}, {0.4F, 0, 0.02F}, {-0.7F, 0.9F, 0.05F}}) {
+    const auto before = posesOf(robot.links(), names, positions);
+    const auto after = posesOf(again.kinematics.links, again.link_names, positions);
+    ASSERT_EQ(after.size(), before.size());
+    for (const auto& [name, was] : before) {
+      const Vec3 away = after.at(name) * Vec3{1, 1, 1} - was * Vec3{1, 1, 1};
+      EXPECT_LT(std::sqrt(dot(away, away)), kPoseTolerance) << name;
+    }
   }
 }
 

@@ -11,6 +11,7 @@
 #include "galactic/bake/episode_generator.h"
 #include "galactic/bake/jobs.h"
 #include "galactic/bake/libraries.h"
+#include "galactic/bake/robot_import.h"
 #include "galactic/bake/source_asset.h"
 #include "galactic/bake/world_pack.h"
 #include "galactic/error.h"
@@ -165,10 +166,13 @@ struct BakedPack {
 /// is the result's error where no object is left, or where there is no pack for another reason.
 [[nodiscard]] Result<BakedPack> bakeObjectFiles(const ObjectJob& job, BakeContext& context);
 
-/// Bakes one URDF with its recipe and meshes into its pack.
+/// Bakes one robot (URDF or MJCF) with its recipe and meshes into its pack.
 [[nodiscard]] Result<BakedPack> bakeRobotFile(const RobotJob& job, BakeContext& context);
 
-/// Reads a URDF as bakeRobotFile does.
+/// How the robot's file of a job is read.
+[[nodiscard]] RobotImportOptions robotOptionsOf(const RobotJob& job);
+
+/// Reads a robot's file as bakeRobotFile does.
 [[nodiscard]] Result<SourceRobot> readRobotFile(const RobotJob& job);
 
 /// Imports a published set of episodes into a pack.

@@ -81,13 +81,13 @@ struct ObjectJob {
 
 /// One robot.
 struct RobotJob {
-  /// A URDF.
+  /// A URDF or an MJCF.
   std::filesystem::path input{};
   /// Folders of ROS packages by name; next come those of ROS_PACKAGE_PATH.
   std::map<std::string, std::filesystem::path> packages{};
   /// Robot recipe (TOML) or published collection (JSON); empty: none.
   std::filesystem::path recipe{};
-  /// Hand-made spheres (spherized URDF, SRDF); empty: none.
+  /// Hand-made spheres (spherized URDF or MJCF, SRDF); empty: none.
   std::filesystem::path spheres{};
   bool allow_missing = false;
   bool allow_outside = false;

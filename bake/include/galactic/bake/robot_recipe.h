@@ -78,12 +78,12 @@ struct RecipeJoint {
   RecipeName joint;
   /// Farthest move of one action, radians or meters.
   double step = 0;
-  /// Narrower limits than the URDF's.
+  /// Narrower limits than those of the robot's file.
   std::optional<double> min;
   std::optional<double> max;
 };
 
-/// What stands in for the limits of the URDF, or for their absence: radians or meters.
+/// What stands in for the limits of the robot's file, or for their absence: radians or meters.
 struct RecipeLimits {
   RecipeName joint;
   JointLimits limits;
@@ -136,7 +136,7 @@ struct RecipeSpheres {
   std::vector<RecipeLinkSpheres> links;
 };
 
-/// What a URDF does not say about a robot. Every frame Y up, X forward; SI units.
+/// What a robot's file (URDF, MJCF) does not say. Every frame Y up, X forward; SI units.
 struct RobotRecipe {
   std::string name;
   /// The file that it was read from, for messages and provenance.
@@ -149,9 +149,10 @@ struct RobotRecipe {
   std::vector<RecipeJoint> joints;
   /// Of revolute and prismatic joints, by name.
   std::vector<RecipeLimits> limits;
-  /// Joints that follow others, by name, beside those that the URDF says.
+  /// Joints that follow others, by name, beside those that its file says.
   std::vector<RecipeMimic> mimics;
-  /// Joints that do not start at 0 (or at their limit nearest to 0), by name.
+  /// Joints that do not start where the robot's file has them rest, or else at 0 (or at their limit
+  /// nearest to it), by name.
   std::vector<RecipeStart> start_pose;
   RecipeSpheres spheres;
   /// Links that may touch.
@@ -159,10 +160,10 @@ struct RobotRecipe {
 };
 
 /// Reads a recipe in TOML; describeRobotRecipe() is its documentation. Positions and rotations in
-/// the text are in the URDF's frame (Z up) and are converted here, degrees to radians likewise.
-/// Strict: fails with kIo (missing file) or kInvalidInput, naming file and line, on broken TOML,
-/// unknown keys (with the nearest known one), missing keys, wrong types, values out of range and
-/// contradictions.
+/// the text are in the frame of the robot's file (Z up) and are converted here, degrees to radians
+/// likewise. Strict: fails with kIo (missing file) or kInvalidInput, naming file and line, on
+/// broken TOML, unknown keys (with the nearest known one), missing keys, wrong types, values out of
+/// range and contradictions.
 [[nodiscard]] Result<RobotRecipe> readRobotRecipe(const std::filesystem::path& path);
 
 /// A complete recipe with every key explained, for --print-recipe; readRobotRecipe reads it.
@@ -173,12 +174,12 @@ struct RobotRecipe {
 /// and it fits the robot. Deterministic.
 [[nodiscard]] std::string draftRobotRecipe(const SourceRobot& robot);
 
-/// The limits of a link's joint: the recipe's where it has some, else the URDF's. `recipe` may be
+/// The limits of a link's joint: the recipe's where it has some, else its file's. `recipe` may be
 /// null.
 [[nodiscard]] std::optional<JointLimits> jointLimits(const SourceLink& link,
                                                      const RobotRecipe* recipe);
 
-/// Makes the joints of `robot` follow others as the recipe says, in place of what its URDF says of
+/// Makes the joints of `robot` follow others as the recipe says, in place of what its file says of
 /// them. Fails with kInvalidInput where a joint does not exist or has no single position, and where
 /// joints follow each other in a circle.
 [[nodiscard]] Result<void> coupleJoints(const RobotRecipe& recipe, SourceRobot& robot);

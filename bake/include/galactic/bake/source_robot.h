@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -30,10 +31,16 @@ struct MeshShape {
 /// One visual or collision element of a link.
 struct LinkShape {
   std::variant<BoxShape, CylinderShape, SphereShape, MeshShape> geometry;
-  /// Includes the mesh's scale.
+  /// Includes the mesh's scale, and of an ellipsoid what makes it of a sphere.
   Affine link_from_shape{};
-  /// Linear RGBA where the URDF names a color.
+  /// Linear RGBA where the robot's file names a color.
   std::optional<std::array<float, 4>> color;
+  /// Whether the color counts whatever a mesh's file says of its looks (MJCF); else (URDF) only
+  /// where that says nothing.
+  bool hides_looks = false;
+  /// Of hides_looks: an image that is drawn on a mesh with texture coordinates, in place of those
+  /// of its file. Relative to the robot file's folder; empty: none.
+  std::string texture{};
 };
 
 /// Radians or meters, lower <= upper.
@@ -66,6 +73,8 @@ struct SourceLink {
   /// Whether the file says nothing of limits although the joint needs some: these are a guess.
   bool limits_are_assumed = false;
   std::optional<Mimic> mimic;
+  /// Where the file says that the joint rests (MJCF's keyframe "home"); radians or meters.
+  std::optional<double> rest;
   std::vector<LinkShape> collisions;
   std::vector<LinkShape> visuals;
   /// Whether the file has visuals of which none could be read: the collisions are drawn instead.
@@ -75,17 +84,20 @@ struct SourceLink {
 /// What the robot importer hands to the baker: neutral, every frame Y up and X forward, meters.
 struct SourceRobot {
   std::string name;
-  /// Root first, parents before children; children in the order of the URDF's joints.
+  /// Root first, parents before children; children in the order of the file's joints.
   std::vector<SourceLink> links;
   /// Each mesh file once.
   std::vector<SourceAsset> meshes;
-  /// The URDF, every mesh file, also those that do not load, and every package.xml that decided
-  /// where meshes are; relative to the URDF's folder. Unsettled where a mesh does not load, which
-  /// may lack another file, and where a package was searched for in many folders.
+  /// Links that the file allows to touch, by index.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> may_touch;
+  /// The robot's file, what it includes, every mesh and texture, also those that do not load, and
+  /// every package.xml that decided where meshes are; relative to the robot file's folder.
+  /// Unsettled where a mesh does not load, which may lack another file, and where a package was
+  /// searched for in many folders.
   ReadFiles read;
   /// One sentence each.
   std::vector<std::string> warnings;
-  /// References to meshes that were not found, as the URDF has them.
+  /// References to meshes that were not found, as the file has them.
   std::vector<std::string> missing;
   /// One sentence for each mesh that was found and does not load.
   std::vector<std::string> unreadable;

@@ -76,9 +76,10 @@ Result<TiXmlElement*> robotElement(TiXmlDocument& document, const std::string& t
   TiXmlElement* robot = document.FirstChildElement("robot");
   if (robot == nullptr) {
     const TiXmlElement* root = document.RootElement();
-    return fail(ErrorCode::kInvalidInput, where,
-                fmt::format("its outermost element is {}, expected <robot>",
-                            root == nullptr ? "missing" : fmt::format("<{}>", root->Value())));
+    return fail(
+        ErrorCode::kInvalidInput, where,
+        fmt::format("its outermost element is {}, expected <robot> (URDF) or <mujoco> (MJCF)",
+                    root == nullptr ? "missing" : fmt::format("<{}>", root->Value())));
   }
   // The parser's library would pass over them, and their links would have no shape.
   for (TiXmlElement* e = robot; e != nullptr; e = nextElement(*e)) {
@@ -152,6 +153,26 @@ void addMaterial(DescribedShape& shape, const urdf::Material& material) {
   shape.has_color = shape.texture.empty() || c.r + c.g + c.b > 0;
 }
 
+/// The moments of an inertial along the axes of its link: R M R^T.
+LinkInertial toInertial(const std::string& link, const urdf::Inertial& inertial) {
+  const Affine turn = toAffine(inertial.origin);
+  const std::array<std::array<double, 3>, 3> moments{{{inertial.ixx, inertial.ixy, inertial.ixz},
+                                                      {inertial.ixy, inertial.iyy, inertial.iyz},
+                                                      {inertial.ixz, inertial.iyz, inertial.izz}}};
+  const auto along = [&](std::size_t i, std::size_t j) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t l = 0; l < 3; ++l) sum += turn[4 * i + k] * moments[k][l] * turn[4 * j + l];
+    }
+    return sum;
+  };
+  return {
+      .link = link,
+      .mass = inertial.mass,
+      .center = toArray(inertial.origin.position),
+      .moments = {along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(0, 2), along(1, 2)}};
+}
+
 DescribedLink toLink(const urdf::Link& link) {
   DescribedLink converted;
   converted.name = link.name;
@@ -163,6 +184,7 @@ DescribedLink toLink(const urdf::Link& link) {
   for (const auto& collision : link.collision_array) {
     converted.collisions.push_back(toShape(collision->origin, *collision->geometry));
   }
+  if (link.inertial) converted.inertials.push_back(toInertial(link.name, *link.inertial));
   return converted;
 }
 
@@ -206,26 +228,6 @@ DescribedJoint toJoint(const urdf::Joint& joint) {
   return converted;
 }
 
-/// The moments of an inertial along the axes of its link: R M R^T.
-LinkInertial toInertial(const std::string& link, const urdf::Inertial& inertial) {
-  const Affine turn = toAffine(inertial.origin);
-  const std::array<std::array<double, 3>, 3> moments{{{inertial.ixx, inertial.ixy, inertial.ixz},
-                                                      {inertial.ixy, inertial.iyy, inertial.iyz},
-                                                      {inertial.ixz, inertial.iyz, inertial.izz}}};
-  const auto along = [&](std::size_t i, std::size_t j) {
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t l = 0; l < 3; ++l) sum += turn[4 * i + k] * moments[k][l] * turn[4 * j + l];
-    }
-    return sum;
-  };
-  return {
-      .link = link,
-      .mass = inertial.mass,
-      .center = toArray(inertial.origin.position),
-      .moments = {along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(0, 2), along(1, 2)}};
-}
-
 /// What the parser's library makes of the prepared text.
 Result<urdf::ModelInterfaceSharedPtr> parsedModel(const std::string& text, const std::string& where,
                                                   const LogCapture& log) {
@@ -242,12 +244,13 @@ Result<urdf::ModelInterfaceSharedPtr> parsedModel(const std::string& text, const
 
 }  // namespace
 
-Result<RobotDescription> parseUrdf(const std::string& text, const std::string& where) {
+Result<RobotDescription> parseUrdf(const std::string& text, const std::string& where,
+                                   DescriptionPart part) {
   TiXmlDocument document;
   const auto robot = robotElement(document, text, where);
   if (!robot) return tl::unexpected(robot.error());
   RobotDescription model;
-  const ParserText prepared = textForParser(document, UrdfPart::kShapesAndJoints, model.warnings);
+  const ParserText prepared = textForParser(document, part, model.warnings);
   LogCapture log;
   ASSIGN_OR_RETURN(const auto parsed, parsedModel(prepared.text, where, log));
   model.name = parsed->name_;
@@ -262,22 +265,6 @@ Result<RobotDescription> parseUrdf(const std::string& text, const std::string& w
   }
   for (std::string& warning : log.takeWarnings()) model.warnings.push_back(std::move(warning));
   return model;
-}
-
-Result<std::vector<LinkInertial>> parseInertials(const std::string& text,
-                                                 const std::string& where) {
-  TiXmlDocument document;
-  ASSIGN_OR_RETURN(const auto robot, robotElement(document, text, where));
-  std::vector<std::string> warnings;
-  const ParserText prepared = textForParser(document, UrdfPart::kInertials, warnings);
-  const LogCapture log;
-  ASSIGN_OR_RETURN(const auto parsed, parsedModel(prepared.text, where, log));
-  std::vector<LinkInertial> inertials;
-  for (const std::string& name : namesInOrder(*robot, "link")) {
-    const auto link = parsed->getLink(name);
-    if (link && link->inertial) inertials.push_back(toInertial(name, *link->inertial));
-  }
-  return inertials;
 }
 
 Result<std::vector<LinkSpheres>> parseSrdf(const std::string& text, const std::string& where) {

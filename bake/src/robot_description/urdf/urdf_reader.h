@@ -1,9 +1,7 @@
 #pragma once
-#include <chrono>
-#include <filesystem>
+#include <string>
 #include <vector>
 
-#include "galactic/bake/robot_import.h"
 #include "galactic/error.h"
 #include "robot_description/description.h"
 
@@ -11,11 +9,8 @@ namespace galactic::bake {
 
 /// Parses URDF text. For a process of its own: deep or endless XML may crash or hang the parser,
 /// and its messages go through a global of the parser's library. `where` is put in front of errors.
-[[nodiscard]] Result<RobotDescription> parseUrdf(const std::string& text, const std::string& where);
-
-/// The same for its <inertial> elements alone.
-[[nodiscard]] Result<std::vector<LinkInertial>> parseInertials(const std::string& text,
-                                                               const std::string& where);
+[[nodiscard]] Result<RobotDescription> parseUrdf(const std::string& text, const std::string& where,
+                                                 DescriptionPart part);
 
 /// Parses the <link_sphere_approximation> elements of SRDF text, spheres still in the URDF's frame.
 /// For a process of its own, as parseUrdf.

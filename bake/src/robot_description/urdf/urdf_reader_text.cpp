@@ -124,13 +124,13 @@ void completeLimits(TiXmlElement& robot, std::set<std::string>& without_limits) 
   }
 }
 
-void removeUnread(TiXmlElement& robot, UrdfPart part) {
+void removeUnread(TiXmlElement& robot, DescriptionPart part) {
   for (TiXmlElement* joint : childrenOf(robot, "joint")) {
     for (const char* tag : kUnreadOfJoints) {
       for (TiXmlElement* unread : childrenOf(*joint, tag)) joint->RemoveChild(unread);
     }
   }
-  if (part == UrdfPart::kInertials) return;
+  if (part == DescriptionPart::kMasses) return;
   for (TiXmlElement* link : childrenOf(robot, "link")) {
     for (TiXmlElement* unread : childrenOf(*link, "inertial")) link->RemoveChild(unread);
   }
@@ -295,7 +295,7 @@ std::optional<std::vector<double>> numbersOf(const char* text, std::size_t count
   return numbers;
 }
 
-ParserText textForParser(TiXmlDocument& document, UrdfPart part,
+ParserText textForParser(TiXmlDocument& document, DescriptionPart part,
                          std::vector<std::string>& warnings) {
   ParserText prepared;
   TiXmlElement& robot = *document.FirstChildElement("robot");

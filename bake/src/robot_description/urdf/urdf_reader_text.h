@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "robot_description/description.h"
+
 class TiXmlDocument;
 class TiXmlElement;
 
@@ -15,9 +17,6 @@ namespace galactic::bake {
 
 /// The element that follows in the text, that inside before that behind; null after the last.
 [[nodiscard]] TiXmlElement* nextElement(TiXmlElement& element);
-
-/// What somebody wants to know of a URDF.
-enum class UrdfPart { kShapesAndJoints, kInertials };
 
 /// The text of a URDF as urdfdom takes it.
 struct ParserText {
@@ -33,7 +32,7 @@ struct ParserText {
 /// efforts and velocities, <dynamics>, <safety_controller>, <calibration> and, unless they are
 /// wanted, <inertial>. `document`, parsed, with a <robot> element, becomes what the text says. What
 /// is worth knowing is added to `warnings`.
-[[nodiscard]] ParserText textForParser(TiXmlDocument& document, UrdfPart part,
+[[nodiscard]] ParserText textForParser(TiXmlDocument& document, DescriptionPart part,
                                        std::vector<std::string>& warnings);
 
 }  // namespace galactic::bake
