@@ -31,7 +31,7 @@ set(CPACK_DEBIAN_RUN_PACKAGE_SUGGESTS "ffmpeg, python3-galactic")
 
 set(CPACK_DEBIAN_BAKE_PACKAGE_NAME galactic-bake)
 set(CPACK_DEBIAN_BAKE_DESCRIPTION "Makes packs for galactic of scenes, objects and robots
- galactic-bake turns scene meshes, scans, objects and URDF robots into packs:
+ galactic-bake turns scene meshes, scans, objects and robots (URDF, MJCF) into packs:
  column grids, oriented boxes, sphere sets, kinematics, render meshes, episodes.")
 set(CPACK_DEBIAN_BAKE_PACKAGE_RECOMMENDS galactic)
 
