@@ -37,7 +37,7 @@ OF_ALL_TOOLS = {"--help", "--version"}
 
 def documents(root: pathlib.Path) -> list[pathlib.Path]:
     found = [path for path in root.rglob("*.md")
-             if not {"build", ".git"}.intersection(path.relative_to(root).parts)]
+             if path.relative_to(root).parts[0] not in {"build", ".git"}]
     return sorted(found)
 
 

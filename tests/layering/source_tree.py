@@ -3,8 +3,8 @@
 import pathlib
 import subprocess
 
-# Folders of generated files and of version control.
-SKIPPED_FOLDERS = {".git", "build", "__pycache__"}
+# Folders of the root that hold generated files and version control. Others may be called so: bake/src/build.
+SKIPPED_FOLDERS = {".git", "build"}
 
 
 def project_files(root: pathlib.Path, suffixes: tuple[str, ...]) -> list[pathlib.Path]:
@@ -21,7 +21,7 @@ def project_files(root: pathlib.Path, suffixes: tuple[str, ...]) -> list[pathlib
     else:
         names = [path.relative_to(root) for path in root.rglob("*") if path.is_file()]
     return sorted(name for name in names
-                  if name.suffix in suffixes and not SKIPPED_FOLDERS.intersection(name.parts)
+                  if name.suffix in suffixes and name.parts[0] not in SKIPPED_FOLDERS
                   and (root / name).is_file())
 
 

@@ -270,6 +270,9 @@ class StyleTest(PlantedTree):
     def test_leaves_build_folders_alone(self):
         self.assertEqual(self.offences("build/release/a.cpp", "// TODO\n"), [])
 
+    def test_looks_at_folders_of_that_name_elsewhere(self):
+        self.assertEqual(len(self.offences("bake/src/build/a.cpp", "// TODO\n")), 1)
+
     def test_says_when_it_found_nothing_to_look_at(self):
         with tempfile.TemporaryDirectory() as empty:
             self.assertEqual(check_style.main([empty]), 1)
