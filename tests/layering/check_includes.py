@@ -8,13 +8,15 @@ must be on the folder's list; the types of a heavy library are named only in the
 """
 
 import dataclasses
+import fnmatch
 import pathlib
 import re
 import sys
 
 import source_tree
 
-SUFFIXES = (".h", ".cpp")
+SUFFIXES = (".h", ".cpp", ".inl")
+ARCHITECTURE = "docs/architecture.md"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
@@ -32,44 +34,46 @@ class HeavyLibrary:
     headers: re.Pattern
     # A type of it, also when it is only declared.
     types: re.Pattern
-    allowed: re.Pattern
+    # Patterns of paths; "*" stands for any text.
+    files: tuple[str, ...]
+
+    def is_known_to(self, path: pathlib.Path) -> bool:
+        return any(fnmatch.fnmatchcase(path.as_posix(), one) for one in self.files)
 
 
 HEAVY_LIBRARIES = (
     HeavyLibrary("assimp", re.compile(r"assimp/"),
                  re.compile(r"\b(Assimp::|ai(Scene|Node|Mesh|Material|Matrix|Vector|Texture)\w*)"),
-                 re.compile(r"bake/src/import/assimp_reader[^/]*$")),
+                 ("bake/src/import/assimp_reader*",)),
     HeavyLibrary("Bullet", re.compile(r"(bullet/|Bullet|LinearMath/|bt[A-Z])"),
                  re.compile(r"\bbt[A-Z][a-z]\w+"),
-                 re.compile(r"bake/src/((engines|episodes/trial)/bullet[^/]*|fit/convex_hull\.cpp)$|"
-                            r"dynamics/bullet/|"
-                            r"tests/bake/(robot|simulation)/bullet[^/]*$|"
-                            r"benchmarks/simulation/batch_kinematics\.cpp$")),
+                 ("bake/src/engines/bullet*", "bake/src/episodes/trial/bullet*", "bake/src/fit/convex_hull.cpp",
+                  "dynamics/bullet/*", "tests/bake/robot/bullet*", "tests/bake/simulation/bullet*",
+                  "benchmarks/simulation/batch_kinematics.cpp")),
     HeavyLibrary("Embree", re.compile(r"embree\d/"), re.compile(r"\b(RTC[A-Z]\w+|rtc[A-Z]\w+)"),
-                 re.compile(r"bake/src/engines/embree[^/]*$")),
+                 ("bake/src/engines/embree*",)),
     HeavyLibrary("urdfdom", re.compile(r"(urdf_|tinyxml|console_bridge/)"),
                  re.compile(r"\b(urdf::|TiXml\w+|console_bridge::)"),
-                 re.compile(r"bake/src/robot_description/(urdf/urdf_reader[^/]*|mjcf/xml_tree\.cpp)$")),
+                 ("bake/src/robot_description/urdf/urdf_reader*", "bake/src/robot_description/mjcf/xml_tree.cpp")),
     HeavyLibrary("meshoptimizer", re.compile(r"meshoptimizer\.h"), re.compile(r"\bmeshopt_\w+"),
-                 re.compile(r"bake/src/render/mesh_optimizer\.cpp$")),
+                 ("bake/src/render/mesh_optimizer.cpp",)),
     HeavyLibrary("OpenGL", re.compile(r"(epoxy|EGL|GL|KHR)/"),
                  re.compile(r"\b(GL(u?int|enum|sync|sizei)|EGL(Display|Context|DeviceEXT))\b"),
-                 re.compile(r"(runtime/src/render/gl/[^/]*|tests/runtime/render/gl_[^/]*)$")),
-    HeavyLibrary("CUDA", re.compile(r"(cuda|nv)\w*\.h"), re.compile(r"\bCU(result|context|device(ptr)?|graphicsResource)\b"),
-                 re.compile(r"runtime/src/render/gl/cuda[^/]*$")),
+                 ("runtime/src/render/gl/*", "tests/runtime/render/gl_*")),
+    HeavyLibrary("CUDA", re.compile(r"(cuda|nv)\w*\.h"),
+                 re.compile(r"\bCU(result|context|device(ptr)?|graphicsResource)\b"),
+                 ("runtime/src/render/gl/cuda*",)),
     HeavyLibrary("pybind11", re.compile(r"(pybind11/|Python\.h|numpy/)"), re.compile(r"\b(pybind11::|PyObject)"),
-                 re.compile(r"^python/src/")),
-    HeavyLibrary("toml++", re.compile(r"toml\+\+/"), re.compile(r"\btoml::"),
-                 re.compile(r"bake/src/toml/toml_table[^/]*$")),
+                 ("python/src/*",)),
+    HeavyLibrary("toml++", re.compile(r"toml\+\+/"), re.compile(r"\btoml::"), ("bake/src/toml/toml_table*",)),
     HeavyLibrary("libpng", re.compile(r"png\.h"), re.compile(r"\bpng_(struct|info|byte)p+\b"),
-                 re.compile(r"bake/src/textures/images/png_image\.cpp$|^runtime/pictures/png_file\.cpp$|"
-                            r"^tests/")),
+                 ("bake/src/textures/images/png_image.cpp", "runtime/pictures/png_file.cpp", "tests/*")),
     HeavyLibrary("libjpeg", re.compile(r"(jpeglib|jerror)\.h"), re.compile(r"\bjpeg_\w+_struct\b"),
-                 re.compile(r"bake/src/textures/images/jpeg_image\.cpp$|^tests/")),
+                 ("bake/src/textures/images/jpeg_image.cpp", "tests/*")),
     HeavyLibrary("zlib", re.compile(r"zlib\.h"), re.compile(r"\bz_streamp?\b"),
-                 re.compile(r"bake/src/json/gzip\.cpp$|^view/page_data\.cpp$|^tests/")),
+                 ("bake/src/json/gzip.cpp", "view/page_data.cpp", "tests/*")),
     HeavyLibrary("stb", re.compile(r"stb/"), re.compile(r"\bstb_\w+\("),
-                 re.compile(r"bake/src/textures/images/bc1_blocks\.cpp$")),
+                 ("bake/src/textures/images/bc1_blocks.cpp",)),
 )
 
 
@@ -129,6 +133,94 @@ FORBIDDEN_TARGETS = {"runtime": ("bake", "dynamics", "pack_tool", "tests", "benc
                      "bake": ("dynamics", "pack_tool", "tests", "benchmarks", "runtime/src", "runtime/app"),
                      "dynamics": ("pack_tool", "tests", "benchmarks", "runtime/src", "bake/src")}
 
+# What the folders of the two libraries may know of the others beside them; what is not named here has no rule.
+# docs/architecture.md shows both tables: see shown_parts().
+PARTS = {
+    "runtime/src": {
+        "support": "",
+        "layout": "",
+        "check": "column_grid layout pack policy support",
+        "column_grid": "check layout support",
+        "pack": "check column_grid support",
+        "policy": "check pack support",
+        "simulation": "column_grid sensors support",
+        "sensors": "simulation support",
+        "views": "column_grid layout support",
+        "render": "layout render/noise render/raster support",
+        "render/raster": "layout support",
+        "render/noise": "render/raster support",
+        "render/soft": "layout render render/raster support",
+        "render/cuda": "layout render render/raster support",
+        "render/gl": "layout render render/raster support",
+    },
+    "bake/src": {
+        "common": "",
+        "json": "common",
+        "toml": "common",
+        "distance": "common",
+        "import": "common",
+        "column_grid": "common",
+        "engines": "column_grid common",
+        "fit": "common engines",
+        "robot_description": "common import json",
+        "sphere_set": "common distance robot_description",
+        "ambient": "common engines",
+        "textures": "common import",
+        "robot": "common fit import sphere_set",
+        "render": "ambient common distance import robot",
+        "recipe": "common import json robot robot_description sphere_set toml",
+        "dataset": "common import json render robot robot_description",
+        "episodes": "common engines fit import json",
+        "options": "common",
+        "cache": "common json",
+        "write": "",
+        "asset": "cache column_grid common dataset fit import recipe render sphere_set",
+        "build": "asset cache common dataset json recipe robot_description",
+    },
+}
+
+
+def shown_parts() -> str:
+    """The tables, as the document has them."""
+    width = max(len(folder) for parts in PARTS.values() for folder in parts) + 2
+    lines = []
+    for library, parts in PARTS.items():
+        lines += [f"{library}/", *(f"  {folder:{width}}{allowed}".rstrip() for folder, allowed in parts.items())]
+    return "\n".join(lines)
+
+
+def check_shown(root: pathlib.Path) -> list[str]:
+    """Whether the document shows the tables, where there is one."""
+    document = root / ARCHITECTURE
+    if not document.is_file() or f"\n```text\n{shown_parts()}\n```\n" in document.read_text(encoding="utf-8"):
+        return []
+    return [f"{ARCHITECTURE}: does not show the tables PARTS of check_includes.py; let its block say\n{shown_parts()}"]
+
+
+def part_of(path: pathlib.Path) -> tuple[str, str] | None:
+    """The library that a file is of, and its folder there, "" for one that has none; None for others."""
+    for library, parts in PARTS.items():
+        if path.is_relative_to(library):
+            folder = path.relative_to(library).parent
+            known = [part for part in parts if folder.is_relative_to(part)]
+            return library, max(known, key=len, default=folder.as_posix().removeprefix("."))
+    return None
+
+
+def check_parts(path: pathlib.Path, target: pathlib.Path) -> str | None:
+    """What is wrong with an include of one folder of a library in another."""
+    mine, theirs = part_of(path), part_of(target)
+    if mine is None or theirs is None or mine[0] != theirs[0] or "" in (mine[1], theirs[1]) or mine == theirs:
+        return None
+    library, folder = mine
+    allowed = PARTS[library].get(folder)
+    if allowed is None:
+        return f"no rule says what {library}/{folder} may know; add it to PARTS of check_includes.py"
+    if theirs[1] in allowed.split():
+        return None
+    return (f"{library}/{folder} may not know {library}/{theirs[1]}, only {', '.join(allowed.split()) or 'itself'}; "
+            f"move what both need to a folder that it may know, or change PARTS of check_includes.py")
+
 
 def is_system(header: str) -> bool:
     first = header.split("/")[0]
@@ -167,17 +259,17 @@ def check_quoted(root: pathlib.Path, path: pathlib.Path, header: str, rule: Rule
         if path.is_relative_to(folder) and forbidden is not None and not is_named and not (
                 rule.shared and any(target.is_relative_to(one) for one in SHARED)):
             return f'"{header}": {folder} may not know {forbidden}'
-    return None
+    found = check_parts(path, target)
+    return f'"{header}": {found}' if found else None
 
 
 def check_angled(path: pathlib.Path, header: str, rule: Rule) -> str | None:
     if is_system(header) or header.split("/")[0] in rule.third_party:
         return None
-    if any(library.headers.match(header) and library.allowed.search(path.as_posix())
-           for library in HEAVY_LIBRARIES):
+    if any(library.headers.match(header) and library.is_known_to(path) for library in HEAVY_LIBRARIES):
         return None
     allowed = ", ".join(sorted(rule.third_party))
-    return f"<{header}>: {rule.folder} may include of other projects only {allowed}"
+    return f"<{header}>: {rule.folder} may include of other projects only {allowed or 'nothing'}"
 
 
 def check_heavy(path: pathlib.Path, text: str) -> list[str]:
@@ -185,15 +277,16 @@ def check_heavy(path: pathlib.Path, text: str) -> list[str]:
     code = COMMENT.sub("", text)
     offences = []
     for library in HEAVY_LIBRARIES:
-        if library.allowed.search(path.as_posix()):
+        if library.is_known_to(path):
             continue
         headers = [m.group(2) for m in INCLUDE.finditer(code) if library.headers.match(m.group(2))]
         named = library.types.search(code)
+        files = " and ".join(library.files)
         if headers:
-            offences.append(f"<{headers[0]}>: only {library.allowed.pattern} may know {library.name}")
+            offences.append(f"<{headers[0]}>: only {files} may know {library.name}; let one of these do it")
         elif named:
-            offences.append(f"{named.group(0)}: only {library.allowed.pattern} may name types of "
-                            f"{library.name}")
+            offences.append(f"{named.group(0)}: only {files} may name types of {library.name}; let one of these "
+                            "do it")
     return offences
 
 
@@ -227,12 +320,15 @@ def check_tree(root: pathlib.Path) -> tuple[list[str], int]:
     root = root.resolve()
     files = source_tree.project_files(root, SUFFIXES)
     offences = [f"{path}: {offence}" for path in files for offence in check_file(root, path)]
-    return offences + check_schema(root), len(files)
+    return offences + check_schema(root) + check_shown(root), len(files)
 
 
 def main(arguments: list[str]) -> int:
     root = pathlib.Path(arguments[0] if arguments else pathlib.Path(__file__).parents[2])
-    return source_tree.report("includes", *check_tree(root))
+    offences, examined = check_tree(root)
+    if offences:
+        print(f"{ARCHITECTURE} tells which folder may know which, and why:")
+    return source_tree.report("includes", offences, examined)
 
 
 if __name__ == "__main__":
