@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <string_view>
 
 #include "dynamics/episodes/comparison.h"
@@ -27,11 +26,6 @@ namespace galactic::dynamics {
 }
 [[nodiscard]] inline std::string_view nameOf(MomentKind kind) {
   return kMomentNames[static_cast<std::size_t>(kind)];
-}
-[[nodiscard]] inline std::string_view nameOf(EpisodeEnd end) {
-  constexpr std::array<std::string_view, kEpisodeEnds> kNames{
-      "none", "success", "wrong terminate", "wrong release", "wrong object", "time out"};
-  return kNames[static_cast<std::size_t>(end)];
 }
 
 }  // namespace galactic::dynamics

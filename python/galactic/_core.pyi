@@ -31,7 +31,7 @@ class EpisodeEnd(IntEnum):
     WRONG_RELEASE = 3
     WRONG_OBJECT = 4
     TIME_OUT = 5
-    FAILURE = 6
+    FAILURE = 255
 
 class ScriptedPhase(IntEnum):
     PICK = 0

@@ -286,8 +286,13 @@ class _Part:
         self.endings = np.array(self._load("endings", np.uint8, (count,)))
         if count == 0 or self.lengths.min() < 1:
             raise _invalid(folder / "lengths.npy", "holds episodes without steps")
-        if not np.isin(self.endings, [int(end) for end in EpisodeEnd.__members__.values()]).all():
-            raise _invalid(folder / "endings.npy", "holds numbers that are no EpisodeEnd")
+        known = [int(end) for end in EpisodeEnd]
+        strange = np.setdiff1d(self.endings, known)
+        if len(strange) > 0:
+            message = (
+                f"holds {strange[0]}, expected numbers of EpisodeEnd: {', '.join(map(str, known))}"
+            )
+            raise _invalid(folder / "endings.npy", message)
         self._bounds = np.concatenate([[0], np.cumsum(self.lengths, dtype=np.int64)])
         self.steps = int(self._bounds[-1])
         for name in self._shapes:

@@ -1,9 +1,10 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
-#include <initializer_list>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace galactic::python {
 
@@ -28,7 +29,7 @@ void bindRenderer(py::module_& module);
 
 /// An enum.IntEnum, whose values are the numbers that arrays hold.
 void bindEnum(py::module_& module, const char* name,
-              std::initializer_list<std::pair<const char*, int>> values, const char* documentation);
+              const std::vector<std::pair<std::string, int>>& values, const char* documentation);
 
 /// Makes pickling and copying objects of a class a TypeError that says what to do `instead`.
 void refusePickling(const py::object& type, const char* instead);

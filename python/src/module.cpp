@@ -8,10 +8,9 @@
 namespace galactic::python {
 
 void bindEnum(py::module_& module, const char* name,
-              std::initializer_list<std::pair<const char*, int>> values,
-              const char* documentation) {
+              const std::vector<std::pair<std::string, int>>& values, const char* documentation) {
   py::dict members;
-  for (const auto& [member, value] : values) members[member] = value;
+  for (const auto& [member, value] : values) members[py::str(member)] = value;
   const py::object make = py::module_::import("enum").attr("IntEnum");
   const py::object type = make(name, members, py::arg("module") = "galactic");
   type.attr("__doc__") = documentation;

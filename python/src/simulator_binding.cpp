@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "arrays.h"
@@ -309,20 +310,29 @@ void bindQueries(py::class_<Simulator>& type) {
            "Seconds that the threads spent in each phase of the measured steps, added up.");
 }
 
+/// What Python calls each end, and its number.
+std::vector<std::pair<std::string, int>> episodeEnds() {
+  std::vector<std::pair<std::string, int>> ends;
+  for (std::size_t n = 0; n < kEpisodeEnds; ++n) {
+    std::string name(nameOf(static_cast<EpisodeEnd>(n)));
+    for (char& letter : name) {
+      letter = letter == ' ' ? '_' : static_cast<char>(letter - 'a' + 'A');
+    }
+    ends.emplace_back(std::move(name), static_cast<int>(n));
+  }
+  // Of tasks that are written in Python, of which the library knows nothing. Demonstrations keep
+  // the number: the last one that fits, which no end of the library will need.
+  constexpr int kFailure = 255;
+  static_assert(kEpisodeEnds <= kFailure);
+  ends.emplace_back("FAILURE", kFailure);
+  return ends;
+}
+
 }  // namespace
 
 void bindSimulator(py::module_& module) {
-  // Of tasks that are written in Python, of which the library knows nothing.
-  constexpr int kFailure = static_cast<int>(kEpisodeEnds);
   bindEnum(
-      module, "EpisodeEnd",
-      {{"NONE", static_cast<int>(EpisodeEnd::kNone)},
-       {"SUCCESS", static_cast<int>(EpisodeEnd::kSuccess)},
-       {"WRONG_TERMINATE", static_cast<int>(EpisodeEnd::kWrongTerminate)},
-       {"WRONG_RELEASE", static_cast<int>(EpisodeEnd::kWrongRelease)},
-       {"WRONG_OBJECT", static_cast<int>(EpisodeEnd::kWrongObject)},
-       {"TIME_OUT", static_cast<int>(EpisodeEnd::kTimeOut)},
-       {"FAILURE", kFailure}},
+      module, "EpisodeEnd", episodeEnds(),
       "How an episode ended. TIME_OUT is a truncation, all others behind NONE are terminations; "
       "FAILURE is what a galactic.Task calls one, and no Simulator says it.");
   py::class_<Simulator> type(module, "Simulator");

@@ -94,6 +94,27 @@ def test_what_was_written_is_read(folder: pathlib.Path) -> None:
         found[0].state[0] = 1
 
 
+def test_the_numbers_of_ends_stay_as_files_have_them() -> None:
+    numbers = {end.name: end.value for end in galactic.EpisodeEnd}
+    # A new end is added here, with the next number; none of these changes.
+    assert numbers == {
+        "NONE": 0,
+        "SUCCESS": 1,
+        "WRONG_TERMINATE": 2,
+        "WRONG_RELEASE": 3,
+        "WRONG_OBJECT": 4,
+        "TIME_OUT": 5,
+        "FAILURE": 255,
+    }
+
+
+def test_a_failure_of_a_task_is_kept(tmp_path: pathlib.Path) -> None:
+    failed = dataclasses.replace(EPISODES[0], ending=galactic.EpisodeEnd.FAILURE)
+    folder = write(tmp_path / "failures", [failed])
+    assert Demonstrations(folder)[0].ending is galactic.EpisodeEnd.FAILURE
+    assert np.load(demonstrations.part_folder(folder, 0) / "endings.npy").tolist() == [255]
+
+
 def test_folders_are_read_one_after_the_other(tmp_path: pathlib.Path) -> None:
     folders = [write(tmp_path / "one", EPISODES[:4]), write(tmp_path / "two", EPISODES[4:])]
     found = Demonstrations(*folders)
@@ -264,7 +285,10 @@ def reindexed(**changes: object) -> object:
         (resaved("depth", lambda rows: rows[..., 0]), r"depth.npy: found float16 \[22, 4\]"),
         (resaved("lengths", lambda rows: rows - 9), "episodes without steps"),
         (resaved("lengths", lambda rows: rows[:1]), r"lengths.npy: found int32 \[1\], expected"),
-        (resaved("endings", lambda rows: rows + 77), "endings.npy: holds numbers that are no"),
+        (
+            resaved("endings", lambda rows: rows + 77),
+            "endings.npy: holds 78, expected numbers of Ep",
+        ),
         (resaved("episodes", lambda rows: rows[:0]), "lengths.npy: found"),
         (resaved("rewards", lambda rows: rows * np.nan), "rewards.npy: holds numbers that are not"),
         (resaved("actions", lambda rows: rows + np.inf), "actions.npy: holds .* not from -1 to 1"),

@@ -45,7 +45,9 @@ struct ObservationPart {
   std::size_t size = 0;
 };
 
-/// How an episode ended. If a step gives several reasons, the first one of this list counts.
+/// How an episode ended. Files keep the numbers (demonstrations, saved states): a new end gets the
+/// next one, and none changes. If a step gives several reasons, the first of these counts:
+/// kSuccess, kWrongTerminate, kWrongRelease, kWrongObject, kTimeOut.
 enum class EpisodeEnd : std::uint8_t {
   kNone = 0,  ///< It has not ended.
   kSuccess,
@@ -54,7 +56,33 @@ enum class EpisodeEnd : std::uint8_t {
   kWrongObject,     ///< The hand grasped another object.
   kTimeOut,         ///< TaskOptions::most_steps steps have passed.
 };
-inline constexpr std::size_t kEpisodeEnds = 6;
+
+/// As reports say it, and Python in upper case with '_' for ' '; empty for a number of none.
+[[nodiscard]] constexpr std::string_view nameOf(EpisodeEnd end) {
+  // No default: the compiler warns of an end without a name.
+  switch (end) {
+    case EpisodeEnd::kNone:
+      return "none";
+    case EpisodeEnd::kSuccess:
+      return "success";
+    case EpisodeEnd::kWrongTerminate:
+      return "wrong terminate";
+    case EpisodeEnd::kWrongRelease:
+      return "wrong release";
+    case EpisodeEnd::kWrongObject:
+      return "wrong object";
+    case EpisodeEnd::kTimeOut:
+      return "time out";
+  }
+  return {};
+}
+
+/// How many there are: their numbers begin with 0 and leave none out.
+inline constexpr std::size_t kEpisodeEnds = [] {
+  std::uint8_t count = 0;
+  while (!nameOf(EpisodeEnd{count}).empty()) ++count;
+  return count;
+}();
 
 /// Whether the rules of the task ended the episode, for better or worse: a termination in the sense
 /// of reinforcement learning, with no reward behind it.
