@@ -24,6 +24,19 @@ float smallestRadius(const SphereBatch& spheres) {
   return smallest;
 }
 
+/// Whether one of the spheres with a bit that do not count as ignored is smaller than `radius`.
+bool anySmaller(const SphereBatch& spheres, std::span<const std::uint64_t> bits,
+                IgnoredSpheres ignored, float radius) {
+  for (const RadiusRange& range : spheres.ranges) {
+    if (range.radius >= radius) continue;
+    for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
+      const std::uint64_t counts = ignored.empty() ? bits[n / 64] : bits[n / 64] & ~ignored[n / 64];
+      if ((counts >> (n % 64) & 1U) != 0) return true;
+    }
+  }
+  return false;
+}
+
 /// One env's robot on its way. The lanes of `step.between` are places one after the other: lane 0
 /// is where the robot is, the others are the next parts.
 class Walker {
@@ -153,7 +166,9 @@ class Walker {
     step_.between->takeOver(kSpareLane, *step_.between, lane);
     for (float n = 1; n < looks; ++n) {
       step_.between->shift(kSpareLane, back);
-      if (findBlocked(at(kSpareLane), kSpareLane) && blocksSmallerThan(length)) return false;
+      const ChunkStep there = at(kSpareLane);
+      if (findBlocked(there, kSpareLane) && blocksSmallerThan(length)) return false;
+      if (objectsMeet(there, length) || heldMeets(there, length)) return false;
     }
     return true;
   }
@@ -166,6 +181,37 @@ class Walker {
       if (blocked != 0 && step_.model.groups[n].radius < radius) return true;
     }
     return false;
+  }
+
+  /// Whether a sphere of the robot that is smaller than `radius` is in a resting object, where the
+  /// spare lane is.
+  [[nodiscard]] bool objectsMeet(const ChunkStep& there, float radius) const {
+    const RestingObjects& objects = step_.state.resting(step_.first + e_);
+    if (!objects.mayTouch(there.chunk.extents(kSpareLane))) return false;
+    const SphereBatch spheres = there.chunk.spheres(kSpareLane);
+    const std::span<std::uint64_t> bits = there.chunk.bodyBits();
+    const bool meets = withoutLeft(there, kSpareLane, [&] {
+      return penetratingObjects(objects, spheres, bits) && anySmaller(spheres, bits, {}, radius);
+    });
+    if (meets) return true;
+    bool meets_left = false;
+    forEachLeft(there, kSpareLane, [&](std::uint32_t object) {
+      const IgnoredSpheres leaving = step_.state.leaving(step_.first + e_, object);
+      meets_left = meets_left || (overlapping(objects.box(object), spheres, bits) &&
+                                  anySmaller(spheres, bits, leaving, radius));
+    });
+    return meets_left;
+  }
+
+  /// The same of what the robot holds, in the scene or in a resting object.
+  [[nodiscard]] bool heldMeets(const ChunkStep& there, float radius) const {
+    if (step_.state.env(step_.first + e_).held < 0) return false;
+    lookAtHeld(there, kSpareLane);
+    if (heldIsSurelyFree(there, kSpareLane)) return false;
+    const SphereBatch spheres = heldSpheres(there, kSpareLane);
+    const std::span<std::uint64_t> bits = there.chunk.heldBits();
+    penetrating(obstaclesOf(there, kSpareLane), spheres, there.chunk.collision(), bits);
+    return anySmaller(spheres, bits, step_.state.ignored(step_.first + e_), radius);
   }
 
   const ChunkStep& step_;

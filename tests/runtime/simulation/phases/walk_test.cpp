@@ -21,15 +21,21 @@ constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kArmStep = 0.3F;
 constexpr std::array<float, 3> kRadii{0.12F, 0.05F, 0.015F};
 
-BatchSimulator simulatorOf(const BoxWorld& world, std::uint32_t envs, bool continuous,
-                           std::uint32_t threads = 1) {
+SimulationOptions optionsOf(std::uint32_t envs, bool continuous) {
   SimulationOptions options;
   options.envs = envs;
-  options.threads = threads;
+  options.threads = 1;
   options.order = EpisodeOrder::kLinear;
   options.task.kind = TaskKind::kNone;
   options.task.most_steps = 0;
   options.continuous_collision = continuous;
+  return options;
+}
+
+BatchSimulator simulatorOf(const BoxWorld& world, std::uint32_t envs, bool continuous,
+                           std::uint32_t threads = 1) {
+  SimulationOptions options = optionsOf(envs, continuous);
+  options.threads = threads;
   return BatchSimulator::create(world.world(), options).value();
 }
 
@@ -182,6 +188,65 @@ TEST(Walk, PassesThroughNoPlate) {
   EXPECT_GT(jumps.crossed, 100U);
   EXPECT_GT(walks.looked_at, 10000U);
   EXPECT_EQ(walks.crossed, 0U);
+}
+
+/// A cart whose arm reaches out, before a wall from which the rule of the published code pushes it
+/// back by `slide` at once.
+struct BeforeWall {
+  float arm = 0;
+  float wall = 0;
+  float slide = 0;
+  std::vector<Block> others{};
+  Vec3 cube;
+};
+
+constexpr Vec3 kBeforeWall{1.5F, 0, 1.5F};
+
+/// How far the cart is from where it began.
+float slidBy(const EnvState& state) {
+  const Vec3 way = state.world_from_root.translation - kBeforeWall;
+  return std::hypot(way.x, way.z);
+}
+
+/// Where the cart is after it has reached out further, `grasps` or not.
+EnvState reachingAtWall(const BeforeWall& place, bool grasps) {
+  RobotPackFields robot = cartRobot();
+  robot.start_positions = {place.arm, 0};
+  std::vector<Block> blocks{plainFloor(), {{place.wall, 0, 0}, {place.wall + 0.1F, 1, 3}}};
+  blocks.insert(blocks.end(), place.others.begin(), place.others.end());
+  const BoxWorld world(blocks, robot,
+                       episodesFrom({{.base = kBeforeWall, .objects = {place.cube}}}));
+  SimulationOptions options = optionsOf(1, true);
+  options.slide = {.attempts = 1, .direction = SlideDirection::kTowardsBase, .step = place.slide};
+  BatchSimulator simulator = BatchSimulator::create(world.world(), options).value();
+  const float hand = grasps ? 1.0F : 0.0F;
+  simulator.step(std::array<float, kCartActions>{0, 0, 0, 0, hand, 0});
+  simulator.step(std::array<float, kCartActions>{1, 0, 0, 0, hand, 0});
+  const EnvState state = simulator.envState(0);
+  EXPECT_EQ(state.held, grasps ? 0 : -1);
+  return state;
+}
+
+TEST(Walk, SlidesThroughNoRestingObject) {
+  // Between the cart's ball and those of its arm, and out of the way.
+  BeforeWall place{.arm = 0.55F, .wall = 2.12F, .slide = 0.48F, .cube = {1.8F, 0.2F, 1.5F}};
+  const EnvState stopped = reachingAtWall(place, false);
+  EXPECT_EQ(slidBy(stopped), 0);
+  EXPECT_GE(stopped.joint_positions[0], place.arm);
+  place.cube.z = 2.5F;
+  EXPECT_NEAR(slidBy(reachingAtWall(place, false)), place.slide, 1e-3F);
+}
+
+TEST(Walk, SlidesThroughNothingWithWhatItHolds) {
+  // Under the plate is room for the robot, but not for the cube in its hand.
+  const Block plate{{1.8F, 0.445F, 1.2F}, {1.81F, 0.6F, 1.8F}};
+  BeforeWall place{
+      .arm = 0.5F, .wall = 2.36F, .slide = 0.7F, .others = {plate}, .cube = {2.2F, 0.28F, 1.5F}};
+  const EnvState stopped = reachingAtWall(place, true);
+  EXPECT_EQ(slidBy(stopped), 0);
+  EXPECT_GE(stopped.joint_positions[0], place.arm);
+  place.others.clear();
+  EXPECT_NEAR(slidBy(reachingAtWall(place, true)), place.slide, 1e-3F);
 }
 
 TEST(Walk, IsTheSameToTheBitWhereNothingIsInTheWay) {
