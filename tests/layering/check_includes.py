@@ -162,7 +162,7 @@ PARTS = {
         "column_grid": "common",
         "engines": "column_grid common",
         "fit": "common engines",
-        "robot_description": "common import json",
+        "robot_description": "common fit import json",
         "sphere_set": "common distance robot_description",
         "ambient": "common engines",
         "textures": "common import",

@@ -45,6 +45,10 @@ struct ObservationPart {
   std::size_t size = 0;
 };
 
+/// The Error::name of BatchSimulator::create() where the robot can stand at the start of no
+/// episode.
+inline constexpr std::string_view kNoEpisodeStarts = "episodes/none-starts";
+
 /// How an episode ended. Files keep the numbers (demonstrations, saved states): a new end gets the
 /// next one, and none changes. If a step gives several reasons, the first of these counts:
 /// kSuccess, kWrongTerminate, kWrongRelease, kWrongObject, kTimeOut.
@@ -254,9 +258,9 @@ enum class EpisodeChoice : std::uint8_t {
 /// [-1, 1]; NaN is taken as 0 and counted.
 class BatchSimulator {
  public:
-  /// All envs stand at the start of their first episode. Fails
-  /// with kInvalidInput on options out of their ranges (checkOptions), when no episode of the world
-  /// can be started (the robot penetrates something in all of them) or a laser sees nothing, and
+  /// All envs stand at the start of their first episode. Fails with kInvalidInput on options out of
+  /// their ranges (checkOptions), when no episode of the world can be started (the robot penetrates
+  /// something in all of them; the error's name is kNoEpisodeStarts) or a laser sees nothing, and
   /// with kUnsupported when an action moves a planar or floating joint, or the link that carries
   /// the laser.
   [[nodiscard]] static Result<BatchSimulator> create(const World& world,

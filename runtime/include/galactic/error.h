@@ -43,8 +43,8 @@ struct Error {
   std::string where;
   /// One sentence: what was found, what was expected, what to do.
   std::string message;
-  /// A name for programs that never changes, for example "pack/hash" (docs/ci.md lists them); empty
-  /// for most errors. Points to a literal.
+  /// A name for programs that never changes, for example "pack/hash" (docs/ci.md lists those of
+  /// packs); empty for most errors. Points to a literal.
   std::string_view name = {};
 
   /// "where: message", for people.

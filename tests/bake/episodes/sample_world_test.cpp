@@ -186,6 +186,11 @@ TEST(SolvedSamples, TellEpisodesThatCanBeSolvedFromThoseThatCannot) {
     EXPECT_EQ(spoiled.solved, 5U);
     EXPECT_EQ(spoiled.unsolved, ends);
   }
+  // What is wrong with the options is no end of an episode.
+  const auto wrong = bake::solveSample(world.inputs().packs, set, {.most_steps = 2'000'000'000});
+  ASSERT_FALSE(wrong.has_value());
+  EXPECT_EQ(wrong.error().text(),
+            "simulation options: episode-steps is 2000000000, expected 0 to 1073741824");
   // Evenly chosen: 0, 2, 4 and 6.
   EXPECT_EQ(solve({.most_episodes = 4}).solved, 2U);
   EXPECT_EQ(solve({.most_episodes = 0}).episodes, 0U);

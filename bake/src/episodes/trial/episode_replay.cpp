@@ -65,8 +65,7 @@ Result<std::vector<ReplayEnd>> replayEpisodes(std::span<const PackFile* const> p
   options.task.kind = TaskKind::kNone;
   auto simulator = BatchSimulator::create(**world, options);
   if (!simulator) {
-    // No episode of these can be started; the robot has all that a run needs.
-    if (simulator.error().code == ErrorCode::kInvalidInput) return ends;
+    if (simulator.error().name == kNoEpisodeStarts) return ends;
     return tl::unexpected(simulator.error());
   }
   judgeStep(*simulator, episodes, ends);

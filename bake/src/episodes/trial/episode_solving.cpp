@@ -42,8 +42,7 @@ Result<Outcome> play(const World& world, std::uint32_t most_steps) {
   options.task.most_steps = most_steps;
   auto simulator = BatchSimulator::create(world, options);
   if (!simulator) {
-    // The only episode is one that the robot cannot start in.
-    if (simulator.error().code == ErrorCode::kInvalidInput) return Outcome("does not start");
+    if (simulator.error().name == kNoEpisodeStarts) return Outcome("does not start");
     return tl::unexpected(simulator.error());
   }
   ASSIGN_OR_RETURN(auto policy, ScriptedPolicy::create(world, options));

@@ -234,7 +234,8 @@ Result<Model> makeModel(const World& world, const SimulationOptions& options) {
     return fail(ErrorCode::kInvalidInput, "episodes " + std::string(world.episodes().name()),
                 "the robot penetrates the scene or an object at the start of all " +
                     std::to_string(model.skipped.size()) +
-                    " episodes; check that scene, robot and episodes belong together");
+                    " episodes; check that scene, robot and episodes belong together",
+                kNoEpisodeStarts);
   }
   mapFloors(finder.heights(), model);
   RETURN_IF_ERROR(makeSensors(laser, model));
