@@ -8,6 +8,7 @@
 
 #include "finding.h"
 #include "support/homes/changed_world.h"
+#include "support/homes/every_option.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static galactic::test::ChangedWorld world;
@@ -31,15 +32,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     world.setWord(change.pack, change.at, value);
   }
   constexpr int kSteps = 8;
-  const galactic::SensorOptions all_sensors{
-      .bump = true,
-      .target_goal = true,
-      .target_up = true,
-      .near_objects = 2,
-      .laser = {.beams = 8, .heights = {{0.25F, 0.25F}, {0.4F, 0.6F}}, .noise = {0.01F, 0.05F}},
-      .geodesic = true,
-      .last_actions = 2};
-  const auto outcome = world.use(kSteps, all_sensors);
+  const auto outcome =
+      world.use(kSteps, galactic::test::everySensor(), galactic::test::everyReward());
   if (!outcome.finding.empty()) galactic::test::reportFinding(outcome.finding);
   for (std::size_t n = count; n-- > 0;) {
     world.setWord(changes[n].pack, changes[n].at, changes[n].before);

@@ -46,7 +46,8 @@ class ChangedWorld {
   }
 
   /// Opens the packs; where they are accepted, simulates and draws them for `steps` steps.
-  [[nodiscard]] Outcome use(int steps, const SensorOptions& sensors = {}) {
+  [[nodiscard]] Outcome use(int steps, const SensorOptions& sensors = {},
+                            const TaskOptions& task = {}) {
     std::vector<PackFile> packs;
     for (std::size_t n = 0; n < files_.size(); ++n) {
       const std::span<std::byte> file = files_[n].bytes();
@@ -58,7 +59,7 @@ class ChangedWorld {
     }
     const Result<World> world = World::from(std::move(packs));
     if (!world) return {};
-    return {.accepted = true, .finding = findingIn(*world, steps, sensors)};
+    return {.accepted = true, .finding = findingIn(*world, steps, sensors, task)};
   }
 
  private:
@@ -84,13 +85,15 @@ class ChangedWorld {
            finite(transform.origin);
   }
 
-  static std::string findingIn(const World& world, int steps, const SensorOptions& sensors) {
+  static std::string findingIn(const World& world, int steps, const SensorOptions& sensors,
+                               const TaskOptions& task) {
     SimulationOptions options;
     options.envs = kEnvs;
     options.threads = 1;
     options.body_transforms = true;
     options.order = EpisodeOrder::kLinear;
     options.sensors = sensors;
+    options.task = task;
     auto simulator = BatchSimulator::create(world, options);
     // Said so: no robot need be able to start.
     if (!simulator) return {};

@@ -8,6 +8,8 @@
 #include <set>
 #include <string>
 
+#include "support/homes/every_option.h"
+
 namespace galactic::option_lines_test {
 namespace {
 
@@ -35,38 +37,15 @@ SimulationOptions unusualOptions() {
                    .motion_bias = 0.03F,
                    .localization = 0.2F,
                    .action_delay = {1, 3}};
-  options.sensors = {.bump = true,
-                     .target_goal = true,
-                     .target_up = true,
-                     .near_objects = 3,
-                     .laser = {.beams = 24,
-                               .fov_degrees = 220,
-                               .heights = {{0.1F / 3, 0.1F / 3}, {1e-6F, 0.8F}},
-                               .range = 4,
-                               .least_range = 0.05F,
-                               .noise = 0.01F},
-                     .geodesic = true,
-                     .geodesic_megabytes = 7,
-                     .last_actions = 5};
-  options.task = {.kind = TaskKind::kMobilePick,
-                  .success_reward = 1,
-                  .pick_reward = -2.5F,
-                  .reach_weight = 0.3F,
-                  .transport_weight = 0.7F,
-                  .action_weight = 1e-5F,
-                  .geodesic_weight = 0.9F,
-                  .slack_penalty = 0.01F,
-                  .failure_penalty = 3,
-                  .bump_penalty = 0.05F,
-                  .drop_penalty = 0.02F,
-                  .tilt_penalty = 0.03F,
-                  .success_distance = 0.15F,
-                  .most_steps = 0,
-                  .needs_terminate = false,
-                  .terminate_after = 5,
-                  .drop_fails = false,
-                  .distractors = false,
-                  .observes_current_target = true};
+  options.sensors = test::everySensor();
+  options.sensors.laser.heights = {{0.1F / 3, 0.1F / 3}, {1e-6F, 0.8F}};
+  options.task = test::everyReward();
+  options.task.kind = TaskKind::kMobilePick;
+  options.task.action_weight = 1e-5F;
+  options.task.needs_terminate = false;
+  options.task.terminate_after = 5;
+  options.task.drop_fails = false;
+  options.task.distractors = false;
   return options;
 }
 
@@ -94,7 +73,9 @@ TEST(OptionText, NamesEveryOptionOnceAndWritesEveryField) {
   std::set<std::string> names;
   for (std::size_t n = 0; n < plain.size(); ++n) {
     EXPECT_TRUE(names.insert(plain[n].name).second) << plain[n].name;
-    EXPECT_NE(plain[n].value, unusual[n].value) << plain[n].name;
+    EXPECT_NE(plain[n].value, unusual[n].value)
+        << plain[n].name << " has its default: give it another value above or, where it is one of "
+        << "a sensor or of the reward, in tests/support/homes/every_option.h";
   }
 }
 

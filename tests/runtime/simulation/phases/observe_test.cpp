@@ -1,11 +1,15 @@
 // Observations against a plain reference in double precision that sees only the state of the env.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "galactic/option_text.h"
+#include "support/homes/every_option.h"
 #include "support/homes/small_home_actor.h"
 #include "support/homes/task_twins.h"
 #include "support/oracles/resting_oracle.h"
@@ -151,6 +155,80 @@ TEST(Observation, NamesItsParts) {
   }
   EXPECT_EQ(simulator.observationSize(), first);
   EXPECT_EQ(simulator.observations().size(), kEnvs * first);
+}
+
+/// Simulators that differ in sensors alone, each with what everySensor() says of its one.
+class SensorsAlone {
+ public:
+  explicit SensorsAlone(const World& world) {
+    all_.envs = kEnvs;
+    all_.threads = 1;
+    all_.sensors = everySensor();
+    SimulationOptions none = all_;
+    none.sensors = {};
+    const std::size_t usual = simulatorOf(world, none).observationParts().size();
+    std::vector<OptionText> details;
+    std::vector<OptionText> switches;
+    const std::vector<OptionText> defaults = listOptions(none);
+    for (const OptionText& option : listOptions(all_)) {
+      if (std::ranges::find(defaults, option) != defaults.end()) continue;
+      const bool adds = simulatorOf(world, with(none, {option})).observationParts().size() > usual;
+      (adds ? switches : details).push_back(option);
+    }
+    for (const OptionText& option : switches) {
+      std::vector<OptionText> alone = details;
+      alone.push_back(option);
+      simulators.push_back(simulatorOf(world, with(none, alone)));
+      EXPECT_EQ(simulators.back().observationParts().size(), usual + 1) << option.name;
+    }
+  }
+
+  [[nodiscard]] const SimulationOptions& all() const { return all_; }
+
+  std::vector<BatchSimulator> simulators;
+
+ private:
+  static SimulationOptions with(SimulationOptions options, const std::vector<OptionText>& texts) {
+    EXPECT_FALSE(setOptions(texts, OptionScope::kAll, options));
+    return options;
+  }
+
+  SimulationOptions all_;
+};
+
+TEST(Observation, HasEachPartAsIfItsSensorWereTheOnlyOne) {
+  const SmallHome home;
+  SensorsAlone alone(home.world());
+  BatchSimulator together = simulatorOf(home.world(), alone.all());
+  const std::vector<ObservationPart>& parts = together.observationParts();
+  constexpr std::size_t kUsualParts = 8;
+  ASSERT_EQ(parts.size(), kUsualParts + alone.simulators.size());
+  std::vector<WildActor> actors;
+  for (std::uint32_t env = 0; env < kEnvs; ++env) actors.emplace_back(kSeed + env);
+  std::vector<float> actions(kEnvs * kSmallHomeActions);
+  for (int step = 0; step < 60; ++step) {
+    for (std::size_t n = 0; n < alone.simulators.size(); ++n) {
+      const BatchSimulator& single = alone.simulators[n];
+      const ObservationPart& mine = single.observationParts().back();
+      const auto theirs = std::ranges::find(parts, mine.name, &ObservationPart::name);
+      ASSERT_NE(theirs, parts.end()) << mine.name;
+      ASSERT_EQ(theirs->size, mine.size) << mine.name;
+      for (std::size_t env = 0; env < kEnvs; ++env) {
+        const auto found = rowOf(together, together.observations(), env);
+        const auto wanted = rowOf(single, single.observations(), env);
+        ASSERT_THAT(found.subspan(theirs->first, mine.size),
+                    testing::ElementsAreArray(wanted.subspan(mine.first, mine.size)))
+            << mine.name << ", step " << step << ": do sense() and observationParts() agree?";
+      }
+    }
+    for (std::size_t env = 0; env < kEnvs; ++env) {
+      if (together.dones()[env] != 0) actors[env].begin();
+      std::ranges::copy(actors[env].act(together.envState(env)),
+                        actions.begin() + static_cast<std::ptrdiff_t>(env * kSmallHomeActions));
+    }
+    together.step(actions);
+    for (BatchSimulator& single : alone.simulators) single.step(actions);
+  }
 }
 
 TEST(Observation, CountsTheTimeDown) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/homes/every_option.h"
 #include "support/homes/small_home_actor.h"
 #include "support/homes/task_twins.h"
 #include "support/oracles/task_oracle.h"
@@ -67,17 +68,11 @@ Case paperCase() {
 }
 
 Case unusualCase() {
-  TaskOptions task;
-  task.success_reward = 3;
-  task.pick_reward = -2;
-  task.reach_weight = 2.5F;
-  task.transport_weight = 0.5F;
-  task.action_weight = 0.25F;
-  task.slack_penalty = 0.125F;
-  task.failure_penalty = 1.5F;
-  task.tilt_penalty = 0.75F;
-  task.success_distance = 0.25F;
-  task.observes_current_target = true;
+  TaskOptions task = everyReward();
+  // The oracle does not see for what: observe_test, task_test and geodesic_test do.
+  task.bump_penalty = 0;
+  task.drop_penalty = 0;
+  task.geodesic_weight = 0;
   Case unusual{.name = "UnusualNumbers", .options = optionsOf(task)};
   unusual.options.action = {.grasp = 0.2F, .release = -0.5F, .terminate = 0.9F};
   unusual.options.task.most_steps = 30;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "support/homes/every_option.h"
 #include "support/homes/small_home_actor.h"
 #include "support/homes/task_twins.h"
 
@@ -18,12 +19,13 @@ SimulationOptions optionsOf(std::uint32_t envs) {
   SimulationOptions options;
   options.envs = envs;
   options.threads = 1;
+  options.task = everyReward();
   options.task.most_steps = 120;
-  options.sensors.bump = true;
-  options.sensors.target_goal = true;
-  options.sensors.target_up = true;
-  options.sensors.near_objects = 2;
-  options.sensors.last_actions = 3;
+  options.sensors = everySensor();
+  // What jumps where the robot is a hair elsewhere: past an edge, or into another cell.
+  options.sensors.laser = {};
+  options.sensors.geodesic = false;
+  options.task.geodesic_weight = 0;
   options.noise = {
       .motion = 0.1F, .motion_bias = 0.1F, .localization = 0.05F, .action_delay = {0, 2}};
   options.auto_reset = false;
@@ -124,7 +126,7 @@ TEST(AFollower, ObservesAndJudgesWhatTheStepsThatItFollowsDo) {
   EXPECT_EQ(found.successes, wanted.successes);
   EXPECT_GT(found.successes, 5U);
   EXPECT_EQ(found.picks, wanted.picks);
-  EXPECT_GT(found.picks, found.successes);
+  EXPECT_GT(found.picks, 20U);
   EXPECT_EQ(found.refused, wanted.refused);
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "runtime/simulation/batch_trace.h"
+#include "support/homes/every_option.h"
 #include "support/homes/small_home_actor.h"
 #include "support/homes/task_twins.h"
 
@@ -31,16 +32,8 @@ SimulationOptions homeOptions(std::uint32_t envs, std::uint32_t threads = 1) {
   options.envs = envs;
   options.threads = threads;
   options.seed = 3;
-  options.task.most_steps = 60;
-  options.sensors.bump = true;
-  options.sensors.target_goal = true;
-  options.sensors.target_up = true;
-  options.sensors.near_objects = 2;
-  options.sensors.last_actions = 3;
-  options.sensors.geodesic = true;
-  options.task.geodesic_weight = 0.5F;
-  options.sensors.laser.beams = 8;
-  options.sensors.laser.noise = {0.01F, 0.02F};
+  options.task = everyReward();
+  options.sensors = everySensor();
   options.noise = {
       .motion = 0.1F, .motion_bias = 0.1F, .localization = 0.1F, .action_delay = {0, 2}};
   return options;
@@ -404,10 +397,10 @@ TEST_F(DamagedState, ThatLeavesWhatItHoldsIsRefused) {
 
 TEST_F(DamagedState, OfOtherOptionsIsRefusedByTheirNames) {
   SimulationOptions options = homeOptions(3);
-  options.task.success_distance = 0.25F;
+  options.task.success_distance = 0.5F;
   BatchSimulator far = simulatorOf(home_.world(), options);
-  EXPECT_THAT(refusalOf(far, state_), HasSubstr("expected success-distance=0.25, found "
-                                                "success-distance=0.1"));
+  EXPECT_THAT(refusalOf(far, state_), HasSubstr("expected success-distance=0.5, found "
+                                                "success-distance=0.25"));
 }
 
 TEST(SavedState, GoesOnWhereEpisodesBeginByThemselvesAndWhereTheyWait) {
