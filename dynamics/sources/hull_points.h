@@ -23,7 +23,7 @@ using HullPoints = std::vector<Vec3>;
 [[nodiscard]] std::vector<HullPoints> piecesOf(const bake::SourceAsset& asset, bool is_joined);
 
 /// The points of which a link's shapes are the hulls, in the link's frame: of its collision
-/// elements, or of its visuals where it has none. Meshes of URDFs lie in source.meshes.
+/// elements, or of its visuals where it has none. Meshes of robots lie in source.meshes.
 [[nodiscard]] std::vector<HullPoints> hullPointsOf(const bake::SourceRobot& source,
                                                    const bake::SourceLink& link);
 

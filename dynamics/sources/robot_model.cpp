@@ -101,10 +101,10 @@ Inertia yUp(const bake::LinkInertial& stated) {
   return {.mass = stated.mass, .center = {x, z, -y}, .moments = {xx, zz, yy, xz, -xy, -yz}};
 }
 
-/// What the URDF says of a link, or what stands in for it; nothing for a bare frame.
+/// What the robot's file says of a link, or what stands in for it; nothing for a bare frame.
 class LinkInertias {
  public:
-  /// `file`: the URDF's name, for warnings.
+  /// `file`: its name, for warnings.
   LinkInertias(std::string_view file, const RobotDefaults& defaults,
                std::vector<std::string>& warnings)
       : file_(file), defaults_(defaults), warnings_(warnings) {}

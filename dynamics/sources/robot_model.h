@@ -43,7 +43,7 @@ struct RobotParts {
   std::vector<std::string> warnings;
 };
 
-/// What stands in for what a URDF does not say.
+/// What stands in for what a robot's file does not say.
 struct RobotDefaults {
   /// Of a link with a shape and without a mass, spread over the box around its shape; kg/m^3.
   double density = 300;
@@ -53,7 +53,7 @@ struct RobotDefaults {
   double least_size = 0.05;
 };
 
-/// A URDF: what a bake reads of it, and its masses (Z up).
+/// A robot's file: what a bake reads of it, and its masses (Z up).
 struct RobotSource {
   /// Its name, for warnings.
   std::string file;
@@ -61,13 +61,13 @@ struct RobotSource {
   std::vector<bake::LinkInertial> inertials;
 };
 
-/// Matches the links of a pack with those of the URDF by their names. Shapes are the convex hulls
+/// Matches the links of a pack with those of the file by their names. Shapes are the convex hulls
 /// of each collision element (of the visuals where a link has none), one per mesh in its file.
 ///
 /// An <inertial> counts when its numbers can be those of a body (body_ranges.h), and none of its
 /// principal moments is greater than the sum of the other two. Else the mass is that of `defaults`,
 /// or the center or the moments are those of the box around the shape, and there is a warning.
-/// Fails with kInvalidInput where the URDF has no link of a name in the pack.
+/// Fails with kInvalidInput where the file has no link of a name in the pack.
 [[nodiscard]] Result<RobotParts> robotParts(const RobotSource& source, const Robot& robot,
                                             const RobotDefaults& defaults = {});
 

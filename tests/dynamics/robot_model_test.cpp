@@ -1,4 +1,4 @@
-// Masses and shapes from a URDF, and what stands in for them.
+// Masses and shapes from a robot's file, and what stands in for them.
 #include "dynamics/sources/robot_model.h"
 
 #include <gmock/gmock.h>
@@ -66,6 +66,32 @@ TEST(AnInertial, IsTurnedToYUp) {
   EXPECT_NEAR(base.center[2], -0.2, 1e-12);
   const std::array<double, 6> expected{1, 2.5, 2, 0.2, -0.1, -0.3};
   for (std::size_t n = 0; n < 6; ++n) EXPECT_NEAR(base.moments[n], expected[n], 1e-12) << n;
+}
+
+TEST(AnMjcf, GivesTheMassesThatItStatesAndThoseOfItsShapes) {
+  const ScratchFolder folder;
+  const auto path = folder.write(
+      "r.xml",
+      R"(<mujoco model="r"><worldbody><body name="base"><inertial pos="0.1 0.2 0.3" mass="20" )"
+      R"(fullinertia="1 2 2.5 0.1 0.2 0.3"/><geom type="box" size="0.2 0.2 0.1"/>)"
+      R"(<body name="arm" pos="0 0 1"><joint name="swing" axis="0 0 1"/>)"
+      R"(<geom type="box" size="0.5 0.05 0.1" pos="0.5 0 0" density="300"/></body></body>)"
+      R"(</worldbody></mujoco>)");
+  const MadeRobot robot(packFields());
+  const dynamics::RobotParts parts =
+      dynamics::robotParts(
+          {"r.xml", bake::importRobot(path).value(), bake::readInertials(path).value()}, *robot)
+          .value();
+  EXPECT_THAT(parts.warnings, ElementsAre());
+  const dynamics::Inertia& base = *parts.links[0].inertia;
+  EXPECT_EQ(base.mass, 20);
+  const std::array<double, 6> expected{1, 2.5, 2, 0.2, -0.1, -0.3};
+  for (std::size_t n = 0; n < 6; ++n) EXPECT_NEAR(base.moments[n], expected[n], 1e-12) << n;
+  const dynamics::Inertia& arm = *parts.links[1].inertia;
+  EXPECT_NEAR(arm.mass, 6, 1e-9);
+  EXPECT_NEAR(arm.center[0], 0.5, 1e-9);
+  EXPECT_NEAR(arm.moments[0], 0.5 * (0.04 + 0.01), 1e-9);
+  EXPECT_NEAR(arm.moments[1], 0.5 * (1 + 0.01), 1e-9);
 }
 
 TEST(ALinkWithoutMass, GetsOneByItsShapeAndAWarning) {
