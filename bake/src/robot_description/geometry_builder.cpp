@@ -155,7 +155,8 @@ void GeometryBuilder::warn(const std::string& place, const std::string& message)
   robot_.warnings.push_back(fmt::format("{}: {}", withoutFile(place), message));
 }
 
-Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& file) {
+Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& file,
+                                                              bool hides_looks) {
   // The points as the file has them are taken for Z up, whatever up axis it states.
   MeshImportOptions mesh_options;
   mesh_options.up = UpAxis::kZ;
@@ -186,7 +187,10 @@ Result<GeometryBuilder::LoadedMesh> GeometryBuilder::loadFile(const fs::path& fi
     if (texture.empty() || texture.starts_with('*')) continue;
     if (fs::exists(folder / texture, ignored)) texture = nameRelativeTo(path_, folder / texture);
   }
-  for (const std::string& warning : asset->warnings) warn(nameRelativeTo(path_, file), warning);
+  for (const std::string& warning : asset->warnings) {
+    const bool is_of_looks = std::ranges::find(asset->missing, warning) != asset->missing.end();
+    if (!hides_looks || !is_of_looks) warn(nameRelativeTo(path_, file), warning);
+  }
   robot_.meshes.push_back(std::move(*asset));
   return LoadedMesh{.index = static_cast<std::uint32_t>(robot_.meshes.size() - 1),
                     .size = sizeInFile(robot_.meshes.back()),
@@ -249,7 +253,7 @@ Result<std::optional<std::uint32_t>> GeometryBuilder::loadMesh(const DescribedSh
   }
   auto loaded = loaded_.find(resolution.file);
   if (loaded == loaded_.end()) {
-    ASSIGN_OR_RETURN(auto mesh, loadFile(resolution.file));
+    ASSIGN_OR_RETURN(auto mesh, loadFile(resolution.file, shape.hides_looks));
     loaded = loaded_.emplace(resolution.file, std::move(mesh)).first;
   }
   const LoadedMesh& mesh = loaded->second;

@@ -64,7 +64,8 @@ class GeometryBuilder {
                                            const LoadedMesh& mesh);
   /// Where the reference leads; says so the first time.
   const MeshResolution& resolve(const std::string& reference, const std::string& place);
-  Result<LoadedMesh> loadFile(const std::filesystem::path& file);
+  /// `hides_looks`: nothing warns of looks that are missing.
+  Result<LoadedMesh> loadFile(const std::filesystem::path& file, bool hides_looks);
   /// The mesh of the shape, one that stands in the robot's file.
   LoadedMesh& loadOwn(const DescribedShape& shape);
   /// The image that the shape is to be drawn with; empty, with a warning, where there is none.

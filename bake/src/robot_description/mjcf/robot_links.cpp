@@ -222,7 +222,8 @@ class LinkMaker {
 
   /// Nobody sees it.
   static DescribedShape plain(DescribedShape shape) {
-    shape.has_color = shape.hides_looks = false;
+    shape.has_color = false;
+    shape.hides_looks = true;
     shape.texture.clear();
     return shape;
   }

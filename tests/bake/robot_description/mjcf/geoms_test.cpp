@@ -302,6 +302,20 @@ TEST(MjcfMeshes, HaveTheImageOfTheirMaterial) {
   EXPECT_TRUE(std::ranges::any_of(robot.read.files, is_image));
 }
 
+TEST(MjcfMeshes, WhoseLooksAreHiddenMayLackTheirMaterials) {
+  const ScratchFolder folder;
+  (void)folder.write("robots/box.obj", objFile(unevenBox(), "mtllib lost.mtl\nusemtl wood\n"));
+  constexpr const char* kAssets = "<asset><mesh file='box.obj'/></asset>";
+  const auto colored = mjcfRobot(
+      folder, withGeoms("<geom type='mesh' mesh='box' contype='0' conaffinity='0' rgba='1 0 0 1'/>"
+                        "<geom type='mesh' mesh='box'/>",
+                        kAssets));
+  EXPECT_THAT(colored.warnings, IsEmpty());
+  const auto plain = mjcfRobot(
+      folder, withGeoms("<geom type='mesh' mesh='box' contype='0' conaffinity='0'/>", kAssets));
+  EXPECT_THAT(plain.warnings, Contains(testing::HasSubstr("lost.mtl")));
+}
+
 TEST(MjcfFiles, HaveTheContentOfThoseThatTheyInclude) {
   const ScratchFolder folder;
   (void)folder.write("robots/parts/arm.xml",
