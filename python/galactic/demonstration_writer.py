@@ -16,7 +16,7 @@ from galactic import demonstrations, files, spaces
 from galactic._core import EpisodeEnd, ErrorCode, Renderer
 from galactic.demonstrations import OBSERVED, About, Demonstration
 from galactic.errors import Error
-from galactic.half_batch import Observations
+from galactic.batch_part import Observations
 from galactic.sensors import meaning_of
 from galactic.vector_env import VectorEnv
 from galactic.vector_env_arguments import Actions

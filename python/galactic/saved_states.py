@@ -1,13 +1,14 @@
 """States of a VectorEnv as bytes: of all of its envs, or of some, which go on in any others.
 
-A state is a header (_HEADER), a list of arrays as JSON, [[name, type, shape], ...] with types as numpy describes
-them in its files, and the arrays, little-endian, one after the other. Of all envs, it has what
-HalfBatch.save_state() returns, each name with the number of the half behind it. Of some envs, it has
+A batch has one part, or two: its halves. A state is a header (_HEADER), a list of arrays as JSON, [[name, type,
+shape], ...] with types as numpy describes them in its files, and the arrays, little-endian, one after the other. Of
+all envs, it has what BatchPart.save_state() returns, each name with the number of the part behind it. Of some envs,
+it has
 
     envs                       how many: n
-    simulator_0, simulator_1   the states of those that were in each half's simulator, where any were
+    simulator_0, simulator_1   the states of those that were in each part's simulator, where any were
     places_0, places_1         int64: as which of the n these are
-    returns, lengths, task_... arrays (n, ...): HalfBatch.state_of()
+    returns, lengths, task_... arrays (n, ...): BatchPart.save_rows()
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from numpy.typing import NDArray
 
 from galactic._core import ErrorCode
 from galactic.errors import Error
-from galactic.half_batch import HalfBatch, Piece
+from galactic.batch_part import BatchPart, Piece
 
 Array = NDArray[Any]
 
@@ -32,73 +33,73 @@ _MAGIC = b"GALENVS1"
 _HEADER = struct.Struct("<8sII")
 
 
-def state_of_all(halves: Sequence[HalfBatch]) -> bytes:
+def state_of_all(parts: Sequence[BatchPart]) -> bytes:
     return _packed(
         {
             f"{name}_{number}": array
-            for number, half in enumerate(halves)
-            for name, array in half.save_state().items()
+            for number, part in enumerate(parts)
+            for name, array in part.save_state().items()
         }
     )
 
 
-def state_of(halves: Sequence[HalfBatch], envs: NDArray[np.int64]) -> bytes:
+def state_of(parts: Sequence[BatchPart], envs: NDArray[np.int64]) -> bytes:
     """Of the envs with these numbers, in this order."""
     arrays: dict[str, Array] = {"envs": np.array(len(envs))}
-    order, parts = [], []
-    for number, (half, places, rows) in enumerate(_by_half(halves, envs)):
-        simulator, own = half.save_rows(rows)
+    order, owned = [], []
+    for number, (part, places, rows) in enumerate(_by_part(parts, envs)):
+        simulator, own = part.save_rows(rows)
         order.append(places)
-        parts.append(own)
+        owned.append(own)
         if len(rows):
             arrays[f"simulator_{number}"] = np.frombuffer(simulator, np.uint8)
             arrays[f"places_{number}"] = places
     back = np.argsort(np.concatenate(order))
-    joined = {name: np.concatenate([part[name] for part in parts])[back] for name in parts[0]}
+    joined = {name: np.concatenate([one[name] for one in owned])[back] for name in owned[0]}
     return _packed({**arrays, **joined})
 
 
-def restore(halves: Sequence[HalfBatch], state: bytes, envs: NDArray[np.int64] | None) -> None:
+def restore(parts: Sequence[BatchPart], state: bytes, envs: NDArray[np.int64] | None) -> None:
     """Goes on there, in all envs or in those with these numbers. Raises Error for a state that does not fit,
     and changes nothing."""
     found = _unpacked(state)
-    count = sum(half.simulator.num_envs for half in halves)
+    count = sum(part.simulator.num_envs for part in parts)
     if "envs" in found:
-        _restore_some(halves, found, np.arange(count) if envs is None else envs)
+        _restore_some(parts, found, np.arange(count) if envs is None else envs)
     elif envs is None:
-        _restore_all(halves, found)
+        _restore_all(parts, found)
     else:
         raise _refused("is of all envs; leave out envs, or give what save_state(envs=...) returned")
 
 
-def _restore_all(halves: Sequence[HalfBatch], found: Mapping[str, Array]) -> None:
+def _restore_all(parts: Sequence[BatchPart], found: Mapping[str, Array]) -> None:
     there = sum(name.startswith("simulator_") for name in found)
-    if there != len(halves):
+    if there != len(parts):
         raise _refused(
-            f"halves: found {there}, expected {len(halves)}; restore it in an env of as many"
+            f"halves: found {there}, expected {len(parts)}; restore it in an env of as many"
         )
-    count = sum(half.simulator.num_envs for half in halves)
+    count = sum(part.simulator.num_envs for part in parts)
     sizes = [array.size for name, array in found.items() if name.startswith("returns_")]
-    if sizes == len(halves) * sizes[:1] and 0 < sum(sizes) != count:
+    if sizes == len(parts) * sizes[:1] and 0 < sum(sizes) != count:
         raise _refused(
             f"is of {sum(sizes)} envs, expected {count}; restore it in an env of as many"
         )
     arrays = [
         {name[: -len(end)]: array for name, array in found.items() if name.endswith(end)}
-        for end in (f"_{half}" for half in range(len(halves)))
+        for end in (f"_{part}" for part in range(len(parts)))
     ]
     # Of one that was cut off, there is nothing to go back to.
-    before = [None if half.is_cut_off else half.save_state() for half in halves]
+    before = [None if part.is_cut_off else part.save_state() for part in parts]
     try:
-        for half, saved in zip(halves, arrays):
-            half.restore_state(saved)
+        for part, saved in zip(parts, arrays):
+            part.restore_state(saved)
     except BaseException:
-        _put_back(halves, before)
+        _put_back(parts, before)
         raise
 
 
 def _restore_some(
-    halves: Sequence[HalfBatch], found: Mapping[str, Array], envs: NDArray[np.int64]
+    parts: Sequence[BatchPart], found: Mapping[str, Array], envs: NDArray[np.int64]
 ) -> None:
     pieces, own = _pieces_of(found)
     count = sum(len(piece.places) for piece in pieces)
@@ -106,11 +107,11 @@ def _restore_some(
         raise _refused(f"has {count} envs, expected {len(envs)}, or one that becomes all of them")
     of_saved = np.zeros(len(envs), np.int64) if count == 1 else np.arange(count)
     works: list[_Work] = []
-    for half in halves:
-        half.require_whole()
-    for half, places, rows in _by_half(halves, envs):
+    for part in parts:
+        part.require_whole()
+    for part, places, rows in _by_part(parts, envs):
         saved = {name: array[of_saved[places]] for name, array in own.items()}
-        half.check_rows(saved, rows)
+        part.check_rows(saved, rows)
         if len(rows):
             row_of = dict(zip(places.tolist(), rows.tolist()))
             taken = [
@@ -120,35 +121,35 @@ def _restore_some(
                 for piece in pieces
             ]
             taken = [piece for piece in taken if any(row is not None for row in piece.places)]
-            works.append(_Work(half, taken, saved, rows))
-    # What one half takes, all take: of one piece, nothing is refused when something has been done.
-    before = [work.half.save_state() for work in works] if len(pieces) > 1 else []
+            works.append(_Work(part, taken, saved, rows))
+    # What one part takes, all take: of one piece, nothing is refused when something has been done.
+    before = [work.part.save_state() for work in works] if len(pieces) > 1 else []
     try:
-        for half, taken, saved, rows in works:
-            half.restore_rows(taken, saved, rows)
+        for part, taken, saved, rows in works:
+            part.restore_rows(taken, saved, rows)
     except BaseException:
-        _put_back([work.half for work in works], before)
+        _put_back([work.part for work in works], before)
         raise
 
 
 class _Work(NamedTuple):
-    """What one half goes on from in its envs `rows`."""
+    """What one part goes on from in its envs `rows`."""
 
-    half: HalfBatch
+    part: BatchPart
     pieces: list[Piece]
     saved: dict[str, Array]
     rows: NDArray[np.int64]
 
 
-def _by_half(
-    halves: Sequence[HalfBatch], envs: NDArray[np.int64]
-) -> list[tuple[HalfBatch, NDArray[np.int64], NDArray[np.int64]]]:
-    """Each half, which of `envs` are in it, and as which of its envs."""
-    size = halves[0].simulator.num_envs
+def _by_part(
+    parts: Sequence[BatchPart], envs: NDArray[np.int64]
+) -> list[tuple[BatchPart, NDArray[np.int64], NDArray[np.int64]]]:
+    """Each part, which of `envs` are in it, and as which of its envs."""
+    size = parts[0].simulator.num_envs
     found = []
-    for number, half in enumerate(halves):
+    for number, part in enumerate(parts):
         places = np.flatnonzero(envs // size == number)
-        found.append((half, places, envs[places] - number * size))
+        found.append((part, places, envs[places] - number * size))
     return found
 
 
@@ -177,21 +178,21 @@ def _is_number(array: Array, number: int) -> bool:
     return array.ndim == 0 and array.dtype.kind in "iu" and int(array) == number
 
 
-def _put_back(halves: Sequence[HalfBatch], before: Sequence[dict[str, Array] | None]) -> None:
-    for half, kept in zip(halves, before):
-        half.is_cut_off = True
+def _put_back(parts: Sequence[BatchPart], before: Sequence[dict[str, Array] | None]) -> None:
+    for part, kept in zip(parts, before):
+        part.is_cut_off = True
         if kept is not None:
-            half.restore_state(kept)
+            part.restore_state(kept)
 
 
 def _packed(arrays: Mapping[str, Array]) -> bytes:
-    parts = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
+    kept = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
     listed = [
         (name, np.lib.format.dtype_to_descr(array.dtype), np.shape(arrays[name]))
-        for name, array in parts.items()
+        for name, array in kept.items()
     ]
     text = json.dumps(listed).encode()
-    body = b"".join([text, *(array.tobytes() for array in parts.values())])
+    body = b"".join([text, *(array.tobytes() for array in kept.values())])
     return _HEADER.pack(_MAGIC, zlib.crc32(body), len(text)) + body
 
 

@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from galactic.half_batch import HalfBatch, StepResult
+from galactic.batch_part import BatchPart, StepResult
 
 #: Places for the results of one step: see VectorEnv.step.
 Row = Mapping[str, NDArray[Any]]
 
 
 class Turns:
-    """Which of the `halves` are under way."""
+    """Which of the `parts` of a batch, its halves or all of it, are under way."""
 
-    def __init__(self, halves: Sequence[HalfBatch]) -> None:
-        self._halves = list(halves)
-        self._threads = [ThreadPoolExecutor(1, f"galactic-half-{n}") for n in range(len(halves))]
-        self._pending: list[Future[StepResult] | None] = [None] * len(halves)
+    def __init__(self, parts: Sequence[BatchPart]) -> None:
+        self._parts = list(parts)
+        self._threads = [ThreadPoolExecutor(1, f"galactic-half-{n}") for n in range(len(parts))]
+        self._pending: list[Future[StepResult] | None] = [None] * len(parts)
         self._beginning = threading.Lock()
         self._process = os.getpid()
 
@@ -87,20 +87,20 @@ class Turns:
         """Waits for what is under way, which end() still returns, and lets go of the halves."""
         for thread in self._threads:
             thread.shutdown()
-        self._halves = []
+        self._parts = []
 
     def _require_threads(self) -> None:
         if os.getpid() != self._process:
             raise RuntimeError("the threads of this env are in another process; make one in each")
 
     def _require_open(self) -> None:
-        if not self._halves:
+        if not self._parts:
             raise RuntimeError("this env is closed; make another one")
 
     def _submit(
         self, half: int, actions: NDArray[np.float32], out: Row | None
     ) -> Future[StepResult]:
-        step = self._threads[half].submit(self._halves[half].step, actions, out)
+        step = self._threads[half].submit(self._parts[half].step, actions, out)
         self._pending[half] = step
         return step
 
@@ -110,8 +110,8 @@ class Turns:
         """
         wait(
             [
-                thread.submit(setattr, half, "is_cut_off", True)
-                for thread, half in zip(self._threads, self._halves)
+                thread.submit(setattr, part, "is_cut_off", True)
+                for thread, part in zip(self._threads, self._parts)
             ]
         )
         self._pending = [None] * len(self)
@@ -138,15 +138,15 @@ def batch_of(parts: Sequence[Any]) -> Any:
     return np.concatenate(parts)
 
 
-def step_of_batch(halves: Sequence[HalfBatch], results: Sequence[StepResult]) -> StepResult:
-    """What a step of each of the halves came to, as a step of the batch."""
+def step_of_batch(parts: Sequence[BatchPart], results: Sequence[StepResult]) -> StepResult:
+    """What a step of each of the parts came to, as a step of the batch."""
     *arrays, infos = zip(*results)
     observations, rewards, terminations, truncations = (batch_of(each) for each in arrays)
     have_ended = ["final_info" in info for info in infos]
     if any(have_ended):
-        # A half in which nothing ended says so with masks that are false everywhere.
+        # A part in which nothing ended says so with masks that are false everywhere.
         infos = tuple(
-            info if has_ended else {**info, **half.blank_infos()}
-            for info, has_ended, half in zip(infos, have_ended, halves)
+            info if has_ended else {**info, **part.blank_infos()}
+            for info, has_ended, part in zip(infos, have_ended, parts)
         )
     return observations, rewards, terminations, truncations, batch_of(infos)

@@ -14,7 +14,7 @@ from galactic import saved_states, spaces
 from galactic._core import Renderer, Simulator, World
 from galactic.cameras import options_of_cameras
 from galactic.env_states import EnvStates, joined
-from galactic.half_batch import HalfBatch, Observations, StepResult
+from galactic.batch_part import BatchPart, Observations, StepResult
 from galactic.task import Placements, Task
 from galactic.task_runner import made_by
 from galactic.turns import Row, Turns, batch_of, part_of, step_of_batch
@@ -167,8 +167,8 @@ class VectorEnv(_Base):
         if cameras or render_mode is not None:
             options["body_transforms"] = True
         # Half h of batch r is batch 2 r + h of twice as many: the same envs as undivided.
-        self._halves = [
-            HalfBatch(
+        self._parts = [
+            BatchPart(
                 self._world,
                 {
                     **options,
@@ -185,9 +185,9 @@ class VectorEnv(_Base):
             )
             for half in range(halves)
         ]
-        self._turns = Turns(self._halves)
+        self._turns = Turns(self._parts)
         self._onlookers: list[Renderer] = []
-        first = self._halves[0]
+        first = self._parts[0]
         self.single_observation_space = first.observation_space
         self.observation_space = spaces.batch_space(first.observation_space, num_envs)
         self._actions = Actions(actions, first.simulator.action_count)
@@ -209,26 +209,26 @@ class VectorEnv(_Base):
         """Where in the flat observation of an env its parts are: the simulator's, and behind them those
         of a task of one's own."""
         self._require_open()
-        return self._halves[0].observation_parts
+        return self._parts[0].observation_parts
 
     @property
     def measures(self) -> tuple[str, ...]:
         """What final_info has of a task of one's own, by name."""
         self._require_open()
-        return self._halves[0].measures
+        return self._parts[0].measures
 
     @property
     def logs(self) -> tuple[str, ...]:
         """What infos["log"] has of a task of one's own, by name."""
         self._require_open()
-        return self._halves[0].logs
+        return self._parts[0].logs
 
     @property
     def placements(self) -> Placements:
         """How many states place() of a task of one's own has returned for episodes since this was made, and how
         many of them were `refused`, so that the episode began where the world has it."""
         self._require_idle()
-        counts = [half.placements for half in self._halves]
+        counts = [part.placements for part in self._parts]
         return Placements(*(sum(column) for column in zip(*counts)))
 
     @property
@@ -249,28 +249,28 @@ class VectorEnv(_Base):
         until it is set, 1 in an evaluation, where it stays so. It is saved with the state of all envs.
         """
         self._require_open()
-        return self._halves[0].progress
+        return self._parts[0].progress
 
     @progress.setter
     def progress(self, value: float) -> None:
         self._require_idle()
         progress = progress_of(value, self._is_evaluation)
-        for half in self._halves:
-            half.progress = progress
+        for part in self._parts:
+            part.progress = progress
 
     @property
     def simulators(self) -> tuple[Simulator, ...]:
         """The simulator of each half: for its statistics and states. Of a task of one's own, they know
         nothing."""
         self._require_open()
-        return tuple(half.simulator for half in self._halves)
+        return tuple(part.simulator for part in self._parts)
 
     @property
     def renderers(self) -> tuple[Any, ...]:
         """What draws each half's images, for its cameras and names: a Renderer, or with several
         cameras a dictionary of them by the cameras' names; () without images."""
         self._require_open()
-        drawing = [half.renderers for half in self._halves if half.renderers]
+        drawing = [part.renderers for part in self._parts if part.renderers]
         return tuple(one.get("", one) for one in drawing)
 
     @property
@@ -318,20 +318,20 @@ class VectorEnv(_Base):
         has changed then."""
         self._require_idle()
         chosen = np.arange(self.num_envs) if envs is None else distinct_envs(envs, self.num_envs)
-        self._halves[0].simulator.check_states(states)
+        self._parts[0].simulator.check_states(states)
         if len(chosen) != len(states.episode):
             raise ValueError(f"there are {len(states.episode)} states, expected {len(chosen)}")
-        for half in self._halves:
-            half.require_whole()
+        for part in self._parts:
+            part.require_whole()
         were_set = np.zeros(len(chosen), np.bool_)
         try:
-            for number, half in enumerate(self._halves):
-                part = self.rows(number)
-                here = np.flatnonzero((chosen >= part.start) & (chosen < part.stop))
-                were_set[here] = half.set_states(states.select(here), chosen[here] - part.start)
+            for number, part in enumerate(self._parts):
+                rows = self.rows(number)
+                here = np.flatnonzero((chosen >= rows.start) & (chosen < rows.stop))
+                were_set[here] = part.set_states(states.select(here), chosen[here] - rows.start)
         except BaseException:  # such as a task's: no half goes on alone
-            for half in self._halves:
-                half.is_cut_off = True
+            for part in self._parts:
+                part.is_cut_off = True
             raise
         self._broken_off[chosen[were_set]] += 1
         return were_set
@@ -350,7 +350,7 @@ class VectorEnv(_Base):
         and "endings" uint8 have `steps`.
         """
         self._require_open()
-        shapes = self._halves[0].landing_shapes()
+        shapes = self._parts[0].landing_shapes()
         after = {"rewards", "terminations", "truncations", "endings"}
         return {
             name: np.zeros((steps + (name not in after), self.num_envs, *shape), dtype)
@@ -377,17 +377,17 @@ class VectorEnv(_Base):
         """
         self._require_idle()
         mask, episodes = episodes_to_begin(seed, options, self.num_envs)
-        parts = [self.rows(number) for number in range(self.halves)]
-        for half, part in zip(self._halves, parts):
-            half.simulator.check_episodes(episodes[part])
-        done: list[HalfBatch] = []
+        rows = [self.rows(number) for number in range(self.halves)]
+        for part, envs in zip(self._parts, rows):
+            part.simulator.check_episodes(episodes[envs])
+        done: list[BatchPart] = []
         try:
-            for half, part in zip(self._halves, parts):
-                half.reset(seed, mask[part], episodes[part])
-                done.append(half)
+            for part, envs in zip(self._parts, rows):
+                part.reset(seed, mask[envs], episodes[envs])
+                done.append(part)
         except BaseException:
-            for half in done:
-                half.is_cut_off = True
+            for part in done:
+                part.is_cut_off = True
             raise
         self._broken_off[mask] += 1
         if seed is not None and _Base is not object:
@@ -398,8 +398,8 @@ class VectorEnv(_Base):
         """What all envs see now, in `out` as in step()."""
         self._require_idle()
         self._check_out(out, self.num_envs)
-        parts = [part_of(out, self.rows(number)) for number in range(self.halves)]
-        seen = [half.observe(part) for half, part in zip(self._halves, parts)]
+        places = [part_of(out, self.rows(number)) for number in range(self.halves)]
+        seen = [part.observe(into) for part, into in zip(self._parts, places)]
         return batch_of(seen)
 
     def step(self, actions: Any, out: Row | None = None) -> StepResult:
@@ -424,12 +424,12 @@ class VectorEnv(_Base):
         rows = self._actions.rows(actions, self.num_envs)
         self._check_out(out, self.num_envs)
         if self.halves == 1:
-            return self._halves[0].step(rows, out)
-        parts = [self.rows(half) for half in range(self.halves)]
+            return self._parts[0].step(rows, out)
+        halves = [self.rows(half) for half in range(self.halves)]
         results = self._turns.step(
-            [rows[part] for part in parts], [part_of(out, part) for part in parts]
+            [rows[half] for half in halves], [part_of(out, half) for half in halves]
         )
-        return step_of_batch(self._halves, results)
+        return step_of_batch(self._parts, results)
 
     def send(self, actions: Any, half: int = 0, out: Row | None = None) -> None:
         """Begins a step of one half, and returns at once.
@@ -472,8 +472,8 @@ class VectorEnv(_Base):
         the numbers `envs`, in that order."""
         self._require_idle()
         if envs is None:
-            return saved_states.state_of_all(self._halves)
-        return saved_states.state_of(self._halves, env_numbers(envs, self.num_envs))
+            return saved_states.state_of_all(self._parts)
+        return saved_states.state_of(self._parts, env_numbers(envs, self.num_envs))
 
     def restore_state(self, state: bytes, envs: Iterable[int] | None = None) -> None:
         """Goes on, bit for bit, from a state that an env of the same world and options saved; observe() shows
@@ -486,7 +486,7 @@ class VectorEnv(_Base):
         """
         self._require_idle()
         chosen = None if envs is None else distinct_envs(envs, self.num_envs)
-        saved_states.restore(self._halves, state, chosen)
+        saved_states.restore(self._parts, state, chosen)
         self._broken_off[slice(None) if chosen is None else chosen] += 1
 
     def close(self, **kwargs: Any) -> None:
@@ -495,7 +495,7 @@ class VectorEnv(_Base):
         RuntimeError from now on."""
         if not self.closed:
             self._turns.close()
-            self._halves, self._onlookers = [], []
+            self._parts, self._onlookers = [], []
             del self._world
         self.closed = True
 
@@ -520,4 +520,4 @@ class VectorEnv(_Base):
 
     def _check_out(self, out: Row | None, envs: int) -> None:
         if out is not None:
-            check_places(out, self._halves[0].landing_shapes(), envs)
+            check_places(out, self._parts[0].landing_shapes(), envs)

@@ -30,11 +30,11 @@ def test_many_plans_begin_where_one_env_is(world, halves, task):
     actions = np.zeros((4, ACTIONS), np.float32)
     assert rewards[4] == real.step(actions)[1][2] and len(np.unique(rewards)) > 5
     # Returns and lengths go on, too.
-    lengths = np.concatenate([half._tally.lengths for half in planner._halves])
-    returns = np.concatenate([half._tally.returns for half in planner._halves])
+    lengths = np.concatenate([part._tally.lengths for part in planner._parts])
+    returns = np.concatenate([part._tally.returns for part in planner._parts])
     # 0 where the step has ended the episode.
     assert set(lengths.tolist()) <= {9, 0} and lengths[4] == 9
-    assert returns[4] == real._halves[0]._tally.returns[2]
+    assert returns[4] == real._parts[0]._tally.returns[2]
 
 
 def test_plans_need_no_images_where_the_env_draws(world):

@@ -393,7 +393,7 @@ class Refused(Near):
 @pytest.mark.parametrize("halves", [1, 2])
 def test_placements_that_are_refused_are_counted(world, halves):
     env = VectorEnv(world, ENVS, task=Refused, halves=halves, seed=5, episode_steps=6)
-    drawn = VectorEnv(world, ENVS, task=Refused, seed=5, episode_steps=6)._halves[0]._task._envs
+    drawn = VectorEnv(world, ENVS, task=Refused, seed=5, episode_steps=6)._parts[0]._task._envs
     outside = int((drawn.uniform("where")[:, 0] < 0.5).sum())
     assert env.placements == (ENVS, outside) and 0 < outside < ENVS
     env.reset()

@@ -172,7 +172,7 @@ def test_interrupts_leave_nothing_half_done(world):
         except RuntimeError as refusal:
             assert "has cut off" in str(refusal)
         else:
-            lengths = env._halves[0]._tally.lengths
+            lengths = env._parts[0]._tally.lengths
             np.testing.assert_array_equal(lengths, env.simulators[0].env_states().step)
     assert interrupted == 60
 

@@ -451,7 +451,7 @@ def test_no_half_goes_on_alone_after_a_step_in_which_one_failed(world, draw_acti
         raise RuntimeError("no memory for images")
 
     with monkeypatch.context() as broken, pytest.raises(RuntimeError, match="no memory"):
-        broken.setattr(env._halves[0], "step", fail)
+        broken.setattr(env._parts[0], "step", fail)
         env.step(draw_actions(ENVS, 8))
     assert [one.statistics()["steps"] for one in env.simulators] == [0, ENVS // 2]
     with pytest.raises(RuntimeError, match=r"has cut off .*; reset\(\) all envs"):

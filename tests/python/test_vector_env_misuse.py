@@ -170,7 +170,7 @@ def test_a_closed_env_holds_nothing_and_what_it_gave_stays(world_path, halves, c
     kept = env.simulators[0].observations
     wanted = {name: rows.copy() for name, rows in seen.items()}
     kept_wanted = kept.copy()
-    held = [weakref.ref(half) for half in env._halves]
+    held = [weakref.ref(part) for part in env._parts]
     envs = ENVS // halves
     env.send(np.zeros((envs, 8), np.float32), halves - 1)
     env.close()

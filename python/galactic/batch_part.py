@@ -34,7 +34,7 @@ class Piece(NamedTuple):
     places: Sequence[int | None]
 
 
-class HalfBatch:
+class BatchPart:
     """Envs that step together, and what Gymnasium wants to know about each step of theirs. A second
     thread that calls it meanwhile gets a RuntimeError, and nothing has happened then.
 
