@@ -14,20 +14,26 @@ namespace galactic {
 
 namespace {
 
+/// What the vertices of a surface have besides positions.
+struct VertexContent {
+  bool uvs = false;
+  bool colors = false;
+};
+
 /// The vertices of a surface as GLB files have them.
 struct VertexLists {
   std::vector<Vec3> positions;
   std::vector<std::array<float, 2>> uvs;
   std::vector<std::uint32_t> colors;
 
-  VertexLists(const RenderSurface& surface, bool textured, bool colored) {
+  VertexLists(const RenderSurface& surface, const VertexContent& content) {
     positions.reserve(surface.vertices.size());
-    uvs.reserve(textured ? surface.vertices.size() : 0);
-    colors.reserve(colored ? surface.vertices.size() : 0);
+    uvs.reserve(content.uvs ? surface.vertices.size() : 0);
+    colors.reserve(content.colors ? surface.vertices.size() : 0);
     for (const RenderVertex& vertex : surface.vertices) {
       positions.push_back(vertex.position);
-      if (textured) uvs.push_back({vertex.u, vertex.v});
-      if (colored) colors.push_back(vertex.color);
+      if (content.uvs) uvs.push_back({vertex.u, vertex.v});
+      if (content.colors) colors.push_back(vertex.color);
     }
   }
 };
@@ -86,8 +92,9 @@ Result<void> RenderGlbWriter::write(const RenderModel& model, const std::string&
     primitives.reserve(lists.capacity());
     for (; from != to; ++from) {
       ASSIGN_OR_RETURN(const auto number, material({from->material, from->two_sided}));
-      const bool textured = meshes_.materials[from->material].texture >= 0;
-      const VertexLists& list = lists.emplace_back(*from, textured, !meshes_.colors.empty());
+      const VertexContent content{.uvs = meshes_.materials[from->material].texture >= 0,
+                                  .colors = !meshes_.colors.empty()};
+      const VertexLists& list = lists.emplace_back(*from, content);
       primitives.push_back({.positions = list.positions,
                             .uvs = list.uvs,
                             .colors = list.colors,
