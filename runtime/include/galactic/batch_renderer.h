@@ -147,11 +147,17 @@ struct RenderTargets {
   std::span<std::uint32_t> semantics{};
 };
 
-/// What the last rendering did, summed over its views.
+/// What the last rendering did, summed over its views. What is drawn depends on the backend: each
+/// finds other things hidden, and where it draws an image in parts, each part counts.
 struct RenderStatistics {
+  /// Models that the views have, wherever these look.
   std::uint64_t instances = 0;
+  /// Those of these models, before any is found to be out of sight.
   std::uint64_t clusters = 0;
+  /// Clusters whose vertices were placed: not found to be outside of the image, or hidden as a
+  /// whole.
   std::uint64_t clusters_drawn = 0;
+  /// Of these clusters, the triangles that were not left out either.
   std::uint64_t triangles_drawn = 0;
 };
 

@@ -22,13 +22,19 @@ struct ActionLayout {
   /// Whether the base drives sideways, too, by an action after `turn`.
   bool drives_sideways = false;
 
+  /// That of the robot's recipe; of a robot without one, no joints, and a base that does not drive
+  /// sideways.
   [[nodiscard]] static ActionLayout of(const Robot& robot);
 
+  /// Indices into the actions of an env, each of which goes from -1 to 1. 1 drives ahead.
   [[nodiscard]] constexpr std::size_t forward() const { return joints; }
+  /// 1 turns clockwise, seen from above.
   [[nodiscard]] constexpr std::size_t turn() const { return joints + 1; }
-  /// Only where the base drives sideways.
+  /// Only where the base drives sideways: 1 drives to the left.
   [[nodiscard]] constexpr std::size_t sideways() const { return joints + 2; }
+  /// Grasps from ActionOptions::grasp on, and lets go below ActionOptions::release.
   [[nodiscard]] constexpr std::size_t hand() const { return movingCount(); }
+  /// From ActionOptions::terminate on, the robot says that its task is done.
   [[nodiscard]] constexpr std::size_t terminate() const { return movingCount() + 1; }
   /// How many there are, and how many of them, the first ones, move the robot.
   [[nodiscard]] constexpr std::size_t count() const { return movingCount() + 2; }

@@ -55,6 +55,8 @@ class EpisodeSet {
   [[nodiscard]] static Result<EpisodeSet> from(const PackFile& pack);
   static Result<EpisodeSet> from(const PackFile&& pack) = delete;
 
+  /// For people: of generated episodes that of their pack, of others that of their file, without
+  /// its extension.
   [[nodiscard]] std::string_view name() const { return name_; }
   /// Ascending.
   [[nodiscard]] const std::vector<std::string_view>& sceneNames() const { return scenes_; }
@@ -65,6 +67,7 @@ class EpisodeSet {
   /// The joints whose positions each episode gives.
   [[nodiscard]] const std::vector<std::string_view>& startJoints() const { return start_joints_; }
 
+  /// In the order of the pack; elsewhere, an episode is its index into these.
   [[nodiscard]] std::span<const Episode> episodes() const { return episodes_; }
   /// The objects of one episode.
   [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {

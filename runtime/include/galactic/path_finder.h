@@ -81,12 +81,14 @@ class PathFinder {
 
   /// Edge of a cell, meters.
   [[nodiscard]] static float cellSize();
+  /// Cells along X and along Z of the rectangle that the floor lies in.
   [[nodiscard]] std::int32_t columnsX() const;
   [[nodiscard]] std::int32_t columnsZ() const;
   /// Corner of the first cell, world frame, meters.
   [[nodiscard]] float minX() const;
   [[nodiscard]] float minZ() const;
-  /// Of the floor in each cell, meters, X first; NaN where the robot cannot go.
+  /// Of the floor in each cell, meters; NaN where the robot cannot go. Shape: columnsZ() x
+  /// columnsX().
   [[nodiscard]] std::span<const float> heights() const;
 
   /// Whether a base may be here: in a cell of the floor, and not a storey above or below. False

@@ -110,6 +110,7 @@ class Robot {
   [[nodiscard]] static Result<Robot> from(const PackFile& pack);
   static Result<Robot> from(const PackFile&& pack) = delete;
 
+  /// As episode sets call it: EpisodeSet::robotName().
   [[nodiscard]] std::string_view name() const { return name_; }
   /// The working set, meters, ascending.
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
@@ -130,7 +131,10 @@ class Robot {
   [[nodiscard]] std::span<const float> startPositions() const { return start_positions_; }
   [[nodiscard]] std::size_t positionCount() const { return limits_.size(); }
 
+  /// Those of all groups, group after group, each in the frame of its group's link; in a group by
+  /// descending radius.
   [[nodiscard]] std::span<const SetSphere> spheres() const { return spheres_; }
+  /// Links ascending; their spheres are parts of spheres().
   [[nodiscard]] const std::vector<SphereGroup>& groups() const { return groups_; }
   /// All pairs of groups that have spheres, ascending.
   [[nodiscard]] std::span<const GroupPair> groupPairs() const { return group_pairs_; }

@@ -20,6 +20,7 @@ class Scene {
   [[nodiscard]] static Result<Scene> from(const PackFile& pack);
   static Result<Scene> from(const PackFile&& pack) = delete;
 
+  /// As episodes call it: EpisodeSet::sceneNames().
   [[nodiscard]] std::string_view name() const { return name_; }
 
   /// One grid per radius of the working set, ascending.

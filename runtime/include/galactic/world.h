@@ -57,6 +57,7 @@ class World {
   [[nodiscard]] std::span<const float> radii() const { return robot().radii(); }
   /// Ascending names, whatever the order of the packs.
   [[nodiscard]] const std::vector<Scene>& scenes() const { return content_->scenes; }
+  /// A world has one robot and one episode set.
   [[nodiscard]] const Robot& robot() const { return content_->robot.front(); }
   [[nodiscard]] const EpisodeSet& episodes() const { return content_->episodes.front(); }
   /// What tells it from other worlds: it follows from the kinds, sizes and hashes of its packs, in

@@ -141,7 +141,10 @@ class BuildObserver {
   BuildObserver(const BuildObserver&) = delete;
   BuildObserver& operator=(const BuildObserver&) = delete;
 
+  /// A pack is being made; `pack`: its name (PackJob::name).
   virtual void begin(std::string_view /*pack*/) {}
+  /// How far a pack is: what it is at (`item`: one of its inputs, as a rule), with what, and which
+  /// fraction of that stage or item is done, from 0 to 1.
   virtual void show(std::string_view /*item*/, std::string_view /*stage*/, double /*fraction*/) {}
   /// Also of what is broken, which never began.
   virtual void end(const PackOutcome& /*pack*/) {}
