@@ -2,17 +2,19 @@
 """Checks of the documents (README.md, docs/ and the folders' READMEs).
 
     check_documents.py code              blocks that quote a file equal it
-    check_documents.py links             links to files lead to files
+    check_documents.py links             links lead to files, and to headings in them
     check_documents.py commands --bin D  the commands of docs/ that call our tools do as they say
     check_documents.py options --bin D   docs/tools.md lists the options of our tools, and no others
 
 A block quotes a file when the line before it is <!-- file: PATH -->. Commands are the lines of blocks
 marked "sh" that begin with one of RUN; a line that ends in "# exit 7" has to end with that code. All
-commands of one document run in one fresh folder, in which packs/ and schema/ are the project's. Options
-are what --help of a tool and its verbs begins a line with.
+commands of one document run in one fresh folder, in which packs/ and schema/ are the project's. What
+calls tools that are not built is skipped: a document's commands, a tool's options. Options are what
+--help of a tool and its verbs begins a line with.
 """
 
 import argparse
+import difflib
 import os
 import pathlib
 import re
@@ -23,9 +25,14 @@ import tempfile
 PROJECT = pathlib.Path(__file__).parents[2]
 BLOCK = re.compile(r"(?:<!-- file: (?P<file>\S+) -->\n)?```(?P<language>\w*)\n(?P<text>.*?)```\n",
                    re.DOTALL)
-LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+LINK = re.compile(r"\]\(([^)#\s]*)(?:#([^)\s]*))?\)")
+# Text in which neither links nor headings are any.
+CODE = re.compile(r"^```.*?^```$|(`+)[^`\n]*?\1", re.DOTALL | re.MULTILINE)
+HEADING = re.compile(r"^#{1,6} +(.*?)\s*$", re.MULTILINE)
+ANCHOR = re.compile(r"<a (?:id|name)=\"([^\"]+)\"")
 # Our tools, and what prepares or looks at their files.
 RUN = ("galactic-", "flatc ", "printf ", "tail ")
+TOOL = re.compile(r"(?<![\w./-])galactic-\w+")
 EXPECTED_EXIT = re.compile(r"\s+# exit (\d+)$")
 TOOL_SECTION = re.compile(r"^## (galactic-\w+)\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
 VERB_HEADING = re.compile(r"^### (\w+)$", re.MULTILINE)
@@ -58,12 +65,37 @@ def check_code(root: pathlib.Path) -> list[str]:
     return offences if quoted else ["no document quotes a file: nothing was compared"]
 
 
+def anchors_of(text: str) -> set[str]:
+    """What follows "#" in links to the headings of a document, as GitHub names them."""
+    without_blocks = re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
+    anchors = set(ANCHOR.findall(without_blocks))
+    seen: dict[str, int] = {}
+    for heading in HEADING.findall(without_blocks):
+        shown = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
+        slug = re.sub(r"[^\w\- ]", "", shown.lower()).replace(" ", "-")
+        count = seen.get(slug, 0)
+        seen[slug] = count + 1
+        anchors.add(f"{slug}-{count}" if count else slug)
+    return anchors
+
+
 def check_links(root: pathlib.Path) -> list[str]:
     offences = []
     for document in documents(root):
-        for target in LINK.findall(document.read_text(encoding="utf-8")):
-            if "://" not in target and not (document.parent / target).exists():
-                offences.append(f"{document.relative_to(root)}: links to {target}, which is not there")
+        shown = document.relative_to(root)
+        text = document.read_text(encoding="utf-8")
+        for file, anchor in LINK.findall(CODE.sub("", text)):
+            if "://" in file or file.startswith("mailto:"):
+                continue
+            target = document.parent / file if file else document
+            if not target.exists():
+                offences.append(f"{shown}: links to {file}, which is not there")
+            elif anchor and target.suffix == ".md":
+                anchors = anchors_of(target.read_text(encoding="utf-8"))
+                if anchor not in anchors:
+                    nearest = difflib.get_close_matches(anchor, anchors, 1)
+                    advice = f"did you mean #{nearest[0]}?" if nearest else "link to one that it has"
+                    offences.append(f"{shown}: links to {file}#{anchor}, but no heading there is called so; {advice}")
     return offences
 
 
@@ -89,7 +121,13 @@ def check_commands(root: pathlib.Path, programs: pathlib.Path) -> list[str]:
         with tempfile.TemporaryDirectory() as folder:
             for shared in ("packs", "schema"):
                 (pathlib.Path(folder) / shared).symlink_to(root / shared)
-            for line, expected in commands_of(document.read_text(encoding="utf-8")):
+            commands = commands_of(document.read_text(encoding="utf-8"))
+            missing = sorted({tool for line, _ in commands for tool in TOOL.findall(line)
+                              if not (programs / tool).exists()})
+            if missing:
+                print(f"{document.relative_to(root)}: skipped, without {', '.join(missing)}")
+                continue
+            for line, expected in commands:
                 total += 1
                 run = subprocess.run(["bash", "-c", line], cwd=folder, env=environment, text=True,
                                      stdin=subprocess.DEVNULL, capture_output=True, check=False)
@@ -97,7 +135,8 @@ def check_commands(root: pathlib.Path, programs: pathlib.Path) -> list[str]:
                     offences.append(f"{document.relative_to(root)}: {line}\n  ended with "
                                     f"{run.returncode} instead of {expected}: {run.stderr.strip()}")
     print(f"{total} commands")
-    return offences if total else ["no document has a command: nothing was run"]
+    return offences if total else [
+        "no document has a command whose tools are built: nothing was run; build all of them"]
 
 
 def options_of(tool: pathlib.Path, verbs: list[str]) -> set[str]:
@@ -124,7 +163,8 @@ def check_options(root: pathlib.Path, programs: pathlib.Path) -> list[str]:
         offences += [f"docs/tools.md: lists {option}, which {tool} does not have"
                      for option in sorted(options_in_tables(section) - options)]
     print(f"{total} options")
-    return offences if total else ["no tool has an option: nothing was compared"]
+    return offences if total else [
+        "no tool that is built has an option: nothing was compared; build all of them"]
 
 
 def main() -> int:

@@ -67,6 +67,23 @@ class CheckDocumentsTest(unittest.TestCase):
         self.plant("See [b](gone.md).\n")
         self.assertEqual(len(check_documents.check_links(self.root)), 1)
 
+    def test_refuses_a_link_to_no_heading(self):
+        self.plant("# A `b`-c: d, e!\n\n## Same\n\n## Same\n\n```sh\n# none\n```\n"
+                   "[1](#a-b-c-d-e) [2](page.md#same) [3](#same-1) [4](../a.cpp#L3) `[5](#code)`\n")
+        self.assertEqual(check_documents.check_links(self.root), [])
+        self.plant("# One\n\n```sh\n# none\n```\n[1](#ones) [2](page.md#none)\n")
+        self.assertEqual(check_documents.check_links(self.root), [
+            "docs/page.md: links to #ones, but no heading there is called so; did you mean #one?",
+            "docs/page.md: links to page.md#none, but no heading there is called so; did you mean #one?"])
+
+    def test_skips_documents_whose_tools_are_not_built(self):
+        (self.root / "docs" / "other.md").write_text("```sh\ngalactic-gone no\nprintf a | galactic-tool no\n```\n")
+        self.assertEqual(check_documents.check_commands(self.root, self.root), [])
+
+    def test_refuses_to_skip_all(self):
+        self.plant("```sh\ngalactic-gone no\n```\n")
+        self.assertEqual(len(check_documents.check_commands(self.root, self.root)), 1)
+
     def test_refuses_a_command_that_fails(self):
         self.plant("```sh\ngalactic-tool no\n```\n")
         self.assertEqual(len(check_documents.check_commands(self.root, self.root)), 1)
