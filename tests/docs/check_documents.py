@@ -2,6 +2,7 @@
 """Checks of the documents (README.md, docs/ and the folders' READMEs).
 
     check_documents.py code              blocks that quote a file equal it
+    check_documents.py examples          examples/README.md lists what is in examples/python, and tests run it
     check_documents.py links             links lead to files, and to headings in them
     check_documents.py commands --bin D  the commands of docs/ that call our tools do as they say
     check_documents.py options --bin D   docs/tools.md lists the options of our tools, and no others
@@ -63,6 +64,21 @@ def check_code(root: pathlib.Path) -> list[str]:
                 offences.append(f"{document.relative_to(root)}: differs from {block['file']}; copy the "
                                 "file into the block")
     return offences if quoted else ["no document quotes a file: nothing was compared"]
+
+
+def check_examples(root: pathlib.Path) -> list[str]:
+    offences = []
+    programs = sorted((root / "examples" / "python").glob("*.py"))
+    listed = (root / "examples" / "README.md").read_text(encoding="utf-8") if programs else ""
+    tests = "".join(file.read_text(encoding="utf-8") for file in sorted((root / "tests" / "python").rglob("*.py")))
+    for program in programs:
+        shown = program.relative_to(root)
+        if f"\n| `{program.name}" not in listed:
+            offences.append(f'{shown}: examples/README.md has no row "| `{program.name}"; add one')
+        if not re.search(rf"""["'/]{re.escape(program.name)}["']""", tests):
+            offences.append(f'{shown}: no test in tests/python says "{program.name}"; run it in test_examples.py there '
+                            "or, where it learns, in learning/")
+    return offences if programs else ["examples/python has no programs: nothing was looked at"]
 
 
 def anchors_of(text: str) -> set[str]:
@@ -170,12 +186,14 @@ def check_options(root: pathlib.Path, programs: pathlib.Path) -> list[str]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("code", "links", "commands", "options"))
+    parser.add_argument("what", choices=("code", "examples", "links", "commands", "options"))
     parser.add_argument("--root", type=pathlib.Path, default=PROJECT)
     parser.add_argument("--bin", type=pathlib.Path, help="folder of the built tools")
     options = parser.parse_args()
     if options.what == "code":
         offences = check_code(options.root)
+    elif options.what == "examples":
+        offences = check_examples(options.root)
     elif options.what == "links":
         offences = check_links(options.root)
     elif options.bin is None:

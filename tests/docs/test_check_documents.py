@@ -76,6 +76,18 @@ class CheckDocumentsTest(unittest.TestCase):
             "docs/page.md: links to #ones, but no heading there is called so; did you mean #one?",
             "docs/page.md: links to page.md#none, but no heading there is called so; did you mean #one?"])
 
+    def test_refuses_an_example_that_is_not_listed_or_not_run(self):
+        for folder in ("examples/python", "tests/python"):
+            (self.root / folder).mkdir(parents=True)
+        self.assertEqual(len(check_documents.check_examples(self.root)), 1)
+        (self.root / "examples" / "python" / "fly.py").write_text("")
+        (self.root / "examples" / "README.md").write_text("| program |\n|---|\n| `fly.py WORLD` | flies |\n")
+        (self.root / "tests" / "python" / "test_examples.py").write_text('output_of("fly.py")\n')
+        self.assertEqual(check_documents.check_examples(self.root), [])
+        (self.root / "examples" / "python" / "swim.py").write_text("")
+        offences = check_documents.check_examples(self.root)
+        self.assertEqual(len(offences), 2, offences)
+
     def test_skips_documents_whose_tools_are_not_built(self):
         (self.root / "docs" / "other.md").write_text("```sh\ngalactic-gone no\nprintf a | galactic-tool no\n```\n")
         self.assertEqual(check_documents.check_commands(self.root, self.root), [])
