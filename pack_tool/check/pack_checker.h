@@ -9,7 +9,7 @@
 
 namespace galactic::pack_tool {
 
-/// What is wrong with a pack.
+/// What is wrong with a pack: the first thing that was found. There are no warnings.
 struct Finding {
   /// See findingCode.
   std::string code;
