@@ -16,7 +16,7 @@
 #include "support/program_run.h"
 #include "support/scratch_folder.h"
 
-namespace galactic {
+namespace galactic::policy_cli_test {
 namespace {
 
 using nlohmann::json;
@@ -261,4 +261,4 @@ TEST_F(PolicyCli, SaysWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::policy_cli_test

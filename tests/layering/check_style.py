@@ -4,7 +4,8 @@
     check_style.py [ROOT]
 
 Too long files, words of unfinished code, code switched off with the preprocessor, paths of one
-machine, and flags of the command line in messages of the library, which name options in backquotes.
+machine, tests without a namespace of their own, and flags of the command line in messages of the
+library, which name options in backquotes.
 """
 
 import pathlib
@@ -13,7 +14,7 @@ import sys
 
 import source_tree
 
-CODE = (".h", ".cpp", ".py", ".sh", ".fbs", ".cmake")
+CODE = (".h", ".cpp", ".inl", ".py", ".sh", ".fbs", ".cmake")
 TEXT = CODE + (".md", ".txt", ".json", "")
 # Written by programs, not by people.
 GENERATED = re.compile(r"packs/.*\.json$|tests/fuzz/corpus/|\.golden$")
@@ -24,6 +25,7 @@ WORD_LIST = pathlib.Path(__file__).with_name("forbidden_words.txt")
 EXEMPT_FROM_WORDS = pathlib.PurePosixPath("tests/layering")
 
 SWITCHED_OFF = re.compile(r"^\s*#\s*if\s+(0|false)\b")
+NAMESPACE = re.compile(r"^namespace (galactic[\w:]*) \{", re.MULTILINE)
 # Folders under which no path is the same on two machines; examples live in /home/me.
 LOCAL_PATH = re.compile(r"(?<![\w.$}/*])/(home(?!/me/)|work|tmp|root|Users|mnt|srv)/")
 # Programs make flags of the options that the library names; recipes and other programs have none.
@@ -68,12 +70,23 @@ def check_flags(path: pathlib.PurePath, text: str) -> list[str]:
     return offences
 
 
+def check_namespace(path: pathlib.PurePath, text: str) -> list[str]:
+    """Tests are compiled as one, and may declare the same names."""
+    names = NAMESPACE.findall(text)
+    if not names or any(name.split("::")[-1] == path.stem for name in names):
+        return []
+    return [f"{path}: is in the namespace {names[0]}, expected one that ends in the file's name: "
+            f"{names[0]}::{path.stem}"]
+
+
 def check_file(root: pathlib.Path, path: pathlib.Path, words: re.Pattern) -> list[str]:
     text = (root / path).read_text(encoding="utf-8", errors="replace")
     lines = text.splitlines()
     offences = check_lines(pathlib.PurePosixPath(path), lines, words)
     if path.suffix in (".h", ".cpp", ".inl") and any(path.is_relative_to(part) for part in LIBRARY):
         offences += check_flags(path, text)
+    if path.is_relative_to("tests") and path.name.endswith("_test.cpp"):
+        offences += check_namespace(path, text)
     if path.suffix in CODE and len(lines) > MAX_LINES:
         offences.append(f"{path}: {len(lines)} lines, expected at most {MAX_LINES} (450 is good); "
                         "split it by concern")

@@ -304,6 +304,16 @@ class StyleTest(PlantedTree):
     def test_leaves_build_folders_alone(self):
         self.assertEqual(self.offences("build/release/a.cpp", "// TODO\n"), [])
 
+    def test_refuses_tests_in_a_namespace_of_others(self):
+        for space in ("galactic", "galactic::test"):
+            offences = self.offences("tests/runtime/fly_test.cpp", f"namespace {space} {{\n}}\n")
+            self.assertEqual(offences, [f"tests/runtime/fly_test.cpp: is in the namespace {space}, expected one that "
+                                        f"ends in the file's name: {space}::fly_test"])
+
+    def test_accepts_tests_in_a_namespace_of_their_own(self):
+        for space in ("galactic::test::fly_test", "galactic::fly_test", "galactic::bake::fly_test"):
+            self.assertEqual(self.offences("tests/bake/fly_test.cpp", f"namespace {space} {{\n}}\n"), [])
+
     def test_looks_at_folders_of_that_name_elsewhere(self):
         self.assertEqual(len(self.offences("bake/src/build/a.cpp", "// TODO\n")), 1)
 

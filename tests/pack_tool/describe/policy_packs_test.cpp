@@ -13,7 +13,7 @@
 #include "support/packs/world_pack_builder.h"
 #include "support/scratch_folder.h"
 
-namespace galactic::pack_tool {
+namespace galactic::pack_tool::policy_packs_test {
 namespace {
 
 using test::PolicyPackFields;
@@ -147,4 +147,4 @@ TEST(CheckOfPolicies, SaysOkAndWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace galactic::pack_tool
+}  // namespace galactic::pack_tool::policy_packs_test

@@ -13,7 +13,7 @@
 #include "runtime/policy/policy_run.h"
 #include "support/packs/policy_pack_builder.h"
 
-namespace galactic::test {
+namespace galactic::test::policy_check_test {
 namespace {
 
 using Fields = PolicyPackFields;
@@ -243,71 +243,62 @@ struct Weights {
 TEST(PolicyPack, IsRefusedWhereAWeightIsMissingOrNoNumber) {
   const std::vector<Weights> all{
       {"layers[4].weight",
-       [](Fields & f) -> auto& {return kindOf<layer::Convolution>(f, kConvolution).weight;
-}
-}  // namespace
-, {"layers[4].bias",
-   [](Fields& f) -> auto& {return kindOf<layer::Convolution>(f, kConvolution).bias;
-}  // namespace galactic::test
-}
-, {"layers[5].weight",
-   [](Fields& f) -> auto& {return kindOf<layer::GroupNorm>(f, kGroupNorm).weight;
-}
-}
-, {"layers[5].bias", [](Fields& f) -> auto& {return kindOf<layer::GroupNorm>(f, kGroupNorm).bias;
-}
-}
-, {"layers[9].weight", [](Fields& f) -> auto& {return kindOf<layer::Linear>(f, kLinear).weight;
-}
-}
-, {"layers[14].bias", [](Fields& f) -> auto& {return kindOf<layer::Linear>(f, 14).bias;
-}
-}
-, {"layers[10].weight",
-   [](Fields& f) -> auto& {return kindOf<layer::LayerNorm>(f, kLayerNorm).weight;
-}
-}
-, {"layers[10].bias", [](Fields& f) -> auto& {return kindOf<layer::LayerNorm>(f, kLayerNorm).bias;
-}
-}
-, {"layers[11].mean", [](Fields& f) -> auto& {return kindOf<layer::Normalize>(f, kNormalize).mean;
-}
-}
-, {"layers[11].inverse_deviation",
-   [](Fields& f) -> auto& {return kindOf<layer::Normalize>(f, kNormalize).inverse_deviation;
-}
-}
-, {"layers[13].input_weight",
-   [](Fields& f) -> auto& {return kindOf<layer::Gru>(f, kGru).input_weight;
-}
-}
-, {"layers[13].state_weight",
-   [](Fields& f) -> auto& {return kindOf<layer::Gru>(f, kGru).state_weight;
-}
-}
-, {"layers[13].input_bias", [](Fields& f) -> auto& {return kindOf<layer::Gru>(f, kGru).input_bias;
-}
-}
-, {
-  "layers[13].state_bias", [](Fields & f) -> auto& {
-    return kindOf<layer::Gru>(f, kGru).state_bias;
+       [](Fields& f) -> std::vector<float>& {
+         return kindOf<layer::Convolution>(f, kConvolution).weight;
+       }},
+      {"layers[4].bias",
+       [](Fields& f) -> std::vector<float>& {
+         return kindOf<layer::Convolution>(f, kConvolution).bias;
+       }},
+      {"layers[5].weight",
+       [](Fields& f) -> std::vector<float>& {
+         return kindOf<layer::GroupNorm>(f, kGroupNorm).weight;
+       }},
+      {"layers[5].bias",
+       [](Fields& f) -> std::vector<float>& {
+         return kindOf<layer::GroupNorm>(f, kGroupNorm).bias;
+       }},
+      {"layers[9].weight",
+       [](Fields& f) -> std::vector<float>& { return kindOf<layer::Linear>(f, kLinear).weight; }},
+      {"layers[14].bias",
+       [](Fields& f) -> std::vector<float>& { return kindOf<layer::Linear>(f, 14).bias; }},
+      {"layers[10].weight",
+       [](Fields& f) -> std::vector<float>& {
+         return kindOf<layer::LayerNorm>(f, kLayerNorm).weight;
+       }},
+      {"layers[10].bias",
+       [](Fields& f) -> std::vector<float>& {
+         return kindOf<layer::LayerNorm>(f, kLayerNorm).bias;
+       }},
+      {"layers[11].mean",
+       [](Fields& f) -> std::vector<float>& {
+         return kindOf<layer::Normalize>(f, kNormalize).mean;
+       }},
+      {"layers[11].inverse_deviation",
+       [](Fields& f) -> std::vector<float>& {
+         return kindOf<layer::Normalize>(f, kNormalize).inverse_deviation;
+       }},
+      {"layers[13].input_weight",
+       [](Fields& f) -> std::vector<float>& { return kindOf<layer::Gru>(f, kGru).input_weight; }},
+      {"layers[13].state_weight",
+       [](Fields& f) -> std::vector<float>& { return kindOf<layer::Gru>(f, kGru).state_weight; }},
+      {"layers[13].input_bias",
+       [](Fields& f) -> std::vector<float>& { return kindOf<layer::Gru>(f, kGru).input_bias; }},
+      {"layers[13].state_bias",
+       [](Fields& f) -> std::vector<float>& { return kindOf<layer::Gru>(f, kGru).state_bias; }}};
+  for (const Weights& weights : all) {
+    Fields fields;
+    const std::size_t size = weights.of(fields).size();
+    ASSERT_GE(size, 2U);
+    expectRefused<Fields>(
+        Fields{},
+        {{"policy." + weights.field, fmt::format("has {} elements, expected {}", size - 1, size),
+          [&](Fields& f) { weights.of(f).pop_back(); }},
+         {fmt::format("policy.{}[{}]", weights.field, size - 1), "is not finite, expected a number",
+          [&](Fields& f) { weights.of(f).back() = kInfinity; }},
+         {fmt::format("policy.{}[1]", weights.field), "is not finite, expected a number",
+          [&](Fields& f) { weights.of(f)[1] = kNan; }}});
   }
-}
-}
-;
-for (const Weights& weights : all) {
-  Fields fields;
-  const std::size_t size = weights.of(fields).size();
-  ASSERT_GE(size, 2U);
-  expectRefused<Fields>(
-      Fields{},
-      {{"policy." + weights.field, fmt::format("has {} elements, expected {}", size - 1, size),
-        [&](Fields& f) { weights.of(f).pop_back(); }},
-       {fmt::format("policy.{}[{}]", weights.field, size - 1), "is not finite, expected a number",
-        [&](Fields& f) { weights.of(f).back() = kInfinity; }},
-       {fmt::format("policy.{}[1]", weights.field), "is not finite, expected a number",
-        [&](Fields& f) { weights.of(f)[1] = kNan; }}});
-}
 }
 
 TEST(PolicyPack, IsRefusedWithWrongActions) {
@@ -375,4 +366,4 @@ TEST(DamagedPolicyPack, WithARecomputedHashIsRefusedOrRunsAfterEachFlip) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::policy_check_test

@@ -12,7 +12,7 @@
 
 #include "render/gl/shader_sources.h"
 
-namespace galactic::render::gl {
+namespace galactic::render::gl::gl_shader_test {
 namespace {
 
 std::vector<ShaderVariant> allVariants() {
@@ -87,7 +87,7 @@ TEST_F(ShaderFiles, WithAMistakeAreRefused) {
 }
 
 }  // namespace
-}  // namespace galactic::render::gl
+}  // namespace galactic::render::gl::gl_shader_test
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)

@@ -16,7 +16,7 @@
 #include "render/raster/sample.inl"
 // clang-format on
 
-namespace galactic::render {
+namespace galactic::render::soft_lanes_test {
 namespace {
 
 TEST(SoftLanes, ThoseOfAnySetAreWrittenInTheirOrder) {
@@ -212,4 +212,4 @@ TEST_F(SoftSampling, OfAFlatSurfaceIsItsColor) {
 }
 
 }  // namespace
-}  // namespace galactic::render
+}  // namespace galactic::render::soft_lanes_test

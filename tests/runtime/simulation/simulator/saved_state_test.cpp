@@ -18,7 +18,7 @@
 #include "support/homes/small_home_actor.h"
 #include "support/homes/task_twins.h"
 
-namespace galactic::test {
+namespace galactic::test::saved_state_test {
 namespace {
 
 using testing::HasSubstr;
@@ -483,4 +483,4 @@ TEST_F(DamagedState, OfAnotherSeedIsRefusedWhereItIsOnlyAPart) {
 }
 
 }  // namespace
-}  // namespace galactic::test
+}  // namespace galactic::test::saved_state_test

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace galactic {
+namespace galactic::counted_test {
 namespace {
 
 TEST(Counted, IsOneOrMany) {
@@ -28,4 +28,4 @@ TEST(Counted, KnowsTheVertices) {
 }
 
 }  // namespace
-}  // namespace galactic
+}  // namespace galactic::counted_test
