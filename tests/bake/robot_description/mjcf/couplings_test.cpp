@@ -6,7 +6,7 @@
 #include "galactic/bake/robot_baker.h"
 #include "galactic/bake/robot_recipe.h"
 
-namespace galactic::test::mjcf_couplings_test {
+namespace galactic::test::mjcf::couplings_test {
 namespace {
 
 using testing::Contains;
@@ -214,4 +214,4 @@ TEST(MjcfNames, AreMadeWhereTheyAreAbsent) {
 }
 
 }  // namespace
-}  // namespace galactic::test::mjcf_couplings_test
+}  // namespace galactic::test::mjcf::couplings_test

@@ -5,7 +5,7 @@
 
 #include "bake/robot_description/mjcf/mjcf_texts.h"
 
-namespace galactic::test::mjcf_faults_test {
+namespace galactic::test::mjcf::faults_test {
 namespace {
 
 struct Fault {
@@ -263,4 +263,4 @@ TEST(MjcfFaults, OfEveryTruncationAreErrorsWithAPlace) {
 }
 
 }  // namespace
-}  // namespace galactic::test::mjcf_faults_test
+}  // namespace galactic::test::mjcf::faults_test

@@ -9,7 +9,7 @@
 #include "bake/robot_description/link_points.h"
 #include "bake/robot_description/mjcf/mjcf_texts.h"
 
-namespace galactic::test::mjcf_frames_test {
+namespace galactic::test::mjcf::frames_test {
 namespace {
 
 using testing::DoubleNear;
@@ -407,4 +407,4 @@ TEST(MjcfFrames, MoveAsMuJoCoMovesThem) {
 }
 
 }  // namespace
-}  // namespace galactic::test::mjcf_frames_test
+}  // namespace galactic::test::mjcf::frames_test

@@ -9,7 +9,7 @@
 #include "bake/robot_description/mjcf/mjcf_texts.h"
 #include "support/mesh_files.h"
 
-namespace galactic::test::mjcf_geoms_test {
+namespace galactic::test::mjcf::geoms_test {
 namespace {
 
 using bake::BoxShape;
@@ -340,4 +340,4 @@ TEST(MjcfFiles, HaveTheContentOfThoseThatTheyInclude) {
 }
 
 }  // namespace
-}  // namespace galactic::test::mjcf_geoms_test
+}  // namespace galactic::test::mjcf::geoms_test

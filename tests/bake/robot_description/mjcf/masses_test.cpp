@@ -8,7 +8,7 @@
 #include "bake/robot_description/mjcf/mjcf_texts.h"
 #include "support/mesh_files.h"
 
-namespace galactic::test::mjcf_masses_test {
+namespace galactic::test::mjcf::masses_test {
 namespace {
 
 using bake::LinkInertial;
@@ -176,4 +176,4 @@ TEST(MjcfMasses, MayBeMalformedWhereNobodyAsksForThem) {
 }
 
 }  // namespace
-}  // namespace galactic::test::mjcf_masses_test
+}  // namespace galactic::test::mjcf::masses_test

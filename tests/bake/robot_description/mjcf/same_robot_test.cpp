@@ -12,7 +12,7 @@
 #include "robot_description/mjcf/xml_tree.h"
 #include "support/build_paths.h"
 
-namespace galactic::test::mjcf_same_robot_test {
+namespace galactic::test::mjcf::same_robot_test {
 namespace {
 
 using bake::XmlElement;
@@ -277,4 +277,4 @@ INSTANTIATE_TEST_SUITE_P(OfThePacks, SameRobots,
                          });
 
 }  // namespace
-}  // namespace galactic::test::mjcf_same_robot_test
+}  // namespace galactic::test::mjcf::same_robot_test
