@@ -110,7 +110,8 @@ class RecipeDraft {
                            tomlText(robot_.links.front().name));
       text_ += "# vertical_fov_degrees = 60\n\n";
     } else {
-      text_ += fmt::format("# Guess, by the links' names: {}\n", namesOf(cameras));
+      text_ += fmt::format("# Guess, by what the file calls a camera, or by the links' names: {}\n",
+                           namesOf(cameras));
       addCamera();
     }
     if (guess_.lasers.empty()) return;

@@ -224,6 +224,14 @@ class RobotGuesser {
 
   void chooseCamera() {
     guess_.cameras = linksNamed(kCameraNames);
+    // What the file itself calls a camera comes before names.
+    const auto is_camera = [&](std::size_t n) { return robot_.links[n].is_camera; };
+    std::erase_if(guess_.cameras, is_camera);
+    std::vector<std::size_t> stated;
+    for (std::size_t n = 0; n < robot_.links.size(); ++n) {
+      if (is_camera(n)) stated.push_back(n);
+    }
+    guess_.cameras.insert(guess_.cameras.begin(), stated.begin(), stated.end());
     // A camera in the hand sees little of the room.
     std::stable_partition(guess_.cameras.begin(), guess_.cameras.end(), [&](std::size_t n) {
       return guess_.joints.empty() || !carries(guess_.joints.back(), n);
@@ -231,7 +239,7 @@ class RobotGuesser {
     if (guess_.cameras.empty()) return;
     const std::size_t link = guess_.cameras.front();
     guess_.camera_is_optical =
-        lowerCase(robot_.links[link].name).find("optical") != std::string::npos;
+        !is_camera(link) && lowerCase(robot_.links[link].name).find("optical") != std::string::npos;
     guess_.camera_roll_degrees = uprightRoll(link, guess_.camera_is_optical);
   }
 

@@ -46,6 +46,8 @@ struct DescribedLink {
   /// What it weighs, if that was asked for: the sum of these.
   std::vector<LinkInertial> inertials;
   std::vector<DescribedMass> masses;
+  /// See SourceLink.
+  bool is_camera = false;
 };
 
 struct DescribedJoint {

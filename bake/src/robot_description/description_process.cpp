@@ -31,7 +31,7 @@ void transferFields(Archive& archive, Is<LinkInertial> auto& inertial) {
 
 template <class Archive>
 void transferFields(Archive& archive, Is<DescribedLink> auto& link) {
-  archive(link.name, link.visuals, link.collisions, link.inertials, link.masses);
+  archive(link.name, link.visuals, link.collisions, link.inertials, link.masses, link.is_camera);
 }
 
 template <class Archive>

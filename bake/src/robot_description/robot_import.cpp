@@ -55,6 +55,7 @@ void addJoints(const RobotDescription& model, const std::vector<TreeLink>& tree,
     SourceLink& link = robot.links[i];
     link.name = model.links[tree[i].link].name;
     link.parent = tree[i].parent;
+    link.is_camera = model.links[tree[i].link].is_camera;
     link.parent_from_joint = kIdentityAffine;
     if (!tree[i].joint) continue;
     const DescribedJoint& joint = model.joints[*tree[i].joint];

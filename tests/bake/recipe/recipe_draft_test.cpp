@@ -161,6 +161,20 @@ TEST(RecipeDraft, PrefersACameraThatTheHandDoesNotCarry) {
   EXPECT_EQ(draftOf(headless).camera->link.name, "palm_camera");
 }
 
+TEST(RecipeDraft, TakesWhatTheFileCallsACameraBeforeNames) {
+  SourceRobot robot = twoArms("left_finger", "right_finger");
+  bake::SourceLink& eye = robot.links[robot.links.size() - 2];
+  ASSERT_EQ(eye.name, "head");
+  eye.is_camera = true;
+  EXPECT_EQ(draftOf(robot).camera->link.name, "head");
+  // Its axes are no optical frame's, whatever it is called.
+  eye.name = "optical_eye";
+  const RobotRecipe recipe = draftOf(robot);
+  EXPECT_EQ(recipe.camera->link.name, "optical_eye");
+  eye.name = "eye";
+  EXPECT_EQ(draftOf(robot).camera->link_from_camera, recipe.camera->link_from_camera);
+}
+
 TEST(RecipeDraft, LeavesTheArmOutOfTheFootprint) {
   const RobotRecipe recipe = draftOf(twoArms("left_finger", "right_finger"));
   const auto* circle = std::get_if<bake::FootprintCircle>(&recipe.base.footprint);

@@ -79,6 +79,8 @@ struct SourceLink {
   std::vector<LinkShape> visuals;
   /// Whether the file has visuals of which none could be read: the collisions are drawn instead.
   bool visuals_are_lost = false;
+  /// Whether it stands for a camera of the file (MJCF's), which looks along the link's X, Z up.
+  bool is_camera = false;
 };
 
 /// What the robot importer hands to the baker: neutral, every frame Y up and X forward, meters.

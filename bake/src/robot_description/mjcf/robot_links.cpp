@@ -163,7 +163,9 @@ class LinkMaker {
   /// A recipe may name it for its camera.
   void addCamera(const MjcfBody& body, const MjcfCamera& camera) {
     const std::string name = unique(camera.name, link_names_);
-    robot_.links.emplace_back().name = name;
+    DescribedLink& link = robot_.links.emplace_back();
+    link.name = name;
+    link.is_camera = true;
     addFixed(body.name, name, camera.body_from_view);
   }
 

@@ -156,6 +156,8 @@ TEST(MjcfFrames, OfCamerasLookAlongX) {
   ASSERT_EQ(robot.links.size(), 3U);
   EXPECT_EQ(robot.links[1].name, "eye");
   EXPECT_EQ(robot.links[1].joint_name, "eye_fixed");
+  EXPECT_TRUE(robot.links[1].is_camera && robot.links[2].is_camera);
+  EXPECT_FALSE(robot.links[0].is_camera);
   const bake::Affine eye = zUp(robot.links[1].parent_from_joint);
   EXPECT_THAT((Point3{eye[3], eye[7], eye[11]}), ElementsAre(1, 2, 3));
   EXPECT_THAT((Point3{eye[0], eye[4], eye[8]}), ElementsAre(0, 0, -1));
