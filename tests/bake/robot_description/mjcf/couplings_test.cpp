@@ -154,10 +154,10 @@ TEST(MjcfContacts, ThatAreExcludedAreNotTested) {
       if (is_it) return pair.kind;
     }
     ADD_FAILURE() << "no pair of " << first << " and " << second;
-    return bake::PairKind::kAdjacent;
+    return PairKind::kAdjacent;
   };
-  EXPECT_EQ(kindOf(1, 3), bake::PairKind::kIgnored);
-  EXPECT_NE(kindOf(1, 4), bake::PairKind::kIgnored);
+  EXPECT_EQ(kindOf(1, 3), PairKind::kIgnored);
+  EXPECT_NE(kindOf(1, 4), PairKind::kIgnored);
 }
 
 TEST(MjcfContacts, ThatAreExcludedMayTouch) {
