@@ -117,8 +117,8 @@ std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t widt
                                   std::uint32_t height) noexcept {
   const float half_width = static_cast<float>(width) / 2;
   const float half_height = static_cast<float>(height) / 2;
-  const double slope = std::tan(0.5 * static_cast<double>(camera.vertical_fov));
-  const auto focal = static_cast<float>(static_cast<double>(half_height) / slope);
+  const auto slope = static_cast<float>(std::tan(0.5 * static_cast<double>(camera.vertical_fov)));
+  const float focal = half_height / slope;
   return {focal, 0,     half_width,   //
           0,     focal, half_height,  //
           0,     0,     1};

@@ -104,7 +104,7 @@ double volumeOf(const Primitive& primitive) {
 /// About its center, along its axes.
 std::array<double, 3> momentsOf(const Primitive& primitive, double mass) {
   const auto& [a, b, c] = primitive.half;
-  const auto ofSquares = [&](double share) {
+  const auto ofSquares = [a = a, b = b, c = c](double share) {
     return std::array<double, 3>{share * (b * b + c * c), share * (a * a + c * c),
                                  share * (a * a + b * b)};
   };
