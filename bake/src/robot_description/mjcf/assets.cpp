@@ -32,6 +32,7 @@ std::string nameOf(const MjcfAttributes& asset) {
 template <class Asset>
 std::vector<std::string> namesOf(const std::map<std::string, Asset, std::less<>>& assets) {
   std::vector<std::string> names;
+  names.reserve(assets.size());
   for (const auto& [name, unused] : assets) names.push_back(name);
   return names;
 }

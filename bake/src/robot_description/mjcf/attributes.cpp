@@ -106,22 +106,22 @@ Affine orientationOf(const MjcfAttributes& attributes, const MjcfSettings& setti
         fmt::format("<{}> has several orientations; keep one of {}", attributes.element().name,
                     fmt::join(kOrientations, ", ")));
   }
-  const auto isShort = [&](std::string_view name, std::span<const double> vector) {
+  const auto is_short = [&](std::string_view name, std::span<const double> vector) {
     if (lengthOf(vector) > kShortest) return false;
     attributes.error(name, "a direction, not zeros");
     return true;
   };
   if (const auto quat = attributes.vector<4>("quat")) {
-    if (!isShort("quat", *quat)) return rotationOf(*quat);
+    if (!is_short("quat", *quat)) return rotationOf(*quat);
   }
   if (const auto turn = attributes.vector<4>("axisangle")) {
     const Vector axis{(*turn)[0], (*turn)[1], (*turn)[2]};
-    if (!isShort("axisangle", axis)) return rotationAbout(axis, settings.radians((*turn)[3]));
+    if (!is_short("axisangle", axis)) return rotationAbout(axis, settings.radians((*turn)[3]));
   }
   if (const auto angles = attributes.vector<3>("euler")) return rotationOfAngles(*angles, settings);
   if (const auto axes = attributes.vector<6>("xyaxes")) return rotationOfAxes(attributes, *axes);
   if (const auto z = attributes.vector<3>("zaxis")) {
-    if (!isShort("zaxis", *z)) return rotationOfZ(*z);
+    if (!is_short("zaxis", *z)) return rotationOfZ(*z);
   }
   return kIdentityAffine;
 }

@@ -104,7 +104,7 @@ double volumeOf(const Primitive& primitive) {
 /// About its center, along its axes.
 std::array<double, 3> momentsOf(const Primitive& primitive, double mass) {
   const auto& [a, b, c] = primitive.half;
-  const auto ofSquares = [a = a, b = b, c = c](double share) {
+  const auto of_squares = [a = a, b = b, c = c](double share) {
     return std::array<double, 3>{share * (b * b + c * c), share * (a * a + c * c),
                                  share * (a * a + b * b)};
   };
@@ -125,9 +125,9 @@ std::array<double, 3> momentsOf(const Primitive& primitive, double mass) {
       return {across, across, mass * a * a / 2};
     }
     case GeomType::kEllipsoid:
-      return ofSquares(mass / 5);
+      return of_squares(mass / 5);
     default:
-      return ofSquares(mass / 3);
+      return of_squares(mass / 3);
   }
 }
 

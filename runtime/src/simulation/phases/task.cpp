@@ -163,6 +163,18 @@ void count(EpisodeEnd end, const Env& env, EnvCounters& counters) {
   counters.picks += env.has_picked ? 1U : 0U;
 }
 
+/// How the episode ends with this step, if it does: without a task, with its time alone.
+inline EpisodeEnd endNow(const TaskOptions& task, bool has_task, const Env& env, float transport) {
+  const EpisodeEnd end = has_task ? endOf(task, env, transport) : EpisodeEnd::kNone;
+  return end == EpisodeEnd::kNone && isLate(task, env) ? EpisodeEnd::kTimeOut : end;
+}
+
+/// The reward of a step with which an episode ends.
+float rewardAtEnd(const TaskOptions& task, EpisodeEnd end, float reward) {
+  if (end == EpisodeEnd::kSuccess) return reward + task.success_reward;
+  return isFailure(end) ? reward - task.failure_penalty : reward;
+}
+
 /// What the change of the way along the floor earns; the way becomes the last one.
 float earnOfWay(const ChunkStep& step, std::size_t n, Env& env) {
   const WayLeft way = measureWay(step.model, step.state, n);
@@ -201,16 +213,14 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     const float change = env.step == 0 ? 0 : measured.change.values[e];
     ++env.step;
     const TargetDistances now{measured.reach.values[e], measured.transport.values[e]};
-    EpisodeEnd end = has_task ? endOf(task, env, now.transport) : EpisodeEnd::kNone;
-    if (end == EpisodeEnd::kNone && isLate(task, env)) end = EpisodeEnd::kTimeOut;
+    const EpisodeEnd end = endNow(task, has_task, env, now.transport);
     float reward = has_task ? rewardOf(task, env, now, change) : 0;
     if (pays_for_ways) reward += earnOfWay(step, n, env);
     if (pays_for_tilt) reward -= payForTilt(step, n);
-    if (end == EpisodeEnd::kSuccess) reward += task.success_reward;
-    if (isFailure(end)) reward -= task.failure_penalty;
     env.reach = now.reach;
     env.transport = now.transport;
     if (end != EpisodeEnd::kNone) {
+      reward = rewardAtEnd(task, end, reward);
       count(end, env, step.state.counters(n));
       outcomes.picks[e] = env.has_picked ? 1 : 0;
     }
