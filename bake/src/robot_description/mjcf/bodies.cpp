@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string_view>
 #include <utility>
 
 #include "import/affine.h"
 #include "robot_description/frames.h"
+#include "robot_description/mjcf/unique_name.h"
 
 namespace galactic::bake {
 namespace {
@@ -30,12 +30,6 @@ bool isIn(const std::array<std::string_view, kCount>& words, std::string_view wo
 std::array<double, 3> rotated(const Affine& m, const std::array<double, 3>& v) {
   return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],
           m[8] * v[0] + m[9] * v[1] + m[10] * v[2]};
-}
-
-/// `name`, or with underscores behind it what is not in `taken` yet, and is then.
-std::string unique(std::string name, std::set<std::string, std::less<>>& taken) {
-  while (!taken.insert(name).second) name += '_';
-  return name;
 }
 
 /// Where elements are: in a body or in <frame> elements in it.
@@ -116,7 +110,7 @@ class BodyReader {
     MjcfBody body;
     body.name = attributes.text("name");
     if (body.name.empty()) {
-      body.name = unique(fmt::format("body_{}", world_.bodies.size() + 1), body_names_);
+      body.name = uniqueName(fmt::format("body_{}", world_.bodies.size() + 1), body_names_);
     }
     body.place = element.place;
     body.parent = around.body;
@@ -167,7 +161,7 @@ class BodyReader {
     MjcfJoint joint = readJoint(defaults_.attributesOf(element, around.childclass), is_free);
     joint.anchor = transformed(around.body_from_here, joint.anchor);
     joint.axis = rotated(around.body_from_here, joint.axis);
-    if (joint.name.empty()) joint.name = unique(body.name + "_joint", joint_names_);
+    if (joint.name.empty()) joint.name = uniqueName(body.name + "_joint", joint_names_);
     if (joint.type == MjcfJointType::kFree && body.parent >= 0) {
       findings.error(element.place,
                      fmt::format("body '{}' is in another and has a free joint, which only bodies "
@@ -228,8 +222,8 @@ class BodyReader {
   const MjcfAssets& assets_;
   DescriptionPart part_;
   MjcfWorld world_;
-  std::set<std::string, std::less<>> body_names_;
-  std::set<std::string, std::less<>> joint_names_;
+  NameSet body_names_;
+  NameSet joint_names_;
 };
 
 }  // namespace

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "import/affine.h"
+#include "robot_description/mjcf/unique_name.h"
 
 namespace galactic::bake {
 namespace {
@@ -153,7 +153,7 @@ class LinkMaker {
 
   void addFixed(const std::string& parent, const std::string& child, const Affine& frame) {
     DescribedJoint fixed;
-    fixed.name = unique(child + "_fixed", joint_names_);
+    fixed.name = uniqueName(child + "_fixed", joint_names_);
     fixed.parent = parent;
     fixed.child = child;
     fixed.parent_from_joint = frame;
@@ -162,7 +162,7 @@ class LinkMaker {
 
   /// A recipe may name it for its camera.
   void addCamera(const MjcfBody& body, const MjcfCamera& camera) {
-    const std::string name = unique(camera.name, link_names_);
+    const std::string name = uniqueName(camera.name, link_names_);
     DescribedLink& link = robot_.links.emplace_back();
     link.name = name;
     link.is_camera = true;
@@ -197,13 +197,8 @@ class LinkMaker {
 
   std::string intermediateLink(const MjcfBody& body, const MjcfJoint& joint) {
     DescribedLink& link = robot_.links.emplace_back();
-    link.name = unique(fmt::format("{}_{}", body.name, joint.name), link_names_);
+    link.name = uniqueName(fmt::format("{}_{}", body.name, joint.name), link_names_);
     return link.name;
-  }
-
-  static std::string unique(std::string name, std::set<std::string, std::less<>>& taken) {
-    while (!taken.insert(name).second) name += '_';
-    return name;
   }
 
   /// What collides is drawn, too, where nothing else is: unless the viewer hides it, and there is
@@ -251,8 +246,8 @@ class LinkMaker {
   const MjcfSettings& settings_;
   MjcfFindings& findings_;
   RobotDescription& robot_;
-  std::set<std::string, std::less<>> link_names_{kWorld};
-  std::set<std::string, std::less<>> joint_names_;
+  NameSet link_names_{kWorld};
+  NameSet joint_names_;
 };
 
 }  // namespace

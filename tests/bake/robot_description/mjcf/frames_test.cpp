@@ -147,6 +147,33 @@ TEST(MjcfFrames, InFrameElementsAreThoseOfTheirContent) {
               Pointwise(DoubleNear(kRounding), Point3{1, 1, 0}));
 }
 
+TEST(MjcfFrames, OfJointsInFrameElementsAreTheFrames) {
+  const ScratchFolder folder;
+  const auto robot = mjcfRobot(folder, mjcfText("<body name='a'><body name='b'>"
+                                                "<frame pos='1 0 0' euler='0 0 90'>"
+                                                "<joint name='j' pos='2 0 0' axis='1 0 0'/></frame>"
+                                                "<geom size='.1'/></body></body>"));
+  ASSERT_EQ(robot.links.size(), 3U);
+  const bake::Affine hinge = zUp(robot.links[1].parent_from_joint);
+  EXPECT_THAT((Point3{hinge[3], hinge[7], hinge[11]}),
+              Pointwise(DoubleNear(kRounding), Point3{1, 2, 0}));
+  // Y of the file is -Z here.
+  EXPECT_THAT(robot.links[1].axis, Pointwise(DoubleNear(kRounding), Point3{0, 0, -1}));
+}
+
+TEST(MjcfFrames, OfJointsCountFromTheirReferenceInTheFilesUnit) {
+  const ScratchFolder folder;
+  const auto robot = mjcfRobot(
+      folder, mjcfText("<body name='a'><body name='b'><joint name='j' ref='90'/><geom size='.1'/>"
+                       "<body name='c'><joint name='k' type='slide' axis='1 0 0' ref='0.5'/>"
+                       "<geom size='.1'/></body></body></body>"));
+  ASSERT_EQ(robot.links.size(), 3U);
+  const bake::Affine turned = zUp(robot.links[1].parent_from_joint);
+  EXPECT_THAT((Point3{turned[0], turned[4], turned[8]}),
+              Pointwise(DoubleNear(kRounding), Point3{0, -1, 0}));
+  EXPECT_NEAR(robot.links[2].parent_from_joint[3], -0.5, kRounding);
+}
+
 TEST(MjcfFrames, OfCamerasLookAlongX) {
   const ScratchFolder folder;
   const auto robot = mjcfRobot(

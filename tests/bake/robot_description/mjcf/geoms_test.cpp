@@ -40,7 +40,7 @@ bake::SourceLink linkWith(const ScratchFolder& folder, std::string_view geoms,
 TEST(MjcfGeoms, HaveHalfSizesThatAreWholeOnesHere) {
   const ScratchFolder folder;
   const auto link = linkWith(folder,
-                             "<geom type='box' size='.1 .2 .3' pos='1 2 3'/>"
+                             "<geom type='box' size='.1 .2 .3' pos='+1 2 3'/>"
                              "<geom type='cylinder' size='.1 .2'/><geom size='.1'/>");
   ASSERT_EQ(link.collisions.size(), 3U);
   EXPECT_THAT(std::get<BoxShape>(link.collisions[0].geometry).size, ElementsAre(0.2, 0.6, 0.4));
@@ -96,6 +96,17 @@ TEST(MjcfGeoms, BetweenTwoPointsLieBetweenThem) {
   EXPECT_NEAR(link.collisions[1].link_from_shape[7], 2, kRounding);
 }
 
+TEST(MjcfGeoms, BetweenTwoPointsHaveTheirZFromTheSecondToTheFirst) {
+  const ScratchFolder folder;
+  const auto link = linkWith(folder,
+                             "<geom type='box' size='.1' fromto='3 2 4 1 1 2'/>"
+                             "<geom type='box' size='.1 .1 1.5' pos='2 1.5 3' zaxis='2 1 2'/>");
+  ASSERT_EQ(link.collisions.size(), 2U);
+  // Its sides are turned about its axis otherwise if that points the other way.
+  EXPECT_THAT(link.collisions[0].link_from_shape,
+              Pointwise(DoubleNear(kRounding), link.collisions[1].link_from_shape));
+}
+
 TEST(MjcfGeoms, TakeFromTheirClassWhatTheyDoNotSay) {
   const ScratchFolder folder;
   constexpr const char* kDefaults =
@@ -123,17 +134,25 @@ TEST(MjcfGeoms, TakeFromTheirClassWhatTheyDoNotSay) {
   EXPECT_EQ(robot.links[1].collisions[2].link_from_shape[0], 1);
 }
 
+TEST(MjcfGeoms, MayNameTheClassOfAllDefaults) {
+  const ScratchFolder folder;
+  const auto link = linkWith(folder, "<geom class='main'/>",
+                             "<default class='main'><geom type='box' size='1 1 1'/></default>");
+  EXPECT_THAT(link.collisions, SizeIs(1));
+}
+
 constexpr const char* kSeen = "<geom contype='0' conaffinity='0' group='2' size='.1' {}/>";
 
 TEST(MjcfGeoms, ThatDoNotCollideAreSeenAndTheOthersOnlyWithoutThem) {
   const ScratchFolder folder;
   const auto robot = mjcfRobot(
       folder,
-      mjcfText("<body name='a'><geom contype='0' conaffinity='0' size='.1'/>"
-               "<geom type='box' size='.1 .1 .1'/>"
-               "<body name='b'><joint name='i'/><geom type='box' size='.1 .1 .1' conaffinity='0'/>"
-               "<body name='c'><joint name='j'/><geom type='box' size='.1 .1 .1' group='3'/>"
-               "</body></body></body>"));
+      mjcfText(
+          "<body name='a'><geom contype='0' conaffinity='0' size='.1'/>"
+          "<geom type='box' size='.1 .1 .1'/>"
+          "<body name='b'><joint name='i'/><geom type='box' size='.1 .1 .1' conaffinity='0'/>"
+          "<body name='c'><joint name='j'/><geom type='box' size='.1 .1 .1' contype='0' group='3'/>"
+          "</body></body></body>"));
   ASSERT_EQ(robot.links.size(), 3U);
   ASSERT_THAT(robot.links[0].visuals, SizeIs(1));
   EXPECT_TRUE(std::holds_alternative<SphereShape>(robot.links[0].visuals[0].geometry));
@@ -225,6 +244,19 @@ TEST(MjcfMeshes, AreFoundInTheirFolderByTheNameOfTheirFile) {
     EXPECT_THAT(robot.resolutions, ElementsAre("parts/box.obj: parts/box.obj (relative to the "
                                                "robot's file)"));
   }
+}
+
+TEST(MjcfMeshes, HaveImagesInTheFolderOfAllAssets) {
+  const ScratchFolder folder;
+  (void)folder.write("robots/parts/box.obj", objFile(unevenBox()));
+  (void)folder.write("robots/parts/wood.png", "no image yet");
+  const auto robot =
+      mjcfRobot(folder, withGeoms("<geom type='mesh' mesh='box' material='wooden'/>",
+                                  "<compiler assetdir='parts'/><asset><mesh file='box.obj'/>"
+                                  "<texture type='2d' file='wood.png'/>"
+                                  "<material name='wooden' texture='wood'/></asset>"));
+  ASSERT_THAT(robot.links.back().visuals, SizeIs(1));
+  EXPECT_EQ(robot.links.back().visuals[0].texture, "parts/wood.png");
 }
 
 TEST(MjcfMeshes, AreMovedTurnedBackAndScaled) {

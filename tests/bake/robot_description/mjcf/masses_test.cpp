@@ -47,6 +47,16 @@ TEST(MjcfMasses, AreAsStated) {
               Pointwise(DoubleNear(kRounding), std::array<double, 6>{1, 2, 3, 0.1, 0.2, 0.3}));
 }
 
+TEST(MjcfMasses, InFramesAreWhereTheFramesAre) {
+  const ScratchFolder folder;
+  const auto inertial = massWith(folder,
+                                 "<frame pos='1 0 0' euler='0 0 90'>"
+                                 "<inertial pos='2 0 0' mass='5' diaginertia='1 2 4'/></frame>");
+  EXPECT_THAT(inertial.center, Pointwise(DoubleNear(kRounding), std::array<double, 3>{1, 2, 0}));
+  EXPECT_THAT(inertial.moments,
+              Pointwise(DoubleNear(kRounding), std::array<double, 6>{2, 1, 4, 0, 0, 0}));
+}
+
 struct Solid {
   const char* geom;
   double volume;
@@ -145,6 +155,9 @@ TEST(MjcfMasses, ComeFromWhereTheCompilerSays) {
   EXPECT_NEAR(massWith(folder, kBody, "<compiler inertiafromgeom='true'/>").mass, 7, kRounding);
   EXPECT_NEAR(
       massWith(folder, kBody, "<compiler inertiafromgeom='true' inertiagrouprange='3 3'/>").mass, 4,
+      kRounding);
+  EXPECT_NEAR(
+      massWith(folder, kBody, "<compiler inertiafromgeom='true' inertiagrouprange='0 2'/>").mass, 3,
       kRounding);
   EXPECT_NEAR(massWith(folder, kBody, "<compiler settotalmass='10'/>").mass, 10, kRounding);
   EXPECT_NEAR(massWith(folder, kBody, "<compiler settotalmass='10'/>").moments[0], 2, kRounding);
