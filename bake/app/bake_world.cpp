@@ -108,7 +108,14 @@ int buildWorld(const BakeCommand& command, const WorldPlan& plan, BakeLibraries&
     return exitCodeOf(outcome);
   }
   outcome.seconds += seconds;
-  if (command.saysMore()) printWorldTable(plan, outcome, command.run.verbosity);
+  if (command.saysMore()) {
+    printWorldTable(plan, outcome, command.run.verbosity);
+    if (outcome.stopped) {
+      fmt::print("stopped; the same command {}\n", cacheOf(command, plan)
+                                                       ? "goes on from here"
+                                                       : "begins anew, as there is no cache");
+    }
+  }
   return endWith(command, outcome, reportOf(plan, outcome), exitCodeOf(outcome));
 }
 

@@ -244,7 +244,6 @@ void printWorldTable(const WorldPlan& plan, const BuildOutcome& outcome, Verbosi
   }
   fmt::print("; {:.2f} s\n", outcome.seconds);
   if (!outcome.linked.empty()) printWorld(plan, outcome);
-  if (outcome.stopped) fmt::print("stopped; the same command goes on from here\n");
 }
 
 void printMissing(const std::vector<LeftOut>& missing) {

@@ -7,18 +7,23 @@ import numpy as np
 import galactic
 
 world = galactic.World(sys.argv[1])
-homes = galactic.VectorEnv(world, 64, task="pick", order="partition", observation="dict")
+homes = galactic.VectorEnv(
+    world, 64, task="pick", order="partition", observation="dict", geodesic=True
+)
 column = {action.name: number for number, action in enumerate(world.actions)}
 turn_step = world.actions[column["turn"]].step
+random = np.random.default_rng(1)
 
 
-def drive_to_target(observations):
-    """Turns to the target and drives there, with a hand that grasps all the time."""
-    ahead, up, right = observations["robot_target"].T
-    bearing = np.arctan2(right, ahead)
-    actions = np.zeros(homes.action_space.shape, np.float32)
-    actions[:, column["turn"]] = bearing / turn_step
-    actions[:, column["forward"]] = np.abs(bearing) < 0.2
+def grope_for_target(observations):
+    """Drives to the target along the floor, and gropes about there with a hand that grasps all the time."""
+    length, cosine, sine = observations["geodesic"][:, :3].T
+    bearing = np.arctan2(-sine, cosine)
+    actions = random.uniform(-1, 1, homes.action_space.shape).astype(np.float32)
+    is_far = length > 0.8
+    actions[is_far] = 0
+    actions[is_far, column["turn"]] = (bearing / turn_step)[is_far]
+    actions[is_far, column["forward"]] = (np.abs(bearing) < 0.2)[is_far]
     actions[:, column["hand"]] = 1
     return actions
 
@@ -26,7 +31,7 @@ def drive_to_target(observations):
 endings = {}
 observations, infos = homes.reset()
 while not homes.idle.all():
-    actions = drive_to_target(observations)
+    actions = grope_for_target(observations)
     observations, rewards, terminations, truncations, infos = homes.step(actions)
     for env in np.flatnonzero(terminations | truncations):
         final = infos["final_info"]

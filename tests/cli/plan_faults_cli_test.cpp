@@ -38,6 +38,15 @@ class PlanFaults : public PlanFolder {
   [[nodiscard]] ProgramRun shell(const std::string& script) const {
     return runProgram("/bin/sh", path(""), {"-c", script});
   }
+  /// Until one of the two scenes of a bake to "out" is there.
+  void waitForAScene() const {
+    const auto has_begun = [&] {
+      return has("out/home/scenes/a.pack") || has("out/home/scenes/b.pack");
+    };
+    for (int n = 0; n < 5000 && !has_begun(); ++n) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
 };
 
 /// The unfinished files below `folder`.
@@ -131,17 +140,22 @@ TEST_F(PlanFaults, WhereFilesMayNotGrowSaysSoAndLeavesOldPacksAsTheyWere) {
   EXPECT_TRUE(content("one.pack") == one);
 }
 
+TEST_F(PlanFaults, BeginsAnewWithoutACacheAndSaysSo) {
+  const StartedProgram program = start("out", {"-j", "1", "--no-cache"});
+  waitForAScene();
+  program.signal(SIGINT);
+  const ProgramRun stopped = program.wait();
+  EXPECT_EQ(stopped.exit_code, kExitInterrupted);
+  EXPECT_THAT(stopped.out,
+              HasSubstr("stopped; the same command begins anew, as there is no cache\n"));
+}
+
 TEST_F(PlanFaults, StopsBetweenPacksAndGoesOnLater) {
   ASSERT_EQ(bake("whole").exit_code, 0);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     fs::remove_all(path("out"));
     const StartedProgram program = start("out", {"-j", "1"});
-    const auto has_begun = [&] {
-      return has("out/home/scenes/a.pack") || has("out/home/scenes/b.pack");
-    };
-    for (int n = 0; n < 5000 && !has_begun(); ++n) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    waitForAScene();
     program.signal(number);
     const ProgramRun stopped = program.wait();
     EXPECT_EQ(stopped.exit_code, kExitInterrupted);
