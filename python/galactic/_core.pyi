@@ -395,6 +395,7 @@ class Renderer:
         depth: bool = True,
         semantics: bool | Literal["objects"] = False,
         camera: str = "head",
+        world_from_camera: ArrayLike | None = None,
         fov_degrees: float = 0,
         position: ArrayLike = (0, 0, 0),
         rpy_degrees: ArrayLike = (0, 0, 0),
@@ -406,6 +407,7 @@ class Renderer:
         camera_jitter: _Drawn = 0,
         camera_jitter_degrees: _Drawn = 0,
         camera_jitter_fov: _Drawn = 0,
+        robot: bool = True,
         backend: Literal["auto", "soft", "gl", "cuda"] = "auto",
         device: str | int = "",
         threads: int = 0,
@@ -418,6 +420,7 @@ class Renderer:
     ) -> None: ...
     def end_render(self) -> dict[str, NDArray[Any]]: ...
     def render_to_device(self, stream: int = 0) -> dict[str, DeviceArray]: ...
+    def place_camera(self, world_from_camera: ArrayLike) -> None: ...
     def episode_noise(self) -> dict[str, NDArray[np.float32]]: ...  # (num_envs,) each
     @property
     def shapes(self) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]: ...
@@ -431,6 +434,8 @@ class Renderer:
     def description(self) -> str: ...
     @property
     def semantic_names(self) -> tuple[str, ...]: ...
+    @property
+    def semantic_scenes(self) -> NDArray[np.int32]: ...  # (len(semantic_names),)
 
 class LearnedPolicy:
     def __init__(

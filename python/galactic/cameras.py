@@ -31,7 +31,33 @@ def options_of_cameras(where: str, images: Any) -> dict[str, Mapping[str, Any]]:
             )
         if not isinstance(name, str) or not name.isidentifier():
             raise ValueError(f"a camera of {where} is {name!r}, expected a name, such as hand")
-    return {name: {"camera": name, **value} for name, value in images.items()}
+    return {
+        name: dict(value) if stands_in_world(value) else {"camera": name, **value}
+        for name, value in images.items()
+    }
+
+
+def stands_in_world(options: Mapping[str, Any]) -> bool:
+    """Whether a camera with these options of a Renderer is none on the robot."""
+    return options.get("world_from_camera") is not None
+
+
+def options_of_half(
+    where: str, cameras: Mapping[str, Mapping[str, Any]], half: int, halves: int, num_envs: int
+) -> dict[str, Mapping[str, Any]]:
+    """Those of the cameras of one half of `num_envs` envs, which has its rows of places of each env. ValueError,
+    which calls the cameras `where`, for places of another number of envs."""
+    found = {}
+    for name, options in cameras.items():
+        if stands_in_world(options) and np.ndim(options["world_from_camera"]) == 3:
+            places = np.asarray(options["world_from_camera"])
+            if len(places) != num_envs:
+                raise ValueError(
+                    f"world_from_camera of {where} has the shape {places.shape}, expected (4, 4) or ({num_envs}, 4, 4)"
+                )
+            options = {**options, "world_from_camera": np.split(places, halves)[half]}
+        found[name] = options
+    return found
 
 
 def image_name(camera: str, image: str) -> str:

@@ -17,6 +17,7 @@ from galactic._core import EpisodeEnd, ErrorCode, Renderer
 from galactic.demonstrations import OBSERVED, About, Demonstration
 from galactic.errors import Error
 from galactic.batch_part import Observations
+from galactic.cameras import stands_in_world
 from galactic.sensors import meaning_of
 from galactic.vector_env import VectorEnv
 from galactic.vector_env_arguments import Actions
@@ -329,7 +330,18 @@ def _camera_of(images: Mapping[str, Any]) -> dict[str, Any]:
     if given["color"] not in ("rgb", None):
         raise ValueError(f"env draws {given['color']!r}, expected images with color='rgb' or None")
     camera: dict[str, Any] = {}
-    for name in _CAMERA:
+    names = list(_CAMERA)
+    if stands_in_world(given):
+        place = np.asarray(given["world_from_camera"], np.float32)
+        if place.ndim != 2:
+            raise ValueError(
+                "env has a world_from_camera for each env, expected one for all: demonstrations have one camera"
+            )
+        camera["world_from_camera"] = place.tolist()
+        names = [name for name in _CAMERA if name not in ("camera", "position", "rpy_degrees")]
+    if not given["robot"]:
+        camera["robot"] = False
+    for name in names:
         value, default = given[name], Renderer.DEFAULTS[name]
         if isinstance(default, tuple):
             camera[name] = [float(one) for one in value]

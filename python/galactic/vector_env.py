@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from galactic import saved_states, spaces
 from galactic._core import Renderer, Simulator, World
-from galactic.cameras import options_of_cameras
+from galactic.cameras import options_of_cameras, options_of_half
 from galactic.env_states import EnvStates, joined
 from galactic.batch_part import BatchPart, Observations, StepResult
 from galactic.task import Placements, Task
@@ -95,7 +95,7 @@ class VectorEnv(_Base):
         observation: "flat" or "dict".
         images: options of galactic.Renderer, such as {"width": 128, "height": 128}; or those of
             several cameras by name, such as {"head": {}, "hand": {"camera": "gripper_link"}}, where
-            a name is the Renderer's `camera` unless that is given; or None for no images.
+            a name is the Renderer's `camera` unless that or world_from_camera is given; or None for no images.
         actions: "box": one float32 array in [-1, 1], (num_envs, action_count). "paper": a
             dictionary of "continuous", float32 (num_envs, action_count - 2) for joints, forward,
             turn and, where the base does, sideways, and "discrete", 0 or 1, (num_envs, 2) for hand and terminate.
@@ -177,7 +177,7 @@ class VectorEnv(_Base):
                     "ranks": halves * ranks,
                 },
                 by_parts=observation == "dict",
-                cameras=cameras,
+                cameras=options_of_half("images", cameras, half, halves, num_envs),
                 copy=copy,
                 task=None if own_task is None else made_by(own_task),
                 is_evaluation=is_evaluation,

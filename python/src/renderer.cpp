@@ -37,6 +37,15 @@ std::span<T> targetOf(const py::dict& out, const char* name, const Shape& shape,
   return outputOf<T>(array, name, shape);
 }
 
+/// Of cameras on the robot, none.
+void requirePlaces(std::size_t found, std::size_t envs) {
+  if (found <= 1 || found == envs) return;
+  throw ErrorException{{ErrorCode::kInvalidInput, "world_from_camera",
+                        fmt::format("has {} matrices, expected one for all envs, or one for each "
+                                    "of {}",
+                                    found, envs)}};
+}
+
 }  // namespace
 
 Renderer::Renderer(const py::object& simulator, WorldModels models)
@@ -60,15 +69,17 @@ std::unique_ptr<Renderer> Renderer::create(const py::object& simulator,
                           "body_transforms=True"}};
   }
   const ChosenCamera camera = orThrow(chooseCamera(shown.world().robot(), options.camera));
+  requirePlaces(camera.mount.world_from_camera.size(), shown.batch().envCount());
   std::unique_ptr<Renderer> renderer(
       new Renderer(simulator, orThrow(WorldModels::from(shown.world()))));
   RenderOptions render = options.render;
   render.near = camera.near;
+  renderer->mount_ = options.camera.name;
   renderer->has_fovs_ = camera.mount.jitter.camera_jitter_fov.most > 0;
   const Confinement::Use use = shown.readState();
   const py::gil_scoped_release unlocked;
   renderer->renderer_.emplace(orThrow(BatchRenderer::create(renderer->models_.library(), render)));
-  renderer->views_.emplace(renderer->models_, shown.batch(), camera.mount, options.ids);
+  renderer->views_.emplace(renderer->models_, shown.batch(), camera.mount, options.content);
   return renderer;
 }
 
@@ -152,6 +163,19 @@ py::dict Renderer::endRender() {
   return images;
 }
 
+void Renderer::placeCamera(const std::vector<RigidTransform>& world_from_camera) {
+  const Confinement::Use use = confinement_.enter();
+  if (!mount_.empty()) {
+    throw ErrorException{{ErrorCode::kInvalidInput, "place_camera",
+                          fmt::format("found the camera {}, which moves with the robot; make the "
+                                      "Renderer with world_from_camera",
+                                      mount_)}};
+  }
+  requirePlaces(world_from_camera.size(), views_->views().size());
+  orThrow(checkPlaces("world_from_camera", world_from_camera));
+  views_->placeCamera(world_from_camera);
+}
+
 py::dict Renderer::renderToDevice(std::uintptr_t stream) {
   const Confinement::Use use = confinement_.enter();
   requireIdle();
@@ -179,6 +203,21 @@ py::tuple Renderer::semanticNames() const {
   py::list names;
   for (const auto& name : models_.library().semanticNames()) names.append(fileText(name));
   return py::tuple(names);
+}
+
+py::array_t<std::int32_t> Renderer::semanticScenes() const {
+  const RenderLibrary& library = models_.library();
+  std::vector<std::int32_t> scenes(library.semanticNames().size(), -1);
+  const std::size_t count = simulator_.cast<Simulator&>().world().scenes().size();
+  for (std::uint32_t scene = 0; scene < count; ++scene) {
+    const std::optional<std::uint32_t> model = models_.sceneModel(scene);
+    if (!model) continue;
+    const std::size_t pack = library.entry(*model).pack;
+    const std::size_t names = library.packs()[pack].semantics.size();
+    std::ranges::fill(std::span(scenes).subspan(library.firstSemantic(pack), names),
+                      static_cast<std::int32_t>(scene));
+  }
+  return py::array_t<std::int32_t>(static_cast<py::ssize_t>(scenes.size()), scenes.data());
 }
 
 py::array_t<float> Renderer::intrinsics() {

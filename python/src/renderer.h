@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,7 +22,7 @@ namespace galactic::python {
 struct CameraOptions {
   RenderOptions render;
   CameraWish camera;
-  ObjectIds ids = ObjectIds::kNames;
+  ViewContent content;
 };
 
 /// galactic.Renderer: the cameras of a simulator's envs, and the renderer that draws what they see.
@@ -45,12 +46,17 @@ class Renderer {
   /// The same in two halves: the simulator may step meanwhile.
   void beginRender(const py::object& out, const py::object& envs);
   py::dict endRender();
+  /// Has the camera, which is none on the robot, stand elsewhere when it draws next. Throws an
+  /// ErrorException for places that are none.
+  void placeCamera(const std::vector<RigidTransform>& world_from_camera);
   /// Draws all envs into the memory of a CUDA device: arrays for DLPack, by name.
   py::dict renderToDevice(std::uintptr_t stream);
 
   [[nodiscard]] const BatchRenderer& batch() const { return *renderer_; }
   /// What the numbers of semantic images mean.
   [[nodiscard]] py::tuple semanticNames() const;
+  /// int32, for each of them: the scene that it is of, an index into World.scenes, or -1.
+  [[nodiscard]] py::array_t<std::int32_t> semanticScenes() const;
   /// float32 (3, 3): from directions in the frames of worldFromCameras() to pixels. Where fields of
   /// view differ, (envs, 3, 3), as when images were drawn last.
   [[nodiscard]] py::array_t<float> intrinsics();
@@ -75,6 +81,8 @@ class Renderer {
   Confinement confinement_{"Renderer"};
   WorldModels models_;
   std::optional<WorldViews> views_;
+  /// What it moves with; empty where it stands in the world.
+  std::string mount_;
   /// Whether fields of view differ.
   bool has_fovs_ = false;
   std::vector<RenderView> chosen_;

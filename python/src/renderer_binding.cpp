@@ -6,6 +6,7 @@
 #include <array>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "dlpack.h"
+#include "galactic/batch_renderer.h"
 #include "galactic/error.h"
 #include "options.h"
 #include "renderer.h"
@@ -55,6 +57,39 @@ std::array<float, 3> threeOf(const char* name, const py::handle& value) {
   return {given.at(0), given.at(1), given.at(2)};
 }
 
+/// A row-major matrix of homogeneous coordinates, of a camera with the axes of images.
+RigidTransform placeOf(const float* rows) {
+  constexpr std::array<float, 4> kLastRow{0, 0, 0, 1};
+  const std::span last(rows + 12, kLastRow.size());
+  if (!std::ranges::equal(last, kLastRow)) {
+    throw ErrorException{
+        {ErrorCode::kInvalidInput, "world_from_camera",
+         fmt::format("has the last row ({}), expected (0, 0, 0, 1)", fmt::join(last, ", "))}};
+  }
+  const auto column = [&](std::size_t n) { return Vec3{rows[n], rows[4 + n], rows[8 + n]}; };
+  return worldFromCameraAxes({column(0), column(1), column(2), column(3)});
+}
+
+/// Of a matrix, or of several: (4, 4) or (n, 4, 4).
+std::vector<RigidTransform> placesOf(const py::handle& value) {
+  constexpr const char* kName = "world_from_camera";
+  const py::array given = numbersIn(value, kName);
+  const py::ssize_t axes = given.ndim();
+  const bool is_matrix = axes == 2 || (axes == 3 && given.shape(0) > 0);
+  if (!is_matrix || given.shape(axes - 1) != 4 || given.shape(axes - 2) != 4) {
+    const std::span shape(given.shape(), static_cast<std::size_t>(axes));
+    throw py::value_error(fmt::format("{} has the shape {}, expected (4, 4) or (num_envs, 4, 4)",
+                                      kName, shapeText(shape)));
+  }
+  const auto matrices =
+      inputOf<float>(given, kName, Shape(given.shape(), given.shape() + given.ndim()));
+  std::vector<RigidTransform> places;
+  for (const float* rows = matrices.data(); rows != matrices.data() + matrices.size(); rows += 16) {
+    places.push_back(placeOf(rows));
+  }
+  return places;
+}
+
 py::object nameOf(ColorFormat color) {
   if (color == ColorFormat::kNone) return py::none();
   return py::str(color == ColorFormat::kRgb8 ? "rgb" : "rgba");
@@ -83,11 +118,11 @@ constexpr Keyword kKeywords[] = {
     {"semantics",
      [](CameraOptions& o, const py::handle& v) {
        const bool of_objects = py::isinstance<py::str>(v) && v.cast<std::string>() == "objects";
-       o.ids = of_objects ? ObjectIds::kObjects : ObjectIds::kNames;
+       o.content.ids = of_objects ? ObjectIds::kObjects : ObjectIds::kNames;
        o.render.semantics = of_objects || truthOf("semantics", v, "True, False or objects");
      },
      [](const CameraOptions& o) -> py::object {
-       if (o.render.semantics && o.ids == ObjectIds::kObjects) return py::str("objects");
+       if (o.render.semantics && o.content.ids == ObjectIds::kObjects) return py::str("objects");
        return py::bool_(o.render.semantics);
      }},
     {"camera",
@@ -95,6 +130,11 @@ constexpr Keyword kKeywords[] = {
        o.camera.name = wordOf("camera", v, "head, follow, top or a link");
      },
      [](const CameraOptions& o) -> py::object { return py::str(o.camera.name); }},
+    {"world_from_camera",
+     [](CameraOptions& o, const py::handle& v) {
+       o.camera.world_from_camera = v.is_none() ? std::vector<RigidTransform>() : placesOf(v);
+     },
+     [](const CameraOptions&) -> py::object { return py::none(); }},
     {"fov_degrees",
      [](CameraOptions& o, const py::handle& v) {
        o.camera.fov_degrees = static_cast<float>(numberOf("fov_degrees", v));
@@ -113,6 +153,8 @@ constexpr Keyword kKeywords[] = {
        o.camera.near = static_cast<float>(numberOf("near", v));
      },
      [](const CameraOptions& o) -> py::object { return py::float_(o.camera.near); }},
+    {"robot", [](CameraOptions& o, const py::handle& v) { o.content.robot = truthOf("robot", v); },
+     [](const CameraOptions& o) -> py::object { return py::bool_(o.content.robot); }},
     {"backend", [](CameraOptions& o, const py::handle& v) { o.render.backend = backendOf(v); },
      [](const CameraOptions& o) -> py::object { return py::str(backendName(o.render.backend)); }},
     {"device", [](CameraOptions& o, const py::handle& v) { o.render.device = deviceOf(v); },
@@ -181,6 +223,7 @@ CameraOptions defaultOptions() {
                                 .fov = "fov_degrees",
                                 .position = "position",
                                 .rpy = "rpy_degrees",
+                                .places = "world_from_camera",
                                 .near = "near",
                                 .jitter = "camera_jitter",
                                 .jitter_degrees = "camera_jitter_degrees",
@@ -217,6 +260,10 @@ CameraOptions optionsFrom(const py::kwargs& keywords) {
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
     if (!takeKeyword(name, value, options)) refuseKeyword(name, keywordNames());
+  }
+  // The default is on the robot.
+  if (!options.camera.world_from_camera.empty() && !keywords.contains("camera")) {
+    options.camera.name.clear();
   }
   if (options.render.backend == RenderBackend::kSoft && !options.render.device.empty()) {
     throw ErrorException{
@@ -260,16 +307,22 @@ void bindRenderer(py::module_& module) {
         return Renderer::create(simulator, optionsFrom(keywords));
       }),
       py::arg("simulator"),
-      "Mounts a camera in each env.\n\n"
+      "Mounts a camera in each env, or stands it there.\n\n"
       "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
       "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False,\n"
-      "True or 'objects'; camera='head', 'follow', 'top' or a link; fov_degrees, vertical, 1 to "
-      "175, or 0 for\n"
-      "the camera's own; position=(0, 0, 0), meters ahead, to the left and up of where the\n"
-      "camera or link is, and rpy_degrees=(0, 0, 0), roll, pitch (down is positive) and yaw by\n"
-      "which it is turned there, as in the [camera] of a robot's recipe; near, meters: what is\n"
-      "nearer is not drawn, 0.01 to 100, or 0 for the camera's own; backend='auto', 'soft',\n"
-      "'gl' or 'cuda'; device='', or an index; threads=0.\n\n"
+      "True or 'objects'; camera='head', 'follow', 'top' or a link; world_from_camera, instead of\n"
+      "that for a camera that stands in the world: a matrix (4, 4), or one for each env, "
+      "(num_envs,\n"
+      "4, 4), as the property has them; fov_degrees, vertical, 1 to 175, or 0 for the camera's "
+      "own,\n"
+      "which is 90 on links and in the world; position=(0, 0, 0), meters ahead, to the left and "
+      "up\n"
+      "of where the camera or link is, and rpy_degrees=(0, 0, 0), roll, pitch (down is positive)\n"
+      "and yaw by which it is turned there, as in the [camera] of a robot's recipe; near, meters:\n"
+      "what is nearer is not drawn, 0.01 to 100, or 0 for the camera's own; robot=True, or False\n"
+      "for images without the robot, but with what it holds; backend='auto', 'soft', 'gl' or\n"
+      "'cuda'; device='', or an index; threads=0.\n\n"
+      "A matrix in the world is a rotation within 0.001, and up to 10 km from the origin.\n\n"
       "For images like those of real cameras, all 0 by default, each a number, or a pair from\n"
       "which each episode draws its own: depth_noise, the standard\n"
       "deviation of depth at 1 m, meters, which grows with depth squared; depth_dropout, the\n"
@@ -280,7 +333,7 @@ void bindRenderer(py::module_& module) {
       "follow from seed, env, episode and step: an image that is drawn\n"
       "twice is the same.");
   type.doc() =
-      "Draws what cameras on the robots of a simulator see, all envs together.\n\n"
+      "Draws what cameras on the robots of a simulator or in its homes see, all envs together.\n\n"
       "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
       "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
       "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
@@ -312,6 +365,19 @@ void bindRenderer(py::module_& module) {
       "images is done before they change.\n\n"
       "Error (UNSUPPORTED) with the soft backend, without CUDA, and with noise.");
   type.def(
+      "place_camera",
+      [](Renderer& one, const py::object& world_from_camera) {
+        one.placeCamera(placesOf(world_from_camera));
+      },
+      py::arg("world_from_camera"),
+      "Has a camera that was made with world_from_camera stand elsewhere, from the next drawing "
+      "on:\n"
+      "(4, 4) for all envs, or (num_envs, 4, 4), as the Renderer takes it. Error for a camera on "
+      "the\n"
+      "robot, and for matrices that are no rigid transforms; it stays where it is then. Jitter "
+      "and\n"
+      "noise follow from the place, too: back there, they are the same.");
+  type.def(
       "episode_noise", &Renderer::episodeNoise,
       "The noise that the episode of each env had drawn where options give ranges, when images\n"
       "were drawn last: depth_noise, depth_dropout, color_noise and light_jitter, float32\n"
@@ -338,6 +404,12 @@ void bindRenderer(py::module_& module) {
       "The same in words, with the device.");
   type.def_property_readonly("semantic_names", &Renderer::semanticNames,
                              "What the numbers in 'semantics' stand for.");
+  type.def_property_readonly(
+      "semantic_scenes", &Renderer::semanticScenes,
+      "Which scene each of semantic_names is of, which several may share: int32\n"
+      "(len(semantic_names),), indices into World.scenes, -1 for the background, objects and "
+      "links;\n"
+      "a copy.");
   type.def("__repr__", [](const Renderer& one) {
     return fmt::format("<galactic.Renderer, {}>", one.batch().description());
   });

@@ -76,6 +76,10 @@ struct RenderCamera {
 /// The same camera with the axes of images: X to the right, Y down, Z ahead.
 [[nodiscard]] RigidTransform worldFromImageAxes(const RenderCamera& camera) noexcept;
 
+/// The way back: RenderCamera::world_from_camera of a camera with these axes of images.
+[[nodiscard]] RigidTransform worldFromCameraAxes(
+    const RigidTransform& world_from_image_axes) noexcept;
+
 /// Its camera matrix K, row by row, for images of this size: (column, row, 1) of a point is
 /// K (x, y, z) / z in the axes of images; the middle of the first pixel is (0.5, 0.5).
 [[nodiscard]] std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t width,

@@ -113,6 +113,11 @@ RigidTransform worldFromImageAxes(const RenderCamera& camera) noexcept {
   return {right, up * -1.0F, ahead, origin};
 }
 
+RigidTransform worldFromCameraAxes(const RigidTransform& world_from_image_axes) noexcept {
+  const auto& [right, down, ahead, origin] = world_from_image_axes;
+  return {ahead, down * -1.0F, right, origin};
+}
+
 std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t width,
                                   std::uint32_t height) noexcept {
   const float half_width = static_cast<float>(width) / 2;

@@ -87,6 +87,25 @@ Result<ChosenCamera> cameraOf(const Robot& robot, const CameraWish& wish) {
   return ChosenCamera{{.frame = CameraFrame::kLink, .link = *link, .frame_from_camera = {}}};
 }
 
+Result<ChosenCamera> cameraInWorld(const CameraWish& wish) {
+  const CameraOptionNames& names = wish.options;
+  const auto refuse = [&](const std::string& option, const std::string& found) {
+    return fail(ErrorCode::kInvalidInput, option,
+                fmt::format("found {}, expected none: {} says where the camera stands", found,
+                            names.places));
+  };
+  constexpr std::array<float, 3> kNone{};
+  if (!wish.name.empty()) return refuse(names.camera, wish.name);
+  if (wish.position != kNone) return refuse(names.position, "a position");
+  if (wish.rpy_degrees != kNone) return refuse(names.rpy, "a turn");
+  if (const Result<void> checked = checkPlaces(names.places, wish.world_from_camera); !checked) {
+    return tl::unexpected<Error>(checked.error());
+  }
+  return ChosenCamera{{.frame = CameraFrame::kWorld,
+                       .frame_from_camera = {},
+                       .world_from_camera = wish.world_from_camera}};
+}
+
 /// The same of the same place on the same link, however it is called, another one elsewhere.
 std::uint64_t numberOf(const CameraWish& wish) {
   const std::string_view link = linkIn(wish.name);
@@ -102,6 +121,30 @@ std::uint64_t numberOf(const CameraWish& wish) {
 
 /// A comparison with NaN is false.
 bool isWithin(float value, float least, float most) { return value >= least && value <= most; }
+
+/// What is wrong with a place; empty where nothing is.
+std::string faultOf(const RigidTransform& place) {
+  const auto& [x, y, z, origin] = place;
+  for (const float meters : {origin.x, origin.y, origin.z}) {
+    if (isWithin(meters, -kFarthestPlace, kFarthestPlace)) continue;
+    return fmt::format("stands at ({}, {}, {}) m, expected {} to {}", origin.x, origin.y, origin.z,
+                       -kFarthestPlace, kFarthestPlace);
+  }
+  for (const float square : {dot(x, x), dot(y, y), dot(z, z)}) {
+    if (isWithin(square, 1 - kMostSkew, 1 + kMostSkew)) continue;
+    return fmt::format(
+        "has an axis of the length {}, expected 1: a rotation and a place, without "
+        "a scale",
+        std::sqrt(square));
+  }
+  for (const float product : {dot(x, y), dot(y, z), dot(z, x)}) {
+    if (isWithin(product, -kMostSkew, kMostSkew)) continue;
+    return fmt::format("has axes whose dot product is {}, expected 0: they stand at right angles",
+                       std::abs(product));
+  }
+  if (dot(cross(x, y), z) > 0) return {};
+  return "is mirrored, expected a rotation: with its determinant 1, and not -1";
+}
 
 Result<void> checkNumbers(const CameraWish& wish) {
   const auto refuse = [](const std::string& option, const std::string& message) {
@@ -167,8 +210,20 @@ Result<void> checkJitter(const CameraWish& wish, float fov) {
 
 }  // namespace
 
+Result<void> checkPlaces(const std::string& where,
+                         std::span<const RigidTransform> world_from_camera) {
+  for (std::size_t n = 0; n < world_from_camera.size(); ++n) {
+    const std::string fault = faultOf(world_from_camera[n]);
+    if (fault.empty()) continue;
+    return fail(ErrorCode::kInvalidInput, where,
+                world_from_camera.size() == 1 ? fault : fmt::format("number {} {}", n, fault));
+  }
+  return {};
+}
+
 Result<ChosenCamera> chooseCamera(const Robot& robot, const CameraWish& wish) {
-  Result<ChosenCamera> camera = cameraOf(robot, wish);
+  Result<ChosenCamera> camera =
+      wish.world_from_camera.empty() ? cameraOf(robot, wish) : cameraInWorld(wish);
   if (!camera) return camera;
   if (const Result<void> checked = checkNumbers(wish); !checked) {
     return tl::unexpected<Error>(checked.error());

@@ -78,7 +78,7 @@ void DebugViews::updateEnv(const BatchSimulator& simulator, std::size_t env) noe
     }
   }
   views_[env].instances = room.first(count);
-  views_[env].camera = camera_.at(bodies, state.scene, simulator.envMoment(env));
+  views_[env].camera = camera_.at(env, bodies, state.scene, simulator.envMoment(env));
 }
 
 }  // namespace galactic

@@ -313,6 +313,12 @@ def test_what_no_pack_can_be_played_in_is_refused(
     two = galactic.VectorEnv(WORLD, 1, images={"head": {}, "top": {}})
     with pytest.raises(ExportError, match="cameras head, top, and a policy pack has one"):
         export_module(pack, module, two)
+    for camera, message in (
+        ({"world_from_camera": np.eye(4)}, "stands in the world"),
+        ({"robot": False}, "drawn without the robot"),
+    ):
+        with pytest.raises(ExportError, match=message):
+            export_module(pack, module, galactic.VectorEnv(WORLD, 1, images=camera))
     with pytest.raises(galactic.Error, match="/nowhere"):
         export_module("/nowhere/own.pack", module, homes)
     with torch.no_grad():

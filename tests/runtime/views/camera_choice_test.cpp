@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "galactic/world_views.h"
 #include "support/homes/small_home.h"
@@ -93,6 +94,33 @@ TEST(CameraChoice, RefusesPlacesThatAreNone) {
     EXPECT_THAT(refusal({.name = "hand", .near = near}),
                 EndsWith(" m, expected 0.01 to 100, or 0 for what belongs to the camera"));
   }
+}
+
+TEST(CameraChoice, CamerasStandInTheWorldOrOnTheRobot) {
+  const test::SmallHome home;
+  const Robot& robot = home.world().robot();
+  const RigidTransform place = rigidTransform(Pose{{1, 2, 3}, {}});
+  const auto camera =
+      chooseCamera(robot, {.name = "", .fov_degrees = 60, .world_from_camera = {place}});
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(camera->mount.frame, CameraFrame::kWorld);
+  ASSERT_EQ(camera->mount.world_from_camera.size(), 1U);
+  EXPECT_EQ(camera->mount.world_from_camera[0].origin, (Vec3{1, 2, 3}));
+  EXPECT_NEAR(camera->mount.vertical_fov, std::numbers::pi / 3, 1e-6);
+  const auto refusal = [&](const CameraWish& wish) {
+    return chooseCamera(robot, wish).error().text();
+  };
+  EXPECT_EQ(refusal({.name = "hand", .world_from_camera = {place}}),
+            "--camera: found hand, expected none: world_from_camera says where the camera stands");
+  EXPECT_THAT(refusal({.name = "", .position = {0, 1, 0}, .world_from_camera = {place}}),
+              HasSubstr("--camera-position: found a position, expected none"));
+  EXPECT_THAT(refusal({.name = "", .rpy_degrees = {0, 1, 0}, .world_from_camera = {place}}),
+              HasSubstr("--camera-rpy: found a turn, expected none"));
+  RigidTransform mirrored = place;
+  mirrored.z_axis = {0, 0, -1};
+  EXPECT_EQ(refusal({.name = "", .world_from_camera = {place, mirrored}}),
+            "world_from_camera: number 1 is mirrored, expected a rotation: with its determinant 1, "
+            "and not -1");
 }
 
 TEST(CameraChoice, NumbersCamerasByTheirPlaces) {

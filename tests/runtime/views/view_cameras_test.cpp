@@ -1,9 +1,12 @@
 // Where the cameras of views are: on links, on bases, in the world, kept in sight, with jitter.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "galactic/debug_views.h"
@@ -105,12 +108,44 @@ TEST_F(CamerasOfAHome, ACameraThatKeepsSightStaysWhereItIsWhenItLooksAway) {
 }
 
 TEST_F(CamerasOfAHome, ACameraOfTheWorldStaysWhereItIs) {
-  const CameraMount mount{
-      .frame = CameraFrame::kWorld, .link = 0, .frame_from_camera = {{1, 2, 3}, test::yaw(1)}};
-  const WorldViews views(*models_, *simulator_, mount);
-  EXPECT_EQ(difference(views.views()[2].camera.world_from_camera,
-                       rigidTransform(mount.frame_from_camera)),
-            0);
+  const RigidTransform place = rigidTransform(Pose{{1, 2, 3}, test::yaw(1)});
+  CameraMount mount{
+      .frame = CameraFrame::kWorld, .frame_from_camera = {}, .world_from_camera = {place}};
+  WorldViews views(*models_, *simulator_, mount);
+  EXPECT_EQ(difference(views.views()[2].camera.world_from_camera, place), 0);
+  const std::uint64_t number = views.views()[2].noise.camera;
+  EXPECT_EQ(views.views()[1].noise.camera, number);
+  // Elsewhere, and in each env elsewhere: from the next update on.
+  std::vector<RigidTransform> places(kEnvs, place);
+  for (std::size_t env = 1; env < kEnvs; ++env) places[env].origin.y += static_cast<float>(env);
+  views.placeCamera(places);
+  EXPECT_EQ(difference(views.views()[2].camera.world_from_camera, place), 0);
+  views.update(*simulator_);
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    EXPECT_EQ(difference(views.views()[env].camera.world_from_camera, places[env]), 0);
+    EXPECT_EQ(views.views()[env].noise.camera == number, env == 0);
+  }
+  mount.number = 5;
+  EXPECT_NE(WorldViews(*models_, *simulator_, mount).views()[2].noise.camera, number);
+}
+
+TEST_F(CamerasOfAHome, PlacesOfCamerasThatAreNoneAreRefused) {
+  const auto refused = [](const auto& call, const std::string& message) {
+    EXPECT_THAT(call, testing::ThrowsMessage<ErrorException>(
+                          testing::StartsWith("MountedCamera::place: " + message)));
+  };
+  CameraMount mount{.frame = CameraFrame::kWorld, .frame_from_camera = {}};
+  refused([&] { WorldViews(*models_, *simulator_, mount); }, "found 0 places, expected one");
+  mount.world_from_camera.resize(kEnvs + 1);
+  refused([&] { WorldViews(*models_, *simulator_, mount); }, "found " + std::to_string(kEnvs + 1));
+  mount.world_from_camera.resize(kEnvs);
+  WorldViews views(*models_, *simulator_, mount);
+  mount.world_from_camera[1].y_axis = {0, -1, 0};
+  refused([&] { views.placeCamera(mount.world_from_camera); }, "number 1 is mirrored");
+  views.update(*simulator_);
+  EXPECT_EQ(views.views()[1].camera.world_from_camera.y_axis, (Vec3{0, 1, 0}));
+  WorldViews on_robot(*models_, *simulator_, robotCamera(world_->robot()).value());
+  refused([&] { on_robot.placeCamera(mount.world_from_camera); }, "found a camera on the robot");
 }
 
 TEST_F(CamerasOfAHome, WithJitterTheCameraIsElsewhereInEachEpisodeWithinLimits) {

@@ -68,10 +68,25 @@ TEST_F(WorldViewsOfAHome, AllThatWasMadeOfAWorldLivesOnWithoutIt) {
   EXPECT_EQ(look(), with_world);
 }
 
+TEST_F(WorldViewsOfAHome, TheRobotIsLeftOutWhereNobodyWantsIt) {
+  const CameraMount mount = robotCamera(world_->robot()).value();
+  const WorldViews whole(*models_, *simulator_, mount);
+  const WorldViews without(*models_, *simulator_, mount, {.robot = false});
+  for (std::size_t env = 0; env < kEnvs; ++env) {
+    EXPECT_EQ(whole.views()[env].attached.size(), models_->links().size());
+    EXPECT_TRUE(without.views()[env].attached.empty());
+    EXPECT_EQ(without.views()[env].posed.size(), whole.views()[env].posed.size());
+    EXPECT_EQ(without.views()[env].instances.size(), 1U);
+    EXPECT_EQ(test::difference(without.views()[env].camera.world_from_camera,
+                               whole.views()[env].camera.world_from_camera),
+              0);
+  }
+}
+
 TEST_F(WorldViewsOfAHome, ObjectsHaveIdsOfTheirNamesOrOfTheirOwn) {
   const CameraMount mount = robotCamera(world_->robot()).value();
   WorldViews of_names(*models_, *simulator_, mount);
-  WorldViews of_objects(*models_, *simulator_, mount, ObjectIds::kObjects);
+  WorldViews of_objects(*models_, *simulator_, mount, {.ids = ObjectIds::kObjects});
   const std::size_t names = models_->library().semanticNames().size();
   for (int n = 0; n < 20; ++n) {  // with one in the hand at last
     step();

@@ -99,8 +99,10 @@ class ChangedWorld {
     if (!simulator) return {};
     const Result<WorldModels> models = WorldModels::from(world);
     if (!models) return {};
-    const CameraMount above{.frame = CameraFrame::kWorld,
-                            .frame_from_camera = {{0.2F, 2, 0.2F}, {0, -0.38F, 0, 0.925F}}};
+    const CameraMount above{
+        .frame = CameraFrame::kWorld,
+        .frame_from_camera = {},
+        .world_from_camera = {rigidTransform(Pose{{0.2F, 2, 0.2F}, {0, -0.38F, 0, 0.925F}})}};
     const CameraMount mount = robotCamera(world.robot()).value_or(above);
     WorldViews on_robot(*models, *simulator, mount);
     WorldViews in_room(*models, *simulator, above);

@@ -11,6 +11,7 @@ import torch
 from torch import Tensor
 
 from galactic import _core, files
+from galactic.cameras import stands_in_world
 from galactic.learning.encoders import Inputs
 from galactic.learning.homes import camera_options
 from galactic.learning.packs.encoder_layers import PLAIN_LAYERS, encoded
@@ -150,6 +151,14 @@ def _limited(layers: Layers, limit: float, logits: int) -> int:
 def image_of(options: Mapping[str, Any]) -> dict[str, Any]:
     """What a camera with these options of galactic.Renderer draws, as _core.write_policy_pack() wants it."""
     seen = {**_core.Renderer.DEFAULTS, **options}
+    if stands_in_world(seen):
+        raise ExportError(
+            "the camera stands in the world (world_from_camera), and a policy pack has one on the robot: train with that"
+        )
+    if not seen["robot"]:
+        raise ExportError(
+            "the images are drawn without the robot, and a policy pack has none such: train with robot=True"
+        )
     return {
         "width": seen["width"],
         "height": seen["height"],
