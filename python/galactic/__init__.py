@@ -49,6 +49,7 @@ from galactic.demonstrations import Demonstration, Demonstrations
 from galactic.env_states import EnvStates, Poses
 from galactic.episode_table import EpisodeTable
 from galactic.errors import Error
+from galactic.object_boxes import ObjectBoxes
 from galactic.reached import reached
 from galactic.task import Outcome, Task
 from galactic.task_envs import TaskEnvs
@@ -69,6 +70,7 @@ __all__ = [
     "ErrorCode",
     "GeodesicFields",
     "LearnedPolicy",
+    "ObjectBoxes",
     "Outcome",
     "PathFinder",
     "PlanningScene",

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from galactic.cast_hits import CastHits
 from galactic.env_states import EnvStates, Poses
 from galactic.episode_table import EpisodeTable
+from galactic.object_boxes import ObjectBoxes
 
 __version__: str
 
@@ -73,6 +74,8 @@ class World:
     def objects(self) -> tuple[str, ...]: ...
     @property
     def object_centers(self) -> NDArray[np.float32]: ...  # (len(objects), 3)
+    @property
+    def object_boxes(self) -> ObjectBoxes: ...
     @property
     def robot(self) -> str: ...
     @property

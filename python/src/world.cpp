@@ -67,6 +67,22 @@ py::array_t<float> objectCenters(const World& world) {
   return centers.array();
 }
 
+/// galactic.ObjectBoxes.
+py::object objectBoxes(const World& world) {
+  const std::size_t count = world.episodes().objectNames().size();
+  const auto rows = static_cast<py::ssize_t>(count);
+  FilledPoses poses({rows});
+  Filled<float> half_extents({rows, 3});
+  for (std::uint32_t object = 0; object < count; ++object) {
+    const OrientedBox& box = world.object(object).box;
+    poses.put(box.pose);
+    half_extents.put(numbersOf(box.half_extents));
+  }
+  return py::module_::import("galactic.object_boxes")
+      .attr("ObjectBoxes")(poses.poses(py::module_::import("galactic.env_states")),
+                           half_extents.array());
+}
+
 py::tuple linkNames(const World& world) {
   const Robot& robot = world.robot();
   py::list names;
@@ -213,6 +229,9 @@ void bindWorld(py::module_& module) {
           "object_centers", &objectCenters,
           "Where in the frame of each of them the middle of its box is: float32\n"
           "(len(objects), 3), meters, a copy.")
+      .def_property_readonly(
+          "object_boxes", &objectBoxes,
+          "The oriented box around each of them, in its frame: a galactic.ObjectBoxes, copies.")
       .def_property_readonly(
           "robot", [](const World& world) { return fileText(world.robot().name()); },
           "Name of the robot.")

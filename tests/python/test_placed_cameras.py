@@ -94,6 +94,42 @@ def test_the_camera_may_move_while_it_draws(simulator):
         renderer.place_camera(ROOM)
 
 
+def test_boxes_of_objects_are_where_they_are_drawn(world, simulator, draw_actions):
+    boxes = world.object_boxes
+    np.testing.assert_array_equal(boxes.object_from_box.translation, world.object_centers)
+    assert boxes.half_extents.shape == (2, 3) and boxes.corners.shape == (2, 8, 3)
+    np.testing.assert_allclose(np.ptp(boxes.corners, axis=1), 2 * boxes.half_extents, atol=1e-6)
+    large = {**IMAGES, "width": 320, "height": 240}
+    eye = Renderer(simulator, **large, world_from_camera=ROOM, robot=False)
+    whole = cut_off = 0
+    for _ in range(10):
+        simulator.step(draw_actions(ENVS, 8))
+        seen, states = eye.render(), simulator.env_states()
+        camera_from_world = np.linalg.inv(eye.world_from_camera[0].astype(float))
+        for env, number in np.argwhere(states.object_kinds >= 0):
+            world_from_object = states.objects.matrix[env, number].astype(float)
+            corners = boxes.corners[states.object_kinds[env, number]]
+            homogeneous = np.concatenate([corners, np.ones((8, 1))], axis=1)
+            in_camera = (homogeneous @ (camera_from_world @ world_from_object).T)[:, :3]
+            pixels = in_camera @ eye.intrinsics.T.astype(float)
+            pixels = pixels[:, :2] / pixels[:, 2:]
+            mask = seen["semantics"][env] == len(eye.semantic_names) + number
+            if not mask.any():
+                continue
+            rows, columns = np.nonzero(mask)
+            # The models of this home fill their boxes: a pixel is drawn where its middle is inside.
+            found = np.array([columns.min(), rows.min(), columns.max() + 1, rows.max() + 1])
+            wanted = np.concatenate([pixels.min(axis=0), pixels.max(axis=0)])
+            inward = (found - wanted) * [1, 1, -1, -1]
+            assert inward.min() > -0.51, (env, number, inward)
+            depths = seen["depth"][env][mask]
+            assert in_camera[:, 2].min() - 1e-3 < depths.min()
+            assert depths.max() < in_camera[:, 2].max() + 1e-3
+            is_whole = inward.max() < 2
+            whole, cut_off = whole + is_whole, cut_off + (not is_whole)
+    assert whole > 30 and cut_off < 0.3 * whole
+
+
 def test_without_the_robot_all_images_see_through_it(simulator, draw_actions):
     for _ in range(5):
         simulator.step(draw_actions(ENVS, 8))
