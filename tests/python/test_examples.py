@@ -63,7 +63,7 @@ def test_point_nav(world_path):
 def test_draw_data_set(world_path, tmp_path):
     printed = output_of("draw_data_set.py", world_path, folder=tmp_path)
     images, with_target = map(int, re.findall(r"\d+", printed.splitlines()[0]))
-    assert images == 640 and with_target > 300
+    assert images == 640 and with_target > 500
     # The points of a target are within it.
     assert 0 < float(re.findall(r"at most (\S+) m", printed)[0]) < 0.15
     with np.load(tmp_path / "images.npz") as data:
@@ -72,6 +72,7 @@ def test_draw_data_set(world_path, tmp_path):
         "rgb": (72, 96, 3),
         "depth": (72, 96),
         "is_target": (72, 96),
+        "target_box": (4,),
         "world_from_camera": (4, 4),
         "intrinsics": (3, 3),
     }

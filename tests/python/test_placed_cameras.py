@@ -157,6 +157,15 @@ def test_ids_tell_the_scene_that_they_are_of(world, simulator):
     assert set(scenes[ids[ids < len(scenes)]]) == {0}
 
 
+def test_a_camera_on_an_optical_frame_looks_along_its_z_when_it_is_turned(simulator):
+    plain = Renderer(simulator, **IMAGES, camera="hand").world_from_camera
+    turned = Renderer(simulator, **IMAGES, camera="hand", rpy_degrees=(90, -90, 0))
+    # Of the link, in the order of a URDF: x where the plain camera looks, y to its left, and z up.
+    x, y, z = plain[..., 2], -plain[..., 0], -plain[..., 1]
+    wanted = np.stack([x, y, z, plain[..., 3]], axis=-1)
+    np.testing.assert_allclose(turned.world_from_camera, wanted, atol=1e-6)
+
+
 @pytest.mark.parametrize("halves", [1, 2])
 @pytest.mark.parametrize("each", [False, True])
 def test_cameras_of_a_vector_env_may_stand_in_the_world(world, draw_actions, halves, each):
