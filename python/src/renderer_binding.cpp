@@ -296,52 +296,7 @@ void bindDeviceArray(py::module_& module) {
       "before that, on the stream that was named to it or one that this stream waits for.";
 }
 
-}  // namespace
-
-void bindRenderer(py::module_& module) {
-  bindDeviceArray(module);
-  py::class_<Renderer> type(module, "Renderer");
-  type.def(
-      py::init([](const py::object& simulator, const py::kwargs& keywords) {
-        (void)simulatorOf(simulator);
-        return Renderer::create(simulator, optionsFrom(keywords));
-      }),
-      py::arg("simulator"),
-      "Mounts a camera in each env, or stands it there.\n\n"
-      "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
-      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False,\n"
-      "True or 'objects'; camera='head', 'follow', 'top' or a link; world_from_camera, instead of\n"
-      "that for a camera that stands in the world: a matrix (4, 4), or one for each env, "
-      "(num_envs,\n"
-      "4, 4), as the property has them; fov_degrees, vertical, 1 to 175, or 0 for the camera's "
-      "own,\n"
-      "which is 90 on links and in the world; position=(0, 0, 0), meters ahead, to the left and "
-      "up\n"
-      "of where the camera or link is, and rpy_degrees=(0, 0, 0), roll, pitch (down is positive)\n"
-      "and yaw by which it is turned there, as in the [camera] of a robot's recipe; near, meters:\n"
-      "what is nearer is not drawn, 0.01 to 100, or 0 for the camera's own; robot=True, or False\n"
-      "for images without the robot, but with what it holds; backend='auto', 'soft', 'gl' or\n"
-      "'cuda'; device='', or an index; threads=0.\n\n"
-      "A matrix in the world is a rotation within 0.001, and up to 10 km from the origin.\n\n"
-      "For images like those of real cameras, all 0 by default, each a number, or a pair from\n"
-      "which each episode draws its own: depth_noise, the standard\n"
-      "deviation of depth at 1 m, meters, which grows with depth squared; depth_dropout, the\n"
-      "share of pixels without depth; color_noise, the standard deviation of each channel,\n"
-      "levels of 255; light_jitter, by which share an episode may be brighter or darker;\n"
-      "camera_jitter, meters, and camera_jitter_degrees, how far the camera may be from its\n"
-      "place in an episode, and camera_jitter_fov, degrees, how far from its field of view. They "
-      "follow from seed, env, episode and step: an image that is drawn\n"
-      "twice is the same.");
-  type.doc() =
-      "Draws what cameras on the robots of a simulator or in its homes see, all envs together.\n\n"
-      "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
-      "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
-      "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
-      "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.";
-  type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
-  type.attr("NOISE_OPTIONS") = py::tuple(py::cast(noiseNames()));
-  type.attr("NOISE_LIMITS") = noiseLimits();
-  type.attr("DEFAULTS") = defaults();
+void bindDrawing(py::class_<Renderer>& type) {
   type.def("render", &Renderer::render, py::arg("out") = py::none(), py::arg("envs") = py::none(),
            "Draws the simulator's state and returns the images by name.\n\n"
            "out: arrays by name that are drawn to, of exactly the images' shape and type; what it\n"
@@ -364,26 +319,20 @@ void bindRenderer(py::module_& module) {
       "has it in cuda_stream; 0 is the default stream. What it was told to do with earlier\n"
       "images is done before they change.\n\n"
       "Error (UNSUPPORTED) with the soft backend, without CUDA, and with noise.");
+}
+
+/// Where it is, and its lens.
+void bindCamera(py::class_<Renderer>& type) {
   type.def(
       "place_camera",
       [](Renderer& one, const py::object& world_from_camera) {
         one.placeCamera(placesOf(world_from_camera));
       },
       py::arg("world_from_camera"),
-      "Has a camera that was made with world_from_camera stand elsewhere, from the next drawing "
-      "on:\n"
-      "(4, 4) for all envs, or (num_envs, 4, 4), as the Renderer takes it. Error for a camera on "
-      "the\n"
-      "robot, and for matrices that are no rigid transforms; it stays where it is then. Jitter "
-      "and\n"
-      "noise follow from the place, too: back there, they are the same.");
-  type.def(
-      "episode_noise", &Renderer::episodeNoise,
-      "The noise that the episode of each env had drawn where options give ranges, when images\n"
-      "were drawn last: depth_noise, depth_dropout, color_noise and light_jitter, float32\n"
-      "(num_envs,), copies.");
-  type.def_property_readonly("shapes", &Renderer::shapes,
-                             "Of one env's images, by name: shape and dtype.");
+      "Has a camera that was made with world_from_camera stand elsewhere, from the next drawing\n"
+      "on: (4, 4) for all envs, or (num_envs, 4, 4), as the Renderer takes it. Error for a camera\n"
+      "on the robot, and for matrices that are no rigid transforms; it stays where it is then.\n"
+      "Jitter and noise follow from the place, too: back there, they are the same.");
   type.def_property_readonly(
       "intrinsics", &Renderer::intrinsics,
       "The camera matrix of all images, float32 (3, 3), or with camera_jitter_fov those of all "
@@ -396,6 +345,60 @@ void bindRenderer(py::module_& module) {
       "Where the cameras of all envs were when images were drawn last: float32 (num_envs, 4, 4),\n"
       "of a frame whose X leads to the right in the image, Y down, and Z ahead, which depth is\n"
       "measured along.");
+}
+
+}  // namespace
+
+void bindRenderer(py::module_& module) {
+  bindDeviceArray(module);
+  py::class_<Renderer> type(module, "Renderer");
+  type.def(
+      py::init([](const py::object& simulator, const py::kwargs& keywords) {
+        (void)simulatorOf(simulator);
+        return Renderer::create(simulator, optionsFrom(keywords));
+      }),
+      py::arg("simulator"),
+      "Mounts a camera in each env, or stands it there.\n\n"
+      "The simulator must have been made with body_transforms=True. Keywords: width=128,\n"
+      "height=128, pixels; color='rgb', 'rgba' or None; depth=True; semantics=False,\n"
+      "True or 'objects'; camera='head', 'follow', 'top' or a link; world_from_camera, instead of\n"
+      "that for a camera that stands in the world: a matrix (4, 4), or one for each env,\n"
+      "(num_envs, 4, 4), as the property has them; fov_degrees, vertical, 1 to 175, or 0 for the\n"
+      "camera's own, which is 90 on links and in the world; position=(0, 0, 0), meters ahead, to\n"
+      "the left and up of where the camera or link is, and rpy_degrees=(0, 0, 0), roll, pitch\n"
+      "(down is positive) and yaw by which it is turned there, as in the [camera] of a robot's\n"
+      "recipe; near, meters: what is nearer is not drawn, 0.01 to 100, or 0 for the camera's own;\n"
+      "robot=True, or False for images without the robot, but with what it holds;\n"
+      "backend='auto', 'soft', 'gl' or 'cuda'; device='', or an index; threads=0.\n\n"
+      "A matrix in the world is a rotation within 0.001, and up to 10 km from the origin.\n\n"
+      "For images like those of real cameras, all 0 by default, each a number, or a pair from\n"
+      "which each episode draws its own: depth_noise, the standard\n"
+      "deviation of depth at 1 m, meters, which grows with depth squared; depth_dropout, the\n"
+      "share of pixels without depth; color_noise, the standard deviation of each channel,\n"
+      "levels of 255; light_jitter, by which share an episode may be brighter or darker;\n"
+      "camera_jitter, meters, and camera_jitter_degrees, how far the camera may be from its\n"
+      "place in an episode, and camera_jitter_fov, degrees, how far from its field of view. They "
+      "follow from seed, env, episode and step: an image that is drawn\n"
+      "twice is the same.");
+  type.doc() =
+      "Draws what cameras on the robots of a simulator or in its homes see, all envs together.\n\n"
+      "Images by name: 'rgb' or 'rgba' uint8 (N, height, width, 3 or 4), sRGB; 'depth' float32\n"
+      "(N, height, width), meters along the camera's axis, 0 where nothing is drawn;\n"
+      "'semantics' int32 (N, height, width), indices into semantic_names. With 'objects', the\n"
+      "object n of an env, as in EnvState.objects, has the id len(semantic_names) + n instead.";
+  type.attr("OPTIONS") = py::tuple(py::cast(keywordNames()));
+  type.attr("NOISE_OPTIONS") = py::tuple(py::cast(noiseNames()));
+  type.attr("NOISE_LIMITS") = noiseLimits();
+  type.attr("DEFAULTS") = defaults();
+  bindDrawing(type);
+  bindCamera(type);
+  type.def(
+      "episode_noise", &Renderer::episodeNoise,
+      "The noise that the episode of each env had drawn where options give ranges, when images\n"
+      "were drawn last: depth_noise, depth_dropout, color_noise and light_jitter, float32\n"
+      "(num_envs,), copies.");
+  type.def_property_readonly("shapes", &Renderer::shapes,
+                             "Of one env's images, by name: shape and dtype.");
   type.def_property_readonly(
       "backend", [](const Renderer& one) { return backendName(one.batch().backend()); },
       "What draws: 'soft', 'gl' or 'cuda'.");
@@ -407,9 +410,8 @@ void bindRenderer(py::module_& module) {
   type.def_property_readonly(
       "semantic_scenes", &Renderer::semanticScenes,
       "Which scene each of semantic_names is of, which several may share: int32\n"
-      "(len(semantic_names),), indices into World.scenes, -1 for the background, objects and "
-      "links;\n"
-      "a copy.");
+      "(len(semantic_names),), indices into World.scenes, -1 for the background, objects\n"
+      "and links; a copy.");
   type.def("__repr__", [](const Renderer& one) {
     return fmt::format("<galactic.Renderer, {}>", one.batch().description());
   });
