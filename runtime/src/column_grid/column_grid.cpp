@@ -216,6 +216,41 @@ std::uint64_t notFreePortable(const ColumnGridLayout& grid,
 
 }  // namespace detail
 
+namespace {
+
+/// Calls `visit(span)` for each free span of a column of the grid, ascending.
+template <class Visit>
+void forEachSpan(const ColumnGridLayout& grid, ColumnIndex column, const Visit& visit) {
+  const std::uint32_t index = cellIndex(column.i, column.k, grid.tiles_x);
+  const std::uint64_t cell = grid.cells[index];
+  const auto visit_real = [&](const Span& span) {
+    if (span.lo <= span.hi) visit(span);
+  };
+  if (isOverflow(cell)) {
+    for (std::uint32_t n = overflowStart(cell);; ++n) {
+      const Span span = detail::overflowSpan(grid, n);
+      if (span == kEndOfSpans) return;
+      visit_real({span.lo, lesser(span.hi, grid.heights.hi)});
+    }
+  }
+  const SpanEnds ends(grid, tileBase(grid, index));
+  const InlineSpans codes = inlineSpans(cell);
+  if (codes.lo0 <= codes.hi0) visit_real({ends.lowest(codes.lo0), ends.highest(codes.hi0)});
+  if (codes.lo1 <= codes.hi1) visit_real({ends.lowest(codes.lo1), ends.highest(codes.hi1)});
+}
+
+}  // namespace
+
+std::optional<float> detail::nearestFreeHeight(const ColumnGridLayout& grid, ColumnIndex column,
+                                               float y) noexcept {
+  std::optional<float> nearest;
+  forEachSpan(grid, column, [&](const Span& span) {
+    const float height = std::clamp(y, span.lo, span.hi);
+    if (!nearest || std::fabs(height - y) < std::fabs(*nearest - y)) nearest = height;
+  });
+  return nearest;
+}
+
 Clearance ColumnGrid::clearance(Vec3 center) const noexcept {
   return contactAt(layout_, center).clearance;
 }
@@ -270,25 +305,11 @@ std::size_t ColumnGrid::spanCount(std::uint32_t i, std::uint32_t k) const noexce
 std::size_t ColumnGrid::spans(std::uint32_t i, std::uint32_t k,
                               std::span<Span> out) const noexcept {
   if (i >= layout_.columns_x || k >= layout_.columns_z) return 0;
-  const std::uint32_t index = cellIndex(i, k, layout_.tiles_x);
-  const std::uint64_t cell = layout_.cells[index];
   std::size_t count = 0;
-  const auto append = [&](const Span& span) {
-    if (!(span.lo <= span.hi)) return;
+  forEachSpan(layout_, {i, k}, [&](const Span& span) {
     if (count < out.size()) out[count] = span;
     ++count;
-  };
-  if (isOverflow(cell)) {
-    for (std::uint32_t n = overflowStart(cell);; ++n) {
-      const Span span = detail::overflowSpan(layout_, n);
-      if (span == kEndOfSpans) return count;
-      append({span.lo, lesser(span.hi, layout_.heights.hi)});
-    }
-  }
-  const SpanEnds ends(layout_, tileBase(layout_, index));
-  const InlineSpans codes = inlineSpans(cell);
-  if (codes.lo0 <= codes.hi0) append({ends.lowest(codes.lo0), ends.highest(codes.hi0)});
-  if (codes.lo1 <= codes.hi1) append({ends.lowest(codes.lo1), ends.highest(codes.hi1)});
+  });
   return count;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "galactic/column_grid.h"
 
@@ -82,5 +83,9 @@ struct EightsOfCenters {
 /// Whether that answer is "free".
 [[nodiscard]] bool isFreeInOverflow(const ColumnGridLayout& grid, std::uint32_t start,
                                     float y) noexcept;
+
+/// The free height of a column of the grid that is nearest to `y`; none where no height is free.
+[[nodiscard]] std::optional<float> nearestFreeHeight(const ColumnGridLayout& grid,
+                                                     ColumnIndex column, float y) noexcept;
 
 }  // namespace galactic::detail

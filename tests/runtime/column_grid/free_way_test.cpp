@@ -52,27 +52,6 @@ Clearance judge(const TestGrid& grid, const Point3& point) {
   return is_free ? Clearance::kFree : Clearance::kBlocked;
 }
 
-/// Random columns, mostly free, whose spans end at codes: so the grid has exactly these.
-TestGrid roomyGrid(const GridSpec& spec, std::mt19937& random) {
-  constexpr float kRightAt = 2e-3F;
-  GridBuilder builder(spec);
-  for (std::uint32_t k = 0; k < spec.columns_z; ++k) {
-    for (std::uint32_t i = 0; i < spec.columns_x; ++i) {
-      std::vector<Span> spans =
-          random() % 3 == 0 ? randomColumn(spec, random) : std::vector<Span>{spec.heights};
-      for (Span& span : spans) {
-        span.lo = std::ceil(span.lo / spec.quantum) * spec.quantum;
-        span.hi = std::floor(span.hi / spec.quantum) * spec.quantum;
-        // As bakes have it, nothing is right at the ends of a grid's heights.
-        if (span.lo < spec.heights.lo + kRightAt) span.lo = spec.heights.lo;
-        if (span.hi > spec.heights.hi - kRightAt) span.hi = spec.heights.hi;
-      }
-      builder.column(i, k, spans);
-    }
-  }
-  return builder.build();
-}
-
 StraightLine randomLine(const GridSpec& spec, std::mt19937& random) {
   const float width = spec.spacing * static_cast<float>(spec.columns_x);
   const float depth = spec.spacing * static_cast<float>(spec.columns_z);

@@ -193,4 +193,25 @@ inline TestGrid randomGrid(const GridSpec& spec, std::mt19937& random) {
   return builder.build();
 }
 
+/// Random columns, mostly free, whose spans end at codes: so the grid has exactly these.
+inline TestGrid roomyGrid(const GridSpec& spec, std::mt19937& random) {
+  constexpr float kRightAt = 2e-3F;
+  GridBuilder builder(spec);
+  for (std::uint32_t k = 0; k < spec.columns_z; ++k) {
+    for (std::uint32_t i = 0; i < spec.columns_x; ++i) {
+      std::vector<Span> spans =
+          random() % 3 == 0 ? randomColumn(spec, random) : std::vector<Span>{spec.heights};
+      for (Span& span : spans) {
+        span.lo = std::ceil(span.lo / spec.quantum) * spec.quantum;
+        span.hi = std::floor(span.hi / spec.quantum) * spec.quantum;
+        // As bakes have it, nothing is right at the ends of a grid's heights.
+        if (span.lo < spec.heights.lo + kRightAt) span.lo = spec.heights.lo;
+        if (span.hi > spec.heights.hi - kRightAt) span.hi = spec.heights.hi;
+      }
+      builder.column(i, k, spans);
+    }
+  }
+  return builder.build();
+}
+
 }  // namespace galactic::test
