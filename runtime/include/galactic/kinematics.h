@@ -65,4 +65,20 @@ struct PlanarDirections {
 void forwardKinematics(std::span<const LinkFrame> links, const Pose& world_from_root,
                        std::span<const float> positions, std::span<Pose> world_from_link) noexcept;
 
+/// A point that a link carries, and a direction; in the frame that the links' poses are in.
+struct CarriedPoint {
+  std::uint32_t link = 0;
+  Vec3 point;
+  Vec3 direction;
+};
+
+/// How far a point of a link moves along a direction for each unit of each position: the transposed
+/// Jacobian of the point, applied to the direction. `links`, `positions`: as forwardKinematics()
+/// takes them, and `frame_from_link` what it says of them. `moves`: one per position, overwritten,
+/// meters per radian or meter times the direction's length; of a quaternion's components, for the
+/// rotation that they stand for at any length. Neither allocates nor throws.
+void applyTransposedJacobian(std::span<const LinkFrame> links, std::span<const float> positions,
+                             std::span<const Pose> frame_from_link, const CarriedPoint& carried,
+                             std::span<float> moves) noexcept;
+
 }  // namespace galactic

@@ -1,7 +1,10 @@
 #include "galactic/kinematics.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 namespace galactic {
 namespace {
@@ -61,6 +64,81 @@ void forwardKinematics(std::span<const LinkFrame> links, const Pose& world_from_
     const Pose world_from_parent =
         link.parent < 0 ? world_from_root : world_from_link[static_cast<std::size_t>(link.parent)];
     world_from_link[n] = world_from_parent * (link.parent_from_joint * jointPose(link, positions));
+  }
+}
+
+namespace {
+
+/// How a point and a direction look from a link's joint, which turns them about its origin.
+struct SeenFromJoint {
+  /// From the origin of the joint to the point, and the direction, both in the joint's frame.
+  Vec3 arm;
+  Vec3 direction;
+
+  [[nodiscard]] float alongAxis(const Vec3& axis) const { return dot(direction, axis); }
+  [[nodiscard]] float aboutAxis(const Vec3& axis) const { return dot(direction, cross(axis, arm)); }
+};
+
+/// Per component of a quaternion (x, y, z, w), the angular velocity 2 dq q* / |q|^2.
+void addQuaternionMoves(const SeenFromJoint& seen, const float* q, float* moves) {
+  const float square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (!(square > 0)) return;
+  const Quat back{-q[0], -q[1], -q[2], q[3]};
+  constexpr Quat kComponents[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+  for (std::size_t n = 0; n < 4; ++n) {
+    const Quat turn = kComponents[n] * back;
+    moves[n] += seen.aboutAxis(Vec3{turn.x, turn.y, turn.z} * (2 / square));
+  }
+}
+
+void addJointMoves(const LinkFrame& link, const float* values, const SeenFromJoint& seen,
+                   float* moves) {
+  switch (link.type) {
+    case JointType::kFixed:
+      return;
+    case JointType::kRevolute:
+    case JointType::kContinuous:
+      moves[0] += link.multiplier * seen.aboutAxis(link.axis);
+      return;
+    case JointType::kPrismatic:
+      moves[0] += link.multiplier * seen.alongAxis(link.axis);
+      return;
+    case JointType::kPlanar: {
+      const PlanarDirections directions = planarDirections(link.axis);
+      moves[0] += seen.alongAxis(directions.first);
+      moves[1] += seen.alongAxis(directions.second);
+      moves[2] += seen.aboutAxis(link.axis);
+      return;
+    }
+    case JointType::kFloating:
+      moves[0] += seen.direction.x;
+      moves[1] += seen.direction.y;
+      moves[2] += seen.direction.z;
+      addQuaternionMoves(seen, values + 3, moves + 3);
+      return;
+  }
+}
+
+}  // namespace
+
+void applyTransposedJacobian(std::span<const LinkFrame> links, std::span<const float> positions,
+                             std::span<const Pose> frame_from_link, const CarriedPoint& carried,
+                             std::span<float> moves) noexcept {
+  assert(moves.size() == positions.size());
+  std::ranges::fill(moves, 0.0F);
+  for (auto n = static_cast<std::int32_t>(carried.link); n >= 0;) {
+    const LinkFrame& link = links[static_cast<std::size_t>(n)];
+    if (link.type != JointType::kFixed) {
+      const Pose& frame_from_here = frame_from_link[static_cast<std::size_t>(n)];
+      // As the joint's frame lies before the joint turns it.
+      const Quat frame_from_joint =
+          frame_from_here.rotation * conjugate(jointPose(link, positions).rotation);
+      const Quat back = conjugate(frame_from_joint);
+      const SeenFromJoint seen{rotate(back, carried.point - frame_from_here.translation),
+                               rotate(back, carried.direction)};
+      addJointMoves(link, positions.data() + link.position, seen, moves.data() + link.position);
+    }
+    n = link.parent;
   }
 }
 

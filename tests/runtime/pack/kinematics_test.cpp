@@ -190,6 +190,50 @@ TEST(ForwardKinematics, TakesAFloatingQuaternionOfAnyLengthAndNoneAsNoRotation) 
   EXPECT_EQ(poses[1], (Pose{{1, 2, 3}, {0, 0, 0, 1}}));
 }
 
+TEST(TransposedJacobian, SaysHowPointsMoveOverRandomTreesOfAllJointTypes) {
+  constexpr std::uint32_t kSeed = 99;
+  constexpr double kStep = 1e-4;
+  /// A difference quotient in double precision; the rest is that of floats in long chains.
+  constexpr double kMoveTolerance = 1e-4;
+  std::printf("seed %u\n", kSeed);
+  TreeMaker maker(kSeed);
+  std::size_t moving = 0;
+  std::size_t asked = 0;
+  for (int round = 0; round < (kIsSanitized ? 10 : 30); ++round) {
+    const RandomTree tree = maker.tree();
+    const std::vector<OracleLink> oracle = oracleOf(tree.links);
+    std::vector<float> positions = maker.positionsOf(tree);
+    const Pose root{{maker.between(-2, 2), maker.between(-2, 2), 0}, maker.rotation()};
+    std::vector<Pose> poses(tree.links.size());
+    forwardKinematics(tree.links, root, positions, poses);
+    const std::size_t link = tree.links.size() - 1;
+    const Vec3 own{maker.between(-0.2F, 0.2F), 0.1F, 0};
+    const Vec3 direction = maker.direction();
+    std::vector<float> moves(positions.size(), 7);
+    applyTransposedJacobian(tree.links, positions, poses,
+                            {static_cast<std::uint32_t>(link), poses[link] * own, direction},
+                            moves);
+    const auto along = [&](std::size_t position, float value) {
+      std::vector<float> there = positions;
+      there[position] = value;
+      const auto pose = oraclePoses(oracle, toEigen(root), there)[link];
+      return (pose * toEigen(own)).dot(toEigen(direction));
+    };
+    for (std::size_t n = 0; n < positions.size(); ++n) {
+      const float before = positions[n] - static_cast<float>(kStep);
+      const float after = positions[n] + static_cast<float>(kStep);
+      const double quotient = (along(n, after) - along(n, before)) /
+                              (static_cast<double>(after) - static_cast<double>(before));
+      EXPECT_NEAR(static_cast<double>(moves[n]), quotient,
+                  kMoveTolerance * (1 + std::abs(quotient)));
+      moving += std::abs(quotient) > kMoveTolerance ? 1U : 0U;
+      ++asked;
+    }
+  }
+  EXPECT_GT(moving, asked / 10);
+  EXPECT_LT(moving, asked * 9 / 10);
+}
+
 TEST(PlanarDirections, AreUnitVectorsAcrossTheAxis) {
   constexpr std::uint32_t kSeed = 7;
   std::printf("seed %u\n", kSeed);
