@@ -7,6 +7,7 @@
 
 #include "galactic/batch_simulator.h"
 #include "galactic/pose.h"
+#include "galactic/ray_caster.h"
 #include "galactic/scene.h"
 #include "galactic/shapes.h"
 #include "galactic/simulation_options.h"
@@ -35,6 +36,33 @@ struct RobotPoses {
   std::span<const BasePlace> bases;
   /// A row of Robot::positionCount() joint positions for each base. Shape: bases * positions.
   std::span<const float> joints;
+};
+
+/// How far a sphere of the robot, or of what it holds, is from what surrounds it.
+struct SphereClearance {
+  /// Meters from surface to surface; negative: how far it has to move to be free.
+  float distance = 0;
+  /// kScene, kObject, or kNothing where nothing is nearer than was asked for.
+  CastEnd nearest = CastEnd::kNothing;
+  /// kObject: index into EnvState::objects; else -1.
+  std::int32_t index = -1;
+  /// The unit vector of the world in which the sphere gets away fastest: how the distance changes
+  /// with the sphere's center. Zero where nothing is near, where the scene is penetrated deeper
+  /// than was asked for, and in touch with it to rounding.
+  Vec3 direction;
+
+  friend bool operator==(const SphereClearance&, const SphereClearance&) = default;
+};
+
+/// Where derivatives of the distances of spheres go: how these change with the base and with the
+/// joints (the transposed Jacobian of the sphere's center, applied to the direction). Both may be
+/// empty when they are not wanted.
+struct ClearanceGradients {
+  /// With the base's x, y and z, meters per meter, and its yaw, meters per radian. Shape:
+  /// poses * spheres * 4.
+  std::span<float> bases{};
+  /// With each joint position, meters per radian or meter. Shape: poses * spheres * positions.
+  std::span<float> joints{};
 };
 
 /// The direction in which a base of this yaw drives forward: a unit vector of the world frame.
@@ -134,6 +162,39 @@ class PlanningScene {
   /// isMotionFree() of many motions, in the same way.
   void areMotionsFree(const RobotPoses& from, const RobotPoses& to, std::span<std::uint8_t> free,
                       std::uint32_t threads = 1) const;
+
+  /// Spheres of the robot and of what it holds: those of Robot::spheres(), then those of the held
+  /// ObjectModel.
+  [[nodiscard]] std::size_t sphereCount() const;
+
+  /// How far each of these spheres is from the static scene and from the objects at rest, whichever
+  /// is nearer (scene before object, lower indices first); valid until the next call. The least of
+  /// them is how far the robot is. It is negative where isFree() says false, and only there, to a
+  /// rounding of 0.1 mm. `base`: finite. `most`, meters, > 0: what is farther is not looked for,
+  /// and the distance is `most`; where the scene is penetrated deeper, or nothing is free so near,
+  /// it is -`most`.
+  ///
+  /// Objects are exact: a sphere against an oriented box. Of the scene, it is the exact distance
+  /// to where queries of the sphere's column grid no longer say free, or say so again: to edges of
+  /// cells, and to ends of spans. The grid itself is off by up to half a cell's diagonal (2.1 cm
+  /// with cells of 3 cm): nowhere more does the distance say too little, nor too much where the
+  /// radius is at least that; smaller spheres may miss what stands between two columns, as isFree()
+  /// does. With `--coverage cell` it is never too much, and up to a whole diagonal too little. What
+  /// the grid does not know counts as scene, as do places where a bake found no room.
+  ///
+  /// Spheres that no controlled joint moves against the base keep their height on the floor. Their
+  /// distance to the scene is the one in the horizontal plane: else the floor, on which the robot
+  /// stands, would be nearest to them everywhere. Spheres that do not count (ignorePenetrating(),
+  /// countFree()) are `most` away.
+  [[nodiscard]] std::span<const SphereClearance> clearances(const BasePlace& base, float most);
+  /// The same of many poses, whatever setJoints() has said. `clearances`: sphereCount() for each
+  /// pose, overwritten, as are the gradients. Uses up to `threads` threads (0: as many as there are
+  /// processors); answers do not depend on that. Refused, before anything is written, where lengths
+  /// differ, a number is not finite or `most` is not above 0. The first question about a scene
+  /// makes what speeds up the search, once for all copies of this: some milliseconds, and 60 kB for
+  /// each radius in an apartment.
+  void clearances(const RobotPoses& poses, float most, std::span<SphereClearance> clearances,
+                  const ClearanceGradients& gradients = {}, std::uint32_t threads = 1) const;
 
   /// Objects of the episode, in the order of EnvState::objects; without distractors the target
   /// alone.

@@ -152,13 +152,7 @@ void PlannerEnv::hold(std::uint32_t object, const BasePlace& base) {
                                           "one",
                                           held_number_));
   }
-  if (!isPlain(base.position) || !isPlain(base.yaw)) {
-    detail::refuseCall(
-        kCall,
-        fmt::format("found a base at ({:g}, {:g}, {:g}) with the yaw {:g}, expected finite "
-                    "numbers of at most {:g}",
-                    base.position.x, base.position.y, base.position.z, base.yaw, kLargestPlain));
-  }
+  checkPlace(kCall, "a base", base);
   const Pose world_from_grip = worldFromRoot(base) * rootFromGrip();
   resting_->remove(object);
   take(object, inverse(world_from_grip) * poses_[object]);
@@ -282,6 +276,14 @@ void checkPositions(const char* call, const char* name, std::span<const float> p
                                          "{:g}",
                                          name, n, positions[n], kLargestPlain));
   }
+}
+
+void checkPlace(const char* call, const char* name, const BasePlace& base) {
+  if (isPlain(base.position) && isPlain(base.yaw)) return;
+  detail::refuseCall(call, fmt::format("found {} at ({:g}, {:g}, {:g}) with the yaw {:g}, expected "
+                                       "finite numbers of at most {:g}",
+                                       name, base.position.x, base.position.y, base.position.z,
+                                       base.yaw, kLargestPlain));
 }
 
 }  // namespace galactic::simulation

@@ -74,6 +74,8 @@ class PlannerEnv {
 
   /// isFree() with other joints, which stay.
   [[nodiscard]] bool isPoseFree(const RobotPose& pose);
+  /// Puts links and spheres to where these joints have them.
+  void assemble(std::span<const float> positions);
   [[nodiscard]] std::optional<float> floorAt(const Vec3& base) const;
 
   [[nodiscard]] BasePlace baseOf(const EnvState& state) const {
@@ -102,6 +104,7 @@ class PlannerEnv {
   [[nodiscard]] bool isReady() const { return is_ready_; }
 
  private:
+  friend class PlannerClearance;
   friend class PlannerMotion;
   /// A resting object that the robot leaves, and which of its spheres do not count against it.
   struct Left {
@@ -112,8 +115,6 @@ class PlannerEnv {
   [[nodiscard]] Obstacles obstacles() const { return {scene(), *resting_}; }
   /// Whether an object's bounds lie within the robot's, over a base at `position`.
   [[nodiscard]] bool isAnyNear(const Vec3& position) const;
-  /// Puts links and spheres to where these joints have them.
-  void assemble(std::span<const float> positions);
   void assembleHeld();
   void take(std::uint32_t object, const Pose& grip_from_object);
   /// What penetrates something as the robot of an env is does not count from now on.
@@ -168,5 +169,8 @@ class PlannerEnv {
 
 /// Joint positions in order; throws, as `call`, for others.
 void checkPositions(const char* call, const char* name, std::span<const float> positions);
+
+/// A place of finite numbers; throws, as `call`, for others.
+void checkPlace(const char* call, const char* name, const BasePlace& base);
 
 }  // namespace galactic::simulation

@@ -1,11 +1,15 @@
 #include "galactic/planning_scene.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "galactic/robot.h"
 #include "simulation/collision/grasp_query.h"
 #include "simulation/collision/resting_box.h"
+#include "simulation/queries/planner_clearance.h"
 #include "simulation/queries/planner_env.h"
 #include "simulation/queries/planner_motion.h"
 #include "simulation/state/plain_numbers.h"
@@ -33,13 +37,24 @@ Vec3 headingOf(float yaw) { return {std::cos(yaw), 0, -std::sin(yaw)}; }
 class PlanningScene::Impl : public simulation::PlannerEnv {
  public:
   Impl(const World& world, const SimulationOptions& options)
-      : PlannerEnv(world, options), motion_(world.robot()) {}
+      : PlannerEnv(world, options), motion_(world.robot()), clearance_(world) {}
 
   [[nodiscard]] bool isMotionFree(const RobotPose& from, const RobotPose& to) {
     const auto is_place = [](const BasePlace& base) {
       return simulation::isPlain(base.position) && simulation::isPlain(base.yaw);
     };
     return is_place(from.base) && is_place(to.base) && motion_.isFree(*this, from, to);
+  }
+
+  [[nodiscard]] std::size_t sphereCount() const { return clearance_.sphereCount(*this); }
+  [[nodiscard]] std::span<const SphereClearance> clearances(const BasePlace& base, float most) {
+    return clearance_.measure(*this, base, most);
+  }
+  void clearancesOf(const RobotPose& pose, float most, std::span<SphereClearance> clearances,
+                    const ClearanceGradients& gradients) {
+    assemble(pose.joints);
+    std::ranges::copy(clearance_.measure(*this, pose.base, most), clearances.begin());
+    clearance_.derive(*this, pose, gradients);
   }
 
   // What calls ask of those before them: they throw where that is missing.
@@ -71,6 +86,7 @@ class PlanningScene::Impl : public simulation::PlannerEnv {
 
  private:
   simulation::PlannerMotion motion_;
+  simulation::PlannerClearance clearance_;
 };
 
 namespace {
@@ -96,18 +112,34 @@ class PoseRows {
   std::size_t positions_;
 };
 
-/// Has copies of a scene, one for each part, answer `ask(copy, n)` for each n.
+/// Calls `ask(copy, n)` for each n below `count` with copies of a scene, one for each part.
 template <class Scene, class Ask>
-void askCopies(const Scene& scene, std::span<std::uint8_t> answers, std::uint32_t threads,
-               const Ask& ask) {
-  const std::size_t parts = (answers.size() + kPosesOfAPart - 1) / kPosesOfAPart;
+void askCopies(const Scene& scene, std::size_t count, std::uint32_t threads, const Ask& ask) {
+  const std::size_t parts = (count + kPosesOfAPart - 1) / kPosesOfAPart;
   detail::forEachPart(detail::threadCount(threads), parts, [&](std::size_t part) {
     Scene copy(scene);
-    const std::size_t end = std::min(answers.size(), (part + 1) * kPosesOfAPart);
-    for (std::size_t n = part * kPosesOfAPart; n < end; ++n) {
-      answers[n] = ask(copy, n) ? 1 : 0;
-    }
+    const std::size_t end = std::min(count, (part + 1) * kPosesOfAPart);
+    for (std::size_t n = part * kPosesOfAPart; n < end; ++n) ask(copy, n);
   });
+}
+
+void checkMost(const char* call, float most) {
+  if (most > 0 && simulation::isPlain(most)) return;
+  detail::refuseCall(call, fmt::format("found most {:g}, expected meters above 0 and at most {:g}",
+                                       most, simulation::kLargestPlain));
+}
+
+/// Of a wanted array of derivatives.
+void checkGradient(const char* call, const char* name, std::span<const float> gradient,
+                   std::size_t expected) {
+  if (!gradient.empty()) detail::checkLength(call, name, gradient.size(), expected);
+}
+
+/// The part of an array that the n-th of `count` poses has; none of none.
+template <class Number>
+std::span<Number> partOf(std::span<Number> all, std::size_t n, std::size_t count) {
+  const std::size_t each = all.size() / count;
+  return all.subspan(n * each, each);
 }
 
 }  // namespace
@@ -187,8 +219,8 @@ void PlanningScene::areFree(const RobotPoses& poses, std::span<std::uint8_t> fre
   impl_->requireUpdated(kCall);
   const PoseRows rows(kCall, "", poses, impl_->world().robot());
   detail::checkLength(kCall, "free", free.size(), poses.bases.size());
-  askCopies(*impl_, free, threads,
-            [&](Impl& scene, std::size_t n) { return scene.isPoseFree(rows[n]); });
+  askCopies(*impl_, free.size(), threads,
+            [&](Impl& scene, std::size_t n) { free[n] = scene.isPoseFree(rows[n]) ? 1 : 0; });
 }
 
 void PlanningScene::areMotionsFree(const RobotPoses& from, const RobotPoses& to,
@@ -199,8 +231,43 @@ void PlanningScene::areMotionsFree(const RobotPoses& from, const RobotPoses& to,
   const PoseRows ends(kCall, "to.", to, impl_->world().robot());
   detail::checkLength(kCall, "to.bases", to.bases.size(), from.bases.size());
   detail::checkLength(kCall, "free", free.size(), from.bases.size());
-  askCopies(*impl_, free, threads,
-            [&](Impl& scene, std::size_t n) { return scene.isMotionFree(begins[n], ends[n]); });
+  askCopies(*impl_, free.size(), threads, [&](Impl& scene, std::size_t n) {
+    free[n] = scene.isMotionFree(begins[n], ends[n]) ? 1 : 0;
+  });
+}
+
+std::size_t PlanningScene::sphereCount() const {
+  impl_->requireUpdated("PlanningScene::sphereCount");
+  return impl_->sphereCount();
+}
+
+std::span<const SphereClearance> PlanningScene::clearances(const BasePlace& base, float most) {
+  constexpr const char* kCall = "PlanningScene::clearances";
+  impl_->requireReady(kCall);
+  simulation::checkPlace(kCall, "base", base);
+  checkMost(kCall, most);
+  return impl_->clearances(base, most);
+}
+
+void PlanningScene::clearances(const RobotPoses& poses, float most,
+                               std::span<SphereClearance> clearances,
+                               const ClearanceGradients& gradients, std::uint32_t threads) const {
+  constexpr const char* kCall = "PlanningScene::clearances";
+  impl_->requireUpdated(kCall);
+  const PoseRows rows(kCall, "", poses, impl_->world().robot());
+  const std::size_t count = poses.bases.size();
+  for (std::size_t n = 0; n < count; ++n) {
+    simulation::checkPlace(kCall, fmt::format("bases[{}]", n).c_str(), poses.bases[n]);
+  }
+  checkMost(kCall, most);
+  detail::checkLength(kCall, "clearances", clearances.size(), count * impl_->sphereCount());
+  checkGradient(kCall, "gradients.bases", gradients.bases, clearances.size() * 4);
+  checkGradient(kCall, "gradients.joints", gradients.joints,
+                clearances.size() * impl_->world().robot().positionCount());
+  askCopies(*impl_, count, threads, [&](Impl& scene, std::size_t n) {
+    scene.clearancesOf(rows[n], most, partOf(clearances, n, count),
+                       {partOf(gradients.bases, n, count), partOf(gradients.joints, n, count)});
+  });
 }
 
 std::size_t PlanningScene::objectCount() const {

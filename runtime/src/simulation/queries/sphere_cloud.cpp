@@ -10,8 +10,10 @@ SphereCloud::SphereCloud(std::span<const Sphere> spheres, std::span<const float>
   ranges_.reserve(radii.size());
   for (std::uint32_t radius = 0; radius < radii.size(); ++radius) {
     const auto first = static_cast<std::uint32_t>(entries_.size());
-    for (const Sphere& sphere : spheres) {
-      if (sphere.sphere.radius_index == radius) entries_.push_back(sphere);
+    for (std::uint32_t n = 0; n < spheres.size(); ++n) {
+      if (spheres[n].sphere.radius_index != radius) continue;
+      entries_.push_back(spheres[n]);
+      numbers_.push_back(n);
     }
     const auto count = static_cast<std::uint32_t>(entries_.size()) - first;
     if (count == 0) continue;
@@ -19,6 +21,7 @@ SphereCloud::SphereCloud(std::span<const Sphere> spheres, std::span<const float>
     while (entries_.size() % kLanes != 0) {
       const Sphere last = entries_.back();
       entries_.push_back(last);
+      numbers_.push_back(numbers_.back());
     }
   }
   in_root_.resize(entries_.size());

@@ -25,6 +25,8 @@ class SphereCloud {
   SphereCloud(std::span<const Sphere> spheres, std::span<const float> radii);
 
   [[nodiscard]] std::size_t paddedCount() const { return entries_.size(); }
+  /// Which of the spheres it was made of an entry of at() is; the padding repeats one.
+  [[nodiscard]] std::uint32_t sphereOf(std::size_t entry) const { return numbers_[entry]; }
   /// root_from_part of all parts.
   void assemble(std::span<const Pose> parts);
   /// The farthest that an assembled sphere reaches from the root's vertical axis, meters.
@@ -36,6 +38,7 @@ class SphereCloud {
  private:
   /// Radius by radius, each padded to whole lanes.
   std::vector<Sphere> entries_;
+  std::vector<std::uint32_t> numbers_;
   std::vector<RadiusRange> ranges_;
   std::vector<Vec3> in_root_;
   std::vector<float> x_, y_, z_;

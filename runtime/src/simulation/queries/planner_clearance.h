@@ -1,0 +1,62 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "column_grid/grid_distance.h"
+#include "galactic/planning_scene.h"
+#include "galactic/pose.h"
+#include "galactic/world.h"
+#include "simulation/queries/planner_env.h"
+
+namespace galactic::simulation {
+
+/// The distances of all grids of a world, made scene by scene when first asked for. Safe to share
+/// between threads.
+class WorldDistances {
+ public:
+  explicit WorldDistances(const World& world);
+
+  /// One per radius of the working set.
+  [[nodiscard]] const std::vector<detail::GridDistance>& of(const Scene& scene);
+
+ private:
+  struct OfScene {
+    std::once_flag once;
+    std::vector<detail::GridDistance> grids;
+  };
+  World world_;
+  std::vector<OfScene> scenes_;
+};
+
+/// How far a robot's spheres, and those of what it holds, are from what surrounds them; see
+/// PlanningScene::clearances(). Copies share what they know of the scenes.
+class PlannerClearance {
+ public:
+  explicit PlannerClearance(const World& world);
+
+  [[nodiscard]] std::size_t sphereCount(const PlannerEnv& env) const;
+
+  /// Of all spheres of the robot as it is put together; valid until the next call. `base`: finite.
+  std::span<const SphereClearance> measure(PlannerEnv& env, const BasePlace& base, float most);
+
+  /// How the last of these change with the base and the joints. `gradients`: of this one pose.
+  void derive(const PlannerEnv& env, const RobotPose& pose,
+              const ClearanceGradients& gradients) const;
+
+ private:
+  std::shared_ptr<WorldDistances> distances_;
+  /// Of each sphere of the robot: the link that carries it, and whether no controlled joint does.
+  std::vector<std::uint32_t> links_;
+  std::vector<bool> keeps_height_;
+
+  // Of the last measure().
+  std::vector<SphereClearance> clearances_;
+  /// World frame.
+  std::vector<Vec3> centers_;
+};
+
+}  // namespace galactic::simulation
