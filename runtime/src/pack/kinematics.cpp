@@ -130,10 +130,10 @@ void applyTransposedJacobian(std::span<const LinkFrame> links, std::span<const f
     const LinkFrame& link = links[static_cast<std::size_t>(n)];
     if (link.type != JointType::kFixed) {
       const Pose& frame_from_here = frame_from_link[static_cast<std::size_t>(n)];
-      // As the joint's frame lies before the joint turns it.
-      const Quat frame_from_joint =
-          frame_from_here.rotation * conjugate(jointPose(link, positions).rotation);
-      const Quat back = conjugate(frame_from_joint);
+      Quat back = conjugate(frame_from_here.rotation);
+      // Those with several values move along axes that they do not turn; an only axis stays as it
+      // is.
+      if (positionCount(link.type) > 1) back = jointPose(link, positions).rotation * back;
       const SeenFromJoint seen{rotate(back, carried.point - frame_from_here.translation),
                                rotate(back, carried.direction)};
       addJointMoves(link, positions.data() + link.position, seen, moves.data() + link.position);

@@ -124,13 +124,14 @@ std::span<const SphereClearance> PlannerClearance::measure(PlannerEnv& env, cons
   nothing.distance = most;
   clearances_.assign(sphereCount(env), nothing);
   centers_.resize(clearances_.size());
+  findNear(env, base, most);
   const auto look = [&](const Ball& ball, std::size_t sphere, Directions directions,
                         const auto& counts) {
     centers_[sphere] = ball.center;
     SphereClearance& nearest = clearances_[sphere];
     takeScene(grids[ball.radius_index].at(ball.center, most, directions), most, nearest);
-    for (std::uint32_t n = 0; n < env.resting().capacity(); ++n) {
-      if (env.resting().isResting(n) && counts(n)) takeBox(env.resting().box(n), n, ball, nearest);
+    for (const std::uint32_t object : near_) {
+      if (counts(object)) takeBox(env.resting().box(object), object, ball, nearest);
     }
   };
   forEachBall(env.robotAt(base), [&](const Ball& ball) {
@@ -151,6 +152,19 @@ std::span<const SphereClearance> PlannerClearance::measure(PlannerEnv& env, cons
   return clearances_;
 }
 
+void PlannerClearance::findNear(const PlannerEnv& env, const BasePlace& base, float most) {
+  near_.clear();
+  const float reach =
+      std::max(env.reach_, env.held_ == nullptr ? 0.0F : env.held_spheres_.reach()) + most;
+  for (std::uint32_t n = 0; n < env.resting().capacity(); ++n) {
+    if (!env.resting().isResting(n)) continue;
+    const RestingBox& box = env.resting().box(n);
+    const Vec3 way = box.center - base.position;
+    const float far = reach + std::sqrt(dot(box.half_extents, box.half_extents));
+    if (way.x * way.x + way.z * way.z < far * far) near_.push_back(n);
+  }
+}
+
 void PlannerClearance::derive(const PlannerEnv& env, const RobotPose& pose,
                               const ClearanceGradients& gradients) const {
   const Robot& robot = env.world().robot();
@@ -166,11 +180,15 @@ void PlannerClearance::derive(const PlannerEnv& env, const RobotPose& pose,
                         gradients.bases.begin() + static_cast<std::ptrdiff_t>(n * kBaseNumbers));
     }
     if (!gradients.joints.empty()) {
+      const std::span<float> moves = gradients.joints.subspan(n * positions, positions);
+      if (along == Vec3{}) {
+        std::ranges::fill(moves, 0.0F);
+        continue;
+      }
       const std::uint32_t link = n < links_.size() ? links_[n] : robot.endEffector()->link;
       applyTransposedJacobian(
           robot.links(), pose.joints, env.links(),
-          {link, root_from_world * centers_[n], rotate(root_from_world.rotation, along)},
-          gradients.joints.subspan(n * positions, positions));
+          {link, root_from_world * centers_[n], rotate(root_from_world.rotation, along)}, moves);
     }
   }
 }

@@ -48,6 +48,9 @@ class PlannerClearance {
               const ClearanceGradients& gradients) const;
 
  private:
+  /// Finds the objects at rest that a sphere can be near, over a base there.
+  void findNear(const PlannerEnv& env, const BasePlace& base, float most);
+
   std::shared_ptr<WorldDistances> distances_;
   /// Of each sphere of the robot: the link that carries it, and whether no controlled joint does.
   std::vector<std::uint32_t> links_;
@@ -57,6 +60,8 @@ class PlannerClearance {
   std::vector<SphereClearance> clearances_;
   /// World frame.
   std::vector<Vec3> centers_;
+  /// Objects, ascending.
+  std::vector<std::uint32_t> near_;
 };
 
 }  // namespace galactic::simulation
