@@ -44,6 +44,7 @@ except ModuleNotFoundError as error:
         name=error.name,
     ) from None
 from galactic.cast_hits import CastHits
+from galactic.clearances import Clearances
 from galactic.demonstration_writer import DemonstrationWriter
 from galactic.demonstrations import Demonstration, Demonstrations
 from galactic.env_states import EnvStates, Poses
@@ -59,6 +60,7 @@ __all__ = [
     "Action",
     "CastEnd",
     "CastHits",
+    "Clearances",
     "Demonstration",
     "DemonstrationWriter",
     "Demonstrations",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from galactic.cast_hits import CastHits
+from galactic.clearances import Clearances
 from galactic.env_states import EnvStates, Poses
 from galactic.episode_table import EpisodeTable
 from galactic.object_boxes import ObjectBoxes
@@ -247,6 +248,9 @@ class PlanningScene:
         *,
         threads: int = 1,
     ) -> NDArray[np.bool_]: ...  # (n,)
+    def clearances(
+        self, bases: ArrayLike, joint_positions: ArrayLike, most: float, *, threads: int = 1
+    ) -> Clearances: ...
     def touches_itself(self, margin: float = 0.0) -> bool: ...
     def touch_themselves(
         self, joint_positions: ArrayLike, margin: float = 0.0

@@ -1,12 +1,13 @@
 """PlanningScene: what it answers is what the simulator then does."""
 
 import copy
+import dataclasses
 import pickle
 
 import numpy as np
 import pytest
 
-from galactic import Error, PlanningScene, ScriptedPolicy, Simulator
+from galactic import CastEnd, Error, PlanningScene, ScriptedPolicy, Simulator
 
 LIFT, FORWARD, ACTIONS = 0, 4, 8
 
@@ -229,6 +230,48 @@ def test_the_links_of_a_whole_batch(played):
         scene.bases_of(played.env_state(0))
 
 
+def test_clearances_are_below_zero_where_a_pose_is_not_free(simulator, poses):
+    scene = PlanningScene(simulator)
+    bases, joints = poses(400)
+    free = scene.are_free(bases, joints)
+    found = scene.clearances(bases, joints, 0.3)
+    spheres = len(found.link)
+    assert spheres == 3 and found.link.tolist() == [0, 3, 4]
+    assert found.distance.shape == found.nearest.shape == found.index.shape == (400, spheres)
+    assert found.direction.shape == (400, spheres, 3)
+    assert found.base_gradient.shape == (400, spheres, 4)
+    assert found.joint_gradient.shape == (400, spheres, joints.shape[1])
+    least = found.distance.min(axis=1)
+    sure = np.abs(least) > 1e-4
+    assert ((least > 0) == free)[sure].all() and sure.sum() > 390 and 50 < free.sum() < 350
+    assert ((found.nearest == CastEnd.OBJECT) == (found.index >= 0)).all()
+    assert (found.distance[found.nearest == CastEnd.NOTHING] == np.float32(0.3)).all()
+    some = (np.abs(found.distance) < 0.299) & (np.abs(found.distance) > 1e-4)
+    assert np.linalg.norm(found.direction[some], axis=1) == pytest.approx(1, abs=1e-4)
+    again = scene.clearances(bases, joints, 0.3, threads=3)
+    for field in dataclasses.fields(found):
+        assert (getattr(again, field.name) == getattr(found, field.name)).all()
+    assert (scene.clearances(bases[7], joints[7], 0.3).distance == found.distance[7:8]).all()
+    assert scene.clearances(np.zeros((0, 4)), joints[0], 1).distance.shape == (0, spheres)
+
+
+def test_clearances_change_as_their_gradients_say(simulator, poses):
+    scene = PlanningScene(simulator)
+    bases, joints = poses(300)
+    found = scene.clearances(bases, joints, 0.3)
+    step = 1e-3
+    for number in (0, 2, 3, 4, 5, 6, 7):
+        shift = step * np.eye(8)[number]
+        after, before = (
+            scene.clearances(bases + way * shift[:4], joints + way * shift[4:], 0.3).distance
+            for way in (1, -1)
+        )
+        gradient = np.concatenate([found.base_gradient, found.joint_gradient], axis=2)[..., number]
+        same = np.abs((after - before) / (2 * step) - gradient) < 0.02
+        # Elsewhere, another thing is nearest.
+        assert same.mean() > 0.95
+
+
 def test_motions_are_free_where_all_of_their_places_are(simulator, poses):
     scene = PlanningScene(simulator)
     bases, joints = poses(6000)
@@ -277,6 +320,13 @@ def test_arrays_that_make_no_sense_are_refused(simulator):
         scene.set_joints(joints[0] + 1j)
     with pytest.raises(ValueError, match="margin"):
         scene.touches_itself(float("nan"))
+    for most in (0, -1, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="most is .*, expected meters above 0"):
+            scene.clearances(bases, joints, most)
+    with pytest.raises(ValueError, match="bases has 2 rows, and joint_positions has 3"):
+        scene.clearances(bases[:2], joints, 1)
+    with pytest.raises(ValueError, match=r"bases\[0\] holds a number that is not finite"):
+        scene.clearances(bases * np.nan, joints, 1)
 
 
 def test_what_makes_no_sense_is_refused(simulator):
