@@ -99,6 +99,19 @@ def test_mppi(world_path):
     assert re.search(r"solved 3, [\d,]+ planned steps a second\n", printed)
 
 
+def test_optimize_motion(world_path):
+    """Bent, all paths are free, and keep farther away where there was too little room."""
+    printed = output_of("optimize_motion.py", world_path)
+    number = r"([+-]?[\d.]+)"
+    verdict = rf"{number}% free, {number} m clear, {number} on average"
+    paths = re.findall(rf"path \d: \d+ waypoints, {verdict}; bent: {verdict}\n", printed)
+    assert len(paths) == 5
+    before, after = np.split(np.array(paths, float), 2, axis=1)
+    assert (before[:, 0] < 100).any() and (after[:, 0] == 100).all()
+    assert (after[:, 1] >= before[:, 1]).all() and (after[:, 1] > 0.02).all()
+    assert (after[:, 2] > before[:, 2] + 0.01).all()
+
+
 def test_ray_casts(world_path, tmp_path):
     """The home is 3 m wide, and the robot, the table and what stands on it can be seen from above."""
     image = pytest.importorskip("PIL.Image")

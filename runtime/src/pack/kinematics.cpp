@@ -1,6 +1,7 @@
 #include "galactic/kinematics.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -84,8 +85,9 @@ void addQuaternionMoves(const SeenFromJoint& seen, const float* q, float* moves)
   const float square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(square > 0)) return;
   const Quat back{-q[0], -q[1], -q[2], q[3]};
-  constexpr Quat kComponents[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-  for (std::size_t n = 0; n < 4; ++n) {
+  constexpr std::array<Quat, 4> kComponents{
+      {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+  for (std::size_t n = 0; n < kComponents.size(); ++n) {
     const Quat turn = kComponents[n] * back;
     moves[n] += seen.aboutAxis(Vec3{turn.x, turn.y, turn.z} * (2 / square));
   }
