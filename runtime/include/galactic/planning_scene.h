@@ -75,8 +75,8 @@ struct ClearanceGradients {
 ///
 /// Take over an env with update(), choose joint positions with setJoints(), then ask about places
 /// of the base. Every answer depends on these and on the arguments only. Memory is allocated by
-/// the constructor, update(), hold(), copies and questions about many poses. Not safe to share
-/// between threads; make a copy for each, or ask about many poses at once.
+/// the constructor, update(), hold(), copies, the first clearances() and questions about many
+/// poses. Not safe to share between threads; make a copy for each, or ask about many poses at once.
 ///
 /// Calls that do not keep to what is said of them throw ErrorException with kInvalidInput and
 /// change nothing: questions about an env before update(), those about links, hand or places before

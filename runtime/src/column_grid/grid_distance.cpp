@@ -21,7 +21,7 @@ constexpr Span kNoHeights{std::numeric_limits<float>::infinity(),
 
 std::uint32_t blocksOf(std::uint32_t columns) { return (columns + kBlockCells - 1) / kBlockCells; }
 
-float lengthOf(const Span& span) { return span.hi - span.lo; }
+float heightOf(const Span& span) { return span.hi - span.lo; }
 
 std::vector<Span> intersection(const std::vector<Span>& a, const std::vector<Span>& b) {
   std::vector<Span> both;
@@ -226,7 +226,7 @@ GridDistance::Block GridDistance::commonSpans(std::uint32_t block_i, std::uint32
       common = intersection(common, spans);
     }
   }
-  std::ranges::stable_sort(common, std::greater<>(), lengthOf);
+  std::ranges::stable_sort(common, std::greater<>(), heightOf);
   common.resize(std::tuple_size_v<Block>, kNoHeights);
   return {common[0], common[1]};
 }
