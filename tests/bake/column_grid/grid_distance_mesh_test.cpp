@@ -29,6 +29,8 @@ struct Errors {
   double most = 0;
   int near = 0;
   int asked = 0;
+  /// Distances whose sign is not what a query says, of all places.
+  int contradicting = 0;
 };
 
 /// How far a place is from where a grid ends.
@@ -47,7 +49,8 @@ Errors errorsOf(const TriangleMesh& mesh, const test::DistanceOracle& oracle, fl
   const GridFrame frame = makeGridFrame(mesh.bounds, radius, kSpacing).value();
   // All that is free, in rooms or not: where the grid says no, there is a triangle.
   const EncodedGrid grid = encodeGrid(exactColumns(mesh, frame, coverage, 2).columns);
-  const detail::GridDistance distances(test::viewOf(grid));
+  const ColumnGrid view = test::viewOf(grid);
+  const detail::GridDistance distances(view);
   std::mt19937 random(kSeed);
   const auto between = [&](float lo, float hi) {
     return std::uniform_real_distribution<float>(lo, hi)(random);
@@ -57,9 +60,15 @@ Errors errorsOf(const TriangleMesh& mesh, const test::DistanceOracle& oracle, fl
     const Vec3 place{between(mesh.bounds.min.x, mesh.bounds.max.x),
                      between(mesh.bounds.min.y, mesh.bounds.max.y),
                      between(mesh.bounds.min.z, mesh.bounds.max.z)};
-    const double found =
-        static_cast<double>(distances.at(place, kMost, detail::Directions::kAll).distance);
-    if (found <= 0) continue;
+    const auto ask = [&](detail::Directions directions) {
+      return distances.at(place, kMost, directions).distance;
+    };
+    const bool is_free = view.clearance(place) == Clearance::kFree;
+    for (const auto directions : {detail::Directions::kAll, detail::Directions::kLevel}) {
+      errors.contradicting += std::signbit(ask(directions)) == is_free ? 1 : 0;
+    }
+    if (!is_free) continue;
+    const auto found = static_cast<double>(ask(detail::Directions::kAll));
     const double to_mesh = oracle.distance(test::toPoint(place)) - static_cast<double>(radius);
     const double real = std::min({to_mesh, toEdge(frame, place), static_cast<double>(kMost)});
     errors.least = std::min(errors.least, found - real);
@@ -84,6 +93,7 @@ void expectErrorsWithinCells(const TriangleMesh& mesh) {
     EXPECT_GT(cell.least, -kDiagonal - kTolerance) << radius;
     EXPECT_LT(cell.most, kTolerance) << radius;
     for (const Errors& errors : {column, cell}) {
+      EXPECT_EQ(errors.contradicting, 0);
       EXPECT_GT(errors.near, errors.asked / 10);
       EXPECT_LT(errors.near, errors.asked * 9 / 10);
     }
