@@ -52,10 +52,32 @@ bool makesOnePack(const Job& job) {
          std::holds_alternative<EpisodeGenerationJob>(job);
 }
 
+/// What a JSON file is that is given as a mesh, and what to give instead.
+std::string whatJsonIs(std::string_view file) {
+  constexpr std::string_view kSceneSuffix = ".scene_instance.json";
+  if (file.ends_with(kSceneSuffix)) {
+    return fmt::format("is a scene of a dataset; give the dataset's NAME{}, with `scenes` {}",
+                       kDatasetSuffix, file.substr(0, file.size() - kSceneSuffix.size()));
+  }
+  if (file.ends_with(".stage_config.json")) {
+    return fmt::format(
+        "is about a stage of a dataset; give the mesh that it names as its render_asset, with the "
+        "axis that it gives as `up`, or the dataset's NAME{} for scenes with their furniture",
+        kDatasetSuffix);
+  }
+  if (file.ends_with(".object_config.json")) {
+    return fmt::format(
+        "is about an object of a dataset; give the mesh that it names as its render_asset, with "
+        "`as` object and the axis that it gives as `up`, or the dataset's NAME{} for all objects "
+        "that its scenes move",
+        kDatasetSuffix);
+  }
+  return "is no mesh but JSON; add `as` episodes if it holds published episodes";
+}
+
 /// Refuses an input of which no such job can be made, and says what its user may have meant; others
 /// are left to their reader, which knows best what is wrong.
 Result<void> checkInput(const fs::path& input, const Job& job) {
-  constexpr std::string_view kSceneSuffix = ".scene_instance.json";
   const std::string file = input.filename().string();
   if (isFolder(input)) {
     if (!std::holds_alternative<SceneJob>(job)) return {};
@@ -71,13 +93,7 @@ Result<void> checkInput(const fs::path& input, const Job& job) {
   const bool is_of_meshes =
       std::holds_alternative<SceneJob>(job) || std::holds_alternative<ObjectJob>(job);
   if (!is_of_meshes || !file.ends_with(".json") || !isThere(input)) return {};
-  if (!file.ends_with(kSceneSuffix)) {
-    return fail(ErrorCode::kUnsupported, input.string(),
-                "is no mesh but JSON; add `as` episodes if it holds published episodes");
-  }
-  return fail(ErrorCode::kUnsupported, input.string(),
-              fmt::format("is a scene of a dataset; give the dataset's NAME{}, with `scenes` {}",
-                          kDatasetSuffix, file.substr(0, file.size() - kSceneSuffix.size())));
+  return fail(ErrorCode::kUnsupported, input.string(), whatJsonIs(file));
 }
 
 /// Packs are inputs of episodes and worlds alone.

@@ -231,6 +231,10 @@ void printWorldTable(const WorldPlan& plan, const BuildOutcome& outcome, Verbosi
     fmt::print("{} left out:\n", counted(plan.left_out.size(), "scene"));
     print(reasonsOf(plan.left_out));
   }
+  if (plan.movable_objects > 0) {
+    fmt::print("{} of the scenes: episodes alone place them\n",
+               counted(plan.movable_objects, "movable object"));
+  }
   const Sentences warnings = warningsOf(outcome);
   if (!warnings.empty() || !plan.warnings.empty()) fmt::print("warnings:\n");
   for (const std::string& warning : plan.warnings) {

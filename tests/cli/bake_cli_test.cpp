@@ -269,6 +269,8 @@ TEST_F(BakeCli, TriesItsPackBeforeItBakes) {
 
 TEST_F(BakeCli, SaysHowFoldersAndJsonAreBaked) {
   write("flats/flat.scene_instance.json", "{}");
+  write("flats/flat.stage_config.json", "{}");
+  write("flats/mug.object_config.json", "{}");
   write("flats/episodes.json", "{}");
   const std::vector<Refusal> refusals{
       {{"flats"},
@@ -279,6 +281,16 @@ TEST_F(BakeCli, SaysHowFoldersAndJsonAreBaked) {
        5,
        "flats/flat.scene_instance.json: is a scene of a dataset; give the dataset's "
        "NAME.scene_dataset_config.json, with --scenes flat"},
+      {{"flats/flat.stage_config.json"},
+       5,
+       "flats/flat.stage_config.json: is about a stage of a dataset; give the mesh that it names "
+       "as its render_asset, with the axis that it gives as --up, or the dataset's "
+       "NAME.scene_dataset_config.json for scenes with their furniture"},
+      {{"flats/mug.object_config.json", "--as", "object"},
+       5,
+       "flats/mug.object_config.json: is about an object of a dataset; give the mesh that it names "
+       "as its render_asset, with --as object and the axis that it gives as --up, or the "
+       "dataset's NAME.scene_dataset_config.json for all objects that its scenes move"},
       {{"flats/episodes.json", "--as", "object"},
        5,
        "flats/episodes.json: is no mesh but JSON; add --as episodes if it holds published "

@@ -243,6 +243,7 @@ TEST_F(PlanCli, SaysWhichMovableObjectsHaveOneName) {
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   EXPECT_THAT(baked.out, HasSubstr("object \"box\": scenes place several of this name, of other "
                                    "templates or of other scales"));
+  EXPECT_THAT(baked.out, HasSubstr("1 movable object of the scenes: episodes alone place them\n"));
   EXPECT_EQ(packsIn("out").count("home/objects/box.pack"), 1U);
 }
 

@@ -113,7 +113,7 @@ void addObjects(const SceneSurvey& survey, const DatasetJobs& dataset, PackList&
     job.import.transform = object.object_from_mesh;
     job.shape.spheres.radii = dataset.scene.grids.radii;
     job.draw = dataset.scene.draw;
-    packs.add(name, std::move(job), object.mesh);
+    packs.addMovable(name, std::move(job));
   }
 }
 

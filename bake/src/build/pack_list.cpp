@@ -60,6 +60,12 @@ PackJob& PackList::add(const std::string& name, Job job, const fs::path& input) 
   return plan_.assets.back();
 }
 
+void PackList::addMovable(const std::string& name, ObjectJob job) {
+  const fs::path mesh = job.inputs.front();
+  add(name, std::move(job), mesh);
+  ++plan_.movable_objects;
+}
+
 void PackList::setEpisodes(EpisodeImportJob job) {
   const fs::path folder = folderOf(job.input);
   plan_.episodes = PackJob{.name = "episodes.pack",

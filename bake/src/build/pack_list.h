@@ -19,6 +19,8 @@ class PackList {
   void setEpisodes(EpisodeImportJob job);
   /// In the packs of scenes, objects and robot.
   void setEpisodes(EpisodeGenerationJob job);
+  /// The same of an object that scenes of a dataset move.
+  void addMovable(const std::string& name, ObjectJob job);
   void setTask(std::vector<OptionText> task);
   void leaveOut(LeftOut scene) { plan_.left_out.push_back(std::move(scene)); }
   void addBroken(BrokenScene scene) { plan_.broken.push_back(std::move(scene)); }

@@ -59,6 +59,8 @@ struct WorldPlan {
   /// Made in the assets' packs, or imported.
   std::optional<PackJob> episodes;
   std::vector<LeftOut> left_out;
+  /// How many of the assets are objects that scenes of datasets move: they are in no scene.
+  std::size_t movable_objects = 0;
   /// One sentence each.
   std::vector<std::string> warnings;
 };

@@ -297,6 +297,15 @@ void HabitatReader::readEpisode(const JsonNode& node) {
       node, {"scene_id", "start_position", "start_rotation", "ao_states", "rigid_objs", "targets",
              "episode_id", "scene_dataset_config", "additional_obj_config_paths", "info", "markers",
              "target_receptacles", "goal_receptacles", "name_to_receptacle", "object_labels"});
+  const auto has = [&node](const char* key) {
+    return JsonReader::member(node, key).json != nullptr;
+  };
+  if (has("goals") && !has("rigid_objs")) {
+    return json_.error(node.place,
+                       "has goals and no rigid_objs, as Habitat's navigation (PointNav) has; only "
+                       "rearrangement datasets are imported: to navigate, run the task of "
+                       "examples/python/point_nav.py in a world of generated episodes");
+  }
   Episode episode;
   episode.scene = readScene(json_.require(node, "scene_id"));
   readStart(node, episode);

@@ -134,6 +134,20 @@ TEST_P(HabitatFaults, AreRefusedWithTheirPlace) {
 INSTANTIATE_TEST_SUITE_P(All, HabitatFaults, testing::ValuesIn(faults()),
                          [](const auto& fault) { return std::string(fault.param.name); });
 
+TEST(HabitatFaults, SayWhatADatasetOfNavigationIs) {
+  const ScratchFolder folder;
+  const auto set = bake::readEpisodeFile(folder.write("nav.json", R"({"episodes": [
+    {"episode_id": "0", "scene_id": "mp3d/a/a.glb", "start_position": [0, 0.1, 0],
+     "start_rotation": [0, 0, 0, 1], "info": {"geodesic_distance": 3},
+     "goals": [{"position": [1, 0.1, 1], "radius": null}], "shortest_paths": null}]})"));
+  ASSERT_FALSE(set.has_value());
+  EXPECT_THAT(set.error().where, testing::EndsWith("nav.json: episodes[0]"));
+  EXPECT_EQ(set.error().message,
+            "has goals and no rigid_objs, as Habitat's navigation (PointNav) has; only "
+            "rearrangement datasets are imported: to navigate, run the task of "
+            "examples/python/point_nav.py in a world of generated episodes");
+}
+
 TEST(HabitatFaults, KeepNothingOfAFileThatIsNeither) {
   const ScratchFolder folder;
   for (const char* text : {"[]", "{}", "3", "{\"episodeSet\": {}, \"episodes\": []}"}) {
