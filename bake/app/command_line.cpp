@@ -32,6 +32,7 @@ constexpr const char* kFooter =
     "  galactic-bake objects/ --as object -o objects.pack\n"
     "  galactic-bake fetch.urdf --as robot --recipe fetch.toml\n"
     "  galactic-bake scene.pack objects.pack fetch.pack --as episodes -o episodes.pack\n"
+    "  galactic-bake rearrange.json.gz scene.pack objects.pack fetch.pack -o episodes.pack\n"
     "  galactic-bake scene.pack objects.pack fetch.pack episodes.pack --as world -o world.pack\n"
     "  galactic-bake replicaCAD.scene_dataset_config.json -o replica.pack\n"
     "  galactic-bake world.toml -o world.pack";
@@ -235,13 +236,29 @@ class CommandLine {
     return {};
   }
 
+  static bool endsWithOneOf(const std::filesystem::path& path,
+                            std::initializer_list<std::string_view> endings) {
+    const std::string file = path.filename().string();
+    return std::any_of(endings.begin(), endings.end(),
+                       [&file](std::string_view ending) { return file.ends_with(ending); });
+  }
+
+  static bool isPack(const std::filesystem::path& path) { return endsWithOneOf(path, {".pack"}); }
+
+  /// Whether each input ends in one of them, but for packs beside others.
+  static bool allButPacksEndWithOneOf(const std::vector<std::filesystem::path>& inputs,
+                                      std::initializer_list<std::string_view> endings) {
+    return !std::ranges::all_of(inputs, isPack) &&
+           std::ranges::all_of(inputs, [endings](const std::filesystem::path& path) {
+             return isPack(path) || endsWithOneOf(path, endings);
+           });
+  }
+
   /// Whether each input ends in one of them.
   static bool allEndWithOneOf(const std::vector<std::filesystem::path>& inputs,
                               std::initializer_list<std::string_view> endings) {
     return std::ranges::all_of(inputs, [endings](const std::filesystem::path& path) {
-      const std::string file = path.filename().string();
-      return std::any_of(endings.begin(), endings.end(),
-                         [&file](std::string_view ending) { return file.ends_with(ending); });
+      return endsWithOneOf(path, endings);
     });
   }
 
@@ -250,7 +267,9 @@ class CommandLine {
     AssetKind kind = AssetKind::kScene;
     if (allEndWithOneOf(inputs, {".urdf", ".xml", ".mjcf"})) kind = AssetKind::kRobot;
     // Nothing but episodes comes compressed.
-    if (allEndWithOneOf(inputs, {kEpisodeSetSuffix, ".json.gz"})) kind = AssetKind::kEpisodes;
+    if (allButPacksEndWithOneOf(inputs, {kEpisodeSetSuffix, ".json.gz"})) {
+      kind = AssetKind::kEpisodes;
+    }
     if (allEndWithOneOf(inputs, {kDatasetSuffix})) kind = AssetKind::kDataset;
     if (allEndWithOneOf(inputs, {kRecipeSuffix})) kind = AssetKind::kWorld;
     const auto as = std::ranges::find(given_, "as", &GivenOption::name);
@@ -276,7 +295,7 @@ class CommandLine {
       case AssetKind::kDataset:
         return DatasetCommand{};
       case AssetKind::kEpisodes:
-        if (allEndWithOneOf(inputs, {".json", ".json.gz"})) return Job(EpisodeImportJob{});
+        if (allButPacksEndWithOneOf(inputs, {".json", ".json.gz"})) return Job(EpisodeImportJob{});
         return Job(EpisodeGenerationJob{});
       case AssetKind::kWorld:
         break;
@@ -309,6 +328,13 @@ class CommandLine {
     }
     if (given.isGiven("verbose") && given.isGiven("quiet")) {
       return given.refuse("verbose", "does not go with `quiet`; leave one of them out");
+    }
+    const Job* job = std::get_if<Job>(&command.what);
+    const bool is_import = job != nullptr && std::holds_alternative<EpisodeImportJob>(*job);
+    if (is_import && given.isGiven("seed") && std::ranges::none_of(command.inputs, isPack)) {
+      return given.refuse("seed",
+                          "is for starts that are drawn in packs; give those of the scenes, the "
+                          "objects and the robot, too, or leave it out");
     }
     return command.prints_recipe ? checkDraft(command, given) : Result<void>{};
   }

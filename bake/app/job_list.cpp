@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <functional>
+#include <iterator>
 #include <system_error>
 
 #include "command.h"
@@ -33,6 +36,8 @@ fs::path packName(const Job& job, const fs::path& input) {
   return folder.has_filename() ? folder.filename() : "objects";
 }
 
+bool isPack(const fs::path& input) { return input.extension() == ".pack"; }
+
 /// Gives the job these inputs: one, or all that go into one pack.
 void setInputs(Job& job, const std::vector<fs::path>& inputs) {
   struct Set {
@@ -42,7 +47,10 @@ void setInputs(Job& job, const std::vector<fs::path>& inputs) {
     void operator()(WorldJob& one) const { one.packs = inputs; }
     void operator()(SceneJob& one) const { one.input = inputs.front(); }
     void operator()(RobotJob& one) const { one.input = inputs.front(); }
-    void operator()(EpisodeImportJob& one) const { one.input = inputs.front(); }
+    void operator()(EpisodeImportJob& one) const {
+      one.input = inputs.front();
+      one.packs.assign(std::next(inputs.begin()), inputs.end());
+    }
   };
   std::visit(Set{inputs}, job);
 }
@@ -85,7 +93,9 @@ Result<void> checkInput(const fs::path& input, const Job& job) {
                 "is a folder; give a mesh in it, or add `as` object to bake the meshes in it as "
                 "objects, or `as` dataset to bake them as scans");
   }
-  if (file.ends_with(".pack")) {
+  if (isPack(input)) {
+    // Published episodes get their starts in them.
+    if (std::holds_alternative<EpisodeImportJob>(job)) return {};
     return fail(ErrorCode::kInvalidInput, input.string(),
                 "is a pack already; add `as` episodes to generate episodes in packs, or `as` world "
                 "to link them");
@@ -108,20 +118,29 @@ Result<void> checkInputs(const BakeCommand& command, const Job& job) {
 std::vector<PackJob> packsOfFiles(const BakeCommand& command, const Job& job) {
   std::vector<PackJob> packs;
   const fs::path& out = command.run.out;
-  const bool is_one = makesOnePack(job) || command.inputs.size() == 1;
-  const auto add = [&](const fs::path& first, const std::vector<fs::path>& inputs) {
-    fs::path name = packName(job, first);
+  std::vector<fs::path> inputs = command.inputs;
+  // Packs beside published episodes are for all of these.
+  std::vector<fs::path> shared;
+  if (std::holds_alternative<EpisodeImportJob>(job)) {
+    const auto first = std::stable_partition(inputs.begin(), inputs.end(), std::not_fn(isPack));
+    shared.assign(first, inputs.end());
+    inputs.erase(first, inputs.end());
+  }
+  const bool is_one = makesOnePack(job) || inputs.size() == 1;
+  const auto add = [&](std::vector<fs::path> of_one) {
+    fs::path name = packName(job, of_one.front());
     name += ".pack";
     const bool is_folder = !is_one || namesFolder(out);
     PackJob pack{.name = name.string(), .job = job, .output = name};
     if (!out.empty()) pack.output = is_folder ? out / name : out;
-    setInputs(pack.job, inputs);
+    of_one.insert(of_one.end(), shared.begin(), shared.end());
+    setInputs(pack.job, of_one);
     packs.push_back(std::move(pack));
   };
   if (makesOnePack(job)) {
-    add(command.inputs.front(), command.inputs);
+    add(inputs);
   } else {
-    for (const fs::path& input : command.inputs) add(input, {input});
+    for (const fs::path& input : inputs) add({input});
   }
   return packs;
 }

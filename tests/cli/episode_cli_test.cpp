@@ -11,6 +11,7 @@
 #include "support/episode_set_text.h"
 #include "support/gzip_text.h"
 #include "support/habitat_text.h"
+#include "support/mesh_files.h"
 
 namespace galactic::episode_cli_test {
 namespace {
@@ -138,7 +139,11 @@ TEST_F(EpisodeCli, ImportsDatasetsOfHabitat) {
   const ProgramRun packed = run({"rearrange.json.gz"});
   EXPECT_EQ(packed.exit_code, 0) << packed.err;
   EXPECT_THAT(packed.out, AllOf(HasSubstr("rearrange: 2 episodes; 2 scenes, 2 objects"),
-                                HasSubstr("warning: 1 of 2 episodes have several targets")));
+                                HasSubstr("warning: 1 of 2 episodes have several targets"),
+                                HasSubstr("warning: 1 of 2 episodes give no start and cannot be "
+                                          "played, as the robot stands at the origin: give the "
+                                          "packs of their scenes, of their objects and of the "
+                                          "robot, too, and starts are drawn")));
   EXPECT_EQ(namesIn("rearrange.pack").episodes, 2U);
   write("plain.json", test::kSmallHabitatSet);
   const ProgramRun plain = run({"plain.json", "--as", "episodes", "--targets", "each",
@@ -174,6 +179,39 @@ TEST_F(EpisodeCli, TakesTheCentersOfHabitatsObjectsFromTheirPack) {
   EXPECT_FLOAT_EQ(origin.z, -0.3F);
   EXPECT_THAT(namesIn("plain.pack").sources, ElementsAre("plain.json", "objects.pack"));
 
+  // One pack for each object, as recipes make them; and a world that lists these.
+  for (const char* object : {"mug", "003_cracker_box"}) {
+    const std::string mesh = std::string(object) + ".obj";
+    ASSERT_EQ(run({mesh, "--as", "object", "--up", "y", "-q"}).exit_code, 0);
+  }
+  write("room.obj", test::objFile(test::unevenBox()));
+  ASSERT_EQ(run({"room.obj", "-q"}).exit_code, 0);
+  ASSERT_EQ(
+      run({"room.pack", "mug.pack", "003_cracker_box.pack", "--as", "world", "-o", "two.pack"})
+          .exit_code,
+      0);
+  const std::vector<std::vector<std::string>> ways{
+      {"--object-pack", "mug.pack", "--object-pack", "003_cracker_box.pack"},
+      {"--object-pack", "two.pack"}};
+  for (const std::vector<std::string>& way : ways) {
+    std::vector<std::string> words{"plain.json", "--as", "episodes", "-o", "again.pack"};
+    words.insert(words.end(), way.begin(), way.end());
+    const ProgramRun again = run(words);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    const auto other_pack = PackFile::open(path("again.pack"));
+    ASSERT_TRUE(other_pack.has_value());
+    const auto other = EpisodeSet::from(*other_pack);
+    ASSERT_TRUE(other.has_value());
+    EXPECT_EQ(other->placements(other->episodes()[0])[0].pose.translation, origin);
+    EXPECT_THAT(namesIn("again.pack").sources,
+                testing::IsSupersetOf({"plain.json", "mug.pack", "003_cracker_box.pack"}));
+  }
+  const ProgramRun twice = run({"plain.json", "--as", "episodes", "--object-pack", "objects.pack",
+                                "--object-pack", "mug.pack"});
+  EXPECT_EQ(twice.exit_code, 3);
+  EXPECT_THAT(twice.err, HasSubstr("mug.pack: holds the object mug, as another of the object "
+                                   "packs does; give one of them"));
+
   EXPECT_EQ(run({"plain.json", "--as", "episodes", "--object-pack", "plain.pack"}).exit_code, 3);
   EXPECT_EQ(run({"plain.json", "--as", "episodes", "--object-pack", "none.pack"}).exit_code, 2);
 }
@@ -202,7 +240,10 @@ TEST_F(EpisodeCli, ExplainsEveryRefusal) {
       {{set, "--scene-name", "a=b", "--scene-name", "a=c"}, 1, "names a twice"},
       {{set, "--object-up", "w"}, 1, "--object-up: is \"w\", expected one of x, y, z"},
       {{set, "--count", "5"}, 1, "--count: does not go with --as episodes of published episodes"},
-      {{set, "--seed", "5"}, 1, "--seed: does not go with --as episodes of published episodes"},
+      {{set, "--seed", "5"},
+       1,
+       "--seed: is for starts that are drawn in packs; give those of the scenes, the objects and "
+       "the robot, too, or leave it out"},
       {{set, "--radii", "0.05"},
        1,
        "--radii: does not go with --as episodes of published episodes; leave it out"},

@@ -1,4 +1,5 @@
 // From the sample's sources to a world with generated episodes.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -144,6 +145,65 @@ TEST_F(GenerationCli, DrawsEpisodesThatMakeAWorldWithTheirPacks) {
   EXPECT_EQ(impossible.exit_code, 3);
   EXPECT_THAT(impossible.err, HasSubstr("no flat surface between 90 and 91 m"));
   EXPECT_FALSE(has("none.pack"));
+}
+
+TEST_F(GenerationCli, DrawsTheStartsThatEpisodesOfHabitatLack) {
+  bakePacks();
+  // Over the floor, where they are in nobody's way.
+  const auto at = [](double x) {
+    return fmt::format("[[1,0,0,{}],[0,1,0,2.2],[0,0,1,0],[0,0,0,1]]", x);
+  };
+  const std::string episode = fmt::format(
+      R"({{"scene_id": "apartment", "start_position": [0, 0, 0], "start_rotation": [0, 0, 0, 1],
+          "rigid_objs": [["mug", {}], ["book", {}]], "targets": {{"mug_:0000": {}}}}})",
+      at(0), at(1), at(2));
+  write("tidy.json", fmt::format(R"({{"episodes": [{0}, {0}, {0}]}})", episode));
+  const std::vector<std::string> packs{"apartment.pack", "objects.pack", "porter.pack"};
+  const auto import = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"tidy.json", "--as", "episodes"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  ASSERT_EQ(import({"-o", "bare.pack"}).exit_code, 0);
+  const ProgramRun drawn =
+      import({"apartment.pack", "porter.pack", "objects.pack", "-o", "drawn.pack"});
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_THAT(drawn.out, testing::Not(HasSubstr("no start")));
+  const auto starts = [&](const std::string& name) {
+    std::vector<Vec3> all;
+    const auto pack = PackFile::open(path(name));
+    EXPECT_TRUE(pack.has_value());
+    if (!pack) return all;
+    const auto set = EpisodeSet::from(*pack);
+    for (const Episode& one : set->episodes()) all.push_back(one.base_position);
+    return all;
+  };
+  EXPECT_THAT(starts("bare.pack"), testing::Each(Vec3{}));
+  EXPECT_THAT(starts("drawn.pack"), testing::AllOf(SizeIs(3), testing::Each(testing::Ne(Vec3{}))));
+  const auto link = [&](const std::vector<std::string>& more, const std::string& to) {
+    std::vector<std::string> words = packs;
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"--as", "world", "-o", to});
+    return run(words);
+  };
+  ASSERT_EQ(link({"drawn.pack"}, "home.pack").exit_code, 0);
+  const auto world = World::open(path("home.pack"));
+  ASSERT_TRUE(world.has_value()) << world.error().text();
+  EXPECT_EQ(world->episodes().robotName(), "porter");
+
+  // Other seeds give other starts, the same packs in a world the same ones.
+  ASSERT_EQ(link({}, "parts.pack").exit_code, 0);
+  ASSERT_EQ(import({"parts.pack", "--seed", "1", "-o", "same.pack"}).exit_code, 0);
+  EXPECT_EQ(starts("same.pack"), starts("drawn.pack"));
+  ASSERT_EQ(import({"parts.pack", "--seed", "2", "-o", "other.pack"}).exit_code, 0);
+  EXPECT_NE(starts("other.pack"), starts("drawn.pack"));
+  // The objects of `object-pack` need not be given again.
+  const ProgramRun centered = import(
+      {"apartment.pack", "porter.pack", "--object-pack", "objects.pack", "-o", "centered.pack"});
+  EXPECT_EQ(centered.exit_code, 0) << centered.err;
+  const ProgramRun lacking = import({"apartment.pack", "porter.pack", "-o", "none.pack"});
+  EXPECT_EQ(lacking.exit_code, 3);
+  EXPECT_THAT(lacking.err, HasSubstr("found 1 scene, 0 objects and 1 robot"));
 }
 
 TEST_F(GenerationCli, GoesOnWhereItWasKilled) {

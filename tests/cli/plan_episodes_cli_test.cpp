@@ -136,6 +136,45 @@ TEST_F(PlanEpisodes, AreCountedByADryRunAsByABake) {
   EXPECT_EQ(packsThatAre("baked"), planned);
 }
 
+TEST_F(PlanEpisodes, GetStartsWhereHabitatsHaveNone) {
+  const std::string at = "[[1,0,0,0],[0,1,0,2.2],[0,0,1,0],[0,0,0,1]]";
+  write("tidy.json", fmt::format(R"({{"episodes": [{{"scene_id": "c",
+      "start_position": [0, 0, 0], "start_rotation": [0, 0, 0, 1],
+      "rigid_objs": [["mug", {0}]], "targets": {{"mug_:0000": {0}}}}}]}})",
+                                 at));
+  std::string recipe =
+      test::quickRecipe("dataset = \"data/home.scene_dataset_config.json\"\nscenes = [\"c\"]",
+                        "files = \"tidy.json\"");
+  const std::string drawing = "objects = 2\n";
+  recipe.erase(recipe.find(drawing), drawing.size());
+  write("flat.toml", recipe);
+  const auto bake = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"flat.toml", "--data", sampleFile(""), "--report",
+                                   "report.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  ASSERT_EQ(bake({"--dry-run"}).exit_code, 0) << "the packs of the world are not missing";
+  const ProgramRun baked = bake({});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_THAT(baked.out, testing::Not(HasSubstr("no start")));
+  const auto startOf = [&] {
+    const auto world = World::open(path("flat.pack"));
+    EXPECT_TRUE(world.has_value()) << world.error().text();
+    return world ? world->episodes().episodes().front().base_position : Vec3{};
+  };
+  const Vec3 start = startOf();
+  EXPECT_NE(start, (Vec3{}));
+  const ProgramRun played =
+      runProgram(builtProgram("galactic-run"), path(""), {"flat.pack", "--steps", "2"});
+  EXPECT_EQ(played.exit_code, 0) << played.err;
+  ASSERT_EQ(bake({}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), testing::IsEmpty());
+  ASSERT_EQ(bake({"--seed", "5"}).exit_code, 0);
+  EXPECT_THAT(packsThatAre("baked"), ElementsAre("episodes.pack"));
+  EXPECT_NE(startOf(), start);
+}
+
 TEST_F(PlanEpisodes, SayWhetherTheyCanBeSolved) {
   const auto table =
       AllOf(HasSubstr("episodes.pack:\n"), HasSubstr(": 6 episodes; "),

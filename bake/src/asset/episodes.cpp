@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
+#include <map>
 #include <memory>
 #include <set>
 #include <span>
@@ -15,6 +17,7 @@
 #include "galactic/bake/packs.h"
 #include "galactic/bake/read_files.h"
 #include "galactic/pack.h"
+#include "galactic/pack_reference.h"
 #include "galactic/scene.h"
 #include "support/files/journal.h"
 #include "support/try.h"
@@ -130,31 +133,109 @@ Result<BakedPack> makeEpisodes(const EpisodeGenerationJob& job, const EpisodeInp
                 job, std::move(files), context);
 }
 
-/// The options of an import, with what stands in other files.
-Result<EpisodeImportOptions> importOptions(const EpisodeImportJob& job) {
-  EpisodeImportOptions options = job.import;
-  if (!job.only.empty()) {
-    ASSIGN_OR_RETURN(auto only, readEpisodeList(job.only));
-    options.only = std::move(only);
+/// The packs in `inputs` and, of the worlds among them, the packs of these kinds that they list.
+Result<OpenPacks> openListed(const std::vector<std::filesystem::path>& inputs,
+                             std::initializer_list<PackKind> kinds, ReadLog& log) {
+  ASSIGN_OR_RETURN(auto given, openPacks(inputs));
+  OpenPacks opened;
+  opened.files = std::move(given.files);
+  for (PackFile& pack : given.packs) {
+    if (pack.kind() != PackKind::kWorld) {
+      opened.packs.push_back(std::move(pack));
+      continue;
+    }
+    ASSIGN_OR_RETURN(const auto references, packReferences(pack));
+    for (const PackReference& reference : references) {
+      if (std::ranges::find(kinds, reference.kind) == kinds.end()) continue;
+      ASSIGN_OR_RETURN(auto listed, openReference(pack, reference));
+      log.noteRead(listed.where());
+      opened.files.push_back(describeBytes(std::string(reference.path), listed.bytes()));
+      opened.packs.push_back(std::move(listed));
+    }
   }
-  if (!job.object_pack.empty()) {
-    ASSIGN_OR_RETURN(const auto pack, PackFile::open(job.object_pack));
-    ASSIGN_OR_RETURN(auto centers, objectCenters(pack));
-    options.object_centers = std::move(centers);
-    options.centers_needed = true;
-  }
-  return options;
+  return opened;
 }
 
-Result<BakedPack> importEpisodes(const EpisodeImportJob& job, const BakeContext& context) {
-  context.show(job.input.filename().string(), "import", 0);
-  ASSIGN_OR_RETURN(const auto options, importOptions(job));
-  ASSIGN_OR_RETURN(auto episodes, readEpisodeFile(job.input, options));
-  std::vector<SourceFile> sources;
-  RETURN_IF_ERROR(addSources({job.input, job.only, job.object_pack}, sources));
-  return finish({.input = job.input.string(), .episodes = std::move(episodes)}, job,
-                std::move(sources), context);
+/// The centers of the objects in all of the packs.
+Result<std::map<std::string, Vec3>> centersIn(const std::vector<PackFile>& packs) {
+  std::map<std::string, Vec3> all;
+  for (const PackFile& pack : packs) {
+    ASSIGN_OR_RETURN(auto centers, objectCenters(pack));
+    all.merge(centers);
+    if (centers.empty()) continue;
+    return fail(ErrorCode::kInvalidInput, pack.where(),
+                fmt::format("holds the object {}, as another of the object packs does; give one "
+                            "of them",
+                            centers.begin()->first));
+  }
+  return all;
 }
+
+/// An import at work.
+class EpisodeImport {
+ public:
+  EpisodeImport(const EpisodeImportJob& job, const BakeContext& context)
+      : job_(job), context_(context) {}
+
+  Result<BakedPack> run() {
+    context_.show(job_.input.filename().string(), "import", 0);
+    RETURN_IF_ERROR(addSources({job_.input, job_.only}, sources_));
+    ASSIGN_OR_RETURN(objects_, openListed(job_.object_packs, {PackKind::kObjects}, context_.log));
+    sources_.insert(sources_.end(), objects_.files.begin(), objects_.files.end());
+    ASSIGN_OR_RETURN(const auto options, importOptions());
+    ASSIGN_OR_RETURN(auto episodes, readEpisodeFile(job_.input, options));
+    if (!episodes.without_start.empty()) RETURN_IF_ERROR(giveStarts(episodes));
+    return finish({.input = job_.input.string(), .episodes = std::move(episodes)}, job_,
+                  std::move(sources_), context_);
+  }
+
+ private:
+  /// With what stands in other files.
+  [[nodiscard]] Result<EpisodeImportOptions> importOptions() const {
+    EpisodeImportOptions options = job_.import;
+    if (!job_.only.empty()) {
+      ASSIGN_OR_RETURN(auto only, readEpisodeList(job_.only));
+      options.only = std::move(only);
+    }
+    if (!job_.object_packs.empty()) {
+      ASSIGN_OR_RETURN(auto centers, centersIn(objects_.packs));
+      options.object_centers = std::move(centers);
+      options.centers_needed = true;
+    }
+    return options;
+  }
+
+  /// Draws them in the packs, or warns that there are none.
+  Result<void> giveStarts(SourceEpisodes& episodes) {
+    if (job_.packs.empty()) {
+      episodes.warnings.push_back(
+          fmt::format("{} of {} episodes give no start and cannot be played, as the robot stands "
+                      "at the origin: give the packs of their scenes, of their objects and of the "
+                      "robot, too, and starts are drawn (in a recipe: give it [[objects]] and a "
+                      "[robot])",
+                      episodes.without_start.size(), episodes.episodes.size()));
+      return {};
+    }
+    context_.show(job_.input.filename().string(), "starts", 0);
+    ASSIGN_OR_RETURN(
+        const auto opened,
+        openListed(job_.packs, {PackKind::kScene, PackKind::kObjects, PackKind::kRobot},
+                   context_.log));
+    sources_.insert(sources_.end(), opened.files.begin(), opened.files.end());
+    EpisodeInputs inputs{.threads = context_.threads, .stops = context_.stops};
+    for (const PackFile& pack : opened.packs) inputs.packs.push_back(&pack);
+    if (std::ranges::find(opened.packs, PackKind::kObjects, &PackFile::kind) ==
+        opened.packs.end()) {
+      for (const PackFile& pack : objects_.packs) inputs.packs.push_back(&pack);
+    }
+    return drawStarts(inputs, job_.seed.value_or(EpisodeGeneratorOptions().seed), episodes);
+  }
+
+  const EpisodeImportJob& job_;
+  const BakeContext& context_;
+  OpenPacks objects_;
+  std::vector<SourceFile> sources_;
+};
 
 Result<BakedPack> generateInPacks(const EpisodeGenerationJob& job, const BakeContext& context) {
   ASSIGN_OR_RETURN(auto opened, openPacks(job.packs));
@@ -184,7 +265,7 @@ Result<BakedPack> generateInPacks(const EpisodeGenerationJob& job, const BakeCon
 }  // namespace
 
 Result<BakedPack> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context) {
-  return timed<EpisodeOutcome>([&] { return importEpisodes(job, context); });
+  return timed<EpisodeOutcome>([&] { return EpisodeImport(job, context).run(); });
 }
 
 Result<BakedPack> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context) {

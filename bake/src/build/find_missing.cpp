@@ -103,9 +103,11 @@ std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads,
   parallelFor(threads, all.size(), [&](std::size_t n) {
     all[n] = {plan.assets[n].name, MissingFiles(libraries).of(plan.assets[n].job)};
   });
-  // What is generated is made in packs that are not there yet.
+  // What is generated is made in packs that are not there yet, and so are starts drawn.
   if (plan.episodes && !std::holds_alternative<EpisodeGenerationJob>(plan.episodes->job)) {
-    all.push_back({plan.episodes->name, MissingFiles(libraries).of(plan.episodes->job)});
+    auto import = std::get<EpisodeImportJob>(plan.episodes->job);
+    import.packs.clear();
+    all.push_back({plan.episodes->name, MissingFiles(libraries).of(import)});
   }
   std::erase_if(all, [](const LeftOut& one) { return one.reasons.empty(); });
   return all;

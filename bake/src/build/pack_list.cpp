@@ -184,8 +184,25 @@ const PackJob* PackList::find(const std::string& name) const {
   return found == plan_.assets.end() ? nullptr : &*found;
 }
 
+/// Whether there is all that starts are drawn with, but for the scenes.
+bool PackList::hasObjectsAndRobot() const {
+  const auto is_object = [](const PackJob& pack) {
+    return std::holds_alternative<ObjectJob>(pack.job);
+  };
+  const auto is_robot = [](const PackJob& pack) {
+    return std::holds_alternative<RobotJob>(pack.job);
+  };
+  return std::ranges::any_of(plan_.assets, is_object) &&
+         std::ranges::any_of(plan_.assets, is_robot);
+}
+
 void PackList::completeEpisodes() {
   if (!plan_.episodes) return;
+  if (auto* import = std::get_if<EpisodeImportJob>(&plan_.episodes->job)) {
+    if (!hasObjectsAndRobot()) return;
+    for (const PackJob& pack : plan_.assets) import->packs.push_back(pack.output);
+    return;
+  }
   auto* generation = std::get_if<EpisodeGenerationJob>(&plan_.episodes->job);
   if (generation == nullptr) return;
   for (const PackJob& pack : plan_.assets) {

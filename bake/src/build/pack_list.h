@@ -48,6 +48,8 @@ class PackList {
   [[nodiscard]] Result<void> checkFolder() const;
   /// Packs among a dataset's own files would be found by whoever reads it next.
   [[nodiscard]] Result<void> checkInputFolders() const;
+  [[nodiscard]] bool hasObjectsAndRobot() const;
+  /// Gives them the packs in which they are generated, or their starts are drawn.
   void completeEpisodes();
 
   WorldPlan plan_;

@@ -101,11 +101,12 @@ class RecipeJobs {
     return {};
   }
 
-  /// What stands on the command line is about episodes that the recipe generates.
+  /// What stands on the command line is about episodes that the recipe generates; the seed also
+  /// about starts that are drawn for those that it imports.
   [[nodiscard]] Result<void> checkOverrides() const {
     const auto& [count, seed] = source_.episodes;
     if (!count && !seed) return {};
-    if (recipe_.episodes && recipe_.episodes->inputs.empty()) return {};
+    if (recipe_.episodes && (recipe_.episodes->inputs.empty() || !count)) return {};
     return fail(
         ErrorCode::kInvalidInput, count ? "count" : "seed",
         fmt::format("is about episodes that are generated, and the recipe {}; leave it out, "
@@ -134,6 +135,7 @@ class RecipeJobs {
                   fmt::format("[episodes] names {} files, expected one", inputs.size()));
     }
     job.input = inputs.front();
+    if (source_.episodes.seed) job.seed = source_.episodes.seed;
     packs_.setEpisodes(std::move(job));
     return {};
   }

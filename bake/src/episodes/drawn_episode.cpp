@@ -4,16 +4,22 @@
 
 namespace galactic::bake {
 
-void setDraft(const DraftedEpisode& draft, DrawnEpisode& episode) {
+void setStart(const RobotStart& start, Episode& episode) {
   // Put between the floor and the base's point on it, meters, so that rounding never leaves the
   // point under the floor; far below what the run counts as a step.
   constexpr float kFloorMargin = 1e-4F;
+  episode.base_position = start.base_position;
+  episode.base_position.y += kFloorMargin;
+  episode.base_yaw = start.base_yaw;
+}
+
+void setDraft(const DraftedEpisode& draft, DrawnEpisode& episode) {
   episode.episode = {.placement_count = static_cast<std::uint32_t>(draft.objects.size()),
                      .target = draft.target,
-                     .base_position = draft.base_position,
-                     .base_yaw = draft.base_yaw,
+                     .base_position = {},
+                     .base_yaw = 0,
                      .goal = draft.goal.pose};
-  episode.episode.base_position.y += kFloorMargin;
+  setStart(draft.start, episode.episode);
   episode.placements.clear();
   for (const PlacedObject& object : draft.objects) {
     episode.placements.push_back({.object = object.object, .pose = object.pose});

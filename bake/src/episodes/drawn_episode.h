@@ -30,6 +30,9 @@ struct DrawnEpisode {
   std::vector<Placement> placements{};
 };
 
+/// Puts the robot where it starts.
+void setStart(const RobotStart& start, Episode& episode);
+
 /// Takes over what was drafted.
 void setDraft(const DraftedEpisode& draft, DrawnEpisode& episode);
 

@@ -14,7 +14,6 @@ namespace galactic::bake {
 namespace {
 
 constexpr std::size_t kObjectTries = 300;
-constexpr std::size_t kStartTries = 300;
 /// Of places for which only a distance is calculated.
 constexpr std::size_t kDistanceTries = 10000;
 /// Of a survey: tries to find a goal for one target, and pairs that are enough.
@@ -145,39 +144,24 @@ class Draft {
 
   /// Puts the robot on the floor, clear of all objects.
   bool placeRobot() {
-    const std::vector<FloorPlace>& places = home_.floor.places();
-    std::size_t tries = 0;
-    for (std::size_t n = 0; n < kDistanceTries && tries < kStartTries; ++n) {
-      const FloorPlace& place = places[random_.below(static_cast<std::uint32_t>(places.size()))];
-      if (place.part != target_part_) {
-        rejections_.add(EpisodeRejection::kOtherPart);
-        continue;
-      }
-      const std::uint32_t heading = random_.below(kHeadings);
-      base_yaw_ = yawOf(heading) + aside() * kTurn / static_cast<float>(kHeadings);
-      base_position_ = home_.floor.position(place);
-      base_position_.x += aside() * home_.floor.spacing();
-      base_position_.z += aside() * home_.floor.spacing();
-      const Vec3 way = target_.pose.translation - base_position_;
-      if (!isWithin(std::hypot(way.x, way.z), home_.options.start_to_target)) {
-        rejections_.add(EpisodeRejection::kStartDistance);
-        continue;
-      }
-      ++tries;
-      if (((place.headings >> heading) & 1U) != 0 && standsFree(place.height)) return true;
-      rejections_.add(EpisodeRejection::kStartBlocked);
-    }
-    return false;
+    std::vector<PlacedObject> objects = others_;
+    objects.push_back(target_);
+    const auto start = drawStart({home_.scene, home_.robot, home_.floor},
+                                 {.part = target_part_,
+                                  .target = target_.pose.translation,
+                                  .start_to_target = home_.options.start_to_target,
+                                  .objects = objects},
+                                 random_, rejections_);
+    if (!start) return false;
+    start_ = *start;
+    return true;
   }
 
   /// The episode, the target at a random index.
   [[nodiscard]] DraftedEpisode finish() {
     const auto count = static_cast<std::uint32_t>(others_.size() + 1);
-    DraftedEpisode episode{.objects = others_,
-                           .target = random_.below(count),
-                           .goal = goal_,
-                           .base_position = base_position_,
-                           .base_yaw = base_yaw_};
+    DraftedEpisode episode{
+        .objects = others_, .target = random_.below(count), .goal = goal_, .start = start_};
     episode.objects.insert(episode.objects.begin() + episode.target, target_);
     return episode;
   }
@@ -319,17 +303,6 @@ class Draft {
     return false;
   }
 
-  /// Whether the base, which stands about at `floor`, and the start pose are clear of everything;
-  /// corrects the base's height.
-  bool standsFree(float floor) {
-    const auto height = home_.floor.heightAt(base_position_.x, base_position_.z, floor);
-    if (!height) return false;
-    base_position_.y = *height;
-    const RobotBody body =
-        robotBody(home_.robot, groundPose(base_position_, base_yaw_), home_.robot.startPositions());
-    return isFree(home_.scene, body.spheres) && isClearOfObjects(body.spheres);
-  }
-
   [[nodiscard]] bool isApart(const PlacedObject& object) const {
     const auto apart = [&](const PlacedObject& other) {
       return gapBetween(object.footprint, other.footprint) >= kObjectGap;
@@ -338,11 +311,6 @@ class Draft {
     if (!std::all_of(others_.begin(), others_.end(), apart)) return false;
     return std::none_of(reaching_.begin(), reaching_.end(),
                         [&](const BodySpheres& spheres) { return touches(object, spheres); });
-  }
-
-  [[nodiscard]] bool isClearOfObjects(const BodySpheres& spheres) const {
-    const auto clear = [&](const PlacedObject& object) { return !touches(object, spheres); };
-    return clear(target_) && std::all_of(others_.begin(), others_.end(), clear);
   }
 
   const DraftHome& home_;
@@ -359,8 +327,7 @@ class Draft {
   std::vector<PlacedObject> others_;
   /// The robot where it reaches target and goal.
   std::vector<BodySpheres> reaching_;
-  Vec3 base_position_;
-  float base_yaw_ = 0;
+  RobotStart start_;
 };
 
 }  // namespace

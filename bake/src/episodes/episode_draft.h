@@ -8,6 +8,7 @@
 #include "episodes/home/arm_reach.h"
 #include "episodes/home/floor_map.h"
 #include "episodes/home/placed_object.h"
+#include "episodes/home/robot_start.h"
 #include "episodes/home/support_places.h"
 #include "episodes/home/surface_rays.h"
 #include "episodes/trial/settling.h"
@@ -44,9 +45,7 @@ struct DraftedEpisode {
   std::vector<PlacedObject> objects;
   std::uint32_t target = 0;
   PlacedObject goal;
-  /// On the floor, meters; radians.
-  Vec3 base_position;
-  float base_yaw = 0;
+  RobotStart start;
 };
 
 /// The part of a draft that found no place.

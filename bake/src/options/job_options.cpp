@@ -39,6 +39,11 @@ constexpr std::array<Named<SupportChoice>, 3> kSupportNames{
 constexpr std::array<Named<SplitSide>, 2> kSplitNames{
     {{"train", SplitSide::kTrain}, {"validation", SplitSide::kValidation}}};
 
+constexpr OptionInfo kSeedInfo{
+    "seed", "N",
+    "Generate, and import of Habitat's in packs: the number from which the random ones are drawn; "
+    "also instead of a recipe's"};
+
 /// Tolerances of spheres by name, meters.
 struct Tolerances {
   float eps = 0;
@@ -208,10 +213,7 @@ void visitGeneration(EpisodeGeneratorOptions& options, OptionVisitor& v) {
   auto& [episodes, objects, seed, heights, flatness, target_to_goal, shorten_way, start_to_target,
          goal_on_other_support, most_skipped, supports, poses, split] = options;
   v.group("Episodes");
-  v.option(
-      {"seed", "N",
-       "Generate: the number from which the random ones are drawn; also instead of a recipe's"},
-      whole(seed, {0, kMostSeed}));
+  v.option(kSeedInfo, whole(seed, {0, kMostSeed}));
   v.option({"count", "N", "Generate: how many episodes; also instead of a recipe's"},
            whole(episodes, {1, 1'000'000}));
   v.option({"objects", "N|LEAST,MOST", "Generate: objects of each episode, the target among them"},
@@ -292,15 +294,17 @@ void visitOptions(RobotJob& job, OptionVisitor& v) {
 }
 
 void visitOptions(EpisodeImportJob& job, OptionVisitor& v) {
-  auto& [input, only, object_pack, import] = job;
+  auto& [input, packs, only, object_packs, import, seed] = job;
   v.group("Episodes");
   v.option({"only", "FILE", "Import: keep the episodes whose indices stand in this text file"},
            path(only));
   visitImport(import, v);
   v.option({"object-pack", "PACK",
-            "Import of Habitat's: the objects' pack, which says where their centers are"},
-           path(object_pack));
-  v.internals(input);
+            "Import of Habitat's: a pack of objects, which says where their centers are, or a "
+            "world's (may be repeated)"},
+           paths(object_packs));
+  v.option(kSeedInfo, whole(seed, {0, kMostSeed}));
+  v.internals(input, packs);
 }
 
 void visitOptions(EpisodeGenerationJob& job, OptionVisitor& v) {

@@ -62,6 +62,11 @@ std::vector<fs::path> inputsOf(const Job& job) {
   return std::visit(Overload{[](const ObjectJob& one) { return one.inputs; },
                              [](const EpisodeGenerationJob& one) { return one.packs; },
                              [](const WorldJob& one) { return one.packs; },
+                             [](const EpisodeImportJob& one) {
+                               std::vector<fs::path> files{one.input};
+                               files.insert(files.end(), one.packs.begin(), one.packs.end());
+                               return files;
+                             },
                              [](const auto& one) { return std::vector<fs::path>{one.input}; }},
                     job);
 }

@@ -76,6 +76,34 @@ class PathField final : public OptionField {
   std::filesystem::path& field_;
 };
 
+class PathsField final : public OptionField {
+ public:
+  explicit PathsField(std::vector<std::filesystem::path>& field) : field_(field) {}
+  [[nodiscard]] OptionKind kind() const override { return OptionKind::kPath; }
+  [[nodiscard]] bool repeats() const override { return true; }
+  std::string read(std::span<const GivenValue> given) override {
+    field_.clear();
+    for (const GivenValue& value : given) field_.emplace_back(textOf(value));
+    return {};
+  }
+  [[nodiscard]] std::vector<std::string> texts() const override {
+    std::vector<std::string> all;
+    all.reserve(field_.size());
+    for (const std::filesystem::path& path : field_) all.push_back(path.string());
+    return all;
+  }
+  [[nodiscard]] std::vector<std::filesystem::path*> paths() override {
+    std::vector<std::filesystem::path*> all;
+    all.reserve(field_.size());
+    for (std::filesystem::path& path : field_) all.push_back(&path);
+    return all;
+  }
+  [[nodiscard]] std::span<const std::byte> memory() const override { return memoryOf(field_); }
+
+ private:
+  std::vector<std::filesystem::path>& field_;
+};
+
 class TextField final : public OptionField {
  public:
   explicit TextField(std::string& field) : field_(field) {}
@@ -185,6 +213,9 @@ FieldPointer flag(bool& field, bool when_typed) {
   return std::make_unique<FlagField>(field, when_typed);
 }
 FieldPointer path(std::filesystem::path& field) { return std::make_unique<PathField>(field); }
+FieldPointer paths(std::vector<std::filesystem::path>& field) {
+  return std::make_unique<PathsField>(field);
+}
 FieldPointer text(std::string& field) { return std::make_unique<TextField>(field); }
 FieldPointer texts(std::vector<std::string>& field) {
   return std::make_unique<TextsField>(field, false);

@@ -23,7 +23,8 @@ using Texts = std::vector<std::string>;
 const Texts kScene{"room.glb"};
 const Texts kObject{"--as", "object", "mug.glb"};
 const Texts kRobot{"robot.urdf"};
-const Texts kImport{"home.episode_set.json"};
+/// A seed is for starts that are drawn in packs.
+const Texts kImport{"home.episode_set.json", "home.pack"};
 const Texts kGenerate{"--as", "episodes", "home.pack"};
 const Texts kLink{"--as", "world", "a.pack", "b.pack"};
 const Texts kDataset{"home.scene_dataset_config.json"};
@@ -276,6 +277,36 @@ TEST(Recipes, MakeSeveralWorldsThatDifferInTheirEpisodes) {
   EXPECT_EQ(without.error().text(),
             "seed: is about episodes that are generated, and the recipe has none; leave it out, or "
             "give the recipe a table [episodes] without `files`");
+}
+
+TEST(Recipes, GiveEpisodesThatTheyImportThePacksForTheirStarts) {
+  const test::ScratchFolder folder;
+  for (const char* name : {"room.glb", "mug.glb", "arm.urdf", "tidy.json.gz"}) {
+    ASSERT_FALSE(folder.write(name, "text").empty());
+  }
+  const std::string scenes = "[[scenes]]\nfiles = \"room.glb\"\n";
+  const std::string rest = "[[objects]]\nfiles = \"mug.glb\"\n[robot]\nfiles = \"arm.urdf\"\n";
+  const std::string episodes = "[episodes]\nfiles = \"tidy.json.gz\"\n";
+  BakeLibraries libraries;
+  const auto plan = [&](const std::string& recipe, std::vector<std::string> more) {
+    more.insert(more.begin(), folder.write("home.toml", recipe).string());
+    return planOf(*commandFrom(more), libraries);
+  };
+  const auto whole = plan(scenes + rest + episodes, {"--seed", "7", "-o", "home.pack"});
+  ASSERT_TRUE(whole) << whole.error().text();
+  const auto& import = std::get<EpisodeImportJob>(whole->episodes->job);
+  EXPECT_EQ(import.seed, 7U);
+  EXPECT_THAT(import.packs, testing::ElementsAre("home/objects/mug.pack", "home/robot.pack",
+                                                 "home/scenes/room.pack"));
+  // Nothing is drawn without a robot.
+  const auto bare = plan(scenes + episodes, {});
+  ASSERT_TRUE(bare) << bare.error().text();
+  EXPECT_THAT(std::get<EpisodeImportJob>(bare->episodes->job).packs, testing::IsEmpty());
+  const auto counted = plan(scenes + rest + episodes, {"--count", "7"});
+  ASSERT_FALSE(counted);
+  EXPECT_THAT(counted.error().text(), testing::HasSubstr("count: is about episodes that are "
+                                                         "generated, and the recipe imports its "
+                                                         "own"));
 }
 
 TEST(Recipes, TakeNoOptionsOfTheCommandLine) {

@@ -244,6 +244,18 @@ struct GeneratedEpisodes {
                                                          const EpisodeGeneratorOptions& options,
                                                          const EpisodeProgress& progress = {});
 
+/// Draws the starts that published episodes lack (SourceEpisodes::without_start) as those of
+/// generated episodes are drawn: on the largest part of the floor, where neither the robot nor its
+/// start pose penetrates anything, replayed for one step in the runtime. They are for the robot of
+/// `inputs`, of which the packs, the threads and `stops` are used; none of the set's episodes may
+/// give positions of joints. Deterministic: a start depends on the packs, the seed, its episode and
+/// the episode's number in the set. Where nothing is found the episode is left out, with a warning.
+/// Fails with kInvalidInput on packs that do not go together, on a scene or an object that none of
+/// them holds, and where all episodes would be left out; with the errors of replaying; and with
+/// kInterrupted once `inputs.stops` has said so: then the set is of no use.
+[[nodiscard]] Result<void> drawStarts(const EpisodeInputs& inputs, std::uint64_t seed,
+                                      SourceEpisodes& episodes);
+
 /// How a sample of episodes went.
 struct SolvedSample {
   std::uint32_t episodes = 0;

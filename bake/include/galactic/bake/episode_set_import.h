@@ -32,6 +32,9 @@ struct SourceEpisodes {
   /// Of all episodes, one after the other.
   std::vector<Placement> placements;
   std::vector<Episode> episodes;
+  /// Ascending numbers of the episodes whose file gives no start: the robot stands at the origin.
+  /// See drawStarts.
+  std::vector<std::uint32_t> without_start;
   /// One sentence each.
   std::vector<std::string> warnings;
 };
@@ -99,8 +102,9 @@ struct EpisodeImportOptions {
 /// object templates are named by their files without folders and extensions. Objects stand where
 /// rigid_objs puts them (row-major world_from_object, whose origin is the object's center of mass,
 /// see object_centers); the goal is the target's transform. The robot starts at start_position,
-/// turned by the heading of start_rotation (x, y, z, w). There are no start joints. A warning says
-/// what is lost: other targets, opened furniture, starts that the file does not give.
+/// turned by the heading of start_rotation (x, y, z, w); datasets of habitat-lab's generator give
+/// neither (SourceEpisodes::without_start). There are no start joints. A warning says what is lost:
+/// other targets, opened furniture.
 /// Fails like readEpisodeSet, and on transforms that are not rigid within 1e-3, and targets that
 /// are none of the episode's objects.
 [[nodiscard]] Result<SourceEpisodes> readHabitatEpisodes(const std::filesystem::path& path,

@@ -100,11 +100,16 @@ struct RobotJob {
 /// A published set of episodes.
 struct EpisodeImportJob {
   std::filesystem::path input{};
+  /// Scenes, objects (none: those of object_packs) and one robot, and worlds of them, in which the
+  /// starts are drawn that the file does not give; empty: they are not.
+  std::vector<std::filesystem::path> packs{};
   /// List of the episodes to keep; empty: all.
   std::filesystem::path only{};
-  /// Pack of the objects, for where their centers are; empty: none.
-  std::filesystem::path object_pack{};
+  /// Packs of the objects, and worlds of them, for where their centers are; empty: none.
+  std::vector<std::filesystem::path> object_packs{};
   EpisodeImportOptions import{};
+  /// Of the starts that are drawn; not given: 1.
+  std::optional<std::uint64_t> seed{};
 
   friend bool operator==(const EpisodeImportJob&, const EpisodeImportJob&) = default;
 };

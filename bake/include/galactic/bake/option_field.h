@@ -140,6 +140,8 @@ class OptionVisitor {
 /// A switch: the field gets `when_typed`.
 [[nodiscard]] FieldPointer flag(bool& field, bool when_typed = true);
 [[nodiscard]] FieldPointer path(std::filesystem::path& field);
+/// Each time one file or folder.
+[[nodiscard]] FieldPointer paths(std::vector<std::filesystem::path>& field);
 [[nodiscard]] FieldPointer text(std::string& field);
 /// Each time one text.
 [[nodiscard]] FieldPointer texts(std::vector<std::string>& field);

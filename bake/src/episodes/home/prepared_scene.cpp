@@ -80,13 +80,7 @@ Result<std::unique_ptr<const PreparedScene>> PreparedScene::prepare(
 
 std::string PreparedScene::whyUnusable() const {
   const Robot& robot = context_.world.robot();
-  if (floor_.places().empty()) {
-    return fmt::format(
-        "the robot {} stands nowhere: {} places on the floor were tried in {} headings each, and "
-        "in its start pose one of its {} spheres was blocked at each; give a larger scene or a "
-        "smaller start pose",
-        robot.name(), floor_.tried(), kHeadings, robot.spheres().size());
-  }
+  if (floor_.places().empty()) return whyNowhere(floor_, robot);
   if (!supports_.places().empty()) {
     if (target_to_goal_.least <= widestWay()) return {};
     return fmt::format(

@@ -98,6 +98,9 @@ Result<SourceEpisodes> chooseEpisodes(const EpisodeFile& file,
   source.start_positions.reserve(kept.size() * file.start_joints.size());
   for (const std::uint32_t n : kept) {
     const FileEpisode& from = file.episodes[n];
+    if (!from.has_start) {
+      source.without_start.push_back(static_cast<std::uint32_t>(source.episodes.size()));
+    }
     Episode& episode = source.episodes.emplace_back(from.episode);
     scenes.use(episode.scene);
     episode.first_placement = static_cast<std::uint32_t>(source.placements.size());

@@ -29,6 +29,7 @@ struct Spawn {
 struct FileEpisode {
   Episode episode;
   std::vector<float> start_positions;
+  bool has_start = true;
 };
 
 /// All that a file of episodes says, in its own order.

@@ -49,7 +49,6 @@ struct Losses {
   std::size_t episodes = 0;
   std::size_t more_targets = 0;
   std::size_t open_furniture = 0;
-  std::size_t no_start = 0;
 };
 
 /// What is read of a rearrangement dataset, and the first error.
@@ -70,14 +69,14 @@ class HabitatReader {
   std::uint32_t readScene(const JsonNode& node);
   /// The names of the episode's objects, whose spawns are the last ones.
   std::vector<std::string> readObjects(const JsonNode& list);
-  void readStart(const JsonNode& node, Episode& episode);
+  void readStart(const JsonNode& node, FileEpisode& read);
   void readFurniture(const JsonNode& states);
   /// Goals, by the number of the target among the episode's objects.
   std::map<std::size_t, Pose> readTargets(const JsonNode& targets,
                                           const std::vector<std::string>& objects);
   std::optional<std::size_t> targetOf(const JsonNode& target, const std::string& handle,
                                       const Instances& instances);
-  void addEpisodes(const JsonNode& node, const Episode& episode,
+  void addEpisodes(const JsonNode& node, const FileEpisode& read,
                    const std::map<std::size_t, Pose>& goals);
 
   RigidMatrix matrix(const JsonNode& node);
@@ -187,7 +186,7 @@ std::vector<std::string> HabitatReader::readObjects(const JsonNode& list) {
   return objects;
 }
 
-void HabitatReader::readStart(const JsonNode& node, Episode& episode) {
+void HabitatReader::readStart(const JsonNode& node, FileEpisode& read) {
   const JsonNode turned = json_.require(node, "start_rotation");
   const auto start = json_.vector<3>(json_.require(node, "start_position"), kFarthest);
   const auto xyzw = json_.vector<4>(turned, 2);
@@ -206,11 +205,11 @@ void HabitatReader::readStart(const JsonNode& node, Episode& episode) {
   if (std::hypot(ahead, right) < 0.5) {
     return json_.error(turned.place, "points the robot up or down, expected a heading");
   }
+  Episode& episode = read.episode;
   episode.base_position = {static_cast<float>(start[0]), static_cast<float>(start[1]),
                            static_cast<float>(start[2])};
   episode.base_yaw = static_cast<float>(std::atan2(-right, ahead) + 0.0);
-  const bool given = episode.base_position != Vec3{} || episode.base_yaw != 0;
-  if (!given) ++losses_.no_start;
+  read.has_start = episode.base_position != Vec3{} || episode.base_yaw != 0;
 }
 
 void HabitatReader::readFurniture(const JsonNode& states) {
@@ -271,11 +270,11 @@ std::map<std::size_t, Pose> HabitatReader::readTargets(const JsonNode& targets,
   return goals;
 }
 
-void HabitatReader::addEpisodes(const JsonNode& node, const Episode& episode,
+void HabitatReader::addEpisodes(const JsonNode& node, const FileEpisode& read,
                                 const std::map<std::size_t, Pose>& goals) {
   const bool each = options_.targets == HabitatTargets::kEach;
   if (goals.size() > 1 && !each) ++losses_.more_targets;
-  placements_ += std::uint64_t{episode.placement_count} * (each ? goals.size() : 1);
+  placements_ += std::uint64_t{read.episode.placement_count} * (each ? goals.size() : 1);
   if (placements_ > kMostPlacements) {
     return json_.error(node.place,
                        fmt::format("makes it {} objects in all episodes, one pack holds "
@@ -283,7 +282,7 @@ void HabitatReader::addEpisodes(const JsonNode& node, const Episode& episode,
                                    placements_, kMostPlacements));
   }
   for (const auto& [target, goal] : goals) {
-    Episode& added = file_.episodes.emplace_back(FileEpisode{episode, {}}).episode;
+    Episode& added = file_.episodes.emplace_back(read).episode;
     added.target = static_cast<std::uint32_t>(target);
     added.goal = goal;
     if (!each) return;
@@ -306,9 +305,10 @@ void HabitatReader::readEpisode(const JsonNode& node) {
                        "rearrangement datasets are imported: to navigate, run the task of "
                        "examples/python/point_nav.py in a world of generated episodes");
   }
-  Episode episode;
+  FileEpisode read;
+  Episode& episode = read.episode;
   episode.scene = readScene(json_.require(node, "scene_id"));
-  readStart(node, episode);
+  readStart(node, read);
   readFurniture(JsonReader::member(node, "ao_states"));
   const JsonNode list = json_.require(node, "rigid_objs");
   episode.first_placement = static_cast<std::uint32_t>(file_.spawns.size());
@@ -317,7 +317,7 @@ void HabitatReader::readEpisode(const JsonNode& node) {
   const auto goals = readTargets(json_.require(node, "targets"), objects);
   if (json_.failed()) return;
   ++losses_.episodes;
-  addEpisodes(node, episode, goals);
+  addEpisodes(node, read, goals);
 }
 
 void HabitatReader::warnOfLosses() {
@@ -329,7 +329,6 @@ void HabitatReader::warnOfLosses() {
        "have several targets; the first is kept, `targets` each makes an episode of each");
   warn(losses_.open_furniture,
        "open furniture (ao_states), which stands in the scenes' packs as they were baked");
-  warn(losses_.no_start, "give no start: the robot stands at the origin");
   if (uncentered_.empty()) return;
   file_.warnings.push_back(
       fmt::format("{} objects, first '{}', stand with their origins where their centers belong; "

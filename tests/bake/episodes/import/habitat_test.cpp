@@ -73,6 +73,7 @@ TEST(HabitatEpisodes, StartTheRobotWithItsHeading) {
   EXPECT_NEAR(set->episodes[0].base_yaw, 1.5707963F, kRounding);
   EXPECT_EQ(set->episodes[1].base_position, (Vec3{}));
   EXPECT_EQ(set->episodes[1].base_yaw, 0);
+  EXPECT_THAT(set->without_start, ElementsAre(1)) << "as habitat-lab's generator has it";
 }
 
 TEST(HabitatEpisodes, WarnOfWhatAPackCannotHold) {
@@ -85,7 +86,6 @@ TEST(HabitatEpisodes, WarnOfWhatAPackCannotHold) {
           "episode of each",
           "1 of 2 episodes open furniture (ao_states), which stands in the scenes' packs as they "
           "were baked",
-          "1 of 2 episodes give no start: the robot stands at the origin",
           "2 objects, first '003_cracker_box', stand with their origins where their centers "
           "belong; give `object-pack`, unless these are the same"));
 }
@@ -122,6 +122,7 @@ TEST(HabitatEpisodes, KeepAndRenameWhatIsAskedFor) {
   ASSERT_TRUE(set.has_value()) << set.error().message;
   EXPECT_THAT(set->scenes, ElementsAre("flat"));
   EXPECT_THAT(set->objects, ElementsAre("mug"));
+  EXPECT_THAT(set->without_start, ElementsAre(0)) << "among those that are kept";
   options.scene_names = {{"attic", "flat"}};
   const auto none = import(kSmallHabitatSet, options);
   ASSERT_FALSE(none.has_value());
