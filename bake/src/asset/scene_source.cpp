@@ -50,6 +50,7 @@ Result<ReadScene> readScene(const SceneJob& job, ReadLog& log, BakeLibraries& li
   if (!job.instance && !job.import.scale) {
     RETURN_IF_ERROR(checkHeight(asset, job.input.string()));
   }
+  if (!job.instance && !job.import.up && !job.import.transform) warnAboutUp(asset);
   ASSIGN_OR_RETURN(const fs::path folder, folderOf(job, libraries));
   log.note(folder, asset.read);
   asset.warnings.insert(asset.warnings.end(), read.missing.begin(), read.missing.end());

@@ -15,6 +15,11 @@ namespace galactic::bake {
 /// its unit is then in doubt. 0: never. `asset` has passed checkAsset.
 void warnAboutSize(SourceAsset& asset, double smallest_size);
 
+/// Adds a warning when a glTF scene shows clearly more floor at one level with the Z axis of its
+/// file up than with its Y axis, and would be lower: scans are published so, against the standard.
+/// For scenes of whose up axis nobody has said anything; `asset` has passed checkAsset.
+void warnAboutUp(SourceAsset& asset);
+
 /// Refuses a scene that is higher than any home: its unit is not the meter, and its grid would take
 /// all memory there is. For scenes whose unit the user has not stated. kInvalidInput; `asset` has
 /// passed checkAsset.
