@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "bake/dataset/small_dataset.h"
+#include "support/mesh_files.h"
+#include "support/scratch_folder.h"
 
 namespace galactic::test::scene_source_test {
 namespace {
@@ -43,6 +45,25 @@ TEST(SceneSource, OfAFileIsItsMesh) {
   ASSERT_TRUE(details) << details.error().text();
   EXPECT_THAT(details->mesh.triangles, SizeIs(12));
   EXPECT_THAT(details->receptacles, IsEmpty());
+}
+
+TEST(SceneSource, OfAGlbThatLiesOnItsSideDrawsAWarningUnlessItsUpAxisIsGiven) {
+  // A floor of 4 x 3 m that faces along Z, as in a file with Z up, and a wall of 1 m.
+  const MeshContent room{
+      .positions = {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}, {0, 0, 1}, {4, 0, 1}},
+      .triangles = {{0, 1, 2}, {0, 2, 3}, {0, 5, 1}, {0, 4, 5}}};
+  const ScratchFolder folder;
+  const auto warningsOf = [&](const bake::MeshImportOptions& import) {
+    const SceneJob job{.input = folder.write("scan.glb", glbFile(room)), .import = import};
+    ReadLog log;
+    bake::BakeLibraries libraries;
+    const auto read = bake::readScene(job, log, libraries);
+    EXPECT_TRUE(read) << read.error().text();
+    return read ? read->asset.warnings : std::vector<std::string>();
+  };
+  EXPECT_THAT(warningsOf({}), Contains(HasSubstr("give `up` z")));
+  EXPECT_THAT(warningsOf({.up = bake::UpAxis::kZ}), IsEmpty());
+  EXPECT_THAT(warningsOf({.up = bake::UpAxis::kY}), IsEmpty());
 }
 
 TEST(SceneSource, OfAnInstanceIsPutTogether) {

@@ -72,8 +72,8 @@ AxisLevels levelsOf(const SourceAsset& asset) {
 }  // namespace
 
 void warnAboutUp(SourceAsset& asset) {
-  // Less is no room.
-  constexpr double kLeastFloor = 2;
+  // Square meters: less is no room but a door.
+  constexpr double kLeastFloor = 3;
   // In what stands upright a wall may well be wider than the floor, but seldom by half of it and
   // in a room that would be lower.
   constexpr double kClearlyMore = 1.5;
