@@ -34,7 +34,7 @@ struct SourceEpisodes {
   std::vector<Episode> episodes;
   /// Ascending numbers of the episodes whose file gives no start: the robot stands at the origin.
   /// See drawStarts.
-  std::vector<std::uint32_t> without_start;
+  std::vector<std::uint32_t> without_start{};
   /// One sentence each.
   std::vector<std::string> warnings;
 };
