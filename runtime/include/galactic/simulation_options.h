@@ -93,6 +93,9 @@ struct TaskOptions {
   float failure_penalty = 0.0F;
   /// Subtracted in each step in which an obstacle kept the robot where it was.
   float bump_penalty = 0.0F;
+  /// Subtracted in each step in which the first thing in the robot's way is an object at rest, also
+  /// where it slides past it: a real one would be knocked over.
+  float knock_penalty = 0.0F;
   /// Subtracted in each step in which something is overlooked that fails unless `drop_fails` is
   /// off: the hand would have released the target away from the goal, or holds another object.
   float drop_penalty = 0.0F;

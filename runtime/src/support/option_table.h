@@ -119,6 +119,8 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
   v.real("slack-penalty", t.slack_penalty, kReward, "Penalty for each step");
   v.real("failure-penalty", t.failure_penalty, kReward, "Penalty for a failure");
   v.real("bump-penalty", t.bump_penalty, kReward, "Penalty for each step that something blocked");
+  v.real("knock-penalty", t.knock_penalty, kReward,
+         "Penalty for each step in which an object was in the robot's way");
   v.real(
       "drop-penalty", t.drop_penalty, kReward,
       "Penalty for each step in which safe-drop ignores a release, or another object in the hand");

@@ -34,6 +34,7 @@ inline TaskOptions everyReward() {
           .slack_penalty = 0.125F,
           .failure_penalty = 1.5F,
           .bump_penalty = 0.0625F,
+          .knock_penalty = 0.03125F,
           .drop_penalty = 0.375F,
           .tilt_penalty = 0.75F,
           .success_distance = 0.25F,

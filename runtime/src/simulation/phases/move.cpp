@@ -174,7 +174,7 @@ void moveRobots(const ChunkStep& step) noexcept {
     step.state.prefetch(step.first + kChunk + e);
     Env& env = step.state.env(step.first + e);
     if (step.state.idle()[step.first + e] != 0) continue;
-    env.refused = false;
+    env.refused = env.knocked = false;
     const Walk walk = step.between == nullptr ? jumpToCandidate(step, e) : walkToCandidate(step, e);
     if (walk == Walk::kNone) {
       ++step.state.moves(step.first + e).refused;

@@ -216,6 +216,7 @@ bool pushTowardsBase(const ChunkStep& step, std::size_t e) {
 }  // namespace
 
 bool slideClear(const ChunkStep& step, std::size_t e, Hindrance met) noexcept {
+  if (met == Hindrance::kObject) step.state.env(step.first + e).knocked = true;
   switch (step.model.options.slide.direction) {
     case SlideDirection::kGlide:
       return Glide(step, e).run(met);

@@ -56,7 +56,8 @@ float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& n
   return pick + task.reach_weight * (env.reach - now.reach) +
          task.transport_weight * (env.transport - now.transport) -
          task.action_weight * action_change - task.slack_penalty -
-         (env.refused ? task.bump_penalty : 0.0F) - (is_overlooked ? task.drop_penalty : 0.0F);
+         (env.refused ? task.bump_penalty : 0.0F) - (env.knocked ? task.knock_penalty : 0.0F) -
+         (is_overlooked ? task.drop_penalty : 0.0F);
 }
 
 /// For the part of the way along the floor that is behind now. A step in which the way began to

@@ -61,6 +61,7 @@ void followHand(const ChunkStep& step, std::size_t e, const FollowedState& state
 void takePose(const ChunkStep& step, std::size_t e, const FollowedState& state) {
   const std::size_t n = step.first + e;
   step.state.env(n).refused = state.was_hindered;
+  step.state.env(n).knocked = false;
   step.state.moves(n).refused += state.was_hindered ? 1U : 0U;
   copyPose(step.chunk.candidates(e), step.state.poses(n), step.model.variableCount());
   step.state.setGrip(n, step.chunk.grip(e));

@@ -126,6 +126,8 @@ struct alignas(64) Env {
   /// The last step left the robot where it was: wherever it would have been, it penetrated
   /// something.
   bool refused = false;
+  /// The first thing in the way of the last step, or of a part of it, was an object at rest.
+  bool knocked = false;
   /// Spheres of the object in the hand have penetrated something ever since it was taken, and do
   /// not count until each is free once. BatchState::ignored() says which.
   bool ignores = false;

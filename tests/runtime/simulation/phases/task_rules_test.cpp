@@ -71,6 +71,7 @@ Case unusualCase() {
   TaskOptions task = everyReward();
   // The oracle does not see for what: observe_test, task_test and geodesic_test do.
   task.bump_penalty = 0;
+  task.knock_penalty = 0;
   task.drop_penalty = 0;
   task.geodesic_weight = 0;
   Case unusual{.name = "UnusualNumbers", .options = optionsOf(task)};

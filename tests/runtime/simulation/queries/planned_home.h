@@ -22,12 +22,16 @@ inline constexpr int kPatience = 150;
 /// Both answers of a question come up at least this often.
 inline constexpr double kLeastShare = 0.1;
 
+/// More than all else that a step pays.
+inline constexpr float kKnockPenalty = 1000;
+
 inline SimulationOptions oneEnv() {
   SimulationOptions options;
   options.envs = 1;
   options.threads = 1;
   options.order = EpisodeOrder::kLinear;
   options.task.most_steps = 0;
+  options.task.knock_penalty = kKnockPenalty;
   // What is refused stays where it was.
   options.slide.attempts = 0;
   options.placement.attempts = 1;

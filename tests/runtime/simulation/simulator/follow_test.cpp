@@ -26,6 +26,8 @@ SimulationOptions optionsOf(std::uint32_t envs) {
   options.sensors.laser = {};
   options.sensors.geodesic = false;
   options.task.geodesic_weight = 0;
+  // A follower is told that something was in the way, and not what.
+  options.task.knock_penalty = 0;
   options.noise = {
       .motion = 0.1F, .motion_bias = 0.1F, .localization = 0.05F, .action_delay = {0, 2}};
   options.auto_reset = false;
