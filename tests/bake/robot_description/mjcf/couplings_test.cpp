@@ -100,6 +100,17 @@ TEST(MjcfEqualities, ThatAreNoStraightLinesAreWarnedOf) {
            "they would move stays where its joints are"}));
 }
 
+TEST(MjcfEqualities, AreCurvesWithAnyHigherCoefficient) {
+  const ScratchFolder folder;
+  for (const char* curve : {"0 1 2", "0 1 0 2", "0 1 0 0 2"}) {
+    const auto robot = mjcfRobot(
+        folder, chainWith(fmt::format(
+                    "<equality><joint joint1='j1' joint2='j2' polycoef='{}'/></equality>", curve)));
+    EXPECT_FALSE(mimicOf(robot, 1).has_value()) << curve;
+    EXPECT_THAT(robot.warnings, Contains(testing::HasSubstr("along a curve"))) << curve;
+  }
+}
+
 TEST(MjcfKeyframes, CalledHomeSayWhereJointsRest) {
   const ScratchFolder folder;
   const auto robot = mjcfRobot(

@@ -214,6 +214,11 @@ TEST(MjcfFrames, OfTheRootAreTheWorldsWhereItMovesAgainstItOrStandsAskew) {
   const bake::Affine a = zUp(askew.links[1].parent_from_joint);
   EXPECT_THAT((Point3{a[3], a[7], a[11]}), ElementsAre(0, 0, 3));
   EXPECT_THAT((Point3{a[2], a[6], a[10]}), Pointwise(DoubleNear(kRounding), Point3{0, -1, 0}));
+  const auto upside_down =
+      mjcfRobot(folder, mjcfText(fmt::format("<body name='a' euler='180 0 0'>{}</body>", arm)));
+  ASSERT_EQ(upside_down.links.size(), 3U);
+  EXPECT_EQ(upside_down.links[0].name, "world");
+  EXPECT_NEAR(zUp(upside_down.links[1].parent_from_joint)[10], -1, kRounding);
   const auto on_rail = mjcfRobot(
       folder, mjcfText("<body name='a' pos='1 2 3'><joint name='rail' type='slide' axis='1 0 0'/>"
                        "<geom size='.1'/></body>"));
@@ -235,6 +240,29 @@ TEST(MjcfFrames, OfABaseThatDrivesLoseTheJointsThatDriveIt) {
               testing::Contains("the joints of body 'base' drive it over the floor, "
                                 "as a robot's base does by itself; they are left "
                                 "out"));
+}
+
+TEST(MjcfFrames, OfARootThatCannotReachTheWholeFloorKeepItsJoints) {
+  const ScratchFolder folder;
+  const std::string along_x = "<joint name='x' type='slide' axis='1 0 0'/>";
+  const std::string along_y = "<joint name='y' type='slide' axis='0 1 0'/>";
+  struct Root {
+    std::string joints;
+    std::size_t joint_count;
+  };
+  const std::vector<Root> roots{
+      {along_x + "<joint name='back' type='slide' axis='-1 0 0'/>", 2},
+      {along_x + "<joint name='yaw'/>", 2},
+      {along_x + along_y + "<joint name='yaw'/><joint name='wrist'/>", 4},
+      {along_x + along_y + "<joint name='roll' axis='1 0 0'/>", 3},
+  };
+  for (const auto& [joints, joint_count] : roots) {
+    const auto robot = mjcfRobot(
+        folder, mjcfText(fmt::format("<body name='base'>{}<geom size='.1'/></body>", joints)));
+    EXPECT_EQ(robot.links.front().name, "world") << joints;
+    EXPECT_EQ(robot.links.back().name, "base") << joints;
+    EXPECT_EQ(robot.links.size(), 1 + joint_count) << joints;
+  }
 }
 
 TEST(MjcfFrames, OfSeveralArmsThatAreFixedToTheWorldAreOneRobots) {

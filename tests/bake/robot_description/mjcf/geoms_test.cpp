@@ -259,6 +259,21 @@ TEST(MjcfMeshes, HaveImagesInTheFolderOfAllAssets) {
   EXPECT_EQ(robot.links.back().visuals[0].texture, "parts/wood.png");
 }
 
+TEST(MjcfMeshes, HaveTheImageOfTheLayerThatIsTheirColor) {
+  const ScratchFolder folder;
+  (void)folder.write("robots/box.obj", objFile(unevenBox()));
+  (void)folder.write("robots/wood.png", "no image yet");
+  (void)folder.write("robots/bumps.png", "no image yet");
+  const auto robot = mjcfRobot(
+      folder, withGeoms("<geom type='mesh' mesh='box' material='wooden'/>",
+                        "<asset><mesh file='box.obj'/><texture type='2d' file='wood.png'/>"
+                        "<texture type='2d' file='bumps.png'/><material name='wooden'>"
+                        "<layer texture='bumps' role='normal'/><layer texture='wood' role='rgb'/>"
+                        "<layer texture='bumps' role='roughness'/></material></asset>"));
+  ASSERT_THAT(robot.links.back().visuals, SizeIs(1));
+  EXPECT_EQ(robot.links.back().visuals[0].texture, "wood.png");
+}
+
 TEST(MjcfMeshes, AreMovedTurnedBackAndScaled) {
   const ScratchFolder folder;
   (void)folder.write("robots/box.obj", objFile(unevenBox()));
@@ -273,6 +288,8 @@ TEST(MjcfMeshes, AreMovedTurnedBackAndScaled) {
   expectBounds(bounds("scale='2 2 2' refpos='.5 .25 1'"), {0, 0, -4}, {2, 6, 0});
   // A quarter turn about Z taken back: X and Y of the file become -Y and X.
   expectBounds(bounds("refquat='1 0 0 1' scale='2 1 1'"), {0.5, 1, 0.5}, {4.5, 4, 1.5});
+  // One about X: Y and Z of the file become -Z and Y.
+  expectBounds(bounds("refquat='1 1 0 0'"), {0.5, -2.25, -4}, {1.5, -0.25, -1});
   expectBounds(bounds("scale='-1 1 1'"), {-1.5, 1, -2.25}, {-0.5, 4, -0.25});
 }
 
