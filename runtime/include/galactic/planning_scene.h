@@ -150,8 +150,9 @@ class PlanningScene {
   /// and the base is on the floor, which carries it from one place to the next: the height of
   /// `from` says which floor, to which the base may rise or drop (GroundOptions), and that of `to`
   /// where the way has to end. What does not count at the beginning counts from where it is free on
-  /// (countFree()). Limits of joints are not asked for, nor whether the robot touches itself. What
-  /// setJoints(), ignorePenetrating() and countFree() have said stays.
+  /// (countFree()). Where numbers are so large that their rounding moves a sphere further than its
+  /// radius, no motion is free. Limits of joints are not asked for, nor whether the robot touches
+  /// itself. What setJoints(), ignorePenetrating() and countFree() have said stays.
   [[nodiscard]] bool isMotionFree(const RobotPose& from, const RobotPose& to);
 
   /// isFree() of many poses, whatever setJoints() has said. `free`: 1 or 0 for each, overwritten.

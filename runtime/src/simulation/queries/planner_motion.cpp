@@ -19,6 +19,8 @@ namespace {
 constexpr double kMostTurn = 0.5;
 /// As long as the place after is aimed at, in radii: some less than the longest, as ways are bent.
 constexpr double kAimedMove = 0.9;
+/// Places of a motion that are nearer to each other are one, as floats round.
+constexpr double kLeastShare = 1e-9;
 /// Floors whose heights differ by less are one, meters.
 constexpr float kSameFloor = 1e-3F;
 
@@ -75,7 +77,7 @@ bool PlannerMotion::walk() {
   next_ = most_share_;
   while (share_ < 1) {
     const Vec3 before = base_.position;
-    goTo(std::min(1.0, share_ + next_));
+    if (!goTo(std::min(1.0, share_ + next_))) return false;
     if (!followFloor(before) || !arrives()) return false;
   }
   return std::fabs(base_.position.y - *last) < kSameFloor;
@@ -109,7 +111,7 @@ void PlannerMotion::putTo(double share) {
   base_.yaw = from_.base.yaw + part * turn_;
 }
 
-void PlannerMotion::goTo(double share) {
+bool PlannerMotion::goTo(double share) {
   const SphereBatch robot = env_->robotAt(base_);
   std::swap(env_->robot_, robot_before_);
   SphereBatch held;
@@ -124,9 +126,11 @@ void PlannerMotion::goTo(double share) {
     const double longer = kAimedMove / std::max(static_cast<double>(move), kAimedMove / 2);
     next_ = std::min(most_share_, (share - share_) * longer);
     if (move <= 1) break;
+    if (next_ < kLeastShare) return false;
     share = share_ + next_;
   }
   share_ = share;
+  return true;
 }
 
 bool PlannerMotion::followFloor(const Vec3& before) {

@@ -27,8 +27,8 @@ class PlannerMotion {
   /// Puts the spheres to a share of the way, and the base but for its height.
   void putTo(double share);
   /// Puts them to the next place, or to a nearer one where that is too far. Says in next_ how far
-  /// the one after may be.
-  void goTo(double share);
+  /// the one after may be. False where rounding leaves no place that is near enough.
+  [[nodiscard]] bool goTo(double share);
   /// From where the base was.
   [[nodiscard]] bool followFloor(const Vec3& before);
   /// Whether the place is free; then, what is free there counts.

@@ -157,6 +157,20 @@ TEST_F(PlanningSceneInTheSmallHome, MovesBasesAlongTheFloorOnly) {
   }
 }
 
+TEST_F(PlanningSceneInTheSmallHome, MovesNothingFreelyWhereRoundingMovesItTooFar) {
+  const BasePlace here = scene_.baseOf(state());
+  const auto isTurnFree = [&](float start) {
+    std::vector<float> joints = state().joint_positions;
+    joints[kShoulder] = start;
+    std::vector<float> turned = joints;
+    turned[kShoulder] += 1;
+    return scene_.isMotionFree({here, joints}, {here, turned});
+  };
+  EXPECT_TRUE(isTurnFree(0));
+  // Neighboring floats are 0.06 rad apart here: more than a sphere's radius at the hand.
+  EXPECT_FALSE(isTurnFree(9e5F));
+}
+
 TEST_F(PlanningSceneInTheSmallHome, CopiesAnswerForThemselves) {
   const BasePlace base = scene_.baseOf(state());
   PlanningScene copy(scene_);
