@@ -28,14 +28,6 @@ constexpr float kAlmost = 0.95F;
 
 float lengthOf(const Vec3& v) { return std::sqrt(dot(v, v)); }
 
-RenderCamera lookingAt(const Vec3& target, const Vec3& from) {
-  const Vec3 way = target - from;
-  const Vec3 ahead = way * (1 / lengthOf(way));
-  const Vec3 level = cross(ahead, {0, 1, 0});
-  const Vec3 right = level * (1 / lengthOf(level));
-  return {{ahead, cross(right, ahead), right, from}, kFov};
-}
-
 /// All around a ball. The first ones look across the way from `robot` to it, where an arm that
 /// reaches for it hides little.
 std::vector<RenderCamera> camerasAround(const Vec3& center, float radius, const Vec3& robot) {
@@ -50,7 +42,7 @@ std::vector<RenderCamera> camerasAround(const Vec3& center, float radius, const 
             across + static_cast<float>(side) * 2 * std::numbers::pi_v<float> / kSides;
         const float up = degrees * kRadians;
         const Vec3 away{std::cos(up) * std::cos(turn), std::sin(up), std::cos(up) * std::sin(turn)};
-        cameras.push_back(lookingAt(center, center + away * (meters + 2 * radius)));
+        cameras.push_back({lookAt(center + away * (meters + 2 * radius), center), kFov});
       }
     }
   }

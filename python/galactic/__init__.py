@@ -34,6 +34,7 @@ try:
         Simulator,
         World,
         __version__,
+        look_at,
     )
 except ModuleNotFoundError as error:
     if error.name != "galactic._core":
@@ -89,5 +90,6 @@ __all__ = [
     "VectorEnv",
     "World",
     "__version__",
+    "look_at",
     "reached",
 ]

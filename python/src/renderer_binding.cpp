@@ -90,6 +90,41 @@ std::vector<RigidTransform> placesOf(const py::handle& value) {
   return places;
 }
 
+/// Points of the shape (3,) or (n, 3).
+std::vector<Vec3> someOrOnePoint(py::array given, const char* name) {
+  if (given.ndim() == 1 && given.shape(0) == 3) given = given.reshape({1, 3});
+  return pointsOf(given, name);
+}
+
+/// What errors call it is its name in Python.
+RigidTransform cameraLooking(const Vec3& eye, const Vec3& target) try {
+  return lookAt(eye, target);
+} catch (const ErrorException& refused) {
+  throw ErrorException{{refused.error().code, "look_at", refused.error().message}};
+}
+
+/// look_at() of Python.
+py::array_t<float> matricesOfLooks(const py::object& eye, const py::object& target) {
+  const py::array given_eye = numbersIn(eye, "eye");
+  const py::array given_target = numbersIn(target, "target");
+  const std::vector<Vec3> eyes = someOrOnePoint(given_eye, "eye");
+  const std::vector<Vec3> targets = someOrOnePoint(given_target, "target");
+  if (eyes.size() != targets.size() && eyes.size() != 1 && targets.size() != 1) {
+    throw py::value_error(fmt::format(
+        "found {} points as eye and {} as target, expected as many of both, or one of either",
+        eyes.size(), targets.size()));
+  }
+  const std::size_t count = eyes.size() == 1 ? targets.size() : eyes.size();
+  py::array_t<float> matrices({static_cast<py::ssize_t>(count), py::ssize_t{4}, py::ssize_t{4}});
+  for (std::size_t n = 0; n < count; ++n) {
+    const RigidTransform camera =
+        cameraLooking(eyes[eyes.size() == 1 ? 0 : n], targets[targets.size() == 1 ? 0 : n]);
+    writeMatrix(worldFromImageAxes({camera}), matrices.mutable_data() + 16 * n);
+  }
+  const bool is_one = given_eye.ndim() == 1 && given_target.ndim() == 1;
+  return is_one ? matrices.reshape({4, 4}) : matrices;
+}
+
 py::object nameOf(ColorFormat color) {
   if (color == ColorFormat::kNone) return py::none();
   return py::str(color == ColorFormat::kRgb8 ? "rgb" : "rgba");
@@ -351,6 +386,13 @@ void bindCamera(py::class_<Renderer>& type) {
 
 void bindRenderer(py::module_& module) {
   bindDeviceArray(module);
+  module.def(
+      "look_at", &matricesOfLooks, py::arg("eye"), py::arg("target"),
+      "The world_from_camera of a camera at `eye` that looks at `target`: float32 (4, 4), or\n"
+      "(n, 4, 4) where either of them is several points.\n\n"
+      "eye, target: points in the world, meters, (3,) or (n, 3). The camera is level: up in the\n"
+      "world is up in its images. If it looks straight down, +X is up there, and -X if it looks\n"
+      "straight up. Error where the two are the same point.");
   py::class_<Renderer> type(module, "Renderer");
   type.def(
       py::init([](const py::object& simulator, const py::kwargs& keywords) {

@@ -118,7 +118,7 @@ TEST_F(RenderCli, ReportsEveryOptionOfTheCommandLine) {
   }
   EXPECT_GT(options, 90U);
   EXPECT_EQ(plain["steps"], 3);
-  for (const char* untyped : {"render", "device", "fov", "near", "frames", "record"}) {
+  for (const char* untyped : {"render", "device", "fov", "near", "eye", "frames", "record"}) {
     EXPECT_TRUE(plain[untyped].is_null()) << untyped;
   }
 }
@@ -265,6 +265,48 @@ TEST_F(RenderCli, RefusesNoiseThatNobodyWouldSee) {
     const ProgramRun result = runBare(all);
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_EQ(result.err, "galactic-run: command line: " + refusal.message + "; see --help\n");
+  }
+}
+
+TEST_F(RenderCli, DrawsFromAPlaceInTheHome) {
+  const ProgramRun result =
+      run({"--render", "rgbd", "--size", "24x16", "--eye", "0.3,2.2,0.3", "--look-at", "2,0.3,2",
+           "--frames", "room", "--frame-every", "8", "--report", "room.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json camera = json::parse(content("room/env_0001_step_000016_camera.json"));
+  const json& matrix = camera["world_from_camera"];
+  EXPECT_NEAR(matrix[0][3].get<double>(), 0.3, 1e-6);
+  EXPECT_NEAR(matrix[1][3].get<double>(), 2.2, 1e-6);
+  EXPECT_NEAR(matrix[2][3].get<double>(), 0.3, 1e-6);
+  EXPECT_LT(matrix[1][2].get<double>(), 0) << "it looks down";
+  EXPECT_EQ(content("room/env_0001_step_000016_camera.json"),
+            content("room/env_0000_step_000000_camera.json"));
+  EXPECT_NE(content("room/env_0000_step_000016_rgb.png"),
+            content("room/env_0000_step_000000_rgb.png"))
+      << "the robot moves";
+  const json options = json::parse(content("room.json"))["options"];
+  EXPECT_EQ(options["eye"], "0.3,2.2,0.3");
+  EXPECT_EQ(options["look-at"], "2,0.3,2");
+}
+
+TEST_F(RenderCli, RefusesTwoPlacesOfOneCamera) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refusals{
+      {{"--eye", "1,2,3"}, "--eye needs --look-at, what the camera looks at; add it"},
+      {{"--look-at", "1,2,3"}, "--look-at needs --eye, where the camera stands; add it"},
+      {{"--eye", "1,2,3", "--look-at", "1,2.0,3"},
+       "--look-at is where --eye is, at 1,2,3; give another point"},
+      {{"--eye", "1,2,3", "--look-at", "0,0,0", "--camera", "head"},
+       "--camera places the camera on the robot, and --eye in the home; leave one out"},
+      {{"--eye", "1,2,3", "--look-at", "0,0,0", "--camera-rpy", "0,9,0"},
+       "--camera-rpy places the camera on the robot, and --eye in the home; leave one out"},
+      {{"--eye", "1,2", "--look-at", "0,0,0"},
+       "--eye: found 1,2, expected three numbers from -10000 to 10000 with commas between"}};
+  for (const auto& [arguments, message] : refusals) {
+    std::vector<std::string> all{"world.pack", "--render", "rgb"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const ProgramRun result = runBare(all);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.err, "galactic-run: command line: " + message + "; see --help\n");
   }
 }
 

@@ -5,7 +5,15 @@ import json
 import numpy as np
 import pytest
 
-from galactic import DemonstrationWriter, Error, ErrorCode, Renderer, Simulator, VectorEnv
+from galactic import (
+    DemonstrationWriter,
+    Error,
+    ErrorCode,
+    Renderer,
+    Simulator,
+    VectorEnv,
+    look_at,
+)
 from galactic.demonstrations import INDEX
 
 ENVS = 6
@@ -62,6 +70,59 @@ def test_a_camera_where_one_on_the_robot_is_draws_the_same_bytes(simulator, draw
     require_same(made_there.render(), wanted)
     require_same(made_there.render(envs=[4, 1]), {n: one[[4, 1]] for n, one in wanted.items()})
     assert wanted["depth"].any()
+
+
+def test_a_camera_looks_at_a_point(simulator):
+    room = look_at(IN_CORNER, (2.0, 0.3, 2.0))
+    assert room.shape == (4, 4) and room.dtype == np.float32
+    np.testing.assert_allclose(room, ROOM, atol=1e-6)
+    renderer = Renderer(simulator, **IMAGES, world_from_camera=room)
+    np.testing.assert_array_equal(renderer.world_from_camera[0], room)
+    # The point that it looks at is in the middle of its image.
+    in_camera = np.linalg.inv(room) @ [2.0, 0.3, 2.0, 1]
+    pixel = renderer.intrinsics @ (in_camera[:3] / in_camera[2])
+    np.testing.assert_allclose(pixel[:2], [32, 24], atol=1e-3)
+
+
+def test_several_cameras_look_at_points():
+    eyes = np.linspace([0.3, 1.8, 0.3], [2.7, 2.2, 0.3], 3)
+    at = np.array([1.5, 0.5, 1.6])
+    wanted = np.stack([looking(eye, at) for eye in eyes])
+    np.testing.assert_allclose(look_at(eyes, at), wanted, atol=1e-6)
+    np.testing.assert_allclose(look_at(eyes, [at] * 3), wanted, atol=1e-6)
+    back = np.stack([looking(at, eye) for eye in eyes])
+    np.testing.assert_allclose(look_at(at, eyes), back, atol=1e-6)
+    assert look_at(eyes[:1], at).shape == (1, 4, 4)
+    assert look_at(np.empty((0, 3)), at).shape == (0, 4, 4)
+
+
+def test_a_camera_that_looks_down_has_x_up_in_its_image():
+    down = look_at((1, 2, 3), (1, 0, 3))
+    np.testing.assert_array_equal(down[:3, 2], [0, -1, 0])
+    np.testing.assert_array_equal(down[:3, 1], [-1, 0, 0])
+    up = look_at((1, 2, 3), (1, 4, 3))
+    np.testing.assert_array_equal(up[:3, 2], [0, 1, 0])
+    assert np.linalg.det(up[:3, :3]) == 1
+
+
+@pytest.mark.parametrize(
+    ("eye", "target", "error", "message"),
+    [
+        (
+            (1, 2, 3),
+            (1, 2, 3),
+            Error,
+            r"look_at: found the eye \(1, 2, 3\) and the target \(1, 2, 3\)",
+        ),
+        ((1, 2, np.nan), (1, 2, 3), ValueError, "eye"),
+        ((1, 2), (1, 2, 3), ValueError, r"eye has the shape \(2,\), expected \(n, 3\)"),
+        (np.ones((2, 3)), np.zeros((3, 3)), ValueError, "found 2 points as eye and 3 as target"),
+        ("here", (1, 2, 3), TypeError, "eye"),
+    ],
+)
+def test_what_cannot_be_looked_at_is_refused(eye, target, error, message):
+    with pytest.raises(error, match=message):
+        look_at(eye, target)
 
 
 def test_cameras_of_all_envs_stand_in_one_place_or_each_in_its_own(simulator):

@@ -52,21 +52,21 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> sizeOf(std::string_view t
   return std::pair(*width, *height);
 }
 
-/// "0.1,0,-2": three numbers of -most to most.
-std::optional<std::array<float, 3>> threeOf(std::string_view text, double most) {
+}  // namespace
+
+std::optional<std::array<float, 3>> CommandLineVisitor::threeOf(std::string_view text, float most) {
+  const auto limit = static_cast<double>(most);
   std::array<float, 3> numbers{};
   for (std::size_t n = 0; n < numbers.size(); ++n) {
     const std::size_t end = n + 1 < numbers.size() ? text.find(',') : text.size();
     if (end == std::string_view::npos) return {};
     const std::string_view one = text.substr(0, end);
-    if (!numberFault(one, -most, most).empty()) return {};
+    if (!numberFault(one, -limit, limit).empty()) return {};
     std::from_chars(one.data(), one.data() + one.size(), numbers[n]);
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return numbers;
 }
-
-}  // namespace
 
 void CommandLineVisitor::seed(std::string_view name, std::uint64_t& field, std::string_view help) {
   add(name, field, help)
@@ -89,20 +89,13 @@ void CommandLineVisitor::wish(std::string_view name, float& field, Within<float>
 
 void CommandLineVisitor::three(std::string_view name, std::array<float, 3>& field, float most,
                                Shown shown, std::string_view help) {
-  const auto limit = static_cast<double>(most);
-  const CLI::Validator are_three(
-      [limit](const std::string& text) {
-        if (threeOf(text, limit)) return std::string();
-        return fmt::format("found {}, expected three numbers from {} to {} with commas between",
-                           text, -limit, limit);
-      },
-      "", "three");
-  const auto set = [&field, limit](const std::string& text) {
-    if (const auto three = threeOf(text, limit)) field = *three;
-  };
-  addRead(name, set, help)
-      ->check(are_three)
+  addThree(name, field, most, help)
       ->option_text(fmt::format("{} [{}]", shown.value, fmt::join(field, ",")));
+}
+
+void CommandLineVisitor::point(std::string_view name, std::optional<std::array<float, 3>>& field,
+                               float most, Shown shown, std::string_view help) {
+  addThree(name, field, most, help)->option_text(shown.value);
 }
 
 void CommandLineVisitor::drawn(std::string_view name, DrawnNumber& field, const Span& within,

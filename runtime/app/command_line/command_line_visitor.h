@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +39,8 @@ class CommandLineVisitor {
             std::string_view help);
   void three(std::string_view name, std::array<float, 3>& field, float most, Shown shown,
              std::string_view help);
+  void point(std::string_view name, std::optional<std::array<float, 3>>& field, float most,
+             Shown shown, std::string_view help);
   void drawn(std::string_view name, DrawnNumber& field, const Span& within, std::string_view help);
   void drawn(std::string_view name, DrawnCount& field, std::uint32_t most, std::string_view help);
   void heights(std::string_view name, std::vector<Span>& field, const Span& within,
@@ -74,6 +77,8 @@ class CommandLineVisitor {
  private:
   /// As it is typed, with its letter if it has one.
   static std::string dashed(std::string_view name);
+  /// "0.1,0,-2": three numbers of -most to most.
+  static std::optional<std::array<float, 3>> threeOf(std::string_view text, float most);
 
   template <class T>
   CLI::Option* add(std::string_view name, T& field, std::string_view help) {
@@ -102,6 +107,13 @@ class CommandLineVisitor {
     };
     const auto set = [&field, parse](const std::string& text) { field = *parse(text); };
     return addRead(name, set, help)->check(fault_of);
+  }
+  template <class T>
+  CLI::Option* addThree(std::string_view name, T& field, float most, std::string_view help) {
+    const auto parse = [most](const std::string& text) { return threeOf(text, most); };
+    return addParsed(name, field, parse,
+                     fmt::format("three numbers from {} to {} with commas between", -most, most),
+                     help);
   }
   template <class T>
   CLI::Option* addNamed(std::string_view name, T& field, std::span<const Named<T>> names,

@@ -33,6 +33,25 @@ std::string noiseFault(const DrawingOptions& drawing) {
   return {};
 }
 
+/// Of a camera that stands in the home.
+std::string eyeFault(const DrawingOptions& drawing, const CLI::App& app) {
+  if (drawing.eye.has_value() != drawing.look_at.has_value()) {
+    return drawing.eye ? "--eye needs --look-at, what the camera looks at; add it"
+                       : "--look-at needs --eye, where the camera stands; add it";
+  }
+  if (!drawing.eye) return {};
+  if (drawing.eye == drawing.look_at) {
+    return fmt::format("--look-at is where --eye is, at {}; give another point",
+                       fmt::join(*drawing.eye, ","));
+  }
+  for (const char* name : {"--camera", "--camera-position", "--camera-rpy"}) {
+    if (app.count(name) == 0) continue;
+    return fmt::format("{} places the camera on the robot, and --eye in the home; leave one out",
+                       name);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app) {
@@ -50,6 +69,7 @@ std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app) {
   if (drawing.backend == RenderBackend::kSoft && !drawing.device.empty()) {
     return "--device applies to --backend cuda and gl only; leave it out";
   }
+  if (std::string fault = eyeFault(drawing, app); !fault.empty()) return fault;
   const bool shapes_pictures = app.count("--frame-every") + app.count("--frame-envs") > 0;
   if (!drawing.makesPictures() && (drawing.debug_view || shapes_pictures)) {
     return fmt::format("{} applies to pictures only; add --frames, --contact-sheet or --video",

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -29,6 +30,10 @@ struct DrawingOptions {
   std::array<float, 3> camera_position{};
   std::array<float, 3> camera_rpy_degrees{};
   float near = 0;
+  /// Where it stands in the home and what it looks at, points in the world, meters, instead of the
+  /// three above that place it on the robot: both, or none.
+  std::optional<std::array<float, 3>> eye;
+  std::optional<std::array<float, 3>> look_at;
   ImageNoise noise;
   CameraJitter jitter;
 
@@ -80,7 +85,8 @@ inline constexpr const char* kDrawingGroup = "Rendering";
 /// the table of simulations (option_table.h), and
 ///   word(name, field, words, help), size(name, drawing, help), text(name, field, Shown, help),
 ///   wish(name, field, Within, Shown, help), of a number that is 0 where nobody wishes one,
-///   three(name, field, most, Shown, help), sensor(SensorOption, values).
+///   three(name, field, most, Shown, help), point(name, field, most, Shown, help),
+///   sensor(SensorOption, values).
 template <class Visitor>
 void visitDrawingOptions(DrawingOptions& d, Visitor& v) {
   constexpr Shown kCameras{"head|follow|top|LINK"};
@@ -99,6 +105,10 @@ void visitDrawingOptions(DrawingOptions& d, Visitor& v) {
           "The camera's place there: ahead, left, up, meters");
   v.three("camera-rpy", d.camera_rpy_degrees, 360, Shown{"R,P,Y"},
           "How it is turned there: roll, pitch, yaw, degrees");
+  v.point("eye", d.eye, kFarthestPlace, Shown{"X,Y,Z"},
+          "Stand there in the home instead of on the robot: a point in the world, meters");
+  v.point("look-at", d.look_at, kFarthestPlace, Shown{"X,Y,Z"},
+          "The point in the world that the camera at --eye looks at, meters");
   v.wish("near", d.near, Within<float>{kLeastNear, kMostNear}, Shown{"METERS"},
          "What is nearer than this is not drawn, meters");
   for (const auto& option : kImageNoiseOptions) v.sensor(option, d.noise);

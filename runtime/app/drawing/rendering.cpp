@@ -102,6 +102,22 @@ RenderOptions rendererOptions(const RunOptions& run, float near) {
   return options;
 }
 
+CameraWish cameraWish(const DrawingOptions& drawing) {
+  CameraWish wish{.name = drawing.camera,
+                  .fov_degrees = drawing.fov_degrees,
+                  .position = drawing.camera_position,
+                  .rpy_degrees = drawing.camera_rpy_degrees,
+                  .near = drawing.near,
+                  .jitter = drawing.jitter,
+                  .options = {.places = "--eye"}};
+  if (drawing.eye) {
+    const auto point = [](const std::array<float, 3>& p) { return Vec3{p[0], p[1], p[2]}; };
+    wish.name.clear();
+    wish.world_from_camera = {lookAt(point(*drawing.eye), point(*drawing.look_at))};
+  }
+  return wish;
+}
+
 /// The debug view of some envs.
 class DebugBatch {
  public:
@@ -163,13 +179,7 @@ Rendering& Rendering::operator=(Rendering&&) noexcept = default;
 Result<Rendering> Rendering::create(const World& world, const BatchSimulator& simulator,
                                     const RunOptions& options, std::size_t shown) {
   const DrawingOptions& drawing = options.drawing;
-  ASSIGN_OR_RETURN(const ChosenCamera camera,
-                   chooseCamera(world.robot(), {.name = drawing.camera,
-                                                .fov_degrees = drawing.fov_degrees,
-                                                .position = drawing.camera_position,
-                                                .rpy_degrees = drawing.camera_rpy_degrees,
-                                                .near = drawing.near,
-                                                .jitter = drawing.jitter}));
+  ASSIGN_OR_RETURN(const ChosenCamera camera, chooseCamera(world.robot(), cameraWish(drawing)));
   ASSIGN_OR_RETURN(WorldModels models, WorldModels::from(world));
   auto parts = std::make_unique<Parts>(world, std::move(models));
   ASSIGN_OR_RETURN(parts->images,

@@ -3,6 +3,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +39,10 @@ class OptionWriter {
   void three(std::string_view name, const std::array<float, 3>& value, float, Shown,
              std::string_view) {
     json_.text(name, fmt::format("{}", fmt::join(value, ",")));
+  }
+  void point(std::string_view name, const std::optional<std::array<float, 3>>& value, float,
+             Shown shown, std::string_view help) {
+    value ? three(name, *value, 0, shown, help) : json_.raw(name, kNone);
   }
   void flag(std::string_view name, const Switch& value, std::string_view) {
     json_.truth(name, value.field == value.when_typed);

@@ -80,6 +80,12 @@ struct RenderCamera {
 [[nodiscard]] RigidTransform worldFromCameraAxes(
     const RigidTransform& world_from_image_axes) noexcept;
 
+/// RenderCamera::world_from_camera of a camera at `eye` that looks at `target`, level: what is up
+/// in the world is up in its image; +X where it looks straight down, -X straight up. Points in the
+/// world, meters. Throws ErrorException with kInvalidInput where the two are the same or not
+/// finite.
+[[nodiscard]] RigidTransform lookAt(const Vec3& eye, const Vec3& target);
+
 /// Its camera matrix K, row by row, for images of this size: (column, row, 1) of a point is
 /// K (x, y, z) / z in the axes of images; the middle of the first pixel is (0.5, 0.5).
 [[nodiscard]] std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t width,

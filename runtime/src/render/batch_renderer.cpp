@@ -118,6 +118,25 @@ RigidTransform worldFromCameraAxes(const RigidTransform& world_from_image_axes) 
   return {ahead, down * -1.0F, right, origin};
 }
 
+RigidTransform lookAt(const Vec3& eye, const Vec3& target) {
+  const Vec3 way = target - eye;
+  const float length = std::sqrt(dot(way, way));
+  if (!(length > 0 && std::isfinite(length))) {
+    detail::refuseCall(
+        "lookAt",
+        fmt::format("found the eye ({}, {}, {}) and the target ({}, {}, {}); expected two "
+                    "points of which one can be seen from the other",
+                    eye.x, eye.y, eye.z, target.x, target.y, target.z));
+  }
+  const Vec3 ahead = way * (1 / length);
+  // Sines of angles from the vertical whose heading is rounding alone.
+  constexpr float kSteepest = 1e-6F;
+  const Vec3 level = cross(ahead, {0, 1, 0});
+  const float slant = std::sqrt(dot(level, level));
+  const Vec3 right = slant > kSteepest ? level * (1 / slant) : Vec3{0, 0, 1};
+  return {ahead, cross(right, ahead), right, eye};
+}
+
 std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t width,
                                   std::uint32_t height) noexcept {
   const float half_width = static_cast<float>(width) / 2;

@@ -96,6 +96,31 @@ TEST(CameraChoice, RefusesPlacesThatAreNone) {
   }
 }
 
+TEST(CameraChoice, ACameraThatLooksAtAPointIsLevel) {
+  const RigidTransform along = lookAt({1, 2, 3}, {5, 2, 3});
+  EXPECT_EQ(along.x_axis, (Vec3{1, 0, 0}));
+  EXPECT_EQ(along.y_axis, (Vec3{0, 1, 0}));
+  EXPECT_EQ(along.z_axis, (Vec3{0, 0, 1}));
+  EXPECT_EQ(along.origin, (Vec3{1, 2, 3}));
+  // 3, 4 and 12 m away: 13.
+  const RigidTransform slanted = lookAt({0, 12, 0}, {3, 0, -4});
+  EXPECT_NEAR(slanted.x_axis.x, 3.0 / 13, 1e-6);
+  EXPECT_NEAR(slanted.x_axis.y, -12.0 / 13, 1e-6);
+  EXPECT_EQ(slanted.z_axis.y, 0);
+  EXPECT_GT(slanted.y_axis.y, 0);
+  EXPECT_TRUE(checkPlaces("", std::array{slanted}));
+  // Straight down and up, ahead is up in the image and down.
+  EXPECT_EQ(lookAt({1, 2, 3}, {1, 0, 3}).y_axis, (Vec3{1, 0, 0}));
+  EXPECT_EQ(lookAt({1, 2, 3}, {1, 4, 3}).y_axis, (Vec3{-1, 0, 0}));
+  EXPECT_THAT(
+      [] {
+        (void)lookAt({1, 2, 3}, {1, 2, 3});
+      },
+      testing::ThrowsMessage<ErrorException>(
+          "lookAt: found the eye (1, 2, 3) and the target (1, 2, 3); expected two points of "
+          "which one can be seen from the other"));
+}
+
 TEST(CameraChoice, CamerasStandInTheWorldOrOnTheRobot) {
   const test::SmallHome home;
   const Robot& robot = home.world().robot();
