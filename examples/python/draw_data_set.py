@@ -21,12 +21,7 @@ def places_to_see(targets):
     away /= np.linalg.norm(away, axis=-1, keepdims=True)
     from_there = (targets + 0.3 * away)[:, np.newaxis]
     free = galactic.RayCaster.cast_rays_in_envs(homes, from_there, away[:, np.newaxis], 1.0)
-    places = np.tile(np.eye(4), (homes.num_envs, 1, 1))
-    places[:, :3, 2] = -away  # ahead
-    places[:, :3, 0] = np.stack([np.sin(turns), np.zeros_like(turns), -np.cos(turns)], axis=-1)
-    places[:, :3, 1] = np.cross(places[:, :3, 2], places[:, :3, 0])  # down
-    places[:, :3, 3] = targets + (0.3 + 0.9 * free.distance) * away
-    return places
+    return galactic.look_at(targets + (0.3 + 0.9 * free.distance) * away, targets)
 
 
 def boxes_of(eye, states):
