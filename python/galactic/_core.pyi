@@ -485,9 +485,7 @@ class ScriptedPolicy:
     @property
     def troubles(self) -> NDArray[np.uint8]: ...  # (num_envs,), of ScriptedTrouble
 
-def look_at(
-    eye: ArrayLike, target: ArrayLike
-) -> NDArray[np.float32]: ...  # (4, 4) or (n, 4, 4)
+def look_at(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float32]: ...  # (4, 4) or (n, 4, 4)
 def write_policy_pack(
     path: _Path, content: Any, trained_with: Any, source_name: str, source: Any
 ) -> None: ...

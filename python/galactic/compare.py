@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from typing import Optional, Sequence
+from collections.abc import Sequence
 
 from galactic import files
 from galactic.learning.command import EXIT_CODES, OK, Parser, lost_output, named_path, told
@@ -31,7 +31,7 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def main(arguments: Optional[Sequence[str]] = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     options = make_parser().parse_args(arguments)
     return told("galactic.compare", lambda: _compare(options))
 

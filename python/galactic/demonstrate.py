@@ -7,7 +7,7 @@ import dataclasses
 import hashlib
 import pathlib
 import sys
-from typing import Optional, Sequence
+from collections.abc import Sequence
 
 import torch
 
@@ -118,7 +118,7 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def main(arguments: Optional[Sequence[str]] = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     options = make_parser().parse_args(arguments)
     return told("galactic.demonstrate", lambda: _demonstrate(options))
 
@@ -169,7 +169,7 @@ def _episodes_of_part(settings: Settings) -> int:
     return EPISODES_WITH_IMAGES if settings.sight else EPISODES_OF_PART
 
 
-def _settings(options: argparse.Namespace) -> tuple[Settings, Optional[own_tasks.MakeTask]]:
+def _settings(options: argparse.Namespace) -> tuple[Settings, own_tasks.MakeTask | None]:
     """Those of homes to play in, and what makes a task of one's own in them."""
     given = given_options(options)
     own_tasks.require_use(given)

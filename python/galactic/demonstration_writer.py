@@ -7,7 +7,7 @@ import pathlib
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from types import TracebackType
-from typing import Any, Optional, Union
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,11 +65,11 @@ class DemonstrationWriter:
 
     def __init__(
         self,
-        folder: Union[str, os.PathLike],
+        folder: str | os.PathLike,
         env: VectorEnv,
         *,
         expert: str,
-        world: Union[str, os.PathLike] = "",
+        world: str | os.PathLike = "",
     ) -> None:
         about = _about(env, expert, os.fspath(world))
         self._folder = pathlib.Path(folder)
@@ -102,7 +102,7 @@ class DemonstrationWriter:
         actions: Any,
         rewards: NDArray[np.floating],
         infos: Mapping[str, Any],
-        by_expert: Optional[NDArray[np.bool_]] = None,
+        by_expert: NDArray[np.bool_] | None = None,
     ) -> None:
         """Takes in a step of all envs: what was seen before it, what was done, and what env.step() said of it.
         Arrays may be overwritten afterwards; of an env without copies, keep a copy of what was seen.
@@ -153,9 +153,9 @@ class DemonstrationWriter:
 
     def __exit__(
         self,
-        kind: Optional[type[BaseException]],
-        error: Optional[BaseException],
-        trace: Optional[TracebackType],
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         self.close()
 
@@ -211,7 +211,7 @@ class EpisodeRecorder:
         self,
         observations: Observations,
         actions: NDArray[np.float32],
-        by_expert: Optional[NDArray[np.bool_]],
+        by_expert: NDArray[np.bool_] | None,
         playing: NDArray[np.bool_],
     ) -> None:
         """Before a step: what is seen and about to be done, rows of all envs, of which those count that are
@@ -241,7 +241,7 @@ class EpisodeRecorder:
         for env in envs:
             self._under_way.pop(int(env), None)
 
-    def _ended(self, env: int, infos: Mapping[str, Any]) -> Optional[Demonstration]:
+    def _ended(self, env: int, infos: Mapping[str, Any]) -> Demonstration | None:
         """The episode that ended in an env; None where its beginning is not known."""
         kept, final = self._under_way.pop(env), infos["final_info"]
         length = int(final["episode"]["l"][env])

@@ -26,7 +26,7 @@ import functools
 import json
 import pathlib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Optional, overload
+from typing import Any, overload
 
 import numpy as np
 
@@ -69,9 +69,9 @@ class Demonstration:
     """bool [L]: whether the expert did it."""
     rewards: np.ndarray
     """float32 [L]: what it paid."""
-    rgb: Optional[np.ndarray] = None
+    rgb: np.ndarray | None = None
     """uint8 [L + 1, height, width, 3], where there are color images."""
-    depth: Optional[np.ndarray] = None
+    depth: np.ndarray | None = None
     """float16 [L + 1, height, width], meters, where there are depth images."""
 
     def __len__(self) -> int:
@@ -89,7 +89,7 @@ class About:
 
     world: str
     """The world pack."""
-    episodes: Optional[int]
+    episodes: int | None
     """How many of its episodes there are to be, each once; None where each may have been played often."""
     expert: str
     """Who acts: `scripted`, a policy's file, or what a DemonstrationWriter was told."""
@@ -97,7 +97,7 @@ class About:
     """Names and sizes of the parts of a row of observations, in order."""
     options: dict[str, Any]
     """Keywords of galactic.VectorEnv that give the same observations."""
-    camera: Optional[dict[str, Any]]
+    camera: dict[str, Any] | None
     """Its `images`, that give the same images but for noise; None where there are none."""
     meanings: dict[str, Any]
     """Options of the simulation by which numbers of these parts mean one thing or another."""
@@ -133,7 +133,7 @@ class Demonstrations(Sequence[Demonstration]):
     it has those that are there.
     """
 
-    def __init__(self, folder: "str | pathlib.Path", *more: "str | pathlib.Path") -> None:
+    def __init__(self, folder: str | pathlib.Path, *more: str | pathlib.Path) -> None:
         self.folders = [pathlib.Path(one) for one in (folder, *more)]
         self.abouts = [read_about(one) for one in self.folders]
         """What each folder holds."""
@@ -237,7 +237,7 @@ def _require_equal(folder: pathlib.Path, name: str, found: Any, wanted: Any) -> 
         raise Error(ErrorCode.INVALID_INPUT, str(folder / INDEX), message)
 
 
-def _require_once(parts: "list[_Part]", about: About, folder: pathlib.Path) -> None:
+def _require_once(parts: list[_Part], about: About, folder: pathlib.Path) -> None:
     """Raises Error where parts are not of one making."""
     episodes = _joined([part.episodes for part in parts], np.int32)
     if about.episodes is None:
@@ -325,7 +325,7 @@ class _Part:
         ending = EpisodeEnd(int(self.endings[number]))
         return Demonstration(int(self.episodes[number]), ending, **arrays)
 
-    def _load(self, name: str, kind: Any, shape: tuple[Optional[int], ...]) -> np.ndarray:
+    def _load(self, name: str, kind: Any, shape: tuple[int | None, ...]) -> np.ndarray:
         """An array of this type and shape; None stands for any size."""
         file = self._folder / f"{name}.npy"
         try:

@@ -6,7 +6,8 @@ import argparse
 import json
 import pathlib
 import sys
-from typing import Any, Optional, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import torch
 
@@ -149,7 +150,7 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def main(arguments: Optional[Sequence[str]] = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     options = make_parser().parse_args(arguments)
     return told("galactic.evaluate", lambda: _evaluate(options))
 

@@ -8,7 +8,7 @@ import fcntl
 import os
 import pathlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, Optional
+from typing import Any
 
 from galactic._core import ErrorCode
 from galactic.errors import Error
@@ -35,7 +35,7 @@ def unwritable(file: pathlib.Path, error: OSError) -> Error:
 
 
 def require_apart(
-    outputs: Mapping[str, Optional[pathlib.Path]], inputs: Iterable[pathlib.Path]
+    outputs: Mapping[str, pathlib.Path | None], inputs: Iterable[pathlib.Path]
 ) -> None:
     """Raises galactic.Error where an output, by the option that names it, would replace one of the
     inputs or another output. None: there is no such file."""

@@ -12,8 +12,9 @@ import contextlib
 import os
 import signal
 import threading
+from collections.abc import Callable, Iterator, Mapping
 from types import FrameType
-from typing import Any, Callable, Iterator, Mapping, Optional
+from typing import Any
 
 from galactic import programs
 
@@ -31,7 +32,7 @@ def end_while_loading() -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
 
-def _end(number: int, frame: Optional[FrameType]) -> None:
+def _end(number: int, frame: FrameType | None) -> None:
     os._exit(INTERRUPTED)
 
 

@@ -10,7 +10,6 @@ import importlib.util
 import re
 import resource
 import sys
-from typing import Optional
 
 from galactic.streams import put
 
@@ -27,7 +26,7 @@ _DEBIAN = {"numpy": "python3-numpy", "torch": "python3-torch"}
 """The libraries of all programs, and the packages that have them."""
 
 
-def loading() -> Optional[str]:
+def loading() -> str | None:
     """`galactic.train` where Python is about to run it, as in `python3 -m galactic.train`; None where
     somebody else imports the package."""
     # This is what Python has there until it has found the module of -m.

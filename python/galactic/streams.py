@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import os
-from typing import Optional, TextIO
+from typing import TextIO
 
 
-def put(stream: Optional[TextIO], text: str) -> bool:
+def put(stream: TextIO | None, text: str) -> bool:
     """Writes `text` at once. Whether the stream has taken it; None, which Python has for a stream that
     was closed from the start, takes nothing."""
     if stream is None:

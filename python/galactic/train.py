@@ -7,7 +7,8 @@ import dataclasses
 import os
 import pathlib
 import sys
-from typing import Any, Mapping, Optional, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from galactic import files
 from galactic.learning.command import (
@@ -126,7 +127,7 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def main(arguments: Optional[Sequence[str]] = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     given = sys.argv[1:] if arguments is None else list(arguments)
     parser = make_parser()
     options = parser.parse_args(given)
@@ -188,7 +189,7 @@ def _launched(run: Run, folder: pathlib.Path, command: Sequence[str]) -> int:
     return code
 
 
-def _log_maker(options: argparse.Namespace) -> Optional[log.MakeTaker]:
+def _log_maker(options: argparse.Namespace) -> log.MakeTaker | None:
     """What --log-to names, of the one rank that uses it; before there are ranks, to tell what is wrong with
     it."""
     is_used = options.log_to is not None and os.environ.get("RANK", "0") == "0"
@@ -284,7 +285,7 @@ def _behind(option: str, found: int, done: int) -> str:
     return f"{option}: found {found:,}, and the run has done {done:,} steps; take more, or "
 
 
-def _absolute(path: Optional[pathlib.Path]) -> Optional[pathlib.Path]:
+def _absolute(path: pathlib.Path | None) -> pathlib.Path | None:
     return None if path is None else path.resolve()
 
 

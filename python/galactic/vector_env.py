@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import Enum
-from typing import Any, Literal, NoReturn, Union
+from typing import Any, Literal, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,7 @@ except ImportError:
         DISABLED = "Disabled"
 
 
-Paths = Union[str, os.PathLike, Sequence[Union[str, os.PathLike]]]
+Paths = str | os.PathLike | Sequence[str | os.PathLike]
 
 
 class VectorEnv(_Base):

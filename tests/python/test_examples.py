@@ -1,4 +1,4 @@
-"""The examples of README.md, docs/python.md and examples/python run; learning/test_examples.py has those that learn."""
+"""The examples of README.md, docs/python.md and examples/python run; learning/test_learning_examples.py has those that learn."""
 
 import os
 import pathlib

@@ -7,7 +7,8 @@ import pathlib
 import re
 import sys
 import traceback
-from typing import Any, Callable, NoReturn, Optional
+from collections.abc import Callable
+from typing import Any, NoReturn
 
 import galactic
 from galactic import interrupts
@@ -58,7 +59,7 @@ class Parser(argparse.ArgumentParser):
         if not put(sys.stdout, self.format_help()):
             self.exit(INPUT_OUTPUT, f"{program_of(self.prog)}: {lost_output()}\n")
 
-    def exit(self, status: int = 0, message: Optional[str] = None) -> NoReturn:
+    def exit(self, status: int = 0, message: str | None = None) -> NoReturn:
         put(sys.stderr, message or "")
         sys.exit(status)
 

@@ -8,8 +8,9 @@ import shutil
 import signal
 import subprocess
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Mapping, Optional
+from typing import Any
 
 import galactic
 from galactic.learning.packs.content import export_policy
@@ -31,7 +32,7 @@ class DynamicsRun:
     pack: bytes
     world: pathlib.Path
     recipe: pathlib.Path
-    data: Optional[pathlib.Path] = None
+    data: pathlib.Path | None = None
     arm: str = "motors"
     deterministic: bool = False
     seed: int = 1
@@ -51,7 +52,7 @@ def require_tool() -> str:
     return found
 
 
-def packed(policy: pathlib.Path, network: Optional[str]) -> bytes:
+def packed(policy: pathlib.Path, network: str | None) -> bytes:
     """The policy pack that the tool plays. Raises what export_policy() does, before anything is played."""
     with tempfile.TemporaryDirectory(prefix="galactic-dynamics-") as folder:
         pack = pathlib.Path(folder) / f"{policy.stem}.pack"
@@ -102,7 +103,7 @@ def _typed(name: str) -> str:
     return name.replace("_", "-")
 
 
-def _error_of(code: int) -> "galactic.ErrorCode":
+def _error_of(code: int) -> galactic.ErrorCode:
     known = {int(one): one for one in galactic.ErrorCode.__members__.values()}
     return known.get(code, galactic.ErrorCode.INTERNAL)
 

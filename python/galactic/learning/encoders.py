@@ -4,7 +4,7 @@ one's own (own_networks.py) are such encoders, too."""
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 import torch
 from torch import Tensor, nn
@@ -20,9 +20,9 @@ class Inputs(NamedTuple):
     """What a policy sees, T steps of n envs."""
 
     state: Tensor  # [T, n, S] float32: a row of observations
-    rgb: Optional[Tensor] = None  # [T, n, H, W, 3] uint8
-    depth: Optional[Tensor] = None  # [T, n, H, W] float32, meters
-    previous: Optional[Tensor] = None  # [T, n, A]: the action before, zero where an episode starts
+    rgb: Tensor | None = None  # [T, n, H, W, 3] uint8
+    depth: Tensor | None = None  # [T, n, H, W] float32, meters
+    previous: Tensor | None = None  # [T, n, A]: the action before, zero where an episode starts
 
 
 class FullLinear(nn.Linear):

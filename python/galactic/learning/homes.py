@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Mapping, Optional, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import torch
@@ -79,10 +80,10 @@ class Homes:
     processor adds.
     """
 
-    def __init__(self, world: "galactic.World", settings: Settings, threads: int, *,
+    def __init__(self, world: galactic.World, settings: Settings, threads: int, *,
                  rank: int = 0, ranks: int = 1, order: str = "shuffled",
-                 task: Optional[MakeTask] = None, is_evaluation: bool = False,
-                 onlooker: Optional[Mapping[str, Any]] = None,
+                 task: MakeTask | None = None, is_evaluation: bool = False,
+                 onlooker: Mapping[str, Any] | None = None,
                  device: torch.device = torch.device("cpu")):  # fmt: skip
         keywords = simulation_keywords(settings.simulation)
         images = camera_options(settings) if settings.sight else None
@@ -91,7 +92,7 @@ class Homes:
         if onlooker is not None:
             images = {_ONLOOKER: {**onlooker, "depth": False}, **({_EYE: images} if images else {})}
             self._eye = f"{_EYE}_" if _EYE in images else ""
-        self.shown: Optional[np.ndarray] = None
+        self.shown: np.ndarray | None = None
         """What the onlooker saw last, uint8 [n, height, width, 3], the end of an episode before the
         beginning of the next one."""
 
@@ -132,11 +133,11 @@ class Homes:
         self.decides_terminate = _decides_terminate(settings.terminate, first.options)
         self.halves: Sequence[slice] = [self.env.rows(half) for half in range(settings.halves)]
         self._landings = [_landing(half.stop - half.start) for half in self.halves]
-        self._into: list[Optional[Observation]] = [None] * settings.halves
-        self._staged: list[Optional[Observation]] = [None] * settings.halves
+        self._into: list[Observation | None] = [None] * settings.halves
+        self._staged: list[Observation | None] = [None] * settings.halves
 
     @property
-    def drawn_by(self) -> Optional[str]:
+    def drawn_by(self) -> str | None:
         """What draws the images, in words; None without images."""
         for renderers in self.env.renderers[:1]:
             one = next(iter(renderers.values())) if isinstance(renderers, dict) else renderers

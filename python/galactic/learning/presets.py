@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import pathlib
-from typing import Any, Mapping
+from collections.abc import Mapping
+from typing import Any
 
 from galactic.learning.refusals import SettingsError, did_you_mean
 from galactic.learning.saving.runs import settings_in

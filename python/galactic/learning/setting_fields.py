@@ -5,23 +5,24 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import re
-from typing import Any, Optional, Sequence, Union
+from collections.abc import Sequence
+from typing import Any
 
 from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_scopes import Scope
 
 # A number, or a range from which each episode draws its own.
-Drawn = Union[float, tuple[float, float]]
+Drawn = float | tuple[float, float]
 
 # Of a setting without a limit of its own.
 MOST_WHOLE = 2**53
 MOST_NUMBER = 1e9
 
 
-def setting(default: Any, group: str, text: str, *, low: Optional[float] = None,
-            high: Optional[float] = None, choices: Sequence[str] = (),
+def setting(default: Any, group: str, text: str, *, low: float | None = None,
+            high: float | None = None, choices: Sequence[str] = (),
             may_change: bool = False, may_be_own: bool = False, may_be_range: bool = False,
-            scope: Optional[Scope] = None, is_of_acting: bool = False) -> Any:  # fmt: skip
+            scope: Scope | None = None, is_of_acting: bool = False) -> Any:  # fmt: skip
     """A field of Settings. `may_change`: a resumed run may have another value. `may_be_own`: beside the
     choices it can be the name of code of one's own (own_code.named()). `may_be_range`: it is Drawn. `scope`: None: it
     always has an effect. `is_of_acting`: it has none in a run that imitates demonstrations.
@@ -63,7 +64,7 @@ def _is_a(value: Any, kind: type) -> bool:
     return isinstance(value, numbers.Integral if kind is int else numbers.Real)
 
 
-def require_valid(field: "dataclasses.Field[Any]", value: Any) -> None:
+def require_valid(field: dataclasses.Field[Any], value: Any) -> None:
     """Raises SettingsError for a value that a setting cannot have."""
     low, high = field.metadata["low"], field.metadata["high"]
     choices = field.metadata["choices"]

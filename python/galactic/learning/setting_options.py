@@ -7,7 +7,8 @@ import dataclasses
 import math
 import re
 import shlex
-from typing import Any, Collection, Mapping, Optional
+from collections.abc import Collection, Mapping
+from typing import Any
 
 from galactic.learning.refusals import SettingsError
 from galactic.learning.setting_fields import MOST_WHOLE, Drawn, ends_of, option_name, typed
@@ -15,7 +16,7 @@ from galactic.learning.settings import Settings
 from galactic.learning.simulation_words import latest_words
 
 
-def add_options(parser: argparse.ArgumentParser, names: Optional[Collection[str]] = None) -> None:
+def add_options(parser: argparse.ArgumentParser, names: Collection[str] | None = None) -> None:
     """One option for each setting, or for those of `names`, without a default: what is not given stays as
     the preset has it."""
     groups: dict[str, Any] = {}

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, Callable, NamedTuple, Optional
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 from galactic.learning.policies.sight import OF_THE_PAPER
 from galactic.learning.refusals import SettingsError
@@ -60,9 +61,9 @@ OF_PARAMETERS = Scope(
 )
 
 
-def require_effect(field: "dataclasses.Field[Any]", settings: Any) -> None:
+def require_effect(field: dataclasses.Field[Any], settings: Any) -> None:
     """Raises IdleSetting where the setting has another value than its default in these Settings, and no effect."""
-    scope: Optional[Scope] = field.metadata["scope"]
+    scope: Scope | None = field.metadata["scope"]
     if scope is None or getattr(settings, field.name) == field.default or scope.covers(settings):
         return
     words = scope.words.format_map(vars(settings))

@@ -4,8 +4,9 @@ the tables of docs/learning.md come."""
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Any, Collection, Mapping
+from typing import Any
 
 from galactic.learning.network_settings import CAMERA_NOISE, NetworkSettings
 from galactic.learning.policies.sight import IMAGE_SIZE, OF_THE_PAPER
@@ -274,11 +275,11 @@ class Settings(NetworkSettings, _RunSettings):
                 "either, or leave --target-kl out"
             )
 
-    def without_camera_noise(self) -> "Settings":
+    def without_camera_noise(self) -> Settings:
         """The same with images as they are."""
         return dataclasses.replace(self, **{name: 0.0 for name in CAMERA_NOISE})
 
-    def without_robot_noise(self) -> "Settings":
+    def without_robot_noise(self) -> Settings:
         """The same with robots that do what they are asked to and know where they are, unless the world
         says otherwise."""
         words = latest_words(self.simulation).split()
@@ -289,12 +290,12 @@ class Settings(NetworkSettings, _RunSettings):
             else dataclasses.replace(self, simulation=" ".join(kept))
         )
 
-    def without_noise(self) -> "Settings":
+    def without_noise(self) -> Settings:
         """The same without either noise: what policies are judged by."""
         return self.without_camera_noise().without_robot_noise()
 
     @classmethod
-    def effective(cls, values: Mapping[str, Any], given: Collection[str] = ()) -> "Settings":
+    def effective(cls, values: Mapping[str, Any], given: Collection[str] = ()) -> Settings:
         """Settings of these values, but for those without an effect, which take their defaults. Raises IdleSetting for
         one of them that is `given`."""
         kept = dict(values)
@@ -310,7 +311,7 @@ class Settings(NetworkSettings, _RunSettings):
         return dataclasses.asdict(self)
 
     @classmethod
-    def from_dict(cls, values: Mapping[str, Any]) -> "Settings":
+    def from_dict(cls, values: Mapping[str, Any]) -> Settings:
         """What to_dict() returned, also as JSON gives it. Names that this version does not know are rejected; a
         setting that is missing takes its default."""
         unknown = sorted(set(values) - {field.name for field in dataclasses.fields(cls)})

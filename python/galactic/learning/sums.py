@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Mapping, Optional, Union
+from collections.abc import Mapping
 
 import torch
 from torch import Tensor
@@ -15,7 +15,7 @@ class Sums:
 
     def __init__(self) -> None:
         self._names: tuple[str, ...] = ()
-        self._row: Optional[Tensor] = None
+        self._row: Tensor | None = None
 
     def add(self, numbers: Mapping[str, Tensor]) -> None:
         """Takes in one of each."""
@@ -28,7 +28,7 @@ class Sums:
         return {} if self._row is None else dict(zip(self._names, self._row))
 
 
-def over_ranks(group: Group, numbers: Mapping[str, Union[float, Tensor]]) -> dict[str, float]:
+def over_ranks(group: Group, numbers: Mapping[str, float | Tensor]) -> dict[str, float]:
     """Adds up numbers over all ranks, of which each has the same names in the same order; in double precision."""
     known = {name: float(one) for name, one in numbers.items() if not isinstance(one, Tensor)}
     found = {name: one for name, one in numbers.items() if isinstance(one, Tensor)}

@@ -5,7 +5,9 @@ from __future__ import annotations
 import enum
 import pathlib
 import signal
-from typing import Any, Callable, ContextManager, Mapping, Optional
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
+from typing import Any
 
 import torch
 
@@ -81,10 +83,10 @@ class Trainer:
     """
 
     def __init__(self, settings: Settings, envs: Environments, group: Group,
-                 folder: Optional[pathlib.Path], *, validation: Optional[Validation] = None,
-                 teacher: Optional[tuple[SavedPolicy, pathlib.Path]] = None,
-                 demonstrations: Optional[Demonstrations] = None,
-                 network: Optional[OwnNetwork] = None,
+                 folder: pathlib.Path | None, *, validation: Validation | None = None,
+                 teacher: tuple[SavedPolicy, pathlib.Path] | None = None,
+                 demonstrations: Demonstrations | None = None,
+                 network: OwnNetwork | None = None,
                  title: str = "run"):  # fmt: skip
         self.settings = settings
         self.envs = envs
@@ -133,7 +135,7 @@ class Trainer:
             self.stopwatch,
             is_heard=group.rank == 0,
         )
-        self.callback: Optional[Callback] = None
+        self.callback: Callback | None = None
         """What looks on: the same on all ranks, of which the first one calls it."""
         self.steps = 0
         self.updates = 0
@@ -143,7 +145,7 @@ class Trainer:
         self._interrupted = False
         self._owed = _Owed.NOTHING
 
-    def _taught_by(self, teacher: Optional[tuple[SavedPolicy, pathlib.Path]]) -> Optional[Teacher]:
+    def _taught_by(self, teacher: tuple[SavedPolicy, pathlib.Path] | None) -> Teacher | None:
         if teacher is None:
             return None
         return Teacher(*teacher, Observed(self.parts, self.meanings, self.envs.motions), self.group)
@@ -181,7 +183,7 @@ class Trainer:
         self.source.reset()
         self.clock.start()
 
-    def train(self, pause_at: Optional[int] = None) -> bool:
+    def train(self, pause_at: int | None = None) -> bool:
         """Trains until `settings.steps` are done, or `pause_at` of them, or the callback or a signal asks to
         stop; validates in all cases but the last, saves in all. A validation that a signal has put off comes first.
         Returns whether all is done. Raises TrainingError when the loss is not a number."""
@@ -201,7 +203,7 @@ class Trainer:
             self._write_report()
         return ending is not _Ending.CUT_OFF
 
-    def _make_up(self, goal: int) -> "_Ending":
+    def _make_up(self, goal: int) -> _Ending:
         """Does what a signal has put off, if there is anything. Returns whether nothing comes after that."""
         owed = self._owed
         if owed is _Owed.NOTHING:
@@ -214,7 +216,7 @@ class Trainer:
             self.save()
         return ending
 
-    def _advance(self, goal: int) -> "_Ending":
+    def _advance(self, goal: int) -> _Ending:
         """One update, and what is due behind it: by how many steps are done, and where this is the end."""
         before = self.steps
         losses, is_interrupted = self._iterate()
@@ -237,7 +239,7 @@ class Trainer:
             self.save()
         return ending
 
-    def _ending_at(self, goal: int) -> "_Ending":
+    def _ending_at(self, goal: int) -> _Ending:
         return _Ending.GOAL if self.steps >= goal else _Ending.NONE
 
     def _calls_stop(self, kind: str, row: Callable[[], dict[str, float]]) -> bool:
@@ -290,7 +292,7 @@ class Trainer:
             )
         return losses, shared["interrupted"] > 0.0
 
-    def _is_due(self, every: int, before: int, ending: "_Ending") -> bool:
+    def _is_due(self, every: int, before: int, ending: _Ending) -> bool:
         """What comes every so many steps, and at the end, after those that followed `before`."""
         is_next = every > 0 and self.steps // every > before // every
         return ending is not _Ending.NONE or is_next
@@ -316,7 +318,7 @@ class Trainer:
             is_last=is_last,
         )
 
-    def _validate(self, ending: "_Ending") -> "_Ending":
+    def _validate(self, ending: _Ending) -> _Ending:
         """Returns `ending`, or that the callback ends the run here."""
         assert self.validation is not None
         with self.stopwatch.time("validation"):
@@ -495,6 +497,6 @@ class Trainer:
             self.reports.progress.say("stopping after this update; Ctrl-C now stops without saving")
 
 
-def _fitting(file: pathlib.Path, remedy: str) -> ContextManager[None]:
+def _fitting(file: pathlib.Path, remedy: str) -> AbstractContextManager[None]:
     """Around taking over what `file` holds."""
     return refusing(f"{file} does not fit this run", remedy)

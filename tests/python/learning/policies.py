@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Optional
 
 import torch
 
@@ -14,7 +13,7 @@ from galactic.learning.settings import Settings
 from programs import WORLD
 
 
-def untrained(settings: Settings, homes: Optional[Homes] = None) -> SavedPolicy:
+def untrained(settings: Settings, homes: Homes | None = None) -> SavedPolicy:
     """A policy that moves about in `homes`, or in those of the world to learn in: of the same weights whatever
     noise there is in the settings."""
     homes = homes or Homes(galactic.World(WORLD), settings, 1)

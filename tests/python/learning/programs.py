@@ -9,7 +9,7 @@ import pathlib
 import resource
 import subprocess
 import sys
-from typing import Iterator
+from collections.abc import Iterator
 
 import pytest
 
@@ -38,14 +38,14 @@ def command(program: str, *arguments: object) -> list[str]:
     return [sys.executable, "-B", "-m", f"galactic.{program}", *map(str, arguments)]
 
 
-def run(program: str, *arguments: object) -> "subprocess.CompletedProcess[str]":
+def run(program: str, *arguments: object) -> subprocess.CompletedProcess[str]:
     """As a user runs it: in processes of its own."""
     return subprocess.run(
         command(program, *arguments), capture_output=True, text=True, timeout=600, check=False
     )
 
 
-def call(program: str, *arguments: object) -> "subprocess.CompletedProcess[str]":
+def call(program: str, *arguments: object) -> subprocess.CompletedProcess[str]:
     """As run(), as the only rank, in this process, which has read torch: seconds less for each."""
     words = list(map(str, arguments))
     said = io.StringIO()

@@ -11,7 +11,8 @@ import subprocess
 import sys
 import threading
 import time
-from typing import Any, Callable, Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
 
@@ -36,7 +37,7 @@ from programs import (
 from trainers import make_trainer
 
 
-def wait_for(holds: Callable[[], Any], process: "subprocess.Popen[str] | None" = None) -> None:
+def wait_for(holds: Callable[[], Any], process: subprocess.Popen[str] | None = None) -> None:
     while not holds():
         assert process is None or process.poll() is None
         time.sleep(0.02)
@@ -171,13 +172,13 @@ def state_of(process: int) -> str:
     return stat.rpartition(")")[2].split()[0]
 
 
-def ranks_of(process: "subprocess.Popen[str]") -> list[int]:
+def ranks_of(process: subprocess.Popen[str]) -> list[int]:
     file = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
     return [int(word) for word in file.read_text(encoding="utf-8").split()]
 
 
 @contextlib.contextmanager
-def run_of_two_ranks(folder: pathlib.Path) -> Iterator["subprocess.Popen[str]"]:
+def run_of_two_ranks(folder: pathlib.Path) -> Iterator[subprocess.Popen[str]]:
     """A long one, which has come to learn."""
     process = subprocess.Popen(
         command("train", WORLD, "-o", folder, *SMALL_OF_ANY_RANKS, "--ranks", 2),
@@ -332,7 +333,7 @@ def test_a_signal_to_all_processes_of_a_job_ends_a_run_that_saves(tmp_path: path
 
 def signaled(
     program: str, folder: pathlib.Path, number: signal.Signals, handler: signal.Handlers
-) -> "subprocess.CompletedProcess[str]":
+) -> subprocess.CompletedProcess[str]:
     """A program that sends itself a signal in its work, where it reads a task of one's own. `handler`: what it finds
     there for the signal."""
     task = folder / "task.py"

@@ -6,7 +6,8 @@ import copy
 import os
 import pathlib
 import subprocess
-from typing import Any, Callable, Optional
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -79,8 +80,8 @@ class Recorded:
         self.state = draws.normal(0.0, 1.5, (steps, envs, STATE)).astype(np.float32)
         self.dones = draws.random((steps, envs)) < 0.15
         self.dones[0] = False
-        self.rgb: Optional[np.ndarray] = None
-        self.depth: Optional[np.ndarray] = None
+        self.rgb: np.ndarray | None = None
+        self.depth: np.ndarray | None = None
         part = edge // 4
         if "rgb" in SIGHT[network]:
             # Rough pictures, each with its own colors, and grain.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from typing import Any, Callable, Iterator, Optional
+from collections.abc import Callable, Iterator
+from typing import Any
 from unittest import mock
 
 import pytest
@@ -91,10 +92,10 @@ def test_graphs_are_recorded_while_no_half_is_under_way() -> None:
 
 @pytest.mark.parametrize("mode", [None, "thread_local"])
 def test_other_threads_may_use_the_device_while_a_graph_is_recorded(
-    monkeypatch: pytest.MonkeyPatch, mode: Optional[str]
+    monkeypatch: pytest.MonkeyPatch, mode: str | None
 ) -> None:
     """Where torch can do it. It is a torch without a device here, of either kind."""
-    captured: list[Optional[str]] = []
+    captured: list[str | None] = []
 
     class Graph:
         def replay(self) -> None:

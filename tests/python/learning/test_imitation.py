@@ -6,7 +6,7 @@ from __future__ import annotations
 import collections
 import dataclasses
 import pathlib
-from typing import Callable, Optional
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -68,7 +68,7 @@ def from_memory(state: np.ndarray) -> np.ndarray:
 
 
 def make(folder: pathlib.Path, act: Act = from_state, count: int = 20,
-         shown: Optional[Callable[[np.ndarray], np.ndarray]] = None) -> Demonstrations:  # fmt: skip
+         shown: Callable[[np.ndarray], np.ndarray] | None = None) -> Demonstrations:  # fmt: skip
     """Each third episode is not solved, and does the opposite. `shown`: which steps are the expert's;
     others do the opposite, too."""
     random = np.random.default_rng(5)
@@ -196,7 +196,7 @@ def test_each_pass_shows_each_solved_episode_once(
         sampler = DemonstrationSampler(made, settings, policy_for(settings), group)
         sampler.reset()
         own = []
-        under_way: list[Optional[tuple[Demonstration, int]]] = [None] * envs
+        under_way: list[tuple[Demonstration, int] | None] = [None] * envs
         for update in range(60):
             rollout = sampler.collect(update)
             for stream in range(envs):

@@ -7,7 +7,8 @@ import json
 import os
 import pathlib
 import signal
-from typing import Any, Callable
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 import torch

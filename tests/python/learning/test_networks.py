@@ -1,7 +1,6 @@
 """The policies: the paper's parameter counts, memory across episodes, normalization."""
 
 import contextlib
-from typing import Optional
 
 import pytest
 import torch
@@ -115,7 +114,7 @@ def test_what_nobody_hides_leaves_a_network_as_it_was() -> None:
 @pytest.mark.parametrize("log_std", [None, -0.5])
 @pytest.mark.parametrize("network, recurrent", POLICIES[:-1])  # a GroupNorm mixes no types here
 def test_heads_are_float32_after_a_network_of_bfloat16(
-    network: str, recurrent: bool, log_std: Optional[float]
+    network: str, recurrent: bool, log_std: float | None
 ) -> None:
     torch.manual_seed(11)
     policy = make_policy(network, ARM_OF_SEVEN, recurrent=recurrent, initial_log_std=log_std)

@@ -62,7 +62,7 @@ def test_who_imports_the_package_needs_no_torch(
     assert (done.stdout, done.stderr) == ("torch\n", "")
 
 
-def in_room_of(size: int, *words: str) -> "subprocess.CompletedProcess[str]":
+def in_room_of(size: int, *words: str) -> subprocess.CompletedProcess[str]:
     """Python with no more address space than so many bytes."""
     return subprocess.run(
         [sys.executable, "-B", *words],

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Optional
+from typing import Any
 
 import pytest
 import torch
@@ -39,7 +39,7 @@ def two_groups() -> list[Group]:
     return both
 
 
-def taking(group: Group, fault: Optional[Exception] = None) -> None:
+def taking(group: Group, fault: Exception | None = None) -> None:
     """A step of all ranks, which this one cannot take where there is a fault."""
     with group.together(OSError):
         if fault is not None:

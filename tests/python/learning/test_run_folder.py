@@ -9,7 +9,7 @@ import json
 import os
 import pathlib
 import sys
-from typing import Any, Optional
+from typing import Any
 
 import pytest
 
@@ -134,7 +134,7 @@ def a_run(**files: Any) -> Run:
     return Run(pathlib.Path("/homes.pack"), None, preset("quick"), **files)
 
 
-def begin(run: Run, folder: pathlib.Path) -> Optional[Exception]:
+def begin(run: Run, folder: pathlib.Path) -> Exception | None:
     """As a training does where it is not resumed; why it is refused."""
     try:
         run_folder.require_no_run(folder)

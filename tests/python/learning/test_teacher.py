@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import pathlib
-from typing import Any, Optional
+from typing import Any
 
 import pytest
 import torch
@@ -176,7 +176,7 @@ def test_a_teacher_whose_numbers_mean_something_else_is_refused(
     theirs: dict[str, Any],
     ours: dict[str, Any],
     critic_only: str,
-    message: Optional[str],
+    message: str | None,
 ) -> None:
     made = dataclasses.replace(saved(parts, critic_only=critic_only), meanings=theirs)
     refusal = pytest.raises(CheckpointError, match=f"^best.pt learned with {message}")
@@ -192,9 +192,7 @@ class Blindfold(ReachAndGrasp):
         return step._replace(rewards=0.0 * step.rewards)
 
 
-def learned(
-    teacher: Optional[Teacher], envs: ReachAndGrasp, settings: Settings, updates: int
-) -> Any:
+def learned(teacher: Teacher | None, envs: ReachAndGrasp, settings: Settings, updates: int) -> Any:
     """The policy, and the losses and the success rate of each update."""
     torch.manual_seed(settings.seed)
     shape = PolicyShape(envs.state_size, envs.motions, False, settings.normalize)

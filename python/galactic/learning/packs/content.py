@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import pathlib
-from typing import Any, Mapping, Optional, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import torch
@@ -35,7 +36,7 @@ from galactic.learning.user_code import own_code
 
 
 def export_policy(file: pathlib.Path, output: pathlib.Path, name: str = "", robot: str = "",
-                  network: Optional[str] = None) -> None:  # fmt: skip
+                  network: str | None = None) -> None:  # fmt: skip
     """Reads the checkpoint `file` and writes the policy pack `output`. `network`: what --network names."""
     code = own_code.named(network, "--network").file if network is not None else None
     files.require_apart({"--out": output}, [file, *([code] if code else [])])

@@ -6,17 +6,8 @@ import contextlib
 import operator
 import pathlib
 import traceback
-from typing import (
-    Any,
-    Callable,
-    Iterator,
-    Mapping,
-    NamedTuple,
-    Optional,
-    Sequence,
-    TypeGuard,
-    Union,
-)
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple, TypeGuard
 
 import torch
 from torch import Tensor, fx, nn
@@ -191,7 +182,7 @@ class _Followed:
                 return layers.add("concatenate", *x)
         return None
 
-    def _arithmetic(self, node: fx.Node, x: Any, other: Any) -> Optional[int]:
+    def _arithmetic(self, node: fx.Node, x: Any, other: Any) -> int | None:
         """Of two values, or of one and a constant on either side."""
         one, two = node.args
         if _is_layer(x, one) and _is_layer(other, two):
@@ -215,7 +206,7 @@ class _Followed:
             return self._layers.scaled(value, -numbers, ones)
         return self._layers.scaled(value, numbers, ones if is_first else -ones)
 
-    def _spread(self, constant: Union[float, Tensor], variable: Any) -> Optional[Tensor]:
+    def _spread(self, constant: float | Tensor, variable: Any) -> Tensor | None:
         """A constant as a number for each of a value's; None where it is none."""
         numbers = torch.as_tensor(constant, dtype=torch.float32).detach()
         size = self._sizes.get(variable, numbers.numel() if numbers.dim() else 0)
@@ -223,7 +214,7 @@ class _Followed:
             return None
         return numbers.flatten().expand(size)
 
-    def _slice(self, x: int, size: Optional[int], *index: Any) -> Optional[int]:
+    def _slice(self, x: int, size: int | None, *index: Any) -> int | None:
         """Some neighbors of the last dimension."""
         columns = index[-1]
         if index[:-1] != (...,) or not isinstance(columns, slice) or columns.step not in (None, 1):
@@ -241,8 +232,8 @@ class _Followed:
         return self._layers.add("slice", x, first=first, size=size)
 
     def _chunks(
-        self, x: int, size: Optional[int], chunks: Any, dim: Any = 0
-    ) -> Optional[tuple[_Part, ...]]:
+        self, x: int, size: int | None, chunks: Any, dim: Any = 0
+    ) -> tuple[_Part, ...] | None:
         """Parts of the last dimension, all but the last of one size; `dim` is torch's name."""
         if size is None or dim != -1 or not isinstance(chunks, int):
             return None
@@ -250,7 +241,7 @@ class _Followed:
         firsts = range(0, size, width)
         return tuple(_Part(x, first, min(width, size - first)) for first in firsts)
 
-    def _clamp(self, x: int, min: Any = None, max: Any = None) -> Optional[int]:
+    def _clamp(self, x: int, min: Any = None, max: Any = None) -> int | None:
         """Under the names that torch gives the limits."""
         lower, upper = -LARGEST if min is None else min, LARGEST if max is None else max
         if not isinstance(lower, (int, float)) or not isinstance(upper, (int, float)):
@@ -313,7 +304,7 @@ class _Tracer(fx.Tracer):
         self._lines: dict[fx.Node, int] = {}
         self._constants: dict[str, Any] = {}
 
-    def follow(self) -> Optional[Exception]:
+    def follow(self) -> Exception | None:
         """Makes `graph`; what it was cut off by, where it was."""
         before = {*vars(self._module)}
         try:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import torch
@@ -156,7 +157,7 @@ def computes_as(module: nn.Module, *kinds: type[nn.Module]) -> bool:
     )
 
 
-def numbers_of(tensor: Optional[torch.Tensor]) -> Optional[np.ndarray]:
+def numbers_of(tensor: torch.Tensor | None) -> np.ndarray | None:
     """As a layer has it."""
     return None if tensor is None else tensor.detach().float().cpu().numpy()
 

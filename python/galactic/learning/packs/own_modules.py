@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import copy
 import pathlib
-from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
@@ -40,9 +41,9 @@ class ActionParameters(NamedTuple):
     """What the forward() of a module returns that export_module() makes a policy pack of: from what the actions of
     T steps of n envs are drawn."""
 
-    mean: Optional[Tensor] = None
+    mean: Tensor | None = None
     """[T, n, C] float32: of the first C actions, which are normally distributed; None: there are none."""
-    log_deviation: Optional[Tensor] = None
+    log_deviation: Tensor | None = None
     """[T, n, C], or [C] where it is always the same: natural logarithms of their standard deviations; None: the
     means are the actions."""
     logits: Sequence[Tensor] = ()
@@ -50,10 +51,10 @@ class ActionParameters(NamedTuple):
     [T, n, 1]: the log-odds of the second one."""
 
 
-def export_module(path: Union[str, pathlib.Path], module: nn.Module, envs: VectorEnv, *,
+def export_module(path: str | pathlib.Path, module: nn.Module, envs: VectorEnv, *,
                   discrete: Sequence[Sequence[float]] = ((0.0, 1.0), (0.0, 1.0)),
                   critic_only: Sequence[str] = (), name: str = "", robot: str = "",
-                  trained_with: Optional[Mapping[str, Any]] = None) -> None:  # fmt: skip
+                  trained_with: Mapping[str, Any] | None = None) -> None:  # fmt: skip
     """Makes a policy pack of a module of torch, for galactic-run, galactic-dynamics and galactic.LearnedPolicy.
 
     The pack is played on made-up inputs before it is written, and compared with the module; the file appears whole
@@ -264,7 +265,7 @@ def _options_of(envs: VectorEnv) -> dict[str, Any]:
     }
 
 
-def _image_of(envs: VectorEnv) -> Optional[dict[str, Any]]:
+def _image_of(envs: VectorEnv) -> dict[str, Any] | None:
     """What the envs draw."""
     cameras = options_of_cameras("images", envs.images)
     if len(cameras) > 1:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pathlib
 import tempfile
-from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
@@ -36,11 +37,11 @@ class Network(NamedTuple):
     the memory after it."""
     memory: int
     """M, 0 without."""
-    columns: Optional[Sequence[int]] = None
+    columns: Sequence[int] | None = None
     """Which of a row of its state the pack observes; None: all."""
 
 
-def made_up(state: int, image: Optional[Mapping[str, Any]], actions: int) -> Inputs:
+def made_up(state: int, image: Mapping[str, Any] | None, actions: int) -> Inputs:
     """STEPS of ENVS, of rows of `state` numbers, of what `image` of a pack draws and of so many actions."""
     images: dict[str, tuple[int, ...]] = {}
     if image is not None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, Optional, Protocol, Sequence
+from typing import Any, Protocol
 
 import numpy as np
 import torch
@@ -89,7 +90,7 @@ class Actor:
 
     def __init__(self, policy: Policy, *, deterministic: bool, seed: int = 1,
                  device: torch.device = torch.device("cpu"),
-                 columns: Optional[Sequence[int]] = None):  # fmt: skip
+                 columns: Sequence[int] | None = None):  # fmt: skip
         self.policy = policy
         self._columns = None if columns is None else torch.tensor(columns, device=device)
         self._deterministic = deterministic
@@ -140,10 +141,10 @@ class Evaluator:
         self._player = player
         self._seen = rows_of(homes)
         self._holding = homes.env.simulators[0].observation_parts["is_holding"].start
-        self._played: list[Optional[_Played]] = []
+        self._played: list[_Played | None] = []
 
     def play(self, episodes: Sequence[int], *, details: bool = True,
-             observer: Optional[StepObserver] = None) -> list[EpisodeResult]:  # fmt: skip
+             observer: StepObserver | None = None) -> list[EpisodeResult]:  # fmt: skip
         """Has each of `episodes` played once, and returns what came of them, in their order. Without
         `details`, paths and collisions are left out, which is faster."""
         homes, waiting = self._homes, list(reversed(episodes))
@@ -213,7 +214,7 @@ class Evaluator:
 class _Played:
     """An episode that is being played in one env."""
 
-    def __init__(self, episode: int, place: Optional[np.ndarray] = None,
+    def __init__(self, episode: int, place: np.ndarray | None = None,
                  collisions: tuple[int, int] = (0, 0)):  # fmt: skip
         self.result = EpisodeResult(episode, False, False, "", 0.0, 0, 0.0, 0.0, 0, 0)
         self._collisions = collisions
@@ -263,7 +264,7 @@ def sums_of(results: Sequence[EpisodeResult]) -> EpisodeSums:
     )
 
 
-def summary(results: Sequence[EpisodeResult], world: "galactic.World") -> dict[str, Any]:
+def summary(results: Sequence[EpisodeResult], world: galactic.World) -> dict[str, Any]:
     """Means, counts of the endings, and every episode, with the names of its scene and of the object that
     is to be moved: the report of galactic.evaluate."""
     table = world.episode_table()

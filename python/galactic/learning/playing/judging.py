@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import pathlib
 import shlex
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 import galactic
 from galactic.learning.homes import Homes, sizes_of
@@ -32,16 +32,16 @@ class Terms:
     threads: int = 1
     camera_noise: bool = False
     robot_noise: bool = False
-    task: Optional[str] = None
-    task_options: Optional[str] = None
+    task: str | None = None
+    task_options: str | None = None
 
 
 class Judging(NamedTuple):
     """What the policy plays in: homes, and what they were made of."""
 
-    world: "galactic.World"
+    world: galactic.World
     settings: Settings
-    task: Optional[MakeTask]
+    task: MakeTask | None
     homes: Homes
 
 
@@ -62,7 +62,7 @@ def judging(saved: SavedPolicy, terms: Terms) -> Judging:
     return Judging(world, settings, task, homes)
 
 
-def _task(terms: Terms, settings: Settings) -> Optional[MakeTask]:
+def _task(terms: Terms, settings: Settings) -> MakeTask | None:
     """What makes the task that was asked for; None for the simulation's."""
     if terms.task:
         name = own_code.named(terms.task, "--task")
@@ -107,8 +107,8 @@ def _with_noise_asked_for(terms: Terms, settings: Settings) -> Settings:
     return judged
 
 
-def _homes(terms: Terms, world: "galactic.World", settings: Settings,
-           task: Optional[MakeTask]) -> Homes:  # fmt: skip
+def _homes(terms: Terms, world: galactic.World, settings: Settings,
+           task: MakeTask | None) -> Homes:  # fmt: skip
     """The homes of the policy's training. Nobody has typed their options here."""
     try:
         return Homes(world, settings, terms.threads, task=task, is_evaluation=True)

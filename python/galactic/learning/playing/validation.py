@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Optional
 
 import galactic
 from galactic.learning.homes import Homes, sizes_of
@@ -19,8 +18,8 @@ from galactic.learning.user_code.own_tasks import MakeTask
 
 
 def validation_of(
-    run: Run, trained: Homes, threads: int, group: Group, task: Optional[MakeTask]
-) -> Optional[Validation]:
+    run: Run, trained: Homes, threads: int, group: Group, task: MakeTask | None
+) -> Validation | None:
     """Plays the episodes held out, this rank's share of them, with sampled actions as in training, which
     is in the homes `trained`. Raises galactic.Error where a policy of these could not play there.
     """

@@ -63,7 +63,7 @@ class ActionDistribution(NamedTuple):
         odds = functional.softplus(self.logits) - self.logits * torch.sigmoid(self.logits)
         return gaussian + self._of_decisions(odds)
 
-    def divergence(self, other: "ActionDistribution") -> Tensor:
+    def divergence(self, other: ActionDistribution) -> Tensor:
         """Kullback-Leibler divergence of `other` from this distribution, of what both decide; shape
         [...]. No gradient reaches the noise of `other`: it follows the means and the odds alone."""
         noise = other.log_std.detach()
@@ -74,7 +74,7 @@ class ActionDistribution(NamedTuple):
         fewer = other if self.decides_terminate else self
         return motions.sum(-1) + fewer._of_decisions(decisions)
 
-    def of(self, envs: Tensor) -> "ActionDistribution":
+    def of(self, envs: Tensor) -> ActionDistribution:
         """That of some envs, of a batch [T, n, ...]."""
         return self._replace(
             mean=self.mean[:, envs], log_std=self.log_std[:, envs], logits=self.logits[:, envs]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pathlib
-from typing import Any, Mapping, NamedTuple, Optional, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from galactic.learning.policies.privileges import (
     OtherMeaning,
@@ -64,7 +65,7 @@ def columns_of(saved: SavedPolicy, file: pathlib.Path, observed: Observed, remed
     return [column for name, _ in saved.parts for column in columns[name]]
 
 
-def other_meaning_of(saved: SavedPolicy, found: Mapping[str, Any]) -> Optional[OtherMeaning]:
+def other_meaning_of(saved: SavedPolicy, found: Mapping[str, Any]) -> OtherMeaning | None:
     """Where what the policy acts by means something else than in its training; None where it does not."""
     seen = [name for name, _ in parts_of_actor(saved.settings.critic_only, saved.parts)]
     return other_meaning(seen, saved.meanings, found)

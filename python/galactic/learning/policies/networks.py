@@ -23,7 +23,7 @@ yes) each for hand and terminate.
 
 from __future__ import annotations
 
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 import torch
 from torch import Tensor, nn
@@ -56,7 +56,7 @@ class Outputs(NamedTuple):
 
     actions: ActionDistribution  # of shape [T, n]
     values: Tensor  # [T, n]
-    hidden: Optional[Tensor]  # [n, H] after the last step; None without a GRU
+    hidden: Tensor | None  # [n, H] after the last step; None without a GRU
 
 
 class PolicyShape(NamedTuple):
@@ -118,13 +118,13 @@ class ActorHead(nn.Module):
     log-odds of a decision stay below, and above the negative of; 0: they have no limit.
     """
 
-    def __init__(self, features: int, shape: PolicyShape, initial_log_std: Optional[float] = None,
+    def __init__(self, features: int, shape: PolicyShape, initial_log_std: float | None = None,
                  odds_limit: float = 0.0):  # fmt: skip
         super().__init__()
         self.motions = shape.motions
         self.decides_terminate = shape.decides_terminate
         self.odds_limit = odds_limit
-        self.log_std: Optional[nn.Parameter] = None
+        self.log_std: nn.Parameter | None = None
         if initial_log_std is not None:
             self.log_std = nn.Parameter(torch.full((shape.motions,), initial_log_std))
         rows = shape.motions * (2 if self.log_std is None else 1) + 2 * DECISIONS
@@ -169,7 +169,7 @@ class Policy(nn.Module):
 
     action: ActorHead
 
-    def __init__(self, shape: PolicyShape, eyes: Optional[DepthCNN] = None):
+    def __init__(self, shape: PolicyShape, eyes: DepthCNN | None = None):
         super().__init__()
         self.normalize = Normalizer(shape.state) if shape.normalize else None
         self.closeup = Closeup(shape.closeups) if shape.closeups else None
@@ -177,20 +177,20 @@ class Policy(nn.Module):
         features = eyes.features if eyes else 0
         self.blinkers = Blinkers(shape, features) if shape.critic_only else None
 
-    def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+    def forward(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Outputs:
         """`hidden` [n, H] from before the first step; `starts` [T, n] bool: where an episode begins,
         and the memory is empty."""
         raise NotImplementedError
 
-    def act(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+    def act(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Outputs:
         """forward(), for rollouts: `values` are anything when `values_apart`."""
         return self(inputs, hidden, starts)
 
-    def value(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Tensor:
+    def value(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Tensor:
         """The values alone, [T, n]."""
         return self(inputs, hidden, starts).values
 
-    def initial_hidden(self, envs: int, device: torch.device) -> Optional[Tensor]:
+    def initial_hidden(self, envs: int, device: torch.device) -> Tensor | None:
         """An empty memory, [envs, H], or None."""
         return torch.zeros(envs, self.hidden_size, device=device) if self.hidden_size else None
 
@@ -208,7 +208,7 @@ class Policy(nn.Module):
         """The same, as the actor reads them."""
         return seen if self.blinkers is None else self.blinkers(seen)
 
-    def _judged(self, features: Tensor, seen: Tensor, join: Optional[nn.Module]) -> Tensor:
+    def _judged(self, features: Tensor, seen: Tensor, join: nn.Module | None) -> Tensor:
         """The features as the critic reads them, joined with what it alone sees."""
         if self.blinkers is None or join is None:
             return features
@@ -219,8 +219,8 @@ class FeedForwardPolicy(Policy):
     """Two perceptrons side by side, actor and critic, behind the same eyes or none: no memory."""
 
     def __init__(self, shape: PolicyShape, width: int, layers: int, activation: str,
-                 initial_log_std: Optional[float], odds_limit: float,
-                 eyes: Optional[DepthCNN]):  # fmt: skip
+                 initial_log_std: float | None, odds_limit: float,
+                 eyes: DepthCNN | None):  # fmt: skip
         super().__init__(shape, eyes)
         self.values_apart = eyes is None
         seen = shape.seen + (eyes.features if eyes else 0)
@@ -229,18 +229,18 @@ class FeedForwardPolicy(Policy):
         self.action = ActorHead(width, shape, initial_log_std, odds_limit)
         self.critic = orthogonal(FullLinear(width, 1), 1.0)
 
-    def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+    def forward(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Outputs:
         seen = self._seen(inputs)
         values = self.critic(self.value_encoder(seen)).squeeze(-1)
         return Outputs(self.action(self.encoder(self._by_actor(seen))), values, None)
 
-    def act(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+    def act(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Outputs:
         if not self.values_apart:
             return self(inputs, hidden, starts)
         seen = self._seen(inputs)
         return Outputs(self.action(self.encoder(self._by_actor(seen))), seen[..., 0], None)
 
-    def value(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Tensor:
+    def value(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Tensor:
         return self.critic(self.value_encoder(self._seen(inputs))).squeeze(-1)
 
 
@@ -249,15 +249,15 @@ class RecurrentPolicy(Policy):
     what it alone sees."""
 
     def __init__(self, encoder: Encoder, shape: PolicyShape, width: int,
-                 initial_log_std: Optional[float], odds_limit: float,
-                 eyes: Optional[DepthCNN] = None):  # fmt: skip
+                 initial_log_std: float | None, odds_limit: float,
+                 eyes: DepthCNN | None = None):  # fmt: skip
         super().__init__(shape, eyes)
         self.hidden_size = width
         self.needs_previous = encoder.needs_previous
         self.encoder = encoder
         self.rnn = nn.GRU(encoder.features, width)
         self.action = ActorHead(width, shape, initial_log_std, odds_limit)
-        self.value_encoder: Optional[nn.Module] = None
+        self.value_encoder: nn.Module | None = None
         if shape.critic_only:
             self.value_encoder = perceptron(width + shape.apart, width, 1, "tanh")
         self.critic = orthogonal(FullLinear(width, 1), 1.0)
@@ -267,7 +267,7 @@ class RecurrentPolicy(Policy):
             else:
                 nn.init.zeros_(parameter)
 
-    def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+    def forward(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Outputs:
         assert hidden is not None
         seen = self._seen(inputs)
         features = self.encoder(inputs._replace(state=self._by_actor(seen)))
@@ -280,7 +280,7 @@ class EncoderPolicy(Policy):
     """An encoder, which has a memory of its own or none, and heads for actor and critic on it; the critic's
     behind a layer that joins what it alone sees."""
 
-    def __init__(self, encoder: Encoder, shape: PolicyShape, initial_log_std: Optional[float],
+    def __init__(self, encoder: Encoder, shape: PolicyShape, initial_log_std: float | None,
                  odds_limit: float):  # fmt: skip
         super().__init__(shape)
         self.hidden_size = encoder.memory
@@ -288,12 +288,12 @@ class EncoderPolicy(Policy):
         self.encoder = encoder
         width = encoder.features
         self.action = ActorHead(width, shape, initial_log_std, odds_limit)
-        self.value_encoder: Optional[nn.Module] = None
+        self.value_encoder: nn.Module | None = None
         if shape.critic_only:
             self.value_encoder = perceptron(width + shape.apart, width, 1, "tanh")
         self.critic = orthogonal(FullLinear(width, 1), 1.0)
 
-    def forward(self, inputs: Inputs, hidden: Optional[Tensor], starts: Tensor) -> Outputs:
+    def forward(self, inputs: Inputs, hidden: Tensor | None, starts: Tensor) -> Outputs:
         seen = self._seen(inputs)
         inputs = inputs._replace(state=self._by_actor(seen))
         if hidden is None:
@@ -307,8 +307,8 @@ class EncoderPolicy(Policy):
 
 def make_policy(network: str, shape: PolicyShape, *, image_size: int = IMAGE_SIZE,
                 recurrent: bool = False, width: int = 128, layers: int = 2,
-                activation: str = "tanh", initial_log_std: Optional[float] = None,
-                odds_limit: float = 0.0, own: Optional[Encoder] = None) -> Policy:  # fmt: skip
+                activation: str = "tanh", initial_log_std: float | None = None,
+                odds_limit: float = 0.0, own: Encoder | None = None) -> Policy:  # fmt: skip
     """A policy by its name, one of SIGHT, or around an encoder of one's `own`, with an ActorHead of
     `odds_limit`.
 

@@ -3,7 +3,8 @@ what the numbers of others mean."""
 
 from __future__ import annotations
 
-from typing import Any, Collection, Iterable, Mapping, NamedTuple, Optional, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from galactic.learning.refusals import SettingsError, did_you_mean
 from galactic.sensors import ALWAYS, SENSORS, meaning_of
@@ -74,7 +75,7 @@ class OtherMeaning(NamedTuple):
 
 
 def other_meaning(names: Iterable[str], learned: Mapping[str, Any],
-                  found: Mapping[str, Any]) -> Optional[OtherMeaning]:  # fmt: skip
+                  found: Mapping[str, Any]) -> OtherMeaning | None:  # fmt: skip
     """Where numbers of the parts `names` mean something else than where a policy has learned from them, by
     what is known of both from meaning_of(); None where they do not."""
     for option, theirs in meaning_of(names, learned).items():

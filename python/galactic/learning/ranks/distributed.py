@@ -10,7 +10,7 @@ import math
 import os
 import pickle
 import socket
-from typing import Iterator, Optional
+from collections.abc import Iterator
 
 import torch
 import torch.distributed
@@ -85,7 +85,7 @@ def threads_of(wanted: int, local_ranks: int) -> int:
     return wanted or max(1, len(os.sched_getaffinity(0)) // local_ranks)
 
 
-def where_words(group: "Group", drawn_by: Optional[str]) -> str:
+def where_words(group: Group, drawn_by: str | None) -> str:
     """Where networks run and what draws the images, for a line at the start of a run: in the rank that tells it."""
     if group.device.type == "cuda":
         place = f"{group.device} ({torch.cuda.get_device_name(group.device)})"
@@ -111,17 +111,17 @@ class Group:
         self.rank = rank
         self.size = size
         self.device = device
-        self._store: Optional[torch.distributed.Store] = None
+        self._store: torch.distributed.Store | None = None
         # How many steps of together() are over.
         self._steps = 0
 
     @classmethod
-    def alone(cls, device: Optional[torch.device] = None) -> "Group":
+    def alone(cls, device: torch.device | None = None) -> Group:
         """The only process there is."""
         return cls(0, 1, device or torch.device("cpu"))
 
     @classmethod
-    def join(cls, device: str = "auto") -> "Group":
+    def join(cls, device: str = "auto") -> Group:
         """The group that the environment describes. `device`: as device_of() takes it."""
         size = int(os.environ.get("WORLD_SIZE", "1"))
         rank = int(os.environ.get("RANK", "0"))
@@ -181,7 +181,7 @@ class Group:
         exceptions that are shared, too.
         """
         shared: tuple[type[Exception], ...] = (SettingsError, CheckpointError, Error, *more)
-        fault: Optional[Exception] = None
+        fault: Exception | None = None
         try:
             yield
         except shared as error:
@@ -190,7 +190,7 @@ class Group:
             if one is not None:
                 raise one
 
-    def _faults(self, own: Optional[Exception]) -> "list[Optional[Exception]]":
+    def _faults(self, own: Exception | None) -> list[Exception | None]:
         """Those of all ranks in the step that they end, in their order."""
         if self._store is None:
             return [own]
@@ -206,9 +206,7 @@ class Group:
                 return [*self._said_by_all(self._store, step), lost]
             return [own, lost]
 
-    def _said_by_all(
-        self, store: torch.distributed.Store, step: int
-    ) -> "list[Optional[Exception]]":
+    def _said_by_all(self, store: torch.distributed.Store, step: int) -> list[Exception | None]:
         """The fault of each rank, in their order. RankLost where one has said nothing and says nothing."""
         keys = [_fault(step, rank) for rank in range(self.size)]
         with _others():
@@ -228,7 +226,7 @@ class Group:
         except RuntimeError:
             return True
 
-    def stragglers(self, sync_fraction: float, shortest: float) -> "Stragglers":
+    def stragglers(self, sync_fraction: float, shortest: float) -> Stragglers:
         return Stragglers(self._store, self.rank, self.size, sync_fraction, shortest)
 
 
@@ -253,7 +251,7 @@ class Stragglers:
     1, or a rank alone, waits for all.
     """
 
-    def __init__(self, store: Optional["torch.distributed.Store"], rank: int, size: int,
+    def __init__(self, store: torch.distributed.Store | None, rank: int, size: int,
                  sync_fraction: float, shortest: float):  # fmt: skip
         self._store = store if sync_fraction < 1.0 else None
         self._rank = rank

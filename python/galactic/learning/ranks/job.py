@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import pathlib
-from typing import NamedTuple, Optional, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import torch
 
@@ -29,10 +30,10 @@ class _Parts(NamedTuple):
     """What a run learns from, as one rank has it."""
 
     envs: Homes
-    validation: Optional[Validation]
-    teacher: Optional[tuple[checkpoint.SavedPolicy, pathlib.Path]]
-    demonstrations: Optional[Demonstrations]
-    network: Optional[OwnNetwork]
+    validation: Validation | None
+    teacher: tuple[checkpoint.SavedPolicy, pathlib.Path] | None
+    demonstrations: Demonstrations | None
+    network: OwnNetwork | None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -43,10 +44,10 @@ class Job:
     run: Run
     folder: pathlib.Path
     resumes: bool = False
-    pause_at: Optional[int] = None
+    pause_at: int | None = None
     notes: Sequence[str] = ()
-    make_log: Optional[log.MakeTaker] = None
-    make_callback: Optional[callbacks.MakeCallback] = None
+    make_log: log.MakeTaker | None = None
+    make_callback: callbacks.MakeCallback | None = None
 
 
 def train_in_rank(job: Job, group: Group) -> int:
@@ -106,8 +107,8 @@ def _parts_of(job: Job, group: Group) -> _Parts:
 
 
 def _teacher_of(
-    run: Run, kept: Optional[pathlib.Path]
-) -> Optional[tuple[checkpoint.SavedPolicy, pathlib.Path]]:
+    run: Run, kept: pathlib.Path | None
+) -> tuple[checkpoint.SavedPolicy, pathlib.Path] | None:
     """The teacher and its file: the copy that the run has `kept` in its folder, with which it is resumed."""
     if run.teacher is None:
         return None

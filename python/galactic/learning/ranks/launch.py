@@ -16,7 +16,8 @@ import signal
 import subprocess
 import sys
 import time
-from typing import Any, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import torch.distributed
 
@@ -57,7 +58,7 @@ def launch(ranks: int, command: Sequence[str]) -> int:
         LAUNCHER: str(os.getpid()),
         **_of_libraries(),
     }
-    processes: "list[subprocess.Popen[bytes]]" = []
+    processes: list[subprocess.Popen[bytes]] = []
     with _PassedOn(processes) as signals:
         try:
             for rank in range(ranks):
@@ -106,7 +107,7 @@ class _PassedOn:
         signal.SIGHUP: signal.SIGTERM,
     }
 
-    def __init__(self, processes: "Sequence[subprocess.Popen[bytes]]"):
+    def __init__(self, processes: Sequence[subprocess.Popen[bytes]]):
         self._processes = processes
         self._have_started = False
         self._early: list[int] = []
@@ -116,7 +117,7 @@ class _PassedOn:
         self.have_killed = False
         """Whether ranks were killed that did not end."""
 
-    def __enter__(self) -> "_PassedOn":
+    def __enter__(self) -> _PassedOn:
         for number in self._AS:
             # nohup ignores what a terminal says when it closes.
             if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN:
@@ -207,7 +208,7 @@ def _of_libraries() -> dict[str, str]:
     return {name: value for name, value in chosen.items() if name not in os.environ}
 
 
-def _wait(processes: "Sequence[subprocess.Popen[bytes]]", signals: _PassedOn) -> tuple[int, int]:
+def _wait(processes: Sequence[subprocess.Popen[bytes]], signals: _PassedOn) -> tuple[int, int]:
     """Rank and code of the one that failed, a code of 0 where none has. The others learn that it is gone and fail,
     too, perhaps before it is over: all are waited for, and those killed that take more than GRACE.
     """

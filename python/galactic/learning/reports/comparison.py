@@ -6,7 +6,8 @@ import hashlib
 import math
 import os
 import pathlib
-from typing import Iterable, Mapping, NamedTuple, Optional, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 from galactic.learning.refusals import SettingsError, refusing
 from galactic.learning.reports.curves import VALIDATION, read_curves
@@ -39,7 +40,7 @@ class ComparedRun(NamedTuple):
     settings: Mapping[str, str]
     """What it is about, as one types it, by name."""
     wanted_steps: int
-    curves: Sequence[Mapping[str, Optional[float]]]
+    curves: Sequence[Mapping[str, float | None]]
     validations: Sequence[Success]
     """In their order."""
 
@@ -48,23 +49,23 @@ class ComparedRun(NamedTuple):
         return self._last("steps") or 0.0
 
     @property
-    def speed(self) -> Optional[float]:
+    def speed(self) -> float | None:
         """Steps per second over all of its time."""
         seconds = self._last("seconds")
         speed = self.steps / seconds if seconds else math.inf
         return speed if math.isfinite(speed) else None
 
     @property
-    def in_training(self) -> Optional[float]:
+    def in_training(self) -> float | None:
         """The share of successes among the latest episodes of the training."""
         return self._last("success")
 
     @property
-    def last(self) -> Optional[Success]:
+    def last(self) -> Success | None:
         return self.validations[-1] if self.validations else None
 
     @property
-    def best(self) -> Optional[Success]:
+    def best(self) -> Success | None:
         shares = [one.share for one in self.validations]
         return self.validations[shares.index(max(shares))] if shares else None
 
@@ -73,7 +74,7 @@ class ComparedRun(NamedTuple):
         """What runs have in common that differ in nothing but the seed."""
         return tuple(sorted((n, value) for n, value in self.settings.items() if n != SEED))
 
-    def _last(self, column: str) -> Optional[float]:
+    def _last(self, column: str) -> float | None:
         found = (row.get(column) for row in reversed(self.curves))
         return next((value for value in found if value is not None), None)
 
@@ -110,7 +111,7 @@ _MOST = {
 }
 
 
-def _require_numbers(row: Mapping[str, Optional[float]]) -> None:
+def _require_numbers(row: Mapping[str, float | None]) -> None:
     """Raises ValueError where a row is none of a run's, as far as it is shown as numbers."""
     if row.get("steps") is None or row.get("seconds") is None:
         raise ValueError("found a row without steps or seconds")
@@ -121,7 +122,7 @@ def _require_numbers(row: Mapping[str, Optional[float]]) -> None:
             raise ValueError(f"{column}: found {value:g}, expected {wanted}")
 
 
-def _success_of(row: Mapping[str, Optional[float]]) -> Optional[Success]:
+def _success_of(row: Mapping[str, float | None]) -> Success | None:
     """Of the validation that a row is of, if it is of one. Raises ValueError where it does not say of how many
     episodes."""
     share, episodes = row.get(f"{VALIDATION}success"), row.get("episodes")
@@ -203,7 +204,7 @@ def table_of_seeds(runs: Sequence[ComparedRun]) -> list[list[str]]:
     return [["seeds", "last validation", "best validation"], *rows] if rows else []
 
 
-def _spread(found: Iterable[Optional[Success]]) -> str:
+def _spread(found: Iterable[Success | None]) -> str:
     """Mean, and from the least to the most."""
     shares = [100.0 * one.share for one in found if one is not None]
     if not shares:
@@ -238,7 +239,7 @@ def page_of(runs: Sequence[ComparedRun]) -> str:
     return overlaid_page(" and ".join(tables) if len(tables) < 4 else f"{len(tables)} runs", tables, below)  # fmt: skip
 
 
-def _columns_of(rows: Sequence[Mapping[str, Optional[float]]]) -> Table:
+def _columns_of(rows: Sequence[Mapping[str, float | None]]) -> Table:
     columns = list(rows[0]) if rows else []
     return Table(columns, [[row[name] for name in columns] for row in rows])
 

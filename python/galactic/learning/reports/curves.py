@@ -7,7 +7,8 @@ import io
 import json
 import pathlib
 import time
-from typing import Any, Iterable, Mapping, Optional, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from galactic._core import ErrorCode
 from galactic.errors import Error
@@ -65,14 +66,14 @@ PAGE_SHARE = 0.01
 class Curves:
     """Rows of columns_of(names), and the files that show them. Not given values are None."""
 
-    def __init__(self, folder: Optional[pathlib.Path], title: str, names: OwnNames = OwnNames()):
+    def __init__(self, folder: pathlib.Path | None, title: str, names: OwnNames = OwnNames()):
         self._folder = folder
         self._title = title
         self.columns = columns_of(names)
         self._own = len(self.columns)
-        self.rows: list[list[Optional[float]]] = []
+        self.rows: list[list[float | None]] = []
         # How many of them the table has; None: it is none of this run's yet, or has others.
-        self._in_table: Optional[int] = None
+        self._in_table: int | None = None
         self._next_page = 0.0
 
     def add(self, values: Mapping[str, float]) -> None:
@@ -113,7 +114,7 @@ class Curves:
         return {}
 
     def write(self, settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]],
-              *, is_last: bool = True) -> Optional[Error]:  # fmt: skip
+              *, is_last: bool = True) -> Error | None:  # fmt: skip
         """Brings curves.csv up to date, and curves.html: after the last row in any case, before it only
         where that takes no more than PAGE_SHARE of the time. Nothing without a folder. Raises Error where the
         table cannot be written; returns the one of the page, which can be made again."""
@@ -166,7 +167,7 @@ def _append(file: pathlib.Path, text: str) -> None:
         raise Error(ErrorCode.IO, str(file), message) from None
 
 
-def _cell(value: Optional[float]) -> str:
+def _cell(value: float | None) -> str:
     """Whole numbers whole: nine digits do not hold the steps of a long run."""
     if value is None:
         return ""
@@ -178,7 +179,7 @@ def _number(text: str) -> float:
     return int(text) if text.isdecimal() else float(text)
 
 
-def read_curves(file: pathlib.Path) -> list[dict[str, Optional[float]]]:
+def read_curves(file: pathlib.Path) -> list[dict[str, float | None]]:
     """The rows of a curves.csv, but for a last one that is not whole: of a run that a full disk or a
     power failure has ended."""
     lines = file.read_text(encoding="utf-8").splitlines(keepends=True)

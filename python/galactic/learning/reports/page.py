@@ -6,8 +6,9 @@ import dataclasses
 import html
 import json
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Mapping, NamedTuple, Optional, Sequence
+from typing import Any, NamedTuple
 
 from galactic.learning.rollouts.episode_sums import LOG, MEASURE
 from galactic.learning.setting_fields import typed
@@ -27,7 +28,7 @@ class Table(NamedTuple):
     """What curves.csv has of a run."""
 
     columns: Sequence[str]
-    rows: Sequence[Sequence[Optional[float]]]
+    rows: Sequence[Sequence[float | None]]
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ MOST_POINTS = 1500
 """Longer runs are thinned out for the page; the CSV has all."""
 
 
-def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[Optional[float]]],
+def curves_page(title: str, columns: Sequence[str], rows: Sequence[Sequence[float | None]],
                 settings: Mapping[str, Any], breakdown: Sequence[tuple[str, float]]) -> str:  # fmt: skip
     """The page of a run as text. `breakdown`: names and shares of its time."""
     shares = table([(name, f"{100.0 * share:.1f} %") for name, share in breakdown])
@@ -135,7 +136,7 @@ def _thinned_out(whole: Table) -> dict[str, Any]:
     return {"columns": list(columns), "rows": [[_short(value) for value in row] for row in kept]}
 
 
-def _short(value: Optional[float]) -> Optional[float]:
+def _short(value: float | None) -> float | None:
     return None if value is None or not math.isfinite(value) else float(f"{value:.6g}")
 
 

@@ -11,8 +11,8 @@ import pathlib
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Optional, Sequence
 
 import numpy as np
 
@@ -86,8 +86,8 @@ def choose(results: Sequence[EpisodeResult], count: int) -> list[int]:
     return successes[:shown] + failures[: count - shown]
 
 
-def film(world: "galactic.World", settings: Settings, actor: Actor, episodes: Sequence[int],
-         threads: int, task: Optional[MakeTask] = None) -> list[Film]:  # fmt: skip
+def film(world: galactic.World, settings: Settings, actor: Actor, episodes: Sequence[int],
+         threads: int, task: MakeTask | None = None) -> list[Film]:  # fmt: skip
     """Plays `episodes` side by side, one env for each. What a policy does may hang on the last bits of
     sums, and so on how many envs it acts for: how an episode ended here is told by its film."""
     envs = len(episodes)
@@ -140,13 +140,13 @@ def write_video(films: Sequence[Film], file: pathlib.Path) -> None:
         _require_encoded(_encode(films, place), file)
 
 
-def _require_encoded(said: Optional[str], file: pathlib.Path) -> None:
+def _require_encoded(said: str | None, file: pathlib.Path) -> None:
     if said is not None:
         message = f"ffmpeg did not write it: {said}"
         raise galactic.Error(galactic.ErrorCode.IO, str(file), message)
 
 
-def _encode(films: Sequence[Film], file: pathlib.Path) -> Optional[str]:
+def _encode(films: Sequence[Film], file: pathlib.Path) -> str | None:
     """Why ffmpeg did not write the video, in its words; None where it did."""
     columns = min(4, len(films))
     rows = -(-len(films) // columns)
@@ -182,6 +182,6 @@ def _label(text: str, color: tuple[int, int, int], width: int) -> np.ndarray:
     return np.asarray(strip)
 
 
-def _unsupported(what: str, package: str) -> "galactic.Error":
+def _unsupported(what: str, package: str) -> galactic.Error:
     message = f"need {what}, which is not here; install it (Debian: {package})"
     return galactic.Error(galactic.ErrorCode.UNSUPPORTED, "pictures", message)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from typing import Optional, TextIO
+from typing import TextIO
 
 from galactic.streams import put
 
@@ -33,7 +33,7 @@ def amount(number: float) -> str:
 class ProgressLine:
     """One line that is written over on a terminal; elsewhere plain lines, now and then."""
 
-    def __init__(self, stream: Optional[TextIO] = None, *, quiet: bool = False,
+    def __init__(self, stream: TextIO | None = None, *, quiet: bool = False,
                  plain_every: float = 15.0):  # fmt: skip
         self._stream = stream or sys.stderr
         self._quiet = quiet

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pathlib
-from typing import Mapping, Optional, Sequence
+from collections.abc import Mapping, Sequence
 
 from galactic.learning.reports.curves import TABLE, VALIDATION, Curves
 from galactic.learning.reports.log import Log
@@ -18,11 +18,11 @@ from galactic.learning.user_code.callbacks import CALLBACK
 class RunReports:
     """Of the rank that tells; of the others, nothing is heard. `folder` None writes no files."""
 
-    def __init__(self, settings: Settings, folder: Optional[pathlib.Path], title: str, names: OwnNames,
+    def __init__(self, settings: Settings, folder: pathlib.Path | None, title: str, names: OwnNames,
                  clock: RunClock, stopwatch: Stopwatch, *, is_heard: bool):  # fmt: skip
         self.curves = Curves(folder if is_heard else None, title, names)
         self.progress = ProgressLine(quiet=not is_heard)
-        self.log: Optional[Log] = None
+        self.log: Log | None = None
         """Who else takes rows of the curves."""
         self.added: dict[str, float] = {}
         """What a callback has said since the latest row."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Callable, Mapping, Optional
 
 import numpy as np
 import torch
@@ -209,8 +209,8 @@ class Collector:
         with self.stopwatch.time("sending"):
             self.envs.send(half, executed, self.rollout.row(step + 1, envs))
 
-    def _decide(self, state: Tensor, rgb: Optional[Tensor], depth: Optional[Tensor],
-                previous: Optional[Tensor], hidden: Optional[Tensor], starts: Tensor,
+    def _decide(self, state: Tensor, rgb: Tensor | None, depth: Tensor | None,
+                previous: Tensor | None, hidden: Tensor | None, starts: Tensor,
                 noise: Tensor) -> Tensors:  # fmt: skip
         """Actions, their log-probabilities, values, and the memory behind them."""
         with self.precision.autocast():
@@ -256,12 +256,12 @@ class Collector:
             logged = float(values.sum(dtype=np.float64))
             self.episodes.logs[name] = self.episodes.logs.get(name, 0.0) + logged
 
-    def _timeout(self, envs: slice, step: int, timeouts: Timeouts) -> "_Timeout":
+    def _timeout(self, envs: slice, step: int, timeouts: Timeouts) -> _Timeout:
         """Keeps what the values of cut-off episodes are computed from; that waits for the rollout's
         end, so that one pass does all of them. The memory is the one after the last action."""
         index = torch.from_numpy(timeouts.envs).to(self.device) + (envs.start or 0)
 
-        def part(rows: Optional[np.ndarray]) -> Optional[Tensor]:
+        def part(rows: np.ndarray | None) -> Tensor | None:
             return None if rows is None else torch.from_numpy(rows.copy()).to(self.device)
 
         state = part(timeouts.state)
@@ -326,10 +326,10 @@ class _Timeout:
     step: int
     envs: Tensor  # [k]
     inputs: Inputs  # [k, ...]
-    hidden: Optional[Tensor]  # [k, H]
+    hidden: Tensor | None  # [k, H]
 
 
-def _joined(parts: list[Optional[Tensor]], size: int) -> Optional[Tensor]:
+def _joined(parts: list[Tensor | None], size: int) -> Tensor | None:
     """[1, size, ...] from parts of [k_i, ...], all of them there or none: zeros behind them."""
     there = [part for part in parts if part is not None]
     if not there:

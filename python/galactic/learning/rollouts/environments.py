@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Mapping, NamedTuple, Optional, Protocol, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from torch import Tensor
@@ -12,8 +13,8 @@ class Observation(NamedTuple):
     """Rows that environments write into: memory of a rollout, n envs."""
 
     state: Tensor  # [n, S] float32
-    rgb: Optional[Tensor] = None  # [n, H, W, 3] uint8
-    depth: Optional[Tensor] = None  # [n, H, W] float32, meters
+    rgb: Tensor | None = None  # [n, H, W, 3] uint8
+    depth: Tensor | None = None  # [n, H, W] float32, meters
 
 
 class Timeouts(NamedTuple):
@@ -21,8 +22,8 @@ class Timeouts(NamedTuple):
 
     envs: np.ndarray  # [k] int64: which envs of the half
     state: np.ndarray  # [k, S] float32
-    rgb: Optional[np.ndarray] = None  # [k, H, W, 3] uint8
-    depth: Optional[np.ndarray] = None  # [k, H, W] float32
+    rgb: np.ndarray | None = None  # [k, H, W, 3] uint8
+    depth: np.ndarray | None = None  # [k, H, W] float32
 
 
 class Step(NamedTuple):
@@ -33,7 +34,7 @@ class Step(NamedTuple):
     truncated: np.ndarray  # [n] bool: time did
     successes: np.ndarray  # [n] bool: it ended in success
     picks: np.ndarray  # [n] bool: it ended, and the target had been in the hand at any time of it
-    timeouts: Optional[Timeouts] = None  # None: truncated is false everywhere
+    timeouts: Timeouts | None = None  # None: truncated is false everywhere
     # Where an episode ended, what there is to measure of it: [n] each, by the names of Environments.measures.
     measures: Mapping[str, np.ndarray] = {}
     logs: Mapping[

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import collections
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Iterable, Mapping, NamedTuple
+from typing import NamedTuple
 
 MEASURE = "measure_"
 """What the names of means begin with that are of a task's own measures: no other one does."""

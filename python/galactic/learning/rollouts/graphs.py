@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import inspect
-from typing import Callable, Optional, Sequence
+from collections.abc import Callable, Sequence
 
 import torch
 from torch import Tensor
 
-Tensors = tuple[Optional[Tensor], ...]
+Tensors = tuple[Tensor | None, ...]
 Function = Callable[..., Tensors]
 Record = Callable[[Function, Tensors], tuple[Tensors, Callable[[], None]]]
 """Runs a function on tensors that stay where they are. Returns its results, which stay where they are as
@@ -27,22 +27,22 @@ class Replayed:
         self._record = record
         self._places: Tensors = ()
         self._results: Tensors = ()
-        self._replay: Optional[Callable[[], None]] = None
+        self._replay: Callable[[], None] | None = None
 
-    def prepare(self, *arguments: Optional[Tensor]) -> None:
+    def prepare(self, *arguments: Tensor | None) -> None:
         """Records what it does of such arguments, unless it has."""
         if self._replay is None:
             self._places = tuple(None if one is None else one.clone() for one in arguments)
             self._results, self._replay = self._record(self._function, self._places)
 
-    def __call__(self, *arguments: Optional[Tensor]) -> Tensors:
+    def __call__(self, *arguments: Tensor | None) -> Tensors:
         self.prepare(*arguments)
         assert self._replay is not None
         self._place(arguments)
         self._replay()
         return self._results
 
-    def _place(self, arguments: Sequence[Optional[Tensor]]) -> None:
+    def _place(self, arguments: Sequence[Tensor | None]) -> None:
         if len(arguments) != len(self._places):
             raise ValueError(f"{len(arguments)} arguments, recorded with {len(self._places)}")
         for number, (place, argument) in enumerate(zip(self._places, arguments)):

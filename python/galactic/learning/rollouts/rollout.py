@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Callable, Mapping, Optional, Protocol
+from typing import Protocol
 
 import torch
 from torch import Tensor
@@ -23,8 +24,8 @@ class Rollout:
     """
 
     state: Tensor  # [T + 1, N, S] float32
-    rgb: Optional[Tensor]  # [T + 1, N, H, W, 3] uint8
-    depth: Optional[Tensor]  # [T + 1, N, H, W] float32, meters
+    rgb: Tensor | None  # [T + 1, N, H, W, 3] uint8
+    depth: Tensor | None  # [T + 1, N, H, W] float32, meters
     actions: Tensor  # [T, N, A] float32, as sampled: motions not clamped
     log_probs: Tensor  # [T, N]
     values: Tensor  # [T + 1, N]
@@ -32,13 +33,13 @@ class Rollout:
     ends: Tensor  # [T, N] bool: the episode ended with this step
     starts: Tensor  # [T + 1, N] bool: an episode starts here
     first_previous: Tensor  # [N, A] the action before step 0, zero at starts
-    first_hidden: Optional[Tensor]  # [N, H] the memory before step 0
+    first_hidden: Tensor | None  # [N, H] the memory before step 0
     steps: int = 0
 
     @classmethod
     def empty(cls, horizon: int, envs: int, state: int, actions: int,
               images: Mapping[str, tuple[int, ...]] = {}, hidden: int = 0,
-              device: torch.device = torch.device("cpu")) -> "Rollout":  # fmt: skip
+              device: torch.device = torch.device("cpu")) -> Rollout:  # fmt: skip
 
         def make(*shape: int, dtype: torch.dtype = torch.float32) -> Tensor:
             return torch.zeros(shape, dtype=dtype, device=device)
@@ -61,15 +62,15 @@ class Rollout:
     def row(self, step: int, envs: slice) -> Observation:
         """What some envs give before action `step`, to be written."""
 
-        def part(rows: Optional[Tensor]) -> Optional[Tensor]:
+        def part(rows: Tensor | None) -> Tensor | None:
             return None if rows is None else rows[step, envs]
 
         return Observation(self.state[step, envs], part(self.rgb), part(self.depth))
 
-    def inputs(self, first: int, last: int, envs: "slice | Tensor", previous: bool) -> Inputs:
+    def inputs(self, first: int, last: int, envs: slice | Tensor, previous: bool) -> Inputs:
         """What a policy sees in the steps [first, last) of some envs."""
 
-        def part(tensor: Optional[Tensor]) -> Optional[Tensor]:
+        def part(tensor: Tensor | None) -> Tensor | None:
             return None if tensor is None else tensor[first:last, envs]
 
         before = None

@@ -23,8 +23,9 @@ import math
 import os
 import pathlib
 import shlex
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import Any, NamedTuple
 
 import torch
 from torch import Tensor
@@ -67,19 +68,19 @@ class SavedPolicy:
     shape: PolicyShape
     parts: list[tuple[str, int]]
     steps: int
-    success: Optional[float]
+    success: float | None
     meanings: Mapping[str, Any] = field(default_factory=dict)
-    network: Optional[OwnNetwork] = None
-    mean_return: Optional[float] = None
+    network: OwnNetwork | None = None
+    mean_return: float | None = None
 
 
 class Score(NamedTuple):
     """How well a policy did in some episodes: what is not known is None."""
 
-    success: Optional[float] = None
-    mean_return: Optional[float] = None
+    success: float | None = None
+    mean_return: float | None = None
 
-    def is_below(self, other: "Score") -> bool:
+    def is_below(self, other: Score) -> bool:
         """Whether it had fewer successes, or as many and a smaller return, by which tasks without successes are judged.
         What is not known is below all that is."""
         ours, theirs = (
@@ -89,20 +90,20 @@ class Score(NamedTuple):
 
 
 def new_policy(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, int]] = (),
-               network: Optional[OwnNetwork] = None) -> Policy:  # fmt: skip
+               network: OwnNetwork | None = None) -> Policy:  # fmt: skip
     """The policy that the settings describe, with weights from torch's global random stream. `network` makes
     one of the user's, which is told where the `parts` of an observation are."""
     return _policy_around(_own_encoder(settings, shape, parts, network), settings, shape)
 
 
 def _own_encoder(settings: Settings, shape: PolicyShape, parts: Sequence[tuple[str, int]],
-                 network: Optional[OwnNetwork]) -> Optional[Encoder]:  # fmt: skip
+                 network: OwnNetwork | None) -> Encoder | None:  # fmt: skip
     if network is None:
         return None
     return network.make(seen_by(settings, shape, parts), settings.recurrent)
 
 
-def _policy_around(encoder: Optional[Encoder], settings: Settings, shape: PolicyShape) -> Policy:
+def _policy_around(encoder: Encoder | None, settings: Settings, shape: PolicyShape) -> Policy:
     free = settings.log_std == "parameter"
     return make_policy(
         settings.network,
@@ -134,7 +135,7 @@ def save_policy(saved: SavedPolicy, file: pathlib.Path) -> None:
     save(file, values, {"policy": saved.policy.state_dict()})
 
 
-def load_policy(file: pathlib.Path, remedy: str = "", network: Optional[OwnNetwork] = None,
+def load_policy(file: pathlib.Path, remedy: str = "", network: OwnNetwork | None = None,
                 without: str = "") -> SavedPolicy:  # fmt: skip
     """Reads a policy.pt or best.pt; the policy is on the processor, ready to act. `remedy` is as in
     load(). `network` makes the network where it is one of the user's, as no file runs code by itself;
@@ -161,7 +162,7 @@ def read_score(file: pathlib.Path, remedy: str) -> Score:
         return Score(values["success"], values["return"])
 
 
-def read_policy(path: Union[str, pathlib.Path], network: Optional[str] = None) -> SavedPolicy:
+def read_policy(path: str | pathlib.Path, network: str | None = None) -> SavedPolicy:
     """Reads best.pt or policy.pt of a run of galactic.train; `policy` of what it returns is a torch module, on the
     processor, ready to act.
 
@@ -179,7 +180,7 @@ def read_policy(path: Union[str, pathlib.Path], network: Optional[str] = None) -
 
 
 def _same_network(file: pathlib.Path, settings: Settings, digest: str,
-                  network: Optional[OwnNetwork], without: str) -> OwnNetwork:  # fmt: skip
+                  network: OwnNetwork | None, without: str) -> OwnNetwork:  # fmt: skip
     """The network that was named for a policy, if it is the one that the policy learned with, made with the
     same options."""
     place = place_beside(file, "--network", settings.network)
@@ -224,7 +225,7 @@ MOST_NUMBERS = 1 << 20
 
 
 def _policy_of(values: dict[str, Any], state: dict[str, Any], settings: Settings,
-               network: Optional[OwnNetwork]) -> SavedPolicy:  # fmt: skip
+               network: OwnNetwork | None) -> SavedPolicy:  # fmt: skip
     sizes = dict(values["shape"])
     require_types(sizes, _SHAPE)
     for name in ("state", "motions"):
@@ -317,7 +318,7 @@ _NETWORK = (
 
 def begin_with(policy: Policy, settings: Settings, shape: PolicyShape,
                parts: list[tuple[str, int]], file: pathlib.Path,
-               network: Optional[OwnNetwork] = None) -> SavedPolicy:  # fmt: skip
+               network: OwnNetwork | None = None) -> SavedPolicy:  # fmt: skip
     """Gives `policy`, a new_policy(settings, shape, parts, network), the weights of the policy in
     `file`, and returns that: networks, standard deviations, means and variances of observations.
 

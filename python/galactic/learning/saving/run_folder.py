@@ -21,7 +21,7 @@ import json
 import os
 import pathlib
 import shutil
-from typing import Callable, Optional
+from collections.abc import Callable
 
 from galactic import files
 from galactic._core import ErrorCode
@@ -110,7 +110,7 @@ def take_folder(folder: pathlib.Path, held: contextlib.ExitStack, *, resumes: bo
 def begin_folder(
     run: Run,
     folder: pathlib.Path,
-    teacher: Optional[tuple[SavedPolicy, pathlib.Path]],
+    teacher: tuple[SavedPolicy, pathlib.Path] | None,
     *,
     resumes: bool,
     say: Callable[[str], None],
@@ -176,7 +176,7 @@ def _make_room(
 
 
 def _replaced_copies(
-    run: Run, before: Optional[Run], folder: pathlib.Path, code: dict[pathlib.Path, bytes]
+    run: Run, before: Run | None, folder: pathlib.Path, code: dict[pathlib.Path, bytes]
 ) -> list[pathlib.Path]:
     """The copies of code that the run `before` has kept, and that are not this run's. Raises Error where another file is
     in the place of one of this run's."""

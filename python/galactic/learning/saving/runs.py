@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import pathlib
-from typing import Optional, Sequence
+from collections.abc import Sequence
 
 import galactic
 from galactic.learning.refusals import refusing, require_types
@@ -19,12 +19,12 @@ class Run:
     """What a run is about: kept in its settings.json."""
 
     world: pathlib.Path
-    validation: Optional[pathlib.Path]
+    validation: pathlib.Path | None
     settings: Settings
-    start_from: Optional[pathlib.Path] = None
-    teacher: Optional[pathlib.Path] = None
-    task_file: Optional[pathlib.Path] = None
-    network_file: Optional[pathlib.Path] = None
+    start_from: pathlib.Path | None = None
+    teacher: pathlib.Path | None = None
+    task_file: pathlib.Path | None = None
+    network_file: pathlib.Path | None = None
     demonstrations: Sequence[pathlib.Path] = ()
 
 
@@ -117,7 +117,7 @@ def with_task(run: Run, simulation: str) -> Run:
     )
 
 
-def task_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_tasks.MakeTask]:
+def task_of(run: Run, folder: pathlib.Path | None) -> own_tasks.MakeTask | None:
     """What makes the run's task, if that is one's own; of the copy in `folder` if it is given."""
     if not run.settings.task:
         return None
@@ -135,7 +135,7 @@ def with_network(run: Run) -> Run:
     )
 
 
-def network_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_networks.OwnNetwork]:
+def network_of(run: Run, folder: pathlib.Path | None) -> own_networks.OwnNetwork | None:
     """What makes the run's network, if that is one's own; of the copy in `folder` if it is given."""
     if not run.settings.has_own_network:
         return None
@@ -145,8 +145,8 @@ def network_of(run: Run, folder: Optional[pathlib.Path]) -> Optional[own_network
 
 
 def _code_of(
-    text: str, option: str, file: Optional[pathlib.Path], folder: Optional[pathlib.Path]
-) -> tuple[own_code.CodeName, Optional[pathlib.Path]]:
+    text: str, option: str, file: pathlib.Path | None, folder: pathlib.Path | None
+) -> tuple[own_code.CodeName, pathlib.Path | None]:
     """What the settings of a run call code that is in a module or a `file`, and where the modules are that this
     imports."""
     name = own_code.named(text, option)
@@ -155,7 +155,7 @@ def _code_of(
     return name._replace(place=str(kept_code(file, option, folder))), file.parent
 
 
-def kept_code(file: pathlib.Path, option: str, folder: Optional[pathlib.Path]) -> pathlib.Path:
+def kept_code(file: pathlib.Path, option: str, folder: pathlib.Path | None) -> pathlib.Path:
     """Where the code is that `option` named: `file`, or the copy of it in the `folder` of a run that is resumed.
     Raises Error where that copy is missing."""
     copy = file if folder is None else folder / own_code.COPIES[option]

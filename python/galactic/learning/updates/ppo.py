@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional, Union
 
 import torch
 from torch import Tensor
@@ -90,7 +89,7 @@ class PpoLearner(Learner):
     """Improves a policy by what its rollouts earned, and by what a teacher would have done in them."""
 
     def __init__(self, policy: Policy, settings: Settings, group: Group,
-                 teacher: Optional[Teacher] = None):  # fmt: skip
+                 teacher: Teacher | None = None):  # fmt: skip
         super().__init__(policy, settings, group)
         self.teacher = teacher
 
@@ -129,14 +128,14 @@ class PpoLearner(Learner):
         self.rate.follow(report["kl"])
         return report
 
-    def _teacher_targets(self, rollout: Rollout, progress: float) -> Optional[TeacherTargets]:
+    def _teacher_targets(self, rollout: Rollout, progress: float) -> TeacherTargets | None:
         weight = teacher_weight_at(self.settings, progress)
         if self.teacher is None or weight == 0.0:
             return None
         return TeacherTargets(self.teacher.actions(rollout), weight)
 
     def _step(self, rollout: Rollout, chosen: Tensor, batch: Batch,
-              targets: Optional[TeacherTargets], entropy_coefficient: float,
+              targets: TeacherTargets | None, entropy_coefficient: float,
               steps_of_all: float) -> dict[str, Tensor]:  # fmt: skip
         """One step of the optimizer; the sums of its losses, and of the divergence from the teacher, teacher_kl, and the
         norm of the gradient, grad_norm."""
@@ -174,7 +173,7 @@ class PpoLearner(Learner):
         """Means over all ranks, mini-batches and epochs."""
         rounds = self.settings.epochs * self.settings.mini_batches
         raw, returns = raw.double(), returns.double()
-        moments: dict[str, Union[float, Tensor]] = {
+        moments: dict[str, float | Tensor] = {
             "rollout_steps": raw.numel(),
             "error": raw.square().sum(),
             "first": returns.sum(),

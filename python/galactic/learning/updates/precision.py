@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-from typing import ContextManager
 
 import torch
 
@@ -23,7 +22,7 @@ class Precision:
             torch.backends.cudnn.allow_tf32 = quick
             torch.backends.cudnn.benchmark = self.tunes
 
-    def autocast(self) -> ContextManager[None]:
+    def autocast(self) -> contextlib.AbstractContextManager[None]:
         """Around every use of a policy."""
         if self._bf16:
             return torch.autocast("cuda", dtype=torch.bfloat16)

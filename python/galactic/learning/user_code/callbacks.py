@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import numbers
 import pathlib
-from typing import Any, Callable, Mapping
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from galactic.learning.policies.networks import Policy
 from galactic.learning.refusals import SettingsError

@@ -14,7 +14,7 @@ import pathlib
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple
 
 from galactic.learning.refusals import SettingsError, did_you_mean
 
@@ -38,7 +38,7 @@ class CodeName(NamedTuple):
     option: str
 
     @property
-    def file(self) -> Optional[pathlib.Path]:
+    def file(self) -> pathlib.Path | None:
         """The file; None for a module."""
         return pathlib.Path(self.place) if self.place.endswith(".py") else None
 
@@ -56,7 +56,7 @@ def named(text: str, option: str) -> CodeName:
     return CodeName(place, name, option)
 
 
-def members_of(code: CodeName, siblings: Optional[pathlib.Path] = None) -> dict[str, Any]:
+def members_of(code: CodeName, siblings: pathlib.Path | None = None) -> dict[str, Any]:
     """What the file or module has by name. It runs now; what it raises is the caller's, unless it ends the
     program. `siblings`: where modules are that a file imports, if not beside it."""
     with goes_on(
@@ -87,7 +87,7 @@ def _remember(module: str) -> None:
         _NAMED.add(module)
 
 
-def class_of(code: CodeName, base: type, base_name: str, siblings: Optional[pathlib.Path]) -> Any:
+def class_of(code: CodeName, base: type, base_name: str, siblings: pathlib.Path | None) -> Any:
     """The class of that name, which inherits from `base`."""
     members = members_of(code, siblings)
     found = members.get(code.name)
@@ -165,7 +165,7 @@ def keywords_of(options: str, option: str) -> dict[str, Any]:
     return keywords
 
 
-def copy_beside(policy: pathlib.Path, option: str) -> Optional[pathlib.Path]:
+def copy_beside(policy: pathlib.Path, option: str) -> pathlib.Path | None:
     """The copy of what `option` named that belongs to a policy of a run's folder, or of one of its
     checkpoints."""
     parents, copy = policy.absolute().parents, COPIES[option]
@@ -186,7 +186,7 @@ def place_beside(policy: pathlib.Path, option: str, trained: str) -> str:
     return f"{copy}:{name}" if copy and name.isidentifier() else "FILE.py:CLASS"
 
 
-def siblings_of(code: CodeName) -> Optional[pathlib.Path]:
+def siblings_of(code: CodeName) -> pathlib.Path | None:
     """Where the modules are that a run's copy of a file imports: where it was copied from. None for what is
     no such copy."""
     if code.file is None or code.file.name != COPIES.get(code.option):
@@ -198,7 +198,7 @@ def siblings_of(code: CodeName) -> Optional[pathlib.Path]:
         return None
 
 
-def _module_of(code: CodeName, siblings: Optional[pathlib.Path]) -> Any:
+def _module_of(code: CodeName, siblings: pathlib.Path | None) -> Any:
     if code.file is None:
         try:
             module = importlib.import_module(code.place)

@@ -7,7 +7,8 @@ import hashlib
 import inspect
 import pathlib
 import traceback
-from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import torch
 from torch import Tensor
@@ -231,7 +232,7 @@ def with_options(network: OwnNetwork, options: str) -> OwnNetwork:
     return network._replace(keywords=keywords)
 
 
-def network_of(code: CodeName, siblings: Optional[pathlib.Path] = None) -> OwnNetwork:
+def network_of(code: CodeName, siblings: pathlib.Path | None = None) -> OwnNetwork:
     """The class of that name. Its file runs now: see own_code.members_of()."""
     found = class_of(code, Encoder, BASE, siblings)
     if found.forward is Encoder.forward:

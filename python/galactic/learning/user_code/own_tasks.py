@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pathlib
-from collections.abc import Mapping
-from typing import Any, Callable, Optional
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from galactic.learning.refusals import SettingsError
 from galactic.learning.simulation_words import latest_words, simulation_keyword, word_of
@@ -21,7 +21,7 @@ def require_use(given: Mapping[str, Any]) -> None:
         raise SettingsError("--task-options goes with --task; name one, or leave it out")
 
 
-def maker(task: CodeName, options: str, siblings: Optional[pathlib.Path] = None) -> MakeTask:
+def maker(task: CodeName, options: str, siblings: pathlib.Path | None = None) -> MakeTask:
     """What makes the task with these options (own_code.keywords_of()): see members_of()."""
     found = class_of(task, Task, "galactic.Task", siblings)
     keywords = keywords_of(options, "--task-options")

@@ -7,7 +7,8 @@ import dataclasses
 import pathlib
 import re
 import shlex
-from typing import Any, Callable
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
