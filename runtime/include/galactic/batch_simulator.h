@@ -15,28 +15,29 @@
 
 namespace galactic {
 
-/// Which element of an env's row of actions is which. See BatchSimulator.
+/// The meaning of each element in an env's row of actions. See BatchSimulator.
 struct ActionLayout {
-  /// Of the controlled joints, which come first, in the order of the robot's recipe.
+  /// Number of controlled joints. Their actions come first, in the order of the robot's recipe.
   std::size_t joints = 0;
-  /// Whether the base drives sideways, too, by an action after `turn`.
+  /// Whether the base also drives sideways, with an action that follows `turn`.
   bool drives_sideways = false;
 
-  /// That of the robot's recipe; of a robot without one, no joints, and a base that does not drive
-  /// sideways.
+  /// The layout that the robot's recipe gives. Without a recipe, there are no joints, and the base
+  /// does not drive sideways.
   [[nodiscard]] static ActionLayout of(const Robot& robot);
 
-  /// Indices into the actions of an env, each of which goes from -1 to 1. 1 drives ahead.
+  /// The functions below return indices into the actions of an env, each of which ranges from -1 to
+  /// 1. 1 drives forward.
   [[nodiscard]] constexpr std::size_t forward() const { return joints; }
   /// 1 turns clockwise, seen from above.
   [[nodiscard]] constexpr std::size_t turn() const { return joints + 1; }
-  /// Only where the base drives sideways: 1 drives to the left.
+  /// Only if the base drives sideways: 1 drives to the left.
   [[nodiscard]] constexpr std::size_t sideways() const { return joints + 2; }
-  /// Grasps from ActionOptions::grasp on, and lets go below ActionOptions::release.
+  /// The hand grasps at ActionOptions::grasp and above, and releases below ActionOptions::release.
   [[nodiscard]] constexpr std::size_t hand() const { return movingCount(); }
-  /// From ActionOptions::terminate on, the robot says that its task is done.
+  /// At ActionOptions::terminate and above, the robot declares its task done.
   [[nodiscard]] constexpr std::size_t terminate() const { return movingCount() + 1; }
-  /// How many there are, and how many of them, the first ones, move the robot.
+  /// The number of actions. The first movingCount() of them move the robot.
   [[nodiscard]] constexpr std::size_t count() const { return movingCount() + 2; }
   [[nodiscard]] constexpr std::size_t movingCount() const {
     return joints + (drives_sideways ? 3 : 2);
@@ -46,18 +47,18 @@ struct ActionLayout {
 /// One named part of an env's observation.
 struct ObservationPart {
   std::string name;
-  /// First element in the env's row, and number of elements.
+  /// Index of the first element in the env's row, and number of elements.
   std::size_t first = 0;
   std::size_t size = 0;
 };
 
-/// The Error::name of BatchSimulator::create() where the robot can stand at the start of no
-/// episode.
+/// The Error::name of BatchSimulator::create() when there is no episode at whose start the robot
+/// can stand.
 inline constexpr std::string_view kNoEpisodeStarts = "episodes/none-starts";
 
-/// How an episode ended. Files keep the numbers (demonstrations, saved states): a new end gets the
-/// next one, and none changes. If a step gives several reasons, the first of these counts:
-/// kSuccess, kWrongTerminate, kWrongRelease, kWrongObject, kTimeOut.
+/// How an episode ended. Files store the numbers (demonstrations, saved states): a new way to end
+/// gets the next number, and no number ever changes. If a step ends an episode for several reasons,
+/// the first of these counts: kSuccess, kWrongTerminate, kWrongRelease, kWrongObject, kTimeOut.
 enum class EpisodeEnd : std::uint8_t {
   kNone = 0,  ///< It has not ended.
   kSuccess,
@@ -67,9 +68,10 @@ enum class EpisodeEnd : std::uint8_t {
   kTimeOut,         ///< TaskOptions::most_steps steps have passed.
 };
 
-/// As reports say it, and Python in upper case with '_' for ' '; empty for a number of none.
+/// The name that reports use. Python has it in upper case, with '_' in place of ' '. Empty for a
+/// number that stands for no end.
 [[nodiscard]] constexpr std::string_view nameOf(EpisodeEnd end) {
-  // No default: the compiler warns of an end without a name.
+  // There is no default, so that the compiler warns of an end without a name.
   switch (end) {
     case EpisodeEnd::kNone:
       return "none";
@@ -87,7 +89,7 @@ enum class EpisodeEnd : std::uint8_t {
   return {};
 }
 
-/// How many there are: their numbers begin with 0 and leave none out.
+/// The number of values of EpisodeEnd, which are numbered from 0 without gaps.
 inline constexpr std::size_t kEpisodeEnds = [] {
   std::uint8_t count = 0;
   while (!nameOf(EpisodeEnd{count}).empty()) ++count;
@@ -95,45 +97,46 @@ inline constexpr std::size_t kEpisodeEnds = [] {
 }();
 
 /// Whether the rules of the task ended the episode, for better or worse: a termination in the sense
-/// of reinforcement learning, with no reward behind it.
+/// of reinforcement learning, after which no reward follows.
 [[nodiscard]] constexpr bool isTermination(EpisodeEnd end) {
   return end != EpisodeEnd::kNone && end != EpisodeEnd::kTimeOut;
 }
 
-/// Whether the clock ended the episode, which could have gone on: a truncation.
+/// Whether the step limit ended the episode, which could have gone on: a truncation.
 [[nodiscard]] constexpr bool isTruncation(EpisodeEnd end) { return end == EpisodeEnd::kTimeOut; }
 
-/// Whether the episode ended by a mistake of the robot.
+/// Whether a mistake of the robot ended the episode.
 [[nodiscard]] constexpr bool isFailure(EpisodeEnd end) {
   return isTermination(end) && end != EpisodeEnd::kSuccess;
 }
 
-/// What happened in all envs, or in one, since the simulator was made or began anew (restart()), or
-/// as a state that was restored has it.
+/// What happened in all envs, or in one, since the simulator was created or restarted (restart()).
+/// Restoring a state replaces the statistics with those that were saved.
 struct SimulationStatistics {
-  /// Steps of idle envs do not count.
+  /// The steps of idle envs are not counted.
   std::uint64_t steps = 0;
   /// Steps in which the robot kept its pose because the candidate penetrated something.
   std::uint64_t refused = 0;
   /// Steps whose candidate was free after being pushed.
   std::uint64_t slid = 0;
   std::uint64_t grasps = 0;
-  /// Releases that found a place, and releases after which the object went back.
+  /// Releases for which a place was found, and releases after which the object went back to where
+  /// it had rested.
   std::uint64_t drops = 0;
   std::uint64_t restored = 0;
   std::uint64_t episodes = 0;
   std::uint64_t successes = 0;
   std::uint64_t failures = 0;
-  /// Episodes that ended and in which the target had been in the hand.
+  /// Episodes that have ended and in which the hand held the target at some time.
   std::uint64_t picks = 0;
-  /// Action values that were not a number and were taken as zero.
+  /// Action values that were NaN and were treated as zero.
   std::uint64_t nan_actions = 0;
   /// Sum of the rewards of all steps.
   double reward = 0;
 };
 
-/// Calls `visit(name, member)` for each of them, in their order: the name that it has in Python,
-/// and a pointer to the member.
+/// Calls `visit(name, member)` for each statistic, in order, with its name in Python and a pointer
+/// to the member.
 template <class Visit>
 constexpr void visitStatistics(Visit&& visit) {
   visit("steps", &SimulationStatistics::steps);
@@ -150,15 +153,15 @@ constexpr void visitStatistics(Visit&& visit) {
   visit("reward", &SimulationStatistics::reward);
 }
 
-// No member without a name.
+// Checks that every member has a name.
 static_assert([] {
   std::size_t bytes = 0;
   visitStatistics([&]<class T>(const char*, T SimulationStatistics::*) { bytes += sizeof(T); });
   return bytes;
 }() == sizeof(SimulationStatistics));
 
-/// The state of one env: for exports, pictures, planners; and to go on from, with
-/// BatchSimulator::setStates(). A copy.
+/// A copy of the state of one env: for exports, pictures and planners, and to continue from with
+/// BatchSimulator::setStates().
 struct EnvState {
   /// Index into World::scenes(), and into the episode set's episodes.
   std::uint32_t scene = 0;
@@ -175,8 +178,8 @@ struct EnvState {
   std::int32_t held = -1;
   std::uint32_t target = 0;
   Pose goal;
-  /// How many episodes the env has begun, this one included: what tells it from the same one begun
-  /// again.
+  /// How many episodes the env has begun, including this one. It tells this episode from the same
+  /// one begun again.
   std::uint64_t begun = 0;
 };
 
@@ -185,32 +188,33 @@ struct EnvObjects {
   /// Index into World::scenes(), and into the episode set's episodes.
   std::uint32_t scene = 0;
   std::uint32_t episode = 0;
-  /// Those that are there: without distractors the target alone.
+  /// The objects that are present: without distractors, the target alone.
   PresentObjects present;
-  /// World poses, one for each that is there; of the held object, where it rested before it was
-  /// grasped.
+  /// World poses, one for each object that is present. The pose of the held object is the one in
+  /// which it rested before it was grasped.
   std::span<const Pose> objects;
   /// Index into `objects`; -1 when nothing is held.
   std::int32_t held = -1;
   Pose world_from_held;
-  /// Whether the target has been in the hand in this episode; see BatchSimulator::picks() for one
-  /// that has ended.
+  /// Whether the hand has held the target in this episode. For an episode that has ended, see
+  /// BatchSimulator::picks().
   bool has_picked = false;
-  /// Where the target is to be.
+  /// The pose to which the target has to be brought.
   Pose goal;
 };
 
-/// Where an env is after a step that was made elsewhere: by a physics engine, or by a real robot.
+/// The state of an env after a step that something else made, such as a physics engine or a real
+/// robot.
 struct FollowedState {
-  /// The root stays upright: only the yaw of its rotation counts.
+  /// The root stays upright: only the yaw of its rotation is used.
   Pose world_from_root;
   /// One per position of the robot; positions that neither actions nor episodes move are ignored.
   std::span<const float> joint_positions;
-  /// World poses, one per object of the env (EnvObjects::objects), also of the held one.
+  /// World poses, one per object of the env (EnvObjects::objects), including the held one.
   std::span<const Pose> objects;
   /// Index into `objects`; -1 when nothing is held.
   std::int32_t held = -1;
-  /// Whether something was in the way of the robot: what the bump sensor says.
+  /// Whether something was in the robot's way: the value of the bump sensor.
   bool was_hindered = false;
 };
 
@@ -227,8 +231,8 @@ struct PhaseTime {
   double seconds = 0;
 };
 
-/// What the options say of noise, as an episode has drawn it: standard deviations, and steps of
-/// delay. See RobotNoise and LaserOptions.
+/// The noise that an episode has drawn from the ranges in the options: standard deviations, and a
+/// delay in steps. See RobotNoise and LaserOptions.
 struct EpisodeNoise {
   float motion = 0;
   float motion_bias = 0;
@@ -238,37 +242,36 @@ struct EpisodeNoise {
   float laser = 0;
 };
 
-/// Who has chosen an episode that begins, and so whose RobotNoise it has.
+/// Who has chosen the episode that begins. This decides which random numbers its RobotNoise uses.
 enum class EpisodeChoice : std::uint8_t {
-  /// Somebody who compares policies by it: the episode's own, the same in whatever env it is
-  /// played.
+  /// The caller named it, for example to compare policies. The random numbers are the episode's
+  /// own: the same in whichever env it is played.
   kNamed,
-  /// Chance, as where its turn has come or a task draws it: the env's, another one each time.
+  /// Its turn came, or a task drew it. The random numbers are the env's, and differ each time.
   kDrawn,
 };
 
 /// N environments of one world, stepped together (paper, section 3.2 and appendices A, G and I).
-/// What an env does depends on (world, options, seed, env number, actions) only: bit for bit the
-/// same for any number of threads and of other envs. A step neither allocates, nor throws, nor
-/// locks. Calls with arrays of other lengths than said, or with numbers of envs that there are not,
-/// throw ErrorException with kInvalidInput and change nothing, as do those that have to wait for
-/// endStep() where a step has begun: steps, states, statistics and times of phases. Not safe to
+/// What an env does depends only on (world, options, seed, env number, actions). It is the same,
+/// bit for bit, for any number of threads and of other envs. A step neither allocates, nor throws,
+/// nor locks. A call with an array of the wrong length or an env number out of range throws
+/// ErrorException with kInvalidInput and changes nothing. So does a call that has to wait for
+/// endStep() while a step is under way: steps, states, statistics and times of phases. Not safe to
 /// call from several threads at once.
 ///
 /// Actions, for each env: one per controlled joint of the robot, in the order of its recipe (+-1:
 /// the largest step); forward (+1: forward_step meters ahead); turn (+1: turn_step radians
-/// clockwise, seen from above); where the robot's base drives sideways, sideways (+1:
-/// sideways_step meters to the left); hand (1: grasp what the gripper touches, or keep it; 0:
-/// release); terminate (1: the robot says that the task is done): see ActionLayout. Values are
-/// clamped to
-/// [-1, 1]; NaN is taken as 0 and counted.
+/// clockwise, seen from above); if the robot's base drives sideways, sideways (+1: sideways_step
+/// meters to the left); hand (1: grasp what the gripper touches, or keep it; 0: release); terminate
+/// (1: the robot declares the task done). See ActionLayout. Values are clamped to [-1, 1]; NaN is
+/// treated as 0 and counted.
 class BatchSimulator {
  public:
-  /// All envs stand at the start of their first episode. Fails with kInvalidInput on options out of
-  /// their ranges (checkOptions), when no episode of the world can be started (the robot penetrates
-  /// something in all of them; the error's name is kNoEpisodeStarts) or a laser sees nothing, and
-  /// with kUnsupported when an action moves a planar or floating joint, or the link that carries
-  /// the laser.
+  /// Creates a simulator whose envs all stand at the start of their first episode. Fails with
+  /// kInvalidInput when an option is out of range (checkOptions), when no episode of the world can
+  /// be started because the robot penetrates something in all of them (the error's name is
+  /// kNoEpisodeStarts), or when a laser sees nothing. Fails with kUnsupported when an action moves
+  /// a planar or floating joint, or the link that carries the laser.
   [[nodiscard]] static Result<BatchSimulator> create(const World& world,
                                                      const SimulationOptions& options);
   ~BatchSimulator();
@@ -276,7 +279,7 @@ class BatchSimulator {
   BatchSimulator& operator=(BatchSimulator&&) noexcept;
 
   [[nodiscard]] const World& world() const;
-  /// As the simulator was created, with the seed of the last restart().
+  /// The options that the simulator was created with, and the seed of the last restart().
   [[nodiscard]] const SimulationOptions& options() const;
   [[nodiscard]] std::size_t envCount() const;
   [[nodiscard]] std::size_t actionCount() const;
@@ -286,142 +289,152 @@ class BatchSimulator {
   /// The parts of an observation, in order:
   /// robot_target (3), grip_target (3), robot_grip (3), robot_goal (3), grip_goal (3): points in
   /// the frame of the base (on the floor under the root, turned by the yaw) or of the grip, meters;
-  /// is_holding (1); joints (one per controlled joint, radians or meters); time (3): the share f of
-  /// the steps that is left, as min(1, f), min(1, 5 f), min(1, 50 f). With SensorOptions also: bump
-  /// (1): whether something was in the way of the last step; target_goal (3): from the target,
-  /// where it is now, to the goal, along the axes of the base, meters; target_up (3): where that
-  /// side of the target points that was up when the episode began, along these axes; near_objects
-  /// (3 for each): from the grasp point to the nearest points of the nearest other objects, along
-  /// these axes, meters, (0, 1, 0) in place of those further away than 1 m; laser (beams, for each
-  /// of its planes): distances as shares of the range; geodesic (6): length, cosine and sine of the
-  /// way along the floor to the target, and to the goal; last_actions (an action for each): what
-  /// was asked for in the last steps, the latest first. See docs/simulation.md.
+  /// is_holding (1); joints (one per controlled joint, radians or meters); time (3): the fraction f
+  /// of the steps that is left, as min(1, f), min(1, 5 f), min(1, 50 f). SensorOptions add: bump
+  /// (1): whether something was in the way in the last step; target_goal (3): the vector from the
+  /// target's current position to the goal, along the axes of the base, meters; target_up (3): the
+  /// direction, along these axes, of the side of the target that was up when the episode began;
+  /// near_objects (3 for each): vectors from the grasp point to the nearest points of the nearest
+  /// other objects, along these axes, meters, with (0, 1, 0) in place of objects more than 1 m
+  /// away; laser (beams, for each of its planes): distances as fractions of the range; geodesic
+  /// (6): length, cosine and sine of the path along the floor to the target, and to the goal;
+  /// last_actions (a row of actions for each step): the actions of the last steps, latest first.
+  /// See docs/simulation.md.
   [[nodiscard]] const std::vector<ObservationPart>& observationParts() const;
 
-  /// One step of all envs. `actions`: envCount() * actionCount(), env after env.
-  /// `resets`: empty, or for each env the index of an episode that begins instead of this step's
-  /// end, kStays for none; the env's reward and done of this step are 0. Numbers that are no
-  /// episode's, and those of skippedEpisodes(), begin none either: no episode becomes another.
+  /// Steps all envs once. `actions`: envCount() * actionCount(), env after env.
+  /// `resets`: empty, or for each env the index of an episode that begins in place of this step's
+  /// outcome, or kStays for none. The reward and done of an env that is reset are 0 in this step.
+  /// An index that is out of range or among skippedEpisodes() begins no episode: no other episode
+  /// takes its place.
   void step(std::span<const float> actions, std::span<const std::int32_t> resets = {});
 
-  /// The same in two halves, so that the caller can work meanwhile. `actions` and `resets` must
-  /// stay as they are until endStep() returns; what the simulator returns is valid after it. In
-  /// between it takes no other step, no state is reset, saved, restored or copied, and neither
-  /// statistics nor times of phases are read.
+  /// step() in two halves, so that the caller can work in the meantime. `actions` and `resets` must
+  /// not change until endStep() returns, and what the simulator returns is valid only after that.
+  /// Between the two calls, no other step may begin, no state may be reset, saved, restored or
+  /// copied, and neither statistics nor times of phases may be read.
   void beginStep(std::span<const float> actions, std::span<const std::int32_t> resets = {});
   void endStep();
-  /// Whether a step has begun and not ended.
+  /// Whether a step has begun and has not ended yet.
   [[nodiscard]] bool isStepping() const;
 
-  /// A step that was made elsewhere. The envs are in `states` (one per env) now, whatever the
-  /// simulation would have made of `actions`; observations, rewards and ends of episodes follow as
-  /// in step(), from where robot and objects are and from what is held now and was held before.
-  /// Nothing asks whether a robot can be where it is said to be, but numbers that are not finite,
-  /// rotations that are none and held objects that there are not are refused (ErrorException).
+  /// Follows a step that something else made. The envs are now in `states` (one per env), whatever
+  /// the simulation would have made of `actions`. Observations, rewards and ends of episodes follow
+  /// as in step(), from where robot and objects are, what is held now and what was held before.
+  /// Whether the robot can be where `states` puts it is not checked. Numbers that are not finite,
+  /// invalid rotations and indices of held objects that do not exist are refused (ErrorException).
   void follow(std::span<const float> actions, std::span<const FollowedState> states);
 
-  /// What reset() takes for an env instead of an episode: leave it as it is, or begin the episode
-  /// whose turn it is.
+  /// Values that reset() takes for an env in place of an episode's index: leave the env as it is,
+  /// or begin the episode whose turn it is.
   static constexpr std::int32_t kStays = -1;
   static constexpr std::int32_t kNextEpisode = -2;
   /// Begins episodes between two steps. `episodes`: for each env the index of an episode, kStays or
-  /// kNextEpisode; where a number is neither, or of skippedEpisodes(), the env stays, too. What the
-  /// last step returned stays, but for the observations of these envs; where that step ended an
-  /// episode, the one before is their final observation.
+  /// kNextEpisode. An env whose number is none of these, or is among skippedEpisodes(), stays as it
+  /// is, too. The results of the last step stay, except for the observations of these envs. If that
+  /// step ended an episode, the env's previous observation becomes its final observation.
   void reset(std::span<const std::int32_t> episodes, EpisodeChoice choice = EpisodeChoice::kNamed);
-  /// All envs stand at the start of their first episode, as if the simulator had just been made
-  /// with this seed; the statistics begin anew, too.
+  /// Puts all envs at the start of their first episode, as if the simulator had just been created
+  /// with this seed. The statistics start again from zero.
   void restart(std::uint64_t seed);
 
-  /// Each of `envs` goes on from its state, which may be that of another env or simulator, a
-  /// changed one, or one of your own: in EnvState::episode, whose scene, objects and target are
-  /// there, after EnvState::step steps of it, with robot, objects and goal where the state says.
-  /// The base goes to the floor, GroundOptions::most_rise above it or most_drop below it at most,
-  /// and joints into their limits. What is held is in the hand as world_from_grip and its
-  /// pose in `objects` say, and follows joints that you change; spheres of it that are in something
-  /// do not count until they are free, as after a grasp. Objects that rest are taken as they are,
-  /// also in the air, in furniture or in each other. `scene`, `begun` and the goal's rotation play
-  /// no part, the root has its yaw alone, and positions that neither actions nor episodes move stay
-  /// as they are. Where the target rests counts as where it began. What a state does not say begins
-  /// anew: the last actions, whether something was in the way (bump), odometry. The luck of the env
-  /// is its own or, with EpisodeChoice::kNamed, the episode's. What the last step returned stays,
-  /// but for the observations of these envs.
+  /// Makes each of `envs` continue from its state, which may be that of another env or simulator, a
+  /// modified one, or one that you made. The env is then in EnvState::episode, with its scene,
+  /// objects and target, after EnvState::step steps, and robot, objects and goal are where the
+  /// state puts them. The base is put on the floor, which is at most GroundOptions::most_rise above
+  /// it or most_drop below it, and joints are clamped to their limits. A held object is placed in
+  /// the hand as world_from_grip and its pose in `objects` say, and moves with joints that you
+  /// change. Those of its spheres that penetrate something are ignored until they are free, as
+  /// after a grasp. Resting objects stay where the state puts them, even in the air, in furniture
+  /// or in each other. `scene`, `begun` and the goal's rotation are ignored; only the yaw of the
+  /// root is used; and positions that neither actions nor episodes move stay as they are. The place
+  /// where the target rests counts as the place where it began. What a state does not contain
+  /// starts afresh: the last actions, whether something was in the way (bump), and odometry. The
+  /// random numbers are the env's own or, with EpisodeChoice::kNamed, the episode's. The results of
+  /// the last step stay, except for the observations of these envs.
   ///
-  /// 1 where an env has its state now; 0 where it stays as it was: where no floor carries the base,
-  /// where the robot would penetrate the scene or a resting object out of the hand's reach (one
-  /// within counts as just let go of), or where the hand does not touch what it is to hold, whose
-  /// box is then further than EndEffector::grasp_radius from the grasp point. Fails with
-  /// kInvalidInput and changes nothing where an env is named twice, or where a state is of no
-  /// episode that can be started, or has other counts of objects or positions, another target than
-  /// its episode, numbers that are not finite, a root that is tilted by more than 0.1 rad or, where
-  /// ways along the floor are observed or rewarded, another goal than its episode. Allocates.
+  /// Returns 1 for each env that has its state now, and 0 for each that stays as it was. An env
+  /// stays as it was if no floor carries the base, if the robot would penetrate the scene or a
+  /// resting object that is out of the hand's reach (an object within reach counts as just
+  /// released), or if the hand does not touch the object that it should hold: its box is then
+  /// further than EndEffector::grasp_radius from the grasp point. Fails with kInvalidInput and
+  /// changes nothing if an env is named twice, or if the episode of a state cannot be started. The
+  /// same happens if a state has the wrong number of objects or positions, another target than its
+  /// episode, numbers that are not finite, a root that is tilted by more than 0.1 rad or, when
+  /// paths along the floor are observed or rewarded, another goal than its episode. Allocates.
   [[nodiscard]] Result<std::vector<std::uint8_t>> setStates(
       std::span<const std::uint32_t> envs, std::span<const EnvState> states,
       EpisodeChoice choice = EpisodeChoice::kDrawn);
 
-  /// Fails as setStates() would because of a state, and does nothing else.
+  /// Checks states only: fails as setStates() would because of one of them.
   [[nodiscard]] Result<void> checkStates(std::span<const EnvState> states) const;
 
-  /// The state of all envs as bytes, or of `envs`, in that order (numbers below envCount(), an
-  /// ErrorException otherwise): with what the last step returned, the statistics and the seed.
+  /// The state of all envs, or of `envs` in that order, as bytes, with the results of the last
+  /// step, the statistics and the seed. Numbers in `envs` must be below envCount() (ErrorException
+  /// otherwise).
   [[nodiscard]] std::vector<std::byte> saveState() const;
   [[nodiscard]] std::vector<std::byte> saveState(std::span<const std::uint32_t> envs) const;
-  /// What restoreState() takes for an env where a saved one is to become none.
+  /// What restoreState() takes in place of an env's number for a saved env that is not to be
+  /// restored.
   static constexpr std::uint32_t kNoEnv = ~std::uint32_t{0};
-  /// Goes on from a state that a simulator of the same world and the same options saved (threads,
-  /// auto_reset and body_transforms may differ and, with `envs`, the number of envs, rank and
-  /// ranks): bit for bit as that one would have. The saved envs become all envs, or `envs`, in that
-  /// order, and a single one becomes each of them; the random numbers and episodes to come are
-  /// those of the env that a state is restored to. The bytes need not be trusted: fails with
-  /// kInvalidInput or kUnsupported and changes nothing if they are not such a state, are of another
-  /// number of envs or, with `envs`, of another seed, where one is named twice, or where one waits
-  /// for its next episode and none does here.
+  /// Continues from a state that a simulator of the same world and the same options saved, bit for
+  /// bit as that simulator would have. Threads, auto_reset and body_transforms may differ and, with
+  /// `envs`, the number of envs, rank and ranks. The saved envs become all envs, or `envs` in that
+  /// order; a single saved env becomes each of them. Future random numbers and episodes are those
+  /// of the env to which a state is restored. The bytes need not be trusted. Fails with
+  /// kInvalidInput or kUnsupported and changes nothing if they are not such a state, have another
+  /// number of envs or, with `envs`, another seed; if an env is named twice; or if a saved env
+  /// waits for its next episode, which no env of this simulator does.
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state);
   [[nodiscard]] Result<void> restoreState(std::span<const std::byte> state,
                                           std::span<const std::uint32_t> envs);
 
-  /// After the last step. Shape: envs * observationSize(). Where an episode ended, the first
-  /// observation of the next one, or without SimulationOptions::auto_reset still its last.
+  /// The observations after the last step. Shape: envs * observationSize(). For an env whose
+  /// episode ended, it is the first observation of the next episode, or the last one of the ended
+  /// episode without SimulationOptions::auto_reset.
   [[nodiscard]] std::span<const float> observations() const;
-  /// Where an episode ended in the last step, its last observation; elsewhere undefined.
+  /// The last observation of each episode that ended in the last step; undefined for other envs.
   [[nodiscard]] std::span<const float> finalObservations() const;
-  /// Of the last step. Shape: envs.
+  /// The rewards of the last step. Shape: envs.
   [[nodiscard]] std::span<const float> rewards() const;
   /// 1 where an episode ended in the last step. Shape: envs.
   [[nodiscard]] std::span<const std::uint8_t> dones() const;
-  /// 1 where it ended in success. Shape: envs.
+  /// 1 where the episode ended in success. Shape: envs.
   [[nodiscard]] std::span<const std::uint8_t> successes() const;
-  /// How it ended; kNone where it goes on or the caller reset it. Shape: envs.
+  /// How the episode ended; kNone where it goes on or the caller reset it. Shape: envs.
   [[nodiscard]] std::span<const EpisodeEnd> endings() const;
-  /// 1 where it ended and the target had been in the hand at any time of it, whatever the task.
-  /// Shape: envs.
+  /// 1 where the episode ended and the hand had held the target at any time in it, whatever the
+  /// task. Shape: envs.
   [[nodiscard]] std::span<const std::uint8_t> picks() const;
 
-  /// 1 where an env has played its share of the episodes (EpisodeOrder::kPartition), or waits where
-  /// its episode ended (without SimulationOptions::auto_reset): from the step after on, it ignores
-  /// actions, stays as it is with rewards of 0, ends nothing and is left out of all statistics,
-  /// until the caller chooses an episode for it or, where it waits, asks for the next. Shape: envs.
+  /// 1 where an env has played its share of the episodes (EpisodeOrder::kPartition), or waits after
+  /// the end of its episode (without SimulationOptions::auto_reset). From the next step on, an idle
+  /// env ignores actions, stays as it is with rewards of 0, ends no episode and is left out of all
+  /// statistics, until the caller chooses an episode for it or, if it waits, asks for the next one.
+  /// Shape: envs.
   [[nodiscard]] std::span<const std::uint8_t> idle() const;
 
   [[nodiscard]] SimulationStatistics statistics() const;
   /// The statistics of one env.
   [[nodiscard]] SimulationStatistics statistics(std::size_t env) const;
-  /// Episodes of the world that are skipped because the robot cannot start in them.
+  /// Indices of the world's episodes that are skipped because the robot cannot start in them.
   [[nodiscard]] std::span<const std::uint32_t> skippedEpisodes() const;
   [[nodiscard]] EnvState envState(std::size_t env) const;
-  /// The objects of one env, which is not checked, without copies: for rendering.
+  /// The objects of one env, without copies: for rendering. `env` is not checked.
   [[nodiscard]] EnvObjects envObjects(std::size_t env) const noexcept;
-  /// What the random numbers of the sensors of an env, which is not checked, follow from.
+  /// What the random numbers of an env's sensors are derived from. `env` is not checked.
   [[nodiscard]] EnvMoment envMoment(std::size_t env) const noexcept;
   /// The noise of the episode that an env is in.
   [[nodiscard]] EpisodeNoise episodeNoise(std::size_t env) const;
-  /// What an env was asked to do and has not done yet, as actions arrive late
-  /// (RobotNoise::action_delay): an action for each step of its episode's delay, the one that is
-  /// due in the next step first. Of steps before the episode, nothing moves and what the hand and
-  /// terminate ask for is NaN. Shape: EpisodeNoise::action_delay * actionCount(). Allocates.
+  /// The actions of an env that have not taken effect yet, because actions arrive late
+  /// (RobotNoise::action_delay): one row for each step of its episode's delay, beginning with the
+  /// row that is due in the next step. In rows that stand for steps before the episode, motions are
+  /// 0 and the hand and terminate actions are NaN. Shape: EpisodeNoise::action_delay *
+  /// actionCount(). Allocates.
   [[nodiscard]] std::vector<float> actionsUnderWay(std::size_t env) const;
-  /// A body is a group of links that no joint moves against each other in this run (joints that
-  /// neither actions nor episodes move count as fixed). The root's is body 0.
+  /// The number of bodies. A body is a group of links that no joint moves relative to each other in
+  /// this run (joints that neither actions nor episodes move count as fixed). The root belongs to
+  /// body 0.
   [[nodiscard]] std::size_t bodyCount() const;
   /// `link`: index into Robot::links().
   [[nodiscard]] LinkOnBody linkOnBody(std::size_t link) const;
@@ -429,13 +442,13 @@ class BatchSimulator {
   /// empty without SimulationOptions::body_transforms.
   [[nodiscard]] std::span<const RigidTransform> bodyTransforms() const;
 
-  /// From now on, measures the phases of one step in `every`; 0 switches this off.
+  /// Measures the phases of one in `every` steps from now on; 0 switches this off.
   void samplePhases(std::uint32_t every);
   [[nodiscard]] std::vector<PhaseTime> phaseTimes() const;
-  /// Memory of all envs together, bytes.
+  /// Memory used by all envs together, bytes.
   [[nodiscard]] std::size_t memoryBytes() const;
-  /// Memory of what all envs share beside the packs, bytes: how episodes begin, what is known of
-  /// the floors of all homes, ways along them, and what lasers see.
+  /// Memory used by what all envs share besides the packs, bytes: how episodes begin, the floors of
+  /// all homes, paths along them, and what lasers see.
   [[nodiscard]] std::size_t sharedBytes() const;
 
  private:
