@@ -17,11 +17,12 @@
 namespace galactic {
 
 struct DebugOptions {
-  /// Whose column grid is shown, meters, one of the world's radii; 0: the smallest.
+  /// Radius of the column grid that is shown, meters: one of the world's radii, or 0 for the
+  /// smallest.
   float radius = 0;
 };
 
-/// A color of the debug view: RGBA, R lowest, and what has it.
+/// A color of the debug view (RGBA, R in the lowest byte) and what is drawn in it.
 struct DebugColor {
   std::uint32_t color = 0;
   std::string_view meaning;
@@ -34,31 +35,32 @@ inline constexpr DebugColor kDebugTask{0xFF8C1ED6, "target, and its goal as a fr
 /// Whose spheres are shown.
 enum class DebugSpheres : std::uint8_t {
   kRobot,  ///< Green.
-  kHeld,   ///< Blue: of the object in the hand.
+  kHeld,   ///< Blue: spheres of the object in the hand.
 };
 
-/// What the simulation knows of a world, as models to draw (paper, figures 3 and 13): the free
-/// space of the column grid as gray floors, walls and ceilings, seen from inside; spheres of each
-/// radius; the oriented box of each object in orange, that of a target in magenta; its edges alone,
-/// for a goal. Immutable, so safe to share between threads. Copies are cheap and share one content.
-/// Indices of no scene, object or radius throw ErrorException with kInvalidInput.
+/// The simulation's view of a world, as models to draw (paper, figures 3 and 13): the free space of
+/// the column grid as gray floors, walls and ceilings, seen from inside; spheres of each radius;
+/// the oriented box of each object in orange, or in magenta if it is the target; and only the edges
+/// of the box, for a goal. Immutable, so safe to share between threads. Copies are cheap and share
+/// their content. Indices of scenes, objects or radii that are out of range throw ErrorException
+/// with kInvalidInput.
 class DebugModels {
  public:
-  /// Reads all grids of that radius. Fails with kInvalidInput when `options.radius` is none of the
-  /// world's.
+  /// Reads all grids of that radius. Fails with kInvalidInput if `options.radius` is not one of the
+  /// world's radii.
   [[nodiscard]] static Result<DebugModels> from(const World& world, const DebugOptions& options);
 
   /// World::hash() of the world.
   [[nodiscard]] std::uint64_t worldHash() const { return world_hash_; }
   [[nodiscard]] const RenderLibrary& library() const { return *library_; }
-  /// The free space of a scene (index into World::scenes()), in the world's frame; none when
-  /// nothing is free.
+  /// The free space of a scene (index into World::scenes()), in the world's frame; none if nothing
+  /// is free.
   [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const;
   /// The box of an object (index into EpisodeSet::objectNames()), in the object's frame.
   [[nodiscard]] std::uint32_t boxModel(std::uint32_t object) const;
-  /// The same box in magenta: of the object that has to go to the goal.
+  /// The same box in magenta: for the object that has to be brought to the goal.
   [[nodiscard]] std::uint32_t targetModel(std::uint32_t object) const;
-  /// The same box as a frame of thin beams, magenta.
+  /// The same box as a magenta frame of thin beams.
   [[nodiscard]] std::uint32_t goalModel(std::uint32_t object) const;
   /// A sphere about the origin; `radius_index` counts in World::radii().
   [[nodiscard]] std::uint32_t sphereModel(DebugSpheres whose, std::uint32_t radius_index) const;
@@ -77,12 +79,14 @@ class DebugModels {
   std::uint32_t first_held_sphere_ = 0;
 };
 
-/// The debug view of the first envs of a batch: WorldViews of what the simulation knows. Movable.
+/// The debug view of the first envs of a batch: like WorldViews, but of what the simulation knows.
+/// Movable.
 class DebugViews {
  public:
-  /// Of the first `envs` envs. Throws ErrorException with kInvalidInput where there are fewer,
-  /// where `models` are not of the simulator's world (World::hash()), where the simulator was made
-  /// without SimulationOptions::body_transforms, and between its beginStep() and endStep().
+  /// Makes views of the first `envs` envs. Throws ErrorException with kInvalidInput if there are
+  /// fewer, if `models` are not of the simulator's world (World::hash()), if the simulator was
+  /// created without SimulationOptions::body_transforms, and between the simulator's beginStep()
+  /// and endStep().
   DebugViews(const DebugModels& models, const BatchSimulator& simulator, const CameraMount& camera,
              std::size_t envs);
 
@@ -91,13 +95,13 @@ class DebugViews {
   DebugViews(DebugViews&&) noexcept = default;
   DebugViews& operator=(DebugViews&&) noexcept = default;
 
-  /// Copies the state after the last step of the simulator that the views were made for, or of
-  /// another one of the same world. Does not allocate. Throws ErrorException with kInvalidInput on
-  /// a simulator of another world, of fewer envs or without body transforms, and between
+  /// Copies the state after the last step of the simulator that the views were created for, or of
+  /// another one of the same world. Does not allocate. Throws ErrorException with kInvalidInput if
+  /// the simulator is of another world, has fewer envs or has no body transforms, and between
   /// beginStep() and endStep().
   void update(const BatchSimulator& simulator);
 
-  /// As of the last update. Shape: envs.
+  /// The views as of the last update(). Shape: envs.
   [[nodiscard]] std::span<const RenderView> views() const { return views_; }
 
  private:

@@ -28,27 +28,27 @@ struct RenderTexture {
   std::span<const std::uint8_t> texels;
 };
 
-/// Bytes of a texture with all its levels. `size`: a power of two.
+/// Bytes of a texture with all its mip levels. `size`: a power of two.
 [[nodiscard]] std::size_t textureBytes(std::uint32_t size, TexelFormat format);
 
 /// A surface appearance, unlit.
 struct RenderMaterial {
   std::string_view name;
-  /// RGBA, sRGB, 8 bits each, R lowest; not used where there is a texture.
+  /// RGBA, sRGB, 8 bits each, R in the lowest byte; not used if there is a texture.
   std::uint32_t color = 0xFFFFFFFF;
   /// Index of a texture, or -1.
   std::int32_t texture = -1;
-  /// 0: opaque; otherwise what has less alpha than this is not drawn.
+  /// 0: opaque; otherwise texels with less alpha than this are not drawn.
   float alpha_cutoff = 0;
 };
 
-/// In place of a semantic id: each cluster of a model has the one that its pack gives it.
+/// In place of a semantic id: each cluster of a model has the id that its pack gives it.
 inline constexpr std::uint32_t kSemanticsOfPack = 0xFFFFFFFF;
 
-/// Up to kMostInCluster vertices and triangles of one material that are drawn or left out together.
+/// Up to kMostInCluster vertices and triangles of one material that are drawn or culled together.
 /// The memory layout is that of a pack.
 struct RenderCluster {
-  /// Where its vertices' coordinates begin on the lattice of its model, in steps.
+  /// Origin of its vertices' coordinates on its model's lattice, in steps.
   std::int32_t origin_x = 0;
   std::int32_t origin_y = 0;
   std::int32_t origin_z = 0;
@@ -71,12 +71,12 @@ struct RenderCluster {
   std::uint16_t reserved = 0;
 };
 
-/// Most vertices, and most triangles, of a cluster.
+/// The largest number of vertices, and of triangles, in a cluster.
 inline constexpr std::size_t kMostInCluster = 128;
-/// Clusters' bounds, vertices and triangles are stored by eight, so that eight are read at once.
+/// Clusters' bounds, vertices and triangles are stored in groups of eight, which are read at once.
 inline constexpr std::size_t kRenderLanes = 8;
 /// Rows of a block of bounds: box center x, y, z; half extents x, y, z; radius; cone axis x, y, z;
-/// cone cutoff. schema/render.fbs says what they mean.
+/// cone cutoff. schema/render.fbs explains them.
 inline constexpr std::size_t kBoundsRows = 11;
 /// Rows of eight vertices: x, y, z on the lattice, counted from the cluster's origin; u, v.
 inline constexpr std::size_t kVertexRows = 5;
@@ -85,7 +85,7 @@ inline constexpr std::size_t kTriangleRows = 3;
 
 /// What is placed with one transform: a scene, an object, the geometry of one link.
 struct RenderModel {
-  /// Of the object in its set, or of the link in its robot; 0 for a scene.
+  /// Index of the object in its set, or of the link in its robot; 0 for a scene.
   std::uint32_t part = 0;
   /// Meters between neighboring lattice points: a power of two. The vertex (x, y, z) of a cluster
   /// stands at step * (origin + (x, y, z)), exactly.
@@ -99,8 +99,8 @@ struct RenderModel {
   Vec3 bounds_max;
   std::uint32_t source_triangles = 0;
   std::uint32_t triangles = 0;
-  /// Farthest that simplification, and a lattice that is coarse for that, moved the surface;
-  /// meters.
+  /// The farthest that simplification moved the surface, together with a lattice that is coarse
+  /// compared with that; meters.
   float largest_error = 0;
 };
 
@@ -112,7 +112,8 @@ struct MissingTexture {
   std::uint64_t hash_high = 0;
 };
 
-/// Everything that a pack has to draw: views into its memory, in the layout of schema/render.fbs.
+/// Everything in a pack that can be drawn: views into its memory, in the layout of
+/// schema/render.fbs.
 struct RenderMeshes {
   /// Ascending `part`.
   std::vector<RenderModel> models;
@@ -121,30 +122,31 @@ struct RenderMeshes {
   std::span<const float> cluster_bounds;
   /// Shape: vertices / 8 x kVertexRows x 8.
   std::span<const std::uint16_t> vertices;
-  /// RGBA, sRGB, R lowest, that multiply the material's: one per vertex, or none.
+  /// Colors that multiply the material's: RGBA, sRGB, R in the lowest byte; one per vertex, or
+  /// none.
   std::span<const std::uint32_t> colors;
   /// Shape: triangles / 8 x kTriangleRows x 8.
   std::span<const std::uint8_t> triangles;
   std::vector<RenderMaterial> materials;
   std::vector<RenderTexture> textures;
-  /// Names of what semantic ids tell apart.
+  /// Names of the semantic ids.
   std::vector<std::string_view> semantics;
   /// Textures that are in other packs and were not found: their materials have plain colors.
   std::vector<MissingTexture> missing_textures;
 
-  /// The model of this object or link; none when it has nothing to show.
+  /// The model of this object or link; none if it has nothing to show.
   [[nodiscard]] std::optional<std::uint32_t> modelOf(std::uint32_t part) const;
 };
 
 class SharedTextures;
 
-/// The render meshes of a scene, object or robot pack, which must outlive them; none where it was
+/// The render meshes of a scene, object or robot pack, which must outlive them; none if it was
 /// baked without. Textures that the pack shares with others come from `shared`, whose packs must
-/// outlive the meshes, too. Fails with kInvalidInput on another kind of pack.
+/// also outlive the meshes. Fails with kInvalidInput if it is another kind of pack.
 [[nodiscard]] Result<std::optional<RenderMeshes>> renderMeshesOf(const PackFile& pack,
                                                                  const SharedTextures& shared);
 
-/// The same without any shared textures.
+/// The same, without any shared textures.
 [[nodiscard]] Result<std::optional<RenderMeshes>> renderMeshesOf(const PackFile& pack);
 
 }  // namespace galactic

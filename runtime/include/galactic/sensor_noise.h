@@ -6,30 +6,33 @@
 
 namespace galactic {
 
-/// What the random numbers of an env's noise follow from: the same moment, the same numbers,
-/// whatever else is in the batch. An episode that was named has them wherever it is played.
+/// What the random numbers of an env's noise are derived from: the same moment gives the same
+/// numbers, whatever else is in the batch. An episode that was named has the same numbers in
+/// whichever env it is played.
 struct EnvMoment {
-  /// SimulationOptions::seed, or that of the last restart.
+  /// SimulationOptions::seed, or the seed of the last restart.
   std::uint64_t seed = 0;
-  /// Number of the env among those of all ranks; 0 in an episode that was named.
+  /// Number of the env among the envs of all ranks; 0 in an episode that was named.
   std::uint32_t env = 0;
   /// Steps done in the episode.
   std::uint32_t step = 0;
-  /// How many episodes the env has begun; of one that was named, all bits of its index inverted.
+  /// How many episodes the env has begun; in an episode that was named, its index with all bits
+  /// inverted.
   std::uint64_t episode = 0;
 };
 
-/// What real cameras do to images, for policies that are to see through real ones. All off by
-/// default. Each number may be a range from which episodes draw.
+/// The noise of real cameras, for policies that have to work with them. All off by default. Each
+/// number may be a range from which episodes draw.
 struct ImageNoise {
-  /// Standard deviation of depth at 1 m, meters. It grows with the square of depth, as with sensors
+  /// Standard deviation of depth at 1 m, meters. It grows with the square of depth, as in sensors
   /// that triangulate (Khoshelham and Elberink 2012).
   DrawnNumber depth_noise = 0;
-  /// Share of the pixels without depth.
+  /// Fraction of pixels without depth.
   DrawnNumber depth_dropout = 0;
-  /// Standard deviation of each channel of color, levels of 255.
+  /// Standard deviation of each color channel, in levels of 255.
   DrawnNumber color_noise = 0;
-  /// Colors of an episode are multiplied by a number from 1 - this to 1 + this, each as likely.
+  /// The colors of an episode are multiplied by a number that is drawn uniformly from 1 - this to 1
+  /// + this.
   DrawnNumber light_jitter = 0;
 
   [[nodiscard]] constexpr bool changesDepth() const {
@@ -40,9 +43,8 @@ struct ImageNoise {
   }
 };
 
-/// How far a camera may be from what it should be, and from where it should be mounted: another one
-/// in each episode. Off by default. Each number may be a range from which episodes draw how far
-/// that is.
+/// How far a camera's field of view and mounting may deviate from what they should be, differently
+/// in each episode. Off by default. Each number may be a range from which episodes draw this limit.
 struct CameraJitter {
   /// Either way along each of the camera's axes, meters.
   DrawnNumber camera_jitter = 0;
@@ -56,10 +58,10 @@ struct CameraJitter {
   }
 };
 
-/// A number among `Options` as users know it: 0, its default, to `most`, or a range within.
+/// A number in `Options` as users know it: from 0, its default, to `most`, or a range within these.
 template <class Options>
 struct SensorOption {
-  /// On command lines behind two dashes, in Python with '_' for '-'.
+  /// On command lines with two dashes before it, in Python with '_' in place of '-'.
   const char* name;
   const char* unit;
   const char* text;
@@ -86,7 +88,7 @@ inline constexpr std::array<SensorOption<CameraJitter>, 3> kCameraJitterOptions{
      &CameraJitter::camera_jitter_fov},
 }};
 
-// No field without an option.
+// Checks that every field has an option.
 static_assert(sizeof(ImageNoise) == sizeof(DrawnNumber) * kImageNoiseOptions.size());
 static_assert(sizeof(CameraJitter) == sizeof(DrawnNumber) * kCameraJitterOptions.size());
 

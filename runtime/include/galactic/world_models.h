@@ -19,22 +19,23 @@ struct LinkModel {
   std::uint32_t model = 0;
 };
 
-/// What a world has to draw: the models of all its packs, and which of them shows what. Immutable,
-/// so safe to share between threads. Copies are cheap and share one content, which keeps the world.
-/// Indices of no scene or object throw ErrorException with kInvalidInput.
+/// Everything in a world that can be drawn: the models of all its packs, and which model shows
+/// what. Immutable, so safe to share between threads. Copies are cheap and share their content,
+/// which keeps the world alive. Indices of scenes or objects that are out of range throw
+/// ErrorException with kInvalidInput.
 class WorldModels {
  public:
-  /// Fails with kInvalidInput when a pack was baked without render meshes.
+  /// Fails with kInvalidInput if a pack was baked without render meshes.
   [[nodiscard]] static Result<WorldModels> from(const World& world);
 
   /// World::hash() of the world.
   [[nodiscard]] std::uint64_t worldHash() const { return content_->world_hash; }
   [[nodiscard]] const RenderLibrary& library() const { return content_->library; }
-  /// The model of a scene (index into World::scenes()); none when it has nothing to show.
+  /// The model of a scene (index into World::scenes()); none if it has nothing to show.
   [[nodiscard]] std::optional<std::uint32_t> sceneModel(std::uint32_t scene) const;
   /// The model of an object (index into EpisodeSet::objectNames()).
   [[nodiscard]] std::optional<std::uint32_t> objectModel(std::uint32_t object) const;
-  /// Ascending links.
+  /// By ascending link.
   [[nodiscard]] const std::vector<LinkModel>& links() const { return content_->links; }
 
  private:
