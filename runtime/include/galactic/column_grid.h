@@ -11,16 +11,16 @@ namespace galactic {
 /// The answer to "may the sphere's center be here?".
 enum class Clearance : std::uint8_t {
   kFree = 0,     ///< Inside a free span, both ends included.
-  kBlocked = 1,  ///< Inside the grid and in no free span; also when a coordinate is NaN.
-  kOutside = 2,  ///< Outside the grid's rectangle or its range of heights: the grid does not know.
+  kBlocked = 1,  ///< Inside the grid but in no free span; also if a coordinate is NaN.
+  kOutside = 2,  ///< Outside the grid's rectangle or its range of heights: unknown.
 };
 
-/// Clearance and the distances to contact along the vertical line.
+/// Clearance, and the distances to contact along the vertical line.
 struct Contact {
   Clearance clearance = Clearance::kBlocked;
-  /// How far the sphere can sink and rise before it touches; meters; 0 unless free. Less by some
-  /// millionths of the grid's height, so that wherever the sphere gets by moving as far or less,
-  /// it is free.
+  /// How far the sphere can move down and up before it touches something, meters; 0 unless free.
+  /// Smaller by some millionths of the grid's height than the exact distance, so that the sphere is
+  /// free wherever it gets by moving this far or less.
   float down = 0;
   float up = 0;
 };
@@ -32,8 +32,8 @@ struct SphereCenters {
   std::span<const float> z;
 };
 
-/// Where the answers of a batched query go: arrays as long as the centers. `down` and `up` may both
-/// be empty when only the clearance is wanted.
+/// Arrays for the answers of a batched query, as long as the centers. `down` and `up` may both be
+/// empty if only the clearance is wanted.
 struct ContactArrays {
   std::span<Clearance> clearance;
   std::span<float> down{};
@@ -48,7 +48,7 @@ struct ColumnIndex {
   friend bool operator==(const ColumnIndex&, const ColumnIndex&) = default;
 };
 
-/// Where a grid's cells lie and how their codes translate; plain data, pointing into a pack.
+/// Where a grid's cells lie and how their codes are decoded; plain data, pointing into a pack.
 /// docs/packs.md describes the layout.
 struct ColumnGridLayout {
   float radius = 0;
@@ -65,7 +65,8 @@ struct ColumnGridLayout {
   const std::uint64_t* cells = nullptr;
   /// nullptr when the whole grid fits in one range of codes.
   const std::uint16_t* tile_base = nullptr;
-  /// One of the two: spans of overflow cells as code pairs, or as heights where codes do not reach.
+  /// One of the next two: spans of overflow cells as pairs of codes, or as heights if codes do not
+  /// reach that far.
   const std::uint32_t* overflow_codes = nullptr;
   const Span* overflow_spans = nullptr;
 };
@@ -89,33 +90,33 @@ class ColumnGrid {
   /// Whether a sphere centered at `center` (world frame) is free, judged by the nearest column.
   [[nodiscard]] Clearance clearance(Vec3 center) const noexcept;
 
-  /// The same with the distances down and up to contact in that column.
+  /// The same, with the distances down and up to contact in that column.
   [[nodiscard]] Contact contact(Vec3 center) const noexcept;
 
-  /// The same in a column of the caller's choice, at height `y`: for those who go from cell to
-  /// cell. kOutside where there is no such column.
+  /// The same in a column of the caller's choice, at height `y`: for callers that go from cell to
+  /// cell. kOutside if there is no such column.
   [[nodiscard]] Contact contact(ColumnIndex column, float y) const noexcept;
 
   /// `contact` for each center, eight at a time where the processor has AVX2 (chosen at run time).
   /// The answers equal those of `contact` bit for bit. Neither allocates nor throws.
-  /// All spans of `centers` and `out.clearance` have one length; `out.down` and `out.up` have that
-  /// length or are both empty.
+  /// All spans of `centers` and `out.clearance` must have the same length; `out.down` and `out.up`
+  /// must have that length or both be empty.
   void contact(const SphereCenters& centers, const ContactArrays& out) const noexcept;
 
-  /// Index of the first of these centers that is not free, or their number if all are free. The
-  /// same answers as those of `contact`, found faster. Neither allocates nor throws.
+  /// Index of the first of these centers that is not free, or the number of centers if all are
+  /// free. Gives the same answer as `contact`, but faster. Neither allocates nor throws.
   [[nodiscard]] std::size_t firstNotFree(const SphereCenters& centers) const noexcept;
 
-  /// The column that a query at (x, z) is judged by; none where the grid does not reach, and where
-  /// a coordinate is NaN.
+  /// The column by which a query at (x, z) is judged; none outside the grid, or if a coordinate is
+  /// NaN.
   [[nodiscard]] std::optional<ColumnIndex> columnAt(float x, float z) const noexcept;
 
   /// Number of free spans in column (i, k); 0 outside the grid.
   [[nodiscard]] std::size_t spanCount(std::uint32_t i, std::uint32_t k) const noexcept;
 
-  /// Copies the free spans of column (i, k), ascending, as many as `out` takes; returns how many
-  /// there are, 0 outside the grid. Every height of a span, its ends included, is free when asked
-  /// about.
+  /// Copies the free spans of column (i, k), ascending, as many as fit into `out`; returns how many
+  /// there are, 0 outside the grid. A query at any height of a span, its ends included, answers
+  /// kFree.
   std::size_t spans(std::uint32_t i, std::uint32_t k, std::span<Span> out) const noexcept;
 
  private:

@@ -10,7 +10,7 @@
 namespace galactic {
 
 /// A number that is the same in all episodes, or a range from which each episode of each env draws
-/// its own, all of it as likely: so that a policy meets many robots (domain randomization).
+/// its own number, uniformly, so that a policy meets many different robots (domain randomization).
 struct DrawnNumber {
   float least = 0;
   float most = 0;
@@ -20,9 +20,9 @@ struct DrawnNumber {
   constexpr DrawnNumber(float only) : least(only), most(only) {}
   constexpr DrawnNumber(float lowest, float highest) : least(lowest), most(highest) {}
 
-  /// Whether episodes differ in it.
+  /// Whether the number may differ between episodes.
   [[nodiscard]] constexpr bool isRange() const { return least != most; }
-  /// What an episode draws; `luck` from 0 to 1.
+  /// The number that an episode draws; `luck` is from 0 to 1.
   [[nodiscard]] constexpr float at(float luck) const {
     return std::min(least + (most - least) * luck, most);
   }
@@ -30,7 +30,7 @@ struct DrawnNumber {
   friend constexpr bool operator==(const DrawnNumber&, const DrawnNumber&) = default;
 };
 
-/// The same of a whole number.
+/// The same for a whole number.
 struct DrawnCount {
   std::uint32_t least = 0;
   std::uint32_t most = 0;
@@ -41,9 +41,9 @@ struct DrawnCount {
   constexpr DrawnCount(std::uint32_t lowest, std::uint32_t highest)
       : least(lowest), most(highest) {}
 
-  /// Whether episodes differ in it.
+  /// Whether the number may differ between episodes.
   [[nodiscard]] constexpr bool isRange() const { return least != most; }
-  /// What an episode draws; `luck` from 0 to 1.
+  /// The number that an episode draws; `luck` is from 0 to 1.
   [[nodiscard]] constexpr std::uint32_t at(float luck) const {
     const std::uint32_t above = most - least;
     return least +
@@ -53,20 +53,20 @@ struct DrawnCount {
   friend constexpr bool operator==(const DrawnCount&, const DrawnCount&) = default;
 };
 
-/// As options have it: "0.1", or of a range "0.1-0.5". Numbers read back exactly.
+/// The number as options have it: "0.1", or "0.1-0.5" for a range. Numbers read back exactly.
 [[nodiscard]] std::string drawnText(const DrawnNumber& number);
 
-/// None for what is no such text, or not allowed (isDrawnWithin).
+/// Reads such a text. None if it is malformed or not allowed (isDrawnWithin).
 [[nodiscard]] std::optional<DrawnNumber> drawnFrom(std::string_view text, const Span& within);
 
-/// Whether it is a number, or the ends of a range, `within`. Numbers below 0 stand for something
-/// else: no range has any.
+/// Whether the number, or both ends of the range, are `within`. Numbers below 0 have special
+/// meanings, so no range may contain any.
 [[nodiscard]] bool isDrawnWithin(const DrawnNumber& number, const Span& within);
 
-/// What a text should be, for messages that refuse one.
+/// What a text should look like, for messages that refuse one.
 [[nodiscard]] std::string wantedDrawn(const Span& within);
 
-// The same of whole numbers from 0 to `most`.
+// The same for whole numbers from 0 to `most`.
 [[nodiscard]] std::string drawnText(const DrawnCount& count);
 [[nodiscard]] std::optional<DrawnCount> drawnFrom(std::string_view text, std::uint32_t most);
 [[nodiscard]] bool isDrawnWithin(const DrawnCount& count, std::uint32_t most);

@@ -7,8 +7,8 @@
 
 namespace galactic {
 
-/// Why something failed. The values are the exit codes of all tools; that of what was interrupted
-/// is the one that shells give Ctrl-C.
+/// Why something failed. The values are the exit codes of all tools; kInterrupted is the exit code
+/// that shells report after Ctrl-C.
 enum class ErrorCode {
   kIo = 2,
   kInvalidInput = 3,
@@ -17,13 +17,13 @@ enum class ErrorCode {
   kInterrupted = 130
 };
 
-/// The exit codes besides those of ErrorCode: success, a wrong command line, a difference; and of
-/// what was interrupted and yet wrote all its files.
+/// The exit codes besides those of ErrorCode: success, a wrong command line, a difference, and the
+/// code of a program that was interrupted but still wrote all its files.
 inline constexpr int kExitOk = 0;
 inline constexpr int kExitUsage = 1;
 inline constexpr int kExitDiffers = 7;
 inline constexpr int kExitInterrupted = static_cast<int>(ErrorCode::kInterrupted);
-/// What --help of all tools says about exit codes.
+/// What every tool's --help prints about exit codes.
 inline constexpr const char* kExitCodesHelp =
     "Exit codes:\n"
     "  0    success\n"
@@ -35,7 +35,7 @@ inline constexpr const char* kExitCodesHelp =
     "  7    packs, reports or runs differ\n"
     "  130  interrupted\n";
 
-/// What went wrong and where, in words a user can act on.
+/// What went wrong and where, in words that a user can act on.
 struct Error {
   ErrorCode code = ErrorCode::kInternal;
   /// The file, and inside it the element and field, for example
@@ -43,8 +43,8 @@ struct Error {
   std::string where;
   /// One sentence: what was found, what was expected, what to do.
   std::string message;
-  /// A name for programs that never changes, for example "pack/hash" (docs/ci.md lists those of
-  /// packs); empty for most errors. Points to a literal.
+  /// A name for use by programs, which never changes, for example "pack/hash" (docs/ci.md lists the
+  /// names for packs); empty for most errors. Points to a literal.
   std::string_view name = {};
 
   /// "where: message", for people.
@@ -61,10 +61,10 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(Error{code, std::move(where), std::move(message), name});
 }
 
-/// Thrown where the caller has not kept what a function asks for, as with arrays of another length,
-/// numbers of what there is not or calls out of their order, whatever the function returns; and
-/// where one that returns no Result cannot go on, as when a graphics processor runs out of memory
-/// in the middle of its work. What a user can get wrong is a Result.
+/// Thrown if the caller has broken a function's rules, for example with arrays of the wrong length,
+/// indices out of range or calls in the wrong order, whatever the function returns. Also thrown if
+/// a function that returns no Result cannot go on, for example because a graphics processor runs
+/// out of memory. Mistakes that a user can make are reported as a Result.
 class ErrorException : public std::runtime_error {
  public:
   explicit ErrorException(Error error)

@@ -16,7 +16,7 @@ enum class JointType : std::uint8_t {
   kFloating = 5,    ///< Seven positions: translation, meters, and quaternion (x, y, z, w).
 };
 
-/// Values that a joint of this type takes from the vector of joint positions.
+/// Number of values that a joint of this type takes from the vector of joint positions.
 [[nodiscard]] constexpr std::uint32_t positionCount(JointType type) {
   switch (type) {
     case JointType::kFixed:
@@ -41,8 +41,8 @@ struct LinkFrame {
   Vec3 axis{1, 0, 0};
   /// Index of the parent link, smaller than the link's own; -1 for the root.
   std::int32_t parent = -1;
-  /// First of the joint's values in the vector of joint positions; that of the followed joint for a
-  /// mimic; -1 for a fixed joint and for the root.
+  /// Index of the joint's first value in the vector of joint positions; for a mimic, that of the
+  /// joint that it follows; -1 for a fixed joint and for the root.
   std::int32_t position = -1;
   /// joint value = multiplier * position + offset: 1 and 0 unless the joint mimics another.
   float multiplier = 1;
@@ -50,8 +50,9 @@ struct LinkFrame {
   JointType type = JointType::kFixed;
 };
 
-/// The two directions of a planar joint, unit vectors across `axis` (unit): the part of X across
-/// the axis, or of Z where the axis is nearly X; and axis x first.
+/// The two directions of a planar joint, unit vectors perpendicular to the unit vector `axis`. The
+/// first is the component of X perpendicular to the axis, or of Z if the axis is nearly X; the
+/// second is axis x first.
 struct PlanarDirections {
   Vec3 first;
   Vec3 second;
@@ -60,12 +61,12 @@ struct PlanarDirections {
 
 /// The pose of each link in the world for a vector of joint positions (forward kinematics).
 /// `links`: root first, parents before children. `world_from_root`: pose of the root link.
-/// `positions`: one value per position of the robot, radians or meters. `world_from_link`: as many
-/// as links, overwritten. Neither allocates nor throws.
+/// `positions`: one value per position of the robot, radians or meters. `world_from_link`: one per
+/// link, overwritten. Neither allocates nor throws.
 void forwardKinematics(std::span<const LinkFrame> links, const Pose& world_from_root,
                        std::span<const float> positions, std::span<Pose> world_from_link) noexcept;
 
-/// A point that a link carries, and a direction; in the frame that the links' poses are in.
+/// A point that moves with a link, and a direction, both in the frame of the links' poses.
 struct CarriedPoint {
   std::uint32_t link = 0;
   Vec3 point;
@@ -73,10 +74,11 @@ struct CarriedPoint {
 };
 
 /// How far a point of a link moves along a direction for each unit of each position: the transposed
-/// Jacobian of the point, applied to the direction. `links`, `positions`: as forwardKinematics()
-/// takes them, and `frame_from_link` what it says of them. `moves`: one per position, overwritten,
-/// meters per radian or meter times the direction's length; of a quaternion's components, for the
-/// rotation that they stand for at any length. Neither allocates nor throws.
+/// Jacobian of the point, applied to the direction. `links`, `positions`: as for
+/// forwardKinematics(). `frame_from_link`: the result of forwardKinematics(). `moves`: one per
+/// position, overwritten, meters per radian or meter, times the direction's length. A quaternion's
+/// components count as the rotation that they represent, whatever their length. Neither allocates
+/// nor throws.
 void applyTransposedJacobian(std::span<const LinkFrame> links, std::span<const float> positions,
                              std::span<const Pose> frame_from_link, const CarriedPoint& carried,
                              std::span<float> moves) noexcept;

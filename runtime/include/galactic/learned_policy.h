@@ -28,8 +28,8 @@ struct PolicyBatch {
 [[nodiscard]] PolicyBatch policyBatchOf(const BatchSimulator& simulator);
 
 struct LearnedPolicyOptions {
-  /// Whether actions are drawn from the policy's distribution, as in training; else they are its
-  /// means and its likeliest values.
+  /// Whether actions are drawn from the policy's distribution, as in training; otherwise they are
+  /// its means and most likely values.
   bool samples = true;
   std::uint64_t seed = 1;
   /// Number of the batch's first env over all ranks.
@@ -38,49 +38,49 @@ struct LearnedPolicyOptions {
   std::uint32_t threads = 0;
 };
 
-/// What a policy acts on, all envs, env after env.
+/// A policy's inputs for all envs, env after env.
 struct PolicyInputs {
   /// Shape: envs x observation_size.
   std::span<const float> observations = {};
-  /// 1 where an episode ended in the last step; empty: nowhere. Recurrent state and previous action
-  /// begin anew there. Shape: envs.
+  /// 1 where an episode ended in the last step, which resets the recurrent state and the previous
+  /// action; empty: nowhere. Shape: envs.
   std::span<const std::uint8_t> dones = {};
-  /// Shape: envs x height x width x 3, or x 4, whose last byte plays no part. Empty where the
-  /// policy wants no color.
+  /// Shape: envs x height x width x 3, or x 4, of which the last byte is ignored. Empty if the
+  /// policy needs no color.
   std::span<const std::uint8_t> color = {};
-  /// Shape: envs x height x width, meters. Empty where the policy wants no depth.
+  /// Shape: envs x height x width, meters. Empty if the policy needs no depth.
   std::span<const float> depth = {};
 };
 
-/// A policy pack's network, ready to act in a batch. What it does in an env depends on (pack,
-/// options, number of the env, what it has seen there) only: bit for bit the same for any number of
-/// threads and of other envs, and on any processor. Acting neither allocates, nor throws, nor
-/// locks, but for arrays of other lengths than said: these throw ErrorException with kInvalidInput.
-/// Not safe to call from several threads at once.
+/// A policy pack's network, ready to act in a batch. What it does in an env depends only on (pack,
+/// options, number of the env, what it has seen there). It is the same, bit for bit, for any number
+/// of threads and of other envs, and on any processor. Acting neither allocates, nor throws, nor
+/// locks, except that arrays of the wrong length throw ErrorException with kInvalidInput. Not safe
+/// to call from several threads at once.
 class LearnedPolicy {
  public:
-  /// Lays the weights out for this processor; `pack` is not needed afterwards. Fails with
-  /// kInvalidInput when `pack` holds no policy, or robot, observation or actions of the batch are
-  /// not what it was trained for (the message names what differs), when the batch has no envs, or
-  /// a part of its observation that is not within observation_size.
+  /// Arranges the weights for this processor; `pack` is not needed afterwards. Fails with
+  /// kInvalidInput if `pack` holds no policy, if the robot, observation or actions of the batch are
+  /// not those that the policy was trained for (the message names what differs), if the batch has
+  /// no envs, or if a part of its observation is not within observation_size.
   [[nodiscard]] static Result<LearnedPolicy> create(const PackFile& pack, const PolicyBatch& batch,
                                                     const LearnedPolicyOptions& options);
   ~LearnedPolicy();
   LearnedPolicy(LearnedPolicy&&) noexcept;
   LearnedPolicy& operator=(LearnedPolicy&&) noexcept;
 
-  /// The actions of the next step of all envs. Shape of `actions`: envs x actions, as
-  /// BatchSimulator::step takes them. Call it once before each step.
+  /// Computes the actions of all envs for the next step. Shape of `actions`: envs x actions, as
+  /// BatchSimulator::step() takes them. Call this once before each step.
   void act(const PolicyInputs& inputs, std::span<float> actions);
 
-  /// All envs begin anew, with the random numbers of a batch whose first env has this number.
+  /// Resets all envs, with the random numbers of a batch whose first env has this number.
   void reset(std::uint32_t first_env) noexcept;
-  /// All envs begin anew.
+  /// Resets all envs.
   void reset() noexcept;
 
   [[nodiscard]] const PolicyInterface& interface() const;
   [[nodiscard]] std::size_t threadCount() const;
-  /// Bytes that weights, recurrent states and scratch memory take.
+  /// Memory used by weights, recurrent states and scratch space, bytes.
   [[nodiscard]] std::size_t memoryBytes() const;
 
  private:

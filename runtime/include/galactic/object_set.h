@@ -14,29 +14,29 @@ namespace galactic {
 /// One movable rigid body, in its own frame (Y up, meters): views into the pack.
 struct ObjectModel {
   std::string_view name;
-  /// What it is when it rests.
+  /// The shape that stands for the object while it rests.
   OrientedBox box;
-  /// What it is when it is held. Radius descending.
+  /// The spheres that stand for the object while it is held. By descending radius.
   std::span<const SetSphere> spheres;
-  /// Likeliest first, at least one.
+  /// Most likely first, at least one.
   std::span<const StablePose> stable_poses;
-  /// Planes around its convex hull, which cut off corners and edges of the box. Empty where the
-  /// hull fills the box, and in packs that are older than the field.
+  /// Planes around the object's convex hull, which cut off corners and edges of the box. Empty if
+  /// the hull fills the box, and in packs that are older than this field.
   std::span<const HullPlane> hull_planes{};
 };
 
 /// The objects of an object pack, ready to use.
 class ObjectSet {
  public:
-  /// The objects in `pack`, which must outlive the result. Fails with kInvalidInput on another kind
-  /// of pack.
+  /// The objects in `pack`, which must outlive the result. Fails with kInvalidInput if it is
+  /// another kind of pack.
   [[nodiscard]] static Result<ObjectSet> from(const PackFile& pack);
   static Result<ObjectSet> from(const PackFile&& pack) = delete;
 
-  /// The working set, meters, ascending: SetSphere::radius_index counts in it.
+  /// The working set of radii, meters, ascending: SetSphere::radius_index is an index into it.
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
 
-  /// Ascending names.
+  /// By ascending name.
   [[nodiscard]] const std::vector<ObjectModel>& objects() const { return objects_; }
 
   /// Index of the object of this name.

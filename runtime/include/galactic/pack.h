@@ -14,24 +14,24 @@ namespace schema {
 struct Pack;
 }
 
-/// How much of a pack to check when it is opened.
+/// How much of a pack is checked when it is opened.
 enum class Trust {
-  kVerify,   ///< Hash, structure and every value: at memory speed, for anything from outside.
+  kVerify,   ///< Hash, structure and every value, at memory speed: for anything from outside.
   kTrusted,  ///< Header only: for packs that this machine has verified before.
 };
 
-/// An open pack: the bytes, checked, and the FlatBuffer in them. Movable; immutable, so safe to
-/// share between threads. What it returns is valid as long as it lives. One that was moved from
-/// holds no bytes, and throws ErrorException with kInvalidInput where its content is asked for.
+/// An open pack: the checked bytes, and the FlatBuffer in them. Movable; immutable, so safe to
+/// share between threads. What it returns is valid as long as it lives. A PackFile that was moved
+/// from holds no bytes, and throws ErrorException with kInvalidInput if you ask for its content.
 class PackFile {
  public:
-  /// Maps and checks `path`. Errors name the file, the field and the offence: kIo (cannot read),
-  /// kInvalidInput (damaged or no pack), kUnsupported (another format version).
+  /// Maps and checks `path`. Errors name the file, the field and what is wrong: kIo (cannot be
+  /// read), kInvalidInput (damaged, or not a pack), kUnsupported (another format version).
   [[nodiscard]] static Result<PackFile> open(const std::filesystem::path& path,
                                              Trust trust = Trust::kVerify);
 
-  /// The same from memory, which must be 32-byte aligned and outlive the result. `where` names it
-  /// in errors.
+  /// The same for a pack in memory, which must be 32-byte aligned and outlive the result. `where`
+  /// names it in errors.
   [[nodiscard]] static Result<PackFile> view(std::span<const std::byte> file, std::string where,
                                              Trust trust = Trust::kVerify);
 

@@ -28,7 +28,7 @@ enum class PackKind : std::uint32_t {
 /// The four characters of a kind, for messages.
 [[nodiscard]] std::string packKindName(PackKind kind);
 
-/// The kind of these four characters, none when there is no such kind.
+/// The kind that these four characters name; none if there is no such kind.
 [[nodiscard]] std::optional<PackKind> packKindOf(std::string_view name);
 
 inline constexpr std::array<char, 8> kPackMagic{'G', 'A', 'L', 'A', 'P', 'A', 'C', 'K'};

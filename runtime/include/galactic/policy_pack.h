@@ -16,8 +16,8 @@
 
 namespace galactic {
 
-// The content of a policy pack (kind PLCY), for those who write one. schema/policy.fbs says what
-// each field means; the names are the same.
+// The content of a policy pack (kind PLCY), for programs that write one. schema/policy.fbs explains
+// each field; the names are the same.
 
 namespace layer {
 
@@ -35,7 +35,7 @@ struct Normalize {
 struct Linear {
   std::uint32_t outputs = 0;
   std::vector<float> weight;
-  /// Empty: zeros; the same below.
+  /// Empty: zeros, here and in the layers below.
   std::vector<float> bias;
 };
 struct Convolution {
@@ -87,7 +87,7 @@ struct Gru {
 
 }  // namespace layer
 
-/// A layer and the numbers of the layers that it reads.
+/// A layer, and the numbers of the layers that it reads.
 struct PolicyLayer {
   std::vector<std::uint32_t> inputs;
   std::variant<layer::Observation, layer::PreviousAction, layer::Image, layer::Constant,
@@ -105,12 +105,12 @@ struct PolicyPart {
   friend bool operator==(const PolicyPart&, const PolicyPart&) = default;
 };
 
-/// What has to be drawn for a policy.
+/// The image that has to be drawn for a policy.
 struct PolicyImage {
   /// Pixels.
   std::uint32_t width = 128;
   std::uint32_t height = 128;
-  /// Which channels it has: red, green, blue; and behind them the depth.
+  /// Which channels it has: red, green, blue; then depth.
   bool color = true;
   float color_scale = 1.0F / 255;
   bool depth = true;
@@ -119,15 +119,16 @@ struct PolicyImage {
   float depth_scale = 0.1F;
   /// As galactic-run --camera names it.
   std::string camera = "head";
-  /// Radians; 0: that of the camera.
+  /// Radians; 0: the camera's own.
   float vertical_fov = 0;
-  /// Where the camera is and how it is turned there, as CameraWish has them.
+  /// Where the camera is and how it is turned there, as in CameraWish.
   std::array<float, 3> position{};
   std::array<float, 3> rpy_degrees{};
-  /// Meters; 0: what belongs to the camera.
+  /// Meters; 0: the camera's own.
   float near = 0;
 
-  /// As CameraWish has it: rounded to thousandths, so that it is what somebody asked for.
+  /// The field of view as in CameraWish: rounded to thousandths of a degree, so that it is the
+  /// number that was asked for.
   [[nodiscard]] float fovDegrees() const {
     constexpr double kThousandths = 180'000 / std::numbers::pi;
     return static_cast<float>(std::round(static_cast<double>(vertical_fov) * kThousandths) / 1000);
@@ -135,18 +136,18 @@ struct PolicyImage {
   [[nodiscard]] std::uint32_t channels() const { return (color ? 3U : 0U) + (depth ? 1U : 0U); }
 };
 
-/// What a policy needs to know and to be given.
+/// What a policy needs from a simulation.
 struct PolicyInterface {
   std::string name;
   /// Empty: any robot with as many actions.
   std::string robot;
-  /// Options of a simulation that observation and task need; the others do not matter.
+  /// Simulation options that observation and task need; other options do not matter.
   std::vector<OptionText> options;
   std::vector<PolicyPart> observation;
   std::optional<PolicyImage> image;
-  /// How many actions are numbers; they come first.
+  /// Number of actions that are continuous; they come first.
   std::uint32_t continuous_actions = 0;
-  /// How many have one of a few values.
+  /// Number of actions that take one of a few values.
   std::uint32_t discrete_actions = 0;
 };
 
@@ -163,9 +164,9 @@ struct PolicyContinuousActions {
   std::uint32_t log_deviation = 0;
 };
 
-/// All of a policy.
+/// Everything in a policy pack but the provenance.
 struct PolicyContent {
-  /// Its counts of actions follow from what is below and are not read.
+  /// Its numbers of actions are not read: they follow from the fields below.
   PolicyInterface interface;
   std::vector<PolicyLayer> layers;
   std::optional<PolicyContinuousActions> continuous;
@@ -176,24 +177,25 @@ struct PolicyContent {
 struct PolicyProvenance {
   std::string tool;
   std::string tool_version;
-  /// How it was trained, as far as one wants to know.
+  /// How it was trained, in as much detail as you like.
   std::vector<OptionText> options;
-  /// The checkpoint; no source when it has no name. Its bytes are hashed by the writer.
+  /// The checkpoint's name; if empty, the pack lists no source. The writer hashes the checkpoint's
+  /// bytes.
   std::string source_name;
   std::vector<std::byte> source;
 };
 
-/// The whole file: header and payload. Same content, same bytes. Nothing is checked.
+/// The whole file: header and payload. The same content gives the same bytes. Nothing is checked.
 [[nodiscard]] std::vector<std::byte> encodePolicyPack(const PolicyContent& content,
                                                       const PolicyProvenance& provenance);
 
-/// Checks the content as opening the pack would and writes it, so that it appears when it is whole.
-/// Fails with kInvalidInput, naming the layer and the field, and with kIo.
+/// Checks the content as opening the pack would, and writes the file atomically: it appears only
+/// when it is complete. Fails with kInvalidInput, naming the layer and the field, and with kIo.
 [[nodiscard]] Result<void> writePolicyPack(const std::filesystem::path& path,
                                            const PolicyContent& content,
                                            const PolicyProvenance& provenance);
 
-/// What the policy in `pack` needs. Fails with kInvalidInput on another kind of pack.
+/// What the policy in `pack` needs. Fails with kInvalidInput if it is another kind of pack.
 [[nodiscard]] Result<PolicyInterface> policyInterface(const PackFile& pack);
 
 }  // namespace galactic

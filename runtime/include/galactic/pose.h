@@ -4,8 +4,8 @@
 
 namespace galactic {
 
-/// A point in meters or a direction, in the world's frame, which is right-handed with Y up, or in
-/// the one that a name or a comment says.
+/// A point in meters, or a direction. The frame is the world's, which is right-handed with Y up,
+/// unless a name or a comment says otherwise.
 struct Vec3 {
   float x = 0;
   float y = 0;
@@ -14,7 +14,7 @@ struct Vec3 {
   friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 
-/// A closed interval, of heights in meters where nothing else is said; lo <= hi.
+/// A closed interval; of heights in meters unless stated otherwise; lo <= hi.
 struct Span {
   float lo = 0;
   float hi = 0;
@@ -67,7 +67,7 @@ struct Pose {
   return v + twice * q.w + cross(axis, twice);
 }
 
-/// First `b`, then `a`.
+/// The rotation that applies `b` first, then `a`.
 [[nodiscard]] constexpr Quat operator*(const Quat& a, const Quat& b) {
   return {
       a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
@@ -80,17 +80,17 @@ struct Pose {
 /// Radians.
 inline constexpr float kFullTurn = 2 * std::numbers::pi_v<float>;
 
-/// The same angle from -pi to pi, radians.
+/// The same angle in the range from -pi to pi, radians.
 [[nodiscard]] inline float wrappedAngle(float angle) { return std::remainder(angle, kFullTurn); }
 
-/// The angle of (x, y) from +X toward +Y, radians, from -pi to pi. In double, and rounded: C
-/// libraries differ in the last bits of their functions of floats.
+/// The angle of (x, y) from +X toward +Y, radians, from -pi to pi. Computed in double and rounded,
+/// because the float functions of C libraries differ in their last bits.
 [[nodiscard]] inline float angleOf(float y, float x) {
   return static_cast<float>(std::atan2(static_cast<double>(y), static_cast<double>(x)));
 }
 
-/// How far a rotation turns about +Y, radians, counter-clockwise seen from above, from -2 pi to
-/// 2 pi: all of it where it is upright, as that of a robot's root.
+/// How far a rotation turns about +Y, radians, counter-clockwise seen from above, from -2 pi to 2
+/// pi. For an upright rotation, such as that of a robot's root, this is the whole rotation.
 [[nodiscard]] inline float yawOf(const Quat& rotation) {
   return 2 * angleOf(rotation.y, rotation.w);
 }

@@ -7,13 +7,13 @@
 
 namespace galactic {
 
-/// The link whose joint owns each position of the robot, one per position. Of several joints with
-/// one position the first that takes it as it is; the others mimic it. The largest number where no
-/// joint has a position.
+/// The link whose joint owns each position of the robot, one per position. If several joints share
+/// a position, the first that uses it unchanged is the owner; the others mimic it. The largest
+/// std::uint32_t if no joint owns the position.
 [[nodiscard]] std::vector<std::uint32_t> positionOwners(const Robot& robot);
 
-/// What each position of a robot is called: its joint's name; with ".x", ".y" and ".angle" for
-/// planar joints; with ".x", ".y", ".z", ".qx", ".qy", ".qz" and ".qw" for floating ones.
+/// The name of each position of a robot: its joint's name, followed by ".x", ".y" or ".angle" for
+/// planar joints, and by ".x", ".y", ".z", ".qx", ".qy", ".qz" or ".qw" for floating ones.
 [[nodiscard]] std::vector<std::string> positionNames(const Robot& robot);
 
 }  // namespace galactic

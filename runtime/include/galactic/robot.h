@@ -13,8 +13,8 @@
 
 namespace galactic {
 
-/// Limits of one value of the vector of joint positions, radians or meters; the largest floats
-/// where there is none. The memory layout is that of a pack.
+/// Limits of one value in the vector of joint positions, radians or meters; the largest floats if
+/// there is no limit. The memory layout is that of a pack.
 struct PositionLimits {
   float lower = 0;
   float upper = 0;
@@ -24,21 +24,21 @@ struct PositionLimits {
 struct ControlledJoint {
   /// Index into the vector of joint positions.
   std::uint32_t position = 0;
-  /// Farthest move of one action, radians or meters.
+  /// Largest move of one action, radians or meters.
   float step = 0;
   /// Limits of the controlled motion, inside those of the joint.
   float lower = 0;
   float upper = 0;
 };
 
-/// What two groups of links do to each other, by their spheres, as the bake found it in some
-/// thousand positions that it drew within the limits.
+/// Whether the spheres of two groups of links touch, as the bake found in some thousand positions
+/// that it drew within the limits.
 enum class PairKind : std::uint8_t {
   kTested = 0,    ///< They touch in some of these positions.
-  kAdjacent = 1,  ///< A joint joins them: nobody looked.
+  kAdjacent = 1,  ///< A joint connects them: not examined.
   kAlways = 2,    ///< They touch in all of them.
   kNever = 3,     ///< They touch in none of them.
-  kIgnored = 4,   ///< The recipe says that they may touch: nobody looked.
+  kIgnored = 4,   ///< The recipe says that they may touch: not examined.
 };
 
 /// Two groups of links that have spheres: first < second.
@@ -48,7 +48,7 @@ struct GroupPair {
   PairKind kind = PairKind::kTested;
 };
 
-/// Links that no joint moves against each other, as one rigid body of spheres.
+/// Links that no joint moves relative to each other, as one rigid body of spheres.
 struct SphereGroup {
   /// The link in whose frame the spheres are.
   std::uint32_t link = 0;
@@ -87,10 +87,10 @@ struct RobotLaser {
 };
 
 struct RobotBase {
-  /// Farthest drive of one action, meters, and farthest turn, radians.
+  /// Longest drive of one action, meters, and largest turn, radians.
   float forward_step = 0;
   float turn_step = 0;
-  /// Farthest drive of one action to the side, meters; 0: the base does not drive sideways.
+  /// Longest sideways drive of one action, meters; 0: the base does not drive sideways.
   float sideways_step = 0;
   /// Height of the root link's origin above the ground, meters.
   float root_height = 0;
@@ -101,18 +101,18 @@ struct RobotBase {
   float footprint_radius = 0;
 };
 
-/// The robot of a robot pack: kinematics, spheres and what its recipe says. Views into the pack,
-/// every frame Y up and X forward.
+/// The robot of a robot pack: kinematics, spheres and the content of its recipe. Views into the
+/// pack; every frame is Y up and X forward.
 class Robot {
  public:
-  /// The robot in `pack`, which must outlive the result. Fails with kInvalidInput on another kind
-  /// of pack.
+  /// The robot in `pack`, which must outlive the result. Fails with kInvalidInput if it is another
+  /// kind of pack.
   [[nodiscard]] static Result<Robot> from(const PackFile& pack);
   static Result<Robot> from(const PackFile&& pack) = delete;
 
-  /// As episode sets call it: EpisodeSet::robotName().
+  /// The name that episode sets use: EpisodeSet::robotName().
   [[nodiscard]] std::string_view name() const { return name_; }
-  /// The working set, meters, ascending.
+  /// The working set of radii, meters, ascending.
   [[nodiscard]] std::span<const float> radii() const { return radii_; }
 
   /// Root first, parents before children: what forwardKinematics reads.
@@ -131,21 +131,22 @@ class Robot {
   [[nodiscard]] std::span<const float> startPositions() const { return start_positions_; }
   [[nodiscard]] std::size_t positionCount() const { return limits_.size(); }
 
-  /// Those of all groups, group after group, each in the frame of its group's link; in a group by
-  /// descending radius.
+  /// The spheres of all groups, group after group, each in the frame of its group's link; within a
+  /// group by descending radius.
   [[nodiscard]] std::span<const SetSphere> spheres() const { return spheres_; }
-  /// Links ascending; their spheres are parts of spheres().
+  /// By ascending link; their spheres are parts of spheres().
   [[nodiscard]] const std::vector<SphereGroup>& groups() const { return groups_; }
   /// All pairs of groups that have spheres, ascending.
   [[nodiscard]] std::span<const GroupPair> groupPairs() const { return group_pairs_; }
-  /// Those that touch in some positions and are apart in others (PairKind::kTested). Spheres stick
-  /// out of what they cover, so some of these touch nearly everywhere, also where the robot does
-  /// not: parts of a telescope, or two fingers. SelfCollision tells which can be tested.
+  /// The pairs that touch in some positions and are apart in others (PairKind::kTested). Spheres
+  /// stick out of what they cover, so some of these pairs, such as parts of a telescope or two
+  /// fingers, touch in nearly every position, even if the robot itself does not. SelfCollision
+  /// selects the pairs that are worth testing.
   [[nodiscard]] const std::vector<GroupPair>& testedPairs() const { return tested_pairs_; }
 
   /// In the order of the actions.
   [[nodiscard]] std::span<const ControlledJoint> controlledJoints() const { return controlled_; }
-  /// None when the robot was baked without a recipe.
+  /// This and the following are none if the robot was baked without a recipe.
   [[nodiscard]] const std::optional<EndEffector>& endEffector() const { return end_effector_; }
   [[nodiscard]] const std::optional<RobotCamera>& camera() const { return camera_; }
   [[nodiscard]] const std::optional<RobotBase>& base() const { return base_; }

@@ -28,7 +28,7 @@ struct SetSphere {
 /// A plane with all of an object on one side: dot(normal, p) <= offset for each of its points. The
 /// memory layout is that of a pack.
 struct HullPlane {
-  /// Unit length, out of the object; in its frame.
+  /// Unit length, pointing out of the object, in the object's frame.
   Vec3 normal;
   /// Meters from the frame's origin, along the normal.
   float offset = 0;
@@ -36,14 +36,14 @@ struct HullPlane {
   friend bool operator==(const HullPlane&, const HullPlane&) = default;
 };
 
-/// A way in which an object rests on a horizontal plane. The memory layout is that of a pack.
+/// A pose in which an object rests on a horizontal plane. The memory layout is that of a pack.
 struct StablePose {
   /// plane_from_object: turns the object so that its support face lies down (-Y).
   Quat rotation;
   /// Height of the object's origin above the plane, meters.
   float height = 0;
-  /// Share of random drops that end in this pose, 0 to 1. All poses of an object add up to 1; where
-  /// there are more than are kept, the kept ones do not, and their shares stay as they are.
+  /// Fraction of random drops that end in this pose, 0 to 1. The fractions of all poses of an
+  /// object add up to 1; if only some of the poses are kept, theirs add up to less.
   float likelihood = 0;
 
   friend bool operator==(const StablePose&, const StablePose&) = default;
