@@ -19,27 +19,27 @@
 namespace galactic::bake {
 
 // Whole packs from files: import, bake, render meshes, textures and provenance, written in one
-// step. What galactic-bake does, a program does with these.
+// step. With these functions, a program can do what galactic-bake does.
 
 /// A file that a bake read.
 struct ReadFile {
   std::filesystem::path path;
-  /// What it held, where the reader said so.
+  /// What it held, if the reader recorded that.
   std::optional<SourceFile> content;
 };
 
-/// What bakes read and looked for.
+/// The files that bakes read, and those that they looked for.
 class ReadLog {
  public:
   void noteRead(const std::filesystem::path& file) { read_.push_back({file, std::nullopt}); }
-  /// By their names below `folder`.
+  /// Notes files by their names below `folder`.
   void note(const std::filesystem::path& folder, const ReadFiles& read);
   /// Remembers a file that was looked for and is not there.
   void noteAbsent(const std::filesystem::path& file) { absent_.push_back(file); }
 
   [[nodiscard]] const std::vector<ReadFile>& files() const { return read_; }
   [[nodiscard]] const std::vector<std::filesystem::path>& absent() const { return absent_; }
-  /// Whether the same files make the same asset again.
+  /// Whether the same files always give the same asset.
   [[nodiscard]] bool isSettled() const { return is_settled_; }
 
   /// Refuses to write `output` over a file that was read.
@@ -51,32 +51,35 @@ class ReadLog {
   bool is_settled_ = true;
 };
 
-/// Told what is worked on, what is being done with it, and how far it is (0 to 1).
+/// A function that is called with the item that is being worked on, the current stage, and how far
+/// it is (0 to 1).
 using BakeProgress =
     std::function<void(std::string_view item, std::string_view stage, double fraction)>;
 
-/// What a bake is given besides its job: where the pack goes, and what the bakes of a run share.
+/// What a bake needs besides its job: where the pack is written, and what the bakes of a run share.
 struct BakeContext {
-  /// The pack; with `dry_run` nothing is written.
+  /// The path of the pack; with `dry_run` nothing is written.
   std::filesystem::path output{};
   ReadLog& log;
   BakeLibraries& libraries;
-  /// The pack does not depend on them.
+  /// The pack does not depend on the number of threads.
   unsigned threads = 1;
   BakeProgress show = [](std::string_view, std::string_view, double) {};
-  /// Asked now and then, from several threads, whether a long bake ends early, with kInterrupted.
+  /// Called now and then, from several threads: whether a long bake should end early, with
+  /// kInterrupted.
   std::function<bool()> stops = [] { return false; };
   bool dry_run = false;
-  /// Whether a pack of several objects holds those that succeeded when others fail.
+  /// Whether a pack of several objects is written with those that succeeded if others fail.
   bool keep_going = false;
-  /// What scenes may take that are prepared for episodes at the same time; null: as much as it is.
+  /// The memory that scenes may use that are prepared for episodes at the same time; null: no
+  /// limit.
   MemoryBudget* memory = nullptr;
 };
 
-/// What became of one scene.
+/// The result of baking one scene.
 struct SceneOutcome {
   std::filesystem::path input;
-  /// How axes and unit were read.
+  /// How axes and unit were interpreted.
   std::string convention;
   BakedScene scene;
   StageTimes times;
@@ -88,7 +91,7 @@ struct BakeFailure {
   Error error;
 };
 
-/// What became of a set of objects.
+/// The result of baking a set of objects.
 struct ObjectSetOutcome {
   /// Where an object came from.
   struct Origin {
@@ -99,14 +102,15 @@ struct ObjectSetOutcome {
   std::vector<BakedObject> objects;
   /// One for each object.
   std::vector<Origin> origins;
-  /// Of the collection, and of meshes that are no objects.
+  /// Warnings about the collection, and about meshes that are not objects.
   std::vector<std::string> warnings;
-  /// Objects that could not be baked. Without BakeContext::keep_going there is then no pack.
+  /// Objects that could not be baked. If there are any, no pack is written unless
+  /// BakeContext::keep_going is set.
   std::vector<BakeFailure> failures;
   double seconds = 0;
 };
 
-/// What became of one robot.
+/// The result of baking one robot.
 struct RobotOutcome {
   std::filesystem::path input;
   BakedRobot robot;
@@ -127,23 +131,23 @@ struct EpisodeGeneration {
   std::uint32_t with_fewer_objects = 0;
 };
 
-/// What became of one set of episodes.
+/// The result of making one set of episodes.
 struct EpisodeOutcome {
-  /// What it was made from, for people.
+  /// What it was made from, as text for people.
   std::string input;
   SourceEpisodes episodes;
-  /// Of generated ones.
+  /// Only for generated episodes.
   std::optional<EpisodeGeneration> generation{};
   double seconds = 0;
 };
 
-/// What became of a world.
+/// The result of linking a world.
 struct WorldOutcome {
   std::vector<LinkedPack> packs;
   double seconds = 0;
 };
 
-/// A pack that was made, and everything that is known of it.
+/// A pack that was made, and everything that is known about it.
 struct BakedPack {
   std::variant<SceneOutcome, ObjectSetOutcome, RobotOutcome, EpisodeOutcome, WorldOutcome> outcome;
   std::filesystem::path output;
@@ -151,9 +155,10 @@ struct BakedPack {
   std::uint64_t pack_bytes = 0;
 };
 
-/// Bakes one scene, its render meshes and textures into its pack. What an instance of a dataset
-/// lacks is left out, with a warning. Fails with the errors of importer, bakers and writer, and
-/// with kInvalidInput where the output is a file that was read; `where` names the file.
+/// Bakes one scene, with its render meshes and textures, into its pack. Parts that are missing for
+/// an instance of a dataset are left out, with a warning. Fails with the errors of importer, bakers
+/// and writer, and with kInvalidInput if the output is a file that was read; `where` names the
+/// file.
 [[nodiscard]] Result<BakedPack> bakeSceneFile(const SceneJob& job, BakeContext& context);
 
 /// The name of a scene in its pack.
@@ -162,14 +167,14 @@ struct BakedPack {
 /// Reads the meshes of a scene as bakeSceneFile does.
 [[nodiscard]] Result<SourceAsset> readSceneFile(const SceneJob& job, BakeLibraries& libraries);
 
-/// Bakes all objects of a job into one pack. An object that fails is in the outcome's failures; it
-/// is the result's error where no object is left, or where there is no pack for another reason.
+/// Bakes all objects of a job into one pack. Objects that fail are in the outcome's failures. If no
+/// object is left, or if no pack is written for another reason, the failure is the result's error.
 [[nodiscard]] Result<BakedPack> bakeObjectFiles(const ObjectJob& job, BakeContext& context);
 
-/// Bakes one robot (URDF or MJCF) with its recipe and meshes into its pack.
+/// Bakes one robot (URDF or MJCF), with its recipe and meshes, into its pack.
 [[nodiscard]] Result<BakedPack> bakeRobotFile(const RobotJob& job, BakeContext& context);
 
-/// How the robot's file of a job is read.
+/// The options with which a job's robot file is read.
 [[nodiscard]] RobotImportOptions robotOptionsOf(const RobotJob& job);
 
 /// Reads a robot's file as bakeRobotFile does.
@@ -178,15 +183,15 @@ struct BakedPack {
 /// Imports a published set of episodes into a pack.
 [[nodiscard]] Result<BakedPack> bakeEpisodes(const EpisodeImportJob& job, BakeContext& context);
 
-/// Generates episodes in packs and lets the scripted policy play a sample of them. What is drawn
-/// stands in OUTPUT.partial until the pack is written: a bake that was interrupted or killed goes
-/// on from there.
+/// Generates episodes in packs and lets the scripted policy play a sample of them. Until the pack
+/// is written, finished episodes are kept in OUTPUT.partial, from which a bake that was interrupted
+/// or killed continues.
 [[nodiscard]] Result<BakedPack> bakeEpisodes(const EpisodeGenerationJob& job, BakeContext& context);
 
-/// Lists packs in a world pack, after seeing that together they make a world.
+/// Lists packs in a world pack, after checking that together they make a world.
 [[nodiscard]] Result<BakedPack> linkWorld(const WorldJob& job, BakeContext& context);
 
-/// Whichever the job is. Notes the files that the job names as read.
+/// Runs a job of any kind. Records the files that the job names as read.
 [[nodiscard]] Result<BakedPack> bake(const Job& job, BakeContext& context);
 
 /// One mesh file that becomes an object.
@@ -196,23 +201,23 @@ struct ObjectInput {
   std::string name;
 };
 
-/// Which objects there are.
+/// The objects that were found.
 struct FoundObjects {
   /// By ascending name.
   std::vector<ObjectInput> objects;
-  /// Of meshes that are no objects. Names are relative to the inputs.
+  /// Warnings about meshes that are not objects. Names are relative to the inputs.
   std::vector<std::string> warnings;
 };
 
-/// The objects that `inputs` (mesh files, and folders that are searched) name. A file is an object
-/// named by its stem. A file whose stem is "textured" or "model" takes the name of its folder, or
-/// of the one above where that says how it was made ("google_16k"): so are YCB and Google Scanned
-/// Objects laid out. In a folder below an input it stands for all of that folder; in an input
-/// itself where no other object lies beside it. Of NAME_visual and NAME_collision side by side,
-/// Gazebo's layout, the first is the object NAME. Hidden files and folders are passed over, links
-/// to folders followed. Fails with kIo where a folder cannot be read or a link with a mesh's name
-/// leads to nothing, and with kInvalidInput where an input holds no mesh or two objects have one
-/// name.
+/// The objects that `inputs` name: mesh files, and folders that are searched. Each file is an
+/// object, named by its stem. A file whose stem is "textured" or "model" takes the name of its
+/// folder, or of the folder above if its own folder's name says how the file was made
+/// ("google_16k"): this is the layout of YCB and Google Scanned Objects. In a folder below an
+/// input, such a file stands for the whole folder; in an input itself, it does so only if no other
+/// object lies beside it. If NAME_visual and NAME_collision lie side by side (Gazebo's layout), the
+/// first is the object NAME. Hidden files and folders are skipped, and links to folders are
+/// followed. Fails with kIo if a folder cannot be read or a link with a mesh's name leads to
+/// nothing, and with kInvalidInput if an input holds no mesh or two objects have the same name.
 [[nodiscard]] Result<FoundObjects> findObjects(const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace galactic::bake

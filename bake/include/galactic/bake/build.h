@@ -16,56 +16,57 @@
 
 namespace galactic::bake {
 
-// A build makes single packs, or all of a world: of datasets or of a recipe. Of a world, packs that
-// were made before come from a cache; the bytes of all of them depend on neither threads nor shards
-// nor the cache.
+// A build makes single packs, or all packs of a world, from datasets or a recipe. In the build of a
+// world, packs that were made before come from a cache. The bytes of the packs depend on neither
+// threads nor shards nor the cache.
 
 /// One pack that is to be made.
 struct PackJob {
-  /// For people, and by which lists are sorted: "scenes/kitchen.pack".
+  /// A name for people, by which lists are sorted: "scenes/kitchen.pack".
   std::string name;
   Job job;
   std::filesystem::path output;
-  /// Of a world's pack: names of files that it depends on begin here.
+  /// For a pack of a world: the folder to which the names of the files that it depends on are
+  /// relative.
   std::filesystem::path folder{};
-  /// Of a world's pack: size of its main input and of the files that this one names, as far as that
-  /// is told quickly: the large ones are baked first.
+  /// For a pack of a world: the size of its main input and of the files that the input names, as
+  /// far as this can be found quickly. Large packs are baked first.
   std::uint64_t source_bytes = 0;
 };
 
-/// A scene that is not baked and why, or a pack and what is missing for it.
+/// A scene that is not baked, and why; or a pack, and what is missing for it.
 struct LeftOut {
   std::string name;
   std::vector<std::string> reasons;
 };
 
-/// A scene of a dataset whose files cannot be understood.
+/// A scene of a dataset with files that cannot be understood.
 struct BrokenScene {
-  /// That of its pack.
+  /// The name of its pack.
   std::string name;
   BakeFailure failure;
 };
 
-/// Everything that is made for one world.
+/// Everything that has to be made for one world.
 struct WorldPlan {
-  /// Lists all others: a WorldJob, whose packs follow from what is made.
+  /// The pack that lists all others: a WorldJob, whose packs follow from what is made.
   PackJob world{.name = {}, .job = WorldJob{}, .output = {}};
-  /// Where the others go.
+  /// Where the other packs are written.
   std::filesystem::path folder;
-  /// None of them needs another.
+  /// Packs that do not depend on each other.
   std::vector<PackJob> assets;
-  /// Those of which no job can be made.
+  /// Scenes for which no job can be made.
   std::vector<BrokenScene> broken;
-  /// Made in the assets' packs, or imported.
+  /// Generated in the assets' packs, or imported.
   std::optional<PackJob> episodes;
   std::vector<LeftOut> left_out;
-  /// How many of the assets are objects that scenes of datasets move: they are in no scene.
+  /// How many of the assets are movable objects of datasets' scenes: they are part of no scene.
   std::size_t movable_objects = 0;
   /// One sentence each.
   std::vector<std::string> warnings;
 };
 
-/// One part of work that is split: the packs whose number, modulo `count`, is `index`.
+/// One part of a build that is split: the packs whose number modulo `count` is `index`.
 struct Shard {
   std::size_t index = 0;
   std::size_t count = 1;
@@ -80,21 +81,21 @@ struct BuildOptions {
 };
 
 struct WorldBuildOptions {
-  /// Of all bakes together.
+  /// Threads of all bakes together.
   unsigned threads = 1;
   /// Whether to begin the next pack after an error, and to link the world without those that fail.
   bool keep_going = false;
-  /// Folder of bakes that were done before; none: nothing is remembered.
+  /// Folder that caches earlier bakes; none: nothing is cached.
   std::optional<std::filesystem::path> cache{};
-  /// Without the episodes and the world where there are several shards.
+  /// With several shards, neither the episodes nor the world are made.
   Shard shard{};
-  /// Bytes that bakes, and scenes in which episodes are drawn, may take at the same time, as far as
-  /// that can be foreseen.
+  /// Bytes of memory that bakes, and scenes in which episodes are drawn, may use at the same time,
+  /// as far as this can be foreseen.
   std::uint64_t memory = std::numeric_limits<std::uint64_t>::max();
 };
 
 enum class PackState {
-  kPlanned,    ///< Nothing became of it: a plan, or the build was stopped.
+  kPlanned,    ///< Not made: this is only a plan, or the build was stopped.
   kBaked,      ///< Made now.
   kUnchanged,  ///< Made before.
   kElsewhere,  ///< It belongs to another shard.
@@ -104,11 +105,11 @@ enum class PackState {
 struct PackOutcome {
   std::string name;
   PackState state = PackState::kPlanned;
-  /// Of a pack that was made, now or before: the cache keeps them.
+  /// Figures of a pack that was made, now or before: the cache keeps them.
   std::optional<PackFigures> figures{};
-  /// Where a build keeps going, a set of objects may be made and have failures.
+  /// In a build that keeps going, a set of objects may be made and still have failures.
   std::vector<BakeFailure> failures{};
-  /// Of this run; those of the pack are in its figures.
+  /// Warnings of this run; those of the pack are in its figures.
   std::vector<std::string> warnings{};
   /// What was read now.
   ReadLog log{};
@@ -120,12 +121,12 @@ struct PackOutcome {
 };
 
 struct BuildOutcome {
-  /// In their order; of a world the assets, then what is broken, then the episodes, unless they are
-  /// left to another run.
+  /// The packs in order. For a world: the assets, then broken scenes, then the episodes, unless
+  /// they are left to another run.
   std::vector<PackOutcome> packs;
-  /// Where a world was linked, or could not be.
+  /// The world's pack, if it was linked or could not be linked.
   std::optional<PackOutcome> world;
-  /// What the world lists.
+  /// The packs that the world lists.
   std::vector<LinkedPack> linked;
   bool stopped = false;
   double seconds = 0;
@@ -135,7 +136,7 @@ struct BuildOutcome {
   [[nodiscard]] const Error* firstError() const;
 };
 
-/// Follows a build. Its functions are called from several threads, at the same time.
+/// Follows a build. Its functions are called from several threads at the same time.
 class BuildObserver {
  public:
   BuildObserver() = default;
@@ -143,34 +144,34 @@ class BuildObserver {
   BuildObserver(const BuildObserver&) = delete;
   BuildObserver& operator=(const BuildObserver&) = delete;
 
-  /// A pack is being made; `pack`: its name (PackJob::name).
+  /// Called when work on a pack begins; `pack`: its name (PackJob::name).
   virtual void begin(std::string_view /*pack*/) {}
-  /// How far a pack is: what it is at (`item`: one of its inputs, as a rule), with what, and which
-  /// fraction of that stage or item is done, from 0 to 1.
+  /// Called with the progress of a pack: what is being worked on (`item`: usually one of its
+  /// inputs), at which stage, and which fraction of that stage or item is done, from 0 to 1.
   virtual void show(std::string_view /*item*/, std::string_view /*stage*/, double /*fraction*/) {}
-  /// Also of what is broken, which never began.
+  /// Called when a pack is finished; also for broken scenes, for which begin() was never called.
   virtual void end(const PackOutcome& /*pack*/) {}
-  /// Whether to begin nothing more.
+  /// Whether the build should begin nothing more.
   [[nodiscard]] virtual bool stops() { return false; }
 };
 
-/// Makes the packs, one after the other. Clears away what killed builds of them have left.
+/// Makes the packs, one after the other. Removes files that killed builds of them have left.
 /// `libraries`: those with which the jobs were planned, if any, so that nothing is read twice.
 [[nodiscard]] BuildOutcome build(std::span<const PackJob> packs, const BuildOptions& options,
                                  BuildObserver& observer, BakeLibraries& libraries);
 
-/// Makes the packs of a world, several at a time, and then the world, of which the observer is not
-/// told. Clears away what killed builds of it have left.
+/// Makes the packs of a world, several at a time, and then the world itself, which is not reported
+/// to the observer. Removes files that killed builds of it have left.
 [[nodiscard]] BuildOutcome build(const WorldPlan& plan, const WorldBuildOptions& options,
                                  BuildObserver& observer, BakeLibraries& libraries);
 
-/// What a build of a world begins with: what is planned, what belongs to another shard, and what is
-/// broken.
+/// The outcome with which a build of a world begins: packs that are planned, packs that belong to
+/// another shard, and broken scenes.
 [[nodiscard]] BuildOutcome plannedOutcome(const WorldPlan& plan, const Shard& shard);
 
-/// What the packs of a world name and what is not there: inputs, meshes that a scene of a dataset
-/// places, textures, meshes of robots. Reads the meshes, on `threads` threads, and bakes nothing.
-/// In the order of the plan; packs that miss nothing are left out.
+/// The files that the packs of a world name and that are missing: inputs, meshes that a scene of a
+/// dataset places, textures, meshes of robots. Reads the meshes, on `threads` threads, and bakes
+/// nothing. In the order of the plan; packs that miss nothing are left out.
 [[nodiscard]] std::vector<LeftOut> findMissing(const WorldPlan& plan, unsigned threads,
                                                BakeLibraries& libraries);
 

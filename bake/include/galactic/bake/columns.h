@@ -33,14 +33,14 @@ struct GridFrame {
   [[nodiscard]] std::size_t columnCount() const { return std::size_t{columns_x} * columns_z; }
 };
 
-/// The bounds of the scene that a frame was made for: the frame without its padding, to within a
-/// cell at the far ends in the plane.
+/// The bounds of the scene that a frame was made for: the frame without its padding, accurate to
+/// within a cell at the far ends in the plane.
 [[nodiscard]] Bounds sceneBounds(const GridFrame& frame);
 
 /// The frame for a scene: its bounds padded by the radius and one cell in the plane (so that the
-/// border columns touch nothing), and by the radius and 1 cm in height. Fails with kInvalidInput on
-/// a radius under half the spacing, and on more cells than a grid may have; the error's `where` is
-/// the option in backquotes.
+/// border columns touch nothing), and by the radius and 1 cm in height. Fails with kInvalidInput if
+/// the radius is less than half the spacing, or if there would be more cells than a grid may have;
+/// the error's `where` is the option in backquotes.
 [[nodiscard]] Result<GridFrame> makeGridFrame(const Bounds& bounds, float radius, float spacing);
 
 /// Free spans of all columns, ascending and disjoint in each column, row by row (i fastest).
@@ -58,14 +58,14 @@ struct Columns {
   }
 };
 
-/// Gaps between blocked intervals up to this wide are closed: below it a gap is float rounding.
+/// Gaps between blocked intervals up to this width are closed: smaller gaps are float rounding.
 inline constexpr float kMergeTolerance = 1e-5F;
 
 /// What part of space a component is; see schema/column_grid.fbs.
 enum class Region : std::uint8_t { kRoom = 0, kOutside = 1, kEnclosed = 2 };
 inline constexpr std::size_t kRegionCount = 3;
 
-/// What to store.
+/// Which free space to store.
 enum class Keep { kRoom, kAll };
 
 struct FreeSpaceOptions {
@@ -82,21 +82,21 @@ struct FreeSpaceOptions {
 struct Component {
   Region region = Region::kEnclosed;
   bool touches_border = false;
-  /// In how many columns it reaches the edge of the scene's bounds, in x or z. Of a closed room 0.
+  /// In how many columns it reaches the edge of the scene's bounds, in x or z. 0 for a closed room.
   std::uint64_t columns_at_edge = 0;
   std::uint64_t spans = 0;
-  /// Cubic meters of sphere centers.
+  /// Volume of sphere centers, cubic meters.
   double volume = 0;
-  /// Floor on which a robot could stand, square meters: under a roof or, where walls close the
-  /// scene in on all sides, under the sky; and the same under the sky in other scenes.
+  /// Floor on which a robot could stand, square meters. `floor`: under a roof or, if walls enclose
+  /// the scene on all sides, under the sky. `yard`: under the sky in other scenes.
   double floor = 0;
   double yard = 0;
-  /// Of its highest span, meters.
+  /// Height of its tallest span, meters.
   float greatest_height = 0;
-  /// The part of it within the scene's bounds. The padding around a small scene can hold more than
-  /// the scene.
+  /// The part of `volume` within the scene's bounds. The padding around a small scene can hold more
+  /// than the scene.
   double volume_inside = 0;
-  /// The shares of that in spans that end above and below these bounds.
+  /// The parts of `volume_inside` in spans that end above and below these bounds.
   double volume_open_above = 0;
   double volume_open_below = 0;
   /// Bounds of its columns and spans.
@@ -120,18 +120,18 @@ struct FreeSpace {
   Columns columns;
   /// The room alone, where more is kept; else empty.
   Columns room_of_all;
-  /// Every component by falling volume.
+  /// Every component, by descending volume.
   std::vector<Component> components;
   /// Totals by region, indexed by Region.
   std::array<RegionTotals, kRegionCount> totals{};
 };
 
 /// Flood fill: spans that overlap in height in neighboring columns are connected. The room is what
-/// the seeds reach, else the component with most floor or, where none has 4 m² of it, that with
-/// most volume inside the scene's bounds, slabs last; other components that reach the border are
-/// outside, the rest enclosed. Fails with kInvalidInput when a seed is not in free space.
-/// `wider_room`: the room of the same scene for spheres of a smaller radius. Without seeds, only
-/// what lies in it is the room, so that all radii keep the same one.
+/// the seeds reach. Without seeds, it is the component with the most floor or, if none has 4 m² of
+/// floor, the one with the most volume inside the scene's bounds, slabs last. Other components that
+/// reach the border are outside, and the rest are enclosed. Fails with kInvalidInput if a seed is
+/// not in free space. `wider_room`: the room of the same scene for spheres of a smaller radius.
+/// Without seeds, only space that lies in it can be the room, so that all radii have the same room.
 [[nodiscard]] Result<FreeSpace> chooseFreeSpace(const Columns& columns,
                                                 const FreeSpaceOptions& options = {},
                                                 const Columns* wider_room = nullptr);
@@ -142,8 +142,8 @@ struct EncodedGrid {
   float quantum = 0;
   std::vector<std::uint64_t> cells;
   std::vector<std::uint16_t> tile_base;
-  /// One of the two is empty: heights where there are tile bases, else code pairs. The spans of
-  /// each overflow cell end with an end mark.
+  /// One of the next two is empty: `overflow_spans` has heights if there are tile bases; otherwise
+  /// `overflow_codes` has pairs of codes. The spans of each overflow cell end with an end mark.
   std::vector<std::uint32_t> overflow_codes;
   std::vector<Span> overflow_spans;
   /// Spans stored, and those dropped because they are thinner than the quantum.
@@ -156,11 +156,11 @@ struct EncodedGrid {
 /// Bytes of the grid's cells and overflow spans.
 [[nodiscard]] std::uint64_t storedBytes(const EncodedGrid& grid);
 
-/// Largest height of a code: with rounding to the blocked side, no stored end is further than this
-/// from the exact one. Meters.
+/// Largest height of a code, meters. Since ends are rounded to the blocked side, no stored end is
+/// further than this from the exact one.
 inline constexpr float kMaxQuantum = 9.5e-5F;
 
-/// Lays out the columns' spans; every end is rounded to the blocked side, so the stored grid is
+/// Encodes the columns' spans. Every end is rounded to the blocked side, so the stored grid is
 /// never freer than `columns`.
 [[nodiscard]] EncodedGrid encodeGrid(const Columns& columns);
 

@@ -11,9 +11,10 @@
 namespace galactic::bake {
 
 // What tables and reports say about a finished pack: figures, not geometry. The cache keeps them
-// beside the pack. Lengths are in meters, volumes in cubic meters, times in seconds of wall clock.
+// beside the pack. Lengths are in meters, volumes in cubic meters, times in seconds of wall-clock
+// time.
 
-/// What simplification and clustering made of one asset's meshes.
+/// The results of simplifying and clustering one asset's meshes.
 struct RenderFigures {
   /// One part: the scene, an object, or a link.
   struct Model {
@@ -26,7 +27,7 @@ struct RenderFigures {
   };
   RenderBakeStatistics all{};
   std::uint64_t textures = 0;
-  /// Hashes, where the textures are packs of their own.
+  /// Hashes of the textures, if they are packs of their own.
   std::optional<std::vector<std::string>> shared_textures{};
   std::vector<Model> models{};
 };
@@ -40,7 +41,7 @@ struct GridFigures {
   };
   float radius = 0;
   float spacing = 0;
-  /// Along x and z.
+  /// Number of columns along x and z.
   std::array<std::uint32_t, 2> columns{};
   std::uint64_t raw_spans = 0;
   std::uint64_t spans = 0;
@@ -49,10 +50,10 @@ struct GridFigures {
   std::uint64_t merged_gaps = 0;
   std::uint64_t slivers = 0;
   std::uint64_t stored_bytes = 0;
-  /// By Region.
+  /// Indexed by Region.
   std::array<RegionTotals, kRegionCount> regions{};
   std::optional<CastCheck> cast_check{};
-  /// How many parts there are, and the largest of them by falling volume.
+  /// Number of parts, and the largest of them by descending volume.
   std::uint64_t parts = 0;
   std::vector<Part> largest_parts{};
 };
@@ -60,7 +61,7 @@ struct GridFigures {
 struct SceneFigures {
   std::string input{};
   ImportStatistics imported{};
-  /// How axes and unit were read, for people.
+  /// How axes and unit were interpreted, as text for people.
   std::string convention{};
   Bounds bounds{};
   StageTimes seconds{};
@@ -99,13 +100,13 @@ struct ObjectFigures {
 struct ObjectSetFigures {
   std::vector<float> radii{};
   std::vector<ObjectFigures> objects{};
-  /// Of the collection, and of meshes that are no objects.
+  /// Warnings about the collection, and about meshes that are not objects.
   std::vector<std::string> warnings{};
   double seconds = 0;
 };
 
 struct RobotFigures {
-  /// Links that move as one.
+  /// Links that move together.
   struct Group {
     std::string link{};
     std::vector<std::string> links{};
@@ -113,7 +114,7 @@ struct RobotFigures {
     float eps = 0;
     float tau = 0;
     SphereFigures spheres{};
-    /// Whether the group has geometry to measure the spheres by.
+    /// Whether the group has geometry against which the spheres are measured.
     bool is_measured = false;
   };
   /// Two groups, by their links.
@@ -135,7 +136,7 @@ struct RobotFigures {
   std::uint64_t controlled_joints = 0;
   std::vector<Group> groups{};
   std::vector<Pair> pairs{};
-  /// Where each mesh was found, for people.
+  /// Where each mesh was found, as text for people.
   std::vector<std::string> meshes{};
   Times seconds{};
   std::optional<RenderFigures> render_meshes{};
@@ -169,7 +170,7 @@ struct WorldFigures {
   double seconds = 0;
 };
 
-/// Of one pack.
+/// The figures of one pack.
 struct PackFigures {
   std::string output{};
   /// 0 where the pack was not written.
@@ -179,10 +180,10 @@ struct PackFigures {
 
 [[nodiscard]] PackFigures figuresOf(const BakedPack& made);
 
-/// What the user should look at, one sentence each.
+/// What the user should examine, one sentence each.
 [[nodiscard]] std::vector<std::string> warningsOf(const PackFigures& figures);
 
-/// The texture packs that it shares with others, by their hashes: HASH.pack in
+/// The hashes of the texture packs that the pack shares with others: HASH.pack in
 /// DrawOptions::shared_textures.
 [[nodiscard]] std::vector<std::string> sharedTexturesOf(const PackFigures& figures);
 

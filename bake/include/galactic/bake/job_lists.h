@@ -15,22 +15,22 @@
 
 namespace galactic::bake {
 
-/// How the name of a scene dataset's configuration ends.
+/// The suffix of the file name of a scene dataset's configuration.
 inline constexpr std::string_view kDatasetSuffix = ".scene_dataset_config.json";
 
-/// What to do with a scene of a dataset of which something is missing. A scene without its stage is
-/// never baked.
+/// What to do with a scene of a dataset if some of its files are missing. A scene without its stage
+/// is never baked.
 enum class MissingPolicy {
   kFail,     ///< An error.
-  kSkip,     ///< The scene is left out, and listed.
-  kWithout,  ///< It is baked without what is missing, which is listed.
+  kSkip,     ///< The scene is left out and listed.
+  kWithout,  ///< The scene is baked without the missing files, which are listed.
 };
 
 /// The scenes and movable objects of a dataset.
 struct DatasetJobs {
   /// A dataset's configuration, or a folder of scans.
   std::filesystem::path input{};
-  /// Patterns (*, ?) of the scenes' names; none: all.
+  /// Patterns (*, ?) for the scenes' names; none: all scenes.
   std::vector<std::string> scenes{};
   MissingPolicy missing = MissingPolicy::kWithout;
   /// Options of all scenes; objects have the same radii and render meshes.
@@ -39,44 +39,44 @@ struct DatasetJobs {
 
 void visitOptions(DatasetJobs& dataset, OptionVisitor& visitor);
 
-/// The names of the scenes that are wanted, ascending. Fails with the errors of SceneDataset::read
-/// and findSceneFiles, and with kInvalidInput where a pattern fits none, or where a folder is that
-/// of a dataset whose scenes are composed of meshes.
+/// The names of the scenes that are wanted, ascending. Fails with the errors of
+/// SceneDataset::read() and findSceneFiles(), and with kInvalidInput if a pattern matches no scene,
+/// or if a folder belongs to a dataset whose scenes are composed of meshes.
 [[nodiscard]] Result<std::vector<std::string>> sceneNames(const DatasetJobs& dataset);
 
-/// Everything that is baked for datasets, with a world at `world` that lists it; the other packs go
-/// into a folder beside it, with its name. Reads the datasets' lists, no mesh. Fails with
-/// kInvalidInput where two packs would have one name, or something is missing and that is to be an
-/// error.
+/// Everything that is baked for datasets, with a world at `world` that lists it. The other packs
+/// are put into a folder beside it that has the world's name. Reads the datasets' lists, but no
+/// meshes. Fails with kInvalidInput if two packs would have the same name, or if something is
+/// missing and MissingPolicy::kFail applies.
 [[nodiscard]] Result<WorldPlan> jobsOfDatasets(const std::vector<DatasetJobs>& datasets,
                                                const std::filesystem::path& world,
                                                BakeLibraries& libraries);
 
-/// What may be said of the episodes of a recipe instead of what the recipe says, so that it makes
-/// several worlds that differ in their episodes.
+/// Values that replace those of a recipe's episodes, so that one recipe can make several worlds
+/// that differ in their episodes.
 struct EpisodeOverrides {
   std::optional<std::uint32_t> count{};
   std::optional<std::uint64_t> seed{};
 };
 
-/// A recipe, and what is around it.
+/// A recipe and its context.
 struct RecipeSource {
   std::filesystem::path recipe;
-  /// Where its files are looked for that are not beside it; empty: nowhere else.
+  /// Where to look for files of the recipe that are not beside it; empty: nowhere else.
   std::filesystem::path data{};
   EpisodeOverrides episodes{};
-  /// Names that would be options, but of a command line only.
+  /// Whether a name is an option that only a command line may have.
   std::function<bool(std::string_view)> is_of_command_line{};
 };
 
-/// Everything that is baked for a recipe. Fails as jobsOfDatasets does, and with kIo and
-/// kInvalidInput, naming the recipe's line, on what cannot be read or found.
+/// Everything that is baked for a recipe. Fails as jobsOfDatasets() does, and with kIo or
+/// kInvalidInput, naming the recipe's line, if something cannot be read or found.
 [[nodiscard]] Result<WorldPlan> jobsOfRecipe(const RecipeSource& source,
                                              const std::filesystem::path& world,
                                              BakeLibraries& libraries);
 
-/// Options that contradict each other, or say nothing without others, as far as a job or the given
-/// options show it. Fails with kInvalidInput.
+/// Checks for options that contradict each other, or that have no effect without others, as far as
+/// a job or the given options show this. Fails with kInvalidInput.
 [[nodiscard]] Result<void> checkTogether(const Job& job, const OptionReader& given);
 [[nodiscard]] Result<void> checkTogether(const DatasetJobs& dataset, const OptionReader& given);
 

@@ -21,29 +21,31 @@
 
 namespace galactic::bake {
 
-// What is asked of one pack: its inputs and its options, plain values that say all there is to say
-// of it. What a bake works with besides is in BakeContext. Whatever is not an input, a name or an
-// internal is in the kind's visitor below, and from there in the command line, in recipes, in the
-// provenance and in the key of the cache.
+// Jobs describe the packs to be made: each has the inputs and options of one pack, as plain values
+// that describe it completely. Everything else that a bake works with is in BakeContext. Every
+// field that is not an input, a name or an internal is named in the visitor of its kind below, and
+// so appears on the command line, in recipes, in the provenance and in the key of the cache.
 
-/// What is drawn of a scene, an object or a robot.
+/// How a scene, an object or a robot is prepared for drawing.
 struct DrawOptions {
   bool wanted = true;
   RenderBakeOptions meshes{};
   TextureBakeOptions textures{};
-  /// Folder for texture packs that assets share; empty: each pack has its own.
+  /// Folder for texture packs that assets share; empty: each pack has its own textures.
   std::filesystem::path shared_textures{};
 
   friend bool operator==(const DrawOptions&, const DrawOptions&) = default;
 };
 
-/// How far a surface of what is handled may move, meters: it is seen from nearer than scenes are.
+/// How far simplification may move surfaces of objects and robots, meters: they are seen from
+/// nearer than scenes.
 inline constexpr double kHandledRenderError = 0.002;
 
 /// A scene instance of a dataset.
 struct InstancedScene {
   std::string name;
-  /// Changes with what the dataset has: the scene may then be of other parts with the same names.
+  /// Changes when the dataset's files change: the scene may then have other parts with the same
+  /// names.
   std::uint64_t dataset_fingerprint = 0;
 
   friend bool operator==(const InstancedScene&, const InstancedScene&) = default;
@@ -51,10 +53,10 @@ struct InstancedScene {
 
 /// One scene.
 struct SceneJob {
-  /// The mesh; of an instance the configuration of its dataset.
+  /// The mesh; for an instance, the configuration of its dataset.
   std::filesystem::path input{};
   std::optional<InstancedScene> instance{};
-  /// Of the scene in its pack; empty: that of the file.
+  /// Name of the scene in its pack; empty: that of the file.
   std::string name{};
   MeshImportOptions import{};
   SceneBakeOptions grids{};
@@ -65,11 +67,11 @@ struct SceneJob {
 
 /// A set of objects.
 struct ObjectJob {
-  /// Meshes, and folders that are searched for them.
+  /// Meshes, and folders that are searched for meshes.
   std::vector<std::filesystem::path> inputs{};
-  /// Of the object in its pack, where there is only one; empty: that of its file.
+  /// Name of the object in its pack, if there is only one; empty: that of its file.
   std::string name{};
-  /// Published collection whose boxes and spheres the objects get; empty: none.
+  /// Published collection from which the objects take their boxes and spheres; empty: none.
   std::filesystem::path collection{};
   /// Movable objects may be small.
   MeshImportOptions import{.smallest_size = 0};
@@ -83,7 +85,7 @@ struct ObjectJob {
 struct RobotJob {
   /// A URDF or an MJCF.
   std::filesystem::path input{};
-  /// Folders of ROS packages by name; next come those of ROS_PACKAGE_PATH.
+  /// Folders of ROS packages, by name; those in ROS_PACKAGE_PATH are searched next.
   std::map<std::string, std::filesystem::path> packages{};
   /// Robot recipe (TOML) or published collection (JSON); empty: none.
   std::filesystem::path recipe{};
@@ -100,15 +102,16 @@ struct RobotJob {
 /// A published set of episodes.
 struct EpisodeImportJob {
   std::filesystem::path input{};
-  /// Scenes, objects (none: those of object_packs) and one robot, and worlds of them, in which the
-  /// starts are drawn that the file does not give; empty: they are not.
+  /// Packs in which the starts that the file does not give are drawn: scenes, objects (none: those
+  /// of object_packs), one robot, or worlds of them. Empty: no starts are drawn.
   std::vector<std::filesystem::path> packs{};
   /// List of the episodes to keep; empty: all.
   std::filesystem::path only{};
-  /// Packs of the objects, and worlds of them, for where their centers are; empty: none.
+  /// Packs of the objects, or worlds with them, from which the objects' centers are taken; empty:
+  /// none.
   std::vector<std::filesystem::path> object_packs{};
   EpisodeImportOptions import{};
-  /// Of the starts that are drawn; not given: 1.
+  /// Seed of the starts that are drawn; not given: 1.
   std::optional<std::uint64_t> seed{};
 
   friend bool operator==(const EpisodeImportJob&, const EpisodeImportJob&) = default;
@@ -119,11 +122,11 @@ struct EpisodeGenerationJob {
   /// Scenes, objects and one robot.
   std::vector<std::filesystem::path> packs{};
   EpisodeGeneratorOptions generate{.shorten_way = true};
-  /// How many of the episodes the scripted policy plays; 0: none.
+  /// How many episodes the scripted policy plays; 0: none.
   std::uint32_t solve = 16;
   /// The meshes that scenes were baked from, by the scenes' names.
   std::map<std::string, std::filesystem::path> geometry{};
-  /// What scenes were baked from that are made in the same build, by the scenes' names.
+  /// Jobs of scenes that are baked in the same build, by the scenes' names.
   std::map<std::string, SceneJob> scenes{};
 
   friend bool operator==(const EpisodeGenerationJob&, const EpisodeGenerationJob&) = default;
@@ -132,7 +135,7 @@ struct EpisodeGenerationJob {
 /// A list of packs.
 struct WorldJob {
   std::vector<std::filesystem::path> packs{};
-  /// What the world says of its task: options of OptionScope::kTask.
+  /// The world's task: options of OptionScope::kTask.
   std::vector<OptionText> task{};
 
   friend bool operator==(const WorldJob&, const WorldJob&) = default;
@@ -141,12 +144,12 @@ struct WorldJob {
 using Job =
     std::variant<SceneJob, ObjectJob, RobotJob, EpisodeImportJob, EpisodeGenerationJob, WorldJob>;
 
-/// "scene", "object", "robot", "episodes" or "world": what --as takes.
+/// The value of --as: "scene", "object", "robot", "episodes" or "world".
 [[nodiscard]] std::string_view kindOf(const Job& job);
 
-/// Names each option of a kind of job once, for all who need the list: command line, recipes,
-/// provenance, cache and reports. A field that is added to one of the structs does not compile
-/// until the visitor names it.
+/// Names each option of a kind of job once, for everything that needs the list: command line,
+/// recipes, provenance, cache and reports. If you add a field to one of the structs, it does not
+/// compile until the visitor names it.
 void visitOptions(SceneJob& job, OptionVisitor& visitor);
 void visitOptions(ObjectJob& job, OptionVisitor& visitor);
 void visitOptions(RobotJob& job, OptionVisitor& visitor);
@@ -161,17 +164,17 @@ void visitOptions(Job& job, OptionVisitor& visitor);
 /// The files and folders that the job names, inputs first.
 [[nodiscard]] std::vector<std::filesystem::path> filesOf(const Job& job);
 
-/// The options of a job that have a value, as they would be typed, files without their folders: for
-/// the provenance of its pack. The kind comes first, of all but scenes.
+/// The options of a job that have a value, as they would be typed, with files without their
+/// folders: for the provenance of its pack. The kind comes first, except for scenes.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> contentOptions(const Job& job);
 
 /// Provenance of the job's pack.
 [[nodiscard]] Provenance provenanceOf(const Job& job, std::vector<SourceFile> sources,
                                       std::vector<std::string> warnings);
 
-/// Everything but the content of files that decides the bytes of the job's pack and what is
-/// reported of it. Files are named relative to `folder`, so that a dataset that moves keeps its
-/// key. Not the program that bakes.
+/// Everything, except the content of files and the baking program, that decides the bytes of the
+/// job's pack and what is reported about it. Files are named relative to `folder`, so that a
+/// dataset keeps its key when it is moved.
 [[nodiscard]] std::string keyOf(const Job& job, const std::filesystem::path& folder);
 
 }  // namespace galactic::bake

@@ -8,9 +8,9 @@ class FileDigests;
 class TextureLibrary;
 class TexturePacks;
 
-/// What the bakes of one run share: what was read, decoded or checked for one pack serves all that
-/// need it. A file is taken to stay as it was when it was first read, so the next run begins with
-/// libraries of its own. Changes no byte of what is made. Thread-safe.
+/// What the bakes of one run share: whatever was read, decoded or checked for one pack is reused
+/// for all packs that need it. Files are assumed not to change after they were first read, so each
+/// run needs libraries of its own. The libraries do not affect the bytes of packs. Thread-safe.
 class BakeLibraries {
  public:
   BakeLibraries();
@@ -20,11 +20,11 @@ class BakeLibraries {
 
   /// Scene datasets, and the meshes that their scenes place.
   [[nodiscard]] DatasetLibrary& datasets();
-  /// Images of scenes that share their textures.
+  /// Images of scenes that share textures.
   [[nodiscard]] TextureLibrary& images();
   /// The packs of these textures.
   [[nodiscard]] TexturePacks& texturePacks();
-  /// What files hold.
+  /// Hashes of files' contents.
   [[nodiscard]] FileDigests& digests();
 
  private:

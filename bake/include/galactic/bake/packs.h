@@ -15,11 +15,12 @@
 
 namespace galactic::bake {
 
-// What the bakers return, written as packs: for meshes and robots that a program has in memory.
-// assets.h makes packs of files.
+// Writes what the bakers return as packs: for meshes and robots that a program has in memory.
+// assets.h makes packs from files.
 
 /// The bytes of a scene pack's FlatBuffer, without the file header. The same scene and provenance
-/// give the same bytes. Fails with kUnsupported when it would reach 2 GiB, the limit of one pack.
+/// give the same bytes. Fails with kUnsupported if the pack would reach 2 GiB, the limit of one
+/// pack.
 [[nodiscard]] Result<std::vector<std::byte>> encodeScenePack(const BakedScene& scene,
                                                              const Provenance& provenance);
 
@@ -36,9 +37,9 @@ struct BakedObjectSet {
 };
 
 /// The bytes of an object pack's FlatBuffer, without the file header; objects by ascending name.
-/// The same objects and provenance give the same bytes. Fails with kInvalidInput when there is
-/// no object, one has no name or two have the same, and with kUnsupported when it would reach 2
-/// GiB, the limit of one pack.
+/// The same objects and provenance give the same bytes. Fails with kInvalidInput if there is no
+/// object, if one has no name or if two have the same name, and with kUnsupported if the pack would
+/// reach 2 GiB, the limit of one pack.
 [[nodiscard]] Result<std::vector<std::byte>> encodeObjectPack(const BakedObjectSet& set,
                                                               const Provenance& provenance);
 
@@ -48,7 +49,8 @@ struct BakedObjectSet {
                                                     const Provenance& provenance);
 
 /// The bytes of a robot pack's FlatBuffer, without the file header. The same robot and provenance
-/// give the same bytes. Fails with kUnsupported when it would reach 2 GiB, the limit of one pack.
+/// give the same bytes. Fails with kUnsupported if the pack would reach 2 GiB, the limit of one
+/// pack.
 [[nodiscard]] Result<std::vector<std::byte>> encodeRobotPack(const BakedRobot& robot,
                                                              const Provenance& provenance);
 
@@ -69,13 +71,13 @@ struct BakedObjectSet {
                                                      const Provenance& provenance);
 
 /// The bytes of an episode pack's FlatBuffer, without the file header. The same episodes and
-/// provenance give the same bytes. The parts of rotations are rounded to multiples of 2^-48, which
-/// changes only those below 2^-25 (3e-8): exports can write these so that they read back exactly.
-/// Fails with kInvalidInput when the episodes are not as schema/episodes.fbs wants them (names
-/// empty or out of order, indices or ranges out of bounds, placements in another order than the
-/// episodes or of none of them, counts that do not agree, numbers that are not finite, rotations
-/// not of length 1); `where` names the element. Fails with kUnsupported when the pack would reach 2
-/// GiB, the limit of one pack.
+/// provenance give the same bytes. The components of rotations are rounded to multiples of 2^-48,
+/// which changes only those below 2^-25 (3e-8), so that exports can write them and read them back
+/// exactly. Fails with kInvalidInput if the episodes are not as schema/episodes.fbs requires (names
+/// that are empty or out of order, indices or ranges out of bounds, placements that are not in the
+/// order of the episodes or belong to none of them, counts that do not agree, numbers that are not
+/// finite, rotations that are not of length 1); `where` names the element. Fails with kUnsupported
+/// if the pack would reach 2 GiB, the limit of one pack.
 [[nodiscard]] Result<std::vector<std::byte>> encodeEpisodePack(const SourceEpisodes& episodes,
                                                                const Provenance& provenance);
 

@@ -19,28 +19,30 @@ struct SourceFile {
   std::uint64_t hash_high = 0;
 };
 
-/// Size and XXH3-128 hash of the file at `path`, for a pack's provenance. Its name is the file's
-/// own: the path would tell of the machine. Fails with kIo where it cannot be read.
+/// Size and XXH3-128 hash of the file at `path`, for a pack's provenance. Its name has no folders,
+/// because a path would reveal something about the machine. Fails with kIo if the file cannot be
+/// read.
 [[nodiscard]] Result<SourceFile> describeFile(const std::filesystem::path& path);
 
-/// The same of a file that is in memory.
+/// The same for a file in memory.
 [[nodiscard]] SourceFile describeBytes(std::string name, std::span<const std::byte> bytes);
 
-/// 32 hexadecimal digits of the content's hash.
+/// The content's hash as 32 hexadecimal digits.
 [[nodiscard]] std::string hexOf(const SourceFile& file);
 
-/// Whatever their names.
+/// Whether two files have the same content, whatever their names.
 [[nodiscard]] inline bool sameContent(const SourceFile& a, const SourceFile& b) {
   return a.bytes == b.bytes && a.hash_low == b.hash_low && a.hash_high == b.hash_high;
 }
 
-/// What something was read from: while these files are as they were, the same is read again.
+/// The files from which something was read: as long as they do not change, reading again gives the
+/// same.
 struct ReadFiles {
   std::vector<SourceFile> files;
-  /// Names of files and folders that were looked for and are not there: once they are, something
-  /// else may be read.
+  /// Names of files and folders that were looked for and do not exist. If one of them appears,
+  /// reading may give something else.
   std::vector<std::string> absent{};
-  /// Whether `files` and `absent` are all that decides it.
+  /// Whether the result depends on nothing but `files` and `absent`.
   bool is_settled = true;
 };
 

@@ -15,17 +15,17 @@ namespace galactic::bake {
 /// A RenderMaterial of schema/render.fbs.
 struct BakedMaterial {
   std::string name;
-  /// RGBA, sRGB, 8 bits each, R lowest. With a texture: the texture's mean.
+  /// RGBA, sRGB, 8 bits each, R in the lowest byte. With a texture: the texture's mean color.
   std::uint32_t color = 0xFFFFFFFF;
   /// Index into BakedMaterials::textures, or -1.
   std::int32_t texture = -1;
-  /// 0: opaque; otherwise what has less alpha than this is not drawn; at most 1.
+  /// 0: opaque; otherwise at most 1: texels with less alpha than this are not drawn.
   float alpha_cutoff = 0;
 };
 
 /// A RenderTexture of schema/render.fbs.
 struct BakedTexture {
-  /// As the source names it: "wood.png", "*3"; never an absolute path.
+  /// The name that the source gives it: "wood.png", "*3"; never an absolute path.
   std::string name;
   /// Edge of the largest level, texels: a power of two.
   std::uint32_t size = 0;
@@ -46,14 +46,14 @@ struct BakedMaterials {
   std::vector<std::uint8_t> texels;
   /// Whether a pack names the textures by their hashes and leaves the texels to texture packs.
   bool shared = false;
-  /// Bytes of the images that were decoded, each once, at their own size with 4 bytes a texel and
-  /// without mip levels: what it would take to keep them as they are.
+  /// Bytes of the images that were decoded, counting each once, at their own size with 4 bytes per
+  /// texel and without mip levels: what it would take to store them as they are.
   std::uint64_t source_bytes = 0;
   /// One sentence each: images that cannot be used, translucency that cannot be shown.
   std::vector<std::string> warnings;
 };
 
-/// Images that many assets show, each decoded and scaled once. Thread-safe.
+/// Images that many assets use, each decoded and scaled once. Thread-safe.
 class TextureLibrary {
  public:
   TextureLibrary();
@@ -61,7 +61,7 @@ class TextureLibrary {
   TextureLibrary(const TextureLibrary&) = delete;
   TextureLibrary& operator=(const TextureLibrary&) = delete;
 
-  /// What is known of the images; for the bakers of textures.
+  /// What is known about the images; for the texture bakers.
   struct State;
   [[nodiscard]] State& state() { return *state_; }
 
@@ -72,37 +72,38 @@ class TextureLibrary {
 struct TextureBakeOptions {
   /// Longest edge of a texture, texels: a power of two, 1 to 4096.
   std::uint32_t largest = 512;
-  /// Of opaque textures; those with a cut-out shape are always kRgba8.
+  /// Format of opaque textures; cut-out textures are always kRgba8.
   TexelFormat format = TexelFormat::kRgba8;
 
   friend bool operator==(const TextureBakeOptions&, const TextureBakeOptions&) = default;
 };
 
-/// Where the images are that materials name.
+/// Where to find the images that materials name.
 struct TextureFiles {
-  /// Those that a texture "*N" means.
+  /// The images to which the names "*N" refer.
   std::span<const EmbeddedTexture> embedded{};
-  /// The names of other textures are relative to it.
+  /// The folder to which the names of other textures are relative.
   std::filesystem::path folder{};
 };
 
-/// Makes flat colors and small square mip-mapped textures of the materials of an asset.
+/// Makes flat colors and small square mip-mapped textures from the materials of an asset.
 ///
-/// PNG and JPEG are decoded, each in a process of its own, because they may be hostile.
-/// Whatever cannot be used (missing, broken, another format, over 16384 texels wide or high or over
-/// 64 million in all) leaves its materials with their plain color and gives one warning.
+/// PNG and JPEG are decoded, each in a process of its own, because they may be hostile. Images that
+/// cannot be used (missing, broken, in another format, over 16384 texels wide or high, or over 64
+/// million texels in all) leave their materials with a plain color and cause one warning each.
 ///
 /// A texture's edge is the smallest power of two that holds the longer edge of its image, at most
-/// `options.largest`. Filtered by area (linearly where enlarged), in linear light, colors weighted
-/// with alpha; each mip level is the mean of the one above. The base color is multiplied in. Equal
-/// results are stored once; an image of one color becomes a flat color. Cut-out textures keep the
-/// image's share of visible texels in all levels (Castano, "Computing Alpha Mipmaps", 2010).
-/// Translucency is not drawn: from half alpha upwards a surface is there.
+/// `options.largest`. Images are filtered by area (linearly if they are enlarged), in linear light,
+/// with colors weighted by alpha; each mip level is the mean of the next larger one. The base color
+/// is multiplied in. Equal results are stored once, and an image of a single color becomes a flat
+/// color. Cut-out textures keep the image's fraction of visible texels in all levels (Castano,
+/// "Computing Alpha Mipmaps", 2010). Translucency is not drawn: a surface is drawn where its alpha
+/// is one half or more.
 ///
-/// Fails with kInvalidInput when `options.largest` is no power of two from 1 to 4096, kUnsupported
-/// when the texels would exceed a pack's 2 GiB. Thread-safe.
+/// Fails with kInvalidInput if `options.largest` is not a power of two from 1 to 4096, and with
+/// kUnsupported if the texels would exceed a pack's 2 GiB. Thread-safe.
 ///
-/// `library`: where images of other assets are found again; null: nowhere. The result depends
+/// `library`: where images of other assets are reused from; null: nowhere. The result depends
 /// neither on it nor on `threads`.
 [[nodiscard]] Result<BakedMaterials> bakeMaterials(std::span<const SourceMaterial> materials,
                                                    const TextureFiles& files,
@@ -110,7 +111,7 @@ struct TextureFiles {
                                                    unsigned threads = 1,
                                                    TextureLibrary* library = nullptr);
 
-/// 32 hexadecimal digits of the texture's hash: the name of its pack.
+/// The texture's hash as 32 hexadecimal digits: the name of its pack.
 [[nodiscard]] std::string textureHash(const BakedTexture& texture);
 
 }  // namespace galactic::bake

@@ -16,30 +16,30 @@
 namespace galactic::bake {
 
 struct RobotBakeOptions {
-  /// Working set, meters, ascending.
+  /// Working set of radii, meters, ascending.
   std::vector<float> radii{0.015F, 0.05F, 0.12F};
-  /// Meters. Override the recipe's; without either, 20 and 40 mm.
+  /// Tolerances, meters. They override the recipe's; without either, they are 20 and 40 mm.
   std::optional<float> eps;
   std::optional<float> tau;
-  /// Of the whole robot; 0: as many as the tolerances need. Overrides the recipe's; without either,
-  /// 100, and more where gaps would be wider than the recipe's max_gap (50 mm).
+  /// Most spheres of the whole robot; 0: as many as the tolerances need. Overrides the recipe's
+  /// number. Without either, 100, or more if gaps would be wider than the recipe's max_gap (50 mm).
   std::optional<std::uint32_t> max_spheres;
-  /// Spheres made by hand or by another tool. Links named here take them instead of fitted ones;
-  /// the others get none.
+  /// Spheres made by hand or by another tool. Links named here take them in place of fitted ones;
+  /// other links get none.
   std::optional<HandSpheres> hand_spheres;
 
   friend bool operator==(const RobotBakeOptions&, const RobotBakeOptions&) = default;
 };
 
-/// Links that no joint moves against each other, and their spheres.
+/// Links that no joint moves relative to each other, and their spheres.
 struct BakedGroup {
   /// The link in whose frame the spheres are: the one nearest to the root.
   std::uint32_t link = 0;
   /// Ascending, `link` first.
   std::vector<std::uint32_t> links;
-  /// Empty where the group has no geometry or was skipped.
+  /// Empty if the group has no geometry or was skipped.
   SphereSet spheres;
-  /// What was asked for, meters.
+  /// The tolerances that were asked for, meters.
   float eps = 0;
   float tau = 0;
   /// Whether the spheres were given by hand.
@@ -68,7 +68,7 @@ struct RobotTimes {
   double render = 0;
 };
 
-/// Everything of a robot pack but its provenance.
+/// Everything in a robot pack but its provenance.
 struct BakedRobot {
   std::string name;
   std::vector<float> radii;
@@ -82,10 +82,10 @@ struct BakedRobot {
   std::optional<RobotCamera> camera;
   std::optional<RobotBase> base;
   std::optional<RobotLaser> laser;
-  /// One per link; empty where a link has none.
+  /// One per link; empty if a link has none.
   std::vector<Surface> collision_surfaces;
   std::vector<Surface> visual_surfaces;
-  /// What is drawn, where it is wanted: a model per link. Not made by bakeRobot.
+  /// What is drawn, if it is wanted: a model per link. Not made by bakeRobot().
   std::optional<BakedRenderMeshes> render_meshes;
   RobotTimes times;
   std::vector<std::string> warnings;
@@ -93,9 +93,9 @@ struct BakedRobot {
 
 /// Kinematics, spheres and self-collision pairs of a robot; `recipe` may be null. Links that lie
 /// lower than the clip height get no spheres, with a warning. Fails with kInvalidInput or
-/// kUnsupported on names, options, recipe or geometry that cannot give them; `where` names the line
-/// of the recipe, the link or the option, or is empty, since the baker knows no file. The result
-/// does not depend on the number of threads.
+/// kUnsupported if names, options, recipe or geometry make that impossible; `where` names the line
+/// of the recipe, the link or the option, or is empty, since the baker does not know the file. The
+/// result does not depend on the number of threads.
 [[nodiscard]] Result<BakedRobot> bakeRobot(const SourceRobot& robot, const RobotRecipe* recipe,
                                            const RobotBakeOptions& options, unsigned threads = 1);
 

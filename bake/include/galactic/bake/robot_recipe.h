@@ -14,13 +14,13 @@
 
 namespace galactic::bake {
 
-/// The name of a link or joint, and where the recipe has it ("fetch.toml:12"), for messages.
+/// The name of a link or joint, and its place in the recipe ("fetch.toml:12"), for messages.
 struct RecipeName {
   std::string name;
   std::string where;
 };
 
-/// What grasps: a sphere at a point of a link.
+/// The gripper: a sphere at a point of a link.
 struct RecipeEndEffector {
   RecipeName link;
   /// In the link's frame (Y up, X forward), meters.
@@ -31,7 +31,7 @@ struct RecipeEndEffector {
 
 struct RecipeCamera {
   RecipeName link;
-  /// Rigid. The camera looks along +X of its own frame, +Y is up in the image.
+  /// Rigid. The camera looks along +X of its own frame; +Y is up in the image.
   Affine link_from_camera{};
   /// Radians, between the lower and the upper edge of the image.
   double vertical_fov = 0;
@@ -64,10 +64,10 @@ struct FootprintRectangle {
 
 struct RecipeBase {
   std::variant<FootprintCircle, FootprintRectangle> footprint;
-  /// Farthest drive of one action, meters, and farthest turn, radians.
+  /// Longest drive of one action, meters, and largest turn, radians.
   double forward_step = 0.1;
   double turn_step = 0.0873;
-  /// Farthest drive of one action to the side, meters; 0: the base does not drive sideways.
+  /// Longest sideways drive of one action, meters; 0: the base does not drive sideways.
   double sideways_step = 0;
   /// Height of the root link's origin above the ground, meters.
   double root_height = 0;
@@ -76,20 +76,20 @@ struct RecipeBase {
 /// A joint that an action moves.
 struct RecipeJoint {
   RecipeName joint;
-  /// Farthest move of one action, radians or meters.
+  /// Largest move of one action, radians or meters.
   double step = 0;
-  /// Narrower limits than those of the robot's file.
+  /// Limits narrower than those of the robot file.
   std::optional<double> min;
   std::optional<double> max;
 };
 
-/// What stands in for the limits of the robot's file, or for their absence: radians or meters.
+/// Limits that replace those of the robot file, or that the file lacks; radians or meters.
 struct RecipeLimits {
   RecipeName joint;
   JointLimits limits;
 };
 
-/// A joint that follows another, as <mimic> of a URDF says it.
+/// A joint that follows another, as with <mimic> in a URDF.
 struct RecipeMimic {
   RecipeName joint;
   /// position of `joint` = multiplier * position of `leader` + offset; radians or meters.
@@ -112,11 +112,11 @@ struct RecipeLinkSpheres {
   std::optional<double> tau;
   std::optional<double> clip_height;
   std::optional<std::uint32_t> max_spheres;
-  /// The link gets no spheres at all.
+  /// Whether the link gets no spheres at all.
   bool skip = false;
-  /// The link counts as a part of its parent: one set of spheres for both.
+  /// Whether the link counts as a part of its parent: one set of spheres covers both.
   bool merge_with_parent = false;
-  /// Taken as they are, instead of fitted ones; link frame (Y up, X forward).
+  /// Spheres that are used as they are, in place of fitted ones; link frame (Y up, X forward).
   std::vector<HandSphere> spheres;
 };
 
@@ -124,22 +124,22 @@ struct RecipeSpheres {
   /// Meters.
   double eps = 0.020;
   double tau = 0.040;
-  /// Of the whole robot; none: as many as `max_gap` takes.
+  /// Most spheres of the whole robot; none: as many as `max_gap` needs.
   std::optional<std::uint32_t> max_spheres;
-  /// Without max_spheres, no gap between surface and spheres is wider than this where the
-  /// tolerances allow; meters.
+  /// Without max_spheres, no gap between surface and spheres is wider than this, if the tolerances
+  /// allow it; meters.
   double max_gap = 0.050;
-  /// At the start pose, surfaces lower than this above the ground need no cover, and no sphere
-  /// reaches below; meters.
+  /// In the start pose, surfaces below this height above the ground need not be covered, and no
+  /// sphere reaches below it; meters.
   double clip_height = 0.020;
   /// By link name.
   std::vector<RecipeLinkSpheres> links;
 };
 
-/// What a robot's file (URDF, MJCF) does not say. Every frame Y up, X forward; SI units.
+/// What a robot file (URDF, MJCF) does not specify. Every frame is Y up and X forward; SI units.
 struct RobotRecipe {
   std::string name;
-  /// The file that it was read from, for messages and provenance.
+  /// The file that the recipe was read from, for messages and provenance.
   std::string source;
   RecipeEndEffector end_effector;
   std::optional<RecipeCamera> camera;
@@ -147,46 +147,46 @@ struct RobotRecipe {
   RecipeBase base;
   /// In the order of the actions.
   std::vector<RecipeJoint> joints;
-  /// Of revolute and prismatic joints, by name.
+  /// Limits of revolute and prismatic joints, by joint name.
   std::vector<RecipeLimits> limits;
-  /// Joints that follow others, by name, beside those that its file says.
+  /// Joints that follow others, by name, besides those in the robot file.
   std::vector<RecipeMimic> mimics;
-  /// Joints that do not start where the robot's file has them rest, or else at 0 (or at their limit
-  /// nearest to it), by name.
+  /// Start positions of joints, by name. Other joints start at the rest position in the robot file
+  /// or, without one, at 0 or the limit nearest to 0.
   std::vector<RecipeStart> start_pose;
   RecipeSpheres spheres;
   /// Links that may touch.
   std::vector<std::pair<RecipeName, RecipeName>> ignored_pairs;
 };
 
-/// Reads a recipe in TOML; describeRobotRecipe() is its documentation. Positions and rotations in
-/// the text are in the frame of the robot's file (Z up) and are converted here, degrees to radians
-/// likewise. Strict: fails with kIo (missing file) or kInvalidInput, naming file and line, on
-/// broken TOML, unknown keys (with the nearest known one), missing keys, wrong types, values out of
+/// Reads a recipe in TOML, as documented by describeRobotRecipe(). Positions and rotations in the
+/// text are in the frame of the robot file (Z up) and are converted here, and so are degrees to
+/// radians. Strict: fails with kIo (missing file) or kInvalidInput, naming file and line, on broken
+/// TOML, unknown keys (naming the nearest known key), missing keys, wrong types, values out of
 /// range and contradictions.
 [[nodiscard]] Result<RobotRecipe> readRobotRecipe(const std::filesystem::path& path);
 
-/// A complete recipe with every key explained, for --print-recipe; readRobotRecipe reads it.
+/// A complete recipe with every key explained, for --print-recipe; readRobotRecipe() can read it.
 [[nodiscard]] std::string describeRobotRecipe();
 
-/// A recipe for `robot`, which has a link at least: end effector, camera, base, joints and start
-/// pose guessed from names, tree and shapes, with comments that say so. readRobotRecipe reads it
-/// and it fits the robot. Deterministic.
+/// A recipe for `robot`, which must have at least one link. End effector, camera, base, joints and
+/// start pose are guessed from names, tree and shapes, with comments that say so. readRobotRecipe()
+/// can read the draft, and it fits the robot. Deterministic.
 [[nodiscard]] std::string draftRobotRecipe(const SourceRobot& robot);
 
-/// The limits of a link's joint: the recipe's where it has some, else its file's. `recipe` may be
-/// null.
+/// The limits of a link's joint: those in the recipe, if any, otherwise those in the robot file.
+/// `recipe` may be null.
 [[nodiscard]] std::optional<JointLimits> jointLimits(const SourceLink& link,
                                                      const RobotRecipe* recipe);
 
-/// Makes the joints of `robot` follow others as the recipe says, in place of what its file says of
-/// them. Fails with kInvalidInput where a joint does not exist or has no single position, and where
-/// joints follow each other in a circle.
+/// Makes the joints of `robot` follow others as the recipe says, replacing what its file says about
+/// them. Fails with kInvalidInput if a joint does not exist or does not have exactly one position,
+/// or if joints follow each other in a circle.
 [[nodiscard]] Result<void> coupleJoints(const RobotRecipe& recipe, SourceRobot& robot);
 
-/// Whether the recipe fits the robot: links and joints exist (with the nearest names otherwise),
-/// controlled joints can move and mimic nothing, ranges and start positions lie within limits, the
-/// root merges with nothing. Fails with kInvalidInput.
+/// Checks that the recipe fits the robot: links and joints exist (errors name the nearest names),
+/// controlled joints can move and mimic nothing, ranges and start positions lie within limits, and
+/// the root is not merged with a parent. Fails with kInvalidInput.
 [[nodiscard]] Result<void> checkRecipe(const RobotRecipe& recipe, const SourceRobot& robot);
 
 }  // namespace galactic::bake

@@ -15,7 +15,7 @@
 
 namespace galactic::bake {
 
-/// Which method finds the free spans.
+/// The method that finds the free spans.
 enum class Engine { kExact, kBullet, kEmbree };
 
 struct SceneBakeOptions {
@@ -31,7 +31,7 @@ struct SceneBakeOptions {
   friend bool operator==(const SceneBakeOptions&, const SceneBakeOptions&) = default;
 };
 
-/// How long each stage took, seconds of wall clock.
+/// How long each stage took, seconds of wall-clock time.
 struct StageTimes {
   double import = 0;
   double clean = 0;
@@ -46,7 +46,7 @@ struct StageTimes {
 /// One grid and its statistics.
 struct BakedGrid {
   EncodedGrid grid;
-  /// Every component of the free space by falling volume.
+  /// Every component of the free space, by descending volume.
   std::vector<Component> components;
   std::uint64_t raw_spans = 0;
   std::uint64_t merged_gaps = 0;
@@ -54,25 +54,25 @@ struct BakedGrid {
   std::optional<CastCheck> cast_check;
 };
 
-/// Everything of a scene pack but its provenance.
+/// Everything in a scene pack but its provenance.
 struct BakedScene {
   std::string name;
   ImportStatistics imported;
   Bounds bounds;
   Coverage coverage = Coverage::kColumn;
   std::vector<BakedGrid> grids;
-  /// What is drawn, where it is wanted; not made by bakeScene.
+  /// What is drawn, if it is wanted; not made by bakeScene().
   std::optional<BakedRenderMeshes> render_meshes;
-  /// What the user should look at: parts of the free space left out, and so on.
+  /// What the user should examine: parts of the free space that were left out, and so on.
   std::vector<std::string> warnings;
 };
 
-/// Told what is being done and how far it is (0 to 1); may be called from one thread at a time
-/// only.
+/// A function that is called with the current stage and how far it is (0 to 1), from one thread at
+/// a time.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 /// Bakes all column grids of one scene. Adds the time of its stages to `times`. Fails with
-/// kInvalidInput on options or geometry that cannot give a grid; where an option is the cause, the
+/// kInvalidInput if options or geometry make a grid impossible; if an option is the cause, the
 /// error's `where` is its name in backquotes. The result depends on neither `threads` nor the
 /// processor.
 [[nodiscard]] Result<BakedScene> bakeScene(const SourceAsset& asset,

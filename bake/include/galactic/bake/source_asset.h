@@ -20,7 +20,7 @@ using Affine = std::array<double, 12>;
 /// What a material's alpha means (glTF's alphaMode).
 enum class AlphaMode : std::uint8_t {
   kOpaque,  ///< Alpha is ignored.
-  kMask,    ///< What has less alpha than a cutoff is not drawn, the rest is opaque.
+  kMask,    ///< Texels with less alpha than a cutoff are not drawn; the rest are opaque.
   kBlend,   ///< Translucency.
 };
 
@@ -31,10 +31,10 @@ struct SourceMaterial {
   std::array<float, 4> base_color{1, 1, 1, 1};
   /// Path relative to the source file, "*N" for embedded texture N, or empty.
   std::string base_color_texture;
-  /// Whether both sides are seen: true also where the format cannot say.
+  /// Whether both sides are visible: also true if the format cannot tell.
   bool two_sided = false;
   AlphaMode alpha_mode = AlphaMode::kOpaque;
-  /// Of kMask.
+  /// The cutoff of kMask.
   float alpha_cutoff = 0.5F;
 };
 
@@ -48,7 +48,7 @@ struct EmbeddedTexture {
 /// One mesh in its own frame.
 struct SourceMesh {
   std::string name;
-  /// Triangles use all of them: the readers leave others out.
+  /// All of them are used by triangles: the readers leave others out.
   std::vector<Vec3> positions;
   /// Texture coordinates, one per position or none; (0, 0) is the image's lower left corner.
   std::vector<std::array<float, 2>> uvs;
@@ -67,17 +67,19 @@ struct SourceInstance {
   Affine world_from_mesh{};
 };
 
-/// What an importer hands to the bakers: neutral, in the world frame (Y up, meters).
+/// What an importer passes to the bakers: independent of the format, in the world frame (Y up,
+/// meters).
 struct SourceAsset {
   /// Main input's file name without its extension.
   std::string name;
-  /// Format as recognized, for example "glTF 2.0". Packs want a name.
+  /// Format as recognized, for example "glTF 2.0". Packs need a name here.
   std::string format = "memory";
-  /// How axes and unit were read, for the closing table: for example "Z up (file), unit 0.01 m".
+  /// How axes and unit were interpreted, for the closing table: for example "Z up (file), unit 0.01
+  /// m".
   std::string convention;
   /// The unit in which the file was read.
   double meters_per_unit = 1;
-  /// Whether the file or the user states that unit; else it is the one that is usual in the format.
+  /// Whether the file or the user states that unit; otherwise it is the format's usual unit.
   bool unit_is_stated = false;
   std::vector<SourceMesh> meshes;
   std::vector<SourceInstance> instances;
@@ -85,17 +87,17 @@ struct SourceAsset {
   std::vector<EmbeddedTexture> textures;
   /// Names are relative to the folder of the main input.
   ReadFiles read;
-  /// Files of materials that are named and missing, relative to the folder of the main input.
+  /// Material files that are named but missing, relative to the folder of the main input.
   std::vector<std::string> missing_materials;
-  /// One sentence for each texture and file of materials that is named and missing: what is drawn
-  /// instead. They are among the warnings, too.
+  /// One sentence for each texture and material file that is named but missing, saying what is
+  /// drawn instead. They are also among the warnings.
   std::vector<std::string> missing;
   /// One sentence each: missing textures, a doubtful unit and so on.
   std::vector<std::string> warnings;
 };
 
-/// Where a pack comes from: goes into the pack, so nothing in it may depend on the machine, the
-/// time or the number of threads.
+/// Where a pack comes from. It is stored in the pack, so nothing in it may depend on the machine,
+/// the time or the number of threads.
 struct Provenance {
   std::string tool = "galactic-bake";
   std::string tool_version;

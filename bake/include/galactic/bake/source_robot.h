@@ -31,14 +31,14 @@ struct MeshShape {
 /// One visual or collision element of a link.
 struct LinkShape {
   std::variant<BoxShape, CylinderShape, SphereShape, MeshShape> geometry;
-  /// Includes the mesh's scale, and of an ellipsoid what makes it of a sphere.
+  /// Includes the mesh's scale and, for an ellipsoid, the scaling that makes it from a sphere.
   Affine link_from_shape{};
-  /// Linear RGBA where the robot's file names a color.
+  /// Linear RGBA, if the robot file names a color.
   std::optional<std::array<float, 4>> color;
-  /// Whether the color counts whatever a mesh's file says of its looks (MJCF); else (URDF) only
-  /// where that says nothing.
+  /// Whether the color overrides materials in the mesh file (MJCF). Otherwise (URDF) it is used
+  /// only if the mesh file has none.
   bool hides_looks = false;
-  /// Of hides_looks: an image that is drawn on a mesh with texture coordinates, in place of those
+  /// With hides_looks: an image that is drawn on a mesh with texture coordinates, in place of those
   /// of its file. Relative to the robot file's folder; empty: none.
   std::string texture{};
 };
@@ -51,7 +51,7 @@ struct JointLimits {
 
 /// position = multiplier * position of `link`'s joint + offset.
 struct Mimic {
-  /// Index of the link whose joint is followed; that one mimics nothing.
+  /// Index of the link whose joint is followed, which is not a mimic itself.
   std::uint32_t link = 0;
   double multiplier = 1;
   double offset = 0;
@@ -70,20 +70,22 @@ struct SourceLink {
   std::array<double, 3> axis{1, 0, 0};
   /// None: unlimited.
   std::optional<JointLimits> limits;
-  /// Whether the file says nothing of limits although the joint needs some: these are a guess.
+  /// Whether the file gives no limits although the joint needs some, so that `limits` is a guess.
   bool limits_are_assumed = false;
   std::optional<Mimic> mimic;
-  /// Where the file says that the joint rests (MJCF's keyframe "home"); radians or meters.
+  /// Rest position of the joint in the file (MJCF's keyframe "home"); radians or meters.
   std::optional<double> rest;
   std::vector<LinkShape> collisions;
   std::vector<LinkShape> visuals;
-  /// Whether the file has visuals of which none could be read: the collisions are drawn instead.
+  /// Whether the file has visuals but none could be read: the collision shapes are drawn instead.
   bool visuals_are_lost = false;
-  /// Whether it stands for a camera of the file (MJCF's), which looks along the link's X, Z up.
+  /// Whether the link stands for a camera in the file (MJCF), which looks along the link's X with Z
+  /// up.
   bool is_camera = false;
 };
 
-/// What the robot importer hands to the baker: neutral, every frame Y up and X forward, meters.
+/// What the robot importer passes to the baker: independent of the format, every frame Y up and X
+/// forward, meters.
 struct SourceRobot {
   std::string name;
   /// Root first, parents before children; children in the order of the file's joints.
@@ -92,16 +94,16 @@ struct SourceRobot {
   std::vector<SourceAsset> meshes;
   /// Links that the file allows to touch, by index.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> may_touch;
-  /// The robot's file, what it includes, every mesh and texture, also those that do not load, and
-  /// every package.xml that decided where meshes are; relative to the robot file's folder.
-  /// Unsettled where a mesh does not load, which may lack another file, and where a package was
-  /// searched for in many folders.
+  /// The robot file, the files that it includes, every mesh and texture, including those that do
+  /// not load, and every package.xml that decided where meshes are; relative to the robot file's
+  /// folder. Unsettled if a mesh does not load, because another file may be missing, or if a
+  /// package was searched for in many folders.
   ReadFiles read;
   /// One sentence each.
   std::vector<std::string> warnings;
-  /// References to meshes that were not found, as the file has them.
+  /// References to meshes that were not found, as in the file.
   std::vector<std::string> missing;
-  /// One sentence for each mesh that was found and does not load.
+  /// One sentence for each mesh that was found but does not load.
   std::vector<std::string> unreadable;
   /// Where each mesh was found, one line each, for -v.
   std::vector<std::string> resolutions;

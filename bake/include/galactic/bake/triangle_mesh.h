@@ -27,17 +27,19 @@ struct CleaningCounts {
   std::uint64_t duplicate = 0;
 };
 
-/// A triangle lower than this is dropped: its neighbors cover it to within this distance. Meters.
+/// A triangle whose shortest altitude is below this is dropped: its neighbors cover it to within
+/// this distance. Meters.
 inline constexpr double kDegenerateHeight = 1e-7;
-/// A coordinate beyond this is refused: float positions would be coarser than 0.1 mm. Meters.
+/// A coordinate beyond this is refused, because float positions would be coarser than 0.1 mm.
+/// Meters.
 inline constexpr double kMaxCoordinate = 800.0;
 
-/// The collision geometry of a scene: world frame, finite, no degenerate and no duplicate triangle,
-/// at least one triangle.
+/// The collision geometry of a scene: world frame, finite, no degenerate and no duplicate
+/// triangles, at least one triangle.
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
-  /// Of the vertices that triangles use.
+  /// Bounds of the vertices that triangles use.
   Bounds bounds;
 };
 
@@ -52,11 +54,11 @@ struct CleanMesh {
 };
 
 /// Places every instance of `asset` in the world frame (in double precision, rounded once) and
-/// cleans the triangles. Fails with kInvalidInput when nothing remains, or when a coordinate is not
+/// cleans the triangles. Fails with kInvalidInput if nothing remains, or if a coordinate is not
 /// finite or beyond kMaxCoordinate (with a question about units).
 [[nodiscard]] Result<CleanMesh> placeAndClean(const SourceAsset& asset);
 
-/// What the importer read of a mesh and what cleaning left, for the pack.
+/// What the importer read and what cleaning left of a mesh, for the pack.
 struct ImportStatistics {
   /// Format of the main input, for example "glTF 2.0".
   std::string format;
@@ -80,21 +82,21 @@ struct ImportStatistics {
 struct Surface {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
-  /// RGBA, sRGB, 8 bits each, R lowest: one per position, or none for a neutral gray.
+  /// RGBA, sRGB, 8 bits each, R in the lowest byte: one per position, or none for a neutral gray.
   std::vector<std::uint32_t> colors;
 
   [[nodiscard]] bool empty() const { return triangles.empty(); }
 };
 
-/// The color of a linear RGBA (0 to 1) as a Surface stores it.
+/// A linear RGBA color (0 to 1) as a Surface stores it.
 [[nodiscard]] std::uint32_t surfaceColor(const std::array<float, 4>& linear);
 
-/// Every instance of `asset`, placed by `frame_from_asset`, as one surface: colored by its
-/// materials and vertex colors, or by `color` (linear RGBA) where given. Textures are not read.
+/// Every instance of `asset`, placed by `frame_from_asset`, as one surface, colored by its
+/// materials and vertex colors, or by `color` (linear RGBA) if given. Textures are not read.
 [[nodiscard]] Surface surfaceOf(const SourceAsset& asset, const Affine& frame_from_asset,
                                 const std::array<float, 4>* color = nullptr);
 
-/// Appends `part` to `surface`; one of them may be without colors.
+/// Appends `part` to `surface`; one of them may have no colors.
 void append(Surface& surface, const Surface& part);
 
 }  // namespace galactic::bake

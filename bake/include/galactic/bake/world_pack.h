@@ -26,19 +26,20 @@ struct LinkedPack {
   friend bool operator==(const LinkedPack&, const LinkedPack&) = default;
 };
 
-/// Describes the packs in the files `paths`, in any order, for a world pack in `folder` (empty: the
-/// current one); ascending paths. Adds the packs of the textures that they share, found with
-/// texturePackBeside where they are not among `paths`. Opens and verifies all and sees that they
-/// fit together: fails with the errors of PackFile::open and checkTogether, and with kInvalidInput
-/// when a file does not lie below `folder`, is listed twice or is a world itself.
+/// Describes the packs in the files `paths`, given in any order, for a world pack in `folder`
+/// (empty: the current one); returned by ascending path. Adds the packs of the textures that they
+/// share, found with texturePackBeside() if they are not among `paths`. Opens and verifies all
+/// packs and checks that they fit together. Fails with the errors of PackFile::open() and
+/// checkTogether(), and with kInvalidInput if a file does not lie below `folder`, is listed twice
+/// or is a world itself.
 [[nodiscard]] Result<std::vector<LinkedPack>> linkPacks(
     std::span<const std::filesystem::path> paths, const std::filesystem::path& folder);
 
 /// The bytes of a world pack's FlatBuffer, without the file header; packs by ascending path.
-/// `task`: what the world says of its task, options of OptionScope::kTask in the order of the
-/// option table. Fails with kInvalidInput when the list is not as schema/world.fbs wants it: a path
-/// that is empty, absolute, leads upwards or is there twice, a world, more than one robot or
-/// episode set, no scene.
+/// `task`: the world's task, as options of OptionScope::kTask in the order of the option table.
+/// Fails with kInvalidInput if the list is not as schema/world.fbs requires: a path is empty,
+/// absolute, leads upwards or is listed twice, or the list has a world, more than one robot or
+/// episode set, or no scene.
 [[nodiscard]] Result<std::vector<std::byte>> encodeWorldPack(std::vector<LinkedPack> packs,
                                                              const Provenance& provenance,
                                                              std::span<const OptionText> task = {});
