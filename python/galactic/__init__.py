@@ -1,9 +1,10 @@
 """Thousands of simulated homes at once, for learning.
 
-World opens packs, Simulator steps a batch of environments, Renderer draws them, VectorEnv is
-Gymnasium's vector environment over them, Task one of your own in it, LearnedPolicy plays policy packs, ScriptedPolicy is an
-expert to imitate, PlanningScene answers planners, PathFinder knows the ways along a floor,
-RayCaster casts rays and sweeps spheres. docs/python.md has the tour.
+World opens packs, Simulator steps a batch of environments, and Renderer draws them. VectorEnv makes
+them a Gymnasium vector environment, in which a Task can be your own. LearnedPolicy plays policy
+packs, and ScriptedPolicy is an expert to imitate. PlanningScene answers planners' questions,
+PathFinder finds paths along a floor, and RayCaster casts rays and sweeps spheres. docs/python.md
+gives a tour.
 """
 
 import sys

@@ -1,4 +1,5 @@
-"""A simulator, its cameras, and the sums of its episodes: what a VectorEnv has once, or twice to take turns."""
+"""A simulator, its cameras and the sums of its episodes. A VectorEnv has one such part, or two that
+take turns."""
 
 from __future__ import annotations
 
@@ -20,34 +21,34 @@ from galactic.task import Placements, Task
 from galactic.task_runner import TaskRunner, options_of
 
 Array = NDArray[Any]
-#: An array or a dictionary of arrays, as observation_space says. No Union: which one it is depends
-#: on options, so a type checker would refuse every use of either.
+#: An array or a dictionary of arrays, as in observation_space. Not a Union: which of them it is
+#: depends on options, so a type checker would reject every use of either.
 Observations = Any
 #: Observations, rewards, terminations, truncations, infos.
 StepResult = tuple[Observations, Array, Array, Array, dict[str, Any]]
 
 
 class Piece(NamedTuple):
-    """The state of a simulator's envs, and where each of them goes: nowhere where that is None."""
+    """The state of a simulator's envs, and the env to which each is restored; None for none."""
 
     state: bytes
     places: Sequence[int | None]
 
 
 class BatchPart:
-    """Envs that step together, and what Gymnasium wants to know about each step of theirs. A second
-    thread that calls it meanwhile gets a RuntimeError, and nothing has happened then.
+    """Envs that step together, with what Gymnasium needs to know about each step. If a second
+    thread calls a method while another call is running, it gets a RuntimeError and nothing happens.
 
     Args:
-        world: where they are.
-        options: of their Simulator.
+        world: the world of the envs.
+        options: options of their Simulator.
         by_parts: whether the state is observed part by part.
-        cameras: options of a Renderer for each camera, by its name, which begins those of its images;
-            one called "" has images by their own names.
-        copy: whether results are arrays of their own, and no views.
-        task: one of the caller's own, over the simulator's.
-        is_evaluation: what the task is told of it.
-        events: whether infos tell what happened in each step.
+        cameras: options of a Renderer for each camera, by the camera's name, which prefixes the
+            names of its images; the images of a camera named "" have no prefix.
+        copy: whether results are new arrays instead of views.
+        task: a task of the caller's own, on top of the simulator's.
+        is_evaluation: TaskEnvs.is_evaluation for the task.
+        events: whether infos contain what happened in each step.
     """
 
     def __init__(
@@ -64,7 +65,8 @@ class BatchPart:
     ) -> None:
         if task is not None:
             options = options_of(task, options)
-        # Envs wait where their episodes ended until that has been drawn, or a task has looked at it.
+        # Envs wait at the end of their episodes until that state has been drawn, or examined by a
+        # task.
         self._renews = bool(cameras) or task is not None
         self.simulator = Simulator(world, **options, auto_reset=not self._renews)
         self._cameras = Cameras(self.simulator, cameras, options["threads"])
@@ -91,28 +93,30 @@ class BatchPart:
         self._copy = copy
         self._parts = self.observation_parts if by_parts else None
         envs = self.simulator.num_envs
-        # Of simulator and task together, where there is one; and what the caller sees where nothing is copied.
+        # Observations of simulator and task together, if there is a task; and what the caller sees
+        # if results are not copied.
         self._rows = np.zeros((envs, self.observation_size), np.float32)
         self._seen = {"state": self._rows, "rewards": np.zeros(envs, np.float32)}
         self._tally = EpisodeTally(self.simulator)
         self._events = StepEvents(self.simulator) if events else None
         self._is_new = True
         self.is_cut_off = False
-        """Whether an exception has cut off a step or a reset, which envs, tasks and sums have taken in in
-        part."""
+        """Whether an exception has cut off a step or a reset, so that envs, task and sums may be
+        out of step."""
         self._in_use = threading.Lock()
-        # When the episodes began, by a clock that only goes forward.
+        # When the episodes began, by a monotonic clock.
         self._began = np.full(envs, time.perf_counter())
         self._images = {} if copy else self._cameras.blank_images()
 
     @property
     def renderers(self) -> Mapping[str, Renderer]:
-        """What draws the images of each camera, by its name."""
+        """The renderer of each camera's images, by the camera's name."""
         return self._cameras.renderers
 
     @property
     def progress(self) -> float:
-        """What a task is told of how much of the training is over, 0 to 1; 1 in an evaluation."""
+        """TaskEnvs.progress for the task: how much of the training is over, 0 to 1; 1 in an
+        evaluation."""
         return self._progress
 
     @progress.setter
@@ -123,17 +127,17 @@ class BatchPart:
 
     @property
     def placements(self) -> Placements:
-        """What came of the task's place()."""
+        """How many states the task's place() returned, and how many of them were refused."""
         return Placements(0, 0) if self._task is None else self._task.placements
 
     @property
     def observation_size(self) -> int:
-        """How many numbers the flat observation of an env has."""
+        """The number of elements in an env's flat observation."""
         return self.simulator.observation_size + (0 if self._task is None else self._task.size)
 
     @property
     def observation_space(self) -> spaces.Space:
-        """Of one env."""
+        """The observation space of one env."""
         size = self.observation_size
         if self._parts is None and not self._cameras.shapes:
             return _unbounded(size)
@@ -145,7 +149,8 @@ class BatchPart:
         return spaces.Dict({**named, **images})
 
     def landing_shapes(self) -> dict[str, tuple[tuple[int, ...], Any]]:
-        """What step() can write to: shape, without the env's axis, and type."""
+        """The results that step() can write to given arrays: shape, without the env's axis, and
+        type."""
         return {
             "state": ((self.observation_size,), np.float32),
             **self._cameras.shapes,
@@ -156,7 +161,7 @@ class BatchPart:
         }
 
     def reset(self, seed: int | None, mask: NDArray[np.bool_], episodes: NDArray[np.int64]) -> None:
-        """Begins the `episodes` where `mask` says: see episodes_to_begin()."""
+        """Begins the `episodes` in the envs where `mask` is true: see episodes_to_begin()."""
         with self._alone():
             if seed is None and not mask.all():
                 self.require_whole()
@@ -173,7 +178,7 @@ class BatchPart:
                     self._task.restart()
             untouched = self._is_new or seed is not None
             self._is_new = False
-            # Envs that nobody has touched stand at the start of their next ones.
+            # Envs that have not been used yet already stand at the start of their next episodes.
             begins = np.flatnonzero(mask & ((episodes >= 0) | (not untouched)))
             self._begin(begins, episodes[begins])
             self._tally.restart(mask)
@@ -181,7 +186,7 @@ class BatchPart:
             self.is_cut_off = False
 
     def set_states(self, states: EnvStates, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Goes on from states in the envs `rows`: see VectorEnv.set_states."""
+        """Makes the envs `rows` continue from states: see VectorEnv.set_states()."""
         with self._alone():
             self.require_whole()
             were_set = self.simulator.set_states(states, rows)
@@ -196,7 +201,7 @@ class BatchPart:
             return were_set
 
     def observe(self, out: Mapping[str, Array] | None = None) -> Observations:
-        """What all envs see now."""
+        """The observations of all envs now."""
         with self._alone():
             self.require_whole()
             images = self._cameras.draw({**self._images, **(out or {})})
@@ -210,7 +215,8 @@ class BatchPart:
             return {"simulator": np.frombuffer(self.simulator.save_state(), np.uint8), **own}
 
     def restore_state(self, saved: Mapping[str, Array]) -> None:
-        """Goes on from there. Raises Error for a state that does not fit, and changes nothing."""
+        """Continues from a saved state. Raises Error and changes nothing if the state does not
+        fit."""
         saved = {"simulator": np.empty(0, np.uint8), **saved}
         with self._alone():
             for name, mine in self._own_state(blank=True).items():
@@ -226,28 +232,30 @@ class BatchPart:
             self.is_cut_off = False
 
     def _own_state(self, *, blank: bool = False) -> dict[str, Array]:
-        """What the simulator does not know; `blank`: of a task, arrays of the same types and shapes."""
+        """The state that is not in the simulator. `blank`: for a task, arrays of the same types and
+        shapes with any content."""
         own = {"is_new": np.array(self._is_new), "progress": np.array(self.progress)}
         task = {} if self._task is None else self._task.state(blank=blank)
         return {"returns": self._tally.returns, "lengths": self._tally.lengths, **own, **task}
 
     def save_rows(self, rows: NDArray[np.int64]) -> tuple[bytes, dict[str, Array]]:
-        """The state of the envs `rows` in the simulator, and all else that later steps of theirs depend on:
-        arrays (len(rows), ...)."""
+        """The state of the envs `rows` in the simulator, and everything else on which their later
+        steps depend: arrays (len(rows), ...)."""
         with self._alone():
             self.require_whole()
             return self.simulator.save_state(rows), self._state_of(rows)
 
     def check_rows(self, saved: Mapping[str, Array], rows: NDArray[np.int64]) -> None:
-        """Raises Error where `saved` is not what save_rows() returns of as many envs."""
+        """Raises Error if `saved` is not what save_rows() returns for the same number of envs."""
         for name, mine in self._state_of(rows, blank=True).items():
             _check_saved(name, saved.get(name), mine)
 
     def restore_rows(
         self, pieces: Sequence[Piece], saved: Mapping[str, Array], rows: NDArray[np.int64]
     ) -> None:
-        """Goes on in the envs `rows` from `saved` (check_rows()), with those of `pieces` that go there. Raises
-        Error for a first piece that does not fit, and changes nothing."""
+        """Makes the envs `rows` continue from `saved` (check_rows()) and from those of `pieces`
+        that are restored to them. Raises Error and changes nothing if the first piece does not
+        fit."""
         with self._alone():
             self.require_whole()
             first, *more = pieces
@@ -284,8 +292,8 @@ class BatchPart:
             return result
 
     def _move(self, actions: NDArray[np.float32]) -> None:
-        """Steps the simulator. From then on the step is cut off until all of it is taken in: Ctrl-C comes as
-        soon as the simulator returns."""
+        """Steps the simulator. From then on, the step counts as cut off until it is processed
+        completely, because Ctrl-C may come as soon as the simulator returns."""
         was_new = self._is_new
         self.is_cut_off, self._is_new = True, False
         try:
@@ -295,15 +303,15 @@ class BatchPart:
             raise
 
     def require_whole(self) -> None:
-        """Raises RuntimeError where a step was cut off."""
+        """Raises RuntimeError if a step was cut off."""
         if self.is_cut_off:
             raise RuntimeError(
                 "an exception has cut off what this env did last; reset() all envs, or restore a state"
             )
 
     def _alone(self) -> threading.Lock:
-        """Around each call: the simulator alone would notice a second thread too late, when the first
-        is drawing. The lock itself, which no exception leaves held."""
+        """A context for each call: the simulator alone would notice a second thread too late, while
+        the first is drawing. Returns the lock itself, so that no exception leaves it held."""
         if self._in_use.locked():
             raise RuntimeError(
                 "another thread is using this galactic.VectorEnv; give each thread its own"
@@ -316,7 +324,7 @@ class BatchPart:
         was_idle: NDArray[np.bool_],
         out: Mapping[str, Array] | None,
     ) -> StepResult:
-        """What the step came to, with tasks, sums and images."""
+        """The results of the step, with task, sums and images."""
         simulator, task = self.simulator, self._task
         if task is not None:
             task.step(actions, was_idle)
@@ -349,7 +357,8 @@ class BatchPart:
     def _landed(
         self, name: str, values: Array, out: Mapping[str, Array] | None, is_own: bool = False
     ) -> Array:
-        """Values where the caller wants them, or as an array of their own unless they are one."""
+        """The values in the array that the caller gave, or as a new array unless they already are
+        one."""
         if out is not None and name in out:
             np.copyto(out[name], values, casting="no")
             return out[name]
@@ -364,8 +373,8 @@ class BatchPart:
         return {**{name: state[..., part] for name, part in self._parts.items()}, **images}
 
     def _renew(self, which: NDArray[np.int64], images: dict[str, Array]) -> Observations:
-        """The last observations of the envs `which` ended an episode; they are in the next one then,
-        in `images`, too."""
+        """The last observations of the envs `which`, whose episodes ended. Also begins their next
+        episodes, and draws these in `images`."""
         if not self._renews:
             return self._observed(self.simulator.final_observations[which], {})
         last = self._observed(
@@ -376,8 +385,8 @@ class BatchPart:
         return last
 
     def _begin(self, which: NDArray[np.int64], episodes: NDArray[np.int64]) -> None:
-        """Begins episodes of the world in the envs `which`; where none is named, the next that the task
-        chooses, or of the env's own."""
+        """Begins episodes of the world in the envs `which`; where none is named, the one that the
+        task chooses, or the env's own next one."""
         is_named = episodes >= 0
         if self._task is not None:
             episodes = self._task.choose(which, episodes)
@@ -393,13 +402,13 @@ class BatchPart:
         return {} if self._task is None else self._task.measure(which)
 
     def _logged(self, playing: NDArray[np.bool_]) -> dict[str, Any]:
-        """What a task of one's own says of each step, of the envs that are `playing`."""
+        """What the task logs of the step, for the envs that are `playing`."""
         if self._task is None or not self._task.logs:
             return {}
         return masked({"log": masked(self._task.logs, playing)}, playing)
 
     def blank_infos(self) -> dict[str, Any]:
-        """The infos of a step in which episodes ended, but none of these envs'."""
+        """The infos of a step in which episodes ended, but none in these envs."""
         nobody = np.empty(0, np.int64)
         return self._infos(
             nobody, None, {**self._measures(nobody), **self._cameras.places_of(nobody)}
@@ -409,7 +418,7 @@ class BatchPart:
         self, which: NDArray[np.int64], last: Observations, more: Mapping[str, Array]
     ) -> dict[str, Any]:
         """The infos of a step in which the episodes of the envs `which` ended, with these last
-        observations, and `more` in final_info; their sums begin anew."""
+        observations, and `more` in final_info. Resets the sums of these envs."""
         sums = self._tally.take_ended()
         ended = sums.pop("ended")
         final_obs = np.full(len(ended), None, object)
@@ -448,7 +457,7 @@ def _row(observations: Observations, row: int) -> Any:
 
 
 def _check_saved(name: str, found: Array | None, mine: Array) -> None:
-    """Refuses an array of a saved state that is not like that of this batch."""
+    """Refuses an array of a saved state whose type or shape is not that of this batch's array."""
     if found is None or found.shape != mine.shape or found.dtype != mine.dtype:
         there = "missing" if found is None else f"{found.dtype} {found.shape}"
         message = f"{name}: found {there}, expected {mine.dtype} {mine.shape}; give what save_state() returned"

@@ -1,4 +1,4 @@
-"""Cameras of a batch of envs, by name: their images in arrays of all envs."""
+"""Cameras of a batch of envs, by name: their images in arrays for all envs."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ Array = NDArray[Any]
 
 
 def options_of_cameras(where: str, images: Any) -> dict[str, Mapping[str, Any]]:
-    """Those of the argument `images` by the cameras' names: "" for a single one, none for None. ValueError,
-    which calls it `where`, for what it cannot be."""
+    """The options in the argument `images`, by the cameras' names: "" for a single camera, none for
+    None. Raises ValueError, which calls the argument `where`, if it is invalid."""
     if images is None:
         return {}
     wanted = "options of galactic.Renderer, those of each camera by its name, or None for no images"
@@ -38,15 +38,17 @@ def options_of_cameras(where: str, images: Any) -> dict[str, Mapping[str, Any]]:
 
 
 def stands_in_world(options: Mapping[str, Any]) -> bool:
-    """Whether a camera with these options of a Renderer is none on the robot."""
+    """Whether a camera with these options of a Renderer stands in the world, and not on the
+    robot."""
     return options.get("world_from_camera") is not None
 
 
 def options_of_half(
     where: str, cameras: Mapping[str, Mapping[str, Any]], half: int, halves: int, num_envs: int
 ) -> dict[str, Mapping[str, Any]]:
-    """Those of the cameras of one half of `num_envs` envs, which has its rows of places of each env. ValueError,
-    which calls the cameras `where`, for places of another number of envs."""
+    """The camera options of one half of `num_envs` envs, with that half's rows of places if each
+    env has its own. Raises ValueError, which calls the cameras `where`, if there are places for
+    another number of envs."""
     found = {}
     for name, options in cameras.items():
         if stands_in_world(options) and np.ndim(options["world_from_camera"]) == 3:
@@ -61,7 +63,7 @@ def options_of_half(
 
 
 def image_name(camera: str, image: str) -> str:
-    """What an image of a camera is called among those of all."""
+    """The name of a camera's image among the images of all cameras."""
     return f"{camera}_{image}" if camera else image
 
 
@@ -69,10 +71,10 @@ class Cameras:
     """Cameras that look at the envs of a simulator, which was made with body_transforms=True.
 
     Args:
-        simulator: what they look at.
-        options: of a Renderer for each camera, by its name, which begins those of its images; one called ""
-            has images by their own names.
-        threads: that each draws with, unless its options say so.
+        simulator: the simulator that they look at.
+        options: options of a Renderer for each camera, by the camera's name, which prefixes the
+            names of its images; the images of a camera named "" have no prefix.
+        threads: number of threads with which each camera draws, unless its options say otherwise.
     """
 
     def __init__(
@@ -88,17 +90,18 @@ class Cameras:
             for camera, renderer in self.renderers.items()
             for image, shape in renderer.shapes.items()
         }
-        """Shape, without the env's axis, and type of each image."""
+        """Shape (without the env's axis) and type of each image."""
 
     def blank_images(self) -> dict[str, Array]:
-        """Arrays for the images of all envs, zeros."""
+        """Arrays of zeros for the images of all envs."""
         return {
             name: np.zeros((self.num_envs, *shape), dtype)
             for name, (shape, dtype) in self.shapes.items()
         }
 
     def draw(self, places: Mapping[str, Array]) -> dict[str, Array]:
-        """The images of all envs: in `places`, where these have one, else in new arrays."""
+        """Draws the images of all envs: into the arrays in `places` where given, otherwise into new
+        arrays."""
         images = {}
         for camera, renderer in self.renderers.items():
             names = {image: image_name(camera, image) for image in renderer.shapes}
@@ -108,14 +111,14 @@ class Cameras:
         return images
 
     def draw_again(self, images: Mapping[str, Array], which: NDArray[np.int64]) -> None:
-        """Draws the images of the envs `which` into `images`, those of all."""
+        """Draws the images of the envs `which` into `images`, the arrays of all envs."""
         for camera, renderer in self.renderers.items():
             for image, drawn in renderer.render(envs=which).items():
                 images[image_name(camera, image)][which] = drawn
 
     def places_of(self, which: NDArray[np.int64]) -> dict[str, Array]:
-        """Where the images of the envs `which` were drawn from last, as Renderer.world_from_camera has it;
-        zeros for the others."""
+        """The camera poses from which the images of the envs `which` were last drawn, as in
+        Renderer.world_from_camera; zeros for the other envs."""
         places = {}
         for camera, renderer in self.renderers.items():
             place = np.zeros((self.num_envs, 4, 4), np.float32)
@@ -125,7 +128,7 @@ class Cameras:
 
 
 class LazyImages:
-    """What cameras see, drawn when somebody looks, and once for each state of an env."""
+    """Images that are drawn only on demand, and once for each state of an env."""
 
     def __init__(self, cameras: Cameras) -> None:
         self._cameras = cameras
@@ -136,11 +139,11 @@ class LazyImages:
         self._is_stale = np.ones(cameras.num_envs, np.bool_)
 
     def forget(self, which: NDArray[np.int64] | slice) -> None:
-        """What was seen of the envs `which` is of before."""
+        """Marks the images of the envs `which` as out of date."""
         self._is_stale[which] = True
 
     def look(self) -> dict[str, Array]:
-        """The images of all envs as they are now: views that cannot be written, overwritten by later looks."""
+        """The images of all envs as they are now: read-only views, which later calls overwrite."""
         stale = np.flatnonzero(self._is_stale)
         if len(stale) == len(self._is_stale):
             self._cameras.draw(self._images)

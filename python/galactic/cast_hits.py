@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class CastHits:
-    """Of n rays or spheres, in their order, or of n in each of some envs."""
+    """Results for n rays or spheres, in order, or for n in each of several envs."""
 
     distance: NDArray[np.float32]
-    """(n,) or (envs, n), meters; 0 where one begins in what it comes to, or outside the grid."""
+    """(n,) or (envs, n), meters; 0 for one that begins inside what stops it, or outside the
+    grid."""
     end: NDArray[np.uint8]
-    """(n,) or (envs, n), what each comes to: a CastEnd."""
+    """(n,) or (envs, n), what stops each: a CastEnd."""
     index: NDArray[np.int32]
-    """(n,) or (envs, n), where that is an object, its index into EnvState.objects; of the robot, its
-    link's into World.links; else -1."""
+    """(n,) or (envs, n), index of what stops each: for an object, into EnvState.objects; for the
+    robot, into World.links; otherwise -1."""

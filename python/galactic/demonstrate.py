@@ -53,7 +53,7 @@ _SETTINGS = (
     "network",
     *dict.fromkeys(CAMERA.values()),
 )
-# The same of a network of one's own.
+# The same for a network of one's own.
 _OF_OWN_NETWORK = ("network_options", "sees")
 
 
@@ -130,7 +130,7 @@ def _demonstrate(options: argparse.Namespace) -> int:
     threads = threads_of(options.threads, 1)
     torch.set_num_threads(threads)
     homes = Homes(galactic.World(options.world), settings, threads, task=task)
-    # Others learn from them for the task at its end.
+    # Policies learn from the demonstrations for the task as it is at the end of training.
     homes.progress = 1.0
     _require_limit(homes)
     expert = _expert(options, homes, settings, device)
@@ -170,7 +170,8 @@ def _episodes_of_part(settings: Settings) -> int:
 
 
 def _settings(options: argparse.Namespace) -> tuple[Settings, own_tasks.MakeTask | None]:
-    """Those of homes to play in, and what makes a task of one's own in them."""
+    """The settings of the homes to play in, and a function that makes the task, if it is one's
+    own."""
     given = given_options(options)
     own_tasks.require_use(given)
     if options.preset is None:
@@ -204,7 +205,7 @@ def _expert(
 
 
 def _learner_steps(options: argparse.Namespace, homes: Homes) -> int:
-    """The most that a learner plays of an episode."""
+    """The largest number of steps that a learner plays in an episode."""
     limit = int(homes.env.simulators[0].options["episode_steps"])
     return options.learner_steps or max(1, limit // 2)
 
@@ -215,7 +216,7 @@ def _about(options: argparse.Namespace, homes: Homes, settings: Settings, episod
     keywords = simulation_keywords(settings.simulation)
     task_file = own_code.named(options.setting_task, "--task").file if settings.task else None
     if settings.task:
-        del keywords["task"]  # of which VectorEnv takes the class
+        del keywords["task"]  # VectorEnv takes the class instead
     names = (*_SETTINGS, *(_OF_OWN_NETWORK if settings.has_own_network else ()))
     read = {
         "world": options.world,
@@ -244,7 +245,7 @@ def _about(options: argparse.Namespace, homes: Homes, settings: Settings, episod
 
 
 def _sha256(file: pathlib.Path) -> str:
-    """Of what a file holds; a world's says what is in all of its packs."""
+    """The hash of a file's content. That of a world pack covers the content of all its packs."""
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
@@ -258,7 +259,8 @@ def _require_uses(options: argparse.Namespace) -> None:
 
 
 def _require_limit(homes: Homes) -> None:
-    """Raises SettingsError where an episode may never end, as that of an expert that has given up."""
+    """Raises SettingsError if an episode might never end, for example because the expert has given
+    up."""
     if not homes.are_limited:
         raise SettingsError(
             "--simulation: found episode-steps=0, which lets episodes go on without end; give them a limit"

@@ -1,4 +1,4 @@
-"""Keeps what is seen and done in a VectorEnv, episode by episode, as demonstrations."""
+"""Records what is observed and done in a VectorEnv, episode by episode, as demonstrations."""
 
 from __future__ import annotations
 
@@ -24,11 +24,12 @@ from galactic.vector_env_arguments import Actions
 
 EPISODES_OF_PART = 256
 EPISODES_WITH_IMAGES = 64
-"""How many make a part: what an interrupt may cost, and what memory has to hold at a time."""
+"""The number of episodes in a part: those that an interrupt may lose, and that memory has to hold
+at a time."""
 
-# What a VectorEnv says itself, and no option of its simulators.
+# Options that VectorEnv sets itself, and that do not belong to its simulators' options.
 _OF_VECTOR_ENV = ("envs", "seed", "order", "rank", "ranks", "auto_reset", "body_transforms")
-# Options of a Renderer by which images are alike, but for their noise.
+# Options of a Renderer that decide what images look like, except for their noise.
 _CAMERA = (
     "color",
     "camera",
@@ -42,7 +43,7 @@ _CAMERA = (
 
 
 class DemonstrationWriter:
-    """Writes episodes that a policy of one's own plays in `env` to a folder, for galactic.Demonstrations and
+    """Writes episodes that your policy plays in `env` to a folder, for galactic.Demonstrations and
     `galactic.train --demonstrations`:
 
         with DemonstrationWriter("mine", env, expert="my policy") as writer:
@@ -53,14 +54,16 @@ class DemonstrationWriter:
                 writer.add(seen, actions, rewards, infos)
                 seen = then
 
-    Episodes are kept when they end. Left out are those of which the beginning was not added, and those that env has
-    broken off, by reset() or by a state that was set or restored, or goes on with since.
+    Episodes are recorded when they end. An episode is left out if its beginning was not added, or
+    if env broke it off with reset() or by setting or restoring a state. An episode that continues
+    from such a state is also left out.
 
     Args:
-        folder: where to; it holds no demonstrations yet.
-        env: where they are played, without images or with those of one camera without a name.
-        expert: who acts, for those who read it.
-        world: the path of the world's pack, for those who read it.
+        folder: where to write; it must not hold demonstrations yet.
+        env: where the episodes are played, without images or with the images of one camera without
+            a name.
+        expert: who acts, as information for readers.
+        world: the path of the world's pack, as information for readers.
     """
 
     def __init__(
@@ -93,7 +96,7 @@ class DemonstrationWriter:
         self._count = 0
 
     def __len__(self) -> int:
-        """How many episodes there are so far."""
+        """The number of episodes so far."""
         return self._count
 
     def add(
@@ -104,23 +107,25 @@ class DemonstrationWriter:
         infos: Mapping[str, Any],
         by_expert: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Takes in a step of all envs: what was seen before it, what was done, and what env.step() said of it.
-        Arrays may be overwritten afterwards; of an env without copies, keep a copy of what was seen.
+        """Adds a step of all envs: the observations before it, the actions, and what env.step()
+        returned. Arrays may be overwritten afterwards. If env does not copy its results, keep a
+        copy of the observations yourself.
 
-        Actions outside of -1 to 1 are kept clamped, as the simulation takes them. Raises TypeError for what is no
-        array of numbers, and ValueError for one of another shape or with numbers that are not finite in an env that
-        plays; nothing of the step is kept then.
+        Actions outside of -1 to 1 are recorded clamped, as the simulation uses them. Raises
+        TypeError if something is not an array of numbers, and ValueError if an array has another
+        shape, or has numbers that are not finite in an env that is playing. Nothing of the step is
+        then recorded.
 
-        `by_expert`: bool (num_envs,), in which envs the expert acted; None: in all.
+        `by_expert`: bool (num_envs,), true for envs in which the expert acted; None: all.
         """
         self._require_infos(infos)
         count = self._env.num_envs
         rows = self._actions.rows(actions, count)
         idle = np.concatenate([simulator.idle for simulator in self._env.simulators])
-        # Those that were before it: an env may be idle once its last episode has ended.
+        # Idle before the step: an env may have become idle because its last episode ended in it.
         playing = ~idle | infos.get("_final_obs", False)
         seen = self._seen("observations", observations, (count,))
-        with np.errstate(over="ignore"):  # what is too large is infinite, and refused
+        with np.errstate(over="ignore"):  # too large becomes infinite, and is refused
             paid = _array_of("rewards", rewards, (count,)).astype(np.float32, copy=False)
         if by_expert is not None:
             _array_of("by_expert", by_expert, (count,), np.bool_)
@@ -143,7 +148,7 @@ class DemonstrationWriter:
             del self._kept[: self._size]
 
     def close(self) -> None:
-        """Writes the episodes that have ended since the last part."""
+        """Writes the episodes that have ended since the last part was written."""
         if self._kept:
             self._write(self._kept)
             self._kept = []
@@ -160,7 +165,7 @@ class DemonstrationWriter:
         self.close()
 
     def _require_infos(self, infos: Any) -> None:
-        """Raises where they are not those of a step."""
+        """Raises an exception if these are not the infos of a step."""
         if not isinstance(infos, Mapping):
             message = f"infos has the type {type(infos).__name__}, expected the dictionary that env.step() returned"
             raise TypeError(message)
@@ -171,7 +176,8 @@ class DemonstrationWriter:
             )
 
     def _seen(self, name: str, observations: Any, envs: tuple[int, ...]) -> dict[str, NDArray[Any]]:
-        """What is kept of observations, of so many envs or of one, if they have the shapes of env's."""
+        """What is recorded of the observations of so many envs, or of one. Checks that their shapes
+        are those of env."""
         wanted: dict[str, tuple[int, ...]] = {"state": (self._about.state_size,)}
         wanted.update(self._about.images)
         if isinstance(observations, Mapping):
@@ -199,11 +205,13 @@ class DemonstrationWriter:
 
 
 class EpisodeRecorder:
-    """Makes demonstrations of what is seen and done in many envs. `parts`: VectorEnv.observation_parts."""
+    """Makes demonstrations from what is observed and done in many envs. `parts`:
+    VectorEnv.observation_parts."""
 
     def __init__(self, parts: Mapping[str, slice]) -> None:
         self._parts = parts
-        # Of each env, what its steps had, by name: of the episode under way, and of what was before a reset.
+        # For each env, what was recorded of its steps, by name: of the episode under way, and of
+        # steps before a reset.
         self._under_way: dict[int, dict[str, list[Any]]] = {}
         self._playing = np.zeros(0, np.int64)
 
@@ -214,8 +222,8 @@ class EpisodeRecorder:
         by_expert: NDArray[np.bool_] | None,
         playing: NDArray[np.bool_],
     ) -> None:
-        """Before a step: what is seen and about to be done, rows of all envs, of which those count that are
-        `playing`."""
+        """Call before a step, with the observations and the actions about to be taken: rows of all
+        envs, of which only those that are `playing` count."""
         self._playing = np.flatnonzero(playing)
         rows = {**self.seen(observations), "actions": _as_executed(actions)}
         rows["by_expert"] = np.ones(len(playing), np.bool_) if by_expert is None else by_expert
@@ -227,7 +235,8 @@ class EpisodeRecorder:
     def after_step(
         self, rewards: NDArray[np.floating], infos: Mapping[str, Any]
     ) -> list[Demonstration]:
-        """After it: what it paid, and VectorEnv's infos. Returns the episodes that it ended."""
+        """Call after the step, with its rewards and VectorEnv's infos. Returns the episodes that it
+        ended."""
         for env in self._playing.tolist():
             self._under_way[env].setdefault("rewards", []).append(rewards[env])
         if "final_info" not in infos:
@@ -242,7 +251,7 @@ class EpisodeRecorder:
             self._under_way.pop(int(env), None)
 
     def _ended(self, env: int, infos: Mapping[str, Any]) -> Demonstration | None:
-        """The episode that ended in an env; None where its beginning is not known."""
+        """The episode that ended in an env; None if its beginning is unknown."""
         kept, final = self._under_way.pop(env), infos["final_info"]
         length = int(final["episode"]["l"][env])
         if len(kept["rewards"]) < length:
@@ -256,7 +265,7 @@ class EpisodeRecorder:
         return Demonstration(episode, EpisodeEnd(int(final["ending"][env])), **arrays)
 
     def seen(self, observations: Observations) -> dict[str, NDArray[Any]]:
-        """What is kept of observations, of many envs or of one."""
+        """What is recorded of the observations of many envs, or of one."""
         if not isinstance(observations, Mapping):
             return {"state": np.asarray(observations)}
         state = observations.get("state")
@@ -271,7 +280,8 @@ class EpisodeRecorder:
 
 
 def _array_of(name: str, given: Any, shape: tuple[int, ...], kind: Any = None) -> NDArray[Any]:
-    """`given` as an array. Raises where it is of another type, of another shape, or of no numbers."""
+    """`given` as an array. Raises an exception if it has another type or shape, or is not
+    numeric."""
     found = np.asarray(given)
     if found.dtype.kind not in "biuf" or (kind is not None and found.dtype != kind):
         wanted = "numbers, such as float32" if kind is None else np.dtype(kind).name
@@ -282,7 +292,7 @@ def _array_of(name: str, given: Any, shape: tuple[int, ...], kind: Any = None) -
 
 
 def _require_finite(name: str, rows: NDArray[Any], playing: NDArray[np.bool_]) -> None:
-    """Raises ValueError for rows of envs that play with numbers that are none."""
+    """Raises ValueError if rows of envs that are playing have numbers that are not finite."""
     if rows.dtype.kind != "f":
         return
     wrong = playing & ~np.isfinite(rows).reshape(len(rows), -1).all(1)
@@ -294,7 +304,7 @@ def _require_finite(name: str, rows: NDArray[Any], playing: NDArray[np.bool_]) -
 
 
 def _as_executed(actions: NDArray[np.float32]) -> NDArray[np.float32]:
-    """As the simulation takes them: samples of a policy may be outside of its limits."""
+    """The actions as the simulation uses them: a policy's samples may be outside its limits."""
     return np.clip(np.nan_to_num(actions, nan=0.0), -1.0, 1.0)
 
 
@@ -309,7 +319,7 @@ def _about(env: VectorEnv, expert: str, world: str) -> About:
     parts = [(name, part.stop - part.start) for name, part in env.observation_parts.items()]
     options = {name: one for name, one in first.options.items() if name not in _OF_VECTOR_ENV}
     if env.has_own_task:
-        del options["task"]  # of which VectorEnv takes the class
+        del options["task"]  # VectorEnv takes the class instead
     return About(
         world=world,
         episodes=None,
@@ -325,7 +335,7 @@ def _about(env: VectorEnv, expert: str, world: str) -> About:
 
 
 def _camera_of(images: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of a camera, those of _CAMERA, as JSON has them."""
+    """The options of a camera that are in _CAMERA, in a form for JSON."""
     given = {**Renderer.DEFAULTS, **images}
     if given["color"] not in ("rgb", None):
         raise ValueError(f"env draws {given['color']!r}, expected images with color='rgb' or None")
@@ -351,7 +361,7 @@ def _camera_of(images: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def write_part(part: pathlib.Path, episodes: Sequence[Demonstration]) -> None:
-    """Writes a part, which appears whole."""
+    """Writes a part atomically."""
     unfinished = part.with_name(f".{part.name}.unfinished")
     try:
         shutil.rmtree(unfinished, ignore_errors=True)
@@ -368,7 +378,7 @@ def write_part(part: pathlib.Path, episodes: Sequence[Demonstration]) -> None:
 
 
 def _write_array(file: pathlib.Path, array: np.ndarray) -> None:
-    """As numpy.save() does, which does not say why a disk takes no more."""
+    """Like numpy.save(), which does not report why a disk accepts no more data."""
     with open(file, "wb") as handle:
         header = np.lib.format.header_data_from_array_1_0(array)
         np.lib.format.write_array_header_1_0(handle, header)

@@ -1,22 +1,23 @@
-"""Demonstrations: what an expert saw and did in episodes of a world, step by step, in a folder of arrays.
+"""Demonstrations: what an expert observed and did in episodes of a world, step by step, in a folder
+of arrays.
 
-`python3 -m galactic.demonstrate` makes them, and a DemonstrationWriter of what one's own policies do;
-`python3 -m galactic.train --demonstrations` learns from them, and numpy reads them:
+`python3 -m galactic.demonstrate` makes them, and a DemonstrationWriter records them from your own
+policies. `python3 -m galactic.train --demonstrations` learns from them, and numpy can read them:
 
-    demonstrations.json     what they are: About
-    part-000000/            some episodes, one after the other: E of them, L steps together
-        episodes.npy        int32 [E]    which episode of the world each is
-        lengths.npy         int32 [E]    its steps
-        endings.npy         uint8 [E]    how it ended, an EpisodeEnd
-        state.npy           float32 [L + E, S]    the row of observations before each step, and of each
-                                              episode the last one, behind its last step
-        rgb.npy             uint8 [L + E, height, width, 3]    images of then, where there are any
-        depth.npy           float16 [L + E, height, width]    meters
-        actions.npy         float32 [L, A]    what was done then, as Simulator.step() takes it
-        by_expert.npy       bool [L]    whether the expert did it; before, another one led to a place
-        rewards.npy         float32 [L]    what it paid
+    demonstrations.json     their description: About
+    part-000000/            E episodes, one after the other, L steps in all
+        episodes.npy        int32 [E]    index of each episode in the world
+        lengths.npy         int32 [E]    number of steps of each
+        endings.npy         uint8 [E]    how each ended, an EpisodeEnd
+        state.npy           float32 [L + E, S]    the observations before each step, and those
+                                              after the last step of each episode
+        rgb.npy             uint8 [L + E, height, width, 3]    color images, if there are any
+        depth.npy           float16 [L + E, height, width]    depth images, if there are any, meters
+        actions.npy         float32 [L, A]    the action in each step, as Simulator.step() takes it
+        by_expert.npy       bool [L]    whether the expert chose it; a learner may have acted before
+        rewards.npy         float32 [L]    the reward of each step
 
-A part appears whole or not at all.
+A part appears completely or not at all.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ _OF_STEPS: Mapping[str, Any] = {
     "by_expert": np.bool_,
     "rewards": np.float32,
 }
-# Of these, an episode has one more than it has steps.
+# Of these arrays, an episode has one row more than it has steps.
 OBSERVED = ("state", "rgb", "depth")
 
 
@@ -59,54 +60,58 @@ class Demonstration:
     """One episode of L steps. Arrays of a Demonstrations are read-only views of its files."""
 
     episode: int
-    """Which one of the world."""
+    """Index of the episode in the world."""
     ending: EpisodeEnd
     state: np.ndarray
-    """float32 [L + 1, S]: the row of observations before each step, and the last one, behind the last step."""
+    """float32 [L + 1, S]: the row of observations before each step, and the one after the last
+    step."""
     actions: np.ndarray
-    """float32 [L, A]: what was done then, as Simulator.step() takes it."""
+    """float32 [L, A]: the action in each step, as Simulator.step() takes it."""
     by_expert: np.ndarray
-    """bool [L]: whether the expert did it."""
+    """bool [L]: whether the expert chose the action."""
     rewards: np.ndarray
-    """float32 [L]: what it paid."""
+    """float32 [L]: the reward of each step."""
     rgb: np.ndarray | None = None
-    """uint8 [L + 1, height, width, 3], where there are color images."""
+    """uint8 [L + 1, height, width, 3], if there are color images."""
     depth: np.ndarray | None = None
-    """float16 [L + 1, height, width], meters, where there are depth images."""
+    """float16 [L + 1, height, width], meters, if there are depth images."""
 
     def __len__(self) -> int:
         return len(self.rewards)
 
     @property
     def is_solved(self) -> bool:
-        """Whether it ended in success."""
+        """Whether the episode ended in success."""
         return self.ending == EpisodeEnd.SUCCESS
 
 
 @dataclasses.dataclass(frozen=True)
 class About:
-    """What demonstrations are."""
+    """What the demonstrations in a folder are."""
 
     world: str
     """The world pack."""
     episodes: int | None
-    """How many of its episodes there are to be, each once; None where each may have been played often."""
+    """How many of the world's episodes the folder should have, each once; None if episodes may have
+    been played several times."""
     expert: str
-    """Who acts: `scripted`, a policy's file, or what a DemonstrationWriter was told."""
+    """Who acts: `scripted`, a policy's file, or the `expert` that was given to a
+    DemonstrationWriter."""
     parts: list[tuple[str, int]]
     """Names and sizes of the parts of a row of observations, in order."""
     options: dict[str, Any]
     """Keywords of galactic.VectorEnv that give the same observations."""
     camera: dict[str, Any] | None
-    """Its `images`, that give the same images but for noise; None where there are none."""
+    """The `images` options of galactic.VectorEnv that give the same images except for noise; None
+    without images."""
     meanings: dict[str, Any]
-    """Options of the simulation by which numbers of these parts mean one thing or another."""
+    """Options of the simulation that decide what the numbers in these parts mean."""
     images: dict[str, tuple[int, ...]]
-    """Shapes of an env's rgb and depth, of one, or of none."""
+    """Shapes of an env's rgb and depth images; either or both may be missing."""
     motions: int
-    """Continuous numbers of an action; hand and terminate are behind them."""
+    """Number of continuous elements of an action; hand and terminate follow them."""
     made_with: dict[str, Any]
-    """All else that they depend on."""
+    """Everything else on which the demonstrations depend."""
 
     @property
     def state_size(self) -> int:
@@ -114,7 +119,8 @@ class About:
 
     @property
     def shapes(self) -> dict[str, tuple[int, ...]]:
-        """Of what each step has, by name, and behind the last one the OBSERVED."""
+        """Shapes of the arrays for each step, by name. Those in OBSERVED have one more row after
+        the last step."""
         return {
             "state": (self.state_size,),
             "actions": (self.motions + 2,),
@@ -125,18 +131,18 @@ class About:
 
 
 class Demonstrations(Sequence[Demonstration]):
-    """The episodes of a folder of demonstrations in the order of the world, or of several, one after the
-    other.
+    """The episodes of a folder of demonstrations in the order of the world, or those of several
+    folders, one folder after the other.
 
-    Raises Error where a folder holds none, or others than it says, and where folders have other
-    observations, cameras or actions than the first one. Of a folder in which not all have been made yet,
-    it has those that are there.
+    Raises Error if a folder holds no demonstrations, or others than it declares, or if folders have
+    other observations, cameras or actions than the first one. A folder in which not all episodes
+    have been made yet contributes those that exist.
     """
 
     def __init__(self, folder: str | pathlib.Path, *more: str | pathlib.Path) -> None:
         self.folders = [pathlib.Path(one) for one in (folder, *more)]
         self.abouts = [read_about(one) for one in self.folders]
-        """What each folder holds."""
+        """The description of each folder."""
         self._parts: list[_Part] = []
         for number, (one, about) in enumerate(zip(self.folders, self.abouts)):
             if one.resolve() in [other.resolve() for other in self.folders[:number]]:
@@ -145,24 +151,24 @@ class Demonstrations(Sequence[Demonstration]):
             parts = [_Part(about, part) for part in parts_in(one)]
             _require_once(parts, about, one)
             self._parts += parts
-        # Which part each episode is in, and as which of its episodes.
+        # The part that each episode is in, and the episode's index in it.
         self._places = [(part, n) for part in self._parts for n in range(len(part.lengths))]
         self._ends = np.cumsum([part.steps for part in self._parts], dtype=np.int64)
         self.lengths = _joined([part.lengths for part in self._parts], np.int32)
-        """int32 [episodes]: their steps."""
+        """int32 [episodes]: number of steps of each."""
         self.endings = _joined([part.endings for part in self._parts], np.uint8)
-        """uint8 [episodes]: how they ended, as numbers of EpisodeEnd."""
+        """uint8 [episodes]: how each ended, as a number of EpisodeEnd."""
         self.first_rows = np.cumsum(self.lengths, dtype=np.int64) - self.lengths
-        """int64 [episodes]: where the steps of each begin, in those of all of them together."""
+        """int64 [episodes]: index of each episode's first step among the steps of all episodes."""
 
     @property
     def about(self) -> About:
-        """What observations and actions are: the same in all folders."""
+        """The first folder's description; observations and actions are the same in all folders."""
         return self.abouts[0]
 
     @property
     def steps(self) -> int:
-        """Those of all episodes together."""
+        """Number of steps of all episodes together."""
         return int(self.lengths.sum())
 
     def __len__(self) -> int:
@@ -183,9 +189,9 @@ class Demonstrations(Sequence[Demonstration]):
         return part.episode(number)
 
     def take(self, name: str, rows: Any, *, after: bool = False) -> np.ndarray:
-        """An array of Demonstration at these steps of all of them together, whole numbers from 0 to
-        `steps` - 1 (first_rows): shape [*rows.shape, ...]. A copy. `after`: what was observed after them, which
-        is of the same episode."""
+        """Rows of an array of Demonstration, as a copy of shape [*rows.shape, ...]. `rows`: indices
+        among the steps of all episodes together, from 0 to `steps` - 1 (first_rows). `after`: what
+        was observed after these steps instead of before them; it belongs to the same episode."""
         wanted = np.asarray(rows)
         if wanted.size and wanted.dtype.kind not in "iu":
             raise TypeError(
@@ -219,7 +225,8 @@ class Demonstrations(Sequence[Demonstration]):
 
 
 def require_alike(wanted: About, found: About, folder: pathlib.Path) -> None:
-    """Raises Error where what is found in a folder was observed or done otherwise than is wanted."""
+    """Raises Error if the observations, cameras or actions found in a folder are not those
+    wanted."""
     for name in ("motions", "parts", "meanings", "images"):
         _require_equal(folder, name, getattr(found, name), getattr(wanted, name))
     ones, others = found.camera or {}, wanted.camera or {}
@@ -238,7 +245,7 @@ def _require_equal(folder: pathlib.Path, name: str, found: Any, wanted: Any) -> 
 
 
 def _require_once(parts: list[_Part], about: About, folder: pathlib.Path) -> None:
-    """Raises Error where parts are not of one making."""
+    """Raises Error if parts have an episode twice, or more episodes than declared."""
     episodes = _joined([part.episodes for part in parts], np.int32)
     if about.episodes is None:
         return
@@ -251,7 +258,7 @@ def _require_once(parts: list[_Part], about: About, folder: pathlib.Path) -> Non
 
 
 def parts_in(folder: pathlib.Path) -> list[pathlib.Path]:
-    """The parts that are whole, in order."""
+    """The parts that are complete, in order."""
     return sorted(folder.glob("part-[0-9][0-9][0-9][0-9][0-9][0-9]"))
 
 
@@ -260,7 +267,7 @@ def part_folder(folder: pathlib.Path, number: int) -> pathlib.Path:
 
 
 def arrays_of(episodes: Sequence[Demonstration]) -> Iterator[tuple[str, np.ndarray]]:
-    """The arrays of a part with the names of their files, one after the other."""
+    """The arrays of a part, with the names of their files, one after the other."""
     of_episodes = {
         "episodes": [one.episode for one in episodes],
         "lengths": [len(one) for one in episodes],
@@ -275,7 +282,7 @@ def arrays_of(episodes: Sequence[Demonstration]) -> Iterator[tuple[str, np.ndarr
 
 
 class _Part:
-    """The files of a part, checked; those of steps are mapped into memory where they are looked at."""
+    """The files of a part, checked. Arrays of steps are mapped into memory when they are used."""
 
     def __init__(self, about: About, folder: pathlib.Path) -> None:
         self._folder = folder
@@ -303,15 +310,16 @@ class _Part:
                 raise _invalid(folder / f"{name}.npy", "holds numbers that are not from -1 to 1")
 
     def array(self, name: str) -> np.ndarray:
-        """That of all steps of the part, and of what was observed behind the last ones."""
+        """The array of all steps of the part, including what was observed after each episode's last
+        step."""
         rows = self.steps + (len(self.episodes) if name in OBSERVED else 0)
         return self._load(name, _OF_STEPS[name], (rows, *self._shapes[name]))
 
     def places(self, name: str, steps: np.ndarray) -> np.ndarray:
-        """Where in that array these steps of the part are."""
+        """The rows of that array in which these steps of the part are."""
         if name not in OBSERVED:
             return steps
-        # As many last observations are before a step as episodes.
+        # Before a step, there are as many last observations as earlier episodes.
         return steps + np.searchsorted(self._bounds, steps, side="right") - 1
 
     def episode(self, number: int) -> Demonstration:
@@ -346,10 +354,10 @@ class _Part:
         return array
 
 
-# A mapped file is an open one, of which a process may have a thousand.
+# A mapped file is an open file, of which a process may have about a thousand.
 @functools.lru_cache(maxsize=256)
 def _mapped(file: pathlib.Path, inode: int, changed: int) -> Any:
-    """What a file holds that has not been replaced since."""
+    """The content of a file, unless it has been replaced since."""
     try:
         return np.load(file, mmap_mode="r", allow_pickle=False)
     except OSError as error:
@@ -360,7 +368,7 @@ def _mapped(file: pathlib.Path, inode: int, changed: int) -> Any:
 
 
 def read_about(folder: pathlib.Path) -> About:
-    """What the folder holds. Raises Error where it does not say so."""
+    """The description of a folder. Raises Error if it has none."""
     file = folder / INDEX
     try:
         text = file.read_text(encoding="utf-8")
@@ -376,7 +384,7 @@ def read_about(folder: pathlib.Path) -> About:
 
 
 def about_of(text: str, file: pathlib.Path) -> About:
-    """What text_of() wrote; `file` is for messages."""
+    """Reads what text_of() wrote; `file` is for messages."""
     try:
         values = json.loads(text)
         _require_types(values, {"format": int, **_ABOUT})
@@ -401,7 +409,7 @@ def about_of(text: str, file: pathlib.Path) -> About:
         raise Error(ErrorCode.INVALID_INPUT, str(file), message) from None
 
 
-# Types that JSON gives what an About has.
+# The JSON types of About's fields.
 _ABOUT = {
     "world": str,
     "episodes": (int, type(None)),
@@ -424,7 +432,7 @@ def _require_types(values: Any, types: Mapping[str, Any]) -> None:
 
 
 def text_of(about: About) -> str:
-    """What read_about() reads."""
+    """The text that read_about() reads."""
     return json.dumps({"format": FORMAT, **dataclasses.asdict(about)}, indent=2) + "\n"
 
 

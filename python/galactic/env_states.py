@@ -1,4 +1,5 @@
-"""The states of many envs in arrays: what Simulator.env_states() and VectorEnv.env_states() return."""
+"""The states of many envs in arrays, as returned by Simulator.env_states() and
+VectorEnv.env_states()."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ class Poses(NamedTuple):
 
     @property
     def matrix(self) -> NDArray[np.float32]:
-        """(..., 4, 4); a_from_b.matrix @ b_from_c.matrix are those of a_from_c."""
+        """(..., 4, 4); a_from_b.matrix @ b_from_c.matrix gives the matrices of a_from_c."""
         w, x, y, z = np.moveaxis(self.rotation, -1, 0)
         matrix = np.zeros((*w.shape, 4, 4), np.float32)
         matrix[..., 0, 0] = 1 - 2 * (y * y + z * z)
@@ -39,51 +40,58 @@ class Poses(NamedTuple):
 
 
 class EnvStates(NamedTuple):
-    """The states of n envs: copies. M is the most objects that an episode of the world has; where an
-    env has fewer, its other poses are NaN. What is changed in them can be set: Simulator.set_states(), which
-    says what is taken as it is, and what is refused.
+    """Copies of the states of n envs. M is the largest number of objects in an episode of the
+    world; if an env has fewer, its other poses are NaN. You may change the arrays and set the
+    states with Simulator.set_states(), which documents what is used as it is and what is refused.
     """
 
     scene: NDArray[np.int32]
     """(n,), indices into World.scenes."""
     episode: NDArray[np.int32]
-    """(n,), indices of the world's episodes."""
+    """(n,), indices of the episodes in the world."""
     step: NDArray[np.int32]
-    """(n,), steps of the episode."""
+    """(n,), steps done in the episode."""
     world_from_root: Poses
-    """Of n robots, upright. Where it is set, only the yaw counts, and the height where it is near a floor."""
+    """Upright poses of n robots. When states are set, the rotation's yaw is used, and the height if
+    it is near a floor."""
     joint_positions: NDArray[np.float32]
     """(n, positions) of the whole robot, radians or meters: World.positions names the columns, and
-    World.actions says which of them actions move. Where they are set, those that neither actions nor episodes
-    move stay as they are."""
+    World.actions tells which of them actions move. When states are set, positions that neither
+    actions nor episodes move stay as they are."""
     world_from_grip: Poses
-    """Of n hands: origin at the grasp point, axes of the end effector's link."""
+    """Poses of n hands: origin at the grasp point, axes of the end effector's link."""
     objects: Poses
-    """Of n x M objects, in the world; the held one is where the hand has it. Where they are set, the others
-    are taken as they are: they are neither laid down nor looked at for what they are in."""
+    """World poses of n x M objects; a held object is where the hand has it. When states are set,
+    the other objects stay exactly where they are put: they are neither settled nor checked for
+    penetration."""
     object_kinds: NDArray[np.int32]
-    """(n, M), what they are: indices into World.objects, -1 for those that are not there."""
+    """(n, M), the kinds of the objects: indices into World.objects, -1 for objects that are
+    absent."""
     held: NDArray[np.int32]
-    """(n,), which of the env's objects is in the hand; -1 for none. hold() puts one there."""
+    """(n,), index of the env's object that is in the hand; -1 for none. hold() puts an object
+    there."""
     target: NDArray[np.int32]
-    """(n,), which of them is to be moved."""
+    """(n,), index of the env's object that has to be moved."""
     goal: Poses
-    """Of n goals: where the targets are to be, in the world."""
+    """n goals: world poses to which the targets have to be brought."""
 
     def __repr__(self) -> str:
         size = " x ".join(map(str, np.shape(self.object_kinds)))
         return f"<galactic.EnvStates, envs x objects: {size}>"
 
     def select(self, rows: Any) -> EnvStates:
-        """Copies of some of them, by their rows here: numbers, a mask, or whatever an array takes."""
+        """Copies of some of the states, selected by row: numbers, a mask, or any index that an
+        array accepts."""
         return _selected(self, np.arange(len(self.episode))[rows])
 
     def hold(self, world: World, objects: ArrayLike | None = None, rows: Any = slice(None)) -> None:
-        """Puts objects into hands, in place: the target, or those with the numbers `objects`, one for all or
-        (k,), in each of the k states `rows`. Each is turned as it is, with the middle of its box at the grasp
-        point; what was in the hand before stays there in the air.
+        """Puts objects into hands, in place: in each of the k states `rows`, the target, or the
+        object with the index `objects`, which is one for all or has the shape (k,). Each object
+        keeps its rotation, and the middle of its box is put at the grasp point. What was in the
+        hand before stays in the air where it is.
 
-        world: whose states they are. Raises IndexError for objects that a state does not have.
+        world: the world that the states are from. Raises IndexError if a state does not have the
+        object.
         """
         chosen = np.atleast_1d(np.arange(len(self.episode))[rows])
         held = np.empty(len(chosen), np.int64)
@@ -117,7 +125,7 @@ def _selected(states: Any, rows: NDArray[np.int64]) -> Any:
 
 
 def joined(parts: Sequence[Any]) -> Any:
-    """States of some envs, then those of others, ..., as those of all."""
+    """The states of several groups of envs, one group after the other."""
     first = parts[0]
     if isinstance(first, np.ndarray):
         return np.concatenate(parts)

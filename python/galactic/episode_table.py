@@ -1,4 +1,4 @@
-"""What the episodes of a world are about, in arrays: what World.episode_table() returns."""
+"""Start, target and goal of a world's episodes, in arrays, as returned by World.episode_table()."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ class EpisodeTable(NamedTuple):
     """(n,), indices into World.scenes."""
     base: NDArray[np.float32]
     """(n, 4), where the robot starts: x, y, z of the point on the floor under its root, meters, and
-    the yaw, radians. The simulation looks for the floor at or under that height."""
+    the yaw, radians. The simulation looks for the floor at that height or below."""
     target_kind: NDArray[np.int32]
-    """(n,), what is to be moved: indices into World.objects."""
+    """(n,), kinds of the objects that have to be moved: indices into World.objects."""
     target: Poses
-    """Of n targets where they begin, in the world."""
+    """World poses of n targets at the start."""
     goal: Poses
-    """Of n goals: where the targets are to be, in the world."""
+    """n goals: world poses to which the targets have to be brought."""

@@ -1,14 +1,14 @@
-"""What the library refuses."""
+"""The exception that the library raises."""
 
 from galactic._core import ErrorCode
 
 
 class Error(Exception):
-    """What went wrong and where, in words that one can act on.
+    """What went wrong and where, in words that you can act on.
 
     Attributes:
-        code: why, as an ErrorCode.
-        where: the file, element and field, or the option.
+        code: the reason, as an ErrorCode.
+        where: the file, with element and field, or the option.
         message: one sentence: what was found, what was expected, what to do.
     """
 

@@ -156,11 +156,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 SHOWN = 8
-"""How many episodes pictures show, unless it is said."""
+"""Default number of episodes in pictures."""
 
 
 def _require_uses(options: argparse.Namespace) -> None:
-    """Raises SettingsError for an option that nothing would come of."""
+    """Raises SettingsError for an option that would have no effect."""
     for option, value, user, what, remedy in (
         ("--shown", options.shown, _draws(options), "pictures", "--contact-sheet or --video"),
         ("--arm", options.arm, options.dynamics, "dynamics", "--dynamics"),
@@ -199,7 +199,7 @@ def _evaluate(options: argparse.Namespace) -> int:
 
 
 def _evaluate_run(options: argparse.Namespace, threads: int, device: torch.device) -> int:
-    """Each policy that the run of a folder keeps, as if it had been named."""
+    """Evaluates each policy in the folder of a run, as if it had been named."""
     names = {file: _name_in_run(file) for file in policies_in(options.policy)}
     width = max(map(len, names.values()))
     is_told = put(sys.stdout, _row("policy".ljust(width), *_COLUMNS))
@@ -221,7 +221,7 @@ def _evaluate_run(options: argparse.Namespace, threads: int, device: torch.devic
 
 
 def _name_in_run(policy: pathlib.Path) -> str:
-    """best.pt, or the steps of a checkpoint as its folder has them."""
+    """best.pt, or the steps of a checkpoint, as in the name of its folder."""
     return policy.name if policy.name == BEST else policy.parent.name
 
 
@@ -235,7 +235,7 @@ def _cells(steps: int, summary: dict[str, Any]) -> list[str]:
 
 
 def _row(name: str, steps: str, success: str, *rest: str) -> str:
-    """Of the table of a run, which is told row by row."""
+    """A row of the table of a run, which is printed row by row."""
     line = f"{name}  {steps:8}  {success:23}  " + "  ".join(f"{one:7}" for one in rest)
     return line.rstrip() + "\n"
 
@@ -246,7 +246,7 @@ def _played(
     judged: Judging,
     device: torch.device,
 ) -> tuple[evaluation.Actor, list[evaluation.EpisodeResult]]:
-    """Has a policy play the episodes that are asked for, and closes the homes."""
+    """Lets a policy play the episodes that are asked for, and closes the homes."""
     actor = evaluation.Actor(
         saved.policy.to(device),
         deterministic=options.deterministic,
@@ -293,7 +293,7 @@ def _draws(options: argparse.Namespace) -> bool:
 
 
 def _require_outputs(options: argparse.Namespace) -> None:
-    """Raises Error where what is asked for cannot be made, or not be written."""
+    """Raises Error if an output that is asked for cannot be made or cannot be written."""
     if _draws(options):
         pictures.require_tools(video=bool(options.video))
     if options.dynamics:
@@ -334,7 +334,7 @@ def _terms(options: argparse.Namespace, policy: pathlib.Path, threads: int) -> T
 
 
 def _about(options: argparse.Namespace, device: torch.device) -> dict[str, object]:
-    """What a report is about, beside the policy."""
+    """What a report is about, besides the policy."""
     task = {"task": options.task, "task_options": options.task_options} if options.task else {}
     return {
         "world": str(options.world),
@@ -349,7 +349,7 @@ def _about(options: argparse.Namespace, device: torch.device) -> dict[str, objec
 
 
 def _tell_what_is_left_out(homes: Homes) -> None:
-    """Where the dynamics are exact and the world's own task is not."""
+    """Warns if the world's task has noise and delay that the dynamics leave out."""
     noise = dynamics.noise_left_out(homes.env.simulators[0].options)
     if noise:
         message = f"robots there move without the noise and delay of the world's task ({noise})"

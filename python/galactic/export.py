@@ -1,7 +1,7 @@
 """Makes a policy pack of a trained policy: `python3 -m galactic.export runs/pick/best.pt -o picker.pack`.
 
-The pack is played without Python and torch, by `galactic-run --policy picker.pack` or
-galactic.LearnedPolicy. docs/policies.md tells what is in it.
+`galactic-run --policy picker.pack` plays the pack without Python, and galactic.LearnedPolicy plays
+it without torch. docs/policies.md describes what is in it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and folders that one process writes into."""
+"""Files that appear completely or not at all, and folders into which only one process writes."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from galactic.errors import Error
 
 
 def require_writable(file: pathlib.Path) -> None:
-    """Raises galactic.Error where write_atomically() could not write `file`, and leaves it as it is:
-    for outputs of long work, before it."""
+    """Raises galactic.Error if write_atomically() could not write `file`, which stays as it is.
+    Call this for the outputs of long work before the work begins."""
     try:
         if file.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
@@ -28,7 +28,7 @@ def require_writable(file: pathlib.Path) -> None:
 
 
 def unwritable(file: pathlib.Path, error: OSError) -> Error:
-    """What there is to say where a file that is written atomically could not be."""
+    """The error for a file that could not be written atomically."""
     why = error.strerror or str(error)
     message = f"cannot write the file: {why}; an existing file is left as it was"
     return Error(ErrorCode.IO, str(file), message)
@@ -37,8 +37,8 @@ def unwritable(file: pathlib.Path, error: OSError) -> Error:
 def require_apart(
     outputs: Mapping[str, pathlib.Path | None], inputs: Iterable[pathlib.Path]
 ) -> None:
-    """Raises galactic.Error where an output, by the option that names it, would replace one of the
-    inputs or another output. None: there is no such file."""
+    """Raises galactic.Error if an output would replace one of the inputs or another output.
+    `outputs`: files by the options that name them; None if there is no such file."""
     written: dict[pathlib.Path, str] = {}
     read = {file.resolve() for file in inputs}
     for option, file in outputs.items():
@@ -56,8 +56,8 @@ def require_apart(
 
 
 def require_folder(folder: pathlib.Path) -> None:
-    """Raises galactic.Error where a run could not keep its files in `folder`, and leaves the disk as it
-    is: before there is work that would be lost."""
+    """Raises galactic.Error if a run could not write its files in `folder`. Leaves the disk as it
+    is. Call this before there is work that would be lost."""
     remedy = "give another -o"
     missing: list[pathlib.Path] = []
     try:
@@ -78,9 +78,10 @@ def require_folder(folder: pathlib.Path) -> None:
 
 @contextlib.contextmanager
 def alone_in(folder: pathlib.Path) -> Iterator[bool]:
-    """Around writing into the folder of a run, which exists: raises galactic.Error where another process
-    does. The lock ends with its process, however that ends; its file stays, and means nothing. Yields
-    whether there is a lock: where the disk has none, nobody is refused, and nobody knows of others.
+    """A context for writing into the folder of a run, which must exist. Raises galactic.Error if
+    another process is writing into it. The lock ends with its process, however that ends; its file
+    stays, and means nothing. Yields whether there is a lock: on a disk without locks, no process is
+    refused, and none knows about others.
     """
     file = folder / ".lock"
     try:
@@ -92,7 +93,7 @@ def alone_in(folder: pathlib.Path) -> Iterator[bool]:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
-            # The second is what disks say that lock by the ranges of POSIX, as NFS does.
+            # The second is reported by file systems that use POSIX range locks, such as NFS.
             if error.errno in (errno.EWOULDBLOCK, errno.EACCES):
                 message = (
                     "a run is under way in this folder; wait for its end, interrupt it, or give "
@@ -104,8 +105,8 @@ def alone_in(folder: pathlib.Path) -> Iterator[bool]:
 
 
 def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: str = "wb") -> None:
-    """Calls write(handle) on a temporary file that then takes the name `file`: readers, and whoever
-    comes after a crash, find the old contents or the new ones."""
+    """Calls write(handle) on a temporary file that then takes the name `file`. Readers, even after
+    a crash, find either the old contents or the new ones."""
     encoding = None if "b" in mode else "utf-8"
     with replacing(file) as temporary, open(temporary, mode, encoding=encoding) as handle:
         write(handle)
@@ -113,8 +114,9 @@ def write_atomically(file: pathlib.Path, write: Callable[[Any], object], mode: s
 
 @contextlib.contextmanager
 def replacing(file: pathlib.Path) -> Iterator[pathlib.Path]:
-    """A place beside `file`, of the same extension, for what takes its name when the block has written
-    it; for programs that write files by themselves, see write_atomically()."""
+    """Yields a path beside `file`, with the same extension. After the block has written to that
+    path, the new file takes the name `file`. For programs that write files by themselves; see
+    write_atomically()."""
     temporary = _temporary(file)
     try:
         yield temporary
@@ -132,7 +134,7 @@ def _temporary(file: pathlib.Path) -> pathlib.Path:
 
 
 def sync(path: pathlib.Path) -> None:
-    """Puts a file, or the names in a folder, on the disk."""
+    """Flushes a file, or the names in a folder, to the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -1,4 +1,5 @@
-"""Random numbers without a stream to keep: every number is a hash of what it is for, as in the simulator."""
+"""Random numbers without a stream whose state must be stored: every number is a hash of what it is
+for, as in the simulator."""
 
 from __future__ import annotations
 

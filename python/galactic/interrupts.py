@@ -1,9 +1,9 @@
-"""What interrupts come to: while a program of the package loads its libraries, which takes seconds, and
-while it works.
+"""How interrupts are handled: while a program of the package loads its libraries, which takes
+seconds, and while it works.
 
-While it loads, Ctrl-C ends it, quietly. Nothing has been done by then that there would be to save or to
-tell. Python alone would interrupt whatever is being loaded, and print where. While it works, SIGTERM, which ends
-jobs, and SIGHUP, of a terminal that closes, are what Ctrl-C is.
+While it loads, Ctrl-C ends it silently: there is nothing to save or to report yet. Python alone
+would interrupt whatever is being loaded, and print a traceback. While it works, SIGTERM, which ends
+jobs, and SIGHUP, which a closing terminal sends, are handled like Ctrl-C.
 """
 
 from __future__ import annotations
@@ -19,14 +19,15 @@ from typing import Any
 from galactic import programs
 
 INTERRUPTED = 130
-"""The exit code of what a Ctrl-C has ended."""
+"""The exit code of a program that Ctrl-C has ended."""
 
 
 def end_while_loading() -> None:
-    """Called first of all. Does nothing unless Python is about to run a program of the package, as in
-    `python3 -m galactic.train`: whoever imports it handles interrupts as they see fit."""
+    """Called before anything else. Does nothing unless Python is about to run a program of the
+    package, as in `python3 -m galactic.train`: other code that imports the package handles
+    interrupts as it sees fit."""
     if programs.loading():
-        # Where they are to be ignored, they are.
+        # If interrupts are set to be ignored, they stay ignored.
         if signal.getsignal(signal.SIGINT) == signal.default_int_handler:
             signal.signal(signal.SIGINT, _end)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
@@ -41,13 +42,15 @@ _WHILE_LOADING = {
     signal.SIGTERM: signal.SIG_DFL,
     signal.SIGHUP: signal.SIG_DFL,
 }
-"""What ends a program that loads, by which handler: libraries that hang while they are loaded let no other one run."""
+"""The signals that end a loading program, and their handlers. The defaults work even if a library
+hangs while it is loaded, when no handler in Python could run."""
 
 
 @contextlib.contextmanager
 def raised() -> Iterator[None]:
-    """Around the work of a program: there an interrupt is a KeyboardInterrupt again. What is to be ignored, as nohup has
-    it with SIGHUP, is. Whoever calls the work without the program handles signals as they see fit.
+    """A context for the work of a program, in which interrupts raise KeyboardInterrupt again.
+    Signals that are set to be ignored, such as SIGHUP by nohup, stay ignored. Code that calls the
+    work without the program handles signals as it sees fit.
     """
     before = {
         number: handler
@@ -64,7 +67,8 @@ def raised() -> Iterator[None]:
 
 @contextlib.contextmanager
 def handled(handler: Callable[[int], None]) -> Iterator[None]:
-    """Around work that ends as it sees fit: SIGINT and SIGTERM call `handler` with their number."""
+    """A context for work that decides itself how to end: SIGINT and SIGTERM call `handler` with
+    their number."""
     before = {
         number: signal.signal(number, lambda found, _: handler(found))
         for number in (signal.SIGINT, signal.SIGTERM)
@@ -77,8 +81,8 @@ def handled(handler: Callable[[int], None]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def ended_at_once() -> Iterator[None]:
-    """Around what waits for others outside of Python, which sees no interrupt meanwhile: there it ends
-    the process without a word."""
+    """A context for waiting for others outside of Python, which notices no interrupts in the
+    meantime: an interrupt ends the process silently."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -94,8 +98,8 @@ def ended_at_once() -> Iterator[None]:
 
 @contextlib.contextmanager
 def held_back() -> Iterator[None]:
-    """Around starting programs of the package: an interrupt comes when they have started, and reaches them
-    when they have called end_while_loading()."""
+    """A context for starting programs of the package: an interrupt arrives after they have started,
+    and reaches them when they have called end_while_loading()."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

@@ -1,4 +1,4 @@
-"""How large objects are: what World.object_boxes is."""
+"""The sizes of objects: the type of World.object_boxes."""
 
 from __future__ import annotations
 
@@ -13,17 +13,19 @@ _SIGNS = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1], indexing="ij"), np.floa
 
 
 class ObjectBoxes(NamedTuple):
-    """Of the k objects of World.objects: the oriented boxes that their packs have around them."""
+    """The oriented boxes of the k objects of World.objects, from their packs."""
 
     object_from_box: Poses
-    """Of k boxes: the middle, which World.object_centers has, too, and the turn in the object's frame."""
+    """Poses of the k boxes in their objects' frames. The translation is the box's middle, which is
+    also in World.object_centers."""
     half_extents: NDArray[np.float32]
     """(k, 3), meters along the box's own axes, from its middle to its sides."""
 
     @property
     def corners(self) -> NDArray[np.float32]:
-        """(k, 8, 3), meters, in the objects' frames: those below the middle along X first, then along Y, then Z.
-        With EnvStates.objects they are in the world, and with a camera's matrices in its image."""
+        """(k, 8, 3), meters, in the objects' frames, ordered by the sign along X, then Y, then Z,
+        negative first. EnvStates.objects transforms them into the world, and a camera's matrices
+        project them into its image."""
         in_box = _SIGNS.reshape(3, 8).T * self.half_extents[:, np.newaxis]
         rotations = self.object_from_box.matrix[:, :3, :3]
         turned = np.einsum("nij,nkj->nki", rotations, in_box)

@@ -1,4 +1,4 @@
-"""What steps led to, where their episodes ended, too."""
+"""The observations to which steps led, including the last ones of episodes that ended."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ Array = NDArray[Any]
 def reached(
     observations: Array | Mapping[str, Array], infos: Mapping[str, Any]
 ) -> Array | dict[str, Array]:
-    """What a step of VectorEnv led to, for those who learn from single steps, as from a replay buffer.
+    """The observations to which a step of VectorEnv led, for learning from single steps, as with a
+    replay buffer.
 
-    observations, infos: as step() or recv() returned them. Returns a copy of `observations`, of the same shapes and
-    types, that has of each env whose episode ended the last observation (final_obs) in place of the first one of
-    the next episode.
+    observations, infos: as step() or recv() returned them. Returns a copy of `observations`, with
+    the same shapes and types. For each env whose episode ended, it has that episode's last
+    observation (final_obs) in place of the next episode's first.
     """
     if isinstance(observations, Mapping):
         return {name: _reached(part, infos, name) for name, part in observations.items()}

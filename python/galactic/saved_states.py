@@ -1,13 +1,13 @@
-"""States of a VectorEnv as bytes: of all of its envs, or of some, which go on in any others.
+"""States of a VectorEnv as bytes: of all its envs, or of some, which can be restored to any others.
 
-A batch has one part, or two: its halves. A state is a header (_HEADER), a list of arrays as JSON, [[name, type,
-shape], ...] with types as numpy describes them in its files, and the arrays, little-endian, one after the other. Of
-all envs, it has what BatchPart.save_state() returns, each name with the number of the part behind it. Of some envs,
-it has
+A batch has one part, or two parts: its halves. A state is a header (_HEADER), a list of arrays as
+JSON, [[name, type, shape], ...] with types as numpy describes them in its files, and then the
+arrays, little-endian, one after the other. A state of all envs has what BatchPart.save_state()
+returns, with the number of the part appended to each name. A state of some envs has
 
-    envs                       how many: n
-    simulator_0, simulator_1   the states of those that were in each part's simulator, where any were
-    places_0, places_1         int64: as which of the n these are
+    envs                       their number: n
+    simulator_0, simulator_1   states of the envs that were in each part's simulator, if any
+    places_0, places_1         int64: which of the n envs these are
     returns, lengths, task_... arrays (n, ...): BatchPart.save_rows()
 """
 
@@ -29,7 +29,7 @@ from galactic.batch_part import BatchPart, Piece
 Array = NDArray[Any]
 
 _MAGIC = b"GALENVS1"
-#: That, the CRC-32 of all that follows, and how many bytes the list of arrays takes.
+#: _MAGIC, the CRC-32 of everything after the header, and the number of bytes of the list of arrays.
 _HEADER = struct.Struct("<8sII")
 
 
@@ -44,7 +44,7 @@ def state_of_all(parts: Sequence[BatchPart]) -> bytes:
 
 
 def state_of(parts: Sequence[BatchPart], envs: NDArray[np.int64]) -> bytes:
-    """Of the envs with these numbers, in this order."""
+    """The state of the envs with these numbers, in this order."""
     arrays: dict[str, Array] = {"envs": np.array(len(envs))}
     order, owned = [], []
     for number, (part, places, rows) in enumerate(_by_part(parts, envs)):
@@ -60,8 +60,8 @@ def state_of(parts: Sequence[BatchPart], envs: NDArray[np.int64]) -> bytes:
 
 
 def restore(parts: Sequence[BatchPart], state: bytes, envs: NDArray[np.int64] | None) -> None:
-    """Goes on there, in all envs or in those with these numbers. Raises Error for a state that does not fit,
-    and changes nothing."""
+    """Restores a state to all envs, or to those with these numbers. Raises Error and changes
+    nothing if the state does not fit."""
     found = _unpacked(state)
     count = sum(part.simulator.num_envs for part in parts)
     if "envs" in found:
@@ -88,7 +88,7 @@ def _restore_all(parts: Sequence[BatchPart], found: Mapping[str, Array]) -> None
         {name[: -len(end)]: array for name, array in found.items() if name.endswith(end)}
         for end in (f"_{part}" for part in range(len(parts)))
     ]
-    # Of one that was cut off, there is nothing to go back to.
+    # A part that was cut off has no state to go back to.
     before = [None if part.is_cut_off else part.save_state() for part in parts]
     try:
         for part, saved in zip(parts, arrays):
@@ -122,7 +122,8 @@ def _restore_some(
             ]
             taken = [piece for piece in taken if any(row is not None for row in piece.places)]
             works.append(_Work(part, taken, saved, rows))
-    # What one part takes, all take: of one piece, nothing is refused when something has been done.
+    # What one part accepts, all accept: with a single piece, nothing is refused after something has
+    # been changed.
     before = [work.part.save_state() for work in works] if len(pieces) > 1 else []
     try:
         for part, taken, saved, rows in works:
@@ -133,7 +134,7 @@ def _restore_some(
 
 
 class _Work(NamedTuple):
-    """What one part goes on from in its envs `rows`."""
+    """What is restored to the envs `rows` of one part."""
 
     part: BatchPart
     pieces: list[Piece]
@@ -144,7 +145,8 @@ class _Work(NamedTuple):
 def _by_part(
     parts: Sequence[BatchPart], envs: NDArray[np.int64]
 ) -> list[tuple[BatchPart, NDArray[np.int64], NDArray[np.int64]]]:
-    """Each part, which of `envs` are in it, and as which of its envs."""
+    """Each part, with the places in `envs` of those that are in it, and their numbers within the
+    part."""
     size = parts[0].simulator.num_envs
     found = []
     for number, part in enumerate(parts):
@@ -154,7 +156,8 @@ def _by_part(
 
 
 def _pieces_of(found: Mapping[str, Array]) -> tuple[list[Piece], dict[str, Array]]:
-    """States of simulators with the places of their envs, and all else, which has an axis of as many."""
+    """The states of simulators with the places of their envs, and the other arrays, whose first
+    axis is as long as there are envs."""
     pieces = [
         Piece(found[f"simulator_{number}"].tobytes(), found[f"places_{number}"].tolist())
         for number in range(2)
@@ -166,7 +169,7 @@ def _pieces_of(found: Mapping[str, Array]) -> tuple[list[Piece], dict[str, Array
     count = len(places)
     if (
         not _is_number(found["envs"], count)
-        # Of as many, so that what a state says takes no more than what it holds.
+        # Exactly as many, so that a state cannot claim more envs than it holds.
         or set(map(str, places)) != set(map(str, range(count)))
         or any(array.shape[:1] != (count,) for array in own.values())
     ):
@@ -197,7 +200,7 @@ def _packed(arrays: Mapping[str, Array]) -> bytes:
 
 
 def _unpacked(state: bytes) -> dict[str, Array]:
-    """Arrays that nobody can write. Raises Error for bytes that are none, from the first to the last."""
+    """The state's arrays, read-only. Raises Error if the bytes are not exactly a state."""
     found = bytes(memoryview(state))
     if len(found) < _HEADER.size or not found.startswith(_MAGIC):
         raise _refused(
@@ -211,12 +214,13 @@ def _unpacked(state: bytes) -> dict[str, Array]:
     try:
         for name, described, shape in json.loads(found[_HEADER.size : at]):
             kind = _type_of(described)
-            # Of objects, bytes would be addresses; and -1 would be whatever is left.
+            # Bytes of Python objects would be addresses, and a size of -1 would take whatever is
+            # left.
             if kind.hasobject or min(shape, default=0) < 0:
                 raise ValueError(f"found {name} as {kind} {shape}, expected numbers in a shape")
             arrays[name] = np.ndarray(shape, kind, found, at)
             at += arrays[name].nbytes
-    except Exception as problem:  # whatever is wrong with what somebody has signed
+    except Exception as problem:  # whatever is wrong with content whose checksum is right
         raise _refused(f"cannot be read ({problem}); give what save_state() returned") from problem
     if at != len(found):
         raise _refused(f"found {len(found)} bytes, expected {at}; it is damaged")
@@ -224,7 +228,7 @@ def _unpacked(state: bytes) -> dict[str, Array]:
 
 
 def _type_of(described: Any) -> np.dtype[Any]:
-    """Of what dtype_to_descr() returned, whose tuples have become lists."""
+    """The type that dtype_to_descr() described; its tuples have become lists."""
     if isinstance(described, str):
         return np.dtype(described)
     return np.dtype([(name, _type_of(of), *map(tuple, shape)) for name, of, *shape in described])

@@ -1,4 +1,4 @@
-"""What simulations observe: the parts of an observation, by name."""
+"""The parts of an observation, by name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ALWAYS = (
     "joints",
     "time",
 )
-"""Those of every observation."""
+"""The parts of every observation."""
 
 SENSORS: Mapping[str, tuple[str, ...]] = {
     "bump": ("bump",),
@@ -33,13 +33,13 @@ SENSORS: Mapping[str, tuple[str, ...]] = {
     "geodesic": ("geodesic",),
     "last_actions": ("last_actions",),
 }
-"""Those that options add, and these options. All other parts are of tasks of one's own."""
+"""The parts that options add, and these options. All other parts belong to tasks of one's own."""
 
-# Options that say how many numbers there are, or how exact.
+# Options that decide only how many numbers there are, or how exact they are.
 _NO_MEANING = ("laser_beams", "laser_noise")
 
 
 def meaning_of(names: Iterable[str], options: Mapping[str, Any]) -> dict[str, Any]:
-    """Those options of the simulation by which numbers of its parts `names` mean one thing or another."""
+    """The options of the simulation that decide what the numbers in the parts `names` mean."""
     asked = ["observe_current", *(option for name in names for option in SENSORS.get(name, ()))]
     return {name: options[name] for name in asked if name in options and name not in _NO_MEANING}

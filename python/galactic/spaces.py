@@ -1,5 +1,5 @@
-"""The spaces of observations and actions: Gymnasium's where it is installed, else the little that a
-program asks of them, under the same names."""
+"""The spaces of observations and actions: Gymnasium's if it is installed, otherwise minimal
+replacements under the same names."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ try:
 except ImportError:
 
     class Space:  # type: ignore[no-redef]
-        """A set of values that can be drawn from, and asked whether it holds a value."""
+        """A set of values, from which samples can be drawn, and which can be asked whether it
+        contains a value."""
 
         def __init__(self, shape: tuple[int, ...] | None, dtype: Any = None) -> None:
             self.shape = shape
@@ -82,7 +83,7 @@ except ImportError:
             return f"Box({self.low.min()}, {self.high.max()}, {self.shape}, {self.dtype})"
 
     class MultiDiscrete(Space):  # type: ignore[no-redef]
-        """Arrays of whole numbers, each from 0 to below its entry of `nvec`."""
+        """Arrays of whole numbers, each from 0 up to, but not including, its entry in `nvec`."""
 
         def __init__(self, nvec: Any, dtype: Any = np.int64) -> None:
             self.nvec = np.asarray(nvec, dtype)
@@ -110,7 +111,7 @@ except ImportError:
             return f"MultiDiscrete({self.nvec.tolist()})"
 
     class Dict(Space):  # type: ignore[no-redef]
-        """Dictionaries with a value of its space under each name."""
+        """Dictionaries that have, under each name, a value of that name's space."""
 
         def __init__(self, spaces: Mapping[str, Space]) -> None:
             super().__init__(None)
@@ -152,7 +153,7 @@ except ImportError:
             return f"Dict({self.spaces})"
 
     def batch_space(space: Space, n: int = 1) -> Space:
-        """The space of `n` values of `space`, one below the other."""
+        """The space of `n` stacked values of `space`."""
         if isinstance(space, Dict):
             return Dict({name: batch_space(one, n) for name, one in space.spaces.items()})
         if isinstance(space, Box):

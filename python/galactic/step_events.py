@@ -1,4 +1,4 @@
-"""What happened to each env in a step, as infos: for those who ask."""
+"""What happened to each env in a step, as infos, on request."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from galactic._core import Simulator
 
-# Of each event, what Simulator.counts() counts of it.
+# For each event, its name in Simulator.counts().
 _COUNTED = {
     "refused": "refused",
     "slid": "slid",
@@ -21,18 +21,19 @@ _COUNTED = {
 
 
 class StepEvents:
-    """What the envs of a simulator have counted between the beginning and the end of a step."""
+    """The events in the envs of a simulator between the beginning and the end of a step."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
         self.begin()
 
     def begin(self) -> None:
-        """A step comes."""
+        """Call before a step."""
         self._before = self._simulator.counts()
 
     def infos(self, playing: NDArray[np.bool_]) -> dict[str, Any]:
-        """Of the step that has been done, as infos; `playing`: the envs that are not idle."""
+        """The events of the step that has been done, as infos. `playing`: the envs that are not
+        idle."""
         now = self._simulator.counts()
         events = {
             event: now[counted] > self._before[counted] for event, counted in _COUNTED.items()
@@ -42,7 +43,7 @@ class StepEvents:
 
 
 def masked(infos: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
-    """Infos, each beside a mask of its own: who changes one of them changes no other."""
+    """Infos, each with a mask of its own, so that changing one mask changes no other."""
     both: dict[str, Any] = {}
     for name, values in infos.items():
         both[name] = values

@@ -1,4 +1,4 @@
-"""What programs print: a stream that is closed, or whose disk is full, ends no run."""
+"""Printing by programs: a stream that is closed, or whose disk is full, does not end a run."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TextIO
 
 
 def put(stream: TextIO | None, text: str) -> bool:
-    """Writes `text` at once. Whether the stream has taken it; None, which Python has for a stream that
-    was closed from the start, takes nothing."""
+    """Writes `text` and flushes the stream. Returns whether that succeeded. `stream` may be None,
+    which Python uses for a stream that was closed from the start; nothing is then written."""
     if stream is None:
         return False
     try:
@@ -22,7 +22,8 @@ def put(stream: TextIO | None, text: str) -> bool:
 
 
 def _forget(stream: TextIO) -> None:
-    """Else Python tries again to write what the stream holds when it ends, and says so in its own way."""
+    """Redirects the stream to nowhere. Otherwise Python tries again at exit to write what the
+    stream holds, and prints an error of its own."""
     with contextlib.suppress(OSError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, stream.fileno())

@@ -1,4 +1,4 @@
-"""Drives a task of one's own: calls its methods in their order, and checks what they return."""
+"""Drives a task of one's own: calls its methods in the right order, and checks what they return."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from galactic.task_envs import TaskEnvs
 Array = NDArray[Any]
 
 OF_EPISODES = ("episode", "ending", "success", "picked", "episode_index", "world_from_camera")
-"""What final_info says of every episode."""
+"""What final_info contains for every episode."""
 
 
 _OF_CURVES = {"std"}
-"""What cannot be in logs: curves have a log_std, which is the policy's."""
+"""Names that logs cannot have: the curves' column log_std is the policy's."""
 _MANY_PLACEMENTS = 20
-"""Where so many are all refused, it is no bad luck of single ones."""
+"""If this many placements are all refused, it is not bad luck with single ones."""
 _NO_OPTIONS = ("task", "envs", "seed", "order", "rank", "ranks", "threads", "auto_reset")
 
 
 def made_by(factory: Callable[[], Task]) -> Task:
-    """A task of a VectorEnv's argument. TypeError where it makes none."""
+    """Makes a task with a VectorEnv's argument. Raises TypeError if that does not make a task."""
     task = factory()
     if not isinstance(task, Task):
         raise TypeError(f"task makes a {type(task).__name__}, expected a galactic.Task")
@@ -41,7 +41,7 @@ def made_by(factory: Callable[[], Task]) -> Task:
 
 
 def require_options(task: Task) -> None:
-    """ValueError for options that a task cannot give."""
+    """Raises ValueError for options that a task cannot set."""
     name = type(task).__name__
     for option in task.options:
         if option in _NO_OPTIONS:
@@ -56,18 +56,20 @@ def require_options(task: Task) -> None:
 
 
 def options_of(task: Task, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The options of the simulation below, of which those that were given go before the task's."""
+    """The options of the simulation beneath the task. Options that were given override the
+    task's."""
     seen = {} if task.images is None else {"body_transforms": True}
     return {**task.options, **given, **seen, "task": task.base}
 
 
 def has_raised(error: BaseException) -> bool:
-    """Whether it comes out of a task, or of what is said of one here, and not of the options around it."""
+    """Whether the exception comes from a task or from the checks of a task here, and not from the
+    options around it."""
     return any(frame.f_code.co_filename == __file__ for frame, _ in walk_tb(error.__traceback__))
 
 
 class TaskRunner:
-    """A task at work in the envs of a simulator that leaves envs where their episodes end."""
+    """Runs a task in the envs of a simulator that leaves envs where their episodes end."""
 
     def __init__(
         self,
@@ -89,17 +91,17 @@ class TaskRunner:
         self.measures = _names_of(task.measures, f"{self._name}.measures", {*OF_EPISODES, *taken})
         self.log_names = _names_of(task.logs, f"{self._name}.logs", _OF_CURVES)
         self.logs: dict[str, NDArray[np.float32]] = {}
-        """What the task said of the latest step, (n,), by these names; 0 of idle envs."""
+        """What the task logged of the latest step, (n,), by these names; 0 for idle envs."""
         sizes = [part.stop - part.start for part in self.parts.values()]
         self._columns = np.zeros((self._envs.num_envs, sum(sizes)), np.float32)
         self.placements = Placements(0, 0)
-        """Of the episodes that have begun since it was made."""
+        """Placements of the episodes that have begun since this was made."""
         self.restart()
 
     @property
     def outcome(self) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-        """Rewards and endings, as EpisodeEnd, (n,), of the latest step: the task's, and where it ended
-        nothing, the simulator's. The next step overwrites them."""
+        """Rewards and endings (as EpisodeEnd), (n,), of the latest step. Endings are the task's or,
+        where the task ended nothing, the simulator's. The next step overwrites them."""
         return self._rewards, self._endings
 
     @property
@@ -113,11 +115,11 @@ class TaskRunner:
 
     @property
     def size(self) -> int:
-        """How many numbers the task adds to an observation."""
+        """The number of elements that the task adds to an observation."""
         return self._columns.shape[1]
 
     def restart(self) -> None:
-        """Begins anew, with envs that have just been made or restarted with a seed."""
+        """Starts again, with envs that have just been made or restarted with a seed."""
         self._begin_anew()
         simulator = self._envs.simulator
         everywhere = np.arange(self._envs.num_envs)
@@ -129,7 +131,7 @@ class TaskRunner:
         self.begin(everywhere)
 
     def _begin_anew(self) -> None:
-        """As if nothing had happened yet."""
+        """Resets everything to the state before the first step."""
         self._envs.steps = 0
         self._envs.take_actions(0.0)
         self._envs.draws.begin_first()
@@ -137,22 +139,23 @@ class TaskRunner:
         self._prepare()
 
     def mend(self) -> None:
-        """Has memory that is no longer what prepare() made, so that no state of it fits, made anew."""
+        """Makes the memory again if its layout is no longer what prepare() made, so that no saved
+        state would fit."""
         try:
             self._require_layout()
         except TypeError:
             self._prepare()
 
     def _prepare(self) -> None:
-        """Has the task make its memory, for the simulator's seed."""
+        """Lets the task make its memory, for the simulator's seed."""
         self._envs.seed = self._envs.simulator.options["seed"]
         self._task.memory = {}
         self._task.prepare(self._envs)
         self._layout = self._memory_layout()
 
     def choose(self, which: NDArray[np.int64], named: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The episodes that the envs `which` begin next: those that are `named`, and where that is below 0
-        the task's choice; NEXT_EPISODE for the next of their own."""
+        """The episodes that the envs `which` begin next: those in `named` or, where that is
+        negative, the task's choice; NEXT_EPISODE for an env's own next episode."""
         is_named = named >= 0
         self._envs.draws.begin_named(which[is_named], named[is_named])
         self._envs.draws.begin_next(which[~is_named])
@@ -171,8 +174,8 @@ class TaskRunner:
         return np.where(episodes < 0, Simulator.NEXT_EPISODE, episodes.astype(np.int64))
 
     def begin(self, which: NDArray[np.int64]) -> None:
-        """Takes in that the envs `which` are at the start of an episode, but for idle ones, and has it begin
-        where the task says."""
+        """Call when the envs `which` are at the start of an episode; idle ones are ignored. Lets
+        the task place and begin these episodes."""
         playing = which[~self._envs.simulator.idle[which]]
         if len(playing) and type(self._task).place is not Task.place:
             self._envs.forget(which)
@@ -181,7 +184,7 @@ class TaskRunner:
         self._take_in(playing)
 
     def begin_chosen(self, which: NDArray[np.int64]) -> None:
-        """Takes in that the envs `which` go on from states that the caller has chosen."""
+        """Call when the envs `which` continue from states that the caller has chosen."""
         self._envs.draws.begin_next(which)
         self._envs.forget(which)
         self._take_in(which)
@@ -208,7 +211,7 @@ class TaskRunner:
         self._count(len(which), int(np.concatenate(were_set).sum()))
 
     def _count(self, asked: int, were_set: int) -> None:
-        """Keeps account of placements. A RuntimeWarning, once, where none comes true."""
+        """Counts placements. Issues a RuntimeWarning, once, if all of them are refused."""
         before = self.placements
         self.placements = Placements(before.asked + asked, before.refused + asked - were_set)
         now_many = before.asked < _MANY_PLACEMENTS <= self.placements.asked
@@ -227,7 +230,7 @@ class TaskRunner:
             self._require_layout()
 
     def step(self, actions: NDArray[np.float32], idle: NDArray[np.bool_]) -> None:
-        """Takes in the simulator's latest step, before which the envs `idle` were."""
+        """Processes the simulator's latest step. `idle`: the envs that were idle before it."""
         envs = self._envs
         envs.steps += 1
         envs.draws.ages += 1
@@ -261,8 +264,8 @@ class TaskRunner:
         return {name: np.where(idle, np.float32(0), values) for name, values in rows.items()}
 
     def measure(self, which: NDArray[np.int64]) -> dict[str, NDArray[np.float32]]:
-        """What the task says of the episodes that have ended in the envs `which`, float32 (n,); zeros for
-        the others."""
+        """The task's measures of the episodes that have ended in the envs `which`, each float32
+        (n,), with zeros for the other envs."""
         found = self._task.measure(self._envs, which) if self.measures and len(which) else {}
         if len(which):
             self._require_names("measure", found, self.measures)
@@ -284,12 +287,13 @@ class TaskRunner:
         return self._columns
 
     def state(self, *, blank: bool = False) -> dict[str, Array]:
-        """All that later steps depend on, of which restore() takes the same names, shapes and types. `blank`:
-        with the memory that prepare() made, whatever is in it, and whatever has become of it."""
+        """Everything on which later steps depend. restore() takes arrays with the same names,
+        shapes and types. `blank`: the memory has the layout that prepare() made, with any content,
+        even if the memory has changed since."""
         return {"task_steps": np.array(self._envs.steps, np.int64), **self._of_envs(blank=blank)}
 
     def _of_envs(self, *, blank: bool) -> dict[str, Array]:
-        """The part of it that each env has of its own."""
+        """The part of the state that each env has of its own."""
         envs, remembered = self._envs, self._task.memory
         if blank:
             remembered = {name: np.empty(shape, of) for name, (of, shape) in self._layout.items()}
@@ -303,7 +307,8 @@ class TaskRunner:
         }
 
     def restore(self, saved: Mapping[str, Array]) -> None:
-        """Goes on from what state() returned once, with the simulator of that moment."""
+        """Continues from what state() returned, with the simulator in the state of the same
+        moment."""
         envs = self._envs
         envs.forget()
         self.mend()
@@ -318,14 +323,15 @@ class TaskRunner:
             np.copyto(array, saved[f"task_memory_{name}"])
 
     def state_of(self, rows: NDArray[np.int64], *, blank: bool = False) -> dict[str, Array]:
-        """What later steps of the envs `rows` depend on, arrays (len(rows), ...), of which restore_rows() takes
-        the same names, shapes and types; `blank` as in state()."""
+        """What later steps of the envs `rows` depend on: arrays (len(rows), ...). restore_rows()
+        takes arrays with the same names, shapes and types; `blank` as in state()."""
         return {name: array[rows] for name, array in self._of_envs(blank=blank).items()}
 
     def restore_rows(self, saved: Mapping[str, Array], rows: NDArray[np.int64]) -> None:
-        """Goes on in the envs `rows` from what state_of() returned for as many, with the simulator of that
-        moment. Of episodes that nobody has named, random numbers are their own; `steps` and `progress` are
-        those of all envs, and stay."""
+        """Makes the envs `rows` continue from what state_of() returned for the same number of envs,
+        with the simulator in the state of the same moment. Unless their episodes were named, the
+        envs keep random numbers of their own. `steps` and `progress`, which all envs share, stay
+        the same."""
         envs, draws = self._envs, self._envs.draws
         envs.forget()
         envs.take_actions(saved["task_actions"], rows)
@@ -334,7 +340,8 @@ class TaskRunner:
             array[rows] = saved[f"task_memory_{name}"]
 
     def _memory_layout(self) -> dict[str, tuple[Any, tuple[int, ...]]]:
-        """Types and shapes of the memory. TypeError for what is no array with an axis of envs."""
+        """Types and shapes of the memory. Raises TypeError for anything that is not an array with
+        an axis of envs."""
         layout = {}
         for name, array in self._task.memory.items():
             fits = isinstance(array, np.ndarray) and array.shape[:1] == (self._envs.num_envs,)
@@ -352,7 +359,8 @@ class TaskRunner:
         return layout
 
     def _require_layout(self) -> None:
-        """TypeError where the memory is no longer what prepare() made, so that no state of it fits."""
+        """Raises TypeError if the memory's layout is no longer what prepare() made, so that no
+        saved state would fit."""
         found = self._memory_layout()
         for name in [*self._layout, *found]:
             if found.get(name) != self._layout.get(name):
@@ -390,7 +398,8 @@ class TaskRunner:
         envs: NDArray[np.int64] | None = None,
         ignored: NDArray[np.bool_] | None = None,
     ) -> NDArray[np.float32]:
-        """Finite numbers of that shape, of these envs, or all; 0 for what else is said of those `ignored`."""
+        """Checks that `given` has finite numbers of that shape, for these envs or all. Other
+        numbers are replaced by 0 for the envs that are `ignored`."""
         values = np.asarray(given)
         if values.shape != shape or values.dtype.kind not in "biuf":
             raise ValueError(self._fault(method, name, values, f"numbers {shape}"))
@@ -420,7 +429,7 @@ def _described(value: Any) -> str:
 
 
 def _names_of(names: Any, where: str, taken: Set[str]) -> tuple[str, ...]:
-    """What a task calls what it measures or logs. ValueError for names that cannot be."""
+    """The names of what a task measures or logs. Raises ValueError for invalid names."""
     for name in names:
         is_name = isinstance(name, str) and name.isidentifier() and name[0] != "_"
         if isinstance(names, str) or not is_name or name in taken:
@@ -431,7 +440,8 @@ def _names_of(names: Any, where: str, taken: Set[str]) -> tuple[str, ...]:
 
 
 def _parts_of(task: Task, name: str, first: int, taken: Set[str]) -> dict[str, slice]:
-    """Where the task's parts are in an observation. ValueError for sizes and names that cannot be."""
+    """Where the task's parts are in an observation. Raises ValueError for invalid sizes and
+    names."""
     parts: dict[str, slice] = {}
     taken = {*taken, *ALWAYS, *SENSORS, "state", "rgb", "depth", "semantics"}
     if not isinstance(task.parts, Mapping):

@@ -169,7 +169,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _launched(run: Run, folder: pathlib.Path, command: Sequence[str]) -> int:
-    """Has ranks do the work, which need seconds before they say anything."""
+    """Starts ranks to do the work. They need seconds before they print anything."""
     settings, checkpoints = run.settings, CheckpointFolder(folder, run.settings.keep)
     ranks = "1 rank" if settings.ranks == 1 else f"{settings.ranks} ranks"
     put(
@@ -178,7 +178,7 @@ def _launched(run: Run, folder: pathlib.Path, command: Sequence[str]) -> int:
     )
     before = checkpoints.complete()
     code = launch(settings.ranks, command)
-    # Ranks that were still loading have ended without a word.
+    # Ranks that were still loading have ended silently.
     if code == INTERRUPTED and not checkpoints.complete() and not (folder / BEST).exists():
         put(sys.stderr, f"galactic.train: interrupted before anything was saved in {folder}\n")
     elif code == INTERRUPTED and checkpoints.complete() == before:
@@ -190,14 +190,14 @@ def _launched(run: Run, folder: pathlib.Path, command: Sequence[str]) -> int:
 
 
 def _log_maker(options: argparse.Namespace) -> log.MakeTaker | None:
-    """What --log-to names, of the one rank that uses it; before there are ranks, to tell what is wrong with
-    it."""
+    """The function that --log-to names, in the one rank that uses it. Also called before there are
+    ranks, to report what is wrong with it."""
     is_used = options.log_to is not None and os.environ.get("RANK", "0") == "0"
     return log.maker(options.log_to) if is_used else None
 
 
 def _notes_on(run: Run, options: argparse.Namespace) -> list[str]:
-    """What there is to say of a new run that is allowed and seldom meant."""
+    """Notes on a new run whose options are allowed but seldom intended."""
     if options.preset not in TAUGHT or run.teacher is not None or run.demonstrations:
         return []
     return [
@@ -206,7 +206,7 @@ def _notes_on(run: Run, options: argparse.Namespace) -> list[str]:
 
 
 def _print_settings(options: argparse.Namespace) -> int:
-    """Those of a new run with these options, whatever its world."""
+    """Prints the settings of a new run with these options, whatever its world."""
     if options.resume:
         raise SettingsError(
             "--print-settings is for a new run; one that is resumed has its own in settings.json"
@@ -245,7 +245,7 @@ def _run_of(options: argparse.Namespace, world: pathlib.Path) -> Run:
         demonstrations=[folder.resolve() for folder in options.demonstrations],
     )
     run = with_task(run, given.get("simulation", "")) if settings.task else run
-    # What is wrong in any world is told once, before ranks open this one.
+    # Errors that do not depend on the world are reported once, before ranks open it.
     require_options(run.settings)
     if not settings.task:
         require_sensors(settings.critic_only)
@@ -253,7 +253,7 @@ def _run_of(options: argparse.Namespace, world: pathlib.Path) -> Run:
 
 
 def _require_imitation(options: argparse.Namespace, given: Mapping[str, Any]) -> None:
-    """Raises SettingsError for what a run that imitates has no use for."""
+    """Raises SettingsError for options that a run with --demonstrations does not use."""
     of_acting = [
         option_name(field.name)
         for field in dataclasses.fields(Settings)

@@ -1,4 +1,5 @@
-"""The halves of a VectorEnv, each of which steps on a thread of its own: all at once, or in turns."""
+"""The halves of a VectorEnv, each of which steps on a thread of its own: all at the same time, or
+in turns."""
 
 from __future__ import annotations
 
@@ -13,12 +14,12 @@ from numpy.typing import NDArray
 
 from galactic.batch_part import BatchPart, StepResult
 
-#: Places for the results of one step: see VectorEnv.step.
+#: Arrays for the results of one step: see VectorEnv.step().
 Row = Mapping[str, NDArray[Any]]
 
 
 class Turns:
-    """Which of the `parts` of a batch, its halves or all of it, are under way."""
+    """Keeps track of which `parts` of a batch (its halves, or all of it) have a step under way."""
 
     def __init__(self, parts: Sequence[BatchPart]) -> None:
         self._parts = list(parts)
@@ -33,17 +34,18 @@ class Turns:
     def begin(self, half: int, actions: NDArray[np.float32], out: Row | None) -> Future[StepResult]:
         """Begins a step of one half."""
         self._require_threads()
-        # A second thread may have come as far as here.
+        # A second thread may have come this far.
         with self._beginning:
             self._require_open()
             self.require_idle(half)
             return self._submit(half, actions, out)
 
     def end(self, half: int) -> StepResult:
-        """Waits for the step that begin() began. Where Ctrl-C ends the wait, it stays under way."""
+        """Waits for the step that begin() began. If Ctrl-C ends the wait, the step stays under
+        way."""
         self._require_threads()
         wait([self._under_way(half)])
-        # A second thread may have waited for the same.
+        # A second thread may have waited for the same step.
         with self._beginning:
             step = self._under_way(half)
             self._pending[half] = None
@@ -52,8 +54,8 @@ class Turns:
     def step(
         self, actions: Sequence[NDArray[np.float32]], out: Sequence[Row | None]
     ) -> list[StepResult]:
-        """One step of each half, at the same time. Whatever cuts it off, Ctrl-C too, cuts off all halves, and
-        none is under way any more."""
+        """Steps all halves at the same time. Anything that cuts the step off, including Ctrl-C,
+        cuts off all halves, and no step is then under way."""
         self._require_threads()
         has_begun = False
         try:
@@ -75,7 +77,8 @@ class Turns:
         return results
 
     def require_idle(self, *halves: int) -> None:
-        """Raises RuntimeError where one of these halves, or of all, is under way."""
+        """Raises RuntimeError if one of these halves, or of all halves if none is given, is under
+        way."""
         asked = halves or range(len(self))
         busy = [half for half in asked if self._pending[half] is not None]
         if busy:
@@ -84,7 +87,8 @@ class Turns:
             )
 
     def close(self) -> None:
-        """Waits for what is under way, which end() still returns, and lets go of the halves."""
+        """Waits for steps that are under way, whose results end() still returns, and releases the
+        halves."""
         for thread in self._threads:
             thread.shutdown()
         self._parts = []
@@ -105,8 +109,9 @@ class Turns:
         return step
 
     def _cut_off(self) -> None:
-        """Has no half go on alone: some of them may have made a step that others have not. Each thread does
-        it behind what it was given before, also where an interrupt came before that was noted anywhere.
+        """Marks all halves as cut off, since some may have made a step that others have not. Each
+        thread does this after the work that it was given before, even if an interrupt came before
+        that work was recorded anywhere.
         """
         wait(
             [
@@ -124,12 +129,12 @@ class Turns:
 
 
 def part_of(out: Row | None, rows: slice) -> Row | None:
-    """Places for the results of some envs of the batch."""
+    """Arrays for the results of some envs of the batch."""
     return None if out is None else {name: array[rows] for name, array in out.items()}
 
 
 def batch_of(parts: Sequence[Any]) -> Any:
-    """Results of the halves, arrays or dictionaries of them, as results of the batch."""
+    """Results of the halves (arrays, or dictionaries of arrays), joined to results of the batch."""
     first = parts[0]
     if len(parts) == 1:
         return first
@@ -139,12 +144,12 @@ def batch_of(parts: Sequence[Any]) -> Any:
 
 
 def step_of_batch(parts: Sequence[BatchPart], results: Sequence[StepResult]) -> StepResult:
-    """What a step of each of the parts came to, as a step of the batch."""
+    """The results of a step of each part, joined to those of a step of the batch."""
     *arrays, infos = zip(*results)
     observations, rewards, terminations, truncations = (batch_of(each) for each in arrays)
     have_ended = ["final_info" in info for info in infos]
     if any(have_ended):
-        # A part in which nothing ended says so with masks that are false everywhere.
+        # A part in which no episode ended gets masks that are false everywhere.
         infos = tuple(
             info if has_ended else {**info, **part.blank_infos()}
             for info, has_ended, part in zip(infos, have_ended, parts)

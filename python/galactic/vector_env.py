@@ -41,7 +41,7 @@ try:
 except ImportError:
 
     class AutoresetMode(Enum):  # type: ignore[no-redef]
-        """When envs whose episode ended begin the next one."""
+        """When envs whose episodes ended begin the next ones."""
 
         NEXT_STEP = "NextStep"
         SAME_STEP = "SameStep"
@@ -54,62 +54,68 @@ Paths = str | os.PathLike | Sequence[str | os.PathLike]
 class VectorEnv(_Base):
     """`num_envs` environments of one world, stepped together: Gymnasium 1.x's vector API.
 
-    A subclass of gymnasium.vector.VectorEnv where that is installed, else the same by its methods.
+    A subclass of gymnasium.vector.VectorEnv if that is installed; otherwise a class with the same
+    methods.
 
-    Episodes that end begin anew in the same step (`metadata["autoreset_mode"]` is SAME_STEP): the
-    observation is then the first of the next episode, and `infos` has
+    When an episode ends, the next one begins in the same step (`metadata["autoreset_mode"]` is
+    SAME_STEP). The observation is then the first of the next episode, and `infos` has
 
     - final_obs: object array (num_envs,), the last observation of each env whose episode ended,
     - final_info: {"episode": {"r", "l"}, "ending", "success", "picked", "episode_index"}, arrays
-      (num_envs,): return and length of the episode, how it ended (EpisodeEnd), whether the target had
-      been in the hand at any time of it, and which one of the world's it was; with images also "world_from_camera", float32 (num_envs, 4, 4): where those
-      of final_obs were drawn from, as Renderer has it of the images of the step; and the `measures` of
-      a task of one's own, float32 (num_envs,),
-    - episode: the same {"r", "l"} again, and "t", the seconds that the episode took, as Gymnasium's
-      RecordEpisodeStatistics has it,
+      (num_envs,): return and length of the episode, how it ended (EpisodeEnd), whether the hand
+      held the target at any time in it, and its index in the world. With images also
+      "world_from_camera", float32 (num_envs, 4, 4): the camera poses of the images in final_obs, as
+      Renderer has them for the images of a step. With a task of your own also its `measures`,
+      float32 (num_envs,),
+    - episode: the same {"r", "l"} again, and "t", the seconds that the episode took, as in
+      Gymnasium's RecordEpisodeStatistics,
 
-    each beside a mask of its name with "_" in front, bool (num_envs,). In steps in which no episode
-    ends, it has none of them. What a task of one's own says of each step (Task.logs) is in its "log", a
-    dictionary of float32 (num_envs,), with masks of the envs that are not idle. So is, with `events=True`,
-    what happened to them in it in its "events", bool (num_envs,): refused (something kept the robot where
-    it was), slid (something pushed it aside), touched (either), grasped, dropped (what the hand let go of
-    lies somewhere), and restored (it found no place, and is back where it was).
+    each with a mask, bool (num_envs,), that has the same name with "_" in front. In steps in which
+    no episode ends, `infos` has none of them. If a task of your own logs something in each step
+    (Task.logs), it is in infos["log"], a dictionary of float32 (num_envs,), with masks of the envs
+    that are not idle. With `events=True`, infos["events"] has, in the same form, what happened in
+    the step, bool (num_envs,): refused (something kept the robot from moving), slid (something
+    pushed it aside), touched (either), grasped, dropped (the released object was placed), and
+    restored (no place was found for the released object, which is back where it was).
 
     Observations are one flat float32 array (num_envs, observation_size), or with
     `observation="dict"` a dictionary of its named parts (docs/simulation.md lists them). With
-    images they are a dictionary with "state" (the flat array) or the parts, and
+    images, they are a dictionary with "state" (the flat array) or the parts, and
 
     - rgb: uint8 (num_envs, height, width, 3),
-    - depth: float32 (num_envs, height, width), meters, 0 where nothing is seen,
-    - semantics: int32 (num_envs, height, width),
+    - depth: float32 (num_envs, height, width), meters, 0 where nothing is visible,
+    - semantics: int32 (num_envs, height, width).
 
-    or, of several cameras, each of them behind its camera's name: hand_rgb, hand_depth and so on,
-    hand_world_from_camera, too.
+    With several cameras, each name is prefixed with its camera's name: hand_rgb, hand_depth and so
+    on, and also hand_world_from_camera.
 
     Two halves of the batch can take turns, each working on threads of its own while the other's
-    results are used: `halves=2`, `send()` and `recv()`. Which envs do what does not depend on it.
+    results are used: `halves=2`, `send()` and `recv()`. What the envs do does not depend on this.
 
     Args:
         world: a World, or the path or paths of its packs.
-        num_envs: environments; with two halves an even number.
+        num_envs: number of environments; with two halves, an even number.
         observation: "flat" or "dict".
-        images: options of galactic.Renderer, such as {"width": 128, "height": 128}; or those of
-            several cameras by name, such as {"head": {}, "hand": {"camera": "gripper_link"}}, where
-            a name is the Renderer's `camera` unless that or world_from_camera is given; or None for no images.
+        images: options of galactic.Renderer, such as {"width": 128, "height": 128}; or the options
+            of several cameras by name, such as {"head": {}, "hand": {"camera": "gripper_link"}},
+            where the name is the Renderer's `camera` unless `camera` or `world_from_camera` is
+            given; or None for no images.
         actions: "box": one float32 array in [-1, 1], (num_envs, action_count). "paper": a
             dictionary of "continuous", float32 (num_envs, action_count - 2) for joints, forward,
-            turn and, where the base does, sideways, and "discrete", 0 or 1, (num_envs, 2) for hand and terminate.
-        halves: 1, or 2 for send() and recv() in turns.
-        copy: whether each step's results are arrays of their own. Else they are those of the step before,
-            overwritten, unless they were written to `out`.
+            turn and, if the base drives sideways, sideways; and "discrete", 0 or 1, (num_envs, 2)
+            for hand and terminate.
+        halves: 1, or 2 to use send() and recv() in turns.
+        copy: whether each step's results are new arrays. Otherwise each step overwrites the arrays
+            of the previous step, unless results are written to `out`.
         render_mode: None, or "rgb_array" for render().
-        task: the name of one of the simulation's tasks, such as "pick"; or one of your own, a class
-            that inherits from galactic.Task, or anything that makes one without arguments.
-        is_evaluation: what such a task is told: whether policies are judged by what happens here, so that
-            it is to be as at the end of their training (`progress` is 1).
+        task: the name of one of the simulation's tasks, such as "pick"; or, for a task of your own,
+            a class that inherits from galactic.Task, or any function without arguments that makes a
+            task.
+        is_evaluation: TaskEnvs.is_evaluation for such a task: whether policies are judged here, so
+            that the task should be as at the end of training (`progress` is 1).
         events: whether `infos` have "events".
-        threads, seed, order, rank, ranks, options: of galactic.Simulator. body_transforms=True
-            lets you draw its `simulators` with a Renderer of your own, also without images.
+        threads, seed, order, rank, ranks, options: as for galactic.Simulator. body_transforms=True
+            lets you draw the `simulators` with a Renderer of your own, even without images.
     """
 
     metadata: dict[str, Any] = {
@@ -117,7 +123,8 @@ class VectorEnv(_Base):
         "autoreset_mode": AutoresetMode.SAME_STEP,
     }
     spec = None
-    #: Until it is made: Gymnasium closes what goes, also where making it failed.
+    #: True until the env is made: Gymnasium closes an env that is deleted, even if its constructor
+    #: failed.
     closed = True
 
     def __init__(
@@ -161,12 +168,13 @@ class VectorEnv(_Base):
         options |= {"threads": threads, "seed": seed, "order": order}
         own_task = own_task_of(task)
         self.has_own_task = own_task is not None
-        """Whether its task is one of the caller's own, and none of the simulation's."""
+        """Whether its task is one of the caller's own, and not one of the simulation's."""
         if task is not None and own_task is None:
             options["task"] = task
         if cameras or render_mode is not None:
             options["body_transforms"] = True
-        # Half h of batch r is batch 2 r + h of twice as many: the same envs as undivided.
+        # Half h of batch r is batch 2 r + h of twice as many batches: the same envs as without
+        # halves.
         self._parts = [
             BatchPart(
                 self._world,
@@ -200,53 +208,55 @@ class VectorEnv(_Base):
 
     @property
     def world(self) -> World:
-        """Where the envs are."""
+        """The world of the envs."""
         self._require_open()
         return self._world
 
     @property
     def observation_parts(self) -> dict[str, slice]:
-        """Where in the flat observation of an env its parts are: the simulator's, and behind them those
-        of a task of one's own."""
+        """Where the parts are in an env's flat observation: the simulator's parts, followed by
+        those of a task of your own."""
         self._require_open()
         return self._parts[0].observation_parts
 
     @property
     def measures(self) -> tuple[str, ...]:
-        """What final_info has of a task of one's own, by name."""
+        """Names of the measures of a task of your own in final_info."""
         self._require_open()
         return self._parts[0].measures
 
     @property
     def logs(self) -> tuple[str, ...]:
-        """What infos["log"] has of a task of one's own, by name."""
+        """Names of what a task of your own logs in infos["log"]."""
         self._require_open()
         return self._parts[0].logs
 
     @property
     def placements(self) -> Placements:
-        """How many states place() of a task of one's own has returned for episodes since this was made, and how
-        many of them were `refused`, so that the episode began where the world has it."""
+        """How many states place() of a task of your own has returned for episodes since this env
+        was made, and how many of them were `refused`, so that the episode began where the world has
+        it."""
         self._require_idle()
         counts = [part.placements for part in self._parts]
         return Placements(*(sum(column) for column in zip(*counts)))
 
     @property
     def broken_off(self) -> NDArray[np.int64]:
-        """int64 (num_envs,), a copy: how often each env has gone on from elsewhere than where its last step led, by
-        reset(), set_states() or restore_state(). For whoever keeps what was seen and done step after step.
+        """int64 (num_envs,), a copy: how often each env has continued from a state other than the
+        one its last step led to, because of reset(), set_states() or restore_state(). For code that
+        records observations and actions step by step.
         """
         return self._broken_off.copy()
 
     @property
     def is_evaluation(self) -> bool:
-        """What a task of one's own is told of it: see the class."""
+        """The constructor's argument `is_evaluation`; see the class."""
         return self._is_evaluation
 
     @property
     def progress(self) -> float:
-        """What a task of one's own is told of how much of the training is over, from 0 to 1, for curricula: 0
-        until it is set, 1 in an evaluation, where it stays so. It is saved with the state of all envs.
+        """How much of the training is over, from 0 to 1, for the curriculum of a task of your own:
+        0 until you set it, and always 1 in an evaluation. It is saved with the state of all envs.
         """
         self._require_open()
         return self._parts[0].progress
@@ -260,62 +270,65 @@ class VectorEnv(_Base):
 
     @property
     def simulators(self) -> tuple[Simulator, ...]:
-        """The simulator of each half: for its statistics and states. Of a task of one's own, they know
-        nothing."""
+        """The simulator of each half: for its statistics and states. Simulators do not know about a
+        task of your own."""
         self._require_open()
         return tuple(part.simulator for part in self._parts)
 
     @property
     def renderers(self) -> tuple[Any, ...]:
-        """What draws each half's images, for its cameras and names: a Renderer, or with several
-        cameras a dictionary of them by the cameras' names; () without images."""
+        """The renderers of each half's images, for information about cameras and names: a Renderer
+        or, with several cameras, a dictionary of Renderers by the cameras' names; () without
+        images."""
         self._require_open()
         drawing = [part.renderers for part in self._parts if part.renderers]
         return tuple(one.get("", one) for one in drawing)
 
     @property
     def images(self) -> Mapping[str, Any] | None:
-        """Options of its cameras, as they were given."""
+        """The options of the cameras, as they were given."""
         return self._images
 
     @property
     def halves(self) -> int:
-        """1, or 2 when they take turns."""
+        """The number of halves: 1, or 2 that take turns."""
         return len(self._turns)
 
     @property
     def unwrapped(self) -> VectorEnv:
-        """Itself, which wraps nothing."""
+        """This env itself, which wraps nothing."""
         return self
 
     @property
     def idle(self) -> NDArray[np.bool_]:
-        """bool (num_envs,), a copy: which envs have had their share of the episodes, with order="partition"; they
-        stay as they are. Where all are idle, each episode was played once."""
+        """bool (num_envs,), a copy: which envs have played their share of the episodes, with
+        order="partition"; they stay as they are. When all envs are idle, each episode has been
+        played once."""
         self._require_idle()
         return np.concatenate([simulator.idle for simulator in self.simulators])
 
     def env_states(self) -> EnvStates:
-        """The states of all envs in arrays, as copies: for rewards and observations of one's own.
+        """The states of all envs in arrays, as copies: for rewards and observations of your own.
 
-        Where an episode ended in the last step, it is the state in which the next one begins."""
+        If an episode ended in the last step, the env's state is the one in which the next episode
+        begins."""
         self._require_idle()
         return joined([simulator.env_states() for simulator in self.simulators])
 
     def episode_noise(self) -> dict[str, NDArray[np.float32]]:
-        """The noise and delay that the episode of each env has drawn where options give ranges, float32
-        (num_envs,) of each: Simulator.episode_noise(). For critics that may know it, and for logs. That of images:
-        Renderer.episode_noise() of `renderers`."""
+        """The noise and delay that each env's episode has drawn from the ranges in the options,
+        each float32 (num_envs,): see Simulator.episode_noise(). For critics that may know them, and
+        for logs. Renderer.episode_noise() of `renderers` gives the noise of images."""
         self._require_idle()
         return batch_of([simulator.episode_noise() for simulator in self.simulators])
 
     def set_states(self, states: EnvStates, envs: Iterable[int] | None = None) -> NDArray[np.bool_]:
-        """Has all envs, or those with the numbers `envs`, in that order, go on from states of one's own, as if
-        an episode had begun there: Simulator.set_states() says what is taken as it is, and what is refused.
-        observe() shows what they see.
+        """Makes all envs, or those with the numbers `envs` in that order, continue from states that
+        you give, as if an episode had begun there. Simulator.set_states() documents what is used as
+        it is, and what is refused. observe() returns the new observations.
 
-        Returns bool (n,): where an env has its state. Raises what Simulator.set_states() raises, and nothing
-        has changed then."""
+        Returns bool (n,): true where an env has its state. Raises the exceptions of
+        Simulator.set_states(); nothing has then changed."""
         self._require_idle()
         chosen = np.arange(self.num_envs) if envs is None else distinct_envs(envs, self.num_envs)
         self._parts[0].simulator.check_states(states)
@@ -337,17 +350,17 @@ class VectorEnv(_Base):
         return were_set
 
     def rows(self, half: int) -> slice:
-        """The envs of a half."""
+        """The rows of a half's envs."""
         self._require_half(half)
         size = self.num_envs // self.halves
         return slice(half * size, (half + 1) * size)
 
     def buffers(self, steps: int) -> dict[str, NDArray[Any]]:
-        """Memory for a rollout, [time, env, ...], to be passed on row by row: see step().
+        """Arrays for a rollout, [time, env, ...], to be passed to step() row by row.
 
         Observations ("state", and "rgb", "depth", "semantics" with images) have `steps` + 1 rows,
-        for the one before the first step; "rewards" float32, "terminations" and "truncations" bool,
-        and "endings" uint8 have `steps`.
+        because of the observation before the first step. "rewards" (float32), "terminations" and
+        "truncations" (bool), and "endings" (uint8) have `steps` rows.
         """
         self._require_open()
         shapes = self._parts[0].landing_shapes()
@@ -363,14 +376,15 @@ class VectorEnv(_Base):
         """Begins episodes.
 
         Args:
-            seed: as if the env had just been made with this seed. None goes on: each env begins
-                the next of its episodes; the first call finds them at the start of the first.
-            options: None, or
+            seed: resets everything, as if the env had just been made with this seed. With None,
+                each env begins its next episode; in the first call, the envs are at the start of
+                their first.
+            options: None, or a dictionary with one or both of
                 "reset_mask": bool (num_envs,), the envs that begin an episode; the others stay;
-                "episodes": int (num_envs,), the index of the episode that each env begins, negative
-                for the next of its own. IndexError for one that the world does not have, ValueError
-                for one in which the robot cannot start (Simulator.skipped_episodes); then no env
-                begins any.
+                "episodes": int (num_envs,), the index of the episode that each env begins, or
+                negative for its own next episode. Raises IndexError for an episode that the world
+                does not have, and ValueError for one in which the robot cannot start
+                (Simulator.skipped_episodes); then no env begins an episode.
 
         Returns:
             The observations of all envs, and an empty dictionary.
@@ -395,7 +409,7 @@ class VectorEnv(_Base):
         return self.observe(), {}
 
     def observe(self, out: Row | None = None) -> Observations:
-        """What all envs see now, in `out` as in step()."""
+        """The observations of all envs now, written to `out` as in step()."""
         self._require_idle()
         self._check_out(out, self.num_envs)
         places = [part_of(out, self.rows(number)) for number in range(self.halves)]
@@ -403,22 +417,25 @@ class VectorEnv(_Base):
         return batch_of(seen)
 
     def step(self, actions: Any, out: Row | None = None) -> StepResult:
-        """One step of all envs.
+        """Steps all envs once.
 
         Args:
-            actions: as `action_space` has them; see the class.
-            out: where results land instead of new arrays: any of "state" (the flat observation),
-                "rgb", "depth", "semantics", "rewards", "terminations", "truncations" and "endings",
-                each an array [num_envs, ...] without gaps of exactly the result's type, as the
-                rows of buffers() are. Images are drawn there, the rest is copied once.
+            actions: as in `action_space`; see the class.
+            out: arrays to which results are written, instead of new arrays: any of "state" (the
+                flat observation), "rgb", "depth", "semantics", "rewards", "terminations",
+                "truncations" and "endings", each a contiguous array [num_envs, ...] of exactly the
+                result's type, such as the rows of buffers(). Images are drawn there directly; other
+                results are copied once.
 
         Returns:
             Observations, rewards float32 (num_envs,), terminations and truncations bool
-            (num_envs,), and infos; of an env with one half, what landed in `out` as it lies there.
+            (num_envs,), and infos. With one half, results that were written to `out` are those
+            arrays themselves.
 
-        Raises ValueError or TypeError for actions or places of another shape or type, and no env
-        has stepped then. Where something else raises, such as a task of one's own or Ctrl-C, the step
-        is cut off: nothing goes on before reset() of all envs or restore_state().
+        Raises ValueError or TypeError for actions or `out` arrays of another shape or type; no env
+        has then stepped. If something else raises an exception, such as a task of your own or
+        Ctrl-C, the step is cut off: you must reset() all envs or call restore_state() before
+        anything else.
         """
         self._require_idle()
         rows = self._actions.rows(actions, self.num_envs)
@@ -432,14 +449,14 @@ class VectorEnv(_Base):
         return step_of_batch(self._parts, results)
 
     def send(self, actions: Any, half: int = 0, out: Row | None = None) -> None:
-        """Begins a step of one half, and returns at once.
+        """Begins a step of one half and returns at once.
 
         Args:
-            actions: of the half's envs; they must stay as they are until recv().
-            half: which.
+            actions: actions of the half's envs; they must not change until recv().
+            half: index of the half.
             out: as in step(), with the rows of the half's envs.
 
-        Raises as step() does, and nothing is under way then.
+        Raises the same exceptions as step(); no step is then under way.
         """
         self._require_half(half)
         self._require_idle(half)
@@ -449,8 +466,8 @@ class VectorEnv(_Base):
         self._turns.begin(half, rows, out)
 
     def recv(self, half: int = 0) -> StepResult:
-        """Waits for the step that send() began, and returns its results for the half's envs. Where Ctrl-C
-        ends the wait, the step stays under way, and the next call returns its results."""
+        """Waits for the step that send() began, and returns its results for the half's envs. If
+        Ctrl-C ends the wait, the step stays under way, and the next call returns its results."""
         self._require_half(half)
         return self._turns.end(half)
 
@@ -468,21 +485,23 @@ class VectorEnv(_Base):
         return tuple(frame for one in self._onlookers for frame in one.render()["rgb"])
 
     def save_state(self, envs: Iterable[int] | None = None) -> bytes:
-        """All that later steps depend on, and the sums of the episodes under way; of all envs, or of those with
-        the numbers `envs`, in that order."""
+        """Everything on which later steps depend, and the sums of the episodes under way, as bytes:
+        of all envs, or of those with the numbers `envs`, in that order."""
         self._require_idle()
         if envs is None:
             return saved_states.state_of_all(self._parts)
         return saved_states.state_of(self._parts, env_numbers(envs, self.num_envs))
 
     def restore_state(self, state: bytes, envs: Iterable[int] | None = None) -> None:
-        """Goes on, bit for bit, from a state that an env of the same world and options saved; observe() shows
-        it. Raises Error for bytes that are none, and changes nothing.
+        """Continues, bit for bit, from a state that a VectorEnv of the same world and options
+        saved; observe() returns the new observations. Raises Error and changes nothing if the bytes
+        are not such a state.
 
-        A state of all envs is for one with as many envs and halves. A state of some envs is for as many, of
-        any VectorEnv with the same seed; that of one env, for any number of them: to try many plans. It goes
-        into those with the numbers `envs`, or into all. Their random numbers and episodes to come, and of a
-        task of one's own `steps` and `progress`, stay their own.
+        A state of all envs is for a VectorEnv with the same number of envs and halves. A state of
+        some envs can be restored to the same number of envs in any VectorEnv with the same seed,
+        and a state of one env to any number of envs, to try many plans. It is restored to the envs
+        with the numbers `envs`, or to all. These envs keep their own future random numbers and
+        episodes, and a task of your own keeps its `steps` and `progress`.
         """
         self._require_idle()
         chosen = None if envs is None else distinct_envs(envs, self.num_envs)
@@ -490,9 +509,9 @@ class VectorEnv(_Base):
         self._broken_off[slice(None) if chosen is None else chosen] += 1
 
     def close(self, **kwargs: Any) -> None:
-        """Waits for what is under way, which recv() still returns, and frees simulators, renderers and
-        the world, unless someone else has them. What was returned stays valid; all else raises
-        RuntimeError from now on."""
+        """Waits for steps that are under way, whose results recv() still returns, and frees
+        simulators, renderers and the world, unless they are referenced elsewhere. Results that were
+        returned stay valid; everything else raises RuntimeError from now on."""
         if not self.closed:
             self._turns.close()
             self._parts, self._onlookers = [], []
@@ -506,7 +525,8 @@ class VectorEnv(_Base):
         )
 
     def _require_idle(self, *halves: int) -> None:
-        """Raises RuntimeError where these halves, or all, cannot begin anything."""
+        """Raises RuntimeError if these halves, or all halves if none is given, cannot begin
+        anything."""
         self._require_open()
         self._turns.require_idle(*halves)
 

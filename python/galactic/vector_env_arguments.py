@@ -1,4 +1,4 @@
-"""What a VectorEnv is given: reads it, and refuses what cannot be before anything happens."""
+"""Reads the arguments of a VectorEnv, and refuses invalid ones before anything happens."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from galactic.task import Task
 
 Array = NDArray[Any]
 
-#: Options of a Simulator that are none of a VectorEnv, and what to do instead.
+#: Options of a Simulator that a VectorEnv does not have, and what to do instead.
 _NO_OPTIONS = {
     "envs": "give num_envs",
     "auto_reset": "its envs begin the next episode by themselves, those of a Simulator need not",
@@ -26,20 +26,20 @@ _OF_THE_PAPER = 'a dictionary of "continuous" and "discrete": actions="paper"'
 
 
 def require(holds: bool, name: str, found: object, wanted: str) -> None:
-    """ValueError for an argument that is not what is wanted."""
+    """Raises ValueError for an argument that is not as expected."""
     if not holds:
         raise ValueError(f"{name} is {found!r}, expected {wanted}")
 
 
 def require_envs(num_envs: Any, halves: int) -> None:
-    """ValueError where there cannot be as many."""
+    """Raises ValueError if there cannot be this number of envs."""
     is_whole = isinstance(num_envs, numbers.Integral) and not isinstance(num_envs, bool)
     require(is_whole and num_envs > 0, "num_envs", num_envs, "a whole number above 0")
     require(num_envs % halves == 0, "num_envs", num_envs, "an even number for two halves")
 
 
 def require_simulator_options(options: Mapping[str, Any]) -> None:
-    """TypeError for options that a VectorEnv chooses itself, or takes elsewhere."""
+    """Raises TypeError for options that a VectorEnv sets itself, or takes elsewhere."""
     for name, value in options.items():
         instead = _NO_OPTIONS.get(name)
         if name in Renderer.OPTIONS:
@@ -49,7 +49,8 @@ def require_simulator_options(options: Mapping[str, Any]) -> None:
 
 
 def own_task_of(task: Any) -> Callable[[], Task] | None:
-    """What makes tasks of one's own; None where `task` names one of the simulation's."""
+    """The function that makes the task, if it is one's own; None if `task` names one of the
+    simulation's."""
     if isinstance(task, Task):
         name = type(task).__name__
         raise TypeError(f"task is a {name}; give what makes one for each half, such as the class")
@@ -57,7 +58,7 @@ def own_task_of(task: Any) -> Callable[[], Task] | None:
 
 
 def progress_of(value: Any, is_evaluation: bool) -> float:
-    """VectorEnv.progress as it was set. ValueError for what it cannot be."""
+    """VectorEnv.progress as it was set. Raises ValueError for invalid values."""
     is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
     require(is_number and 0.0 <= value <= 1.0, "progress", value, "a number from 0 to 1")
     is_its_own = not is_evaluation or value == 1.0
@@ -66,7 +67,7 @@ def progress_of(value: Any, is_evaluation: bool) -> float:
 
 
 def env_numbers(envs: Iterable[int], count: int) -> NDArray[np.int64]:
-    """Numbers of some of `count` envs. Raises TypeError or IndexError for what is none."""
+    """Numbers of some of `count` envs. Raises TypeError or IndexError for anything else."""
     found = np.asarray(envs if isinstance(envs, np.ndarray) else list(envs))
     is_list = found.ndim == 1 and (found.dtype.kind in "iu" or not found.size)
     if not is_list:
@@ -81,7 +82,7 @@ def env_numbers(envs: Iterable[int], count: int) -> NDArray[np.int64]:
 
 
 def distinct_envs(envs: Iterable[int], count: int) -> NDArray[np.int64]:
-    """The same of envs that go on from something each. Raises Error where one is named twice."""
+    """The same for envs to which something is restored. Raises Error if an env is named twice."""
     found = env_numbers(envs, count)
     numbers, times = np.unique(found, return_counts=True)
     if len(numbers) < len(found):
@@ -91,7 +92,7 @@ def distinct_envs(envs: Iterable[int], count: int) -> NDArray[np.int64]:
 
 
 class Actions:
-    """Actions as VectorEnv(actions=kind) takes them, of robots that have `count` of them."""
+    """Actions as VectorEnv(actions=kind) takes them, for robots with `count` actions."""
 
     def __init__(self, kind: str, count: int) -> None:
         self._is_of_the_paper = kind == "paper"
@@ -99,15 +100,15 @@ class Actions:
 
     @property
     def space(self) -> spaces.Space:
-        """Of one env."""
+        """The action space of one env."""
         if not self._is_of_the_paper:
             return spaces.Box(-1.0, 1.0, (self._count,), np.float32)
         motions = spaces.Box(-1.0, 1.0, (self._count - 2,), np.float32)
         return spaces.Dict({"continuous": motions, "discrete": spaces.MultiDiscrete([2, 2])})
 
     def rows(self, given: Any, envs: int) -> NDArray[np.float32]:
-        """What `given` asks of so many envs, as the simulator takes it: (envs, count). Raises where it has
-        another shape."""
+        """The actions `given` for this number of envs, as the simulator takes them: (envs, count).
+        Raises an exception if they have another shape or type."""
         if not self._is_of_the_paper:
             return _rows_of("actions", given, (envs, self._count))
         if not isinstance(given, Mapping):
@@ -128,7 +129,8 @@ class Actions:
 
 def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float32]:
     rows = np.asarray(given)
-    # What numpy would turn into numbers: text by reading it, complex ones by leaving out a part, None as NaN.
+    # numpy would turn these into numbers: text by parsing it, complex numbers by dropping a part,
+    # None as NaN.
     if rows.dtype.kind not in "biufO":
         raise TypeError(f"{name} has the type {rows.dtype}, expected numbers, such as float32")
     if rows.dtype.kind == "O":
@@ -139,7 +141,7 @@ def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float3
         raise ValueError(f"{name} has the shape {rows.shape}, expected {shape}")
     if rows.dtype == np.float32:
         return rows
-    # What 32 bits do not hold; the simulator's own limits are narrower.
+    # Numbers may be too large for 32 bits; the simulator's own limits are narrower.
     with np.errstate(over="ignore"):
         return rows.astype(np.float32)
 
@@ -147,8 +149,8 @@ def _rows_of(name: str, given: Any, shape: tuple[int, int]) -> NDArray[np.float3
 def episodes_to_begin(
     seed: int | None, options: Mapping[str, Any] | None, envs: int
 ) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
-    """Which of so many envs VectorEnv.reset(seed, options) has begin an episode, and which one,
-    Simulator.NEXT_EPISODE where none is named."""
+    """Which of this number of envs begin an episode in VectorEnv.reset(seed, options), and which
+    episode; Simulator.NEXT_EPISODE where none is named."""
     options = options or {}
     unknown = set(options) - {"reset_mask", "episodes"}
     if unknown:
@@ -165,7 +167,7 @@ def episodes_to_begin(
     if episodes.shape != (envs,) or not np.issubdtype(episodes.dtype, np.integer):
         raise ValueError(f"episodes are {episodes.dtype} {episodes.shape}, expected int ({envs},)")
     if episodes.dtype == np.uint64:
-        # What 64 bits with a sign do not hold must not become negative.
+        # Numbers that are too large for signed 64-bit integers must not become negative.
         too_large = episodes[mask & (episodes >= np.uint64(2**63))]
         if len(too_large):
             raise IndexError(f"there is no episode {too_large[0]}")
@@ -176,7 +178,7 @@ def episodes_to_begin(
 def check_places(
     out: Mapping[str, Array], known: Mapping[str, tuple[tuple[int, ...], Any]], envs: int
 ) -> None:
-    """Refuses places that results cannot land in, before anything is done."""
+    """Refuses arrays to which results cannot be written, before anything is done."""
     if not isinstance(out, Mapping):
         raise TypeError(f"out is a {type(out).__name__}, expected a dictionary of arrays by name")
     for name, place in out.items():
@@ -195,7 +197,7 @@ def check_places(
 
 
 def _check_apart(out: Mapping[str, Array]) -> None:
-    """Refuses places that share memory, where the one result would lie on the other."""
+    """Refuses arrays that share memory, because one result would overwrite another."""
     spans = sorted(
         (place.__array_interface__["data"][0], place.nbytes, name) for name, place in out.items()
     )
