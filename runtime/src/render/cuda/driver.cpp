@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "render/cuda_symbols.h"
 #include "render/device_wish.h"
 #include "support/try.h"
 
@@ -25,25 +26,8 @@ tl::unexpected<Error> refuse(std::string message) {
   return fail(ErrorCode::kUnsupported, kWhere, std::move(message));
 }
 
-/// Looks functions up; remembers the first that is missing.
-class Symbols {
- public:
-  explicit Symbols(void* library) : library_(library) {}
-
-  template <class Function>
-  void find(const char* name, Function& function) {
-    function = reinterpret_cast<Function>(dlsym(library_, name));
-    if (function == nullptr && missing_ == nullptr) missing_ = name;
-  }
-  [[nodiscard]] const char* missing() const { return missing_; }
-
- private:
-  void* library_;
-  const char* missing_ = nullptr;
-};
-
 const char* findAll(void* library, DriverFunctions& functions) {
-  Symbols symbols(library);
+  CudaSymbols symbols(library);
   symbols.find("cuInit", functions.init);
   symbols.find("cuGetErrorName", functions.error_name);
   symbols.find("cuDeviceGetCount", functions.device_count);

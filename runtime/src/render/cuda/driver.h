@@ -5,15 +5,14 @@
 #include <string>
 
 #include "galactic/error.h"
+#include "render/cuda_symbols.h"
 
 namespace galactic::render::cuda {
 
 /// Addresses of memory on a device.
 using DeviceAddress = std::uint64_t;
 
-/// The functions of CUDA's driver that are used, as libcuda.so.1 has them. They are declared here,
-/// because its interface is fixed and cuda.h comes with a toolkit that users need not have: see
-/// "CUDA Driver API" in NVIDIA's manuals. All return 0 where they succeed.
+/// The functions of CUDA's driver that are used: see CudaSymbols.
 struct DriverFunctions {
   int (*init)(unsigned flags) = nullptr;
   int (*error_name)(int error, const char** name) = nullptr;
@@ -50,7 +49,7 @@ class Driver {
   /// Fails with kUnsupported where there is no driver, where it is too old, and where it finds no
   /// device. `library`: a path, or a name that the system's loader finds.
   [[nodiscard]] static Result<std::unique_ptr<Driver>> open(
-      const std::string& library = "libcuda.so.1");
+      const std::string& library = kCudaLibrary);
 
   [[nodiscard]] const DriverFunctions& functions() const { return functions_; }
   [[nodiscard]] int deviceCount() const { return device_count_; }

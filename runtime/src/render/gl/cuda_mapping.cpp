@@ -1,31 +1,31 @@
-// CUDA is loaded when it is first asked for: the program neither links nor needs it.
 #include "render/gl/cuda_mapping.h"
 
-#include <cuda.h>
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <bit>
+#include <cstddef>
 
+#include "render/cuda_symbols.h"
 #include "render/gl/handles.h"
 
 namespace galactic::render::gl {
 
-/// The functions of CUDA's driver that are used, by their names in libcuda.so.1.
+/// The functions of CUDA's driver that are used.
 struct CudaMapping::Driver {
-  CUresult (*current)(CUcontext*) = nullptr;
-  CUresult (*device)(CUdevice*) = nullptr;
-  CUresult (*register_buffer)(CUgraphicsResource*, unsigned, unsigned) = nullptr;
-  CUresult (*unregister)(CUgraphicsResource) = nullptr;
-  CUresult (*map)(unsigned, CUgraphicsResource*, CUstream) = nullptr;
-  CUresult (*unmap)(unsigned, CUgraphicsResource*, CUstream) = nullptr;
-  CUresult (*address)(CUdeviceptr*, std::size_t*, CUgraphicsResource) = nullptr;
-  CUresult (*synchronize)(CUstream) = nullptr;
+  int (*current)(void** context) = nullptr;
+  int (*device)(int* device) = nullptr;
+  int (*register_buffer)(void** resource, unsigned buffer, unsigned flags) = nullptr;
+  int (*unregister)(void* resource) = nullptr;
+  int (*map)(unsigned count, void** resources, void* stream) = nullptr;
+  int (*unmap)(unsigned count, void** resources, void* stream) = nullptr;
+  int (*address)(std::uint64_t* address, std::size_t* bytes, void* resource) = nullptr;
+  int (*synchronize)(void* stream) = nullptr;
 
   std::uint32_t buffer = 0;
-  CUgraphicsResource resource = nullptr;
+  void* resource = nullptr;
   /// That the buffer is mapped for.
-  CUstream stream = nullptr;
+  void* stream = nullptr;
   bool mapped = false;
 };
 
@@ -35,12 +35,6 @@ tl::unexpected<Error> refused(const std::string& message) {
   return fail(ErrorCode::kUnsupported, "device images", message);
 }
 
-template <class Function>
-bool find(void* library, const char* name, Function& function) {
-  function = reinterpret_cast<Function>(dlsym(library, name));
-  return function != nullptr;
-}
-
 }  // namespace
 
 CudaMapping::CudaMapping() = default;
@@ -48,56 +42,60 @@ CudaMapping::~CudaMapping() { forget(); }
 
 Result<MappedBuffer> CudaMapping::map(std::uint32_t buffer, std::uintptr_t stream) {
   if (driver_ == nullptr) {
-    void* library = dlopen("libcuda.so.1", RTLD_LAZY | RTLD_LOCAL);
-    if (library == nullptr) return refused("found no libcuda.so.1; install NVIDIA's driver");
+    void* library = dlopen(kCudaLibrary, RTLD_LAZY | RTLD_LOCAL);
+    if (library == nullptr) {
+      return refused(fmt::format("found no {}; install NVIDIA's driver", kCudaLibrary));
+    }
     auto driver = std::make_unique<Driver>();
-    const bool complete = find(library, "cuCtxGetCurrent", driver->current) &&
-                          find(library, "cuCtxGetDevice", driver->device) &&
-                          find(library, "cuGraphicsGLRegisterBuffer", driver->register_buffer) &&
-                          find(library, "cuGraphicsUnregisterResource", driver->unregister) &&
-                          find(library, "cuGraphicsMapResources", driver->map) &&
-                          find(library, "cuGraphicsUnmapResources", driver->unmap) &&
-                          find(library, "cuGraphicsResourceGetMappedPointer_v2", driver->address) &&
-                          find(library, "cuStreamSynchronize", driver->synchronize);
-    if (!complete) return refused("libcuda.so.1 is too old to share buffers with OpenGL");
+    CudaSymbols symbols(library);
+    symbols.find("cuCtxGetCurrent", driver->current);
+    symbols.find("cuCtxGetDevice", driver->device);
+    symbols.find("cuGraphicsGLRegisterBuffer", driver->register_buffer);
+    symbols.find("cuGraphicsUnregisterResource", driver->unregister);
+    symbols.find("cuGraphicsMapResources", driver->map);
+    symbols.find("cuGraphicsUnmapResources", driver->unmap);
+    symbols.find("cuGraphicsResourceGetMappedPointer_v2", driver->address);
+    symbols.find("cuStreamSynchronize", driver->synchronize);
+    if (const char* missing = symbols.missing()) {
+      return refused(fmt::format("{} is too old to share buffers with OpenGL: it has no {}",
+                                 kCudaLibrary, missing));
+    }
     driver_ = std::move(driver);
   }
-  CUcontext context = nullptr;
-  CUdevice device = 0;
-  if (driver_->current(&context) != CUDA_SUCCESS || context == nullptr ||
-      driver_->device(&device) != CUDA_SUCCESS) {
+  void* context = nullptr;
+  int device = 0;
+  if (driver_->current(&context) != 0 || context == nullptr || driver_->device(&device) != 0) {
     return refused("no CUDA context is current on this thread; make one first");
   }
   if (driver_->buffer != buffer) {
     forget();
-    // Only OpenGL writes.
-    const CUresult result =
-        driver_->register_buffer(&driver_->resource, buffer, CU_GRAPHICS_REGISTER_FLAGS_READ_ONLY);
-    if (result != CUDA_SUCCESS) {
+    // CU_GRAPHICS_REGISTER_FLAGS_READ_ONLY: only OpenGL writes.
+    constexpr unsigned kReadOnly = 1;
+    const int result = driver_->register_buffer(&driver_->resource, buffer, kReadOnly);
+    if (result != 0) {
       return refused(
           fmt::format("CUDA cannot share OpenGL's buffer (error {}): the renderer's "
                       "device must be the one of the current CUDA context, see "
                       "RenderOptions::device",
-                      static_cast<int>(result)));
+                      result));
     }
     driver_->buffer = buffer;
   }
-  CUdeviceptr address = 0;
+  std::uint64_t address = 0;
   std::size_t size = 0;
-  driver_->stream = std::bit_cast<CUstream>(stream);
-  CUresult result = driver_->map(1, &driver_->resource, driver_->stream);
-  if (result == CUDA_SUCCESS) {
+  driver_->stream = std::bit_cast<void*>(stream);
+  int result = driver_->map(1, &driver_->resource, driver_->stream);
+  if (result == 0) {
     driver_->mapped = true;
     result = driver_->address(&address, &size, driver_->resource);
   }
   // Other streams may use it, too.
-  if (result == CUDA_SUCCESS) result = driver_->synchronize(driver_->stream);
-  if (result != CUDA_SUCCESS) {
-    return refused(
-        fmt::format("CUDA cannot map OpenGL's buffer (error {})", static_cast<int>(result)));
+  if (result == 0) result = driver_->synchronize(driver_->stream);
+  if (result != 0) {
+    return refused(fmt::format("CUDA cannot map OpenGL's buffer (error {})", result));
   }
   // CUDA's devices are numbered as its handles of them are.
-  return MappedBuffer{static_cast<std::uint64_t>(address), static_cast<int>(device)};
+  return MappedBuffer{address, device};
 }
 
 void CudaMapping::unmap() {
