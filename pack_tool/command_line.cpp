@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,7 @@
 #include "pack_tool/diff/report_diff.h"
 #include "pack_tool/option_values.h"
 #include "pack_tool/pictures/figure_picture.h"
+#include "pack_tool/verbs/verbs.h"
 #include "support/text/help_lines.h"
 #include "support/text/nearest_name.h"
 #include "support/text/number_text.h"
@@ -74,28 +76,37 @@ void addPacks(CLI::App& verb, std::vector<std::filesystem::path>& packs) {
   verb.add_option("PACK", packs, "Packs of any kind")->required()->type_name("");
 }
 
-/// The options of all verbs, filled while parsing.
-struct AllOptions {
-  InfoOptions info;
-  CheckOptions check;
-  ColumnOptions column;
-  DiffOptions diff;
-  ExportOptions export_;
-  PictureOptions picture;
-  ReportOptions report;
-  ViewOptions view;
+/// Adds the verbs to a parser, and has `chosen` run the one that is typed.
+class Verbs {
+ public:
+  Verbs(CLI::App& app, ChosenVerb& chosen) : app_(app), chosen_(chosen) {}
+
+  /// `check` throws a CLI::ParseError where options do not fit together.
+  template <class Options>
+  void add(const char* name, const char* meaning, void (*add_options)(CLI::App&, Options&),
+           int (*run)(const Options&, const Console&),
+           void (*check)(const CLI::App&, const Options&) = nullptr) {
+    CLI::App* verb = app_.add_subcommand(name, meaning)->group("Verbs");
+    const auto options = std::make_shared<Options>();
+    add_options(*verb, *options);
+    verb->final_callback([&chosen = chosen_, verb, options, run, check] {
+      if (check != nullptr) check(*verb, *options);
+      chosen = [options, run](const Console& console) { return run(*options, console); };
+    });
+  }
+
+ private:
+  CLI::App& app_;
+  ChosenVerb& chosen_;
 };
 
-void addInfo(CLI::App& app, InfoOptions& options) {
-  CLI::App& verb = *app.add_subcommand("info", "Tell what is in packs");
+void addInfoOptions(CLI::App& verb, InfoOptions& options) {
   addPacks(verb, options.packs);
   addJson(verb, options.form);
   addTrusted(verb, options.trust);
 }
 
-void addCheck(CLI::App& app, CheckOptions& options) {
-  CLI::App& verb = *app.add_subcommand(
-      "check", "Verify packs completely; the exit code is that of the worst one");
+void addCheckOptions(CLI::App& verb, CheckOptions& options) {
   verb.add_option("PACK", options.packs, "Packs of any kind, and folders with packs in them")
       ->required()
       ->type_name("");
@@ -111,9 +122,7 @@ void addCheck(CLI::App& app, CheckOptions& options) {
       "-q,--quiet", [&options] { options.is_quiet = true; }, "Only errors");
 }
 
-void addColumn(CLI::App& app, ColumnOptions& options) {
-  CLI::App& verb =
-      *app.add_subcommand("column", "Print the free spans of the column nearest to a point");
+void addColumnOptions(CLI::App& verb, ColumnOptions& options) {
   addPack(verb, {"PACK", "A scene pack"}, options.pack);
   verb.add_option_function<std::string>(
           "--at",
@@ -149,11 +158,7 @@ void checkDiff(const CLI::App& verb, const DiffOptions& options) {
   }
 }
 
-void addDiff(CLI::App& app, DiffOptions& options) {
-  CLI::App& verb = *app.add_subcommand(
-      "diff",
-      "Compare two packs of one kind by their meaning, or two reports of galactic-bake; exit code "
-      "7 if they differ");
+void addDiffOptions(CLI::App& verb, DiffOptions& options) {
   addPack(verb, {"A", "A pack of any kind, or the golden report: a .json file"}, options.a);
   addPack(verb, {"B", "Another pack of the same kind, or the report to compare"}, options.b);
   verb.add_option("--tolerance", options.tolerance, "Lengths that differ by no more are equal")
@@ -169,7 +174,6 @@ void addDiff(CLI::App& app, DiffOptions& options) {
       "Ignore provenance, options and statistics: compare what is simulated");
   addJson(verb, options.form);
   addTrusted(verb, options.trust);
-  verb.callback([&verb, &options] { checkDiff(verb, options); });
 }
 
 /// What only objects and robots have: `figures` is filled when one of them is given.
@@ -225,9 +229,7 @@ void addEpisodePictureOptions(CLI::App& verb, EpisodePictureOptions& options) {
       ->type_name("N");
 }
 
-void addPicture(CLI::App& app, PictureOptions& options) {
-  CLI::App& verb = *app.add_subcommand(
-      "picture", "Draw a scene, objects, a robot or the episodes of a world into a PNG file");
+void addPictureOptions(CLI::App& verb, PictureOptions& options) {
   addPack(verb, {"PACK", "A pack of any kind but policies and textures"}, options.pack);
   addOutput(verb, options.output);
   addGridPictureOptions(verb, options.grids);
@@ -244,17 +246,13 @@ void addPicture(CLI::App& app, PictureOptions& options) {
   addTrusted(verb, options.trust);
 }
 
-void addReport(CLI::App& app, ReportOptions& options) {
-  CLI::App& verb = *app.add_subcommand(
-      "report", "Write an HTML page with a picture of everything in packs or a world");
+void addReportOptions(CLI::App& verb, ReportOptions& options) {
   addPacks(verb, options.packs);
   addOutput(verb, options.output);
   addTrusted(verb, options.trust);
 }
 
-void addView(CLI::App& app, ViewOptions& options) {
-  CLI::App& verb = *app.add_subcommand(
-      "view", "Write an HTML page that shows a pack or a world in three dimensions");
+void addViewOptions(CLI::App& verb, ViewOptions& options) {
   addPack(verb, {"PACK", "A pack of any kind"}, options.pack);
   addOutput(verb, options.output);
   const CLI::Validator is_power_of_two(
@@ -283,16 +281,17 @@ void addEpisodeSetOptions(CLI::App& verb, ExportOptions& options) {
                                                        {"-y", FileUp::kMinusY},
                                                        {"-z", FileUp::kMinusZ}}))
       ->type_name("AXIS");
-  verb.final_callback([&options] {
-    if (options.output.empty() && options.format != ExportFormat::kEpisodeSet) {
-      throw CLI::RequiredError("--out");
-    }
-  });
 }
 
-void addExport(CLI::App& app, ExportOptions& options) {
-  CLI::App& verb = *app.add_subcommand(
-      "export", "Write a scene's grid, objects, a robot or episodes for other programs");
+void checkExport(const CLI::App& /*verb*/, const ExportOptions& options) {
+  if (options.output.empty() && options.format != ExportFormat::kEpisodeSet) {
+    throw CLI::RequiredError("--out");
+  }
+  const std::string fault = exportFault(options);
+  if (!fault.empty()) throw CLI::ParseError(fault, CLI::ExitCodes::ValidationError);
+}
+
+void addExportOptions(CLI::App& verb, ExportOptions& options) {
   addPack(verb, {"PACK", "A pack of a scene, of objects, of a robot or of episodes, or a world"},
           options.pack);
   verb.add_option("-o,--out", options.output,
@@ -317,17 +316,6 @@ void addExport(CLI::App& app, ExportOptions& options) {
   verb.add_flag_callback(
       "--floors-only", [&options] { options.parts = MeshParts::kFloors; }, "OBJ, PLY: no ceilings");
   addTrusted(verb, options.trust);
-}
-
-Request chosenRequest(const CLI::App& app, AllOptions& options) {
-  if (app.got_subcommand("info")) return std::move(options.info);
-  if (app.got_subcommand("check")) return std::move(options.check);
-  if (app.got_subcommand("column")) return std::move(options.column);
-  if (app.got_subcommand("diff")) return std::move(options.diff);
-  if (app.got_subcommand("picture")) return std::move(options.picture);
-  if (app.got_subcommand("report")) return std::move(options.report);
-  if (app.got_subcommand("view")) return std::move(options.view);
-  return std::move(options.export_);
 }
 
 std::vector<std::string> namesOfVerbs(const CLI::App& app) {
@@ -368,37 +356,48 @@ std::string complaintOf(const CLI::App& app, const CLI::ParseError& error) {
 
 }  // namespace
 
-tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
-                                            const Console& console) {
+tl::expected<ChosenVerb, int> parseCommandLine(int argc, const char* const* argv,
+                                               const Console& console) {
   CLI::App app("Inspects, checks, compares, exports, draws and shows packs.", "galactic-pack");
-  AllOptions options;
   // Verbs inherit the footer that is set before them.
   app.footer(kExitCodesHelp);
   app.set_version_flag("--version", "galactic-pack " GALACTIC_VERSION);
   app.formatter(std::make_shared<HelpLines<CLI::Formatter, CLI::Option>>());
   app.get_formatter()->label("SUBCOMMAND", "VERB");
   app.require_subcommand(1);
-  addInfo(app, options.info);
-  addCheck(app, options.check);
-  addColumn(app, options.column);
-  addDiff(app, options.diff);
-  addExport(app, options.export_);
-  addPicture(app, options.picture);
-  addReport(app, options.report);
-  addView(app, options.view);
-  for (CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    verb->group("Verbs");
-  }
+  ChosenVerb chosen;
+  Verbs verbs(app, chosen);
+  verbs.add("info", "Tell what is in packs", addInfoOptions, runInfo);
+  verbs.add("check", "Verify packs completely; the exit code is that of the worst one",
+            addCheckOptions, runCheck);
+  verbs.add("column", "Print the free spans of the column nearest to a point", addColumnOptions,
+            runColumn);
+  verbs.add(
+      "diff",
+      "Compare two packs of one kind by their meaning, or two reports of galactic-bake; exit code "
+      "7 if they differ",
+      addDiffOptions, runDiff, checkDiff);
+  verbs.add("export", "Write a scene's grid, objects, a robot or episodes for other programs",
+            addExportOptions, runExport, checkExport);
+  verbs.add("picture", "Draw a scene, objects, a robot or the episodes of a world into a PNG file",
+            addPictureOptions, runPicture);
+  verbs.add("report", "Write an HTML page with a picture of everything in packs or a world",
+            addReportOptions, runReport);
+  verbs.add("view", "Write an HTML page that shows a pack or a world in three dimensions",
+            addViewOptions, runView);
   checkSwitches(app);
 
-  constexpr std::string_view kVerbs = "info, check, column, diff, export, picture, report or view";
-  if (argc < 2) return tl::unexpected(usageError(console, fmt::format("no verb; give {}", kVerbs)));
+  const std::vector<std::string> names = namesOfVerbs(app);
+  const std::string any_verb = fmt::format(
+      "{} or {}", fmt::join(std::span(names).first(names.size() - 1), ", "), names.back());
+  if (argc < 2) {
+    return tl::unexpected(usageError(console, fmt::format("no verb; give {}", any_verb)));
+  }
   const std::string first = argv[1];
   const auto named = [&first](const CLI::App* verb) { return verb->get_name() == first; };
   if (!first.starts_with('-') && app.get_subcommands(named).empty()) {
-    const std::string nearest = suggestNames(first, namesOfVerbs(app));
-    const std::string advice =
-        nearest.starts_with("did you") ? nearest : fmt::format("give {}", kVerbs);
+    const std::string nearest = suggestNames(first, names);
+    const std::string advice = nearest.starts_with("did you") ? nearest : "give " + any_verb;
     return tl::unexpected(
         usageError(console, fmt::format("\"{}\" is not a verb; {}", first, advice)));
   }
@@ -410,11 +409,7 @@ tl::expected<Request, int> parseCommandLine(int argc, const char* const* argv,
     return tl::unexpected(
         usageError(console, withSuggestions(complaintOf(app, error), longNamesOf(app))));
   }
-  if (app.got_subcommand("export")) {
-    const std::string fault = exportFault(options.export_);
-    if (!fault.empty()) return tl::unexpected(usageError(console, fault));
-  }
-  return chosenRequest(app, options);
+  return chosen;
 }
 
 }  // namespace galactic::pack_tool
