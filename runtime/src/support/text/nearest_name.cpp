@@ -100,7 +100,7 @@ std::string withSuggestions(std::string_view complaint, const std::vector<std::s
   constexpr std::string_view kDashes = "--";
   const std::size_t begin = complaint.find(kDashes);
   if (begin == complaint.npos) return inOurWords(complaint);
-  const std::size_t end = complaint.find_first_of(" =:", begin);
+  const std::size_t end = complaint.find_first_of(" =:,;", begin);
   const std::string_view option = complaint.substr(begin, end - begin);
   // Of a known one the complaint is another.
   const bool is_known = std::find(known.begin(), known.end(), option) != known.end();

@@ -47,7 +47,8 @@ TEST(NearestName, IsAddedToComplaintsAboutOptions) {
   EXPECT_EQ(withSuggestions("unknown: --sed=3", options),
             "unknown: --sed=3; did you mean '--seed'?");
   for (const char* other : {"input is required", "unknown: --something-else", "unknown: --",
-                            "--seed: found nan, expected a number from 0 to 1"}) {
+                            "--seed: found nan, expected a number from 0 to 1",
+                            "--seed, --report and --radii are for scenes; leave them out"}) {
     EXPECT_EQ(withSuggestions(other, options), other);
   }
 }
