@@ -38,6 +38,10 @@ void requireNoFractions(const py::handle& given, const char* name) {
     refuseNumbers(name, typeText(array.dtype()) + " numbers");
 }
 
+bool areFinite(std::span<const float> numbers) {
+  return std::ranges::all_of(numbers, [](float one) { return std::isfinite(one); });
+}
+
 constexpr py::ssize_t kNumbersOfAPoint = 3;
 
 std::string shapeFound(const py::array& array) {
@@ -54,8 +58,7 @@ std::vector<Vec3> pointsIn(const py::array& shaped, const char* name) {
   std::vector<Vec3> points;
   points.reserve(static_cast<std::size_t>(count));
   for (py::ssize_t n = 0; n < count; ++n, numbers += kNumbersOfAPoint) {
-    if (!std::all_of(numbers, numbers + kNumbersOfAPoint,
-                     [](float one) { return std::isfinite(one); })) {
+    if (!areFinite({numbers, kNumbersOfAPoint})) {
       const py::ssize_t each = shape[shape.size() - 2];
       const std::string env = shape.size() == 2 ? "" : fmt::format("{}, ", n / each);
       throw py::value_error(
@@ -131,6 +134,17 @@ py::array numbersIn(const py::handle& given, const char* name) {
         fmt::format("{} has the type {}, expected numbers", name, typeText(array.dtype())));
   }
   return array;
+}
+
+std::vector<float> finiteNumbers(const py::handle& given, const char* name, std::size_t count) {
+  // Planners ask millions of times: what is of the type is no other number.
+  if (!py::isinstance<py::array_t<float>>(given)) static_cast<void>(numbersIn(given, name));
+  const auto array = inputOf<float>(given, name, {static_cast<py::ssize_t>(count)});
+  std::vector<float> numbers(array.data(), array.data() + count);
+  if (!areFinite(numbers)) {
+    throw py::value_error(fmt::format("{} holds a number that is not finite", name));
+  }
+  return numbers;
 }
 
 std::vector<Vec3> pointsOf(const py::handle& given, const char* name) {

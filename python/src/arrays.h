@@ -50,6 +50,11 @@ template <class T>
 /// numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
 [[nodiscard]] py::array numbersIn(const py::handle& given, const char* name);
 
+/// `given` as `count` finite numbers. ValueError for another shape or numbers that are not finite,
+/// TypeError for what numbersIn() refuses.
+[[nodiscard]] std::vector<float> finiteNumbers(const py::handle& given, const char* name,
+                                               std::size_t count);
+
 /// `given` as points, float (n, 3), or an empty list; ValueError for another shape or numbers that
 /// are not finite.
 [[nodiscard]] std::vector<Vec3> pointsOf(const py::handle& given, const char* name);

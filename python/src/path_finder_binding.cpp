@@ -21,15 +21,6 @@ namespace {
 
 constexpr py::ssize_t kNumbers = 3;
 
-Vec3 pointOf(const py::handle& given, const char* name) {
-  const auto array = inputOf<float>(given, name, {kNumbers});
-  const Vec3 point{array.data()[0], array.data()[1], array.data()[2]};
-  if (!std::isfinite(point.x + point.y + point.z)) {
-    throw py::value_error(fmt::format("{} holds a number that is not finite", name));
-  }
-  return point;
-}
-
 /// Bases with a yaw behind, (4,) or (n, 4), as EpisodeTable.base has them, are points without it;
 /// all else is what it is.
 py::object withoutYaw(const py::handle& given) {
@@ -43,7 +34,10 @@ py::object withoutYaw(const py::handle& given) {
 
 std::vector<Vec3> basesOf(const py::handle& given) { return pointsOf(withoutYaw(given), "bases"); }
 
-Vec3 baseOf(const py::handle& given, const char* name) { return pointOf(withoutYaw(given), name); }
+Vec3 baseOf(const py::handle& given, const char* name) {
+  const std::vector<float> numbers = finiteNumbers(withoutYaw(given), name, kNumbers);
+  return {numbers[0], numbers[1], numbers[2]};
+}
 
 /// float32 (n, 3).
 py::array_t<float> rowsOf(std::span<const Vec3> points) {

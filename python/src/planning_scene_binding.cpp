@@ -26,18 +26,6 @@
 namespace galactic::python {
 namespace {
 
-/// `given` as `count` finite numbers; ValueError when it is anything else.
-std::vector<float> finiteNumbers(const py::handle& given, const char* name, std::size_t count) {
-  // Planners ask millions of times: what is of the type is no other number.
-  if (!py::isinstance<py::array_t<float>>(given)) static_cast<void>(numbersIn(given, name));
-  const auto array = inputOf<float>(given, name, {static_cast<py::ssize_t>(count)});
-  std::vector<float> numbers(array.data(), array.data() + count);
-  if (!std::ranges::all_of(numbers, [](float number) { return std::isfinite(number); })) {
-    throw py::value_error(fmt::format("{} holds a number that is not finite", name));
-  }
-  return numbers;
-}
-
 /// Rows of `columns` finite numbers, (n, columns), or one for all, (columns,).
 class Rows {
  public:

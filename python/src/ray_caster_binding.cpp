@@ -84,8 +84,8 @@ class Lines {
   static std::vector<Vec3> directionsOf(const py::object& given, std::size_t count) {
     const py::array array = numbersIn(given, "directions");
     if (array.ndim() != 1 || array.size() == 0) return pointsOf(given, "directions");
-    const auto one = inputOf<float>(array, "directions", {3});
-    return std::vector<Vec3>(count, Vec3{one.data()[0], one.data()[1], one.data()[2]});
+    const std::vector<float> one = finiteNumbers(array, "directions", 3);
+    return std::vector<Vec3>(count, Vec3{one[0], one[1], one[2]});
   }
   /// One length for all lines, or one for each.
   void readLengths(const py::object& given) {

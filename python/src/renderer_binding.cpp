@@ -52,11 +52,6 @@ std::uint32_t edgeOf(const char* name, const py::handle& value) {
   return static_cast<std::uint32_t>(wholeOf(name, value, 1, kLargestImage));
 }
 
-std::array<float, 3> threeOf(const char* name, const py::handle& value) {
-  const auto given = inputOf<float>(value, name, {3});
-  return {given.at(0), given.at(1), given.at(2)};
-}
-
 /// A row-major matrix of homogeneous coordinates, of a camera with the axes of images.
 RigidTransform placeOf(const float* rows) {
   constexpr std::array<float, 4> kLastRow{0, 0, 0, 1};
@@ -176,11 +171,13 @@ constexpr Keyword kKeywords[] = {
      },
      [](const CameraOptions& o) -> py::object { return py::float_(o.camera.fov_degrees); }},
     {"position",
-     [](CameraOptions& o, const py::handle& v) { o.camera.position = threeOf("position", v); },
+     [](CameraOptions& o, const py::handle& v) {
+       std::ranges::copy(finiteNumbers(v, "position", 3), o.camera.position.begin());
+     },
      [](const CameraOptions& o) { return tupleOf(o.camera.position); }},
     {"rpy_degrees",
      [](CameraOptions& o, const py::handle& v) {
-       o.camera.rpy_degrees = threeOf("rpy_degrees", v);
+       std::ranges::copy(finiteNumbers(v, "rpy_degrees", 3), o.camera.rpy_degrees.begin());
      },
      [](const CameraOptions& o) { return tupleOf(o.camera.rpy_degrees); }},
     {"near",

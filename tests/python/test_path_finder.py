@@ -187,11 +187,21 @@ def test_it_outlives_what_it_was_made_of(world_path):
         (lambda f, w: f.snap(np.zeros((0, 2))), ValueError, r"points has the shape \(0, 2\), expected \(n, 3\)"),
         (lambda f, w: f.fields(f.places[:0]).distances(f.places[:1]), IndexError, "there is no goal"),
         (lambda f, w: f.fields(f.places[:2]).path(f.places[0], 2), IndexError, "there is no goal 2, there are 2"),
+        (lambda f, w: f.fields(f.places[:1]).path(["1", "2", "3"]), TypeError, "base has the type <U1, expected numbers"),
+        (lambda f, w: f.fields(f.places[:1]).path(["1", "2", "3", "4"]), TypeError, "base has the type <U1, expected numbers"),
+        (lambda f, w: f.fields(f.places[:1]).path([0, 0, np.nan]), ValueError, "base holds a number that is not finite"),
     ],
 )  # fmt: skip
 def test_refusals(finder, world, call, error, message):
     with pytest.raises(error, match=message):
         call(finder, world)
+
+
+def test_ways_from_very_far_are_asked_for_like_others(finder):
+    fields = finder.fields(finder.places[:1])
+    far = [3e38, 3e38, -3e38]
+    assert fields.path(far).shape == (0, 3)
+    assert fields.distances([far]) == np.inf
 
 
 def test_no_copies(finder):
