@@ -59,10 +59,7 @@ std::string faultOf(const Model& model, const EnvState& state) {
     return fmt::format("has the target {}, and that of its episode, {}, is {}; set both",
                        state.target, state.episode, model.present(episode).target);
   }
-  const std::uint32_t most_steps = model.options.task.most_steps;
-  if (most_steps != 0 && state.step > most_steps) {
-    return fmt::format("is after {} steps, and an episode has {}", state.step, most_steps);
-  }
+  if (std::string fault = faultOfStep(model, state.step); !fault.empty()) return fault;
   if (std::string fault = faultOfNumbers(state); !fault.empty()) return fault;
   const float tilt = tiltOf(state.world_from_root.rotation);
   if (tilt > kMostTilt) {

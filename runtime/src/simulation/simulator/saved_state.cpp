@@ -218,6 +218,7 @@ std::string faultOfRecord(const Model& model, const EnvRecord& record) {
   if (record.held < -1 || record.held >= objects) {
     return fmt::format("holds object {} of {}", record.held, objects);
   }
+  if (std::string fault = faultOfStep(model, record.step); !fault.empty()) return fault;
   if (record.ending >= kEpisodeEnds) return fmt::format("ended in way {}", record.ending);
   if (record.has_picked > 1 || record.was_refused > 1 || record.is_idle > 1 ||
       record.is_named > 1 || record.had_picked > (record.ending != 0 ? 1U : 0U) ||
@@ -388,6 +389,12 @@ std::vector<std::byte> saveEnvs(const Model& model, const BatchState& state,
   header.hash = hashOf(header, std::span(bytes).subspan(sizeof(header)));
   std::memcpy(bytes.data(), &header, sizeof(header));
   return bytes;
+}
+
+std::string faultOfStep(const Model& model, std::uint32_t step) {
+  const std::uint32_t most_steps = model.options.task.most_steps;
+  if (most_steps == 0 || step <= most_steps) return {};
+  return fmt::format("is after {} steps, and an episode has {}", step, most_steps);
 }
 
 Result<SavedState> readState(const Model& model, std::span<const std::byte> bytes) {

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "galactic/error.h"
@@ -19,6 +20,10 @@ namespace galactic::simulation {
 [[nodiscard]] std::vector<std::byte> saveEnvs(const Model& model, const BatchState& state,
                                               std::span<const std::uint32_t> envs,
                                               std::uint64_t steps);
+
+/// What is wrong with the number of steps that an env has made in its episode, in a state that may
+/// be anybody's; empty when nothing is.
+[[nodiscard]] std::string faultOfStep(const Model& model, std::uint32_t step);
 
 /// One env of a saved state, checked.
 struct SavedEnv {

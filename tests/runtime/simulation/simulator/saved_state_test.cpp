@@ -1,5 +1,6 @@
 // States of envs: saved, restored, and gone on from; and bytes that are none.
 #define XXH_INLINE_ALL
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <xxhash.h>
@@ -320,10 +321,12 @@ TEST(SavedState, OfAVersionThatHadFewerOptionsIsTakenWhereTheyAreOff) {
               HasSubstr("no option motion-noise: restore it where that is 0"));
 }
 
+/// Of the numbers of an env.
+constexpr std::size_t kRecordBytes = 248;
+
 /// Where the numbers of the first env of a state end: the last eight bytes are those of picks.
 std::ptrdiff_t endOfNumbers(const Bytes& state) {
   constexpr std::size_t kOptionBytesAt = 16;
-  constexpr std::size_t kRecordBytes = 248;
   std::uint32_t option_bytes = 0;
   std::memcpy(&option_bytes, state.data() + kOptionBytesAt, sizeof(option_bytes));
   return static_cast<std::ptrdiff_t>(kHeaderBytes + option_bytes + kRecordBytes);
@@ -362,6 +365,27 @@ TEST_F(DamagedState, WithAPickOfNoEndIsRefused) {
   other[static_cast<std::size_t>(endOfNumbers(other)) - 4] = std::byte{1};
   sign(other);
   expectRefused(other, "env 0 has a wrong flag or count");
+}
+
+TEST_F(DamagedState, AfterMoreStepsThanAnEpisodeHasIsRefused) {
+  constexpr std::size_t kStepAt = 44;
+  const std::size_t at = static_cast<std::size_t>(endOfNumbers(state_)) - kRecordBytes + kStepAt;
+  std::uint32_t step = 0;
+  std::memcpy(&step, state_.data() + at, sizeof(step));
+  ASSERT_EQ(step, simulator_.envState(0).step);
+  const std::uint32_t most = simulator_.options().task.most_steps;
+  ASSERT_GT(most, 0U);
+  const auto with = [&](std::uint32_t instead) {
+    Bytes changed = state_;
+    std::memcpy(changed.data() + at, &instead, sizeof(instead));
+    sign(changed);
+    return changed;
+  };
+  expectRefused(with(most + 1), fmt::format("env 0 is after {} steps, and an episode has {}; "
+                                            "it is damaged",
+                                            most + 1, most));
+  EXPECT_EQ(refusalOf(simulator_, with(most)), "");
+  EXPECT_EQ(simulator_.envState(0).step, most);
 }
 
 TEST_F(DamagedState, ThatLeavesWhatItHoldsIsRefused) {
