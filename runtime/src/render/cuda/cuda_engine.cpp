@@ -226,6 +226,7 @@ Result<std::unique_ptr<CudaEngine>> CudaEngine::make(const RenderLibrary& librar
   std::unique_ptr<CudaEngine> engine(new CudaEngine(options, std::move(driver), std::move(device)));
   engine->tuning_ = tuning;
   const CurrentDevice current(*engine->driver_, engine->device_);
+  if (!current.holds()) return tl::unexpected<Error>(current.failure());
   ASSIGN_OR_RETURN(Kernels kernels, Kernels::load(*engine->driver_));
   engine->kernels_ = std::make_unique<Kernels>(std::move(kernels));
   ASSIGN_OR_RETURN(DeviceScene scene, DeviceScene::upload(library, *engine->driver_));
@@ -235,7 +236,7 @@ Result<std::unique_ptr<CudaEngine>> CudaEngine::make(const RenderLibrary& librar
 
 CudaEngine::~CudaEngine() {
   const CurrentDevice current(*driver_, device_);
-  driver_->functions().synchronize(nullptr);
+  if (current.holds()) driver_->functions().synchronize(nullptr);
   kernels_.reset();
   scene_.reset();
   slice_memory_.reset();
@@ -389,6 +390,8 @@ Result<void> CudaEngine::draw(std::span<const RenderView> views) {
   const DriverFunctions& functions = driver_->functions();
   statistics_ = {};
   slices_.clear();
+  // What it reads is about to be overwritten.
+  if (std::exchange(is_under_way_, false)) functions.synchronize(nullptr);
   if (views.empty()) return {};
   const ListSizes sizes = listSizes(views);
   statistics_.instances = sizes.models;
@@ -536,12 +539,21 @@ void CudaEngine::giveUp(const Error& error) {
 void CudaEngine::begin(std::span<const RenderView> views, const RenderTargets& targets) {
   targets_ = targets;
   const CurrentDevice current(*driver_, device_);
+  if (!current.holds()) {
+    slices_.clear();
+    throw ErrorException(current.failure());
+  }
   if (const Result<void> drawn = draw(views); !drawn) giveUp(drawn.error());
 }
 
 void CudaEngine::end() {
   if (slices_.empty()) return;
   const CurrentDevice current(*driver_, device_);
+  if (!current.holds()) {
+    slices_.clear();
+    is_under_way_ = true;
+    throw ErrorException(current.failure());
+  }
   if (const Result<void> read = readImages(); !read) giveUp(read.error());
   if (const Result<void> read = readCounts(); !read) giveUp(read.error());
 }
@@ -549,6 +561,7 @@ void CudaEngine::end() {
 Result<DeviceImages> CudaEngine::renderToDevice(std::span<const RenderView> views,
                                                 std::uintptr_t stream) {
   const CurrentDevice current(*driver_, device_);
+  if (!current.holds()) return tl::unexpected<Error>(current.failure());
   const UsedStream used(stream_, std::bit_cast<void*>(stream));
   const Result<void> drawn = draw(views).and_then([this] { return readCounts(); });
   if (!drawn) {

@@ -101,21 +101,29 @@ class Device {
   int multiprocessors_ = 0;
 };
 
-/// Makes a device's context the current one of this thread for a while.
+/// Makes a device's context the current one of this thread for a scope, and then the one that was
+/// current before. Where the driver refuses, that one stays current, and must be left alone.
 class CurrentDevice {
  public:
-  CurrentDevice(const Driver& driver, const Device& device) : driver_(driver) {
-    driver_.functions().push_context(device.context());
-  }
+  CurrentDevice(const Driver& driver, const Device& device)
+      : driver_(driver), error_(driver.functions().push_context(device.context())) {}
   ~CurrentDevice() {
+    if (!holds()) return;
     void* context = nullptr;
     driver_.functions().pop_context(&context);
+  }
+  /// Whether it worked.
+  [[nodiscard]] bool holds() const { return error_ == 0; }
+  /// What the driver said where it did not.
+  [[nodiscard]] Error failure() const {
+    return driver_.failure(error_, "make the renderer's context current");
   }
   CurrentDevice(const CurrentDevice&) = delete;
   CurrentDevice& operator=(const CurrentDevice&) = delete;
 
  private:
   const Driver& driver_;
+  int error_;
 };
 
 /// Memory of the device, or memory of the processor that the device reads. Its device's context

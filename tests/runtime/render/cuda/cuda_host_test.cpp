@@ -185,6 +185,52 @@ TEST_F(CudaHost, ThrowsWhereImagesWouldBeWrongAndDrawsAgainAfterwards) {
   EXPECT_FALSE(std::ranges::all_of(images.color, black));
 }
 
+TEST_F(CudaHost, LeavesTheContextOfOthersAloneWhereItsOwnCannotBeCurrent) {
+  auto engine = makeEngine(library_, options_);
+  ASSERT_TRUE(engine);
+  auto driver = render::cuda::Driver::open(cudaStandIn());
+  ASSERT_TRUE(driver) << driver.error().message;
+  auto others = render::cuda::Device::choose(**driver, "1");
+  ASSERT_TRUE(others) << others.error().message;
+  ASSERT_TRUE(others->open());
+  const render::cuda::CurrentDevice current(**driver, *others);
+  RenderImages images = emptyImages(options_, 1);
+  const auto refusal = [](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const ErrorException& failure) {
+      return failure.what();
+    }
+    return "nothing";
+  };
+  const auto begin = [&] { (*engine)->begin({&view_, 1}, targetsOf(images)); };
+  const auto end = [&] { (*engine)->end(); };
+  const std::string why = "CUDA's driver could not make the renderer's context current: error 2";
+  standin_->failing = "cuCtxPushCurrent";
+  EXPECT_THAT(errorOf(options_), HasSubstr(why));
+  EXPECT_THAT(refusal(begin), HasSubstr(why));
+  EXPECT_EQ(refusal(end), "nothing");
+  const auto on_device = (*engine)->renderToDevice({&view_, 1}, 0);
+  ASSERT_FALSE(on_device);
+  EXPECT_THAT(on_device.error().message, HasSubstr(why));
+  standin_->failing = nullptr;
+  EXPECT_EQ(refusal(begin), "nothing");
+  EXPECT_EQ(standin_->pushed_contexts, 1);
+  standin_->failing = "cuCtxPushCurrent";
+  EXPECT_THAT(refusal(end), HasSubstr(why));
+  EXPECT_EQ(refusal(end), "nothing");
+  EXPECT_GT(standin_->under_way, 0U);
+  // Nothing of it is left to the next batch.
+  standin_->failing = nullptr;
+  EXPECT_EQ(refusal(begin), "nothing");
+  EXPECT_EQ(refusal(end), "nothing");
+  EXPECT_EQ(standin_->under_way, 0U);
+  EXPECT_EQ(images, drawWithSoft(library_, options_, {&view_, 1}));
+  standin_->failing = "cuCtxPushCurrent";
+  engine->reset();
+  EXPECT_EQ(standin_->pushed_contexts, 1);
+}
+
 TEST_F(CudaHost, GivesEverythingBack) {
   const std::uint64_t before = standin_->allocations;
   {

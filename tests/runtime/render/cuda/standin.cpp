@@ -205,15 +205,21 @@ STANDIN int cuDevicePrimaryCtxRelease_v2(int) {
 }
 STANDIN int cuCtxPushCurrent_v2(void* context) {
   const std::scoped_lock lock(device_mutex);
-  contexts_pushed[std::this_thread::get_id()].push_back(context);
   const auto* place = static_cast<const char*>(context);
-  return place >= device_contexts && place < device_contexts + kMostDevices ? 0 : 1;
+  if (place < device_contexts || place >= device_contexts + kMostDevices) return 1;
+  const int error = outcome("cuCtxPushCurrent");
+  if (error != 0) return error;
+  contexts_pushed[std::this_thread::get_id()].push_back(context);
+  ++standin.pushed_contexts;
+  return 0;
 }
 STANDIN int cuCtxPopCurrent_v2(void** context) {
   const std::scoped_lock lock(device_mutex);
   std::vector<void*>& pushed = contexts_pushed[std::this_thread::get_id()];
+  if (pushed.empty()) return 201;  // CUDA_ERROR_INVALID_CONTEXT
   *context = pushed.back();
   pushed.pop_back();
+  --standin.pushed_contexts;
   return 0;
 }
 STANDIN int cuCtxGetCurrent(void** context) {

@@ -33,6 +33,8 @@ struct Standin {
   std::uint64_t allocations = 0;
   std::uint64_t allocated_bytes = 0;
   int contexts = 0;
+  /// Of all threads, and not popped yet.
+  int pushed_contexts = 0;
   int modules = 0;
   /// Buffers of OpenGL that CUDA knows, and those that are mapped.
   int shared_buffers = 0;
