@@ -84,12 +84,9 @@ std::string shapeText(std::span<const py::ssize_t> shape) {
 }
 
 template <class T>
-py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(const py::handle& given,
-                                                                  const char* name,
-                                                                  const Shape& shape) {
-  using Input = py::array_t<T, py::array::c_style | py::array::forcecast>;
+InputArray<T> inputOf(const py::handle& given, const char* name, const Shape& shape) {
   if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) requireNoFractions(given, name);
-  Input array = Input::ensure(given);
+  auto array = InputArray<T>::ensure(given);
   if (!array) {
     PyErr_Clear();
     throw py::type_error(
@@ -99,8 +96,8 @@ py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(const py::hand
   return array;
 }
 
-py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumbersOf(
-    const py::handle& given, const char* name, const Shape& shape) {
+InputArray<std::int64_t> wholeNumbersOf(const py::handle& given, const char* name,
+                                        const Shape& shape) {
   const py::array array = py::array::ensure(given);
   if (!array) PyErr_Clear();
   const char kind = array ? array.dtype().kind() : '?';
@@ -201,20 +198,23 @@ void writeMatrix(const RigidTransform& a_from_b, float* rows) {
   std::ranges::copy(matrix, rows);
 }
 
+py::array_t<bool> truthsOf(std::span<const std::uint8_t> answers) {
+  py::array_t<bool> array(static_cast<py::ssize_t>(answers.size()));
+  std::ranges::transform(answers, array.mutable_data(), [](std::uint8_t one) { return one != 0; });
+  return array;
+}
+
 py::array_t<float> arrayOf(std::span<const float> values) {
   return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-template py::array_t<bool, py::array::c_style | py::array::forcecast> inputOf<bool>(
-    const py::handle&, const char*, const Shape&);
-template py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> inputOf<std::int64_t>(
-    const py::handle&, const char*, const Shape&);
-template py::array_t<double, py::array::c_style | py::array::forcecast> inputOf<double>(
-    const py::handle&, const char*, const Shape&);
-template py::array_t<float, py::array::c_style | py::array::forcecast> inputOf<float>(
-    const py::handle&, const char*, const Shape&);
-template py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast> inputOf<std::uint8_t>(
-    const py::handle&, const char*, const Shape&);
+template InputArray<bool> inputOf<bool>(const py::handle&, const char*, const Shape&);
+template InputArray<std::int64_t> inputOf<std::int64_t>(const py::handle&, const char*,
+                                                        const Shape&);
+template InputArray<double> inputOf<double>(const py::handle&, const char*, const Shape&);
+template InputArray<float> inputOf<float>(const py::handle&, const char*, const Shape&);
+template InputArray<std::uint8_t> inputOf<std::uint8_t>(const py::handle&, const char*,
+                                                        const Shape&);
 template std::span<float> outputOf<float>(const py::handle&, const char*, const Shape&);
 template std::span<std::uint8_t> outputOf<std::uint8_t>(const py::handle&, const char*,
                                                         const Shape&);

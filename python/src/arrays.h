@@ -34,17 +34,20 @@ template <class T>
   return view;
 }
 
+/// Numbers of a caller in rows without gaps: his array where it is one, else a converted copy.
+template <class T>
+using InputArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
+
 /// What a caller gives as `name`, as an array of T in rows without gaps: itself where it is one,
 /// else a converted copy. ValueError when it has another shape, TypeError when it is no array of
 /// numbers, or when they have fractions and T has none.
 template <class T>
-[[nodiscard]] py::array_t<T, py::array::c_style | py::array::forcecast> inputOf(
-    const py::handle& given, const char* name, const Shape& shape);
+[[nodiscard]] InputArray<T> inputOf(const py::handle& given, const char* name, const Shape& shape);
 
 /// The same for whole numbers of any type, which are not rounded: TypeError for others, and
 /// IndexError for what 64 bits with a sign do not hold.
-[[nodiscard]] py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wholeNumbersOf(
-    const py::handle& given, const char* name, const Shape& shape);
+[[nodiscard]] InputArray<std::int64_t> wholeNumbersOf(const py::handle& given, const char* name,
+                                                      const Shape& shape);
 
 /// What a caller gives as `name`, as an array of numbers of any shape. TypeError for others, whom
 /// numpy would turn into numbers: text by reading it, complex ones by leaving out a part.
@@ -89,6 +92,9 @@ class InputBytes {
 
 /// Writes a transform of homogeneous coordinates, four rows of four.
 void writeMatrix(const RigidTransform& a_from_b, float* rows);
+
+/// Answers of C++, 0 or 1, as numpy's truth values: bool (n,).
+[[nodiscard]] py::array_t<bool> truthsOf(std::span<const std::uint8_t> answers);
 
 /// Three or four numbers as an array of its own.
 [[nodiscard]] py::array_t<float> arrayOf(std::span<const float> values);

@@ -99,6 +99,14 @@ NamedEnvState unpickled(const py::tuple& tuple) {
 
 }  // namespace
 
+void requireStates(const py::object& states) {
+  const py::object type = py::module_::import("galactic.env_states").attr("EnvStates");
+  if (py::isinstance(states, type)) return;
+  throw py::type_error(
+      fmt::format("states is a {}, expected galactic.EnvStates, such as env_states() returns",
+                  typeName(states)));
+}
+
 NamedEnvState envState(Simulator& simulator, const py::object& env) {
   const Confinement::Use use = simulator.readState();
   const std::uint32_t number = simulator.envNumber(env);
@@ -152,11 +160,11 @@ py::object envStates(Simulator& simulator, const py::object& envs) {
 
 namespace {
 
-/// Arrays of a galactic.EnvStates of so many envs.
+/// Arrays of a galactic.EnvStates of so many envs, for which requireStates() has looked.
 class GivenStates {
  public:
   GivenStates(const py::object& states, const Simulator& simulator, py::ssize_t count)
-      : states_(typed(states)),
+      : states_(states),
         most_(static_cast<py::ssize_t>(simulator.mostObjects())),
         positions_(static_cast<py::ssize_t>(simulator.world().robot().positionCount())),
         episode_(whole("episode", count)),
@@ -168,15 +176,6 @@ class GivenStates {
         grips_(*this, "world_from_grip", {count}),
         objects_(*this, "objects", {count, most_}),
         goals_(*this, "goal", {count}) {}
-
-  /// What is given, if it is of the type. TypeError otherwise.
-  static const py::object& typed(const py::object& states) {
-    const py::object type = py::module_::import("galactic.env_states").attr("EnvStates");
-    if (py::isinstance(states, type)) return states;
-    throw py::type_error(
-        fmt::format("states is a {}, expected galactic.EnvStates, such as env_states() returns",
-                    typeName(states)));
-  }
 
   /// State `n`, of an episode that can be started.
   [[nodiscard]] EnvState at(const Simulator& simulator, py::ssize_t n) const {
@@ -202,9 +201,6 @@ class GivenStates {
   }
 
  private:
-  template <class T>
-  using Input = py::array_t<T, py::array::c_style | py::array::forcecast>;
-
   class Poses {
    public:
     Poses(const GivenStates& given, const char* name, Shape shape)
@@ -218,22 +214,22 @@ class GivenStates {
     }
 
    private:
-    static Input<float> part(const GivenStates& given, const char* name, const char* half,
-                             Shape shape, py::ssize_t numbers) {
+    static InputArray<float> part(const GivenStates& given, const char* name, const char* half,
+                                  Shape shape, py::ssize_t numbers) {
       shape.push_back(numbers);
       const std::string full = fmt::format("states.{}.{}", name, half);
       return inputOf<float>(py::getattr(given.states_.attr(name), half), full.c_str(), shape);
     }
 
-    Input<float> translations_;
-    Input<float> rotations_;
+    InputArray<float> translations_;
+    InputArray<float> rotations_;
   };
 
-  [[nodiscard]] Input<std::int64_t> whole(const char* name, py::ssize_t count) const {
+  [[nodiscard]] InputArray<std::int64_t> whole(const char* name, py::ssize_t count) const {
     const std::string full = fmt::format("states.{}", name);
     return wholeNumbersOf(states_.attr(name), full.c_str(), {count});
   }
-  [[nodiscard]] Input<float> numbers(const char* name, const Shape& shape) const {
+  [[nodiscard]] InputArray<float> numbers(const char* name, const Shape& shape) const {
     const std::string full = fmt::format("states.{}", name);
     return inputOf<float>(states_.attr(name), full.c_str(), shape);
   }
@@ -249,23 +245,20 @@ class GivenStates {
   py::object states_;
   py::ssize_t most_;
   py::ssize_t positions_;
-  Input<std::int64_t> episode_;
-  Input<std::int64_t> step_;
-  Input<std::int64_t> held_;
-  Input<std::int64_t> target_;
-  Input<float> joint_positions_;
+  InputArray<std::int64_t> episode_;
+  InputArray<std::int64_t> step_;
+  InputArray<std::int64_t> held_;
+  InputArray<std::int64_t> target_;
+  InputArray<float> joint_positions_;
   Poses roots_;
   Poses grips_;
   Poses objects_;
   Poses goals_;
 };
 
-}  // namespace
-
-namespace {
-
 std::vector<EnvState> listOf(const Simulator& simulator, const py::object& states,
                              std::size_t count) {
+  requireStates(states);
   const GivenStates given(states, simulator, static_cast<py::ssize_t>(count));
   std::vector<EnvState> list;
   for (std::size_t n = 0; n < count; ++n) {
@@ -278,7 +271,8 @@ std::vector<EnvState> listOf(const Simulator& simulator, const py::object& state
 
 void checkStates(Simulator& simulator, const py::object& states) {
   const Confinement::Use use = simulator.readState();
-  const std::size_t count = py::len(GivenStates::typed(states).attr("episode"));
+  requireStates(states);
+  const std::size_t count = py::len(states.attr("episode"));
   orThrow(simulator.batch().checkStates(listOf(simulator, states, count)));
 }
 
@@ -293,10 +287,7 @@ py::array_t<bool> setStates(Simulator& simulator, const py::object& states, cons
     were_set = orThrow(simulator.batch().setStates(
         chosen, list, are_drawn ? EpisodeChoice::kDrawn : EpisodeChoice::kNamed));
   }
-  py::array_t<bool> answer(static_cast<py::ssize_t>(chosen.size()));
-  std::ranges::transform(were_set, answer.mutable_data(),
-                         [](std::uint8_t one) { return one != 0; });
-  return answer;
+  return truthsOf(were_set);
 }
 
 void bindEnvState(py::module_& module) {

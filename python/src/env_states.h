@@ -21,6 +21,9 @@ struct NamedEnvState : EnvState {
 /// The galactic.EnvStates of all envs, for None, or of a list of them.
 [[nodiscard]] py::object envStates(Simulator& simulator, const py::object& envs);
 
+/// TypeError for what is no galactic.EnvStates.
+void requireStates(const py::object& states);
+
 /// Raises what setStates() would raise because of galactic.EnvStates, and does nothing else.
 void checkStates(Simulator& simulator, const py::object& states);
 

@@ -23,11 +23,6 @@ std::string dashed(std::string name) {
   return name;
 }
 
-std::string underscored(std::string name) {
-  std::ranges::replace(name, '-', '_');
-  return name;
-}
-
 /// Of the array that a value is; -1 for one that is none.
 py::ssize_t axesOf(const py::handle& value) {
   return py::isinstance<py::array>(value) ? py::reinterpret_borrow<py::array>(value).ndim() : -1;
@@ -97,7 +92,7 @@ py::object valueOf(const OptionText& option) {
 
 std::vector<std::string> keywordsIn(OptionScope scope) {
   std::vector<std::string> names = optionNames(scope);
-  for (std::string& name : names) name = underscored(std::move(name));
+  for (std::string& name : names) name = keywordOf(std::move(name));
   return names;
 }
 
@@ -155,12 +150,17 @@ std::vector<OptionText> setKeywords(const py::dict& keywords, SimulationOptions&
   const std::optional<OptionFault> fault = setOptions(texts, OptionScope::kTyped, options);
   if (!fault) return texts;
   const OptionText& text = texts[fault->index];
-  if (fault->wanted.empty()) refuseKeyword(underscored(text.name), knownKeywords());
-  throw ErrorException{{ErrorCode::kInvalidInput, underscored(text.name),
+  if (fault->wanted.empty()) refuseKeyword(keywordOf(text.name), knownKeywords());
+  throw ErrorException{{ErrorCode::kInvalidInput, keywordOf(text.name),
                         fmt::format("is {}, expected {}", text.value, fault->wanted)}};
 }
 
 }  // namespace
+
+std::string keywordOf(std::string option) {
+  std::ranges::replace(option, '-', '_');
+  return option;
+}
 
 bool isTruth(const py::handle& value) {
   return py::isinstance<py::bool_>(value) ||
@@ -245,7 +245,7 @@ py::dict keywordsOf(const std::vector<OptionText>& task_texts) {
   const py::dict all = keywordsOf(options);
   py::dict keywords;
   for (const OptionText& text : task_texts) {
-    const py::str name(underscored(text.name));
+    const py::str name(keywordOf(text.name));
     keywords[name] = all[name];
   }
   return keywords;
@@ -254,7 +254,7 @@ py::dict keywordsOf(const std::vector<OptionText>& task_texts) {
 py::dict keywordsOf(const SimulationOptions& options) {
   py::dict keywords;
   for (const OptionText& option : listOptions(options)) {
-    keywords[underscored(option.name).c_str()] = valueOf(option);
+    keywords[keywordOf(option.name).c_str()] = valueOf(option);
   }
   return keywords;
 }

@@ -28,6 +28,9 @@ namespace py = pybind11;
 /// The same of a number that episodes may draw: a number, a pair of them, or text.
 [[nodiscard]] DrawnNumber drawnOf(const char* name, const py::handle& value, const Span& within);
 
+/// What the keyword for an option of programs is called: as it is there, with '_' for '-'.
+[[nodiscard]] std::string keywordOf(std::string option);
+
 /// Whether it is a truth value, of Python or of numpy: those pass for whole numbers.
 [[nodiscard]] bool isTruth(const py::handle& value);
 

@@ -51,7 +51,7 @@ class Rows {
   }
 
  private:
-  py::array_t<float, py::array::c_style | py::array::forcecast> array_;
+  InputArray<float> array_;
   std::size_t columns_;
   std::size_t count_ = 0;
   bool is_one_ = false;
@@ -89,13 +89,6 @@ class GivenPoses {
 };
 
 constexpr std::size_t kBaseNumbers = 4;
-
-/// Answers of C++ as numpy's.
-py::array_t<bool> truths(const std::vector<std::uint8_t>& answers) {
-  py::array_t<bool> array(static_cast<py::ssize_t>(answers.size()));
-  std::ranges::transform(answers, array.mutable_data(), [](std::uint8_t one) { return one != 0; });
-  return array;
-}
 
 std::span<float> spanOf(py::array_t<float>& array) {
   return {array.mutable_data(), static_cast<std::size_t>(array.size())};
@@ -213,7 +206,7 @@ class EnvScene {
       const py::gil_scoped_release unlocked;
       scene.areFree(poses.view(), free, wanted);
     }
-    return truths(free);
+    return truthsOf(free);
   }
   [[nodiscard]] py::array_t<bool> areMotionsFree(const py::object& bases, const py::object& joints,
                                                  const py::object& to_bases,
@@ -236,7 +229,7 @@ class EnvScene {
       const py::gil_scoped_release unlocked;
       scene.areMotionsFree(begins.view(), ends.view(), free, wanted);
     }
-    return truths(free);
+    return truthsOf(free);
   }
 
   [[nodiscard]] py::object clearances(const py::object& bases, const py::object& joints, float most,
@@ -274,7 +267,7 @@ class EnvScene {
         touching[n] = self_collision_.touches(links, margin) ? 1 : 0;
       }
     }
-    return truths(touching);
+    return truthsOf(touching);
   }
 
   [[nodiscard]] py::object worldFromLinks(const py::object& bases, const py::object& joints) const {
@@ -290,12 +283,7 @@ class EnvScene {
     });
   }
   [[nodiscard]] py::array_t<float> basesOf(const py::object& states) const {
-    const py::object type = py::module_::import("galactic.env_states").attr("EnvStates");
-    if (!py::isinstance(states, type)) {
-      throw py::type_error(
-          fmt::format("states is a {}, expected galactic.EnvStates, such as env_states() returns",
-                      typeName(states)));
-    }
+    requireStates(states);
     const py::object roots = states.attr("world_from_root");
     const Rows places(roots.attr("translation"), "states.world_from_root.translation", 3);
     const Rows rotations(roots.attr("rotation"), "states.world_from_root.rotation", kBaseNumbers);

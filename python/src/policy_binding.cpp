@@ -30,7 +30,6 @@ namespace galactic::python {
 namespace {
 
 using Path = std::filesystem::path;
-using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
 /// A dictionary whose fields are read by name. KeyError where one is missing.
 class Fields {
@@ -45,7 +44,7 @@ class Fields {
     return dict_.contains(name) && !py::object(dict_[name]).is_none();
   }
   [[nodiscard]] std::vector<float> floats(const char* name) const {
-    const auto array = get<FloatArray>(name);
+    const auto array = get<InputArray<float>>(name);
     return {array.data(), array.data() + array.size()};
   }
   /// Empty where it is not there or None.

@@ -1,7 +1,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -133,9 +132,7 @@ py::array_t<bool> spheresFree(const RayCaster& caster, float radius, const py::o
     const py::gil_scoped_release unlocked;
     caster.areSpheresFree(radius, points, free, count);
   }
-  py::array_t<bool> answer(static_cast<py::ssize_t>(free.size()));
-  std::ranges::transform(free, answer.mutable_data(), [](std::uint8_t one) { return one != 0; });
-  return answer;
+  return truthsOf(free);
 }
 
 py::object castRaysInAll(Simulator& simulator, const py::object& origins,

@@ -33,13 +33,16 @@ ColorFormat colorOf(const py::handle& value) {
 }
 
 RenderBackend backendOf(const py::handle& value) {
-  const std::string name = wordOf("backend", value, "auto, soft, gl or cuda");
-  if (name == "auto") return RenderBackend::kAuto;
-  if (name == "soft") return RenderBackend::kSoft;
-  if (name == "gl") return RenderBackend::kGl;
-  if (name == "cuda") return RenderBackend::kCuda;
+  std::string wanted;
+  for (const NamedBackend& one : kRenderBackends) {
+    const bool is_last = &one == &kRenderBackends.back();
+    wanted += fmt::format("{}{}", wanted.empty() ? "" : is_last ? " or " : ", ", one.name);
+  }
+  const std::string name = wordOf("backend", value, wanted.c_str());
+  const auto* found = std::ranges::find(kRenderBackends, name, &NamedBackend::name);
+  if (found != kRenderBackends.end()) return found->backend;
   throw ErrorException{
-      {ErrorCode::kInvalidInput, "backend", "is " + name + ", expected auto, soft, gl or cuda"}};
+      {ErrorCode::kInvalidInput, "backend", fmt::format("is {}, expected {}", name, wanted)}};
 }
 
 /// Also by its index, a number.
@@ -195,14 +198,6 @@ constexpr Keyword kKeywords[] = {
      [](const CameraOptions& o) -> py::object { return py::int_(o.render.threads); }},
 };
 
-/// What the keyword of an option is called.
-template <class Options>
-std::string keywordOf(const SensorOption<Options>& option) {
-  std::string name = option.name;
-  std::ranges::replace(name, '-', '_');
-  return name;
-}
-
 /// Calls `f` with each option that makes images other than they are, or cameras other than they
 /// should be.
 template <class F>
@@ -213,7 +208,7 @@ void forEachNoise(F&& f) {
 
 std::vector<std::string> noiseNames() {
   std::vector<std::string> names;
-  forEachNoise([&](const auto& option) { names.push_back(keywordOf(option)); });
+  forEachNoise([&](const auto& option) { names.push_back(keywordOf(option.name)); });
   return names;
 }
 
@@ -229,7 +224,7 @@ template <std::size_t count, class Options>
 bool takeSensorOption(const std::array<SensorOption<Options>, count>& table,
                       const std::string& keyword, const py::handle& value, Options& options) {
   for (const SensorOption<Options>& option : table) {
-    if (keywordOf(option) != keyword) continue;
+    if (keywordOf(option.name) != keyword) continue;
     options.*option.value = drawnOf(keyword.c_str(), value, {0, option.most});
     return true;
   }
@@ -282,7 +277,7 @@ py::object defaults() {
 /// The largest value of each keyword of noise.
 py::object noiseLimits() {
   py::dict limits;
-  forEachNoise([&](const auto& option) { limits[py::str(keywordOf(option))] = option.most; });
+  forEachNoise([&](const auto& option) { limits[py::str(keywordOf(option.name))] = option.most; });
   return readOnly(limits);
 }
 

@@ -32,9 +32,8 @@ class Expert {
     const Confinement::Use use = confinement_.enter();
     const Confinement::Use reading = simulator_->readState();
     const BatchSimulator& batch = simulator_->batch();
-    const auto chosen = mask.is_none()
-                            ? py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>()
-                            : inputOf<std::uint8_t>(mask, "mask", {simulator_->envs()});
+    const auto chosen = mask.is_none() ? InputArray<std::uint8_t>()
+                                       : inputOf<std::uint8_t>(mask, "mask", {simulator_->envs()});
     const std::span<const std::uint8_t> where(chosen.data(),
                                               static_cast<std::size_t>(chosen.size()));
     py::array_t<float> actions({batch.envCount(), batch.actionCount()});

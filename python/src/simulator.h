@@ -72,14 +72,14 @@ class Simulator {
  private:
   /// What a step reads, which has to stay as it is while the step is under way.
   struct StepInput {
-    py::array_t<float, py::array::c_style | py::array::forcecast> actions;
-    py::array_t<std::int32_t, py::array::c_style | py::array::forcecast> resets;
+    InputArray<float> actions;
+    InputArray<std::int32_t> resets;
 
     [[nodiscard]] std::span<const float> actionSpan() const;
     [[nodiscard]] std::span<const std::int32_t> resetSpan() const;
   };
 
-  using EpisodeNumbers = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
+  using EpisodeNumbers = InputArray<std::int32_t>;
 
   Simulator(std::shared_ptr<const World> world, BatchSimulator batch);
   /// What `given` says of each env: an episode that can be started, or one of the numbers that mean

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -73,11 +74,13 @@ struct Shown {
 };
 
 inline constexpr std::array<std::string_view, 4> kImageWords{"rgb", "depth", "rgbd", "rgbds"};
-inline constexpr std::array<Named<RenderBackend>, 4> kBackendNames{
-    {{"auto", RenderBackend::kAuto},
-     {"cuda", RenderBackend::kCuda},
-     {"gl", RenderBackend::kGl},
-     {"soft", RenderBackend::kSoft}}};
+inline constexpr auto kBackendNames = [] {
+  std::array<Named<RenderBackend>, kRenderBackends.size()> names{};
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    names[n] = {kRenderBackends[n].name, kRenderBackends[n].backend};
+  }
+  return names;
+}();
 /// Heading of the options of drawing.
 inline constexpr const char* kDrawingGroup = "Rendering";
 

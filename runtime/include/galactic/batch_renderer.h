@@ -33,7 +33,17 @@ enum class RenderBackend : std::uint8_t {
   kCuda,  ///< The rasterizer of this library, on a CUDA device.
 };
 
-/// "auto", "soft", "gl" or "cuda".
+/// A backend, and what users call it.
+struct NamedBackend {
+  const char* name;
+  RenderBackend backend;
+};
+inline constexpr std::array<NamedBackend, 4> kRenderBackends{{{"auto", RenderBackend::kAuto},
+                                                              {"cuda", RenderBackend::kCuda},
+                                                              {"gl", RenderBackend::kGl},
+                                                              {"soft", RenderBackend::kSoft}}};
+
+/// Its name of these.
 [[nodiscard]] const char* backendName(RenderBackend backend) noexcept;
 
 /// Bytes per pixel of color images.

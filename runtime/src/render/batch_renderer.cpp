@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -149,17 +150,7 @@ std::array<float, 9> cameraMatrix(const RenderCamera& camera, std::uint32_t widt
 }
 
 const char* backendName(RenderBackend backend) noexcept {
-  switch (backend) {
-    case RenderBackend::kSoft:
-      return "soft";
-    case RenderBackend::kGl:
-      return "gl";
-    case RenderBackend::kCuda:
-      return "cuda";
-    case RenderBackend::kAuto:
-      break;
-  }
-  return "auto";
+  return std::ranges::find(kRenderBackends, backend, &NamedBackend::backend)->name;
 }
 
 class BatchRenderer::Impl {
