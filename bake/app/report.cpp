@@ -222,7 +222,7 @@ Json reportOf(const WorldPlan& plan, const BuildOutcome& outcome) {
 
 Result<void> writeReport(const std::filesystem::path& path, const Json& report) {
   const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  return writeFileAtomically(path, {std::as_bytes(std::span(text))});
+  return writeFileAtomically(path, text);
 }
 
 void printWorldTable(const WorldPlan& plan, const BuildOutcome& outcome, Verbosity verbosity) {

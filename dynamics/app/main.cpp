@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -172,8 +171,7 @@ Result<int> run(const Command& command) {
   if (!command.is_quiet) fmt::print("{}", reportTable(comparisons, world, subject));
   RETURN_IF_ERROR(showBoth({comparisons, worlds, *episodes, subject}, command.shown));
   if (command.report.empty()) return kExitOk;
-  const std::string json = reportJson(comparisons, world, subject);
-  RETURN_IF_ERROR(writeFileAtomically(command.report, {std::as_bytes(std::span(json))}));
+  RETURN_IF_ERROR(writeFileAtomically(command.report, reportJson(comparisons, world, subject)));
   journal->remove();
   return kExitOk;
 }

@@ -143,7 +143,7 @@ class SideBySide {
                                                 .moments = page_moments_},
                                                {.title = files_.view.stem().string(),
                                                 .generator = "galactic-dynamics"}));
-    return writeFileAtomically(files_.view, {std::as_bytes(std::span(page))});
+    return writeFileAtomically(files_.view, page);
   }
 
  private:

@@ -1,7 +1,5 @@
 #include "pack_tool/support/output_file.h"
 
-#include <span>
-
 #include "support/files/atomic_file.h"
 #include "support/files/output_files.h"
 #include "support/try.h"
@@ -16,7 +14,7 @@ Result<void> checkOutput(const PackFile& pack, const std::filesystem::path& outp
 
 Result<void> writeOutput(const std::filesystem::path& output, const std::string& bytes) {
   RETURN_IF_ERROR(tryFile(output));
-  return writeFileAtomically(output, {std::as_bytes(std::span(bytes))});
+  return writeFileAtomically(output, bytes);
 }
 
 }  // namespace galactic::pack_tool

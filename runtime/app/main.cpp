@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,8 +84,7 @@ int describePacks(const RunOptions& options) {
 
 Result<void> saveReport(const galactic::RunReport& run) {
   if (run.options.report.empty()) return {};
-  const std::string json = galactic::jsonOf(run);
-  return galactic::writeFileAtomically(run.options.report, {std::as_bytes(std::span(json))});
+  return galactic::writeFileAtomically(run.options.report, galactic::jsonOf(run));
 }
 
 int simulateWorld(const RunOptions& options, const OpenedWorld& world, const RunSource& source) {

@@ -87,7 +87,7 @@ Result<void> BakeCache::store(const BakeInputs& inputs, const fs::path& pack,
   const fs::path entry = folder / (name + std::string(kEntrySuffix));
   // The pack first: an entry without its pack is none.
   if (auto kept = linkOrCopy(pack, packBeside(entry)); !kept) return kept;
-  if (auto written = writeFileAtomically(entry, {std::as_bytes(std::span(text))}); !written) {
+  if (auto written = writeFileAtomically(entry, text); !written) {
     return written;
   }
   removeOldEntries(folder);

@@ -43,8 +43,6 @@ constexpr const char* kNoPack =
 constexpr const char* kPackOption = "PACK,--pack";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
-// As the table of options calls it.
-constexpr const char* kRewardGroup = "Reward";
 
 /// PACK and --pack are one option, which has two lines in --help: only the first of them says that
 /// it is needed.

@@ -240,7 +240,7 @@ Result<void> PictureOutput::checkSheet(const PicturedRun& run) const {
 Result<void> PictureOutput::writeLegend(std::string_view json) const {
   if (options_.frames.empty()) return {};
   const std::filesystem::path file = std::filesystem::path(options_.frames) / kLegendName;
-  return writeFileAtomically(file, {std::as_bytes(std::span(json))});
+  return writeFileAtomically(file, json);
 }
 
 bool PictureOutput::wants(std::uint64_t step) const {
@@ -310,9 +310,8 @@ Result<void> PictureOutput::writeFrame(std::uint64_t step, std::size_t env,
   const auto write = [&](std::string_view what, const auto& picture) {
     return pictures::writePng(folder / frameName(env, step, what), picture);
   };
-  const std::string text = cameraText(frame);
-  Result<void> written = writeFileAtomically(folder / frameName(env, step, "camera.json"),
-                                             {std::as_bytes(std::span(text))});
+  Result<void> written =
+      writeFileAtomically(folder / frameName(env, step, "camera.json"), cameraText(frame));
   const DrawnImage& camera = frame.camera;
   if (written && !camera.color.empty()) written = write("rgb.png", colorPicture(camera));
   if (written && !camera.depth.empty()) written = write("depth.png", depthNumbers(camera));

@@ -26,7 +26,8 @@ struct OpenedPolicy {
 
 /// The policy, ready to act: where its network wants images, it draws them by itself. `world` and
 /// `simulator` must outlive it. Fails with the errors of LearnedPolicy::create and, where images
-/// are wanted, with those of Rendering::create.
+/// are wanted, with those of chooseCamera, WorldModels::from and ImageBatch::create; with
+/// kInvalidInput also where noise was asked for of images that nobody draws.
 [[nodiscard]] Result<std::unique_ptr<Policy>> makeLearnedPolicy(const OpenedPolicy& policy,
                                                                 const World& world,
                                                                 const BatchSimulator& simulator,

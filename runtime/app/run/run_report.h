@@ -12,6 +12,8 @@
 
 namespace galactic {
 
+class JsonWriter;
+
 /// Sums over the episodes that ended in a run.
 struct EpisodeSums {
   std::uint64_t ended = 0;
@@ -104,6 +106,9 @@ struct RunReport {
 
 /// The same as JSON, with all options and a line end.
 [[nodiscard]] std::string jsonOf(const RunReport& report);
+
+/// Writes the options of a simulation into an object of JSON, by their names.
+void writeSimulation(JsonWriter& json, const SimulationOptions& simulation);
 
 /// The legend of semantic images as JSON: id, name and the color in pictures of each.
 [[nodiscard]] std::string semanticLegend(const std::vector<std::string>& names);

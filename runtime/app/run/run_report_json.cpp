@@ -91,9 +91,7 @@ void writeOptions(JsonWriter& json, const RunReport& report) {
   json.begin("options", '{');
   OptionWriter writer(json);
   visitRunOptions(options, writer);
-  for (const OptionText& option : listOptions(options.simulation)) {
-    json.raw(option.name, option.is_word ? jsonString(option.value) : option.value);
-  }
+  writeSimulation(json, options.simulation);
   json.end('}');
   json.begin("from_world", '[');
   for (const OptionText& option : report.world_task) {
@@ -186,6 +184,12 @@ void writeCounts(JsonWriter& json, const RunReport& report) {
 }
 
 }  // namespace
+
+void writeSimulation(JsonWriter& json, const SimulationOptions& simulation) {
+  for (const OptionText& option : listOptions(simulation)) {
+    json.raw(option.name, option.is_word ? jsonString(option.value) : option.value);
+  }
+}
 
 std::string semanticLegend(const std::vector<std::string>& names) {
   JsonWriter json;

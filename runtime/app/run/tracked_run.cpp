@@ -4,12 +4,11 @@
 #include <filesystem>
 #include <memory>
 #include <set>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "galactic/option_text.h"
 #include "galactic/render_library.h"
+#include "run/run_report.h"
 #include "support/files/atomic_file.h"
 #include "support/try.h"
 #include "view/page.h"
@@ -63,16 +62,10 @@ std::string factsOf(const RunOptions& options) {
   json.begin('{');
   json.text("policy", options.replayFile().empty() ? options.policy : "replay");
   json.begin("options", '{');
-  for (const OptionText& option : listOptions(options.simulation)) {
-    json.raw(option.name, option.is_word ? jsonString(option.value) : option.value);
-  }
+  writeSimulation(json, options.simulation);
   json.end('}');
   json.end('}');
   return json.take();
-}
-
-Result<void> writeText(const std::string& path, std::string_view text) {
-  return writeFileAtomically(path, {std::as_bytes(std::span(text))});
 }
 
 }  // namespace
@@ -117,7 +110,7 @@ Result<void> TrackedRun::writePage(std::span<const PageAsset> assets) const {
                    viewPage(assets, {.track = &track_, .facts = factsOf(options_)},
                             {.title = std::filesystem::path(options_.view).stem().string(),
                              .generator = "galactic-run"}));
-  return writeText(options_.view, page);
+  return writeFileAtomically(options_.view, page);
 }
 
 Result<void> TrackedRun::writeAnimation(std::span<const PageAsset> assets) const {
@@ -126,7 +119,7 @@ Result<void> TrackedRun::writeAnimation(std::span<const PageAsset> assets) const
     glb.error().where = options_.animation;
     return tl::unexpected(glb.error());
   }
-  return writeText(options_.animation, *glb);
+  return writeFileAtomically(options_.animation, *glb);
 }
 
 }  // namespace galactic

@@ -87,6 +87,9 @@ void visitBatchOptions(SimulationOptions& o, Visitor& v) {
   v.whole("ranks", o.ranks, Within<std::uint32_t>{1, 65536}, "How many batches share the episodes");
 }
 
+/// The heading of what is earned, which is nothing where there is no task.
+inline constexpr const char* kRewardGroup = "Reward";
+
 /// The same, of the task and its reward.
 template <class Visitor>
 void visitTaskOptions(TaskOptions& t, Visitor& v) {
@@ -106,7 +109,7 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
   v.flag("no-distractors", Switch{t.distractors, false}, "Leave out all objects except the target");
   v.flag("observe-current", Switch{t.observes_current_target, true},
          "Observe the target where it is, not where it was at the start");
-  v.group("Reward");
+  v.group(kRewardGroup);
   v.real("success-reward", t.success_reward, kReward, "Reward for success");
   v.real("pick-reward", t.pick_reward, kReward, "Reward for the first grasp of the target");
   v.real("reach-weight", t.reach_weight, kReward,

@@ -156,4 +156,8 @@ Result<void> writeFileAtomically(const std::filesystem::path& path,
   return file.publish();
 }
 
+Result<void> writeFileAtomically(const std::filesystem::path& path, std::string_view text) {
+  return writeFileAtomically(path, {std::as_bytes(std::span(text))});
+}
+
 }  // namespace galactic

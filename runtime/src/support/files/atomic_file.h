@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "galactic/error.h"
 
@@ -42,5 +43,8 @@ class AtomicFile {
 /// new one, never half of it. On failure (kIo) the old file is intact and nothing else is left.
 [[nodiscard]] Result<void> writeFileAtomically(
     const std::filesystem::path& path, std::initializer_list<std::span<const std::byte>> parts);
+/// The same of a text.
+[[nodiscard]] Result<void> writeFileAtomically(const std::filesystem::path& path,
+                                               std::string_view text);
 
 }  // namespace galactic

@@ -80,7 +80,7 @@ Result<void> Journal::read(std::string_view subject) {
 
 Result<void> Journal::begin() {
   // Without what is damaged or of another subject.
-  RETURN_IF_ERROR(writeFileAtomically(path_, {std::as_bytes(std::span(kept_))}));
+  RETURN_IF_ERROR(writeFileAtomically(path_, kept_));
   is_own_ = true;
   stream_.open(path_, std::ios::binary | std::ios::app);
   return {};
