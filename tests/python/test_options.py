@@ -108,7 +108,7 @@ def test_the_parts_of_observations_and_the_options_of_sensors_are_known(world):
         ),
         ({"laser_heights": np.array(["a", "b"])}, Error, "laser_heights: is a,b, expected robot"),
         ({"threads": -1}, Error, "threads: is -1, expected 0 to 4096"),
-        ({"rank": 2, "ranks": 2}, Error, "rank 2 of 2"),
+        ({"rank": 2, "ranks": 2}, Error, "rank is 2, expected a number below ranks, which is 2"),
         ({"slide": "of"}, Error, "slide: is of, expected glide, published or off"),
     ],
 )

@@ -17,6 +17,7 @@
 #include "galactic/error.h"
 #include "run/tracked_run.h"
 #include "support/console/standard_streams.h"
+#include "support/option_rules.h"
 #include "support/option_table.h"
 #include "support/text/help_lines.h"
 #include "support/text/nearest_name.h"
@@ -89,7 +90,7 @@ std::string faultOf(const RunOptions& options) {
         "together fit; ask for fewer --steps or --view-envs",
         options.steps, kept, TrackedRun::kMostSteps);
   }
-  if (options.simulation.rank >= options.simulation.ranks) {
+  if (!isOneOfRanks(options.simulation)) {
     return fmt::format("--rank is {}, expected a number below --ranks, which is {}",
                        options.simulation.rank, options.simulation.ranks);
   }
@@ -147,7 +148,7 @@ std::string withoutEffect(const CLI::App& app, const SimulationOptions& simulati
               "applies to a laser scan only; add --laser-beams N"},
       Details{"--geodesic-megabytes",
               {},
-              !sensors.geodesic && task.geodesic_weight == 0,
+              !findsPaths(simulation),
               "applies to paths along the floor only; add --geodesic or --geodesic-weight X"},
       Details{"--drop-penalty",
               {},

@@ -12,6 +12,7 @@
 #include "galactic/option_text.h"
 #include "galactic/world_models.h"
 #include "galactic/world_views.h"
+#include "support/option_rules.h"
 #include "support/try.h"
 
 namespace galactic {
@@ -144,7 +145,7 @@ Result<std::unique_ptr<Policy>> makeLearnedPolicy(const OpenedPolicy& policy, co
                    LearnedPolicy::create(policy.pack, policyBatchOf(simulator),
                                          {.samples = !options.is_deterministic,
                                           .seed = simulation.seed,
-                                          .first_env = simulation.rank * simulation.envs,
+                                          .first_env = firstEnvOf(simulation),
                                           .threads = simulation.threads}));
   std::unique_ptr<PolicyEyes> eyes;
   RETURN_IF_ERROR(checkNoise(policy, options.drawing));

@@ -20,6 +20,7 @@
 #include "run/run_files.h"
 #include "run/tracked_run.h"
 #include "support/console/stop_request.h"
+#include "support/option_rules.h"
 #include "support/text/counted.h"
 #include "support/try.h"
 
@@ -138,10 +139,9 @@ class Run {
   Result<void> go(const StopRequest& stop) {
     if (!policy_) {
       const SimulationOptions& simulation = options_.simulation;
-      policy_ = makeGeneratedPolicy(
-          options_.policy, {.actions = simulator_.actionLayout(),
-                            .seed = simulation.seed,
-                            .first_env = std::uint64_t{simulation.rank} * simulation.envs});
+      policy_ = makeGeneratedPolicy(options_.policy, {.actions = simulator_.actionLayout(),
+                                                      .seed = simulation.seed,
+                                                      .first_env = firstEnvOf(simulation)});
     }
     LiveLine line(options_.steps, simulator_.envCount());
     const bool shows_progress = line.isEnabled() && !options_.is_quiet;

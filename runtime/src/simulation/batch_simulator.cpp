@@ -376,12 +376,6 @@ class BatchSimulator::Impl {
 
 Result<BatchSimulator> BatchSimulator::create(const World& world,
                                               const SimulationOptions& options) {
-  if (options.envs == 0 || options.ranks == 0 || options.rank >= options.ranks) {
-    return fail(ErrorCode::kInvalidInput, "simulation options",
-                "found " + std::to_string(options.envs) + " envs, rank " +
-                    std::to_string(options.rank) + " of " + std::to_string(options.ranks) +
-                    "; expected at least one env and a rank below the number of ranks");
-  }
   RETURN_IF_ERROR(checkOptions(options));
   ASSIGN_OR_RETURN(Model model, simulation::makeModel(world, options));
   const auto bytes = static_cast<double>(simulation::stateBytes(model, options.envs));

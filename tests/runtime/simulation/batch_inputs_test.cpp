@@ -465,15 +465,13 @@ TEST(Options, ThatMakeNoSenseAreErrors) {
     return simulator ? std::string("accepted") : simulator.error().message;
   };
   SimulationOptions options = optionsFor(0);
-  EXPECT_EQ(message(options),
-            "found 0 envs, rank 0 of 1; expected at least one env and a rank below the number of "
-            "ranks");
+  EXPECT_EQ(message(options), "envs is 0, expected 1 to 1048576");
   options = optionsFor(3);
   options.rank = 2;
   options.ranks = 2;
-  EXPECT_EQ(message(options),
-            "found 3 envs, rank 2 of 2; expected at least one env and a rank below the number of "
-            "ranks");
+  EXPECT_EQ(message(options), "rank is 2, expected a number below ranks, which is 2");
+  options.rank = options.ranks = 0;
+  EXPECT_EQ(message(options), "ranks is 0, expected 1 to 65536");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "simulation/simulator/restoring.h"
 #include "simulation/state/env_state.h"
 #include "simulation/state/grip_frame.h"
+#include "support/option_rules.h"
 
 namespace galactic::simulation {
 namespace {
@@ -24,11 +25,6 @@ namespace {
 constexpr float kMostTilt = 0.1F;
 /// Beyond what is left of a grasp after a pose's way through other frames and files, meters.
 constexpr float kGraspSlack = 1e-3F;
-
-/// Whether ways along the floor were found before the first step, to the goals of episodes.
-bool knowsWaysToGoals(const Model& model) {
-  return model.options.sensors.geodesic || model.options.task.geodesic_weight != 0;
-}
 
 /// How far the vertical axis is from that of the world, radians.
 float tiltOf(const Quat& rotation) {
@@ -68,7 +64,7 @@ std::string faultOf(const Model& model, const EnvState& state) {
         "robots stand upright; quaternions are w, x, y, z",
         tilt, kMostTilt);
   }
-  if (knowsWaysToGoals(model) && !(state.goal.translation == episode.goal.translation)) {
+  if (findsPaths(model.options) && !(state.goal.translation == episode.goal.translation)) {
     return "has another goal than its episode, and ways along the floor (geodesic) are known to "
            "the goals of episodes alone";
   }

@@ -13,6 +13,7 @@
 #include "simulation/phases/slide.h"
 #include "simulation/simulator/floor_maps.h"
 #include "simulation/state/batch_state.h"
+#include "support/option_rules.h"
 #include "support/threads/workers.h"
 #include "support/try.h"
 
@@ -200,7 +201,7 @@ Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
   ASSIGN_OR_RETURN(sensors::Laser made,
                    sensors::Laser::make(laser, *model.world, floorsOf(model), threads));
   model.laser = std::move(made);
-  if (!options.sensors.geodesic && options.task.geodesic_weight == 0) return {};
+  if (!findsPaths(options)) return {};
   const sensors::StandingRobot robot(model.world->robot(), model.motion, model.kernels);
   ASSIGN_OR_RETURN(sensors::Geodesic ways,
                    sensors::Geodesic::make(*model.world, robot, options.ground, errandsOf(model),

@@ -21,6 +21,7 @@
 #include "simulation/motion/motion_model.h"
 #include "simulation/ways_out/free_slices.h"
 #include "support/huge_pages.h"
+#include "support/option_rules.h"
 #include "support/optional_index.h"
 
 namespace galactic::simulation {
@@ -122,7 +123,7 @@ struct Model {
   }
   /// The number that an env's random numbers and episodes depend on.
   [[nodiscard]] std::uint32_t globalEnv(std::size_t env) const {
-    return options.rank * options.envs + static_cast<std::uint32_t>(env);
+    return firstEnvOf(options) + static_cast<std::uint32_t>(env);
   }
   /// 64-bit words of one bit for each sphere of a held object.
   [[nodiscard]] std::size_t heldWords() const { return (most_held_spheres + 63) / 64; }

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "support/option_rules.h"
 #include "support/option_table.h"
 #include "support/text/height_text.h"
 #include "support/text/range_text.h"
@@ -334,6 +335,11 @@ Result<void> checkOptions(const SimulationOptions& options) {
   visitOptions(copy, checker);
   if (!checker.fault().empty()) {
     return fail(ErrorCode::kInvalidInput, "simulation options", checker.fault());
+  }
+  if (!isOneOfRanks(options)) {
+    return fail(ErrorCode::kInvalidInput, "simulation options",
+                fmt::format("rank is {}, expected a number below ranks, which is {}", options.rank,
+                            options.ranks));
   }
   constexpr std::uint64_t kMostEnvs = std::uint64_t{1} << 32U;
   const std::uint64_t all = std::uint64_t{options.ranks} * options.envs;
