@@ -24,22 +24,6 @@ bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   return touches;
 }
 
-}  // namespace
-
-Obstacles obstaclesOf(const ChunkStep& step, std::size_t e) noexcept {
-  const Env& env = step.state.env(step.first + e);
-  return {step.model.scenes[env.scene], step.state.resting(step.first + e)};
-}
-
-SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
-  const Env& env = step.state.env(step.first + e);
-  const Pose world_from_object =
-      gripPose(step.chunk.grip(e)) * step.state.held(step.first + e).grip_from_object;
-  return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
-}
-
-namespace {
-
 /// The groups of an eight that there are, as bits.
 unsigned groupsOf(const Model& model, std::size_t eight) {
   return (1U << std::min(model.groups.size() - eight * kLanes, kLanes)) - 1;
@@ -48,23 +32,6 @@ unsigned groupsOf(const Model& model, std::size_t eight) {
 std::uint32_t mapOf(const ChunkStep& step, std::size_t e) {
   return step.state.env(step.first + e).clearance_map;
 }
-
-}  // namespace
-
-InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight,
-                    unsigned groups) noexcept {
-  if (groups == 0) return {};
-  const SphereBatch spheres = step.chunk.spheres(e);
-  const std::size_t first = eight * kLanes * kLanes;
-  return step.model.slices.findPlaces(mapOf(step, e), eight * kLanes,
-                                      {.x = spheres.x + first,
-                                       .y = spheres.y + first,
-                                       .z = spheres.z + first,
-                                       .asked = groups,
-                                       .places = step.chunk.places(e, eight)});
-}
-
-namespace {
 
 /// Bounds of the ball around what the candidate holds.
 CenterBounds boundsOfHeld(const ChunkStep& step, std::size_t e) {
@@ -105,46 +72,6 @@ void lookAtAllHeld(const ChunkStep& step) {
   if (count > 0) lookAtHeld(step, std::span(holding).first(count));
 }
 
-}  // namespace
-
-void lookAtHeld(const ChunkStep& step, std::size_t e) noexcept {
-  if (step.state.env(step.first + e).held >= 0) lookAtHeld(step, std::span(&e, 1));
-}
-
-void lookAtAll(const ChunkStep& step) noexcept {
-  static_assert(kChunk <= ClearanceMaps::kMostAsked && kChunk % kEnvsAsked == 0);
-  std::array<std::uint32_t, kChunk> maps;
-  for (std::size_t e = 0; e < kChunk; ++e) maps[e] = mapOf(step, e);
-  for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
-    const std::span<SureGroups> sure = step.chunk.sure(eight);
-    step.model.clearance.surelyFree(maps, eight, step.chunk.bounds(0, eight),
-                                    step.chunk.boundsStride(), sure);
-    const std::span<InSlices> found = step.chunk.inSlices(eight);
-    std::ranges::fill(found, InSlices{});
-    const unsigned groups = groupsOf(step.model, eight);
-    for (std::size_t first = 0; first < kChunk; first += kEnvsAsked) {
-      std::uint64_t asked = 0;
-      for (std::size_t n = 0; n < kEnvsAsked; ++n) {
-        asked |= std::uint64_t{groups & ~sure[first + n].free} << (kLanes * n);
-      }
-      const SphereBatch spheres = step.chunk.spheres(first);
-      const std::size_t sphere = eight * kLanes * kLanes;
-      step.model.slices.findPlaces(std::span(maps).subspan(first, kEnvsAsked), eight * kLanes,
-                                   {.x = spheres.x + sphere,
-                                    .y = spheres.y + sphere,
-                                    .z = spheres.z + sphere,
-                                    .stride = step.chunk.spheresStride(),
-                                    .asked = asked,
-                                    .places = step.chunk.places(first, eight),
-                                    .places_stride = step.chunk.placesStride(),
-                                    .found = &found[first]});
-    }
-  }
-  lookAtAllHeld(step);
-}
-
-namespace {
-
 /// No groups are known to be free.
 unsigned noGroups(std::size_t) { return 0; }
 
@@ -183,7 +110,85 @@ bool findBlockedBut(const Free& free, const ChunkStep& step, std::size_t e) {
   return findBlockedBy(look, free, step, e);
 }
 
+bool heldPenetrates(const ChunkStep& step, std::size_t e) {
+  if (step.state.env(step.first + e).held < 0) return false;
+  const std::span<std::uint64_t> bits = step.chunk.heldBits();
+  if (heldIsSurelyFree(step, e)) {
+    std::ranges::fill(bits, 0U);
+    return false;
+  }
+  const Obstacles obstacles = obstaclesOf(step, e);
+  const SphereBatch spheres = heldSpheres(step, e);
+  if (!penetrates(obstacles, spheres)) {
+    std::ranges::fill(bits, 0U);
+    return false;
+  }
+  penetrating(obstacles, spheres, step.chunk.collision(), bits);
+  return anyCounts(bits, step.state.ignored(step.first + e));
+}
+
 }  // namespace
+
+Obstacles obstaclesOf(const ChunkStep& step, std::size_t e) noexcept {
+  const Env& env = step.state.env(step.first + e);
+  return {step.model.scenes[env.scene], step.state.resting(step.first + e)};
+}
+
+SphereBatch heldSpheres(const ChunkStep& step, std::size_t e) noexcept {
+  const Env& env = step.state.env(step.first + e);
+  const Pose world_from_object =
+      gripPose(step.chunk.grip(e)) * step.state.held(step.first + e).grip_from_object;
+  return holdSpheres(heldModel(step.model, env), world_from_object, step.chunk.placement().spheres);
+}
+
+InSlices findPlaces(const ChunkStep& step, std::size_t e, std::size_t eight,
+                    unsigned groups) noexcept {
+  if (groups == 0) return {};
+  const SphereBatch spheres = step.chunk.spheres(e);
+  const std::size_t first = eight * kLanes * kLanes;
+  return step.model.slices.findPlaces(mapOf(step, e), eight * kLanes,
+                                      {.x = spheres.x + first,
+                                       .y = spheres.y + first,
+                                       .z = spheres.z + first,
+                                       .asked = groups,
+                                       .places = step.chunk.places(e, eight)});
+}
+
+void lookAtHeld(const ChunkStep& step, std::size_t e) noexcept {
+  if (step.state.env(step.first + e).held >= 0) lookAtHeld(step, std::span(&e, 1));
+}
+
+void lookAtAll(const ChunkStep& step) noexcept {
+  static_assert(kChunk <= ClearanceMaps::kMostAsked && kChunk % kEnvsAsked == 0);
+  std::array<std::uint32_t, kChunk> maps;
+  for (std::size_t e = 0; e < kChunk; ++e) maps[e] = mapOf(step, e);
+  for (std::size_t eight = 0; eight * kLanes < step.model.groups.size(); ++eight) {
+    const std::span<SureGroups> sure = step.chunk.sure(eight);
+    step.model.clearance.surelyFree(maps, eight, step.chunk.bounds(0, eight),
+                                    step.chunk.boundsStride(), sure);
+    const std::span<InSlices> found = step.chunk.inSlices(eight);
+    std::ranges::fill(found, InSlices{});
+    const unsigned groups = groupsOf(step.model, eight);
+    for (std::size_t first = 0; first < kChunk; first += kEnvsAsked) {
+      std::uint64_t asked = 0;
+      for (std::size_t n = 0; n < kEnvsAsked; ++n) {
+        asked |= std::uint64_t{groups & ~sure[first + n].free} << (kLanes * n);
+      }
+      const SphereBatch spheres = step.chunk.spheres(first);
+      const std::size_t sphere = eight * kLanes * kLanes;
+      step.model.slices.findPlaces(std::span(maps).subspan(first, kEnvsAsked), eight * kLanes,
+                                   {.x = spheres.x + sphere,
+                                    .y = spheres.y + sphere,
+                                    .z = spheres.z + sphere,
+                                    .stride = step.chunk.spheresStride(),
+                                    .asked = asked,
+                                    .places = step.chunk.places(first, eight),
+                                    .places_stride = step.chunk.placesStride(),
+                                    .found = &found[first]});
+    }
+  }
+  lookAtAllHeld(step);
+}
 
 bool findBlocked(const ChunkStep& step, std::size_t e) noexcept {
   return findBlockedBut(noGroups, step, e);
@@ -209,27 +214,6 @@ bool heldIsSurelyFree(const ChunkStep& step, std::size_t e) noexcept {
   const SeenHeld& seen = step.chunk.seenHeld(e);
   return seen.clears_scene && !step.state.resting(step.first + e).mayTouch(seen.bounds);
 }
-
-namespace {
-
-bool heldPenetrates(const ChunkStep& step, std::size_t e) {
-  if (step.state.env(step.first + e).held < 0) return false;
-  const std::span<std::uint64_t> bits = step.chunk.heldBits();
-  if (heldIsSurelyFree(step, e)) {
-    std::ranges::fill(bits, 0U);
-    return false;
-  }
-  const Obstacles obstacles = obstaclesOf(step, e);
-  const SphereBatch spheres = heldSpheres(step, e);
-  if (!penetrates(obstacles, spheres)) {
-    std::ranges::fill(bits, 0U);
-    return false;
-  }
-  penetrating(obstacles, spheres, step.chunk.collision(), bits);
-  return anyCounts(bits, step.state.ignored(step.first + e));
-}
-
-}  // namespace
 
 Hindrance hindranceByFloor(const ChunkStep& step, std::size_t e) noexcept {
   switch (step.chunk.floor(e)) {

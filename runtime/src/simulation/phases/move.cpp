@@ -106,6 +106,16 @@ bool followLevelFloors(const ChunkStep& step, std::size_t first, std::size_t cou
 
 }  // namespace
 
+void copyPose(const PoseArrays& from, const PoseArrays& to, std::size_t variables) noexcept {
+  *to.x = *from.x;
+  *to.y = *from.y;
+  *to.z = *from.z;
+  *to.yaw = *from.yaw;
+  for (std::size_t v = 0; v < variables; ++v) {
+    to.variables[v * to.stride] = from.variables[v * from.stride];
+  }
+}
+
 Vec3 floorProbe(const ChunkStep& step, std::size_t e) noexcept {
   const std::size_t n = step.first + e;
   return floorProbe(step.model.scenes[step.state.env(n).scene], step.chunk.base(e),

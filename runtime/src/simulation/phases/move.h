@@ -16,6 +16,9 @@ using EnvMask = std::array<std::uint32_t, kChunk>;
 /// The frames of some candidates become the bodies of their envs, where the run wants these.
 void keepBodies(const ChunkStep& step, const EnvMask& wanted) noexcept;
 
+/// The pose of one env becomes that of another.
+void copyPose(const PoseArrays& from, const PoseArrays& to, std::size_t variables) noexcept;
+
 /// Where the robots would be after their actions: base, then joints, each within its limits.
 void proposePoses(const ChunkStep& step) noexcept;
 

@@ -33,8 +33,9 @@ Pose raised(const Pose& pose, float height) {
   return result;
 }
 
-/// A sum of horizontal vectors that does not depend on their order: floats in fixed point.
-class PushSum {
+/// The direction of a sum of horizontal vectors, which does not depend on their order: floats in
+/// fixed point. PushSum would not do: in it, one vector cancels out many that point the other way.
+class DirectionSum {
  public:
   void add(float x, float z) {
     x_ += fixed(x);
@@ -256,8 +257,8 @@ class Candidate {
   float most_lift_;
   float clearance_;
   SphereBatch batch_;
-  PushSum from_scene_;
-  PushSum from_objects_;
+  DirectionSum from_scene_;
+  DirectionSum from_objects_;
 };
 
 /// A horizontal unit vector: `way` turned by up to `spread`, or any when there is no way.

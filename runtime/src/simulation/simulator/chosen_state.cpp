@@ -93,15 +93,7 @@ std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
 
 void StateChooser::addBodies(SavedEnv& saved) {
   restoreEnv(model_, state_, 0, saved);
-  const PoseArrays from = state_.poses(0);
-  const PoseArrays to = chunk_.candidates(0);
-  *to.x = *from.x;
-  *to.y = *from.y;
-  *to.z = *from.z;
-  *to.yaw = *from.yaw;
-  for (std::size_t v = 0; v < model_.variableCount(); ++v) {
-    to.variables[v * to.stride] = from.variables[v * from.stride];
-  }
+  copyPose(state_.poses(0), chunk_.candidates(0), model_.variableCount());
   placeBodies(step());
   keepBodies(step(), {~std::uint32_t{0}});
   const std::span<const RigidTransform> bodies = state_.bodyTransforms(0);

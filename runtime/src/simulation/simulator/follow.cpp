@@ -24,16 +24,6 @@ void propose(const ChunkStep& step, std::size_t e, const FollowedState& state) {
   }
 }
 
-void copyPose(const PoseArrays& from, const PoseArrays& to, std::size_t variables) {
-  *to.x = *from.x;
-  *to.y = *from.y;
-  *to.z = *from.z;
-  *to.yaw = *from.yaw;
-  for (std::size_t v = 0; v < variables; ++v) {
-    to.variables[v * to.stride] = from.variables[v * from.stride];
-  }
-}
-
 /// What nobody asked for stays where it is: forward kinematics reads all envs of the chunk.
 void proposeCurrent(const ChunkStep& step, std::size_t e) {
   copyPose(step.state.poses(step.first + e), step.chunk.candidates(e), step.model.variableCount());
