@@ -28,7 +28,7 @@ _OF_CURVES = {"std"}
 """Names that logs cannot have: the curves' column log_std is the policy's."""
 _MANY_PLACEMENTS = 20
 """If this many placements are all refused, it is not bad luck with single ones."""
-_NO_OPTIONS = ("task", "envs", "seed", "order", "rank", "ranks", "threads", "auto_reset")
+_NOT_OF_TASKS = ("task", "envs", "seed", "order", "rank", "ranks", "threads", "auto_reset")
 
 
 def made_by(factory: Callable[[], Task]) -> Task:
@@ -44,7 +44,7 @@ def require_options(task: Task) -> None:
     """Raises ValueError for options that a task cannot set."""
     name = type(task).__name__
     for option in task.options:
-        if option in _NO_OPTIONS:
+        if option in _NOT_OF_TASKS:
             instead = "say it with base" if option == "task" else "it is the VectorEnv's"
             raise ValueError(
                 f"{name}.options has {option!r}, which a task does not choose; {instead}"

@@ -7,7 +7,7 @@ import pytest
 
 import galactic
 from galactic.learning.homes import Homes
-from galactic.learning.playing.evaluation import NO_EPISODE, Actor, Evaluator
+from galactic.learning.playing.evaluation import NO_EPISODE, Actor, Evaluator, summary
 from galactic.learning.presets import preset
 from galactic.learning.rollouts.environments import Observation, Step
 from policies import untrained
@@ -66,3 +66,11 @@ def test_paths_are_those_of_the_robots_and_all_envs_are_asked_at_once(
     # Once in a step, and once where episodes begin.
     assert walked.steps < asked[0] <= walked.steps + len(episodes) + 1
     assert Evaluator(homes, actor).play(episodes[:2], details=False)[0].path == 0.0
+
+
+def test_no_episodes_have_no_length() -> None:
+    told = summary([], galactic.World(WORLD))
+    names = ("episodes", "success", "picked", "return", "length", "spl", "path", "refused", "slid")
+    assert {name: told[name] for name in names} == dict.fromkeys(names, 0)
+    assert told["success_interval"] == [0.0, 1.0]
+    assert told["each"] == []

@@ -268,22 +268,22 @@ def summary(results: Sequence[EpisodeResult], world: galactic.World) -> dict[str
     """Means, counts of the endings, and every episode, with the names of its scene and of the object that
     is to be moved: the report of galactic.evaluate."""
     table = world.episode_table()
-    count = max(len(results), 1)
     endings: dict[str, int] = {}
     for result in results:
         endings[result.ending] = endings.get(result.ending, 0) + 1
-    steps = max(sum(result.length for result in results), 1)
     sums = sums_of(results)
+    # Of none, all means are 0.
+    count, steps = max(sums.episodes, 1.0), max(sums.steps, 1.0)
     measures = {name: total / count for name, total in sums.measures.items()}
     logs = {name: total / steps for name, total in sums.logs.items()}
-    success = sum(result.success for result in results) / count
+    success = sums.successes / count
     return {
         "episodes": len(results),
         "success": success,
         "success_interval": list(interval(success, len(results))),
-        "picked": sum(result.picked for result in results) / count,
-        "return": sum(result.reward for result in results) / count,
-        "length": steps / count,
+        "picked": sums.picks / count,
+        "return": sums.returns / count,
+        "length": sums.lengths / count,
         "spl": sum(result.path_ratio for result in results) / count,
         "path": sum(result.path for result in results) / count,
         "refused": sum(result.refused for result in results) / steps,
