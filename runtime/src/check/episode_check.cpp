@@ -1,4 +1,4 @@
-#include "check/episode_check.h"
+#include "check/asset_checks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,8 @@
 #include "check/pack_check.h"
 
+#include "check/asset_checks.h"
 #include "check/common_check.h"
-#include "check/episode_check.h"
-#include "check/object_check.h"
 #include "check/offence.h"
-#include "check/policy_check.h"
-#include "check/robot_check.h"
-#include "check/scene_check.h"
 #include "check/texture_check.h"
 #include "check/world_check.h"
 

@@ -1,4 +1,4 @@
-#include "check/policy_check.h"
+#include "check/asset_checks.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "check/robot_check.h"
+#include "check/asset_checks.h"
 
 #include <set>
 #include <string_view>

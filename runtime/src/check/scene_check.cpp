@@ -1,4 +1,4 @@
-#include "check/scene_check.h"
+#include "check/asset_checks.h"
 
 #include "check/common_check.h"
 #include "check/offence.h"

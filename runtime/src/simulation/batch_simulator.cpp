@@ -16,7 +16,6 @@
 #include "simulation/simulator/chosen_state.h"
 #include "simulation/simulator/follow.h"
 #include "simulation/simulator/model_making.h"
-#include "simulation/simulator/restoring.h"
 #include "simulation/simulator/saved_state.h"
 #include "simulation/state/batch_state.h"
 #include "simulation/state/env_moment.h"

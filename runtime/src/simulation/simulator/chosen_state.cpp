@@ -12,7 +12,6 @@
 #include "simulation/phases/episode_start.h"
 #include "simulation/phases/move.h"
 #include "simulation/phases/object_placement.h"
-#include "simulation/simulator/restoring.h"
 #include "simulation/state/env_state.h"
 #include "simulation/state/grip_frame.h"
 #include "support/option_rules.h"

@@ -1,8 +1,7 @@
-#include "simulation/simulator/restoring.h"
-
 #include <algorithm>
 
 #include "simulation/phases/episode_start.h"
+#include "simulation/simulator/saved_state.h"
 
 namespace galactic::simulation {
 namespace {

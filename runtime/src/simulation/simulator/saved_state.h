@@ -63,6 +63,10 @@ struct SavedState {
   std::vector<SavedEnv> envs;
 };
 
+/// Env `n` goes on from `saved`, whose parts have to be as long as `model` wants them: in
+/// restoring.cpp.
+void restoreEnv(const Model& model, BatchState& state, std::size_t n, const SavedEnv& saved);
+
 /// What `bytes` hold, which may be anything. Fails with kUnsupported (another version) and
 /// kInvalidInput (no state, damaged, of another world or of other options, or values that no
 /// simulation leaves).

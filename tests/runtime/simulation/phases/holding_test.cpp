@@ -9,7 +9,7 @@
 
 #include "simulation/collision/collision.h"
 #include "simulation/phases/slide.h"
-#include "simulation/simulator/restoring.h"
+#include "simulation/simulator/saved_state.h"
 #include "support/homes/box_world.h"
 #include "support/homes/one_robot.h"
 #include "support/oracles/resting_oracle.h"

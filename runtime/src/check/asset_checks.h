@@ -1,0 +1,37 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "galactic/error.h"
+
+namespace galactic::schema {
+struct EpisodeSet;
+struct ObjectSet;
+struct Policy;
+struct Robot;
+struct Scene;
+}  // namespace galactic::schema
+
+namespace galactic::detail {
+
+// Checks of every value of a pack whose structure has been verified.
+
+/// That the names in it mean something is checked where scenes, objects and robot are known: by
+/// World.
+[[nodiscard]] Result<void> checkEpisodeSet(const schema::EpisodeSet& set, const std::string& where);
+
+[[nodiscard]] Result<void> checkObjectSet(const schema::ObjectSet& set, const std::string& where);
+
+/// What passes runs on any observation and image. Whether it fits a robot is found when it meets
+/// one.
+[[nodiscard]] Result<void> checkPolicy(const schema::Policy& policy, const std::string& where);
+
+/// A robot that passes is safe for forwardKinematics.
+[[nodiscard]] Result<void> checkRobot(const schema::Robot& robot, const std::string& where);
+
+/// `file`: the whole pack.
+[[nodiscard]] Result<void> checkScene(const schema::Scene& scene, std::span<const std::byte> file,
+                                      const std::string& where);
+
+}  // namespace galactic::detail
