@@ -11,12 +11,6 @@
 namespace galactic::simulation {
 namespace {
 
-constexpr std::size_t kBitsPerWord = 64;
-
-bool isIgnored(IgnoredSpheres ignored, std::size_t sphere) {
-  return !ignored.empty() && (ignored[sphere / kBitsPerWord] >> (sphere % kBitsPerWord) & 1U) != 0;
-}
-
 /// The spheres of one radius with their padding.
 SphereCenters centersOf(const SphereBatch& spheres, const RadiusRange& range) {
   const std::size_t count = paddedToLanes(range.count);
@@ -53,10 +47,6 @@ float radiusOf(const SphereBatch& spheres, std::uint32_t sphere) {
 
 Vec3 centerOf(const SphereBatch& spheres, std::uint32_t sphere) {
   return {spheres.x[sphere], spheres.y[sphere], spheres.z[sphere]};
-}
-
-void setBit(std::span<std::uint64_t> bits, std::uint32_t sphere) {
-  bits[sphere / kBitsPerWord] |= std::uint64_t{1} << (sphere % kBitsPerWord);
 }
 
 /// Sets the bit of each sphere that penetrates a resting object. Returns whether any does.

@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,6 +10,7 @@
 #include "simulation/collision/push.h"
 #include "simulation/collision/resting_objects.h"
 #include "simulation/collision/sphere_batch.h"
+#include "simulation/collision/sphere_bits.h"
 
 namespace galactic::simulation {
 
@@ -56,33 +56,6 @@ struct Obstacles {
 /// The way out of a box for a sphere that overlaps it: the shortest horizontal one along the normal
 /// of contact.
 [[nodiscard]] Push pushOutOfBox(const RestingBox& box, const Vec3& center, float radius) noexcept;
-
-/// Spheres that do not count, as one bit each: those of a held object that penetrated something
-/// already when it was grasped (its spheres reach further than the box as which it rested), until
-/// they are free. Empty: all count.
-using IgnoredSpheres = std::span<const std::uint64_t>;
-
-[[nodiscard]] inline bool isEmpty(std::span<const std::uint64_t> bits) {
-  return std::ranges::all_of(bits, [](std::uint64_t word) { return word == 0; });
-}
-
-/// Whether a bit is set that is not ignored.
-[[nodiscard]] inline bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
-  std::uint64_t any = 0;
-  for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
-  return any != 0;
-}
-
-/// Spheres that are free now, which do not have their bit, count from now on; whether some still do
-/// not.
-inline bool keepPenetrating(std::span<std::uint64_t> ignored, std::span<const std::uint64_t> bits) {
-  std::uint64_t any = 0;
-  for (std::size_t w = 0; w < ignored.size(); ++w) {
-    ignored[w] &= bits[w];
-    any |= ignored[w];
-  }
-  return any != 0;
-}
 
 /// The way out of resting objects for all spheres that penetrate some and are not ignored. Returns
 /// their number.

@@ -155,7 +155,7 @@ void SceneExit::forEachHeld(const Visit& visit) const {
   const IgnoredSpheres ignored = step_.state.ignored(step_.first + e_);
   for (const RadiusRange& range : held.ranges) {
     for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
-      if ((ignored[n / 64] >> (n % 64) & 1U) != 0) continue;
+      if (hasBit(ignored, n)) continue;
       visit(range.radius_index, Vec3{held.x[n], held.y[n], held.z[n]});
     }
   }

@@ -179,7 +179,7 @@ class TowardsBase {
   [[nodiscard]] std::uint32_t firstOfBody(bool from_last) const {
     const std::span<const std::uint32_t> order = step_.model.motion.spheres_by_link;
     const std::span<const std::uint64_t> bits = step_.chunk.bodyBits();
-    const auto is_set = [&](std::uint32_t n) { return (bits[n / 64] >> (n % 64) & 1U) != 0; };
+    const auto is_set = [&](std::uint32_t n) { return hasBit(bits, n); };
     return from_last ? *std::find_if(order.rbegin(), order.rend(), is_set)
                      : *std::find_if(order.begin(), order.end(), is_set);
   }
@@ -190,7 +190,7 @@ class TowardsBase {
     for (std::size_t w = 0; w < bits.size(); ++w) {
       const std::uint64_t word = bits[w] & ~ignored[w];
       if (word != 0)
-        return static_cast<std::uint32_t>(64 * w) +
+        return static_cast<std::uint32_t>(kBitsPerWord * w) +
                static_cast<std::uint32_t>(std::countr_zero(word));
     }
     return std::nullopt;

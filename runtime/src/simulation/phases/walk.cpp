@@ -30,8 +30,7 @@ bool anySmaller(const SphereBatch& spheres, std::span<const std::uint64_t> bits,
   for (const RadiusRange& range : spheres.ranges) {
     if (range.radius >= radius) continue;
     for (std::uint32_t n = range.first; n < range.first + range.count; ++n) {
-      const std::uint64_t counts = ignored.empty() ? bits[n / 64] : bits[n / 64] & ~ignored[n / 64];
-      if ((counts >> (n % 64) & 1U) != 0) return true;
+      if (hasBit(bits, n) && !isIgnored(ignored, n)) return true;
     }
   }
   return false;

@@ -8,6 +8,7 @@
 #include "galactic/kinematics.h"
 #include "galactic/robot.h"
 #include "simulation/collision/resting_box.h"
+#include "simulation/collision/sphere_bits.h"
 
 namespace galactic::simulation {
 namespace {
@@ -16,13 +17,8 @@ using detail::Directions;
 using detail::GridDistance;
 using detail::SignedDistance;
 
-constexpr std::size_t kBitsPerWord = 64;
 /// x, y, z and yaw.
 constexpr std::size_t kBaseNumbers = 4;
-
-bool hasBit(std::span<const std::uint64_t> bits, std::size_t n) {
-  return (bits[n / kBitsPerWord] >> (n % kBitsPerWord) & 1U) != 0;
-}
 
 /// Whether a joint that actions move is between a link and the root.
 bool isMoved(const Robot& robot, std::uint32_t link) {

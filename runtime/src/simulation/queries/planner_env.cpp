@@ -18,13 +18,6 @@
 namespace galactic::simulation {
 namespace {
 
-constexpr std::size_t kBitsPerWord = 64;
-
-/// One bit for each sphere.
-std::size_t wordsFor(const SphereCloud& cloud) {
-  return (cloud.paddedCount() + kBitsPerWord - 1) / kBitsPerWord;
-}
-
 SphereCloud cloudOf(const Robot& robot) {
   std::vector<SphereCloud::Sphere> spheres;
   spheres.reserve(robot.spheres().size());
@@ -62,7 +55,7 @@ PlannerEnv::PlannerEnv(const World& world, const SimulationOptions& options)
       placement_(mostSpheres(world), world.radii()) {
   // A jitter is random; what is planned shall not be.
   options_.placement.attempts = 1;
-  overlapping_.resize(wordsFor(robot_));
+  overlapping_.resize(wordsFor(robot_.paddedCount()));
 }
 
 void PlannerEnv::update(const EnvState& state) {
@@ -135,8 +128,8 @@ void PlannerEnv::take(std::uint32_t object, const Pose& grip_from_object) {
   spheres.reserve(held_->spheres.size());
   for (const SetSphere& sphere : held_->spheres) spheres.push_back({0, sphere});
   held_spheres_ = SphereCloud(spheres, world_.radii());
-  penetrating_.assign(wordsFor(held_spheres_), 0);
-  ignored_.assign(wordsFor(held_spheres_), 0);
+  penetrating_.assign(wordsFor(held_spheres_.paddedCount()), 0);
+  ignored_.assign(wordsFor(held_spheres_.paddedCount()), 0);
   assembleHeld();
 }
 

@@ -41,8 +41,7 @@ void restoreHand(const Model& model, BatchState& state, std::size_t n, const Sav
   state.held(n) = saved.held;
   if (env.held >= 0) measureHeld(heldModel(model, env), state.held(n));
   std::ranges::copy(saved.ignored, state.ignored(n).begin());
-  env.ignores = env.held >= 0 &&
-                std::ranges::any_of(saved.ignored, [](std::uint64_t word) { return word != 0; });
+  env.ignores = env.held >= 0 && !isEmpty(saved.ignored);
   std::ranges::copy(saved.leaving, state.leaving(n).begin());
 }
 

@@ -279,7 +279,7 @@ bool leavesAsSaid(const Model& model, const SavedEnv& saved) {
   std::uint32_t left = 0;
   for (std::uint32_t object = 0; object < saved.env.objects; ++object) {
     const auto row = std::span(saved.leaving).subspan(object * words, words);
-    if (std::ranges::all_of(row, [](std::uint64_t word) { return word == 0; })) continue;
+    if (isEmpty(row)) continue;
     if (static_cast<std::int32_t>(object) == saved.env.held) return false;
     ++left;
   }

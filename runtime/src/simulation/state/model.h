@@ -17,6 +17,7 @@
 #include "simulation/collision/collision.h"
 #include "simulation/collision/level_floors.h"
 #include "simulation/collision/resting_objects_kernels.h"
+#include "simulation/collision/sphere_bits.h"
 #include "simulation/motion/motion_kernels.h"
 #include "simulation/motion/motion_model.h"
 #include "simulation/ways_out/free_slices.h"
@@ -126,9 +127,9 @@ struct Model {
     return firstEnvOf(options) + static_cast<std::uint32_t>(env);
   }
   /// 64-bit words of one bit for each sphere of a held object.
-  [[nodiscard]] std::size_t heldWords() const { return (most_held_spheres + 63) / 64; }
+  [[nodiscard]] std::size_t heldWords() const { return wordsFor(most_held_spheres); }
   /// The same for the robot.
-  [[nodiscard]] std::size_t bodyWords() const { return (sphereCount() + 63) / 64; }
+  [[nodiscard]] std::size_t bodyWords() const { return wordsFor(sphereCount()); }
   [[nodiscard]] const Episode& episodeOf(std::uint32_t start) const {
     return world->episodes().episodes()[starts[start].episode];
   }
