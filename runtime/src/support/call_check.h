@@ -4,14 +4,14 @@
 
 namespace galactic::detail {
 
-/// What a function's documentation asks of its caller and the call did not keep: throws an
-/// ErrorException with kInvalidInput. `call`: "BatchSimulator::step".
+/// Refuses a call that breaks what the function's documentation requires: throws an ErrorException
+/// with kInvalidInput. `call`: "BatchSimulator::step".
 [[noreturn]] void refuseCall(const char* call, std::string message);
 
 [[noreturn]] void refuseLength(const char* call, const char* array, std::size_t found,
                                std::size_t expected);
 
-/// An array of a batch has the length that its shape gives. `array`: "actions".
+/// Checks that an array of a batch has the length that its shape gives. `array`: "actions".
 inline void checkLength(const char* call, const char* array, std::size_t found,
                         std::size_t expected) {
   if (found != expected) [[unlikely]] {

@@ -7,8 +7,9 @@
 
 namespace galactic {
 
-/// What the episode of a moment has drawn of a number. It follows from the moment alone, so nothing
-/// has to keep it. `salt`: of the number, apart from those of all other random numbers.
+/// The value that is drawn for `number` in the episode of `moment`. It follows from the moment
+/// alone, so nothing has to store it. `salt` keeps the number's random stream apart from all
+/// others.
 [[nodiscard]] inline float drawnIn(const EnvMoment& moment, const DrawnNumber& number,
                                    std::uint64_t salt) {
   if (!number.isRange()) return number.least;

@@ -3,9 +3,9 @@
 
 namespace galactic {
 
-/// What a program says of the exception that it is handling, where none is expected: that memory
-/// was lacking, that its output cannot be written to, which printing throws, or else that it is at
-/// fault. Called in a catch block.
+/// The error that a program reports for the exception that it is handling where it expects none:
+/// memory ran out, its output cannot be written (printing throws), or else the program itself is at
+/// fault. Call it in a catch block.
 [[nodiscard]] Error errorOfException();
 
 }  // namespace galactic

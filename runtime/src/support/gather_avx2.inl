@@ -1,13 +1,13 @@
-// Loads of eight elements by their numbers: included by files that are compiled for AVX2. One by
-// one they take less time than the instructions that gather where those are microcode, as on
-// processors of AMD (1.3 ns instead of 2.9 on Zen 5), or slowed down because of CVE-2022-40982, as
-// on many of Intel. No library templates here: see column_grid_avx2.cpp.
+// Loads of eight elements by index; included by files that are compiled for AVX2. Loading them one
+// by one is faster than the gather instructions where these are microcode, as on AMD processors
+// (1.3 ns instead of 2.9 on Zen 5), or slowed down because of CVE-2022-40982, as on many Intel
+// processors. No library templates here: see column_grid_avx2.cpp.
 #include <immintrin.h>
 
 namespace galactic::detail {
 namespace {
 
-/// Eight indices, 0 or more, in four registers.
+/// Eight indices, 0 or greater, in four registers.
 struct EightIndices {
   std::uint64_t pairs[4];
 
@@ -24,14 +24,14 @@ inline EightIndices indicesOf(__m256i lanes) {
            static_cast<std::uint64_t>(_mm_extract_epi64(high, 1))}};
 }
 
-/// The same of indices that are in memory already.
+/// The same for indices that are already in memory.
 inline EightIndices indicesAt(const std::int32_t* from) {
   EightIndices indices;
   __builtin_memcpy(&indices, from, sizeof(indices));
   return indices;
 }
 
-/// The words that begin kScale bytes for each number behind `from`.
+/// The 32-bit words that begin kScale * n bytes after `from`, one for each index n.
 template <int kScale>
 inline __m256i gatherEight(const void* from, const EightIndices& at) {
   const auto word = [from](std::size_t n) {
@@ -52,7 +52,7 @@ struct TwoOfEight {
   __m256 first, second;
 };
 
-/// Elements kStride * at and the ones behind them.
+/// Elements kStride * at and the ones after them.
 template <std::size_t kStride>
 inline TwoOfEight gatherTwoOfEight(const std::int32_t* from, __m256i at) {
   const EightIndices n = indicesOf(at);

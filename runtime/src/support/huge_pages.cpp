@@ -27,7 +27,7 @@ class HugePages final : public std::pmr::memory_resource {
 void* HugePages::do_allocate(std::size_t bytes, std::size_t alignment) {
   void* memory = ::operator new (bytes, std::align_val_t{alignmentFor(bytes, alignment)});
 #if defined(__linux__)
-  // A wish; without it the memory is the same, and slower.
+  // Only advice: if the system ignores it, the memory is the same, but slower.
   if (bytes >= kHugePage) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));
 #endif
   return memory;

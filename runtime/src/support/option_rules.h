@@ -5,7 +5,7 @@
 
 namespace galactic {
 
-// What follows from several options together.
+// Rules that combine several options.
 
 /// The number over all ranks of a batch's first env, for options that checkOptions() lets pass.
 [[nodiscard]] constexpr std::uint32_t firstEnvOf(const SimulationOptions& options) {

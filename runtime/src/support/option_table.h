@@ -10,7 +10,7 @@
 
 namespace galactic {
 
-/// A value of an option that has names for its values.
+/// A named value of an option.
 template <class T>
 struct Named {
   std::string_view name;
@@ -47,12 +47,12 @@ template <class T>
   return text;
 }
 
-/// A name for values of several options, which may be given besides and then count. It is no option
-/// of its own: recordings, reports and packs hold its parts.
+/// A name for a set of values of several options, which may also be given alone and then take
+/// precedence. A preset is not an option of its own: recordings, reports and packs store its parts.
 template <class T>
 struct Preset {
   std::span<const Named<T>> names;
-  /// The options that it gives values.
+  /// The options that it sets.
   std::span<const std::string_view> parts;
 };
 
@@ -63,19 +63,20 @@ inline constexpr std::array<Named<SlideOptions>, 3> kSlidePresets{
 inline constexpr std::array<std::string_view, 3> kSlideParts{"slide-direction", "slide-attempts",
                                                              "slide-step"};
 
-/// A switch: the field and the value that it gets when the switch is typed.
+/// A switch: a field, and the value that typing the switch gives it.
 struct Switch {
   bool& field;
   bool when_typed;
 };
 
-/// Names each option that decides what a simulation does, once, for all who need the list: the
-/// command line of galactic-run, recordings, reports, world packs and the recipes of worlds. Calls
-/// on `v`
+/// Visits each option that determines what a simulation does. This is the one list for all who need
+/// it: the command line of galactic-run, recordings, reports, world packs and the recipes of
+/// worlds.
+/// Calls on `v`
 ///   group(heading), whole(name, field, Within, help), real(name, field, Within, help),
-///   drawn(name, field, within, help), of whole numbers with the most of them for `within`,
+///   drawn(name, field, within, help), where `within` of a whole number is its maximum,
 ///   heights(name, field, within, help), choice(name, field, names, help), flag(name, Switch,
-///   help), seed(name, field, help), preset(name, field, Preset, help), before its parts.
+///   help), seed(name, field, help), preset(name, field, Preset, help) before its parts.
 template <class Visitor>
 void visitBatchOptions(SimulationOptions& o, Visitor& v) {
   v.group("Simulation");
@@ -87,10 +88,10 @@ void visitBatchOptions(SimulationOptions& o, Visitor& v) {
   v.whole("ranks", o.ranks, Within<std::uint32_t>{1, 65536}, "How many batches share the episodes");
 }
 
-/// The heading of what is earned, which is nothing where there is no task.
+/// The heading of the reward options, which do nothing without a task.
 inline constexpr const char* kRewardGroup = "Reward";
 
-/// The same, of the task and its reward.
+/// The same for the task and its reward.
 template <class Visitor>
 void visitTaskOptions(TaskOptions& t, Visitor& v) {
   constexpr Within<float> kReward{-1e6F, 1e6F};
@@ -131,12 +132,12 @@ void visitTaskOptions(TaskOptions& t, Visitor& v) {
          "Penalty for each step in which the hand holds the target on its side");
 }
 
-/// The same, of what the robot does and meets.
+/// The same for what the robot does and encounters.
 template <class Visitor>
 void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   constexpr Within<float> kThreshold{-2, 2};
   constexpr Within<float> kMeters{0, 1000};
-  // Where a floor lies, rounding tells: none is as high as the one before it.
+  // Not 0: rounding errors make no place of a floor exactly as high as the one before it.
   constexpr Within<float> kStep{0.001F, 1000};
   constexpr Within<std::uint32_t> kAttempts{0, 1000};
   v.group("Actions");
@@ -169,7 +170,7 @@ void visitMotionOptions(SimulationOptions& o, Visitor& v) {
   v.real("place-jitter", o.placement.jitter, kMeters, "Length of a jitter, in box diagonals");
 }
 
-/// The same, of what is off about the robot.
+/// The same for the robot's imperfections.
 template <class Visitor>
 void visitNoiseOptions(RobotNoise& n, Visitor& v) {
   constexpr Span kShare{0, 1};
@@ -181,7 +182,7 @@ void visitNoiseOptions(RobotNoise& n, Visitor& v) {
           "Steps until the robot does what it was asked to");
 }
 
-/// The same, of what the robot senses.
+/// The same for what the robot senses.
 template <class Visitor>
 void visitSensorOptions(SensorOptions& s, Visitor& v) {
   LaserOptions& laser = s.laser;
@@ -212,8 +213,8 @@ void visitSensorOptions(SensorOptions& s, Visitor& v) {
           "Steps whose actions to observe, the last ones; 0: none");
 }
 
-/// What a world may say of its task, its reward and what the robot does and senses: all but the
-/// batch.
+/// What a world may set about its task, its reward and what the robot does and senses: all options
+/// but those of the batch.
 template <class Visitor>
 void visitWorldTask(SimulationOptions& options, Visitor& visitor) {
   visitTaskOptions(options.task, visitor);
@@ -222,7 +223,7 @@ void visitWorldTask(SimulationOptions& options, Visitor& visitor) {
   visitSensorOptions(options.sensors, visitor);
 }
 
-/// All of them, in the order of recordings and reports.
+/// All options, in the order of recordings and reports.
 template <class Visitor>
 void visitOptions(SimulationOptions& options, Visitor& visitor) {
   visitBatchOptions(options, visitor);

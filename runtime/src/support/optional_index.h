@@ -4,13 +4,13 @@
 
 namespace galactic {
 
-/// An index or none, in one number. A std::optional of it is written in two parts and returned as
-/// one word, which is read once both have left the core: some 15 cycles for an answer that is
-/// mostly "none".
+/// An index or none, in one number. A std::optional would be written in two parts but returned as
+/// one word, which can be read only when both writes have left the core: that costs about 15 cycles
+/// for an answer that is mostly "none".
 class OptionalIndex {
  public:
   constexpr OptionalIndex() = default;
-  /// Any but the largest number. Implicit, as those of a std::optional are.
+  /// Any number but the largest. Implicit, like the constructors of std::optional.
   // NOLINTNEXTLINE(google-explicit-constructor)
   constexpr OptionalIndex(std::uint32_t index) : index_(index) { assert(index != kNone); }
 

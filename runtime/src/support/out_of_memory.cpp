@@ -16,7 +16,7 @@ namespace {
 constexpr double kMegabyte = 1e6;
 constexpr double kGigabyte = 1e9;
 
-/// "1.8 GB", and of little "2.3 MB".
+/// "1.8 GB", and small amounts as "2.3 MB".
 std::string memoryText(double bytes) {
   constexpr double kLittle = 0.1 * kGigabyte;
   return bytes < kLittle ? fmt::format("{:.1f} MB", bytes / kMegabyte)
@@ -38,7 +38,7 @@ double machineBytes() {
          static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
-/// Bytes of address space that a limit allows the process; infinity without one.
+/// Bytes of address space that a limit grants the process; infinity without a limit.
 double limitBytes() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
@@ -58,8 +58,8 @@ Error outOfMemory() {
 }
 
 Result<void> checkMemory(double bytes, std::string_view what, std::string_view advice) {
-  // What is mapped counts against a limit, but says nothing of the memory in use: files are mapped,
-  // and sanitizers map terabytes.
+  // Mapped memory counts against a limit, but is not the memory in use: files are mapped, and
+  // sanitizers map terabytes.
   const double left = std::min(machineBytes(), limitBytes() - mappedBytes());
   if (bytes <= left) return {};
   return fail(ErrorCode::kUnsupported, "available memory",

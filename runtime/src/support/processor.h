@@ -2,8 +2,8 @@
 
 namespace galactic::detail {
 
-// What this processor can do beyond what all of its kind can. Inlined everywhere: it is asked
-// before each small kernel, and the code built for AVX2 must not share a function with code for any
+// Features of this processor beyond the baseline of its architecture. Inlined everywhere: callers
+// ask before each small kernel, and code built for AVX2 must not share a function with code for any
 // processor.
 
 /// Whether code built for AVX2 can run here.
@@ -15,7 +15,7 @@ namespace galactic::detail {
 #endif
 }
 
-/// Whether code built for AVX2 and fused multiplication (FMA) can.
+/// Whether code built for AVX2 and fused multiplication (FMA) can run here.
 [[nodiscard, gnu::always_inline]] inline bool hasFusedAvx2() noexcept {
 #if defined(__x86_64__)
   return hasAvx2() && __builtin_cpu_supports("fma") != 0;
@@ -24,7 +24,8 @@ namespace galactic::detail {
 #endif
 }
 
-/// Whether code built for AVX-512 (F, BW, DQ, VL) and instructions for bits (BMI, BMI2) can.
+/// Whether code built for AVX-512 (F, BW, DQ, VL) and the bit instructions (BMI, BMI2) can run
+/// here.
 [[nodiscard, gnu::always_inline]] inline bool hasAvx512() noexcept {
 #if defined(__x86_64__)
   return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&

@@ -11,11 +11,11 @@ namespace galactic {
   return z ^ (z >> 31U);
 }
 
-/// A stream of random numbers that is fully given by what it is for, so that an env's numbers do
-/// not depend on the other envs or on the order in which envs are stepped.
+/// A stream of random numbers that its purpose fully determines, so that an env's numbers depend
+/// neither on other envs nor on the order in which envs are stepped.
 class RandomStream {
  public:
-  /// `episode` counts the episodes that the env has begun; `step` the steps in it.
+  /// `episode` counts the episodes that the env has begun; `step` counts the steps in the episode.
   RandomStream(std::uint64_t seed, std::uint32_t env, std::uint64_t episode, std::uint32_t step)
       : state_(mix(mix(mix(mix(seed + kGamma) ^ env) ^ episode) ^ step)) {}
 
@@ -27,8 +27,8 @@ class RandomStream {
   /// Uniform in [0, 1), a multiple of 2^-24.
   [[nodiscard]] float unit() { return static_cast<float>(next() >> 40U) * 0x1p-24F; }
 
-  /// The sum of four uniform numbers: within 1 % of the normal distribution's, and never further
-  /// out than 3.5 deviations. Mean 0, deviation 1.
+  /// The sum of four uniform numbers, with mean 0 and deviation 1: within 1 % of the normal
+  /// distribution, and never farther out than 3.5 deviations.
   [[nodiscard]] float nearlyNormal() {
     constexpr std::uint64_t kPart = 0xffff;
     // 65536 / sqrt(3).

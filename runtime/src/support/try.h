@@ -2,8 +2,8 @@
 #include <tl/expected.hpp>
 #include <utility>
 
-// Passing errors on, under the names that Abseil made common. For the sources of this project only:
-// macros have no namespace, so no public header includes this one.
+// Macros that pass errors on, under the names that Abseil made common. For the sources of this
+// project only: macros have no namespace, so no public header includes this one.
 
 #define GALACTIC_JOINED_AGAIN(a, b) a##b
 #define GALACTIC_JOINED(a, b) GALACTIC_JOINED_AGAIN(a, b)

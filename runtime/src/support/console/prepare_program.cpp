@@ -20,7 +20,7 @@
 namespace galactic {
 namespace {
 
-// What follows runs in a handler of signals: no memory, no locks, no streams.
+// What follows runs in a signal handler: no memory, no locks, no streams.
 
 /// Text of limited length; what does not fit is left out.
 template <std::size_t kMost>
@@ -42,7 +42,7 @@ class FixedText {
 /// A line of /proc/self/maps: "BEGIN-END RIGHTS OFFSET DEVICE INODE    /PATH", in hexadecimal.
 using MapsLine = FixedText<PATH_MAX + 128>;
 
-/// Whether the range of a line has the address.
+/// Whether the address is in the range of a line.
 bool holds(std::string_view line, std::uintptr_t address) {
   std::uintptr_t begin = 0;
   std::uintptr_t end = 0;
@@ -53,7 +53,7 @@ bool holds(std::string_view line, std::uintptr_t address) {
   return begin <= address && address < end;
 }
 
-/// Leaves the line that has the address in `line`; nothing where there is none.
+/// Leaves the line that contains the address in `line`; nothing if there is none.
 void findMapping(std::uintptr_t address, MapsLine& line) {
   const int file = ::open("/proc/self/maps", O_RDONLY | O_CLOEXEC);
   std::array<char, 1024> bytes;
@@ -71,7 +71,7 @@ void findMapping(std::uintptr_t address, MapsLine& line) {
   line.clear();
 }
 
-/// For SIGBUS.
+/// The handler of SIGBUS.
 void endForLostFile(int signal, siginfo_t* info, void* /*context*/) {
   MapsLine line;
   if (info->si_code == BUS_ADRERR) {
@@ -79,12 +79,12 @@ void endForLostFile(int signal, siginfo_t* info, void* /*context*/) {
   }
   const std::size_t path = line.view().find('/');
   if (path == std::string_view::npos) {
-    // Of another kind: as if there were no handler, once it has returned.
+    // Raised for another reason: behave as if there were no handler as soon as this returns.
     std::signal(signal, SIG_DFL);
     (void)::raise(signal);
     return;
   }
-  // Threads that work on the same file come here together.
+  // All threads that work on the file may get here at the same time.
   static std::atomic_flag is_told = ATOMIC_FLAG_INIT;
   while (is_told.test_and_set()) ::pause();
   FixedText<PATH_MAX + 512> text;

@@ -2,10 +2,10 @@
 
 namespace galactic {
 
-/// What a program does first of all: prepareStandardStreams(), and that a mapped file that another
-/// process cuts short, or that its disk no longer gives, ends the program with kIo and a sentence
-/// on standard error in place of a bare SIGBUS. For programs only: who embeds the library has
-/// handlers of its own.
+/// The first call of a program. Calls prepareStandardStreams(), and makes the loss of a mapped file
+/// (another process truncates it, or its disk fails) end the program with kIo and a sentence on
+/// standard error instead of a bare SIGBUS. For programs only: applications that embed the library
+/// have handlers of their own.
 void prepareProgram() noexcept;
 
 }  // namespace galactic

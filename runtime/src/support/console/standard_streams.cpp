@@ -15,7 +15,8 @@ void prepareStandardStreams() noexcept {
   std::signal(SIGXFSZ, SIG_IGN);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) != -1) continue;
-    // The lowest number that is free: that of the stream. Opened for what it is not used for.
+    // open() returns the lowest free number: that of the closed stream. Opened in the mode that the
+    // stream is not used in, so that using it still fails.
     (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }

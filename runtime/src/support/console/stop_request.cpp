@@ -19,8 +19,8 @@ bool isIgnored(int signal) {
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// Writing to a terminal that has closed fails, as if results were lost on a full disk; what is
-/// left to say goes nowhere.
+/// Writing to a closed terminal fails, which would look as if results were lost on a full disk; so
+/// redirect what is left to say to nowhere.
 void leaveClosedTerminals() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::isatty(stream) == 1 || errno != EIO) continue;
@@ -47,7 +47,7 @@ StopRequest::StopRequest(std::string program, std::function<std::string()> last_
 
 StopRequest::~StopRequest() {
   over_ = true;
-  // It waits for nothing else, and takes the signal with sigwait().
+  // The watcher waits for nothing else, and takes the signal with sigwait().
   // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread)
   pthread_kill(watcher_.native_handle(), SIGTERM);
   watcher_.join();
@@ -56,7 +56,7 @@ StopRequest::~StopRequest() {
 
 void StopRequest::watch() {
   using Clock = std::chrono::steady_clock;
-  // Who sends it to a process and to its group, as timeout(1) does, asks once.
+  // A sender that signals a process and its group, as timeout(1) does, asks once.
   constexpr std::chrono::milliseconds kSameRequest{500};
   Clock::time_point asked;
   while (true) {
@@ -71,7 +71,8 @@ void StopRequest::watch() {
     const Clock::time_point now = Clock::now();
     if (came_) {
       // Files appear only when they are whole, so that leaving at once loses nothing. The kernel
-      // and the shell both tell of a terminal that has closed, and nobody is there to insist.
+      // and the shell both send SIGHUP when a terminal closes, so a second SIGHUP does not mean
+      // that somebody insists.
       if (signal != SIGHUP && now - asked >= kSameRequest) ::_exit(kExitInterrupted);
       continue;
     }

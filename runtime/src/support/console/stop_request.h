@@ -7,17 +7,17 @@
 
 namespace galactic {
 
-/// While it lives, Ctrl-C, SIGTERM, and SIGHUP of a terminal that closes, unless that is ignored
-/// (nohup), are requests to end. The first one asks to begin nothing more; another Ctrl-C or
-/// SIGTERM, half a second later or more, ends the program at once, whatever it is busy with. Make
-/// it before other threads start: they inherit the signals' mask.
+/// While it lives, Ctrl-C, SIGTERM and the SIGHUP of a closing terminal (unless ignored, as under
+/// nohup) are requests to stop. The first one asks the program to begin nothing more; another
+/// Ctrl-C or SIGTERM at least half a second later ends the program at once, whatever it is doing.
+/// Create it before other threads start: they inherit the signal mask.
 class StopRequest {
  public:
-  /// `program`: who says on standard error that the request was heard.
+  /// `program`: the name under which standard error acknowledges the request.
   explicit StopRequest(std::string program);
-  /// Of work that is not worth finishing, as nothing comes of a part of it: the first request ends
-  /// the program at once, with kExitInterrupted. `last_words` says how the work goes on; called by
-  /// another thread.
+  /// For work that is not worth finishing because a part of it yields nothing: the first request
+  /// ends the program at once, with kExitInterrupted. `last_words` returns how to resume the work;
+  /// another thread calls it.
   StopRequest(std::string program, std::function<std::string()> last_words);
   ~StopRequest();
   StopRequest(const StopRequest&) = delete;

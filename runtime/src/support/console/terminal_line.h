@@ -3,9 +3,9 @@
 
 namespace galactic {
 
-/// As much of a line of text as fits on one of the terminal that the descriptor `file` leads to: a
-/// longer one could not be written over, and would leave its beginning behind. All of it where the
-/// width is not known. Letters beyond ASCII are kept or left out whole.
+/// As much of `text` as fits on one line of the terminal that the descriptor `file` leads to: a
+/// longer line could not be overwritten and would leave its beginning behind. The whole text if the
+/// width is unknown. Characters beyond ASCII are kept or dropped whole.
 [[nodiscard]] std::string fittingLine(std::string text, int file);
 
 }  // namespace galactic

@@ -15,14 +15,14 @@
 
 namespace galactic {
 
-/// A part of the target, and what becomes of it.
+/// A part of the target, until it is published or removed.
 class AtomicFile::Temporary {
  public:
-  /// `path` is what the user named, `target` where it leads.
+  /// `path` is what the user named, `target` is where it leads.
   Temporary(std::filesystem::path path, std::filesystem::path target)
       : named_(std::move(path)), target_(std::move(target)), part_(target_) {}
 
-  /// Why there is none; 0 where it can be written.
+  /// Why the part cannot be written; 0 if it can.
   [[nodiscard]] int error() const { return part_.error(); }
 
   [[nodiscard]] bool append(std::span<const std::byte> bytes) const {
@@ -47,7 +47,7 @@ class AtomicFile::Temporary {
     return true;
   }
 
-  /// `problem`: an error number, that of the last system call.
+  /// `problem`: an error number; by default that of the last system call.
   [[nodiscard]] tl::unexpected<Error> failure(int problem = errno) const {
     return fail(ErrorCode::kIo, named_.string(),
                 "cannot write the file: " + std::generic_category().message(problem) +
@@ -88,7 +88,7 @@ AtomicFile& AtomicFile::operator=(AtomicFile&&) noexcept = default;
 namespace {
 
 /// Whether a link stands for a file that a process has open: /dev/stdout leads to /proc/self/fd/1,
-/// and what that seems to point to may have another name by now, or none.
+/// and the file that this seems to point to may have been renamed or removed.
 bool isOpenFile(const std::filesystem::path& link) {
   struct statfs system {};
   return ::statfs(link.parent_path().c_str(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC;
@@ -97,7 +97,7 @@ bool isOpenFile(const std::filesystem::path& link) {
 }  // namespace
 
 std::filesystem::path followLinks(const std::filesystem::path& path) {
-  // As many as Linux follows.
+  // As many links as Linux follows.
   constexpr int kMostLinks = 40;
   std::error_code none;
   std::filesystem::path target = path;
@@ -110,7 +110,7 @@ std::filesystem::path followLinks(const std::filesystem::path& path) {
 
 Result<AtomicFile> AtomicFile::create(const std::filesystem::path& path) {
   std::error_code unknown;
-  // A link stays a link: what it points to is written.
+  // A link stays a link: the file that it points to is written.
   const std::filesystem::path target = followLinks(path);
   const bool is_link = std::filesystem::is_symlink(target, unknown);
   const auto status = std::filesystem::status(target, unknown);

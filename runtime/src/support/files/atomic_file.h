@@ -11,15 +11,15 @@
 
 namespace galactic {
 
-/// What `path` leads to through links, whether or not something is there; still a link where they
-/// lead in a circle, or to what a process has open (/dev/stdout).
+/// The path that `path` leads to through symbolic links, whether or not a file exists there. Still
+/// a link if the links form a circle or lead to a file that a process has open (/dev/stdout).
 [[nodiscard]] std::filesystem::path followLinks(const std::filesystem::path& path);
 
-/// A file that is written piece by piece and seen only when it is whole: it grows under another
+/// A file that is written piece by piece and appears only when it is whole: it grows under another
 /// name beside its path, and is renamed at the end. A symbolic link is followed; a folder, device
-/// or pipe is refused, and so is what leads to an open file, as /dev/stdout does. Destroyed before
-/// it was published, it leaves nothing behind and an old file of the name intact. All failures are
-/// kIo.
+/// or pipe is refused, and so is a path that leads to an open file, as /dev/stdout does. If it is
+/// destroyed before it is published, it leaves nothing behind and does not touch an existing file
+/// of that name. All failures are kIo.
 class AtomicFile {
  public:
   [[nodiscard]] static Result<AtomicFile> create(const std::filesystem::path& path);
@@ -28,7 +28,7 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) noexcept;
 
   [[nodiscard]] Result<void> append(std::span<const std::byte> bytes);
-  /// Replaces bytes that were appended before.
+  /// Replaces bytes that were appended earlier.
   [[nodiscard]] Result<void> overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
   /// Makes the bytes durable (fsync), then visible under the path: the last call.
   [[nodiscard]] Result<void> publish();
@@ -43,7 +43,7 @@ class AtomicFile {
 /// new one, never half of it. On failure (kIo) the old file is intact and nothing else is left.
 [[nodiscard]] Result<void> writeFileAtomically(
     const std::filesystem::path& path, std::initializer_list<std::span<const std::byte>> parts);
-/// The same of a text.
+/// The same for a text.
 [[nodiscard]] Result<void> writeFileAtomically(const std::filesystem::path& path,
                                                std::string_view text);
 

@@ -26,8 +26,8 @@ std::string headOf(std::string_view record) {
   return fmt::format("{} {}\n", record.size(), detail::hexOf(hash));
 }
 
-/// The record with which `text` begins, behind its head and before the line break that ends it;
-/// none where it is not whole.
+/// The record at the beginning of `text`, between its head and the line break that ends it; none if
+/// it is not whole.
 std::optional<std::string_view> firstRecord(std::string_view text) {
   std::size_t size = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), size);
@@ -73,13 +73,13 @@ Result<void> Journal::read(std::string_view subject) {
     records_.push_back(*record);
     end = static_cast<std::size_t>(record->data() + record->size() + 1 - kept_.data());
   }
-  // Never moved: the records are views of it.
+  // Shrinking does not move the text, which the records are views of.
   kept_.resize(end);
   return {};
 }
 
 Result<void> Journal::begin() {
-  // Without what is damaged or of another subject.
+  // Drops damaged records, and a journal of another subject.
   RETURN_IF_ERROR(writeFileAtomically(path_, kept_));
   is_own_ = true;
   stream_.open(path_, std::ios::binary | std::ios::app);

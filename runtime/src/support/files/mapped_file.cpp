@@ -21,7 +21,7 @@ tl::unexpected<Error> ioFailure(const std::filesystem::path& path, const char* a
 }  // namespace
 
 Result<MappedFile> MappedFile::open(const std::filesystem::path& path) {
-  // Opening a pipe would wait for its writer.
+  // O_NONBLOCK, because opening a pipe would wait for its writer.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return ioFailure(path, "open the file");
   struct stat status {};

@@ -28,7 +28,7 @@ bool isSameFile(const fs::path& a, const fs::path& b) {
   std::error_code missing;
   if (fs::equivalent(a, b, missing)) return true;
   if (fs::exists(a, missing) || fs::exists(b, missing)) return false;
-  // A relative name of which nothing exists would stay relative.
+  // Without this, a relative name of which nothing exists would stay relative.
   const auto where_it_would_be = [&missing](const fs::path& path) {
     return fs::weakly_canonical(fs::absolute(followLinks(path), missing), missing);
   };
@@ -87,8 +87,8 @@ Result<void> makeFolders(const fs::path& folder) {
 Result<void> tryFile(const fs::path& path) {
   RETURN_IF_ERROR(checkNotDash(path));
   RETURN_IF_ERROR(AtomicFile::create(path));
-  // Some thousand names are listed in milliseconds; a folder of millions, elsewhere in a network,
-  // would keep short work waiting.
+  // Some thousand names are listed in milliseconds; a folder of millions, perhaps on a network,
+  // would hold up short work.
   constexpr std::size_t kMostNames = 30'000;
   const fs::path target = followLinks(path);
   (void)removeStaleParts(target.parent_path(),

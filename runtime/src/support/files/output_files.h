@@ -8,16 +8,16 @@
 
 namespace galactic {
 
-/// Whether there is anything of this name, or a folder, links followed; no where that is not to be
-/// found out.
+/// Whether anything of this name exists, or a folder; links are followed. False if that cannot be
+/// determined.
 [[nodiscard]] bool isThere(const std::filesystem::path& path);
 [[nodiscard]] bool isFolder(const std::filesystem::path& path);
 
-/// Whether two names lead to one file: links are followed, "a" and "./a" are the same, also where
-/// there is no file yet.
+/// Whether two names lead to the same file: links are followed, and "a" and "./a" are the same,
+/// even if the file does not exist yet.
 [[nodiscard]] bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// Fails with kInvalidInput when `output` is the file `input`, which writing would lose.
+/// Fails with kInvalidInput when `output` is the file `input`, which writing would destroy.
 [[nodiscard]] Result<void> checkNotInput(const std::filesystem::path& output,
                                          const std::filesystem::path& input);
 
@@ -34,34 +34,34 @@ struct OutputFile {
 /// The extension of a path in lower case, with its dot.
 [[nodiscard]] std::string extensionOf(const std::filesystem::path& path);
 
-/// What a file is, as its name has to say: ".png", "pictures are PNG files".
+/// A kind of file and the extension that its name must have: ".png", "pictures are PNG files".
 struct FileKind {
   std::string_view extension;
   std::string_view sentence;
-  /// Taken, too; empty for none.
+  /// Also accepted; empty: none.
   std::string_view short_extension = {};
 };
 
 inline constexpr FileKind kPageFile{".html", "pages are HTML files", ".htm"};
 inline constexpr FileKind kPictureFile{".png", "pictures are PNG files"};
 
-/// Fails with kUnsupported when a file that will be of this kind has another extension, and as
-/// checkNotDash.
+/// Fails with kUnsupported when a file that will be of this kind has another extension, and where
+/// checkNotDash() fails.
 [[nodiscard]] Result<void> checkExtension(const std::filesystem::path& output,
                                           const FileKind& kind);
 
-/// Fails with kIo for "-", which in many programs stands for the standard output: here a file of
-/// that name would surprise.
+/// Fails with kIo for "-", which stands for standard output in many programs: a file of that name
+/// would be a surprise.
 [[nodiscard]] Result<void> checkNotDash(const std::filesystem::path& output);
 
-/// Makes the folder and those above it that are not there; nothing where it is empty. Fails with
+/// Makes the folder and all missing folders above it; does nothing for an empty path. Fails with
 /// kIo.
 [[nodiscard]] Result<void> makeFolders(const std::filesystem::path& folder);
 
-/// Fails with kIo when no file can be written under this name, and for "-"; leaves a file of the
-/// name as it is, and nothing else: what killed programs began to write under it is removed
+/// Fails with kIo when no file can be written under this name, and for "-". Leaves an existing file
+/// as it is and creates none, but removes what killed programs began to write under this name
 /// (removeStaleParts), as far as it is among the first 30,000 names of the folder. Programs that
-/// write a file begin with this.
+/// write a file begin with this call.
 [[nodiscard]] Result<void> tryFile(const std::filesystem::path& path);
 
 }  // namespace galactic

@@ -29,7 +29,7 @@ constexpr std::size_t kMachineDigits = 16;
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 constexpr std::string_view kDigits = "0123456789";
 
-/// What tells this machine, since it started, from all others; zeros where it does not say.
+/// Identifies this machine and its current boot; zeros if the system does not say.
 std::string machineName() {
   std::ifstream file("/proc/sys/kernel/random/boot_id");
   std::string name;
@@ -40,24 +40,24 @@ std::string machineName() {
   return is_name ? name.substr(0, kMachineDigits) : std::string(kMachineDigits, '0');
 }
 
-/// What the name of a file ends with, with its point; nothing where that is no usual ending.
+/// The extension of a file's name, with its dot; empty if it is too long for an extension.
 std::string endingOf(std::string_view file) {
   constexpr std::size_t kLongest = 16;
   std::string ending = fs::path(file).extension().string();
   return ending.size() <= kLongest ? ending : std::string();
 }
 
-/// What stands for a target in the names of its parts.
+/// Stands for a target in the names of its parts.
 std::string standIn(const std::string& target) {
   // "-THREAD-NUMBER", of 32 bits each.
   constexpr std::size_t kNumbers = 22;
   constexpr std::size_t kHash = 1 + 16;
   const std::string ending = endingOf(target);
   const std::size_t most = NAME_MAX - kMark.size() - kMachineDigits - kNumbers - ending.size();
-  // No file has a longer name; whoever tries to make one is told.
+  // No file has a longer name; trying to create one fails with a proper error.
   if (target.size() <= most || target.size() > NAME_MAX) return target;
   std::size_t cut = most - kHash - ending.size();
-  // Not within a character: some file systems refuse what is no UTF-8.
+  // Do not cut within a character: some file systems refuse invalid UTF-8.
   while (cut > 0 && (static_cast<unsigned char>(target[cut]) & 0xC0U) == 0x80U) --cut;
   const std::uint64_t hash = detail::contentHash(std::as_bytes(std::span(target))).low;
   return fmt::format("{}-{:016x}{}", target.substr(0, cut), hash, ending);
@@ -69,7 +69,7 @@ struct PartName {
   std::string_view machine;
 };
 
-/// Whether `file` is such a name; nothing else may be taken for one.
+/// Whether `file` is the name of a part; must not take any other name for one.
 bool parsePartName(std::string_view file, PartName& name) {
   const std::size_t mark = file.rfind(kMark);
   if (mark == std::string_view::npos || mark == 0) return false;
@@ -98,16 +98,16 @@ bool isLocked(int descriptor, int operation) {
   return result == 0;
 }
 
-/// Whether `path` is the file that is open, not another or none.
+/// Whether `path` is the file that is open, and not another one or none.
 bool isAt(const fs::path& path, const struct stat& open) {
   struct stat there {};
   return ::lstat(path.c_str(), &there) == 0 && there.st_dev == open.st_dev &&
          there.st_ino == open.st_ino;
 }
 
-/// By the time of its last change, which links and renames count as.
+/// By the time of its last status change, which links and renames update.
 bool isOlder(const struct stat& file, std::chrono::seconds age) {
-  // Not std::time(), which may be some milliseconds behind the clock of the files.
+  // Not std::time(), which may lag some milliseconds behind the clock of the files.
   using Clock = std::chrono::system_clock;
   return Clock::to_time_t(Clock::now()) - file.st_ctim.tv_sec >= age.count();
 }
@@ -116,7 +116,7 @@ bool isOlder(const struct stat& file, std::chrono::seconds age) {
 class OpenPart {
  public:
   explicit OpenPart(const fs::path& path)
-      // Locks that go over a network want a file that is open for writing.
+      // Locks over a network need a file that is open for writing.
       : descriptor_(::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK)) {}
   ~OpenPart() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -161,8 +161,8 @@ fs::path partPathOf(const fs::path& target, unsigned number, PartEnding ending) 
 }
 
 bool holdPart(int descriptor, const fs::path& part) {
-  // Who is about to remove it has the lock: wait, and look whether it is gone. Where there are no
-  // locks, nobody removes it before it is old.
+  // A process that is about to remove the part has the lock: wait, and look whether the part is
+  // gone. Where there are no locks, nobody removes a part before it is old.
   (void)isLocked(descriptor, LOCK_SH);
   struct stat open {};
   return ::fstat(descriptor, &open) == 0 && isAt(part, open);
@@ -182,7 +182,7 @@ PartFile PartFile::linkedTo(const fs::path& source, const fs::path& target) {
     if (descriptor >= 0) return descriptor;
     const int problem = errno;
     ::unlink(part.c_str());
-    // Removed as stale meanwhile, so that another name may do.
+    // Removed as stale meanwhile, so another name may work.
     errno = problem == ENOENT ? EEXIST : problem;
     return -1;
   });
@@ -197,7 +197,7 @@ PartFile::PartFile(const fs::path& target, PartEnding ending, const Make& make) 
   for (unsigned n = 0; n < kNames && descriptor_ < 0; ++n) {
     path_ = partPathOf(target, n, ending);
     try_to_make();
-    // What a killed thread of the same number left makes way.
+    // Make way by removing what a killed thread with the same number left behind.
     if (error_ == EEXIST && removeStalePart(path_)) try_to_make();
     if (error_ != 0 && error_ != EEXIST) return;
     if (error_ == 0 && !holdPart(descriptor_, path_)) ::close(std::exchange(descriptor_, -1));
@@ -208,7 +208,7 @@ PartFile::PartFile(const fs::path& target, PartEnding ending, const Make& make) 
 PartFile::~PartFile() {
   if (descriptor_ < 0) return;
   struct stat open {};
-  // First, so that it goes while it is held.
+  // Remove first, while the part is still held.
   if (::fstat(descriptor_, &open) == 0 && isAt(path_, open)) ::unlink(path_.c_str());
   ::close(descriptor_);
 }
@@ -224,7 +224,7 @@ bool removeStalePart(const fs::path& part, std::chrono::seconds age) {
   if (!is_locked && errno == EWOULDBLOCK) return false;
   const bool is_ours = is_locked && name.machine == machineName();
   if (!is_ours && !isOlder(status, age)) return false;
-  // Whoever made it has let go of it, so that it cannot become another file from here on.
+  // Its maker has released it, so that it cannot become another file from here on.
   return isAt(part, status) && ::unlink(part.c_str()) == 0;
 }
 

@@ -5,8 +5,8 @@
 
 namespace galactic {
 
-/// The noun for so many of them. `one` is English and takes an s, or es behind s, x, ch and sh; but
-/// a vertex and an index have vertices and indices.
+/// The noun in the singular or plural, as `count` requires. `one` is English and takes an s, or es
+/// after s, x, ch and sh; nouns in -ex, such as vertex and index, become vertices and indices.
 [[nodiscard]] std::string nounFor(std::integral auto count, std::string_view one) {
   std::string noun(one);
   if (count == 1) return noun;
@@ -16,7 +16,7 @@ namespace galactic {
   return noun.append(hisses ? "es" : "s");
 }
 
-/// How many there are, in words: "1 mesh", "3 meshes".
+/// A count in words: "1 mesh", "3 meshes".
 [[nodiscard]] std::string counted(std::integral auto count, std::string_view one) {
   return std::to_string(count) + " " + nounFor(count, one);
 }

@@ -43,7 +43,7 @@ std::optional<std::vector<Span>> heightsFrom(std::string_view text, const Span& 
 }
 
 bool areHeights(std::span<const Span> heights, const Span& within) {
-  // Whatever is not a number is not within.
+  // Written so that NaN is not within.
   return heights.size() <= kMostLaserHeights && std::ranges::all_of(heights, [&](const Span& one) {
            return one.lo >= within.lo && one.lo <= one.hi && one.hi <= within.hi;
          });

@@ -4,10 +4,10 @@
 
 namespace galactic {
 
-/// Lines of --help in which an option and its explanation stand two blanks apart or more, or on
-/// lines of their own: by one blank nobody, and no maker of man pages, tells them apart. `Parser`
-/// is the formatter of a parser of command lines, CLI::Formatter, and `Option` its CLI::Option:
-/// this library names neither.
+/// Formats --help so that an option and its explanation stand at least two blanks apart, or on
+/// separate lines: a single blank separates them neither for readers nor for man page generators.
+/// `Parser` is the formatter of a command-line parser, CLI::Formatter, and `Option` its
+/// CLI::Option: this library does not depend on either.
 template <class Parser, class Option>
 class HelpLines : public Parser {
  public:

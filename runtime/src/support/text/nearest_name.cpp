@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kMostSuggested = 3;
 constexpr std::size_t kMostListed = 12;
-/// Hostile names are compared in this length only.
+/// Only this many letters are compared, because names may be hostile.
 constexpr std::size_t kLongestCompared = 200;
 
-/// Number of letters to insert, remove or replace, letter case apart (Levenshtein).
+/// Number of letters to insert, remove or replace, ignoring case (Levenshtein).
 std::size_t editDistance(std::string_view a, std::string_view b) {
   a = a.substr(0, kLongestCompared);
   b = b.substr(0, kLongestCompared);
@@ -44,8 +44,8 @@ std::string asSentence(std::string_view list) {
   }
 }
 
-/// A complaint of CLI11 about the value of an option, "OPTION: ...", in our words; any other as it
-/// is.
+/// Rewords a complaint of CLI11 about the value of an option, "OPTION: ..."; returns any other as
+/// it is.
 std::string inOurWords(std::string_view complaint) {
   constexpr std::string_view kSeveral = "At Most 1 required but received ";
   constexpr std::string_view kMissing = "1 required ";
@@ -102,7 +102,7 @@ std::string withSuggestions(std::string_view complaint, const std::vector<std::s
   if (begin == complaint.npos) return inOurWords(complaint);
   const std::size_t end = complaint.find_first_of(" =:,;", begin);
   const std::string_view option = complaint.substr(begin, end - begin);
-  // Of a known one the complaint is another.
+  // If the option is known, the complaint is about something else.
   const bool is_known = std::find(known.begin(), known.end(), option) != known.end();
   if (option.size() == kDashes.size() || is_known) return inOurWords(complaint);
   const std::string suggestion = suggestNames(option, known);

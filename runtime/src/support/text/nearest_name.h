@@ -10,8 +10,8 @@ namespace galactic {
 [[nodiscard]] std::string suggestNames(std::string_view name,
                                        const std::vector<std::string>& known);
 
-/// `complaint` of a parser of command lines: options that it does not know with the nearest of
-/// those that it knows; values that are missing, given twice or none of a list in our words.
+/// Improves a `complaint` of a command-line parser: for an unknown option, adds the nearest known
+/// ones; rewords complaints about values that are missing, given twice or not in a list.
 [[nodiscard]] std::string withSuggestions(std::string_view complaint,
                                           const std::vector<std::string>& known);
 

@@ -19,7 +19,7 @@ bool isWithin(std::string_view text, Number least, Number most) {
   return problem == std::errc() && stop == end && value >= least && value <= most;
 }
 
-/// A limit that is kept in single precision reads as it was written there.
+/// A limit that is stored in single precision reads as it was written in the source.
 std::string limitText(double limit) {
   const auto single = static_cast<float>(limit);
   return static_cast<double>(single) == limit ? fmt::format("{}", single)

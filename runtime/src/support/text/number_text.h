@@ -6,23 +6,23 @@
 
 namespace galactic {
 
-// What programs take for a number on their command lines, in recipes and in files of options: the
-// whole text, no blank, no NaN, no infinity; of a whole number digits alone, so that "-1" does not
-// become a huge number, nor "010" an octal one.
+// What programs accept as a number on their command lines, in recipes and in option files: the
+// whole text, without blanks, NaN or infinity; for a whole number only digits, so that "-1" does
+// not become a huge number, nor "010" an octal one.
 
-/// Why `text` is no number from `least` to `most`; empty: it is.
+/// Why `text` is not a number from `least` to `most`; empty if it is one.
 [[nodiscard]] std::string numberFault(std::string_view text, double least, double most);
 
-/// The same of whole numbers.
+/// The same for whole numbers.
 [[nodiscard]] std::string wholeFault(std::string_view text, std::uint64_t least,
                                      std::uint64_t most);
 
-/// The same as checks of options, for parsers of command lines.
+/// The same as option checks for command-line parsers.
 using TextCheck = std::function<std::string(const std::string& text)>;
 [[nodiscard]] TextCheck numberCheck(double least, double most);
 [[nodiscard]] TextCheck wholeCheck(std::uint64_t least, std::uint64_t most);
-/// The same of switches, which may be given as --NAME=true and --NAME=false: parsers would take
-/// numbers, too.
+/// The same for switches, which may be given as --NAME=true and --NAME=false: parsers would also
+/// accept numbers.
 [[nodiscard]] TextCheck switchCheck();
 
 }  // namespace galactic

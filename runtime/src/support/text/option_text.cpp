@@ -123,7 +123,7 @@ class Lister {
                                     [&](const Named<T>& one) { return one.value == value; });
     add(name, found == names.end() ? "" : std::string(found->name), true);
   }
-  /// Its parts have the values.
+  /// The values are in its parts.
   template <class T>
   void preset(std::string_view, const T&, const Preset<T>&, std::string_view) {}
 
@@ -135,7 +135,7 @@ class Lister {
   std::vector<OptionText>& list_;
 };
 
-/// Gives the options the values of texts.
+/// Sets the options from texts.
 class Setter {
  public:
   Setter(std::span<const OptionText> texts, bool with_presets)
@@ -225,7 +225,7 @@ class Setter {
     if (is_good) field = value;
   }
 
-  /// Of the text that was taken last.
+  /// For the text that was taken last.
   void require(bool is_good, std::string wanted) {
     if (!is_good && !fault_) fault_ = OptionFault{last_, std::move(wanted)};
   }
@@ -264,7 +264,7 @@ class Checker {
         std::ranges::any_of(names, [&](const Named<T>& one) { return one.value == value; });
     if (!is_good) refuse(name, static_cast<unsigned>(value), namesOf<T>(names));
   }
-  /// Its parts have the values.
+  /// The values are in its parts.
   template <class T>
   void preset(std::string_view, const T&, const Preset<T>&, std::string_view) {}
 
@@ -273,7 +273,7 @@ class Checker {
  private:
   template <class T>
   void number(std::string_view name, T value, Within<T> within) {
-    // Whatever is not a number is not within.
+    // Written so that NaN is not within.
     const bool is_good = value >= within.least && value <= within.most;
     if (!is_good) refuse(name, value, fmt::format("{} to {}", within.least, within.most));
   }

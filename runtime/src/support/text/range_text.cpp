@@ -47,7 +47,7 @@ std::optional<DrawnNumber> drawnFrom(std::string_view text, const Span& within) 
 
 bool isDrawnWithin(const DrawnNumber& number, const Span& within) {
   const float least = number.isRange() ? std::max(within.lo, 0.0F) : within.lo;
-  // Whatever is not a number is not within.
+  // Written so that NaN is not within.
   return number.least >= least && number.least <= number.most && number.most <= within.hi;
 }
 

@@ -8,10 +8,10 @@
 namespace galactic {
 namespace {
 
-/// So many sentences of one kind are all shown.
+/// Up to this many sentences of one kind are all shown.
 constexpr std::size_t kFew = 3;
 
-/// A sentence without names in quotes and numbers. An apostrophe inside a word quotes nothing.
+/// A sentence without the names in quotes and the numbers. An apostrophe inside a word is no quote.
 std::string kindOf(std::string_view sentence) {
   std::string kind;
   const auto is_word = [&](std::size_t at) {

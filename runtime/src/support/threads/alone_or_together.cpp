@@ -5,18 +5,18 @@
 namespace galactic::detail {
 namespace {
 
-/// Much longer than a system lets a thread run before it is another's turn, which is a few
-/// milliseconds.
+/// Much longer than the few milliseconds that a system lets a thread run before another one's turn.
 constexpr std::chrono::milliseconds kStretch{20};
-/// Stretches between trials at most: a trial of what takes twice the time costs less than 1 %.
+/// At most this many stretches between trials: a trial that takes twice as long then costs less
+/// than 1 %.
 constexpr std::uint32_t kLongestWait = 160;
-/// What a way has to be better by, so that nothing changes from one to the other and back.
+/// How much better the other way has to be, so that the choice does not flip back and forth.
 constexpr double kClearly = 0.97;
-/// How much slower than usual rounds together have to be to be worth a doubt, and how much sooner
-/// the other way is tried then.
+/// How much slower than usual rounds together have to be to raise a doubt, and how much sooner the
+/// other way is tried then.
 constexpr double kSlower = 1.15;
 constexpr std::uint32_t kSooner = 8;
-/// What a stretch counts for.
+/// The weight of a stretch in the averages.
 constexpr double kForLong = 1.0 / 64;
 constexpr double kForLately = 1.0 / 5;
 
@@ -50,8 +50,8 @@ void AloneOrTogether::endStretch() {
 }
 
 bool AloneOrTogether::isDoubtful() const {
-  // Where rounds alone get slower, another program came, and there is less room for two than
-  // before.
+  // When rounds alone get slower, another program has started, and there is even less room for two
+  // threads than before: no reason to doubt.
   return better_ == RoundWay::kTogether && lately_ > kSlower * usual_;
 }
 

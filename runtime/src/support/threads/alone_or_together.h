@@ -12,18 +12,19 @@ enum class RoundWay : std::uint8_t {
   kAlone,
 };
 
-/// Finds out whether rounds of the same work take less time together or alone. Where other programs
-/// keep the processor busy, a thread that waits for its turn has the others of its round wait too,
-/// and may cost more than it brings. What rounds took tells best: stretches of rounds are done the
-/// better way, and now and then one the other way, seldom while that is worse.
+/// Finds out whether rounds of the same work are faster together or alone. Where other programs
+/// keep the processor busy, a thread that waits for its turn makes the other threads of its round
+/// wait too, and may cost more than it contributes. Measured times decide: rounds come in
+/// stretches, most of them done the better way; now and then a stretch is done the other way, and
+/// more rarely the longer that way stays worse.
 class AloneOrTogether {
  public:
   using Duration = std::chrono::steady_clock::duration;
 
-  /// Of the next round.
+  /// How to do the next round.
   [[nodiscard]] RoundWay next() const { return tries_other_ ? otherThan(better_) : better_; }
 
-  /// The next round, done that way, took so long.
+  /// Reports that the next round, done as next() says, took this long.
   void add(Duration took);
 
  private:
@@ -31,18 +32,18 @@ class AloneOrTogether {
     return way == RoundWay::kAlone ? RoundWay::kTogether : RoundWay::kAlone;
   }
   void endStretch();
-  /// Whether rounds together take so much longer than they did that alone may be better now.
+  /// Whether rounds together have become so slow that alone may be better now.
   [[nodiscard]] bool isDoubtful() const;
 
   RoundWay better_ = RoundWay::kTogether;
   bool tries_other_ = false;
-  /// Of the stretch that is in work.
+  /// Of the current stretch.
   Duration time_{0};
   std::uint32_t rounds_ = 0;
-  /// What a round takes the better way, seconds, for long and lately; 0 where that is not known.
+  /// Seconds per round done the better way, over the long run and recently; 0 if unknown.
   double usual_ = 0;
   double lately_ = 0;
-  /// Stretches since the other way was tried, and until it is tried again.
+  /// Stretches since the other way was last tried, and between two trials of it.
   std::uint32_t since_trial_ = 0;
   std::uint32_t wait_ = kFirstWait;
 

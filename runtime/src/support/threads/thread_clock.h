@@ -3,7 +3,7 @@
 
 namespace galactic::detail {
 
-/// What the calling thread took of the processor so far, in seconds: what others on the machine do
+/// Processor time that the calling thread has used so far, in seconds; other load on the machine
 /// does not count.
 [[nodiscard]] inline double threadSeconds() noexcept {
   std::timespec now{};

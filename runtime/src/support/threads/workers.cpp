@@ -14,11 +14,11 @@
 namespace galactic::detail {
 namespace {
 
-/// Waits until `value` is no longer `old`.
+/// Waits until `value` differs from `old`.
 template <class Value>
 void awaitChange(const std::atomic<Value>& value, Value old) noexcept {
-  // Some 20 microseconds, what it takes to wake a thread. Whoever looks for longer takes the
-  // processor from a neighbor, or from the thread that it waits for.
+  // About 20 microseconds, the time that it takes to wake a thread. Looking for longer would take
+  // the processor from other programs, or from the very thread that is awaited.
   constexpr int kLooks = 600;
   for (int n = 0; n < kLooks; ++n) {
     if (value.load(std::memory_order_acquire) != old) return;
@@ -29,7 +29,7 @@ void awaitChange(const std::atomic<Value>& value, Value old) noexcept {
   value.wait(old, std::memory_order_acquire);
 }
 
-/// The first exception of all threads.
+/// The first exception of any thread.
 class FirstException {
  public:
   void remember() {
@@ -93,7 +93,7 @@ Workers::Workers(std::size_t threads, std::size_t parts, Work work)
     }
   } catch (const std::exception&) {
     // The system has no more threads, or no memory for their stacks: those that started do the
-    // work. To leave from here would wait for them, and they for a round.
+    // work. Throwing would wait for them to end, and they would wait for a round.
   }
 }
 
@@ -103,8 +103,8 @@ Workers::Workers(std::size_t parts, std::function<void(std::size_t)> work)
 
 Workers::~Workers() {
   if (getpid() != process_) {
-    // Nobody to wait for: threads stay behind in the process that was forked. To end what stands
-    // for them is undefined, so that it is left.
+    // There is nothing to wait for: a fork leaves the threads behind in the parent process.
+    // Destroying their handles is undefined behavior, so leak them.
     static_cast<void>(std::make_unique<std::vector<std::jthread>>(std::move(threads_)).release());
     return;
   }
@@ -127,7 +127,7 @@ void Workers::run() noexcept {
 void Workers::begin() noexcept {
   left_.store(parts_, std::memory_order_relaxed);
   // A thread that is still looking for parts of the last round may take one at once: the release
-  // shows it what belongs to this one.
+  // shows it what was written for this round.
   for (Range& range : ranges_) range.next.store(range.first, std::memory_order_release);
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
@@ -145,7 +145,7 @@ void Workers::serve(std::size_t thread) noexcept {
   std::uint32_t seen = 0;
   while (true) {
     awaitChange(round_, seen);
-    // A thread that slept through a round goes on with the one that is in work.
+    // A thread that slept through a round joins the current one.
     seen = round_.load(std::memory_order_acquire);
     if (stops_.load(std::memory_order_relaxed)) return;
     doParts(thread);
