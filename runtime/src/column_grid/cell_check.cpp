@@ -13,7 +13,7 @@
 namespace galactic::detail {
 namespace {
 
-/// What a pass over some cells counts.
+/// The counts of one pass over some cells.
 struct CellScan {
   std::uint32_t offences = 0;
   std::uint32_t first_spans = 0;
@@ -21,12 +21,12 @@ struct CellScan {
   std::uint32_t overflow = 0;
 };
 
-/// Tiles scanned at once where all have the same base.
+/// Tiles scanned together if all have the same base.
 constexpr std::size_t kTilesPerScan = 8;
 
-/// Counts spans and ill-formed cells among those of up to kTilesPerScan tiles; codes up to
-/// `highest` lie inside the heights. Without branches and in 32-bit steps: what compilers vectorise
-/// for any x86-64.
+/// Counts the spans and the ill-formed cells of up to kTilesPerScan tiles; codes up to `highest`
+/// lie inside the heights. Without branches and in 32-bit steps, which compilers can vectorize for
+/// any x86-64.
 CellScan scanCells(std::span<const std::uint64_t> cells, std::int32_t highest) {
   std::array<std::uint32_t, kTilesPerScan * kCellsPerTile * 2> halves;
   std::memcpy(halves.data(), cells.data(), cells.size_bytes());
@@ -53,7 +53,7 @@ CellScan scanCells(std::span<const std::uint64_t> cells, std::int32_t highest) {
   return scan;
 }
 
-/// Walks over the cells of one grid.
+/// Checks the cells of one grid.
 class CellChecker {
  public:
   CellChecker(const CellBlock& block, const std::string& where)
@@ -84,7 +84,7 @@ class CellChecker {
     return cell + static_cast<std::size_t>(layout_.cells - block_.stored_cells.data());
   }
 
-  /// Highest code inside the heights in this tile; negative when no span can be.
+  /// The highest code of this tile inside the heights; negative if no span fits.
   [[nodiscard]] std::int32_t highestCode(std::size_t tile) const {
     const std::int64_t base =
         layout_.tile_base == nullptr ? 0 : std::int64_t{layout_.tile_base[tile]};
@@ -138,7 +138,7 @@ class CellChecker {
     }
   }
 
-  /// Says which cell of the tiles from `begin` to `end` is the first to offend, and how.
+  /// Reports the first invalid cell in the tiles from `begin` to `end`, and what is wrong with it.
   void explain(std::size_t begin, std::size_t end) {
     for (std::size_t n = begin * kCellsPerTile; n < end * kCellsPerTile && !offence_.found(); ++n) {
       const std::uint64_t cell = layout_.cells[n];
@@ -192,7 +192,7 @@ class CellChecker {
   }
 
   /// Checks the spans of one overflow cell, from element next_overflow_ to the end mark, and moves
-  /// next_overflow_ behind it.
+  /// next_overflow_ past it.
   void checkOverflowSpans() {
     const Span heights{layout_.heights.lo - layout_.quantum, layout_.heights.hi + layout_.quantum};
     const std::size_t first = next_overflow_;

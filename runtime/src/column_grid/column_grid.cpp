@@ -35,14 +35,15 @@ Clearance clearanceElsewhere(Vec3 center) {
   return is_nan ? Clearance::kBlocked : Clearance::kOutside;
 }
 
-/// Where a height lies among the codes of a tile.
+/// The position of a height among the codes of a tile.
 inline float codeOf(const ColumnGridLayout& grid, float y, std::uint32_t tile_base) {
   return (y - grid.heights.lo) * grid.inverse_quantum -
          static_cast<float>(kCodesPerTileBase * tile_base);
 }
 
-/// The heights at the ends of spans: those of the codes, rounded to where a query finds the span.
-/// Codes of heights ascend with them, so that everything between two ends is found, too.
+/// The heights at the ends of spans: those of the codes, rounded to heights at which a query finds
+/// the span. Codes never descend as heights ascend, so that a query finds everything between two
+/// ends, too.
 class SpanEnds {
  public:
   SpanEnds(const ColumnGridLayout& grid, std::uint32_t tile_base)
@@ -71,14 +72,14 @@ class SpanEnds {
                               static_cast<double>(grid_.quantum) * above);
   }
 
-  /// About what codes are rounded to: near the height 0 the next float is no step at all.
+  /// About the rounding error of a code: near height 0, the next float is too small a step.
   [[nodiscard]] float step() const { return 0x1p-24F * (grid_.heights.hi - grid_.heights.lo); }
 
   const ColumnGridLayout& grid_;
   std::uint32_t tile_base_;
 };
 
-/// A distance to contact that stays clear of it; 0 at the contact.
+/// A distance to contact with the margin taken off; never negative.
 float clearOf(float distance, float margin) {
   const float clear = distance - margin;
   return clear > 0 ? clear : 0;
@@ -86,7 +87,7 @@ float clearOf(float distance, float margin) {
 
 float lesser(float a, float b) { return a < b ? a : b; }
 
-/// A point of the ground, counted in cells.
+/// A point of the ground in units of cells.
 struct GroundPoint {
   float x, z;
 
@@ -108,7 +109,7 @@ inline bool isWithin(const ColumnGridLayout& grid, float y) {
   return y >= grid.heights.lo && y <= grid.heights.hi;
 }
 
-/// In a column of the grid, at a height of its range.
+/// For a column of the grid and a height inside its range.
 inline Contact contactInColumn(const ColumnGridLayout& grid, ColumnIndex column, float y) {
   const std::uint32_t index = cellIndex(column.i, column.k, grid.tiles_x);
   const std::uint64_t cell = grid.cells[index];
@@ -127,7 +128,7 @@ inline Contact contactInColumn(const ColumnGridLayout& grid, ColumnIndex column,
   return {Clearance::kFree, clearOf((code - lo) * grid.quantum, margin), clearOf(up, margin)};
 }
 
-/// The one definition of a query. contactAvx2 repeats it operation by operation.
+/// The one definition of a query. contactAvx2() repeats it operation by operation.
 inline Contact contactAt(const ColumnGridLayout& grid, Vec3 center) {
   const GroundPoint point = groundPoint(grid, center.x, center.z);
   const bool inside = point.isInside(grid) && isWithin(grid, center.y);
@@ -141,7 +142,8 @@ namespace detail {
 
 namespace {
 
-// Number by number: the halves of a span would be written and read back as a whole.
+// One number at a time: a compiler would write the halves of a span separately and read them back
+// as a whole.
 
 float overflowLow(const ColumnGridLayout& grid, std::uint32_t n) {
   if (grid.overflow_codes == nullptr) return grid.overflow_spans[n].lo;
@@ -157,8 +159,8 @@ float overflowHigh(const ColumnGridLayout& grid, std::uint32_t n) {
   return grid.heights.lo + grid.quantum * static_cast<float>(highCode(codes));
 }
 
-/// The number of the span that a height is in, or of the first one above it. The end mark lies
-/// above every height: the walk stops there.
+/// The index of the span that contains a height, or of the first span above it. The end mark lies
+/// above every height, so the walk stops there.
 std::uint32_t overflowAt(const ColumnGridLayout& grid, std::uint32_t start, float y) {
   std::uint32_t n = start;
   while (y > overflowHigh(grid, n)) ++n;

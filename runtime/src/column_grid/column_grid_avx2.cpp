@@ -25,7 +25,7 @@ void storeClearance(const Found& found, Clearance* out) {
   _mm_storel_epi64(reinterpret_cast<__m128i*>(out), eight);
 }
 
-/// Answers the lanes whose cells keep their spans in the overflow block, one by one: few do.
+/// Answers the lanes whose cells keep their spans in the overflow block one by one: there are few.
 void answerOverflow(const ColumnGridLayout& grid, const ContactBatch& batch, std::size_t first,
                     const Found& found) {
   alignas(32) std::uint32_t start[kLanes];

@@ -15,7 +15,7 @@ namespace {
 
 /// Vectors of a grid start at multiples of this in the file (force_align in the schema).
 constexpr std::size_t kVectorAlignment = 32;
-/// Grids have a margin about the mesh, which reaches kFarthest.
+/// Grids extend by a margin beyond the mesh, which reaches kFarthest.
 constexpr float kFarthestGrid = 1000;
 
 bool isInGrid(float meters) { return std::fabs(meters) <= kFarthestGrid; }
@@ -68,7 +68,7 @@ void requireAligned(Offence& offence, const Vector& vector, const std::byte* fil
                   kVectorAlignment);
 }
 
-/// The sizes and places of the grid's vectors: what makes it safe to look at the cells at all.
+/// Checks the sizes and places of the grid's vectors, without which no cell can be read safely.
 Result<void> checkVectors(const schema::ColumnGrid& grid, const std::byte* file,
                           const std::string& where) {
   Offence offence(where);

@@ -1,5 +1,5 @@
-// The query of a column grid for eight centers at a time: included by the files that are compiled
-// for AVX2 and need it, after column_grid_kernels.h and immintrin.h. No library templates here: see
+// Queries a column grid for eight centers at a time. Included by the files that are compiled for
+// AVX2 and need it, after column_grid_kernels.h and immintrin.h. No library templates here: see
 // column_grid_avx2.cpp.
 #include "support/gather_avx2.inl"
 
@@ -16,7 +16,7 @@ struct Lanes {
   __m256i tiles_x;
 };
 
-/// What eight centers found: masks of all-ones lanes, codes as floats.
+/// The query results of eight centers: masks (all bits of a lane set), codes as floats.
 struct Found {
   __m256 inside, not_a_number, overflow, free, code, lo, hi;
   __m256i upper_half;
@@ -53,8 +53,9 @@ inline __m256 lowCode(__m256i half) {
 
 inline __m256 highCode(__m256i half) { return _mm256_cvtepi32_ps(_mm256_srli_epi32(half, 16)); }
 
-/// The bases of eight tiles, in codes. Words have 32 bits: the pair that ends with the wanted
-/// base, or begins with it for tile 0, so that nothing outside the array is read. Needs two tiles.
+/// The bases of eight tiles, in codes. Loads have 32 bits, two bases: the pair that ends with the
+/// wanted base, or begins with it for tile 0, so that nothing outside the array is read. Needs at
+/// least two tiles.
 inline __m256 baseCodes(const std::uint16_t* tile_base, __m256i tile) {
   const __m256i is_first = _mm256_cmpeq_epi32(tile, _mm256_setzero_si256());
   const __m256i pair = _mm256_sub_epi32(tile, _mm256_andnot_si256(is_first, _mm256_set1_epi32(1)));
@@ -113,7 +114,7 @@ inline Found find(const ColumnGridLayout& grid, const Lanes& lanes, __m256 x, __
   return found;
 }
 
-/// The lanes, as bits, whose cells keep their spans in the overflow block and are free.
+/// Bit mask of the lanes that are free in cells that keep their spans in the overflow block.
 inline unsigned freeInOverflow(const ColumnGridLayout& grid, __m256 y, const Found& found) {
   auto lanes = static_cast<unsigned>(_mm256_movemask_ps(found.overflow));
   if (lanes == 0) return 0;
@@ -130,13 +131,13 @@ inline unsigned freeInOverflow(const ColumnGridLayout& grid, __m256 y, const Fou
   return free;
 }
 
-/// Whether baseCodes may be used: one tile's base is half of what it reads.
+/// Whether baseCodes() may be used: the base of a single tile is only half of what it reads.
 inline bool readsWholePairs(const ColumnGridLayout& grid) {
   const bool one_tile = grid.tiles_x == 1 && grid.columns_z <= 2;
   return grid.tile_base == nullptr || !one_tile;
 }
 
-/// The lanes, as bits, that are not free.
+/// Bit mask of the lanes that are not free.
 inline unsigned notFreeLanes(const ColumnGridLayout& grid, const Lanes& lanes, __m256 x, __m256 y,
                              __m256 z) {
   const Found found = find(grid, lanes, x, y, z);

@@ -15,7 +15,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// The cells that a line crosses along one axis of the ground.
 class Crossing {
  public:
-  /// `from`: in cells of the grid, of which there are `count`; `along`: cells for each meter.
+  /// `from`: in cells of the grid, which has `count` of them; `along`: cells per meter.
   Crossing(double from, double along, std::uint32_t cell, std::uint32_t count)
       : from_(from),
         meters_per_cell_(1 / along),
@@ -26,7 +26,7 @@ class Crossing {
   [[nodiscard]] std::uint32_t cell() const { return static_cast<std::uint32_t>(cell_); }
   [[nodiscard]] bool isInside() const { return cell_ >= 0 && cell_ < count_; }
 
-  /// Where on its way, in meters, the line leaves the cell.
+  /// Where the line leaves the cell, in meters along the line.
   [[nodiscard]] double leaves() const {
     if (step_ == 0) return kNever;
     const auto border = static_cast<double>(step_ > 0 ? cell_ + 1 : cell_);
@@ -42,8 +42,8 @@ class Crossing {
   std::int64_t count_;
 };
 
-/// What ends a way at a height: the range of the grid, whose last code lies less than a quantum
-/// below its upper end, or something in the scene.
+/// What blocks a line at a height: the end of the grid's range, whose last code lies less than a
+/// quantum below the upper end, or something in the scene.
 Clearance endAt(const ColumnGridLayout& grid, double y) {
   const auto slack = static_cast<double>(grid.quantum + 2 * contactMargin(grid));
   const bool is_within = y > static_cast<double>(grid.heights.lo) + slack &&
@@ -73,7 +73,7 @@ FreeWay freeWay(const ColumnGrid& grid, const StraightLine& line) noexcept {
   const Contact start = grid.contact(line.from);
   if (start.clearance != Clearance::kFree) return {0, start.clearance};
   const ColumnIndex first = *grid.columnAt(line.from.x, line.from.z);
-  // Borders lie where queries see them, which multiply with the inverse.
+  // Queries multiply by the inverse spacing: cell borders have to lie where queries see them.
   const auto cells_per_meter = static_cast<double>(layout.inverse_spacing);
   const auto in_cells = [&](float at, float least) {
     return (static_cast<double>(at) - static_cast<double>(least)) * cells_per_meter;
@@ -92,7 +92,7 @@ FreeWay freeWay(const ColumnGrid& grid, const StraightLine& line) noexcept {
     if (here.clearance != Clearance::kFree) return {way, endAt(layout, y)};
     const auto room = static_cast<double>(rise < 0 ? here.down : here.up);
     const double touches = rise == 0 ? kNever : way + room * meters_per_height;
-    // The query of the first cell rounds: it may be behind already.
+    // The query of the first cell rounds, so the line may have left that cell already.
     const double leaves = std::max(way, std::min(x.leaves(), z.leaves()));
     if (line.length <= std::min(touches, leaves)) return {line.length, Clearance::kFree};
     if (touches <= leaves) return {touches, endAt(layout, height(touches))};

@@ -6,7 +6,7 @@
 
 namespace galactic::detail {
 
-/// A straight line from a point on, world frame, meters.
+/// A straight line from a point, world frame, meters.
 struct StraightLine {
   Vec3 from;
   /// Of unit length.
@@ -17,22 +17,22 @@ struct StraightLine {
 
 [[nodiscard]] double lengthOf(const Vec3& v) noexcept;
 
-/// In a direction that is finite and not zero.
+/// `direction` must be finite and not zero.
 [[nodiscard]] StraightLine straightLine(const Vec3& from, const Vec3& direction,
                                         double length) noexcept;
 
-/// How far a sphere gets along a line, and what is there: kFree where the line ends, kBlocked where
-/// the sphere touches something, kOutside where the grid ends.
+/// How far a sphere gets along a line, and what stops it: kFree at the end of the line, kBlocked
+/// where the sphere touches something, kOutside where the grid ends.
 struct FreeWay {
   double length = 0;
   Clearance end = Clearance::kFree;
 };
 
-/// How far a sphere of the grid's radius gets whose center moves along a line, which is finite. It
-/// goes from cell to cell (Amanatides and Woo, A Fast Voxel Traversal Algorithm for Ray Tracing,
-/// 1987), in each of which it rises or sinks within a span: exact as the grid is, but for
-/// contactMargin() in height. Neither allocates nor throws; ends after as many steps as the line
-/// crosses cells.
+/// How far a sphere of the grid's radius gets when its center moves along a line, which must be
+/// finite. Walks from cell to cell (Amanatides and Woo, A Fast Voxel Traversal Algorithm for Ray
+/// Tracing, 1987), and follows the line up or down within a span of each: as exact as the grid,
+/// except for contactMargin() in height. Neither allocates nor throws; takes as many steps as the
+/// line crosses cells.
 [[nodiscard]] FreeWay freeWay(const ColumnGrid& grid, const StraightLine& line) noexcept;
 
 }  // namespace galactic::detail

@@ -34,30 +34,30 @@ std::vector<Span> intersection(const std::vector<Span>& a, const std::vector<Spa
   return both;
 }
 
-/// From the nearest point of an interval to `at`.
+/// Signed distance from the nearest point of an interval to `at`.
 float offsetFrom(float lo, float hi, float at) {
   if (at < lo) return at - lo;
   return at > hi ? at - hi : 0;
 }
 
-/// Squares over a grid, and where among them a center is.
+/// The squares of a grid and the place of a center among them.
 class Squares {
  public:
-  /// Each has `cells` x `cells` cells.
+  /// Each square has `cells` x `cells` cells.
   Squares(const ColumnGridLayout& grid, const Vec3& center, std::uint32_t cells)
       : edge_(grid.spacing * static_cast<float>(cells)),
-        // As queries have it: a center and its column never part by rounding.
+        // Computed as queries do, so that rounding never separates a center from its column.
         x_((center.x - grid.min_x) * grid.inverse_spacing / static_cast<float>(cells)),
         z_((center.z - grid.min_z) * grid.inverse_spacing / static_cast<float>(cells)),
         count_x_(static_cast<std::int32_t>((grid.columns_x + cells - 1) / cells)),
         count_z_(static_cast<std::int32_t>((grid.columns_z + cells - 1) / cells)) {}
 
-  /// From the nearest point of a square to the center, along each axis, meters.
+  /// Signed distance from the nearest point of a square to the center along one axis, meters.
   [[nodiscard]] float offsetX(std::int32_t i) const { return offset(x_, i); }
   [[nodiscard]] float offsetZ(std::int32_t k) const { return offset(z_, k); }
 
-  /// Calls `visit(i, k)` for the squares nearer than `squared`, which may shrink meanwhile, ring by
-  /// ring around that of the center.
+  /// Calls `visit(i, k)` for the squares nearer than `squared`, which `visit` may reduce, ring by
+  /// ring around the square of the center.
   template <class Visit>
   void visitOutward(const float& squared, const Visit& visit) const {
     const std::int32_t i0 = indexOf(x_, count_x_);
@@ -97,7 +97,7 @@ class Squares {
     const auto lo = static_cast<float>(square);
     return offsetFrom(lo, lo + 1, at) * edge_;
   }
-  /// Of the nearest square.
+  /// The index of the nearest square.
   static std::int32_t indexOf(float at, std::int32_t count) {
     return static_cast<std::int32_t>(std::clamp(at, 0.0F, static_cast<float>(count - 1)));
   }
@@ -109,7 +109,7 @@ class Squares {
 
 }  // namespace
 
-/// One query: the nearest point of what is looked for, so far.
+/// One query: the nearest point found so far.
 class GridDistance::Search {
  public:
   Search(const GridDistance& distance, const Vec3& center, float most, Directions directions)
@@ -141,7 +141,7 @@ class GridDistance::Search {
   }
 
   [[nodiscard]] float length() const { return std::sqrt(squared_); }
-  /// From the nearest point to the center, as a unit vector.
+  /// Unit vector from the nearest point to the center.
   [[nodiscard]] Vec3 direction() const {
     const float whole = std::sqrt(dot(offset_, offset_));
     return whole > 0 ? offset_ * (1 / whole) : Vec3{};
@@ -155,7 +155,7 @@ class GridDistance::Search {
     offset_ = offset;
   }
 
-  /// Beyond them, nothing is known.
+  /// Nothing is known beyond the edges of the grid.
   void takeEdges() {
     const float width = layout_.spacing * static_cast<float>(layout_.columns_x);
     const float depth = layout_.spacing * static_cast<float>(layout_.columns_z);
@@ -165,7 +165,8 @@ class GridDistance::Search {
     take({0, 0, center_.z - layout_.min_z - depth});
   }
 
-  /// Whether no height near enough is in the way; `squared`: of the way there.
+  /// Whether the block is free at all heights within reach; `squared` is the squared horizontal
+  /// distance to it.
   [[nodiscard]] bool isFreeThroughout(std::int32_t i, std::int32_t k, float squared) const {
     const float reach = is_level_ ? 0 : std::sqrt(squared_ - squared);
     const Block& block = distance_.blocks_[static_cast<std::size_t>(k) * distance_.blocks_x_ +

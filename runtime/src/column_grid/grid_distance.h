@@ -9,42 +9,42 @@
 
 namespace galactic::detail {
 
-/// In which directions a distance is measured.
+/// The directions in which a distance is measured.
 enum class Directions : std::uint8_t {
   kAll,
-  kLevel,  ///< In the horizontal plane alone.
+  kLevel,  ///< In the horizontal plane only.
 };
 
-/// How far a center is from where it is free no longer, or from where it is free.
+/// How far a free center is from the nearest place that is not free, or the other way round.
 struct SignedDistance {
   /// Meters; negative where the center is not free.
   float distance = 0;
-  /// The unit vector in which the distance grows fastest; zero at the border itself, and where
-  /// nothing is near.
+  /// The unit vector in which the distance grows fastest; zero on the border itself, and if nothing
+  /// is near.
   Vec3 gradient;
 };
 
-/// Distances to the places where a grid does not say free: to the edges of its cells and the ends
-/// of its spans, as queries see them. A search goes through the cells around a center, the nearer
-/// ones first. What spares it most of them is a coarse grid: for each block of 4 x 4 cells, the
-/// heights at which all of its columns are free.
+/// Distances to the places that are not free in a grid: to the edges of its cells and the ends of
+/// its spans, as queries see them. A search visits the cells around a center, the nearer ones
+/// first. A coarse grid spares it most of them: for each block of 4 x 4 cells, it stores the
+/// heights at which all of the block's columns are free.
 class GridDistance {
  public:
-  /// Reads all columns. Of the grid it keeps a view.
+  /// Reads all columns. Keeps a reference to the grid.
   explicit GridDistance(const ColumnGrid& grid);
 
-  /// `center`: finite. What is `most` meters away or farther, > 0, is not looked for: then the
-  /// distance is `most`, or -`most`. Exact as queries are but for contactMargin() in height, by
-  /// which a free center may seem nearer, and rounding. What is outside of the grid is not free.
-  /// Neither allocates nor throws.
+  /// `center` must be finite, and `most` positive. Nothing that is `most` meters away or farther is
+  /// searched for: the distance is then `most`, or -`most`. As exact as queries, except for
+  /// rounding and for contactMargin() in height, which can make things look nearer to a free
+  /// center. Outside of the grid, nothing is free. Neither allocates nor throws.
   [[nodiscard]] SignedDistance at(const Vec3& center, float most,
                                   Directions directions) const noexcept;
 
-  /// Of its own memory.
+  /// Bytes of memory that it owns.
   [[nodiscard]] std::size_t bytes() const { return blocks_.size() * sizeof(Block); }
 
  private:
-  /// The two longest intervals that are free in all columns of a block.
+  /// The two longest intervals of heights that are free in all columns of a block.
   using Block = std::array<Span, 2>;
   class Search;
 

@@ -71,8 +71,7 @@ struct Switch {
 
 /// Visits each option that determines what a simulation does. This is the one list for all who need
 /// it: the command line of galactic-run, recordings, reports, world packs and the recipes of
-/// worlds.
-/// Calls on `v`
+/// worlds. Calls on `v`
 ///   group(heading), whole(name, field, Within, help), real(name, field, Within, help),
 ///   drawn(name, field, within, help), where `within` of a whole number is its maximum,
 ///   heights(name, field, within, help), choice(name, field, names, help), flag(name, Switch,
