@@ -31,12 +31,12 @@ Vec3d cross(const Vec3d& a, const Vec3d& b) {
 }
 double norm(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-/// Cosine of the widest cone worth storing: eyes from which a wider one faces away are too few.
+/// Cosine of the widest cone worth storing: a wider one faces away from too few viewpoints.
 constexpr double kWidestCone = 0.1;
-/// Over the rounding of a renderer's floats, in which it compares with the cutoff.
+/// More than the rounding of the floats in which a renderer compares with the cutoff.
 constexpr double kCutoffMargin = 1e-6;
 
-/// The next float that is not below `value`.
+/// The smallest float that is not below `value`.
 float roundedUp(double value) {
   const auto nearest = static_cast<float>(value);
   if (static_cast<double>(nearest) >= value) return nearest;
@@ -54,8 +54,8 @@ double roundedToFloat(double value) {
   return scaled - (scaled - value);
 }
 
-/// Numbers that are floats already when they are converted, so that it does not matter where a
-/// compiler leaves conversions out.
+/// Makes the numbers floats before they are converted, so that it does not matter where a compiler
+/// omits conversions.
 Vec3 nearestFloats(const Vec3d& v) {
   return narrow({roundedToFloat(v.x), roundedToFloat(v.y), roundedToFloat(v.z)});
 }
@@ -74,11 +74,11 @@ std::vector<Vec3d> normalsOf(const LatticeCluster& cluster) {
   return normals;
 }
 
-/// Axis and cutoff; see RenderMeshes.cluster_bounds of the schema. For a sphere of radius r about c
-/// that holds all triangles, and normals at most alpha from the axis: when the axis is at phi from
-/// the direction v to c and cos phi >= sin alpha + r / |v|, then
-/// cos(phi + alpha) = sin((90 - phi) - alpha) >= cos phi - sin alpha >= r / |v|,
-/// so every triangle is seen from behind.
+/// Sets axis and cutoff; see RenderMeshes.cluster_bounds in the schema. Take a sphere of radius r
+/// about c that contains all triangles, and normals at most alpha from the axis. If the axis is at
+/// phi from the direction v to c and cos phi >= sin alpha + r / |v|, then cos(phi + alpha) =
+/// sin((90 - phi) - alpha) >= cos phi - sin alpha >= r / |v|, so every triangle is seen from
+/// behind.
 void addCone(const LatticeCluster& cluster, std::array<float, kBoundsRows>& rows) {
   rows[kConeCutoffRow] = kNoCone;
   if (cluster.two_sided) return;
@@ -129,7 +129,7 @@ ClusterBounds boundsOf(const LatticeCluster& cluster, double step) {
     const Vec3d away = pointOf(vertex, step) - stored;
     squared = std::max(squared, dot(away, away));
   }
-  // One float further: the root was rounded.
+  // One float farther, because the root was rounded.
   bounds.rows[kRadiusRow] =
       std::nextafter(roundedUp(std::sqrt(squared)), std::numeric_limits<float>::infinity());
   addCone(cluster, bounds.rows);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint8_t kNotIn = 255;
 static_assert(kMostInCluster < kNotIn);
 
-/// Numbers places along a Morton curve through the cube about a surface.
+/// Positions along a Morton curve through the cube around a surface.
 class MortonCurve {
  public:
   explicit MortonCurve(const std::vector<RenderVertex>& vertices) : low_(vertices[0].position) {
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> mortonOrder(const RenderSurface& surface) {
   return order;
 }
 
-/// The surface as it is, when that is a cluster already.
+/// The surface as it is, if it is small enough for one cluster.
 ClusterDraft wholeSurface(const RenderSurface& surface) {
   ClusterDraft draft;
   draft.vertices.resize(surface.vertices.size());
@@ -72,7 +72,7 @@ ClusterDraft wholeSurface(const RenderSurface& surface) {
   return draft;
 }
 
-/// Fills one draft after the other.
+/// Fills one draft after another.
 class Splitter {
  public:
   explicit Splitter(const RenderSurface& surface)
@@ -113,7 +113,7 @@ class Splitter {
   }
 
   const RenderSurface& surface_;
-  /// Of each vertex in the draft.
+  /// The place of each vertex in the draft.
   std::vector<std::uint8_t> place_;
   ClusterDraft draft_;
   std::vector<ClusterDraft> drafts_;

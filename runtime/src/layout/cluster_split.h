@@ -7,7 +7,7 @@
 
 namespace galactic::render {
 
-/// A cluster before its numbers are rounded.
+/// A cluster before its coordinates are rounded.
 struct ClusterDraft {
   /// Indices into the vertices of the surface.
   std::vector<std::uint32_t> vertices;
@@ -15,9 +15,9 @@ struct ClusterDraft {
   std::vector<std::array<std::uint8_t, 3>> triangles;
 };
 
-/// The triangles of a surface, whose indices are within range, in drafts of at most kMostInCluster
-/// vertices and triangles: taken along a Morton curve through their centers, and a new draft begun
-/// where the one before is full.
+/// Splits the triangles of a surface, whose indices must be in range, into drafts of at most
+/// kMostInCluster vertices and triangles: follows a Morton curve through the triangles' centers,
+/// and begins a new draft when one is full.
 [[nodiscard]] std::vector<ClusterDraft> splitSurface(const RenderSurface& surface);
 
 }  // namespace galactic::render

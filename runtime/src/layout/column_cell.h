@@ -7,30 +7,30 @@
 
 namespace galactic {
 
-// The one place where the layout of a column grid's cells is known: the writer, the reader and the
-// checker all use these. docs/packs.md has the picture.
+// The one place that defines the layout of a column grid's cells, for the writer, the reader and
+// the checker alike. docs/packs.md has a picture.
 
 inline constexpr std::uint32_t kTileColumnsX = 4;
 inline constexpr std::uint32_t kTileColumnsZ = 2;
 inline constexpr std::uint32_t kCellsPerTile = kTileColumnsX * kTileColumnsZ;
 /// Bytes of a tile: one cache line. Tiles start at multiples of it in the file.
 inline constexpr std::size_t kTileBytes = kCellsPerTile * sizeof(std::uint64_t);
-/// Unused elements in the vector of cells, so that the tiles can be shifted to a cache line: a
+/// Unused elements in the vector of cells. They allow shifting the tiles to a cache line: a
 /// FlatBuffers vector is aligned to 32 bytes at most.
 inline constexpr std::size_t kTilePaddingCells = 4;
 /// Highest code that a stored span uses.
 inline constexpr std::uint32_t kMaxCode = 65534;
 /// Codes per unit of a tile's base.
 inline constexpr std::uint32_t kCodesPerTileBase = 1024;
-/// Least edge of a cell, meters: what walks from cell to cell over a distance ends in time.
+/// Smallest edge of a cell, meters: bounds the time of a walk from cell to cell.
 inline constexpr float kLeastSpacing = 1e-5F;
-/// Most cells of a grid: the batched query computes cell indices in 32 signed bits.
+/// Most cells of a grid: batched queries compute cell indices in signed 32-bit integers.
 inline constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 27;
 
 inline constexpr std::uint64_t kEmptySpanCode = 0x0000ffffU;  // lo = 65535, hi = 0
 inline constexpr std::uint64_t kBlockedCell = kEmptySpanCode | (kEmptySpanCode << 32U);
 inline constexpr std::uint64_t kOverflowMark = 0xffffffffU;  // lo = hi = 65535
-/// What stands after the last span of an overflow cell, as a code pair and as heights.
+/// The mark after the last span of an overflow cell, as a pair of codes and as heights.
 inline constexpr std::uint32_t kEndOfCodes = 0xffffffffU;  // lo = hi = 65535
 inline constexpr Span kEndOfSpans{std::numeric_limits<float>::max(),
                                   std::numeric_limits<float>::max()};
@@ -40,13 +40,13 @@ inline constexpr Span kEndOfSpans{std::numeric_limits<float>::max(),
   return (columns + tile_columns - 1) / tile_columns;
 }
 
-/// Cells of a whole grid, unused ones of the border tiles included.
+/// Cells of a whole grid, including the unused ones of the border tiles.
 [[nodiscard]] constexpr std::uint64_t cellCount(std::uint32_t columns_x, std::uint32_t columns_z) {
   return std::uint64_t{tileCount(columns_x, kTileColumnsX)} * tileCount(columns_z, kTileColumnsZ) *
          kCellsPerTile;
 }
 
-/// Index of cell (i, k) among the cells, tile by tile.
+/// Index of cell (i, k) in the vector of cells, which is ordered tile by tile.
 [[nodiscard]] constexpr std::uint32_t cellIndex(std::uint32_t i, std::uint32_t k,
                                                 std::uint32_t tiles_x) {
   const std::uint32_t tile = (k / kTileColumnsZ) * tiles_x + i / kTileColumnsX;
@@ -77,8 +77,8 @@ inline constexpr Span kEndOfSpans{std::numeric_limits<float>::max(),
   return kOverflowMark | (std::uint64_t{start} << 32U);
 }
 
-/// Elements to skip in the vector of cells whose first element stands at `offset` bytes in the
-/// file.
+/// Elements to skip at the beginning of a vector of cells whose first element is at byte `offset`
+/// of the file.
 [[nodiscard]] constexpr std::size_t tilePadding(std::size_t offset) {
   return ((kTileBytes - offset % kTileBytes) % kTileBytes) / sizeof(std::uint64_t);
 }

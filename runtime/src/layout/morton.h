@@ -3,7 +3,7 @@
 
 namespace galactic {
 
-/// The lowest 21 bits of `value`, two zeros after each (Morton 1966).
+/// The lowest 21 bits of `value`, each followed by two zeros (Morton 1966).
 constexpr std::uint64_t spreadBits(std::uint64_t value) {
   value &= 0x1FFFFFU;
   value = (value | value << 32U) & 0x1F00000000FFFFU;
@@ -14,7 +14,8 @@ constexpr std::uint64_t spreadBits(std::uint64_t value) {
   return value;
 }
 
-/// The place of a cube, its coordinates below 2^21, along a curve that keeps neighbors close.
+/// The position of a cube, whose coordinates are below 2^21, along a curve that keeps neighbors
+/// close.
 constexpr std::uint64_t mortonPlace(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   return spreadBits(x) | spreadBits(y) << 1U | spreadBits(z) << 2U;
 }

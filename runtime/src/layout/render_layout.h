@@ -6,10 +6,10 @@
 
 namespace galactic {
 
-// Where things stand in the pools of RenderMeshes, which are stored by eight. For whoever writes,
-// checks or walks them one by one; rasterizers read whole rows.
+// The layout of the pools of RenderMeshes, which store rows of eight. For code that writes, checks
+// or reads elements one by one; rasterizers read whole rows.
 
-/// Of element `index` in row `row` of a pool with `rows` rows of eight.
+/// Index of element `index` in row `row` of a pool with `rows` rows of eight.
 [[nodiscard]] constexpr std::size_t pooledAt(std::size_t index, std::size_t row, std::size_t rows) {
   return (index / kRenderLanes * rows + row) * kRenderLanes + index % kRenderLanes;
 }
@@ -31,9 +31,9 @@ enum BoundsRow : std::uint8_t {
   kConeCutoffRow = 10,
 };
 
-/// Half extents and radius in lanes of a block of bounds that hold no cluster.
+/// Half extents and radius in the unused lanes of a block of bounds.
 inline constexpr float kNoCluster = -1e30F;
-/// Cutoff of a cluster that never faces away.
+/// Cutoff of a cluster without a cone, which never faces away.
 inline constexpr float kNoCone = 2.0F;
 
 /// Row `row` (a VertexRow) of vertex `vertex` of the pool.
@@ -42,13 +42,13 @@ inline constexpr float kNoCone = 2.0F;
   return meshes.vertices[pooledAt(vertex, row, kVertexRows)];
 }
 
-/// Corner 0, 1 or 2 of triangle `triangle` of the pool, as a number of a vertex in its cluster.
+/// Corner 0, 1 or 2 of triangle `triangle` of the pool, as the index of a vertex in its cluster.
 [[nodiscard]] inline std::uint8_t triangleCorner(const RenderMeshes& meshes, std::size_t triangle,
                                                  std::size_t corner) {
   return meshes.triangles[pooledAt(triangle, corner, kTriangleRows)];
 }
 
-/// Row `row` (a BoundsRow, plus 0, 1, 2 for x, y, z) of lane `lane` of the blocks, counted through.
+/// Row `row` (a BoundsRow, plus 0, 1, 2 for x, y, z) of lane `lane`, counted over all blocks.
 [[nodiscard]] inline float boundsValue(const RenderMeshes& meshes, std::size_t lane,
                                        std::size_t row) {
   return meshes.cluster_bounds[pooledAt(lane, row, kBoundsRows)];

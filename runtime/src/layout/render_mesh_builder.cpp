@@ -21,9 +21,9 @@ using render::ClusterDraft;
 
 constexpr std::size_t kTextureAlignment = 32;
 constexpr double kCoarsestStep = 1;
-/// Lattice numbers up to here are floats.
+/// Lattice coordinates up to this are exact as floats.
 constexpr std::int64_t kMostLattice = std::int64_t{1} << 24U;
-/// Farthest from the origin of its part that a vertex may be, meters.
+/// Farthest that a vertex may be from the origin of its part, meters.
 constexpr float kFarthest = 65536;
 
 bool isFinite(const RenderVertex& vertex) {
@@ -35,7 +35,7 @@ bool isNear(const Vec3& p) {
   return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
 }
 
-/// What is wrong with a surface, as a sentence; nothing when it can be stored.
+/// What is wrong with a surface, as a sentence; none if it can be stored.
 std::optional<std::string> faultOf(const RenderSurface& surface, const RenderMeshSource& source) {
   if (surface.corners.size() % 3 != 0) {
     return fmt::format("found {} corners, expected three per triangle", surface.corners.size());
@@ -109,7 +109,7 @@ Result<void> checkAppearance(const RenderMeshSource& source) {
   return {};
 }
 
-/// A draft and the surface that it is of.
+/// A draft and the surface that it belongs to.
 struct SurfaceDraft {
   const RenderSurface* surface = nullptr;
   ClusterDraft draft;
@@ -132,12 +132,12 @@ struct LatticePoint {
   std::int64_t z = 0;
 };
 
-/// Where a cluster's vertices are on the lattice.
+/// The lattice box of a cluster's vertices.
 struct LatticeBox {
   LatticePoint low;
   LatticePoint high;
 
-  /// Whether a cluster in it can be stored.
+  /// Whether a cluster of this box can be stored.
   [[nodiscard]] bool fits() const {
     const std::int64_t extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
     return extent <= kMostSteps && std::min({low.x, low.y, low.z}) >= -kMostLattice &&
@@ -162,7 +162,7 @@ LatticeBox latticeBox(const SurfaceDraft& cluster, double step) {
   return box;
 }
 
-/// The finest step on which every cluster can be stored; none when there is none.
+/// The finest step with which every cluster can be stored, if any.
 std::optional<double> latticeStep(const std::vector<SurfaceDraft>& clusters) {
   double step = kFinestStep;
   for (const SurfaceDraft& cluster : clusters) {

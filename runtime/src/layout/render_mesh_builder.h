@@ -11,18 +11,18 @@
 
 namespace galactic {
 
-/// The largest texture coordinate that buildRenderMeshes() takes, by magnitude: a cluster then
-/// repeats its image 32,000 times at most, which a pack can hold.
+/// The largest magnitude of a texture coordinate that buildRenderMeshes() accepts: a cluster then
+/// repeats its image at most 32,000 times, which a pack can store.
 inline constexpr float kMostImages = 16000;
 
 /// A corner of triangles to draw.
 struct RenderVertex {
   /// Meters, in the frame of the part.
   Vec3 position;
-  /// Texture coordinates: u to the right, v down from the image's top; images repeat.
+  /// Texture coordinates: u to the right, v down from the top of the image; images repeat.
   float u = 0;
   float v = 0;
-  /// RGBA, sRGB, R lowest, that multiplies the material's.
+  /// RGBA, sRGB, R lowest; multiplies the material's color.
   std::uint32_t color = 0xFFFFFFFF;
 };
 
@@ -34,31 +34,31 @@ struct RenderSurface {
   /// Indices into RenderMeshSource::materials and semantics.
   std::uint16_t material = 0;
   std::uint16_t semantic = 0;
-  /// Whether the triangles are seen from inside, too.
+  /// Whether the triangles are visible from inside, too.
   bool two_sided = false;
 };
 
-/// What is placed with one transform.
+/// Surfaces that are placed with one transform.
 struct RenderPart {
-  /// Of the object in its set, or of the link in its robot; 0 for a scene.
+  /// Index of the object in its set, or of the link in its robot; 0 for a scene.
   std::uint32_t part = 0;
   std::vector<RenderSurface> surfaces = {};
-  /// What is stored beside the geometry: triangles of the source, and how far simplification moved
-  /// the surface, meters.
+  /// Stored beside the geometry: triangles of the source, and how far simplification moved the
+  /// surface, meters.
   std::uint32_t source_triangles = 0;
   float largest_error = 0;
 };
 
-/// What buildRenderMeshes() makes render meshes of. Names and texels belong to the caller.
+/// The input of buildRenderMeshes(). The caller owns names and texels.
 struct RenderMeshSource {
-  /// Ascending `part`.
+  /// In ascending order of `part`.
   std::vector<RenderPart> parts;
   std::vector<RenderMaterial> materials;
   std::vector<RenderTexture> textures;
   std::vector<std::string> semantics;
 };
 
-/// Render meshes in memory of their own, in the layout of a pack.
+/// Render meshes that own their memory, in the layout of a pack.
 struct RenderMeshStorage : RenderPools {
   struct Material {
     std::string name;
@@ -70,7 +70,7 @@ struct RenderMeshStorage : RenderPools {
     std::string name;
     std::uint32_t size = 0;
     TexelFormat format = TexelFormat::kRgba8;
-    /// In texels, a multiple of 32.
+    /// Index into `texels`, a multiple of 32.
     std::size_t first_byte = 0;
   };
 
@@ -79,20 +79,20 @@ struct RenderMeshStorage : RenderPools {
   Values<std::uint8_t> texels;
   std::vector<std::string> semantics;
 
-  /// The same as views, which this must outlive.
+  /// Views of the same; this object must outlive them.
   [[nodiscard]] RenderMeshes view() const;
 };
 
 /// Puts triangles into the layout of schema/render.fbs. A surface of at most kMostInCluster
-/// vertices and triangles becomes one cluster, in the order given; a larger one is split into
-/// compact clusters, and vertices that no triangle uses are left out. A surface without triangles
-/// becomes nothing. Positions are rounded to the lattice of their part: the finest with a step of
-/// 2^-14 m or more that every cluster fits on, so equal positions stay equal across clusters.
-/// Bounds hold what is drawn, rounded outwards; one-sided clusters get a cone of normals where they
-/// have one. Colors are left out when all are white. The same source gives the same bytes. Fails
-/// with kInvalidInput, naming part and surface, on numbers that are not finite or too large for the
-/// layout, on indices out of range, on parts that do not ascend, and on textures that are no power
-/// of two or have the wrong number of bytes.
+/// vertices and triangles becomes one cluster, in the given order; a larger one is split into
+/// compact clusters, and vertices that no triangle uses are dropped. A surface without triangles
+/// yields nothing. Positions are rounded to the lattice of their part: the finest lattice, with a
+/// step of at least 2^-14 m, that every cluster fits on, so equal positions stay equal across
+/// clusters. Bounds contain what is drawn, rounded outward; one-sided clusters get a cone of
+/// normals if they have one. Colors are left out when all are white. The same source yields the
+/// same bytes. Fails with kInvalidInput, naming part and surface, for numbers that are not finite
+/// or too large for the layout, indices out of range, parts that do not ascend, and textures whose
+/// size is not a power of two or whose number of bytes is wrong.
 [[nodiscard]] Result<RenderMeshStorage> buildRenderMeshes(const RenderMeshSource& source);
 
 }  // namespace galactic

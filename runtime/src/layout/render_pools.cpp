@@ -12,14 +12,14 @@ namespace {
 using render::ClusterBounds;
 
 constexpr double kMostStored = 65535;
-/// More repetitions of an image than this many per vertex step overflow a sampler's integers.
+/// More repetitions of an image per vertex step would overflow the integers of a sampler.
 constexpr float kMostUvStep = 0.5F;
 
 /// Texture coordinates of a cluster along one axis: minimum and step.
 struct UvScale {
   float minimum = 0;
   float step = 0;
-  /// Whole images left out: images repeat.
+  /// Whole images that are left out, because images repeat.
   double offset = 0;
 
   [[nodiscard]] std::uint16_t stored(float value) const {
@@ -100,7 +100,7 @@ void appendTriangles(const LatticeCluster& cluster, RenderCluster& stored, Rende
   }
 }
 
-/// Starts the blocks of a model's bounds with lanes that hold no cluster.
+/// Starts the blocks of a model's bounds with unused lanes.
 std::size_t appendBlocks(std::size_t clusters, RenderPools::Values<float>& blocks) {
   const std::size_t first_lane = blocks.size() / kBoundsRows;
   blocks.resize(blocks.size() + wholeLanes(clusters) * kBoundsRows);

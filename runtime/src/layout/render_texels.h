@@ -6,8 +6,8 @@
 
 namespace galactic {
 
-/// All texels of a texture, level after level, as RGBA with R lowest, whatever its format: alpha is
-/// 255 where the format has none. `texture`: as checked packs have them. Thread-safe.
+/// All texels of a texture of any format, level by level, as RGBA with R lowest; alpha is 255 if
+/// the format has none. `texture` must come from a checked pack. Thread-safe.
 [[nodiscard]] std::vector<std::uint32_t> decodedTexels(const RenderTexture& texture);
 
 }  // namespace galactic
