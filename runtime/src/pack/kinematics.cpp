@@ -15,7 +15,7 @@ Quat rotationAbout(const Vec3& axis, float angle) {
   return {axis.x * sine, axis.y * sine, axis.z * sine, std::cos(0.5F * angle)};
 }
 
-/// A quaternion of any length as a rotation; none where it has no direction.
+/// Normalizes a quaternion; the identity if it has no direction.
 Quat normalized(const Quat& q) {
   const float length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(length > 0)) return {};
@@ -70,9 +70,9 @@ void forwardKinematics(std::span<const LinkFrame> links, const Pose& world_from_
 
 namespace {
 
-/// How a point and a direction look from a link's joint, which turns them about its origin.
+/// A point and a direction as seen from a link's joint, which turns them about its origin.
 struct SeenFromJoint {
-  /// From the origin of the joint to the point, and the direction, both in the joint's frame.
+  /// From the origin of the joint to the point, in the joint's frame, like the direction.
   Vec3 arm;
   Vec3 direction;
 
@@ -80,7 +80,7 @@ struct SeenFromJoint {
   [[nodiscard]] float aboutAxis(const Vec3& axis) const { return dot(direction, cross(axis, arm)); }
 };
 
-/// Per component of a quaternion (x, y, z, w), the angular velocity 2 dq q* / |q|^2.
+/// For each component of a quaternion (x, y, z, w), the angular velocity 2 dq q* / |q|^2.
 void addQuaternionMoves(const SeenFromJoint& seen, const float* q, float* moves) {
   const float square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(square > 0)) return;
@@ -133,8 +133,8 @@ void applyTransposedJacobian(std::span<const LinkFrame> links, std::span<const f
     if (link.type != JointType::kFixed) {
       const Pose& frame_from_here = frame_from_link[static_cast<std::size_t>(n)];
       Quat back = conjugate(frame_from_here.rotation);
-      // Those with several values move along axes that they do not turn; an only axis stays as it
-      // is.
+      // A joint of several values moves along axes that it does not turn; a single axis turns onto
+      // itself.
       if (positionCount(link.type) > 1) back = jointPose(link, positions).rotation * back;
       const SeenFromJoint seen{rotate(back, carried.point - frame_from_here.translation),
                                rotate(back, carried.direction)};

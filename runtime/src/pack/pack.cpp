@@ -12,12 +12,12 @@
 namespace galactic {
 namespace {
 
-/// What the vectors in a pack are aligned to, relative to the file's first byte.
+/// Alignment of the vectors in a pack, relative to the first byte of the file.
 constexpr std::size_t kPackAlignment = 32;
 
 }  // namespace
 
-/// Keeps the file mapped; nothing to keep for a view of somebody else's memory.
+/// Keeps the file mapped; empty for a view of somebody else's memory.
 class PackFile::Storage {
  public:
   explicit Storage(MappedFile file) : file_(std::move(file)) {}
@@ -67,7 +67,7 @@ Result<PackFile> PackFile::view(std::span<const std::byte> file, std::string whe
   const auto payload = file.subspan(sizeof(PackHeader));
   Result<void> checked = detail::checkPayloadStart(payload, where);
   if (trust == Trust::kVerify) {
-    // The hash first: a damaged file is told apart from one that was written wrongly.
+    // The hash comes first, to tell a damaged file from one that was written wrongly.
     if (auto intact = checkPackHash(header, payload, where); !intact) checked = intact;
     if (checked) checked = detail::checkPack(header, file, where);
   }

@@ -25,7 +25,7 @@ Result<const schema::World*> contentOf(const PackFile& world) {
                   ", expected a world (WRLD); give a world pack");
 }
 
-/// Whether the open file is the one that was linked.
+/// Checks that the open file is the one that was linked.
 Result<void> checkLinked(const PackFile& pack, const PackReference& reference,
                          const std::string& where, Trust trust) {
   const auto other = [&](std::string what) {
@@ -46,7 +46,7 @@ Result<void> checkLinked(const PackFile& pack, const PackReference& reference,
   const detail::ContentHash wanted{reference.hash_low, reference.hash_high};
   const detail::ContentHash found = detail::contentHash(pack.bytes());
   if (found == wanted) return {};
-  // Of a damaged one linking again would only make a list that it passes.
+  // If the pack is damaged, linking again would only produce a list that accepts the damage.
   const auto payload = pack.bytes().subspan(sizeof(PackHeader));
   RETURN_IF_ERROR(checkPackHash(pack.header(), payload, pack.where()));
   return other(fmt::format("lists {}, whose hash is {:016x}{:016x}, expected {:016x}{:016x}",
@@ -62,7 +62,7 @@ Result<std::vector<PackReference>> packReferences(const PackFile& world) {
   references.reserve(stored->packs()->size());
   for (const schema::PackReference* one : *stored->packs()) {
     const auto kind = packKindOf(detail::fromSchema(one->kind()));
-    if (!kind || one->hash() == nullptr) {  // Only where nothing was verified.
+    if (!kind || one->hash() == nullptr) {  // Happens only if nothing was verified.
       return fail(ErrorCode::kInvalidInput, world.where(),
                   "has a damaged list of packs; open it without trusting it to learn more");
     }
@@ -76,7 +76,7 @@ Result<std::vector<OptionText>> taskOptions(const PackFile& world) {
   ASSIGN_OR_RETURN(const auto content, contentOf(world));
   const auto* stored = content->task();
   if (stored == nullptr) return {};
-  // What was verified before passes; a trusted pack may hold anything.
+  // Passes if the pack was verified before; a trusted pack may hold anything.
   RETURN_IF_ERROR(detail::checkOptions(*stored, "task", world.where() + ": world"));
   std::vector<OptionText> options;
   options.reserve(stored->size());
@@ -102,8 +102,8 @@ Result<PackFile> openReference(const PackFile& world, const PackReference& refer
                             path.string()),
                 "world/missing-pack");
   }
-  // Compared with the list first: another pack is told apart from a damaged one. All on one
-  // mapping, so that what is verified is what was compared.
+  // Compare with the list first, to tell another pack from a damaged one. All on one mapping, so
+  // that what is verified is what was compared.
   Result<PackFile> pack = PackFile::open(path, Trust::kTrusted);
   if (!pack) return pack;
   RETURN_IF_ERROR(checkLinked(*pack, reference, world.where(), trust));

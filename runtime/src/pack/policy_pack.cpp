@@ -33,7 +33,7 @@ FloatVector floats(Builder& builder, const std::vector<float>& values) {
   return builder.CreateVector(values);
 }
 
-/// Nothing where there are none.
+/// An empty offset if there are no values.
 FloatVector optionalFloats(Builder& builder, const std::vector<float>& values) {
   return values.empty() ? FloatVector() : floats(builder, values);
 }
@@ -157,7 +157,7 @@ auto layerVector(Builder& builder, const std::vector<PolicyLayer>& layers) {
   return builder.CreateVector(stored);
 }
 
-/// Nothing where the camera is by itself.
+/// None if the image uses the camera's own place.
 std::optional<schema::CameraPlace> placeOf(const PolicyImage& image) {
   constexpr std::array<float, 3> kZeros{};
   if (image.position == kZeros && image.rpy_degrees == kZeros) return {};
@@ -221,7 +221,7 @@ Offset<schema::Provenance> provenanceTable(Builder& builder, const PolicyProvena
   return schema::CreateProvenance(builder, tool, version, options, source_vector, warnings);
 }
 
-/// A copy that may be looked at in place.
+/// A copy with the alignment that reading in place requires.
 class AlignedCopy {
  public:
   explicit AlignedCopy(std::span<const std::byte> bytes)
@@ -243,7 +243,7 @@ class AlignedCopy {
   std::byte* block_;
 };
 
-/// The bytes that the weights take, about.
+/// About how many bytes the weights take.
 std::uint64_t roughSize(const PolicyContent& content) {
   std::uint64_t floats = 0;
   const auto add = [&floats](const auto&... vectors) { ((floats += vectors.size()), ...); };

@@ -25,7 +25,7 @@ std::string_view partName(JointType type, std::uint32_t n) {
 
 std::vector<std::uint32_t> positionOwners(const Robot& robot) {
   std::vector<std::uint32_t> owners(robot.positionCount(), kNoLink);
-  // First those that take their position as it is, then, should there be none, any.
+  // Prefer links that use their position unchanged; take any if there are none.
   for (const bool only_plain : {true, false}) {
     for (std::uint32_t n = 0; n < robot.links().size(); ++n) {
       const LinkFrame& link = robot.links()[n];

@@ -50,7 +50,7 @@ RenderTexture textureFrom(const schema::RenderTexture& stored,
           .texels = texels.subspan(stored.first_byte(), textureBytes(stored.size(), format))};
 }
 
-/// Fills the textures of `meshes`; where each of the stored ones went, -1 for a missing one.
+/// Fills the textures of `meshes`. Returns where each stored one went, -1 for a missing one.
 std::vector<std::int32_t> takeTextures(const schema::RenderMeshes& stored,
                                        const SharedTextures& shared, RenderMeshes& meshes) {
   const auto texels = detail::inPlace<std::uint8_t>(stored.texels());

@@ -98,7 +98,7 @@ std::optional<std::uint32_t> Robot::findLink(std::string_view name) const {
 }
 
 std::optional<std::uint32_t> Robot::findJoint(std::string_view name) const {
-  // The root has none.
+  // The root has no joint.
   const auto found = std::find(joint_names_.begin() + 1, joint_names_.end(), name);
   if (found == joint_names_.end()) return std::nullopt;
   return static_cast<std::uint32_t>(found - joint_names_.begin());

@@ -26,7 +26,7 @@ Result<Scene> Scene::from(const PackFile& pack) {
 }
 
 std::optional<std::size_t> Scene::gridIndex(float radius) const {
-  // Radii typed by a user and stored in a pack may differ in the last digit.
+  // Radii that a user typed and radii that packs store may differ in the last digit.
   constexpr float kSameRadius = 1e-6F;
   for (std::size_t n = 0; n < grids_.size(); ++n) {
     if (std::fabs(grids_[n].radius() - radius) <= kSameRadius) return n;

@@ -10,7 +10,8 @@
 
 namespace galactic::detail {
 
-// Plain structs of the runtime have the layout of the schema's, so that vectors are read in place.
+// Plain structs of the runtime have the same layout as those of the schema, so that vectors are
+// read in place.
 static_assert(sizeof(Vec3) == sizeof(schema::Vec3));
 static_assert(sizeof(Quat) == sizeof(schema::Quat));
 static_assert(sizeof(Pose) == sizeof(schema::Pose));
@@ -37,7 +38,7 @@ static_assert(sizeof(SetSphere) == sizeof(schema::SetSphere));
   return names;
 }
 
-/// A vector of schema structs as the runtime's structs of the same layout, in place.
+/// A vector of schema structs, in place, as the runtime's structs of the same layout.
 template <class T, class Stored>
 [[nodiscard]] std::span<const T> inPlace(const flatbuffers::Vector<Stored>* vector) {
   return {reinterpret_cast<const T*>(vector->Data()), vector->size()};

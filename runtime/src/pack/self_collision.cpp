@@ -8,10 +8,11 @@
 namespace galactic {
 namespace {
 
-/// More than centers move by rounding, meters: a ball is no nearer than what is in it.
+/// More than rounding moves centers, meters: a ball must never seem farther away than the spheres
+/// in it.
 constexpr float kSlack = 1e-4F;
 
-/// Whether balls around two points are nearer to each other than their radii and a margin say.
+/// Whether two centers are nearer to each other than `reach`, the sum of their radii and a margin.
 bool areWithin(const Vec3& a, const Vec3& b, float reach) {
   const Vec3 between = a - b;
   return reach > 0 && dot(between, between) < reach * reach;

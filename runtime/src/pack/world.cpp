@@ -25,17 +25,17 @@ namespace galactic {
 namespace {
 
 constexpr auto kInvalid = ErrorCode::kInvalidInput;
-/// Radii that a user typed and that packs store may differ in the last digit.
+/// Radii that a user typed and radii that packs store may differ in the last digit.
 constexpr float kSameRadius = 1e-6F;
 
-/// Something, and the pack that it is in.
+/// A part of a world, and the pack that contains it.
 template <class T>
 struct Packed {
   T content;
   const PackFile* pack = nullptr;
 };
 
-/// What the packs of a world hold, by kind; maps for names that have to be unique.
+/// The contents of a world's packs, by kind; maps where names have to be unique.
 struct Parts {
   std::map<std::string_view, Packed<Scene>> scenes;
   std::map<std::string_view, Packed<ObjectModel>> objects;
@@ -95,7 +95,7 @@ Result<void> add(const PackFile& pack, Parts& parts) {
     case PackKind::kEpisodes:
       return addOnly(pack, parts.episodes, "episode set");
     case PackKind::kTexture:
-      // Drawing alone asks for it.
+      // Only drawing asks for textures.
       return {};
     case PackKind::kPolicy:
       return fail(kInvalid, pack.where(),
@@ -117,7 +117,7 @@ Result<Parts> sortByKind(const std::vector<PackFile>& packs) {
   return parts;
 }
 
-/// Whether none of the wanted kinds is missing.
+/// Checks that no required kind is missing.
 Result<void> checkComplete(const Parts& parts) {
   const auto missing = [](std::string_view what) {
     return fail(kInvalid, "world", fmt::format("has no {}; give a pack of one, too", what),
@@ -129,7 +129,7 @@ Result<void> checkComplete(const Parts& parts) {
   return {};
 }
 
-/// What a pack was baked for.
+/// The radii that a pack was baked for.
 struct StatedRadii {
   std::vector<float> radii;
   const PackFile* pack = nullptr;
@@ -149,7 +149,7 @@ Result<void> checkRadii(const StatedRadii& stated, const StatedRadii& first) {
       "world/other-radii");
 }
 
-/// The robot's first, against which the others are held.
+/// The robot's come first; the others are compared with them.
 Result<std::vector<StatedRadii>> statedRadii(const std::vector<PackFile>& packs,
                                              const Parts& parts) {
   std::vector<StatedRadii> stated;
@@ -179,7 +179,7 @@ Result<void> checkAllRadii(const std::vector<PackFile>& packs, const Parts& part
   return {};
 }
 
-/// Whether the robot can be simulated at all.
+/// Checks that the robot can be simulated at all.
 Result<void> checkAbilities(const Packed<Robot>& robot) {
   const auto lacks = [&](std::string_view what) {
     return fail(
@@ -199,7 +199,7 @@ Result<void> checkAbilities(const Packed<Robot>& robot) {
   return {};
 }
 
-/// A list of names in the episode pack, and the name of the error about one that the world lacks.
+/// A list of names in the episode pack, and the name of the error for one that the world lacks.
 struct NameList {
   std::string_view field;
   std::string_view error_name;
@@ -208,15 +208,15 @@ constexpr NameList kSceneNames{"scenes", "world/unknown-scene"};
 constexpr NameList kObjectNames{"objects", "world/unknown-object"};
 constexpr NameList kJointNames{"start_joints", "world/other-robot"};
 
-/// The failure of name `n` of a list in the episode pack.
+/// The error about name `n` of a list in the episode pack.
 tl::unexpected<Error> unknown(const PackFile& episodes, const NameList& list, std::size_t n,
                               std::string message) {
   return fail(kInvalid, fmt::format("{}: episode_set.{}[{}]", episodes.where(), list.field, n),
               std::move(message), list.error_name);
 }
 
-/// The failure of the first of the `names` from `n` on that are not among `known`, which are called
-/// `things`; tells of the others, too.
+/// The error about the first of the `names` from `n` on that is not among `known`, which are called
+/// `things`; mentions the others, too.
 template <class Names, class Known>
 tl::unexpected<Error> lacking(const PackFile& episodes, const NameList& list, const Names& names,
                               std::size_t n, const Known& known, std::string_view things) {
@@ -236,7 +236,7 @@ tl::unexpected<Error> lacking(const PackFile& episodes, const NameList& list, co
                              counted(known.size(), things), others));
 }
 
-/// For each of the episode set's scenes its place among the sorted scenes.
+/// For each of the episode set's scenes, its place among the sorted scenes.
 Result<std::vector<std::uint32_t>> findScenes(const Parts& parts) {
   const auto& names = parts.episodes->content.sceneNames();
   std::vector<std::uint32_t> indices;
@@ -265,7 +265,7 @@ Result<std::vector<ObjectModel>> findObjects(const Parts& parts) {
   return objects;
 }
 
-/// For each start joint its place in the vector of joint positions.
+/// For each start joint, its place in the vector of joint positions.
 Result<std::vector<std::uint32_t>> findStartPositions(const Parts& parts) {
   const Robot& robot = parts.robot->content;
   const auto& names = parts.episodes->content.startJoints();
@@ -322,11 +322,11 @@ std::uint64_t hashOf(const std::vector<PackFile>& packs) {
 
 Result<std::vector<PackFile>> openList(const PackFile& world, Trust trust) {
   ASSIGN_OR_RETURN(const auto references, packReferences(world));
-  // There may be thousands, and each is read and checked from end to end.
+  // In parallel: there may be thousands, and each is read and checked from end to end.
   std::vector<std::optional<Result<PackFile>>> opened(references.size());
   std::atomic<std::size_t> failed = opened.size();
   detail::forEachPart(detail::threadCount(0), opened.size(), [&](std::size_t n) {
-    // The first one that fails is told of, whichever thread is ahead.
+    // Report the first one that fails, whichever thread is ahead.
     if (n > failed) return;
     opened[n] = openReference(world, references[n], trust);
     if (*opened[n]) return;
@@ -365,7 +365,7 @@ Result<World> World::open(std::span<const std::filesystem::path> paths, Trust tr
 }
 
 SimulationOptions World::withTask(SimulationOptions base) const {
-  // They were read when the world was opened: none is at fault.
+  // Cannot fail: the options were read when the world was opened.
   (void)setOptions(taskOptions(), OptionScope::kTask, base);
   return base;
 }
@@ -374,7 +374,7 @@ Result<World> World::from(std::vector<PackFile> packs) { return make(std::move(p
 
 Result<World> World::make(std::vector<PackFile> packs, std::vector<OptionText> task_options) {
   Content world;
-  // First of all: what follows points to the packs.
+  // Must be first: what follows points into the packs.
   world.packs = std::move(packs);
   world.task_options = std::move(task_options);
   world.hash = hashOf(world.packs);
