@@ -6,7 +6,7 @@
 namespace galactic::policy {
 namespace {
 
-/// Random numbers that are made at a time.
+/// Random numbers that are made together.
 constexpr std::size_t kNoise = 16;
 
 std::size_t roundedUp(std::size_t count, std::size_t step) {

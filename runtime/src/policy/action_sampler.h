@@ -8,25 +8,25 @@
 
 namespace galactic::policy {
 
-/// What a network says about the actions of one env.
+/// What a network outputs for the actions of one env.
 struct ActionValues {
-  /// One for each continuous action.
+  /// One value for each continuous action.
   const float* mean = nullptr;
   const float* log_deviation = nullptr;
-  /// For each discrete action its logits.
+  /// The logits of each discrete action.
   std::span<const float* const> logits;
 };
 
-/// Decides actions from what a network says. Holds scratch memory: one for each thread.
+/// Turns the outputs of a network into actions. Holds scratch memory: use one for each thread.
 class ActionSampler {
  public:
-  /// `values`: of each discrete action, what it may be.
+  /// `values`: for each discrete action, the values that it can take.
   ActionSampler(std::size_t continuous, std::vector<std::vector<float>> values);
 
-  /// Means, and the values with the largest logits, the first of equal ones.
+  /// Takes means, and the values with the largest logits (the first of equal ones).
   void takeLikeliest(const ActionValues& said, std::span<float> actions) const noexcept;
 
-  /// Normally distributed numbers, and values with the probabilities that the logits give.
+  /// Samples from normal distributions, and values with the probabilities that the logits give.
   void sample(const Kernels& kernels, const ActionValues& said, RandomStream random,
               std::span<float> actions) noexcept;
 

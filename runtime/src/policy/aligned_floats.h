@@ -6,7 +6,7 @@
 
 namespace galactic::policy {
 
-/// Floats that begin at a cache line, zero at first, as many for ever.
+/// A fixed number of floats that begin at a cache line; initially zero.
 class AlignedFloats {
  public:
   AlignedFloats() = default;

@@ -27,7 +27,7 @@ void BufferPlan::read(BufferId buffer, std::size_t operation) {
 }
 
 void BufferPlan::place() {
-  // Ascending offsets.
+  // By ascending offset.
   std::vector<BufferId> alive;
   for (BufferId id = 0; id < buffers_.size(); ++id) {
     Buffer& buffer = buffers_[id];

@@ -5,25 +5,25 @@
 
 namespace galactic::policy {
 
-/// Number of a buffer in a plan.
+/// Index of a buffer in a plan.
 using BufferId = std::uint32_t;
 
 /// Where the values of a network lie while it runs: buffers that are not needed at the same time
 /// share memory. Operations are numbered in the order in which they run.
 class BufferPlan {
  public:
-  /// A buffer of `size` floats per env that operation `operation` fills.
+  /// Adds a buffer of `size` floats per env that operation `operation` fills.
   BufferId add(std::size_t size, std::size_t operation);
-  /// The same for an operation that goes through `source` element by element, which it reads last:
-  /// it may work in place.
+  /// The same for an operation that goes through `source` element by element: if it is the last one
+  /// to read `source`, it works in place.
   BufferId addLike(BufferId source, std::size_t operation);
   /// Operation `operation` reads the buffer.
   void read(BufferId buffer, std::size_t operation);
 
-  /// Gives all buffers their places: no more calls of the above.
+  /// Assigns all buffers their places. Call none of the above afterwards.
   void place();
 
-  /// Floats per env; of each buffer from where on, and how many, padded to whole lanes.
+  /// Floats per env in total; for a buffer its offset and its size, padded to whole lanes.
   [[nodiscard]] std::size_t total() const { return total_; }
   [[nodiscard]] std::size_t offset(BufferId buffer) const { return buffers_[buffer].offset; }
   [[nodiscard]] std::size_t stride(BufferId buffer) const { return buffers_[buffer].size; }
@@ -34,7 +34,7 @@ class BufferPlan {
     std::size_t first_use = 0;
     std::size_t last_use = 0;
     std::size_t offset = 0;
-    /// What it would like to replace; itself when nothing.
+    /// The buffer that this one may replace; itself if none.
     BufferId source = 0;
   };
 

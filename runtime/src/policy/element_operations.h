@@ -11,7 +11,7 @@
 
 namespace galactic::policy {
 
-// Layers that take values as they are: element by element, by channel, or one behind the other.
+// Layers that take values as they are: element by element, by channel, or one after another.
 
 class NormalizeOperation final : public Operation {
  public:
@@ -68,7 +68,7 @@ class ClampOperation final : public Operation {
   float upper_;
 };
 
-/// A kernel that takes a value element by element.
+/// Applies a kernel to each element.
 class ElementOperation final : public Operation {
  public:
   using Kernel = void (*Kernels::*)(const float*, float*, std::size_t) noexcept;
@@ -146,7 +146,7 @@ class SliceOperation final : public Operation {
   std::size_t size_;
 };
 
-/// Normalization of images by groups, and of vectors as one group.
+/// Normalizes images by groups, and vectors as a single group.
 class NormOperation final : public Operation {
  public:
   template <class Layer>

@@ -6,7 +6,8 @@
 
 namespace galactic::policy {
 
-// Layers that move pixels. Images lie pixel by pixel, row by row, all channels of a pixel together.
+// Layers that move pixels. Images are stored row by row, pixel by pixel, with all channels of a
+// pixel together.
 
 class SpaceToDepthOperation final : public Operation {
  public:
@@ -14,7 +15,7 @@ class SpaceToDepthOperation final : public Operation {
       : from_(from), to_(to), input_(input), block_(block) {}
 
   void run(const Tile& tile) const noexcept override {
-    // A row of a square is one stretch of the input and of the result.
+    // Each row of a block is contiguous in both the input and the result.
     const std::size_t stretch = std::size_t{block_} * input_.channels;
     const std::size_t row = std::size_t{input_.width} * input_.channels;
     for (std::size_t n = 0; n < tile.count; ++n) {
@@ -37,7 +38,7 @@ class SpaceToDepthOperation final : public Operation {
   std::uint32_t block_;
 };
 
-/// Zeros around an image.
+/// Surrounds an image with zeros.
 class PadOperation final : public Operation {
  public:
   PadOperation(BufferId from, BufferId to, const LayerShape& input, std::uint32_t padding)
@@ -52,7 +53,7 @@ class PadOperation final : public Operation {
       to = std::fill_n(to, padding_ * (row + 2 * edge) + edge, 0.0F);
       for (std::size_t y = 0; y < input_.height; ++y) {
         to = std::copy_n(from + y * row, row, to);
-        // The right edge, and the left one of the next row.
+        // The padding at the right edge and at the left edge of the next row.
         const bool is_last = y + 1 == input_.height;
         to = std::fill_n(to, is_last ? edge + padding_ * (row + 2 * edge) : 2 * edge, 0.0F);
       }
@@ -66,13 +67,13 @@ class PadOperation final : public Operation {
   std::uint32_t padding_;
 };
 
-/// Where a kernel is put down on an image, zeros around it included.
+/// The places of a kernel on an image, which includes its zero padding.
 struct Places {
   LayerShape input;
   LayerShape output;
   std::uint32_t stride = 1;
 
-  /// Offset of the first number under the kernel at its place number `n`.
+  /// Offset of the first number under the kernel at place `n`.
   [[nodiscard]] std::size_t offset(std::size_t n) const {
     const std::size_t y = n / output.width * stride;
     const std::size_t x = n % output.width * stride;

@@ -9,9 +9,9 @@
 
 namespace galactic::policy {
 
-// What a network begins with: layers without inputs.
+// The layers without inputs, which a network begins with.
 
-/// Weights as they are stored.
+/// A copy of stored weights.
 [[nodiscard]] inline std::vector<float> copyOf(const flatbuffers::Vector<float>& stored) {
   return {stored.begin(), stored.end()};
 }
@@ -62,7 +62,7 @@ class PreviousActionOperation final : public Operation {
   BufferId to_;
 };
 
-/// Bytes and meters to numbers, pixel after pixel.
+/// Converts bytes and meters to numbers, pixel by pixel.
 class ImageOperation final : public Operation {
  public:
   ImageOperation(BufferId to, const schema::PolicyImage& image)

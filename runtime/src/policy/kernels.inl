@@ -1,4 +1,4 @@
-// The kernels, in terms of eight-lane vectors: included by kernels_portable.cpp and
+// The kernels, written with eight-lane vectors. Included by kernels_portable.cpp and
 // kernels_avx2.cpp, which define fused(a, b, c) = a * b + c, rounded once, and squareRoot(), and
 // differ in the instructions that they may use. No library templates here: see
 // column_grid_avx2.cpp.
@@ -42,13 +42,14 @@ inline Lanes atLeast(Lanes value, float limit) {
   return pick(value < spread(limit), spread(limit), value);
 }
 
-/// The nearest whole number for |value| < 2^22.
+/// The nearest whole number, if |value| < 2^22.
 inline Lanes rounded(Lanes value) {
   const Lanes shift = spread(12582912.0F);  // 1.5 * 2^23: leaves no bits for a fraction
   return (value + shift) - shift;
 }
 
-/// e to the power of x, limited to [-87, 88]: relative error under 2e-7 (Cephes library, Moshier).
+/// e to the power of x, with x limited to [-87, 88]; relative error under 2e-7 (Cephes library,
+/// Moshier).
 inline Lanes exponential(Lanes x) {
   x = atLeast(atMost(x, 88.0F), -87.0F);
   const Lanes n = rounded(x * spread(1.44269504F));
@@ -69,7 +70,8 @@ inline Lanes sigmoid(Lanes x) { return spread(1) / (spread(1) + exponential(-x))
 /// Error under 3e-7; NaN stays NaN.
 inline Lanes hyperbolicTangent(Lanes x) {
   const Lanes size = floatsOf(bitsOf(x) & 0x7FFFFFFF);
-  // Near 0, where the quotient below would cancel: the polynomial of the Cephes library.
+  // Near 0, where the quotient below would suffer from cancellation, use the polynomial of the
+  // Cephes library.
   const Lanes x2 = x * x;
   Lanes p = spread(-5.70498872745e-3F);
   p = fused(p, x2, spread(2.06390887954e-2F));
@@ -106,7 +108,7 @@ inline Lanes naturalLogarithm(Lanes x) {
   return fused(e, spread(0.693359375F), m + y);
 }
 
-/// Sine and cosine of 2 pi t for t in [0, 1).
+/// Sine and cosine of 2 pi t, for t in [0, 1).
 inline void turn(Lanes t, Lanes& sine, Lanes& cosine) {
   // The nearest quarter, and the angle from it in [-pi / 4, pi / 4].
   const Lanes quarter = rounded(t * spread(4));
@@ -128,7 +130,7 @@ inline void turn(Lanes t, Lanes& sine, Lanes& cosine) {
   cosine = floatsOf(bitsOf(pick(swap, s, c)) ^ cosine_sign);
 }
 
-/// The 24 highest bits of each word as a multiple of 2^-24 in [0, 1).
+/// The highest 24 bits of each word as a multiple of 2^-24 in [0, 1).
 inline Lanes unit(const std::uint32_t* words) {
   IntLanes bits;
   __builtin_memcpy(&bits, words, sizeof(bits));
@@ -144,7 +146,7 @@ void gaussiansKernel(const std::uint32_t* words, float* to) noexcept {
   store(to + kLane, radius * sine);
 }
 
-/// kRowsTogether rows against one pack of weights: the sums stay in registers.
+/// Multiplies kRowsTogether rows by one pack of weights, keeping the sums in registers.
 template <int kRowsTogether>
 inline void multiplyRows(const Product& product, std::size_t first) {
   constexpr auto kCount = static_cast<std::size_t>(kRowsTogether);
@@ -223,8 +225,9 @@ void addKernel(const float* a, const float* b, float* to, std::size_t count) noe
   for (std::size_t n = 0; n < count; n += kLane) store(to + n, load(a + n) + load(b + n));
 }
 
-/// Adds each channel's values, or squared distances from `means`, over the pixels. Eight channels
-/// are added up together, each over the pixels in order; the last ones alone, in the same order.
+/// Adds up each channel's values, or their squared distances from `means`, over the pixels. Eight
+/// channels are added up together, each over the pixels in order; the remaining ones alone, in the
+/// same order.
 inline void sumChannels(const GroupNormalization& task, const float* means, float* sums) {
   std::size_t channel = 0;
   for (; channel + kLane <= task.channels; channel += kLane) {
@@ -259,7 +262,7 @@ void normalizeGroupsKernel(const GroupNormalization& task) noexcept {
     for (std::size_t c = g * width; c < (g + 1) * width; ++c) means[c] = sum / count;
   }
   sumChannels(task, means, sums);
-  // From here on value * sums + means is the result.
+  // From here on, the result is value * sums + means.
   for (std::size_t g = 0; g < task.groups; ++g) {
     float sum = 0;
     for (std::size_t c = g * width; c < (g + 1) * width; ++c) sum += sums[c];

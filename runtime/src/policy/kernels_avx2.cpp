@@ -1,4 +1,4 @@
-// Compiled for AVX2 and FMA: instantiates no library templates, see column_grid_avx2.cpp.
+// Compiled for AVX2 and FMA; instantiates no library templates, see column_grid_avx2.cpp.
 #include "policy/kernels.h"
 
 #if defined(__AVX2__) && defined(__FMA__)

@@ -17,7 +17,7 @@ constexpr std::uint32_t kMostLayers = 4096;
 constexpr std::uint32_t kLargestEdge = 4096;
 constexpr std::uint32_t kLargestState = 65536;
 
-/// Places of a kernel along an edge; 0 where it does not fit.
+/// Number of places of a kernel along an edge; 0 if it does not fit.
 std::uint32_t places(std::uint32_t edge, std::uint32_t kernel, std::uint32_t stride,
                      std::uint32_t padding) {
   const std::uint64_t padded = std::uint64_t{edge} + 2 * std::uint64_t{padding};
@@ -26,8 +26,8 @@ std::uint32_t places(std::uint32_t edge, std::uint32_t kernel, std::uint32_t str
 
 std::uint64_t padded(std::uint64_t outputs) { return (outputs + kBlock - 1) / kBlock * kBlock; }
 
-/// Walks the layers. One function for each kind returns the shape of its value, given those of its
-/// inputs; after an offence shapes mean nothing.
+/// Walks through the layers. For each kind of layer, one function returns the shape of its value,
+/// given the shapes of its inputs; after an offence, shapes are meaningless.
 class ShapeWalk {
  public:
   ShapeWalk(const schema::Policy& policy, const std::string& where)
@@ -209,7 +209,7 @@ class ShapeWalk {
     return shape;
   }
 
-  /// The shape of what a kernel makes that is moved over an image.
+  /// The shape of what a kernel that slides over an image computes.
   template <class Layer>
   LayerShape slide(const Layer& layer, std::uint32_t channels) {
     const LayerShape& input = inputs_[0];
@@ -225,7 +225,7 @@ class ShapeWalk {
     offence_.require(shape.height >= 1 && shape.width >= 1, field_ + ".kernel",
                      "is {} and finds no place on {} x {} pixels", kernel, input.width,
                      input.height);
-    // The zeros around are stored, too.
+    // The zero padding is stored, too.
     const std::uint64_t edge = 2 * std::uint64_t{layer.padding()};
     if (edge > 0) values_ += (input.height + edge) * (input.width + edge) * input.channels;
     return shape;
@@ -313,7 +313,7 @@ class ShapeWalk {
     requireWeights(layer.state_bias(), "state_bias", 3 * size);
     count(3 * size, inputs_[0].size(), 1);
     count(3 * size, size, 1);
-    // Both sums of the gates are stored.
+    // The gates have two sums each, of the input and of the state, and both are stored.
     values_ += 6 * size;
     return {.channels = layer.size()};
   }
@@ -349,7 +349,7 @@ class ShapeWalk {
   const schema::Policy& policy_;
   Offence offence_;
   std::vector<LayerShape> shapes_;
-  /// Of the layer that is looked at.
+  /// The path of the current layer in messages.
   std::string field_;
   std::vector<LayerShape> inputs_;
   std::uint64_t values_ = 0;

@@ -11,7 +11,7 @@ struct Policy;
 
 namespace galactic::policy {
 
-/// The shape of the value of a layer.
+/// The shape of a layer's value.
 struct LayerShape {
   std::uint32_t channels = 0;
   std::uint32_t height = 1;
@@ -23,17 +23,17 @@ struct LayerShape {
   friend bool operator==(const LayerShape&, const LayerShape&) = default;
 };
 
-/// Elements of the values of all layers together, and of their weights as they are laid out for
+/// Limits for the elements of all layers' values together, and of their weights as laid out for
 /// running: far above any real policy, far below the memory of a machine.
 inline constexpr std::uint64_t kMostValues = std::uint64_t{1} << 24U;
 inline constexpr std::uint64_t kMostWeights = std::uint64_t{1} << 27U;
-/// Multiplications for the actions of one env.
+/// Limit for the multiplications that compute the actions of one env.
 inline constexpr std::uint64_t kMostProducts = std::uint64_t{1} << 33U;
-/// Results that are computed together; weights are padded to so many.
+/// Results that are computed together; weights are padded to a multiple of this.
 inline constexpr std::uint32_t kBlock = 16;
 
-/// Follows the shapes through the layers and checks that every weight is there and finite, before
-/// anything is allocated for them. `where` names the policy. Fails with kInvalidInput.
+/// Computes the shapes of all layers and checks that every weight is there and finite, before any
+/// memory is allocated for them. `where` names the policy. Fails with kInvalidInput.
 [[nodiscard]] Result<std::vector<LayerShape>> layerShapes(const schema::Policy& policy,
                                                           const std::string& where);
 

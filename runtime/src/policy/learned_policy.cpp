@@ -24,8 +24,8 @@ using policy::ObservationRange;
 using policy::OperationList;
 using policy::Tile;
 
-/// Bytes of values that are in work together in a thread, and the envs that they are at least and
-/// at most: enough that weights are read once for many envs.
+/// Bytes of values that a thread works on at a time, and the fewest and most envs that they may be
+/// for: enough for weights to be read once for many envs.
 constexpr std::size_t kTileBytes = std::size_t{1} << 20U;
 constexpr std::size_t kFewestEnvs = 12;
 constexpr std::size_t kMostEnvs = policy::kRows;
@@ -34,7 +34,7 @@ tl::unexpected<Error> unfit(const PackFile& pack, std::string message) {
   return fail(ErrorCode::kInvalidInput, pack.where(), std::move(message));
 }
 
-/// Where the parts that the policy reads lie in the batch's observations.
+/// Finds the parts that the policy reads in the batch's observations.
 Result<std::vector<ObservationRange>> findParts(const PackFile& pack, const PolicyInterface& needs,
                                                 const PolicyBatch& batch) {
   std::vector<ObservationRange> ranges;
@@ -58,7 +58,7 @@ Result<std::vector<ObservationRange>> findParts(const PackFile& pack, const Poli
   return ranges;
 }
 
-/// Whether the batch is one at all.
+/// Checks that the batch makes sense by itself.
 Result<void> checkBatch(const PolicyBatch& batch) {
   if (batch.envs == 0) {
     return fail(ErrorCode::kInvalidInput, "policy batch", "has no envs, expected at least one");
@@ -96,7 +96,7 @@ std::vector<std::vector<float>> discreteValues(const schema::Policy& stored) {
   return values;
 }
 
-/// The layers that decide: means, logarithms of deviations, then logits.
+/// The layers that determine actions: means, logarithms of deviations, then logits.
 std::vector<std::uint32_t> decidingLayers(const schema::Policy& stored) {
   std::vector<std::uint32_t> layers;
   if (const schema::ContinuousActions* continuous = stored.continuous()) {
@@ -124,7 +124,7 @@ PolicyBatch policyBatchOf(const BatchSimulator& simulator) {
           .robot = std::string(simulator.world().robot().name())};
 }
 
-/// Stays in one place: its threads look at it.
+/// Must not move: its threads refer to it.
 class LearnedPolicy::Impl {
  public:
   Impl(const schema::Policy& stored, PolicyInterface needs, OperationList network,
@@ -189,14 +189,14 @@ class LearnedPolicy::Impl {
   }
 
  private:
-  /// What a thread works with.
+  /// What one thread works with.
   struct Part {
     AlignedFloats arena;
     policy::ActionSampler sampler;
     std::vector<const float*> logits;
   };
 
-  /// Of all envs' images.
+  /// Pixels in the images of all envs.
   [[nodiscard]] std::size_t pixelCount() const {
     return needs_.image ? std::size_t{needs_.image->width} * needs_.image->height * envs_ : 0;
   }
@@ -222,7 +222,7 @@ class LearnedPolicy::Impl {
                 0.0F);
   }
 
-  /// Every so many-th tile.
+  /// Handles every n-th tile, where n is the number of parts.
   void actInPart(std::size_t part) noexcept {
     const std::size_t tiles = (envs_ + tile_size_ - 1) / tile_size_;
     for (std::size_t n = part; n < tiles; n += parts_.size()) {
@@ -272,7 +272,8 @@ class LearnedPolicy::Impl {
                            [](float action) { return std::clamp(action, -1.0F, 1.0F); });
   }
 
-  /// Where the simulation counts episodes, which it never has as many of: no number is drawn twice.
+  /// Takes the place of the episode number in random streams. No simulation has that many episodes,
+  /// so no number is drawn twice.
   static constexpr std::uint64_t kStream = 0x7C7A11C0FFEE0000ULL;
 
   PolicyInterface needs_;
@@ -288,7 +289,7 @@ class LearnedPolicy::Impl {
   std::size_t tile_size_ = 1;
   std::uint32_t step_ = 0;
   std::vector<Part> parts_;
-  /// Of the call of act().
+  /// Valid during a call of act().
   policy::NetworkInputs network_inputs_;
   std::span<const std::uint8_t> dones_;
   std::span<float> actions_;

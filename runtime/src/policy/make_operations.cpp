@@ -19,7 +19,7 @@ void setBias(PackedProduct& product, const Floats* bias) {
   for (flatbuffers::uoffset_t n = 0; n < bias->size(); ++n) product.setBias(n, bias->Get(n));
 }
 
-/// Of `outputs` rows of weights, term t of each at place `term_of(t)`.
+/// Sets the weights from `outputs` rows, placing term t of each row at `term_of(t)`.
 template <class TermOf>
 void setWeights(PackedProduct& product, const Floats& weights, const TermOf& term_of) {
   const std::size_t terms = weights.size() / product.outputs();
@@ -29,7 +29,7 @@ void setWeights(PackedProduct& product, const Floats& weights, const TermOf& ter
   }
 }
 
-/// A matrix for vectors.
+/// The product of a layer that takes a vector.
 PackedProduct plainProduct(std::size_t outputs, const Floats& weights, const Floats* bias) {
   PackedProduct product(outputs, {.run_length = weights.size() / outputs});
   setWeights(product, weights, [](std::size_t t) { return t; });
@@ -37,7 +37,7 @@ PackedProduct plainProduct(std::size_t outputs, const Floats& weights, const Flo
   return product;
 }
 
-/// Makes the operations of one layer after the other.
+/// Makes the operations layer by layer.
 class OperationMaker {
  public:
   OperationMaker(const schema::Policy& policy, std::span<const LayerShape> shapes,
@@ -61,7 +61,7 @@ class OperationMaker {
   [[nodiscard]] const LayerShape& inputShape(flatbuffers::uoffset_t n) const {
     return shapes_[layer_->inputs()->Get(n)];
   }
-  /// The buffer of an input, which the next operation reads.
+  /// The buffer of an input; records that the next operation reads it.
   BufferId input(flatbuffers::uoffset_t n = 0) {
     const BufferId buffer = list_.values[layer_->inputs()->Get(n)];
     list_.plan.read(buffer, now());
@@ -118,7 +118,7 @@ class OperationMaker {
     return {};
   }
 
-  /// A layer without inputs.
+  /// Adds a layer without inputs.
   template <class Made, class... Args>
   BufferId source(Args&&... args) {
     const BufferId to = fresh();
@@ -126,7 +126,7 @@ class OperationMaker {
     return to;
   }
 
-  /// A layer that takes its input element by element.
+  /// Adds a layer that takes its input element by element.
   template <class Made, class... Args>
   BufferId inPlace(Args&&... args) {
     const BufferId from = input();
@@ -138,7 +138,7 @@ class OperationMaker {
   BufferId linear(const schema::LinearLayer& layer) {
     const LayerShape& from_shape = inputShape(0);
     PackedProduct product(layer.outputs(), {.run_length = from_shape.size()});
-    // Weights go channel by channel, values pixel by pixel.
+    // Weights are stored channel by channel, values pixel by pixel.
     const std::size_t pixels = from_shape.pixels();
     const std::size_t channels = from_shape.channels;
     setWeights(product, *layer.weight(),
@@ -249,7 +249,7 @@ class OperationMaker {
   std::span<const LayerShape> shapes_;
   std::span<const ObservationRange> observation_;
   OperationList list_;
-  /// The layer that is made.
+  /// The current layer.
   std::uint32_t number_ = 0;
   const schema::PolicyLayer* layer_ = nullptr;
 };

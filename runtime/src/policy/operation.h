@@ -15,19 +15,19 @@ struct Policy;
 
 namespace galactic::policy {
 
-/// What a network reads of each env of the batch, env after env.
+/// What a network reads for each env of the batch, env by env.
 struct NetworkInputs {
   const float* observations = nullptr;
   std::size_t observation_size = 0;
   const std::uint8_t* color = nullptr;
-  /// Bytes of a pixel.
+  /// Bytes per pixel.
   std::size_t color_bytes = 0;
   const float* depth = nullptr;
   const float* previous_actions = nullptr;
   std::size_t action_count = 0;
 };
 
-/// Some neighboring envs of a batch, computed together.
+/// Neighboring envs of a batch that are computed together.
 struct Tile {
   const Kernels* kernels = nullptr;
   const BufferPlan* plan = nullptr;
@@ -41,7 +41,7 @@ struct Tile {
   float* states = nullptr;
   std::size_t state_size = 0;
 
-  /// Of the env that is number `n` of the tile.
+  /// The buffer of env `n` of the tile.
   [[nodiscard]] float* value(BufferId buffer, std::size_t n) const {
     return arena + plan->offset(buffer) * capacity + n * plan->stride(buffer);
   }
@@ -59,11 +59,11 @@ class Operation {
   Operation& operator=(Operation&&) = delete;
 
   virtual void run(const Tile& tile) const noexcept = 0;
-  /// Floats that it keeps beside the tile's, about.
+  /// About how many floats it keeps in addition to the tile's.
   [[nodiscard]] virtual std::size_t weightCount() const noexcept { return 0; }
 };
 
-/// Where a part of the observation lies in the rows of the simulator.
+/// Where a part of the observation lies in the simulator's rows.
 struct ObservationRange {
   std::size_t first = 0;
   std::size_t size = 0;
@@ -79,9 +79,9 @@ struct OperationList {
   std::size_t state_size = 0;
 };
 
-/// The operations of a policy that has been checked: `shapes` are those of its layers,
-/// `observation` has an element for each part that it reads, `kept` are the layers whose values are
-/// read when all has run.
+/// The operations of a policy that has been checked. `shapes` are those of its layers;
+/// `observation` has an element for each part of the observation that the policy reads; `kept` are
+/// the layers whose values are read after all operations have run.
 [[nodiscard]] OperationList makeOperations(const schema::Policy& policy,
                                            std::span<const LayerShape> shapes,
                                            std::span<const ObservationRange> observation,

@@ -7,7 +7,7 @@
 
 namespace galactic::policy {
 
-/// How the terms of a product lie in each of its rows.
+/// How the terms of a product are laid out in each row.
 struct RowLayout {
   std::size_t runs = 1;
   std::size_t run_length = 0;
@@ -16,21 +16,21 @@ struct RowLayout {
   [[nodiscard]] std::size_t terms() const { return runs * run_length; }
 };
 
-/// A matrix of weights with its bias, laid out for the kernel: packs of kPack outputs, in each of
-/// them term after term.
+/// A matrix of weights with its bias, laid out for the kernel: in packs of kPack outputs, and term
+/// by term within a pack.
 class PackedProduct {
  public:
-  /// All weights and biases zero.
+  /// Begins with all weights and biases zero.
   PackedProduct(std::size_t outputs, const RowLayout& layout);
 
   void setWeight(std::size_t output, std::size_t term, float weight);
   void setBias(std::size_t output, float bias);
 
   [[nodiscard]] std::size_t outputs() const { return outputs_; }
-  /// With what they are padded by.
+  /// Includes the padding.
   [[nodiscard]] std::size_t weightCount() const { return weights_.size() + bias_.size(); }
 
-  /// `rows` and `results`: of the same size, at most kRows.
+  /// `rows` and `results` have the same size, at most kRows.
   void multiply(const Kernels& kernels, std::span<const float* const> rows,
                 std::span<float* const> results) const noexcept;
 

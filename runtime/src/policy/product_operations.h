@@ -11,9 +11,9 @@
 
 namespace galactic::policy {
 
-// Layers that multiply: where the time goes.
+// Layers that multiply; most of the time goes here.
 
-/// Linear layers and convolutions: a row of the product for each place of the kernel.
+/// Linear layers and convolutions: each place of the kernel is a row of the product.
 class ProductOperation final : public Operation {
  public:
   ProductOperation(BufferId from, BufferId to, PackedProduct product, const Places& places)
@@ -47,14 +47,14 @@ class ProductOperation final : public Operation {
   Places places_;
 };
 
-/// What a gated recurrent unit needs beside its weights.
+/// What a gated recurrent unit needs in addition to its weights.
 struct GruBuffers {
   BufferId from = 0;
   BufferId to = 0;
   /// The sums of the gates.
   BufferId input_sums = 0;
   BufferId state_sums = 0;
-  /// Of its state in an env's.
+  /// Offset of its state in the state of an env.
   std::size_t state = 0;
 };
 
