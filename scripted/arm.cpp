@@ -9,8 +9,8 @@ namespace {
 
 constexpr float kPi = 3.14159265F;
 
-/// Whether a whole turn more or less changes nothing, as the simulation has it: a continuous joint
-/// that nobody limits, followed by none that slides or turns by another part of a turn.
+/// Whether positions that differ by a full turn are the same to the simulation: a continuous joint
+/// without limits, and no joint that follows it slides or turns by a fraction of its turn.
 bool isPeriodic(const Robot& robot, const ControlledJoint& joint) {
   constexpr float kUnlimited = std::numeric_limits<float>::max();
   if (joint.lower > -kUnlimited || joint.upper < kUnlimited) return false;
@@ -49,7 +49,8 @@ Arm::Arm(const Robot& robot)
 
 void Arm::joinTelescopes() {
   for (std::uint32_t joint = 0; joint < joints_.size(); ++joint) joints_[joint].leader = joint;
-  // Cosine of the angle between two slides that are one: URDFs round their rotations.
+  // Cosine of the largest angle between two slides that count as parallel: URDFs round their
+  // rotations.
   constexpr float kParallel = 0.9999F;
   const std::span<const Pose> links = placeLinks(robot_->startPositions());
   const auto slide_of = [&](const Mover& mover) {

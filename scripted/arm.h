@@ -14,25 +14,27 @@ namespace galactic::scripted {
 /// All joint positions of a robot, radians or meters.
 using Joints = std::vector<float>;
 
-/// A controlled joint as the planning of motions sees it.
+/// A controlled joint as motion planning sees it.
 struct ArmJoint {
   /// Index into the joint positions.
   std::uint32_t position = 0;
   float step = 0;
   float lower = 0;
   float upper = 0;
-  /// A continuous joint without limits: positions that differ by a turn are the same.
+  /// Whether this is a continuous joint without limits: positions that differ by a full turn are
+  /// the same.
   bool wraps = false;
-  /// The first joint of the telescope that it is a segment of; itself when it is of none. Segments
-  /// slide along one line with no turn between them, so that the hand feels their sum only.
+  /// The first joint of the telescope that this joint is a segment of; the joint itself if it is
+  /// not part of one. Segments slide along one line with no turn between them, so that the hand
+  /// depends only on their sum.
   std::uint32_t leader = 0;
 };
 
-/// The controlled joints of a robot with its end effector, in the frame of the robot's root. Not
-/// safe to share between threads: it has room for one set of link poses.
+/// The controlled joints of a robot with its end effector, in the frame of the robot's root.
+/// Threads must not share it: it has room for one set of link poses.
 class Arm {
  public:
-  /// `robot`, which has an end effector, must outlive the arm.
+  /// `robot` must have an end effector and outlive the arm.
   explicit Arm(const Robot& robot);
 
   [[nodiscard]] const Robot& robot() const { return *robot_; }
@@ -40,34 +42,35 @@ class Arm {
 
   /// root_from_link of all links, valid until the next call.
   std::span<const Pose> placeLinks(std::span<const float> positions);
-  /// root_from_grip for these link poses: origin at the grasp point, axes of the end effector's
-  /// link, as EnvState has it.
+  /// root_from_grip for these link poses: the origin is the grasp point, the axes are those of the
+  /// end effector's link, as in EnvState.
   [[nodiscard]] Pose gripOf(std::span<const Pose> links) const;
 
-  /// One column of the Jacobian for each controlled joint: how the end effector moves with it.
+  /// A column of the Jacobian for a controlled joint: how the end effector moves with the joint.
   struct Column {
-    /// Of a turn: unit axis times the joint's factor; zero for a slide. Root frame.
+    /// Unit axis of a turning joint times its factor; zero for a sliding joint. Root frame.
     Vec3 turn;
     /// A point on the axis.
     Vec3 origin;
-    /// Of a slide: direction times the factor.
+    /// Direction of a sliding joint times its factor.
     Vec3 slide;
   };
   void columns(std::span<const Pose> links, std::span<Column> out) const;
 
-  /// How far controlled joint `joint` has to move, the shorter way round.
+  /// How far controlled joint `joint` has to move, going the shorter way round.
   [[nodiscard]] float difference(std::size_t joint, std::span<const float> from,
                                  std::span<const float> to) const;
-  /// The largest difference of any controlled joint.
+  /// The largest difference over all controlled joints.
   [[nodiscard]] float distance(std::span<const float> from, std::span<const float> to) const;
-  /// The most actions that any controlled joint needs, not rounded.
+  /// The number of actions, not rounded, that the slowest controlled joint needs.
   [[nodiscard]] float actionsBetween(std::span<const float> from, std::span<const float> to) const;
-  /// On the straight way in joint space; share 0: `from`, 1: `to`. The other joints are from's.
+  /// Interpolates linearly in joint space; share 0 is `from`, 1 is `to`. The other joints are those
+  /// of `from`.
   void interpolate(std::span<const float> from, std::span<const float> to, float share,
                    Joints& out) const;
-  /// Draws the controlled joints evenly within their limits; the others stay. The segments of a
-  /// telescope all get the same share of their way: drawn one by one, their sum would nearly
-  /// always be about half of the arm, and they would move in more actions.
+  /// Draws the controlled joints uniformly within their limits; the others stay. The segments of a
+  /// telescope all get the same share of their range: drawn one by one, their sum would nearly
+  /// always be about half of the telescope's range, and reaching it would take more actions.
   void draw(RandomStream& random, Joints& positions) const;
   /// Adds `by` to a joint, within its limits.
   void move(std::size_t joint, float by, Joints& positions) const;
@@ -82,7 +85,7 @@ class Arm {
 
   const Robot* robot_;
   std::vector<ArmJoint> joints_;
-  /// Links that move the end effector, each with the controlled joint whose position moves it.
+  /// A link that moves the end effector, with the controlled joint whose position moves it.
   struct Mover {
     std::size_t link = 0;
     std::size_t joint = 0;

@@ -8,21 +8,22 @@
 namespace galactic::scripted {
 namespace {
 
-/// Between the positions on a line that are looked at, radians or meters: finer than a step, so
-/// that nothing of the robot's size is jumped over.
+/// Distance between the positions that are checked on a line, radians or meters: finer than a step,
+/// so that the check skips nothing of the robot's size.
 constexpr float kResolution = 0.07F;
-/// No line is longer, radians or meters: arms whose joints have wound up further do not come to an
-/// end in an episode.
+/// Longest line, radians or meters: an arm whose joints have wound up further would not arrive
+/// within an episode.
 constexpr float kLongestLine = 100;
 /// Longest edge of a tree, radians or meters.
 constexpr float kEdge = 0.4F;
-/// Nodes of both trees together, and random positions, after which the search is given up. The last
-/// positions are connected with as many nodes again at most.
+/// The search gives up after this many nodes of both trees together, or this many random positions.
+/// Connecting the trees at the end may add as many nodes again.
 constexpr std::size_t kMostNodes = 1200;
 constexpr int kMostDraws = 500;
 /// Length of the pieces in which the hand moves straight, meters.
 constexpr float kPiece = 0.02F;
-/// A larger move of a joint within a piece is a jump to another bend of the arm, radians.
+/// A joint that moves farther than this within a piece jumps to another configuration of the arm,
+/// radians.
 constexpr float kJump = 0.6F;
 
 }  // namespace
@@ -36,7 +37,7 @@ bool ArmPlanner::isFree(const BasePlace& base, const Joints& from, const Joints&
   const float length = arm_.distance(from, to);
   if (length > kLongestLine) return false;
   const auto pieces = std::max(1, static_cast<int>(std::ceil(length / kResolution)));
-  // The end first: it is the likeliest to be blocked.
+  // Check the end first: it is the likeliest to be blocked.
   for (int n = pieces; n > 0; --n) {
     arm_.interpolate(from, to, static_cast<float>(n) / static_cast<float>(pieces), between_);
     if (!isFreeAt(base, between_)) return false;
@@ -134,7 +135,7 @@ std::optional<ArmPath> ArmPlanner::connect(const BasePlace& base, const Joints& 
     };
     walk(trees[0]);
     std::ranges::reverse(path);
-    // The other tree's last node is where the trees meet.
+    // The trees meet in the last node of the other tree.
     if (!path.empty()) path.pop_back();
     walk(trees[1]);
     path.push_back(to);

@@ -9,35 +9,34 @@
 
 namespace galactic::scripted {
 
-/// Joint positions one after the other, each reached from the one before on a straight line in
-/// joint space.
+/// Joint positions in order, each reached from the previous ones on a straight line in joint space.
 using ArmPath = std::vector<Joints>;
 
-/// Moves of the arm that penetrate nothing, while the base stands still.
+/// Plans motions of the arm that penetrate nothing while the base stands still.
 class ArmPlanner {
  public:
   /// `scene` and `arm` must outlive the planner.
   ArmPlanner(PlanningScene& scene, Arm& arm) : scene_(scene), arm_(arm) {}
 
-  /// Whether the straight line in joint space is free; its beginning is not looked at.
+  /// Whether the straight line in joint space is free; does not check its beginning.
   [[nodiscard]] bool isFree(const BasePlace& base, const Joints& from, const Joints& to);
 
-  /// A free path, `from` left out; none when none was found. The straight line, or two trees that
-  /// grow towards each other (Kuffner and LaValle, "RRT-Connect", 2000), shortened. `seed` chooses
-  /// the random positions.
+  /// Finds a free path, which leaves out `from`; none if the search fails. The path is the straight
+  /// line, or comes from two trees that grow towards each other (Kuffner and LaValle,
+  /// "RRT-Connect", 2000) and is shortened. `seed` determines the random positions.
   [[nodiscard]] std::optional<ArmPath> plan(const BasePlace& base, const Joints& from,
                                             const Joints& to, std::uint64_t seed);
 
   struct Slide {
-    /// How far the point moves, meters; it moves up to this, as far as it can.
+    /// How far the point should move, meters; it moves as far as it can, up to this.
     float length = 0.1F;
-    /// The unit vector along which, frame of the robot's root.
+    /// Unit vector of the motion, frame of the robot's root.
     Vec3 way;
-    /// Radians that the hand's direction may turn; negative: any.
+    /// How far the hand's direction may turn, radians; negative: any direction.
     float direction_tolerance = 0.2F;
   };
-  /// Moves the hand straight in space, from positions at which `hand` is fulfilled. A path of as
-  /// much as is free, which may be nothing.
+  /// Moves the hand in a straight line, from positions at which `hand` is fulfilled. The path
+  /// covers as much as is free, and may be empty.
   [[nodiscard]] ArmPath slide(const BasePlace& base, const Joints& from, HandGoal hand,
                               const Slide& slide);
 
@@ -49,7 +48,7 @@ class ArmPlanner {
   enum class Growth : std::uint8_t { kBlocked, kGrown, kArrived };
 
   [[nodiscard]] std::uint32_t nearest(const Tree& tree, const Joints& to);
-  /// One step from the nearest node; the new node is the last one.
+  /// Takes one step from the nearest node; the new node becomes the last one.
   Growth extend(const BasePlace& base, Tree& tree, const Joints& to);
   [[nodiscard]] std::optional<ArmPath> connect(const BasePlace& base, const Joints& from,
                                                const Joints& to, std::uint64_t seed);

@@ -7,8 +7,8 @@
 namespace galactic::scripted {
 
 std::vector<Joints> chooseCarries(PlanningScene& scene, Arm& arm, const ReachTable& table) {
-  // Room for what is held, meters, and how much farther out the start pose may reach to be kept: it
-  // is what the robot's maker chose.
+  // Room for a held object, meters, and how much farther out the start pose may reach and still be
+  // kept, because the robot's maker chose it.
   constexpr float kHeldRoom = 0.15F;
   constexpr float kStartBonus = 1.15F;
   constexpr float kLowest = 0.4F;

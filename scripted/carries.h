@@ -7,9 +7,9 @@
 
 namespace galactic::scripted {
 
-/// Poses of the arm for driving, the best first: those of `table` in which the robot is slim and
-/// holds something in front of it or on the side on which it reaches, and its start pose. `scene`:
-/// for the joints of `arm`; it has others afterwards.
+/// Poses of the arm for driving, best first: those of `table` in which the robot is slim and holds
+/// things in front of it or on the side on which the arm reaches, and the robot's start pose.
+/// Leaves other joints in `scene` than it found.
 [[nodiscard]] std::vector<Joints> chooseCarries(PlanningScene& scene, Arm& arm,
                                                 const ReachTable& table);
 

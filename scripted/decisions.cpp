@@ -10,7 +10,7 @@
 namespace galactic::scripted {
 namespace {
 
-/// Of the actions.
+/// The range of actions.
 constexpr float kLeast = -1;
 constexpr float kMost = 1;
 
@@ -20,11 +20,11 @@ std::string textOf(float value) {
   return {text.data(), end};
 }
 
-/// The value nearest to 0 of those that are below a threshold.
+/// A value below the threshold: 0 if possible.
 float below(float threshold) { return threshold > 0 ? 0.0F : kLeast; }
 
-/// Whether some actions reach `threshold` and others do not. `what`: what those do that are on the
-/// one side, `rest`: and those on the other.
+/// Checks that some actions reach `threshold` and others do not. `reaching` and `not_reaching` are
+/// what these actions do.
 Result<void> checkParted(std::string_view option, float threshold, std::string_view reaching,
                          std::string_view not_reaching) {
   if (threshold > kLeast && threshold <= kMost) return {};

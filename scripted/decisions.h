@@ -4,21 +4,21 @@
 
 namespace galactic::scripted {
 
-/// The values of the grasp and the terminate action that decide something and those that do not, by
-/// the thresholds of ActionOptions.
+/// The values of the grasp and terminate actions that trigger something and those that do not,
+/// given the thresholds of ActionOptions.
 struct Decisions {
-  /// An empty hand: stays so, or closes.
+  /// For an empty hand: stay open, or close.
   float stay_open = 0;
   float grasp = 1;
-  /// A full hand: stays so, or lets go.
+  /// For a full hand: keep, or let go.
   float keep = 1;
   float release = -1;
-  /// The episode goes on, or is over.
+  /// For the episode: go on, or end.
   float go_on = 0;
   float terminate = 1;
 };
 
-/// Fails with kUnsupported where no action decides what the task needs, or every action does.
+/// Fails with kUnsupported if no action, or every action, triggers something that the task needs.
 [[nodiscard]] Result<Decisions> decisionsBy(const ActionOptions& thresholds,
                                             const TaskOptions& task);
 

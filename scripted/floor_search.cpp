@@ -10,28 +10,28 @@ namespace galactic::scripted {
 namespace {
 
 constexpr float kLongestEdge = 0.1F;
-/// What robots of shorter actions are searched with, meters and radians: cells of the lattice, and
-/// how far apart the poses on their ways are looked at. The time and the memory of a search are
-/// then those of other robots.
+/// For robots of shorter actions, searches use these limits, meters and radians: for the cells of
+/// the lattice, and for the distance of the poses that are checked on the way. This keeps the time
+/// and memory of a search like those of other robots.
 constexpr float kShortestEdge = 0.05F;
 constexpr float kFinestDrive = 0.02F;
 constexpr float kFinestTurn = 0.04F;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Driving backwards costs a little more, so that the robot looks where it goes.
+/// Driving backward costs a little more, so that the robot sees where it goes.
 constexpr float kBackwards = 1.5F;
-/// How much more the way that is left counts than the way behind: more than 1 finds a way sooner,
-/// and one that is longer by this factor at most.
+/// How much more the remaining way counts than the way so far: a factor above 1 finds a way sooner,
+/// which is longer by this factor at most.
 constexpr float kHurry = 1.5F;
-/// How far from where it stands the robot looks for the lattice, meters.
+/// How far from its start the robot looks for the lattice, meters.
 constexpr float kEntryReach = 0.25F;
 /// A place this near is on the lattice already, meters.
 constexpr float kOnLattice = 1e-3F;
-/// Actions are counted with this much let through, which rounding may add.
+/// Tolerance for rounding errors in numbers of actions.
 constexpr float kSlack = 1e-3F;
 constexpr std::uint8_t kFree = 1;
 constexpr std::uint8_t kBlocked = 2;
 
-/// Cells by which a drive of one edge along heading h leads on.
+/// The cells by which a drive of one edge along heading h advances.
 struct CellStep {
   std::int32_t i = 0;
   std::int32_t k = 0;
@@ -63,7 +63,7 @@ std::optional<Lattice> FloorSearch::latticeAbout(const Vec3& start, float edge) 
   const Vec3& end = target_.point;
   const GroundArea needed{std::min(start.x, end.x) - around, std::max(start.x, end.x) + around,
                           std::min(start.z, end.z) - around, std::max(start.z, end.z) + around};
-  // known_, offered_, ways_
+  // known_, offered_ and ways_ come on top of the nodes.
   const std::size_t cell = kHeadings * sizeof(Node) + fines_ + fines_ / 8 + sizeof(float);
   return layOut(whole, needed, edge, most_bytes_ / cell);
 }
@@ -113,7 +113,7 @@ void FloorSearch::recall() {
                 std::vector<float>(cells, kInfinity)};
   std::size_t bytes = memory.bytes();
   for (const Memory& other : memories_) bytes += other.bytes();
-  // The oldest first.
+  // Oldest first.
   while (!memories_.empty() && (bytes > most_bytes_ || memories_.size() >= kMostMemories)) {
     bytes -= memories_.front().bytes();
     memories_.erase(memories_.begin());
@@ -292,7 +292,7 @@ void FloorSearch::drive(std::uint32_t node, int sign) {
   if (!next || !isFree(*next, heading * eighth_)) return;
   const BasePlace to = placeOf(*next, heading * eighth_);
   const float length = heading % 2 == 0 ? lattice_.edge : lattice_.edge * std::sqrt(2.0F);
-  // Drives along the axes are merged, so that an action takes the robot over several cells.
+  // Drives along the axes are merged, so that one action takes the robot across several cells.
   const bool is_merged = heading % 2 == 0;
   const float actions = is_merged ? length / forward_step_ : actionsFor(length, forward_step_);
   if (actions > 1 + kSlack && !canDrive(from, to)) return;
@@ -385,7 +385,7 @@ FloorSearch::Answer FloorSearch::search(const BasePlace& start, const Joints& ca
   for (int pitch = 1; pitch <= kFinest; ++pitch) {
     const float edge = std::clamp(forward_step_, kShortestEdge, kLongestEdge);
     const auto lattice = latticeAbout(start.position, edge / static_cast<float>(pitch));
-    // Finer ones have more cells.
+    // Finer lattices have even more cells.
     if (!lattice) break;
     lattice_ = *lattice;
     answer = searchLattice(start, judge);

@@ -15,7 +15,7 @@ EnvState foreseen(const Robot& robot, const EnvState& state, std::span<const flo
       float& position = result.joint_positions[joint.position];
       position = std::clamp(position + joint.step * under_way[n], joint.lower, joint.upper);
     }
-    // The base turns, then drives along the new heading.
+    // The base first turns, then drives along its new heading.
     auto& [position, rotation] = result.world_from_root;
     rotation = rotationOfYaw(-base.turn_step * under_way[layout.turn()]) * rotation;
     const float left =

@@ -22,7 +22,7 @@ void put(const Vec3& v, std::size_t first, double factor, Rows& rows) {
   rows[first + 2] = factor * static_cast<double>(v.z);
 }
 
-/// What one joint does to a point and to a direction, which counts with `weight`.
+/// How one joint moves a point and a direction, which is weighted by `weight`.
 Rows rowsOf(const Arm::Column& column, const Vec3& point, const Vec3& direction, double weight) {
   Rows rows{};
   put(cross(column.turn, point - column.origin) + column.slide, 0, 1, rows);
@@ -30,13 +30,13 @@ Rows rowsOf(const Arm::Column& column, const Vec3& point, const Vec3& direction,
   return rows;
 }
 
-/// Turned about +Y.
+/// `v` turned about +Y.
 Vec3 aboutUp(const Vec3& v, float angle) {
   if (angle == 0) return v;
   return rotate(rotationOfYaw(angle), v);
 }
 
-/// Solves a x = b for a symmetric positive definite matrix (Cholesky).
+/// Solves a x = b for a symmetric positive definite matrix a (Cholesky).
 Rows solveSymmetric(Square a, Rows b) {
   for (std::size_t i = 0; i < kRows; ++i) {
     for (std::size_t k = 0; k < i; ++k) {
@@ -59,7 +59,7 @@ Rows solveSymmetric(Square a, Rows b) {
   return b;
 }
 
-/// The moves of the joints that bring `error` nearest to zero: J^T (J J^T + damping^2)^-1 error.
+/// The moves of the joints that bring `error` closest to zero: J^T (J J^T + damping^2)^-1 error.
 void leastSquares(const std::vector<Rows>& jacobian, const Rows& error, double damping,
                   std::vector<double>& moves) {
   Square square{};
@@ -80,8 +80,8 @@ void leastSquares(const std::vector<Rows>& jacobian, const Rows& error, double d
 }  // namespace
 
 int handFreedoms(Arm& arm, const Joints& positions, Movers movers) {
-  // A direction counts as if it were as long as a hand, meters; what is left of a column beside the
-  // others counts from here on.
+  // A direction counts like a lever of this length, meters; and the part of a column that is
+  // independent of the others counts as a freedom from this length on.
   constexpr double kHand = 0.15;
   constexpr double kLeast = 0.02;
   std::vector<Arm::Column> columns(arm.joints().size());
@@ -100,7 +100,7 @@ int handFreedoms(Arm& arm, const Joints& positions, Movers movers) {
     for (const double value : rows) sum += value * value;
     return sum;
   };
-  // Gram and Schmidt, the longest column first.
+  // Gram-Schmidt, the longest column first.
   int freedoms = 0;
   for (; !left.empty(); ++freedoms) {
     const auto longest = std::ranges::max_element(left, {}, square);
@@ -131,10 +131,10 @@ std::optional<TurnedHand> solveHandAndTurn(Arm& arm, const HandGoal& goal, const
   const bool turns = most_turn > 0;
   const bool directed = options.direction_tolerance >= 0;
   const double weight = directed ? static_cast<double>(options.direction_weight) : 0.0;
-  // Chord of the angle.
+  // The chord of the angle.
   const float direction_error = 2 * std::sin(0.5F * std::max(options.direction_tolerance, 0.0F));
   TurnedHand hand{seed, 0};
-  // The base is one joint more.
+  // The base counts as one more joint.
   std::vector<Arm::Column> columns(joints + (turns ? 1 : 0));
   std::vector<Rows> jacobian(columns.size());
   std::vector<double> moves(columns.size());

@@ -20,7 +20,7 @@ Lattice over(const GroundArea& area, float edge) {
           count(area.min_z, area.max_z)};
 }
 
-/// `part` with a margin, as far as `whole` goes.
+/// `part` widened by a margin, but no farther than `whole`.
 GroundArea widened(const GroundArea& part, float margin, const GroundArea& whole) {
   return {std::max(part.min_x - margin, whole.min_x), std::min(part.max_x + margin, whole.max_x),
           std::max(part.min_z - margin, whole.min_z), std::min(part.max_z + margin, whole.max_z)};

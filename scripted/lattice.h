@@ -7,7 +7,7 @@
 
 namespace galactic::scripted {
 
-/// Places on a floor as far apart as `edge`, in rows along X and Z of the world: cells.
+/// Places on a floor, `edge` apart, in rows along X and Z of the world: cells.
 struct Lattice {
   /// Meters.
   float edge = 0;
@@ -20,7 +20,7 @@ struct Lattice {
   friend bool operator==(const Lattice&, const Lattice&) = default;
 
   [[nodiscard]] std::size_t cells() const { return std::size_t{count_i} * count_k; }
-  /// The nearest cell, if the lattice has it.
+  /// The nearest cell, if the lattice contains it.
   [[nodiscard]] std::optional<std::uint32_t> cellAt(float x, float z) const;
   /// World frame, y 0.
   [[nodiscard]] Vec3 placeOf(std::uint32_t cell) const;
@@ -34,8 +34,8 @@ struct GroundArea {
   float max_z = 0;
 };
 
-/// The lattice over `whole` or, where that has more than `most_cells`, over as much of it around
-/// `part` as has not. None where the part alone has more.
+/// The lattice over `whole` or, if that has more than `most_cells`, over as much of it around
+/// `part` as has no more. None if the part alone has more.
 [[nodiscard]] std::optional<Lattice> layOut(const GroundArea& whole, const GroundArea& part,
                                             float edge, std::size_t most_cells);
 

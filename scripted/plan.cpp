@@ -10,7 +10,7 @@ std::vector<PlanStep> stepsOf(const BasePlace& base, const ArmPath& path) {
   return steps;
 }
 
-/// The way from one place of a route to the next. A turn may end on a place of the lattice that is
+/// The step from one place of a route to the next. A turn may end on a place of the lattice that is
 /// almost the same.
 PlanStep baseStep(const BasePlace& from, const BasePlace& to) {
   constexpr float kSamePlace = 1e-3F;

@@ -14,15 +14,15 @@ namespace galactic::scripted {
 struct PlanStep {
   enum class Kind : std::uint8_t { kTurn, kDrive, kMoveArm, kGrasp, kRelease, kTerminate };
   Kind kind = Kind::kTurn;
-  /// Where the base has to be when it is done.
+  /// Where the base has to be when the step is done.
   BasePlace base;
-  /// kDrive: where the line begins to which the base keeps, world frame, meters.
+  /// kDrive: where the line that the base follows begins, world frame, meters.
   Vec3 from;
   /// kMoveArm: where the joints have to be.
   Joints joints;
 };
 
-/// From where, and how, the hand comes to what a plan is about; world frame.
+/// From where and how the hand reaches for the object or goal of a plan; world frame.
 struct Stance {
   BasePlace base;
   /// Meters.
@@ -31,27 +31,27 @@ struct Stance {
   Vec3 approach;
 };
 
-/// What to do until the next plan; empty when there is trouble.
+/// What to do until the next plan; empty if there is trouble.
 struct Plan {
   std::vector<PlanStep> steps;
   ScriptedTrouble trouble = ScriptedTrouble::kNone;
-  /// Where it ends.
+  /// Where the plan ends.
   Stance stance;
 };
 
-/// Drives from `start` along `route`, moves the arm along `path`, and does the last.
+/// Drives from `start` along `route`, moves the arm along `path`, and then does `last`.
 [[nodiscard]] Plan planOf(const BasePlace& start, const BaseRoute& route, const ArmPath& path,
                           PlanStep::Kind last);
-/// Moves the arm before all else, where the base stands at first.
+/// Moves the arm before everything else, with the base at its first place.
 void prepend(const BasePlace& base, const ArmPath& path, Plan& plan);
-/// Nothing to do.
+/// A plan with no steps.
 [[nodiscard]] Plan troubled(ScriptedTrouble trouble);
 
-/// A try at an episode: the plans of another one are others.
+/// A try at an episode; different tries make different plans.
 struct Attempt {
-  /// Counts the plans of the episode: each draws other random positions.
+  /// Number of the plan in the episode: each plan draws other random positions.
   std::uint32_t number = 0;
-  /// Where plans of the episode have ended in vain.
+  /// Where earlier plans of the episode ended in failure.
   std::span<const Stance> failed;
 };
 

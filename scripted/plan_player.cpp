@@ -6,38 +6,40 @@
 namespace galactic::scripted {
 namespace {
 
-/// A base this far from where the plan has it while the arm moves is off, meters and radians.
+/// If the base is this far from its planned place while the arm moves, it is off, meters and
+/// radians.
 constexpr float kOff = 5e-3F;
 constexpr float kOffYaw = 5e-3F;
-/// A base this far off the line of a drive is astray, meters: what is around it there, nobody has
-/// looked at.
+/// If the base is this far from the line of a drive, it is astray, meters: the surroundings there
+/// are unchecked.
 constexpr float kStray = 0.15F;
-/// How far ahead on its line a base is steered to, meters.
+/// How far ahead on its line the base steers, meters.
 constexpr float kLookAhead = 0.3F;
-/// A base that looks past that place by less than this drives straight on, and one that does by
-/// more than that turns before it drives, radians.
+/// If the base's heading misses that point by less than kStraight, it drives straight on; by more
+/// than kAskew, it turns before it drives, radians.
 constexpr float kStraight = 5e-3F;
 constexpr float kAskew = 0.2F;
-/// So much of an action is nothing left to do.
+/// If less than this fraction of an action is left, nothing is.
 constexpr float kNothing = 1e-3F;
-/// What may be left after the action that should have been the last one, in actions: where it is
-/// made good later, and where a hand has to be in its place.
+/// What may be left after the action that should have been the last, in actions: rough where later
+/// steps correct it, fine where the hand has to be in its place.
 constexpr float kRoughRest = 0.25F;
 constexpr float kFineRest = 0.02F;
-/// Actions without getting any further before the robot is stuck.
+/// If this many actions make no progress, the robot is stuck.
 constexpr int kMostVain = 2;
-/// Joints this far from where they were asked to be, in actions, have arrived; and so far while the
-/// arm moves, they are waited for: it would cut the corners of its plan.
+/// Joints that are at most kArrived actions from where they were asked to be have arrived. While
+/// the arm moves, the player waits for joints that are farther behind than kFarBehind: otherwise
+/// the arm would cut the corners of its plan.
 constexpr float kArrived = 0.02F;
 constexpr float kFarBehind = 4;
-/// Steps that joints are waited for, at most and without getting closer; what a load holds back
-/// then does not come.
+/// Steps to wait for joints at most, in total and without progress; joints that a load still holds
+/// back then will not arrive.
 constexpr int kMostWaits = 60;
 constexpr int kMostIdleWaits = 5;
-/// Joints that are further behind then are held by something.
+/// After that wait, joints that lag by more than this many actions are held back by something.
 constexpr float kHeldBack = 1;
 
-/// On the ground.
+/// The components on the ground.
 Vec3 flat(const Vec3& v) { return {v.x, 0, v.z}; }
 
 float planeDistance(const Vec3& a, const Vec3& b) {
@@ -84,12 +86,12 @@ PlanPlayer::Way PlanPlayer::turn(const RobotBase& robot_base, const BasePlace& a
   const BasePlace& to = plan_.steps[next_].base;
   const float left = wrappedAngle(to.yaw - at.yaw) / robot_base.turn_step;
   Way result;
-  // Another drive makes a turn good that is not quite right.
+  // The next drive corrects a turn that is not quite right.
   const float off = 0.9F * kOffYaw / robot_base.turn_step;
   result.rest = isBeforeArm() ? std::min(off, kRoughRest) : kRoughRest;
   result.remaining = std::fabs(left);
-  // Positive turns are clockwise, positive yaw is not. Turns are spread over their actions evenly,
-  // as the search looks at them.
+  // Positive turns are clockwise, positive yaw is counterclockwise. Turns are spread evenly over
+  // their actions, as the search checks them.
   constexpr float kSlack = 1e-3F;
   row.turn = -left / std::max(std::ceil(result.remaining - kSlack), 1.0F);
   return result;

@@ -9,7 +9,7 @@
 
 namespace galactic::scripted {
 
-/// Where the values of an env's actions go, as BatchSimulator has them. No plan drives sideways.
+/// The places of an env's action values, as BatchSimulator has them. No plan drives sideways.
 struct ActionRow {
   std::span<float> joints;
   float& forward;
@@ -19,17 +19,16 @@ struct ActionRow {
 };
 [[nodiscard]] ActionRow rowOf(const ActionLayout& layout, std::span<float> actions);
 
-/// Turns a plan into actions, one step after the other. A base that is off the line of a drive
-/// turns towards a point on that line, somewhat ahead, as where motions are not quite what was
-/// asked for.
+/// Turns a plan into actions, step by step. A base that is off the line of a drive steers towards a
+/// point somewhat ahead on that line, because motions may deviate from what was asked for.
 class PlanPlayer {
  public:
   enum class Progress : std::uint8_t {
-    /// The row is set.
+    /// `row` is set.
     kActs,
     /// Nothing is left to do.
     kDone,
-    /// The arm is to move, but the base is not quite where the plan has it then.
+    /// The arm should move, but the base is not quite where the plan expects it.
     kOff,
     /// The base is far from the line of its drive.
     kAstray,
@@ -41,10 +40,11 @@ class PlanPlayer {
   explicit PlanPlayer(Plan plan, const Decisions& decisions = {})
       : plan_(std::move(plan)), decisions_(decisions) {}
 
-  /// The next action from where the robot is and where its joints were `asked` to be, which is
-  /// where they are, or where motors bring them: then it waits, with zeros, where they lag far
-  /// behind and before anything but the arm is to move. Sets `row` but for its grasp and terminate
-  /// actions, unless a step decides these.
+  /// Chooses the next action, given where the robot is and where its joints were `asked` to be. If
+  /// motors move the joints, these may lag: the player then waits, with zero actions, when joints
+  /// lag far behind, and until they have arrived before it does anything but move the arm. Sets
+  /// `row` except for its grasp and terminate actions, which are set only by steps that decide
+  /// them.
   Progress play(const Arm& arm, const RobotBase& robot_base, const EnvState& state,
                 std::span<const float> asked, const ActionRow& row);
 
@@ -52,13 +52,14 @@ class PlanPlayer {
   /// What is left of a step, in actions.
   struct Way {
     float remaining = 0;
-    /// What may be left after the action that should have been the last one.
+    /// What may be left after the action that should have been the last.
     float rest = 0;
     bool strays = false;
-    /// Actions that bring the base back to its line; none of those that remain.
+    /// Actions that bring the base back to its line; not part of `remaining`.
     float steering = 0;
   };
-  /// Sets what a step that moves nothing decides. Whether it is one.
+  /// If the step only decides something, sets the decision in `row`. Returns whether it is such a
+  /// step.
   [[nodiscard]] bool decides(PlanStep::Kind kind, const ActionRow& row) const;
   /// Whether the arm moves in the next step of the plan.
   [[nodiscard]] bool isBeforeArm() const;
@@ -70,30 +71,30 @@ class PlanPlayer {
                             const ActionRow& row) const;
   [[nodiscard]] Way advance(const Arm& arm, const RobotBase& robot_base, const BasePlace& at,
                             std::span<const float> asked, const ActionRow& row) const;
-  /// Whether nothing that counts is left of the current step.
+  /// Whether nothing that matters is left of the current step.
   [[nodiscard]] bool isOver(const Way& way) const;
-  /// Whether the current step gets on.
+  /// Whether the current step makes progress.
   [[nodiscard]] bool getsOn(const Way& way);
-  /// Whether to wait for joints that are `lag` actions from where they were asked to be.
+  /// Whether to wait for joints that are `lag` actions behind where they were asked to be.
   [[nodiscard]] bool waitsFor(float lag, bool is_arm_next);
-  /// Whether something holds the joints back, after all this waiting.
+  /// Whether something still holds the joints back after waiting.
   [[nodiscard]] bool isHeldBack(float lag, bool is_arm_next) const;
-  /// To the next step.
+  /// Goes on to the next step.
   void goOn();
 
   Plan plan_;
   Decisions decisions_;
   std::size_t next_ = 0;
-  /// Actions left of the current step when it was last played; negative: not played yet.
+  /// Actions that were left of the current step when it was last played; negative: not played yet.
   float remaining_ = -1;
-  /// The least that was left of it, steering included, and the actions since.
+  /// The least that was left of the step, steering included, and the actions since then.
   float least_left_ = 0;
   int vain_ = 0;
-  /// Steps that the joints were waited for, the least lag in that time, and the steps since.
+  /// Steps spent waiting for the joints, the smallest lag in that time, and the steps since then.
   int waits_ = 0;
   float least_lag_ = 0;
   int idle_waits_ = 0;
-  /// Nothing is to be waited for until the arm moves again.
+  /// Whether nothing has to be waited for until the arm moves again.
   bool has_settled_ = false;
 };
 

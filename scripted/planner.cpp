@@ -9,16 +9,16 @@ namespace galactic::scripted {
 namespace {
 
 constexpr std::uint32_t kReachSamples = 20000;
-/// Motions of the arm that are searched for in vain before a plan is given up.
+/// A plan is given up after this many unsuccessful searches for a motion of the arm.
 constexpr int kMostFailedMotions = 12;
 
-/// What tells the random numbers of plans of one attempt apart.
+/// Keeps the random numbers of the plans of one attempt apart.
 constexpr std::uint32_t kPickDraw = 0;
 constexpr std::uint32_t kPickFromHereDraw = 250;
 constexpr std::uint32_t kPlaceDraw = 500;
 constexpr std::uint32_t kPlaceFromHereDraw = 750;
 
-/// `draw`: of those above. What is given, with what it refers to, outlives the plan.
+/// `draw` is one of those above. The arguments, and what they refer to, must outlive the plan.
 CurrentPlan begun(const EnvState& state, const Attempt& attempt, std::uint32_t draw,
                   const ReachView& view) {
   return {
@@ -28,7 +28,8 @@ CurrentPlan begun(const EnvState& state, const Attempt& attempt, std::uint32_t d
       .seed = (std::uint64_t{state.episode} << 32U) + std::uint64_t{attempt.number} * 1000 + draw};
 }
 
-/// What `make` finds; without regard to what failed where that is nothing.
+/// The plan that `make` finds; if there is none, the plan that it finds when it may repeat failed
+/// stances.
 template <class MakePlan>
 Plan anew(CurrentPlan& plan, const MakePlan& make) {
   Plan result = make();
@@ -37,11 +38,11 @@ Plan anew(CurrentPlan& plan, const MakePlan& make) {
   return make();
 }
 
-/// What `make` finds with what is held upright, or else as upright as it finds something.
+/// The plan that `make` finds with the held object upright, or else as upright as possible.
 template <class MakePlan>
 Plan leaning(CurrentPlan& plan, const MakePlan& make) {
   Plan result;
-  // Upright, else leaning, else as it comes, radians.
+  // Upright, else leaning, else in any direction; radians.
   for (const float tolerance : {0.15F, 0.6F, -1.0F}) {
     plan.hand_options.direction_tolerance = tolerance;
     plan.failed_motions = 0;
@@ -51,7 +52,7 @@ Plan leaning(CurrentPlan& plan, const MakePlan& make) {
   return result;
 }
 
-/// Whether a search of the floor ends, or goes on, after a reach.
+/// Whether a search of the floor ends or goes on after trying a reach.
 FloorSearch::Verdict verdictOn(const CurrentPlan& plan, const std::optional<ArmPath>& reaching) {
   using Verdict = FloorSearch::Verdict;
   if (reaching) return Verdict::kAccepted;
@@ -111,7 +112,7 @@ Plan Planner::folded(CurrentPlan& plan, std::span<const Joints> carries, const F
       prepend(start, *folding, result);
       break;
     }
-    // What the arm does not reach it does not reach from another fold.
+    // What the arm cannot reach from one fold, it cannot reach from another.
     const bool is_reached = result.trouble != ScriptedTrouble::kNoGrasp &&
                             result.trouble != ScriptedTrouble::kNoPlacement;
     if (!is_reached && plan.failed_motions == 0) break;
@@ -129,7 +130,7 @@ Plan Planner::pick(CurrentPlan& plan) {
   plan.is_thorough = reach_search_.isStiff();
   const Joints& joints = plan.state.joint_positions;
   std::vector<Joints> carries = carriesOf(plan.state);
-  // Where there is no room to fold the arm it may still be driven as it is.
+  // If there is no room to fold the arm, the robot may still drive with the arm as it is.
   carries.push_back(joints);
   const auto pick_folded = [&] {
     return folded(
@@ -178,10 +179,10 @@ Plan Planner::planFromHere(const EnvState& state, const std::optional<ArmPath>& 
 }
 
 FloorSearch::Target Planner::standsFor(const Vec3& point) const {
-  // An object is reached at its edge.
+  // How far the edge of an object is from its center, where the hand reaches it.
   constexpr float kObject = 0.1F;
   FloorSearch::Target target{.point = point, .bearing = reach_table_.bearing()};
-  // A long arm need not be stretched; a short one has to be near.
+  // A long arm need not stretch; a short one has to be near.
   target.farthest = std::min(target.farthest, reach_table_.farthest() + kObject);
   target.nearest = std::min(target.nearest, 0.5F * target.farthest);
   return target;

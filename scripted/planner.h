@@ -13,46 +13,47 @@
 
 namespace galactic::scripted {
 
-/// Makes the plans of one env after the other.
+/// Makes plans, for one env at a time.
 class Planner {
  public:
-  /// `world`: its robot has base and end effector.
+  /// The robot of `world` must have a base and an end effector.
   Planner(const World& world, const SimulationOptions& options);
 
-  /// From anywhere with an empty hand, to the grasp of the target; to a stance that is like one
-  /// that failed only where there is no other.
+  /// Plans from anywhere, with an empty hand, to the grasp of the target. Repeats a stance like one
+  /// that failed only if there is no other.
   [[nodiscard]] Plan planPick(const EnvState& state, const Attempt& attempt);
-  /// From anywhere with the target in the hand, to its release at the goal.
+  /// Plans from anywhere, with the target in the hand, to its release at the goal.
   [[nodiscard]] Plan planPlace(const EnvState& state, const Attempt& attempt);
-  /// The same from where the base stands: it turns at most, and does not come to a stance that is
-  /// like one that failed. `reach` counts these plans of the attempt.
+  /// The same from where the base stands: the base only turns, and the plan ends at no stance like
+  /// one that failed. `reach` counts these plans within the attempt.
   [[nodiscard]] Plan planPickFromHere(const EnvState& state, const Attempt& attempt,
                                       std::uint32_t reach);
   [[nodiscard]] Plan planPlaceFromHere(const EnvState& state, const Attempt& attempt,
                                        std::uint32_t reach);
 
  private:
-  /// As planOf, with its stance.
+  /// planOf(), with the stance in which the plan ends.
   [[nodiscard]] Plan planTo(const BasePlace& start, const BaseRoute& route, const ArmPath& path,
                             PlanStep::Kind last);
-  /// What reaches this goal with what is held.
+  /// The hand's view of a goal for what it holds.
   [[nodiscard]] ReachView placeView(const Pose& goal) const;
-  /// Poses of the arm for driving, the best first: controlled joints from `carries_`, the others
-  /// from the env.
+  /// Poses of the arm for driving, best first: controlled joints from `carries_`, the others from
+  /// the env.
   [[nodiscard]] std::vector<Joints> carriesOf(const EnvState& state) const;
-  /// With the first of these folds from which `make` finds something, after a `fold` to it.
+  /// Tries these folds in order: moves to each with `fold`, and returns the first plan that `make`
+  /// finds from one.
   template <class Fold, class MakePlan>
   [[nodiscard]] Plan folded(CurrentPlan& plan, std::span<const Joints> carries, const Fold& fold,
                             const MakePlan& make);
-  /// Where the base may stand for a reach to this point of the world.
+  /// Where the base may stand to reach this point of the world.
   [[nodiscard]] FloorSearch::Target standsFor(const Vec3& point) const;
   [[nodiscard]] Plan pick(CurrentPlan& plan);
   [[nodiscard]] Plan pickWith(CurrentPlan& plan, const BasePlace& start, const Joints& carried);
   [[nodiscard]] Plan place(CurrentPlan& plan);
   [[nodiscard]] Plan placeWith(CurrentPlan& plan, const BasePlace& start, const Joints& carried);
   [[nodiscard]] Plan pickFromHere(CurrentPlan& plan);
-  /// `turned`: the base as the arm reaches from it by the path `reaching`, to grasp or to release;
-  /// nothing reaches where there is none.
+  /// Turns the base to `turned`, from where the arm follows the path `reaching`, to grasp or to
+  /// release. If there is no path, the plan is troubled.
   [[nodiscard]] Plan planFromHere(const EnvState& state, const std::optional<ArmPath>& reaching,
                                   const BasePlace& turned, PlanStep::Kind last);
 

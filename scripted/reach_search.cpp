@@ -10,24 +10,24 @@ namespace {
 
 /// Seeds of the inverse kinematics for each reach.
 constexpr std::size_t kSeeds = 3;
-/// A sample is no seed when its grip is further away than this, meters.
+/// A sample is too far away to be a seed if its grip is farther away than this, meters.
 constexpr float kSeedReach = 0.15F;
-/// Distance of grip and target, as a share of the radius in which the hand grasps.
+/// Distance of grip and target, as a fraction of the radius in which the hand grasps.
 constexpr float kGraspShare = 0.5F;
-/// The share of the distance of success that a planned release may use up.
+/// The fraction of the success distance that a planned release may use up.
 constexpr float kLandingShare = 0.7F;
 
-/// See handFreedoms.
+/// See handFreedoms().
 constexpr int kAllFreedoms = 5;
-/// Half of what lies between the headings that the search of the floor offers, radians.
+/// Half of the angle between the headings that the search of the floor offers, radians.
 constexpr float kMostTurn = 0.22F;
 
 constexpr Vec3 kUp{0, 1, 0};
 
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
 
-/// The point on the line from `inside` an object against `way` that is `distance` off what the hand
-/// touches of it.
+/// Starting `inside` an object and going against `way`, the point that is `distance` away from what
+/// the hand touches of the object.
 Vec3 pointBefore(const PlanningScene& scene, std::uint32_t object, const Vec3& inside,
                  const Vec3& way, float distance) {
   const Vec3 half = scene.objectBox(object).half_extents;
@@ -42,7 +42,7 @@ Vec3 pointBefore(const PlanningScene& scene, std::uint32_t object, const Vec3& i
   return inside - way * far;
 }
 
-/// A goal of the world in the frame of the robot's root.
+/// A goal in the world frame, in the frame of the robot's root.
 HandGoal seenFrom(const Pose& root_from_world, const HandGoal& goal) {
   HandGoal result = goal;
   result.place = root_from_world * goal.place;
@@ -50,7 +50,7 @@ HandGoal seenFrom(const Pose& root_from_world, const HandGoal& goal) {
   return result;
 }
 
-/// See handFreedoms; about the table's samples.
+/// The largest handFreedoms() over some of the table's samples.
 int mostFreedoms(Arm& arm, const ReachTable& table, const Joints& others, Movers movers) {
   constexpr std::size_t kLooks = 32;
   int freedoms = 0;
@@ -60,9 +60,10 @@ int mostFreedoms(Arm& arm, const ReachTable& table, const Joints& others, Movers
   return freedoms;
 }
 
-/// Whether a plan that ended here, or nearly so, failed.
+/// Whether a plan that ended here, or nearly here, has failed.
 bool hasFailed(const CurrentPlan& plan, const Stance& stance) {
-  // Meters, and the cosine of half a radian: the ways from which hands come are farther apart.
+  // Meters, and the cosine of about half a radian: the directions from which hands come are farther
+  // apart.
   constexpr float kNearBase = 0.15F;
   constexpr float kNearGrip = 0.1F;
   constexpr float kAlike = 0.88F;
@@ -156,7 +157,7 @@ std::optional<ArmPath> ReachSearch::reachTarget(CurrentPlan& plan, BasePlace& ba
   const float radius = arm_.robot().endEffector()->grasp_radius;
   const Vec3 to_target = center - base.position;
   const Vec3 ahead = unit({to_target.x, 0, to_target.z});
-  // Somewhat under the top: a thick hand that comes from the side does not get lower.
+  // Slightly below the top: a thick hand that comes from the side cannot get lower.
   constexpr float kHigh = 0.9F;
   constexpr float kAlmostNone = 1e-3F;
   const Vec3 top = pointBefore(scene_, target, center, kUp * -1.0F, kAlmostNone);

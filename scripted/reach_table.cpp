@@ -12,15 +12,14 @@ namespace {
 
 /// Chooses the samples; any other number would do.
 constexpr std::uint64_t kSeed = 0x7265616368ULL;
-/// A wrong direction counts as much as this distance times its chord, meters.
+/// An error in direction counts as much as this distance times the chord of its angle, meters.
 constexpr float kDirectionWeight = 0.2F;
 
-/// See ReachTable::bearing.
+/// See ReachTable::bearing().
 float meanBearing(std::span<const Pose> grips) {
-  // Shares of the mean distance: the arm of a robot that turns it all the way round has about 0.
+  // A fraction of the mean distance: an arm that the robot can turn all the way round is near 0.
   constexpr float kOneSided = 0.2F;
-  // Rounding keeps the scatter of the samples out of the bearing of an arm that is the same to its
-  // left and right.
+  // Rounding removes the random scatter of the samples from the bearing of a symmetric arm.
   constexpr float kRounding = 0.392699082F;
   Vec3 sum;
   float distances = 0;

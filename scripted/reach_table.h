@@ -8,22 +8,23 @@
 
 namespace galactic::scripted {
 
-/// Positions of the arm drawn evenly within its limits, with where the grip is in them: where to
-/// begin the inverse kinematics. Depends on the robot only.
+/// Positions of the arm drawn uniformly within its limits, with the grip's pose in each: where
+/// inverse kinematics begins. Depends only on the robot.
 class ReachTable {
  public:
-  /// The joints that no action moves stay at `positions`. Samples in which the robot touches
-  /// itself are left out.
+  /// Joints that no action moves stay at `positions`. Leaves out samples in which the robot touches
+  /// itself.
   ReachTable(Arm& arm, const Joints& positions, std::uint32_t samples);
 
   [[nodiscard]] std::size_t size() const { return grips_.size(); }
-  /// `others` with the controlled joints of sample n of the table, which was made for `arm`.
+  /// `others` with the controlled joints of sample n. `arm` must be the one that the table was made
+  /// for.
   [[nodiscard]] Joints joints(const Arm& arm, std::size_t n, const Joints& others) const;
-  /// The direction from the root in which the arm reaches, on average of the samples: an angle
-  /// about +Y from the way in which the base drives, radians, rounded to a sixteenth of a turn. 0
-  /// where the arm reaches all round alike.
+  /// The direction from the root in which the arm reaches on average: an angle about +Y from the
+  /// direction in which the base drives, radians, rounded to a sixteenth of a turn. 0 if the arm
+  /// reaches equally far all round.
   [[nodiscard]] float bearing() const { return bearing_; }
-  /// The farthest of any grip from the root's vertical axis, meters.
+  /// The largest distance of any grip from the root's vertical axis, meters.
   [[nodiscard]] float farthest() const { return farthest_; }
   /// root_from_grip of each sample.
   [[nodiscard]] std::span<const Pose> grips() const { return grips_; }
@@ -42,8 +43,9 @@ class ReachView {
   /// `table` must outlive the view. Point and direction: frame of the grip.
   ReachView(const ReachTable& table, const Vec3& point, const Vec3& direction);
 
-  /// The samples nearest to the goal's place and direction, the nearest first: indices into the
-  /// table, as many as `out` takes or fewer. Samples further than `farthest` are left out.
+  /// The samples nearest to the goal's place and direction, nearest first: indices into the table,
+  /// at most as many as `out` has room for. Leaves out samples farther away than `farthest`.
+  /// Returns their number.
   std::size_t nearest(const HandGoal& goal, float farthest, std::span<std::uint32_t> out) const;
 
  private:

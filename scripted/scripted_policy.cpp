@@ -21,44 +21,44 @@ namespace galactic {
 namespace {
 
 constexpr std::uint32_t kNoEpisode = 0xffff'ffff;
-/// EnvState::held of an empty hand.
+/// The value of EnvState::held for an empty hand.
 constexpr std::int32_t kNothingHeld = -1;
-/// How often the arm's part of a plan is planned again before all of it is.
+/// How often the arm's part of a plan is replanned before the whole plan is.
 constexpr std::uint32_t kMostReaches = 6;
 
-/// What an env is in.
+/// The situation of an env.
 struct Situation {
   EnvState state;
   /// How late actions arrive, steps.
   std::uint32_t delay = 0;
-  /// The state that the next one meets.
+  /// The predicted state in which the next action arrives.
   EnvState ahead;
 };
 
 struct EnvPlan {
-  /// What it was asked about last.
+  /// When the policy was last asked about the env.
   std::uint32_t episode = kNoEpisode;
   std::uint64_t begun = 0;
   std::uint32_t step = 0;
-  /// Where motors were asked to bring the joints; empty where joints are where they were asked to
-  /// be.
+  /// Where motors were asked to bring the joints; empty if joints always are where actions ask them
+  /// to be.
   scripted::Joints asked;
-  /// Plays nothing before the first plan is made.
+  /// Plays nothing until the first plan is made.
   scripted::PlanPlayer player;
   bool is_planned = false;
-  /// The number of the step before which the hand has done what it was asked to do last, and
-  /// whether it is closed then.
+  /// The step from which on the hand has done what it was last asked to do, and whether it is
+  /// closed then.
   std::uint32_t hand_arrives = 0;
   bool hand_closes = false;
-  /// For how many steps it has asked for nothing.
+  /// For how many steps the policy has asked for nothing.
   std::uint32_t waited = 0;
-  /// Where the plan that is played ends, and where those ended that led to nothing.
+  /// Where the current plan ends, and where plans that failed ended.
   scripted::Stance stance;
   std::vector<scripted::Stance> failed;
   ScriptedPhase phase = ScriptedPhase::kPick;
   ScriptedTrouble trouble = ScriptedTrouble::kNone;
   std::uint32_t plans = 0;
-  /// Since the last plan: how often the arm's part of it was planned again.
+  /// How often the arm's part was replanned since the last whole plan.
   std::uint32_t reaches = 0;
 };
 
@@ -115,7 +115,7 @@ class ScriptedPolicy::Impl {
  private:
   using Progress = scripted::PlanPlayer::Progress;
 
-  /// What act() asks of its caller.
+  /// Checks what act() requires of its caller.
   void check(const BatchSimulator& simulator, std::span<const float> actions,
              std::span<const std::uint8_t> where) const {
     constexpr const char* kCall = "ScriptedPolicy::act";
@@ -136,7 +136,7 @@ class ScriptedPolicy::Impl {
     if (!where.empty()) detail::checkLength(kCall, "where", where.size(), envs_.size());
   }
 
-  /// Acts in one env after the other, with the planner of thread `n`, as long as there are any.
+  /// Acts in one env after another, with the planner of thread `n`, until all envs are taken.
   void work(std::size_t n) noexcept {
     try {
       const std::size_t count = simulator_->actionCount();
@@ -157,7 +157,7 @@ class ScriptedPolicy::Impl {
     return now;
   }
 
-  /// The planner of a thread: it takes a while to make, and memory.
+  /// The planner of a thread. Made on demand, because it takes time and memory.
   [[nodiscard]] scripted::Planner& planner(std::size_t thread) {
     std::optional<scripted::Planner>& planner = planners_[thread];
     if (!planner) planner.emplace(world_, options_);
@@ -195,7 +195,7 @@ class ScriptedPolicy::Impl {
         env.waited = 0;
         return;
       }
-      // What comes next depends on what has come of the actions so far.
+      // What to do next depends on the results of the actions so far, so let them all arrive.
       if (env.waited < now.delay) {
         ++env.waited;
         holdStill(now, env, actions);
@@ -226,7 +226,7 @@ class ScriptedPolicy::Impl {
     return now.state.step < env.hand_arrives ? env.hand_closes : now.state.held >= 0;
   }
 
-  /// The next action opens the hand, or closes it.
+  /// Records that the next action opens or closes the hand.
   static void decideHand(const Situation& now, EnvPlan& env) {
     env.hand_closes = !closesHand(now, env);
     env.hand_arrives = now.state.step + now.delay + 1;
@@ -237,11 +237,11 @@ class ScriptedPolicy::Impl {
            state.step < env.step;
   }
 
-  /// An episode begins, or is met on its way.
+  /// Starts afresh: an episode has begun, or the policy meets one midway.
   void begin(const Situation& now, EnvPlan& env) const {
     env = {};
     if (lags_) env.asked = now.state.joint_positions;
-    // Nothing is under way where an episode begins.
+    // At the beginning of an episode, no actions are under way.
     if (now.state.step == 0) env.waited = now.delay;
   }
 
@@ -270,22 +270,23 @@ class ScriptedPolicy::Impl {
     env.player = scripted::PlanPlayer(std::move(plan), decisions_);
   }
 
-  /// What the next plan begins with: where joints were asked to be, or where they are where that is
-  /// out of their reach.
+  /// The state that the next plan begins with: joints are where they were asked to be, or where
+  /// they are if they could not get there.
   [[nodiscard]] static EnvState planned(const EnvState& state, const EnvPlan& env, bool is_done) {
     EnvState result = state;
     if (is_done && !env.asked.empty()) result.joint_positions = env.asked;
     return result;
   }
 
-  /// The plan is played to its end, or the robot has not come to it.
+  /// Plans anew after a plan has been played to its end, or after the robot has failed to follow
+  /// it.
   void planNext(const EnvState& state, EnvPlan& env, Progress progress, std::size_t thread) {
     const bool is_done = progress == Progress::kDone;
     const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
     if (!is_done) env.trouble = ScriptedTrouble::kStuck;
     if (is_done && !holds_target && !isAtGoal(state)) env.trouble = ScriptedTrouble::kMissed;
     const bool has_picked = is_done && holds_target && env.phase == ScriptedPhase::kPick;
-    // A base that has come off its way has not tried the place.
+    // A base that has strayed has not tried the place where its plan ends.
     const bool lost_its_way = progress == Progress::kOff || progress == Progress::kAstray;
     if (!has_picked && !lost_its_way) env.failed.push_back(env.stance);
     ++env.plans;
@@ -293,12 +294,12 @@ class ScriptedPolicy::Impl {
     plan(planned(state, env, is_done), env, thread);
   }
 
-  /// The base is near to where the plan has it: from where it is, the arm may do as well. Whether
-  /// it does.
+  /// Called when the base is near its planned place: the arm may be able to reach from where it is.
+  /// Returns whether it can.
   bool reachFromHere(const EnvState& state, EnvPlan& env, std::size_t thread) {
     const bool places = env.phase == ScriptedPhase::kPlace;
     const std::int32_t needed = places ? static_cast<std::int32_t>(state.target) : kNothingHeld;
-    // Others may have opened or closed the hand meanwhile.
+    // Others may have opened or closed the hand in the meantime.
     if (state.held != needed || env.reaches >= kMostReaches) return false;
     const EnvState from = planned(state, env, true);
     scripted::Planner& planner = this->planner(thread);
@@ -311,14 +312,14 @@ class ScriptedPolicy::Impl {
     return true;
   }
 
-  /// From where the env is.
+  /// Plans from the current state of the env.
   void plan(const EnvState& state, EnvPlan& env, std::size_t thread) {
     const bool holds_target = state.held == static_cast<std::int32_t>(state.target);
     const bool holds_another = state.held >= 0 && !holds_target;
     env.is_planned = true;
     if (holds_another) env.trouble = ScriptedTrouble::kMissed;
     if (isAtGoal(state)) {
-      // Another time would change nothing: the simulation wants something else.
+      // Terminating again would change nothing: the simulation wants something else.
       env.phase == ScriptedPhase::kFinish ? giveUp(env) : finish(env);
     } else if (holds_another || env.plans >= most_plans_ ||
                (holds_target && options_.task.kind == TaskKind::kMobilePick)) {
@@ -339,7 +340,7 @@ class ScriptedPolicy::Impl {
   bool lags_ = false;
   std::uint32_t most_plans_ = kMostPlans;
   std::vector<EnvPlan> envs_;
-  /// One for each thread, made when it plans for the first time.
+  /// One per thread, made when the thread plans for the first time.
   std::vector<std::optional<scripted::Planner>> planners_;
   std::vector<std::exception_ptr> faults_;
   // Of the current call:
@@ -347,7 +348,7 @@ class ScriptedPolicy::Impl {
   std::span<float> actions_;
   std::span<const std::uint8_t> where_;
   std::atomic<std::size_t> next_{0};
-  /// The last member: its threads see the others.
+  /// Must be the last member: its threads use the others.
   std::unique_ptr<detail::Workers> workers_;
 };
 
