@@ -15,22 +15,22 @@ struct Scene;
 
 namespace galactic::detail {
 
-// Checks of every value of a pack whose structure has been verified.
+// These functions check every value of a pack whose structure has been verified.
 
-/// That the names in it mean something is checked where scenes, objects and robot are known: by
-/// World.
+/// Does not check that the names in the set exist: World does, which has the scenes, objects and
+/// robot.
 [[nodiscard]] Result<void> checkEpisodeSet(const schema::EpisodeSet& set, const std::string& where);
 
 [[nodiscard]] Result<void> checkObjectSet(const schema::ObjectSet& set, const std::string& where);
 
-/// What passes runs on any observation and image. Whether it fits a robot is found when it meets
-/// one.
+/// A policy that passes runs on any observation and image. Whether it fits a robot is checked when
+/// the two meet.
 [[nodiscard]] Result<void> checkPolicy(const schema::Policy& policy, const std::string& where);
 
 /// A robot that passes is safe for forwardKinematics.
 [[nodiscard]] Result<void> checkRobot(const schema::Robot& robot, const std::string& where);
 
-/// `file`: the whole pack.
+/// `file` is the whole pack.
 [[nodiscard]] Result<void> checkScene(const schema::Scene& scene, std::span<const std::byte> file,
                                       const std::string& where);
 

@@ -9,7 +9,7 @@
 namespace galactic::detail {
 namespace {
 
-/// The order of spheres: radius descending, then x, y, z ascending.
+/// Spheres are ordered by descending radius, then by ascending x, y, z.
 auto sphereKey(const schema::SetSphere& sphere) {
   const schema::Vec3& center = sphere.center();
   return std::tuple(~sphere.radius_index(), center.x(), center.y(), center.z());
@@ -47,7 +47,7 @@ Result<void> checkBounds(const schema::Bounds* bounds, const std::string& where)
 Result<void> checkImport(const schema::ImportStatistics& counts, const std::string& where) {
   Offence offence(where + ".import_statistics");
   offence.require(!isEmpty(counts.format()), "format", "is empty, expected a format's name");
-  // Subtracted one by one: a sum of hostile counts could wrap around.
+  // Subtract one by one: a sum of hostile counts could wrap around.
   const bool plausible =
       counts.triangles_degenerate() <= counts.triangles_read() &&
       counts.triangles_duplicate() <= counts.triangles_read() - counts.triangles_degenerate();
@@ -121,7 +121,7 @@ Result<void> checkSurface(const schema::Surface& surface, const std::string& whe
   const auto& positions = *surface.positions();
   const auto& corners = *surface.triangles();
   Offence offence(where);
-  // Messages are made for the first offender only: surfaces are the bulk of a pack.
+  // Format messages only for the first offender: surfaces are the bulk of a pack.
   const auto broken = std::find_if(positions.begin(), positions.end(),
                                    [](const schema::Vec3* p) { return !isPlace(*p); });
   offence.require(broken == positions.end(),

@@ -7,7 +7,7 @@
 
 namespace galactic::detail {
 
-// Checks of what several kinds of packs share.
+// Checks that several kinds of packs share.
 
 [[nodiscard]] inline bool isEmpty(const flatbuffers::String* text) { return text->size() == 0; }
 
@@ -15,18 +15,18 @@ namespace galactic::detail {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
-/// Coordinates and lengths of packs reach this far, meters, as docs/packs.md says: beyond, floats
-/// are coarser than 0.1 mm, and far beyond, their squares are infinite.
+/// How far coordinates and lengths of packs may reach, meters, as docs/packs.md says: beyond that,
+/// floats are coarser than 0.1 mm, and far beyond it, their squares are infinite.
 inline constexpr float kFarthest = 800;
-/// Angles, however often something has turned, and positions of joints: what becomes of them along
-/// the longest chain of links, squared, is still finite.
+/// Limit for angles, however often something has turned, and for joint positions: what follows from
+/// them along the longest chain of links is still finite when squared.
 inline constexpr float kMostAngle = 1e9F;
 
 /// A coordinate, meters.
 [[nodiscard]] inline bool isCoordinate(float meters) { return std::fabs(meters) <= kFarthest; }
 
-/// How far from the origin a plane may be that passes points of these coordinates, meters: as far
-/// as the corners of their cube.
+/// How far from the origin a plane through points with such coordinates may be, meters: as far as
+/// the corners of their cube.
 inline constexpr float kFarthestPlane = 1386;
 [[nodiscard]] inline bool isPlaneOffset(float meters) {
   return std::fabs(meters) <= kFarthestPlane;
@@ -39,7 +39,7 @@ inline constexpr float kFarthestPlane = 1386;
 
 /// A length above 0, meters.
 [[nodiscard]] inline bool isLength(float meters) {
-  // Its inverse is no infinity.
+  // Smaller lengths have no finite inverse.
   constexpr float kSmallestLength = 1e-9F;
   return meters >= kSmallestLength && meters <= kFarthest;
 }
@@ -50,13 +50,14 @@ inline constexpr float kFarthestPlane = 1386;
 /// A finite amount of 0 or more.
 [[nodiscard]] inline bool isAmount(double value) { return std::isfinite(value) && value >= 0; }
 
-/// What rounding to floats can do to a squared length of 1, and much more.
+/// Much more than rounding to floats can change a squared length of 1.
 inline constexpr double kUnitTolerance = 1e-3;
-/// The same for the links of a robot, whose rotations are multiplied along a chain: of 65,535 links
-/// it would not double.
+/// The same for the links of a robot, whose rotations are multiplied along a chain: even a chain of
+/// 65,535 links would not double them.
 inline constexpr double kChainTolerance = 1e-5;
 
-/// Length 1 within the rounding of floats. Inline, like the next: large packs ask for millions.
+/// Whether the length is 1 up to the rounding of floats. Inline, like the next function: large
+/// packs call them millions of times.
 [[nodiscard]] inline bool isUnit(const schema::Vec3& v, double tolerance = kUnitTolerance) {
   const double x = static_cast<double>(v.x());
   const double y = static_cast<double>(v.y());
@@ -76,19 +77,19 @@ inline constexpr double kChainTolerance = 1e-5;
   return isPlace(pose.translation()) && isUnit(pose.rotation(), tolerance);
 }
 
-/// Within kFarthest, and no minimum above its maximum.
+/// Checks that bounds are within kFarthest, and no minimum exceeds its maximum.
 [[nodiscard]] Result<void> checkBounds(const schema::Bounds* bounds, const std::string& where);
 
-/// Counts that add up.
+/// Checks that the counts add up.
 [[nodiscard]] Result<void> checkImport(const schema::ImportStatistics& counts,
                                        const std::string& where);
 
-/// 1 to 8 ascending lengths.
+/// Checks that there are 1 to 8 ascending lengths.
 [[nodiscard]] Result<void> checkRadii(const flatbuffers::Vector<float>& radii,
                                       const std::string& where);
 
-/// Centers that are places, radii of the working set, in the order of the schema from `begin` to
-/// `end`.
+/// Checks that centers are places, that radii belong to the working set, and that spheres are in
+/// the order of the schema from `begin` to `end`.
 struct SphereRange {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -97,12 +98,12 @@ struct SphereRange {
     const flatbuffers::Vector<const schema::SetSphere*>& spheres, const SphereRange& range,
     std::size_t radii, const std::string& where);
 
-/// Finite amounts, ordered where the schema orders them.
+/// Checks that amounts are finite, and ordered where the schema orders them.
 [[nodiscard]] Result<void> checkSphereStatistics(const schema::SphereSetStatistics& statistics,
                                                  const std::string& where);
 
-/// Positions that are places, whole triangles of existing corners, a color for each vertex or
-/// none.
+/// Checks that positions are places, triangles are whole and have existing corners, and that there
+/// is a color for each vertex or none at all.
 [[nodiscard]] Result<void> checkSurface(const schema::Surface& surface, const std::string& where);
 
 }  // namespace galactic::detail

@@ -13,8 +13,8 @@ namespace {
 
 using Names = flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>;
 
-/// Checks one episode set part by part. Episodes and placements are the bulk of a pack: they are
-/// looked at in bulk, and only the first offender is taken apart for a message.
+/// Checks an episode set part by part. Episodes and placements are the bulk of a pack: they are
+/// checked in bulk, and only the first offender is examined for a message.
 class EpisodeChecker {
  public:
   EpisodeChecker(const schema::EpisodeSet& set, const std::string& where)

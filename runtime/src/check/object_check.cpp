@@ -1,5 +1,4 @@
 #include "check/asset_checks.h"
-
 #include "check/common_check.h"
 #include "check/offence.h"
 #include "check/render_check.h"
@@ -45,7 +44,7 @@ Result<void> checkStablePoses(const schema::Object& object, const std::string& w
   return offence.result();
 }
 
-/// What a grasp looks at is bounded: many planes would make it slow.
+/// Limits what a grasp has to examine: many planes would make it slow.
 constexpr flatbuffers::uoffset_t kMostHullPlanes = 128;
 
 Result<void> checkHullPlanes(const schema::Object& object, const std::string& where) {

@@ -10,16 +10,16 @@
 
 namespace galactic::detail {
 
-/// Remembers the first of many requirements that does not hold, so that a list of checks reads as
-/// one. All of its errors are kInvalidInput.
+/// Remembers the first of many requirements that fails, so that a list of checks reads as one. All
+/// of its errors are kInvalidInput.
 class Offence {
  public:
-  /// `where` is the part of the pack that is checked, for example
-  /// "kitchen.pack: scene.column_grids[1]".
+  /// `where` is the part of the pack that is checked, for example "kitchen.pack:
+  /// scene.column_grids[1]".
   explicit Offence(std::string where) : where_(std::move(where)) {}
 
-  /// Records an offence of `field` unless `holds` or an earlier one is on record. The message says
-  /// what was found and what was wanted; what to do is added here.
+  /// Records an offence of `field` unless `holds` is true or an earlier offence is on record. The
+  /// message says what was found and what was expected; this function adds what to do.
   template <class... Args>
   void require(bool holds, std::string_view field, fmt::format_string<Args...> message,
                Args&&... args) {

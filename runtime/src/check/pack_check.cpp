@@ -9,9 +9,9 @@
 namespace galactic::detail {
 namespace {
 
-/// Tables in tables of the deepest pack: pack, scene, grid, statistics, region.
+/// The most deeply nested tables are pack, scene, grid, statistics and region.
 constexpr flatbuffers::uoffset_t kMaxDepth = 16;
-/// Far above any real pack; bounds the time that a hostile one can take.
+/// Far above any real pack; limits the time that a hostile pack can take.
 constexpr flatbuffers::uoffset_t kMaxTables = 1'000'000;
 
 bool isRelative(const flatbuffers::String* path) {
@@ -37,7 +37,7 @@ Result<void> checkProvenance(const schema::Provenance& provenance, const std::st
   return offence.result();
 }
 
-/// The asset of the kind that the header names, or the error of a pack that holds another.
+/// The asset, if its kind is the one that the header names; otherwise an error.
 template <class Asset>
 Result<const Asset*> assetOf(const schema::Pack& pack, const PackHeader& header,
                              const std::string& where) {

@@ -11,13 +11,13 @@ namespace galactic::detail {
 /// Most bytes of a pack's payload: FlatBuffers counts in 31 bits.
 inline constexpr std::uint64_t kMaxPayloadBytes = (std::uint64_t{1} << 31U) - 1;
 
-/// Checks that the payload can be a FlatBuffer of ours at all: its size and its file identifier.
+/// Checks that the payload can be one of our FlatBuffers at all: its size and its file identifier.
 [[nodiscard]] Result<void> checkPayloadStart(std::span<const std::byte> payload,
                                              const std::string& where);
 
-/// Checks structure (FlatBuffers verifier) and meaning (every value) of the pack in `file`, whose
-/// header has been read and whose payload passed checkPayloadStart. A scene pack that passes is
-/// safe to query with any input. Fails with kInvalidInput.
+/// Checks the structure (FlatBuffers verifier) and the meaning (every value) of the pack in `file`,
+/// whose header has been read and whose payload has passed checkPayloadStart(). A scene pack that
+/// passes is safe to query with any input. Fails with kInvalidInput.
 [[nodiscard]] Result<void> checkPack(const PackHeader& header, std::span<const std::byte> file,
                                      const std::string& where);
 

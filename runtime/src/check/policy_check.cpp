@@ -20,7 +20,7 @@ using policy::LayerShape;
 
 constexpr std::uint32_t kLargestImage = 4096;
 
-/// Checks what a policy says around its layers.
+/// Checks everything in a policy except its layers.
 class PolicyChecker {
  public:
   PolicyChecker(const schema::Policy& policy, const std::string& where)
@@ -76,7 +76,7 @@ class PolicyChecker {
     if (image.place() != nullptr) checkPlace(*image.place());
   }
 
-  /// A comparison with NaN is false.
+  /// Comparisons with NaN are false, so that NaN fails.
   void checkPlace(const schema::CameraPlace& place) {
     for (const float meters : {place.ahead(), place.left(), place.up()}) {
       offence_.require(std::abs(meters) <= kFarthestCamera, "image.place",

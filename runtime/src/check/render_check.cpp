@@ -13,10 +13,10 @@
 namespace galactic::detail {
 namespace {
 
-/// Materials and semantics are numbered in 16 bits.
+/// Materials and semantics have 16-bit numbers.
 constexpr std::size_t kMostNumbers = 65536;
 constexpr std::size_t kTexelAlignment = 32;
-/// Steps of a lattice: powers of two between these, meters.
+/// The steps of lattices are powers of two between these, meters.
 constexpr float kLeastStep = 0x1p-20F;
 constexpr float kMostStep = 1.0F;
 
@@ -84,7 +84,7 @@ class RenderChecker {
       }
       offence_.require(texture.first_byte() % kTexelAlignment == 0, field + ".first_byte",
                        "is {}, expected a multiple of {}", texture.first_byte(), kTexelAlignment);
-      // What is unpacked for drawing is then bounded by what the pack has.
+      // Without overlaps, the texels unpacked for drawing are limited by the size of the pack.
       offence_.require(texture.first_byte() >= next_byte, field + ".first_byte",
                        "is {}, expected {} or more, behind the texture before",
                        texture.first_byte(), next_byte);
@@ -172,7 +172,7 @@ class RenderChecker {
     next_block_ += wholeLanes(stored.cluster_count()) / kRenderLanes;
   }
 
-  /// Culling by eight must not find a cluster where there is none.
+  /// Culling by eight must not find a cluster in an unused lane.
   void checkEmptyLanes() {
     for (; place_.lane % kRenderLanes != 0; ++place_.lane) {
       for (std::size_t row = 0; row < kBoundsRows; ++row) {
@@ -185,7 +185,7 @@ class RenderChecker {
     }
   }
 
-  /// Nothing is left over.
+  /// Checks that nothing is left over.
   void checkEnds() {
     offence_.require(next_cluster_ == clusters_.size(), "clusters",
                      "has {} elements, expected the {} of the models", clusters_.size(),

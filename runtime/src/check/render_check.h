@@ -10,9 +10,10 @@ struct RenderMeshes;
 
 namespace galactic::detail {
 
-/// Checks every value of render meshes whose structure has been verified: what passes can be drawn
-/// without a look at an index, and culling by its bounds leaves nothing out. `parts`: how many
-/// objects or links the pack has; 1 for a scene. `where`: for example "mugs.pack: objects".
+/// Checks every value of render meshes whose structure has been verified: meshes that pass can be
+/// drawn without checking any index, and culling by their bounds omits nothing visible. `parts` is
+/// the number of objects or links in the pack, 1 for a scene. `where`: for example "mugs.pack:
+/// objects".
 [[nodiscard]] Result<void> checkRenderMeshes(const schema::RenderMeshes& meshes, std::size_t parts,
                                              const std::string& where);
 

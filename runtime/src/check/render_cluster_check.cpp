@@ -13,13 +13,13 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-/// Lattice coordinates up to here are floats.
+/// Lattice coordinates up to this are exact as floats.
 constexpr std::int64_t kMostLattice = std::int64_t{1} << 24U;
-/// So many repetitions of an image that a sampler's integers hold the texels.
+/// More repetitions of an image per vertex step would overflow the integers of a sampler.
 constexpr float kMostUvStep = 0.5F;
-/// Rounding of an axis to floats, and more.
+/// More than the rounding of an axis to floats.
 constexpr double kAxisTolerance = 1e-5;
-/// Rounding of a cosine of the cone, and more.
+/// More than the rounding of a cone's cosine.
 constexpr double kConeTolerance = 1e-5;
 
 class ClusterChecker {
@@ -31,7 +31,7 @@ class ClusterChecker {
   Result<void> run() {
     checkNumbers();
     checkRanges();
-    // What follows reads the pools.
+    // The checks below read the pools.
     if (offence_.found()) return offence_.result();
     checkBoundsNumbers();
     checkVertices();
@@ -108,7 +108,7 @@ class ClusterChecker {
   }
 
   void checkBoundsNumbers() {
-    // A box about what reaches from one end of the world to the other.
+    // Enough for a box around something that reaches from one end of the world to the other.
     constexpr double kFarthestBound = 4 * static_cast<double>(kFarthest);
     for (std::size_t row = 0; row < kBoundsRows; ++row) {
       offence_.require(std::abs(bound(row)) <= kFarthestBound, "bounds",
@@ -133,7 +133,7 @@ class ClusterChecker {
                      "have a cone's axis of length {}, expected 1", std::sqrt(squared));
   }
 
-  /// Finds the ranges of coordinates; padding is 0.
+  /// Finds the ranges of the coordinates, and checks that padding is 0.
   void checkVertices() {
     low_.fill(65535);
     high_.fill(0);
@@ -167,7 +167,7 @@ class ClusterChecker {
     offence_.require(padding == 0, "triangles", "are not 0 in the padding behind the last of them");
   }
 
-  /// The boxes of the cluster and of its model hold all corners.
+  /// Checks that the boxes of the cluster and of its model contain all corners.
   void checkBoxes() {
     const double step = static_cast<double>(model_.step);
     const std::array<std::int32_t, 3> origin{cluster_.origin_x, cluster_.origin_y,
@@ -209,7 +209,7 @@ class ClusterChecker {
                      std::sqrt(farthest));
   }
 
-  /// The cone holds the normals of all triangles that have one.
+  /// Checks that the cone contains the normals of all triangles that have one.
   void checkCone() {
     const double cutoff = bound(kConeCutoffRow);
     if (cutoff == static_cast<double>(kNoCone)) return;
@@ -239,7 +239,7 @@ class ClusterChecker {
   const RenderPools& pools_;
   const ClusterPlace& place_;
   Offence offence_;
-  /// Ranges of the stored coordinates.
+  /// The ranges of the stored coordinates.
   std::array<std::uint16_t, 3> low_{};
   std::array<std::uint16_t, 3> high_{};
 };

@@ -8,7 +8,7 @@
 
 namespace galactic::detail {
 
-/// The pools of render meshes and how many of each a cluster can name.
+/// The pools of render meshes, and how many materials and semantics a cluster can refer to.
 struct RenderPools {
   std::span<const float> bounds;
   std::span<const std::uint16_t> vertices;
@@ -18,16 +18,16 @@ struct RenderPools {
   std::size_t semantics = 0;
 };
 
-/// Where a cluster has to stand: behind its predecessor.
+/// The place that a cluster must have: after its predecessor.
 struct ClusterPlace {
   std::size_t first_vertex = 0;
   std::size_t first_triangle = 0;
-  /// Its lane of the bounds, counted through all blocks.
+  /// Its lane of the bounds, counted over all blocks.
   std::size_t lane = 0;
 };
 
 /// Checks a cluster, its bounds, vertices and triangles, and that all of it lies within the bounds
-/// of its model. The place in errors is a field of the cluster: ".vertex_count".
+/// of its model. Errors name only the field of the cluster: ".vertex_count".
 [[nodiscard]] Result<void> checkCluster(const RenderCluster& cluster, const RenderModel& model,
                                         const RenderPools& pools, const ClusterPlace& place);
 

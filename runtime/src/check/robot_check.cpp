@@ -14,12 +14,12 @@ namespace galactic::detail {
 namespace {
 
 constexpr std::size_t kMaxLinks = 65535;
-/// Of a joint that follows another: multiplier and offset.
+/// Limit for multiplier and offset of a joint that follows another.
 constexpr float kMostMultiplier = 1000;
-/// Of one action, radians or meters.
+/// Limit for the step of one action, radians or meters.
 constexpr float kMostStep = 1000;
 
-/// Checks one robot part by part.
+/// Checks a robot part by part.
 class RobotChecker {
  public:
   RobotChecker(const schema::Robot& robot, const std::string& where)
@@ -106,7 +106,8 @@ class RobotChecker {
         values, positions());
   }
 
-  /// What a list of names is called, what each belongs to, and its first element that has one.
+  /// The name of a list of names, what its names belong to, and the first element that must have
+  /// one.
   struct NameList {
     const char* field;
     const char* owner;
@@ -232,8 +233,8 @@ class RobotChecker {
                            joint.upper() <= limits.upper(),
                        field + ".lower", "and upper are {} and {}, expected ascending, in {} to {}",
                        joint.lower(), joint.upper(), limits.lower(), limits.upper());
-      // Unlimited joints have the largest floats; what they are clamped to has to be a number that
-      // one can reckon with.
+      // The limits of unlimited joints are the largest floats, but a position clamped to them must
+      // be a number that can be computed with.
       offence_.require(joint.lower() <= kMostAngle && joint.upper() >= -kMostAngle,
                        field + ".lower", "and upper are {} and {}, expected some of -{} to {}",
                        joint.lower(), joint.upper(), kMostAngle, kMostAngle);
@@ -256,7 +257,7 @@ class RobotChecker {
                        effector->grasp_radius(), kFarthest);
     }
     if (const schema::Camera* camera = robot_.camera()) {
-      // Tangents of half of them, and their inverses, are lengths.
+      // The tangents of half these angles, and their inverses, are valid lengths.
       constexpr float kLeastView = 0.001F;
       constexpr float kMostView = 3.14F;
       requireLink(camera->link(), "camera.link");
@@ -272,7 +273,7 @@ class RobotChecker {
   }
 
   void checkLaser(const schema::Laser& laser) {
-    // Radians of a whole turn, rounded up.
+    // A whole turn in radians, rounded up.
     constexpr float kTurn = 6.2831855F;
     requireLink(laser.link(), "laser.link");
     offence_.require(laser.link_from_laser() != nullptr && isRigid(*laser.link_from_laser()),

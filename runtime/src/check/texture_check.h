@@ -11,7 +11,8 @@ namespace galactic::detail {
 
 inline constexpr std::uint32_t kLargestTexture = 4096;
 
-/// Size and format of a RenderTexture or SharedTexture; `prefix` stands before the fields' names.
+/// Checks size and format of a RenderTexture or SharedTexture; `prefix` precedes the names of
+/// fields.
 template <class Texture>
 void requireTextureForm(const Texture& texture, const std::string& prefix, Offence& offence) {
   offence.require(texture.size() <= kLargestTexture && std::has_single_bit(texture.size()),
@@ -22,7 +23,7 @@ void requireTextureForm(const Texture& texture, const std::string& prefix, Offen
                   static_cast<unsigned>(schema::TexelFormat::MAX));
 }
 
-/// Checks every value of a texture pack, its texels' hash among them.
+/// Checks every value of a texture pack, including the hash of its texels.
 [[nodiscard]] Result<void> checkSharedTexture(const schema::SharedTexture& texture,
                                               const std::string& where);
 

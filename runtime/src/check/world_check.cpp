@@ -15,7 +15,7 @@
 namespace galactic::detail {
 namespace {
 
-/// Why a path of a world's list is none, or nothing: "" for a good one.
+/// What is wrong with a path in a world's list; "" if nothing is.
 const char* faultOf(std::string_view path) {
   if (path.empty()) return "is empty, expected the path of a pack";
   if (path.find('\0') != std::string_view::npos) {
@@ -40,7 +40,7 @@ Result<void> checkReference(const schema::PackReference& reference, const std::s
   const char* fault = faultOf(reference.path()->string_view());
   offence.require(fault[0] == '\0', "path", "{}", fault);
   std::optional<PackKind> kind = packKindOf(reference.kind()->string_view());
-  // A policy goes from world to world.
+  // Policies do not belong to a world.
   if (kind == PackKind::kPolicy) kind.reset();
   offence.require(kind.has_value(), "kind", "is \"{}\", expected SCEN, OBJS, RBOT, EPIS or TXTR",
                   reference.kind()->string_view());
@@ -52,8 +52,8 @@ Result<void> checkReference(const schema::PackReference& reference, const std::s
   return offence.result();
 }
 
-/// Whether it is one of `known` from the place `next` on, which moves behind it, and has a value
-/// that it may have.
+/// Checks that the option is one of `known` at index `next` or later, and that its value is valid;
+/// moves `next` past it.
 Result<void> checkOption(const OptionText& option, std::span<const OptionText> known,
                          std::size_t& next, const std::string& where) {
   Offence offence(where);

@@ -12,12 +12,12 @@ struct World;
 
 namespace galactic::detail {
 
-/// Checks every value of a world's list whose structure has been verified, without looking at the
-/// packs that it names.
+/// Checks every value of a world's list of packs, whose structure has been verified, without
+/// opening the packs.
 [[nodiscard]] Result<void> checkWorld(const schema::World& world, const std::string& where);
 
-/// Whether they are options of the task (OptionScope::kTask) in the order of the option table, each
-/// at most once, with values that they may have. `field` names the list.
+/// Checks that these are options of the task (OptionScope::kTask) in the order of the option table,
+/// each given at most once and with a valid value. `field` names the list.
 [[nodiscard]] Result<void> checkOptions(
     const flatbuffers::Vector<flatbuffers::Offset<schema::Option>>& options,
     const std::string& field, const std::string& where);
