@@ -1,4 +1,4 @@
-// galactic-run: opens packs, verifies them, says what is inside, measures queries, and steps
+// galactic-run: opens and verifies packs, describes their contents, measures queries, and steps
 // worlds.
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ int report(const Error& error) {
   return static_cast<int>(error.code);
 }
 
-/// Opens one pack and prints its summary. Mapping and verifying are timed apart.
+/// Opens one pack and prints its summary. Mapping and verifying are timed separately.
 Result<galactic::PackFile> openAndDescribe(const std::string& path, const RunOptions& options) {
   using Clock = std::chrono::steady_clock;
   using Seconds = std::chrono::duration<double>;
@@ -91,7 +91,7 @@ int simulateWorld(const RunOptions& options, const OpenedWorld& world, const Run
   if (!options.without_effect.empty()) return galactic::refuseCommandLine(options.without_effect);
   const Result<galactic::RunReport> run = galactic::simulate(options, world, source);
   if (!run) return report(run.error());
-  // First, as printing fails where the terminal is gone.
+  // Save first, because printing fails if the terminal is gone.
   const Result<void> saved = saveReport(*run);
   if (!options.is_quiet) fmt::print("{}", galactic::tableOf(*run));
   if (run->fault) return report(*run->fault);
@@ -105,8 +105,8 @@ int simulateWorld(const RunOptions& options, const OpenedWorld& world, const Run
   return galactic::kExitDiffers;
 }
 
-/// The options of a replay are those of the recording, and what was typed must not contradict them:
-/// the command line is read again on top of them.
+/// A replay takes its options from the recording, and typed options must not contradict them: so
+/// the command line is parsed again on top of the recording's options.
 int replayPacks(int argc, char** argv, const std::string& file) {
   Result<RecordingReader> recording = RecordingReader::open(file);
   if (!recording) return report(recording.error());
@@ -121,8 +121,8 @@ int replayPacks(int argc, char** argv, const std::string& file) {
   return world ? simulateWorld(options, *world, {.replay = &*recording}) : report(world.error());
 }
 
-/// The options of the task are those of the world, then those of a learned policy, and what was
-/// typed overrides them: the command line is read again on top of them.
+/// The options of the task come from the world, then from a learned policy, and typed options
+/// override both: so the command line is parsed again on top of them.
 int simulatePacks(int argc, char** argv, const RunOptions& typed) {
   const Result<OpenedWorld> world = galactic::openWorld(typed);
   if (!world) return report(world.error());

@@ -16,11 +16,11 @@
 namespace galactic {
 namespace {
 
-/// Options that have a letter, too.
+/// Options that also have a letter.
 constexpr std::array<std::pair<std::string_view, char>, 2> kLetters{
     {{"quiet", 'q'}, {"threads", 'j'}}};
 
-/// What --help shows for a number: the unit that its explanation names.
+/// What --help shows for a number: the unit in the option's explanation.
 std::string_view placeholderOf(std::string_view help) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kUnits{
       {{", meters", "METERS"}, {", degrees", "DEGREES"}, {", radians", "RADIANS"}}};
@@ -34,7 +34,7 @@ TextCheck rangeCheck(Within<float> within) {
   return numberCheck(static_cast<double>(within.least), static_cast<double>(within.most));
 }
 
-/// A whole number of 1 to kLargestImage.
+/// Parses a whole number from 1 to kLargestImage.
 std::optional<std::uint32_t> edgeOf(std::string_view text) {
   std::uint32_t edge = 0;
   const char* end = text.data() + text.size();
@@ -43,7 +43,7 @@ std::optional<std::uint32_t> edgeOf(std::string_view text) {
   return edge;
 }
 
-/// "128" or "160x120".
+/// Parses "128" or "160x120".
 std::optional<std::pair<std::uint32_t, std::uint32_t>> sizeOf(std::string_view text) {
   const std::size_t cross = text.find('x');
   const auto width = edgeOf(text.substr(0, cross));
@@ -117,7 +117,7 @@ void CommandLineVisitor::heights(std::string_view name, std::vector<Span>& field
 }
 
 void CommandLineVisitor::flag(std::string_view name, const Switch& value, std::string_view help) {
-  // --NAME=false, too: a world may have switched it on.
+  // --NAME=false must also work, because a world may have turned the switch on.
   const auto set = [value](std::int64_t times) { value.field = (times > 0) == value.when_typed; };
   app_.add_flag_function(dashed(name), set, std::string(help))
       ->check(switchCheck())

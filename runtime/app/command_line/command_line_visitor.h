@@ -20,8 +20,8 @@
 
 namespace galactic {
 
-/// Makes an option of the command line of each option of the tables (visitRunOptions,
-/// visitOptions). They write to the fields only when they are typed.
+/// Turns each option of the tables (visitRunOptions, visitOptions) into an option of the command
+/// line. Fields change only if their options are typed.
 class CommandLineVisitor {
  public:
   explicit CommandLineVisitor(CLI::App& app) : app_(app) {}
@@ -51,7 +51,7 @@ class CommandLineVisitor {
             std::string_view help);
   void size(std::string_view name, DrawingOptions& drawing, std::string_view help);
   void policy(std::string_view name, std::string& field, std::string_view help);
-  /// With its opposite, --sampled.
+  /// Comes with its opposite, --sampled.
   void likeliest(std::string_view name, bool& field);
   template <class Options>
   void sensor(const SensorOption<Options>& option, Options& options) {
@@ -67,7 +67,8 @@ class CommandLineVisitor {
     }
     addNamed<T>(name, field, names, help)->option_text(shownNames<T>(names, now));
   }
-  /// Options are read in the order in which they are added, so that its parts refine it.
+  /// Options are read in the order in which they are added, so that the parts of a preset refine
+  /// it.
   template <class T>
   void preset(std::string_view name, T& field, const Preset<T>& preset, std::string_view help) {
     addNamed<T>(name, field, preset.names, help)
@@ -75,16 +76,16 @@ class CommandLineVisitor {
   }
 
  private:
-  /// As it is typed, with its letter if it has one.
+  /// The option as it is typed, with its letter if it has one.
   static std::string dashed(std::string_view name);
-  /// "0.1,0,-2": three numbers of -most to most.
+  /// Parses "0.1,0,-2": three numbers from -most to most.
   static std::optional<std::array<float, 3>> threeOf(std::string_view text, float most);
 
   template <class T>
   CLI::Option* add(std::string_view name, T& field, std::string_view help) {
     return app_.add_option(dashed(name), field, std::string(help))->group(heading_);
   }
-  /// An option whose text `set` takes over.
+  /// Adds an option whose text `set` reads.
   template <class Set>
   CLI::Option* addRead(std::string_view name, const Set& set, std::string_view help) {
     return app_.add_option_function<std::string>(dashed(name), set, std::string(help))
@@ -96,8 +97,8 @@ class CommandLineVisitor {
     const auto parse = [within](const std::string& text) { return drawnFrom(text, within); };
     return addParsed(name, field, parse, wantedDrawn(within), help);
   }
-  /// An option that is what `parse` makes of its text; a text of which that makes nothing is not
-  /// `wanted`.
+  /// Adds an option whose text `parse` turns into the value of `field`; if it returns none, the
+  /// message asks for `wanted`.
   template <class T, class Parse>
   CLI::Option* addParsed(std::string_view name, T& field, const Parse& parse,
                          const std::string& wanted, std::string_view help) {

@@ -9,12 +9,12 @@
 
 namespace galactic {
 
-/// The options as lines "name=value", for a recording.
+/// The options as lines of the form "name=value", for a recording.
 [[nodiscard]] std::string optionLines(const SimulationOptions& options);
 
-/// The options of such lines; those that are not named keep their defaults. Fails with
-/// kInvalidInput on a value that makes no sense, and with kUnsupported on an unknown name. `where`
-/// names the file.
+/// Reads options from such lines; options that they do not name keep their defaults. Fails with
+/// kInvalidInput on an invalid value, and with kUnsupported on an unknown name. `where` names the
+/// file.
 [[nodiscard]] Result<SimulationOptions> parseOptionLines(std::string_view lines,
                                                          const std::string& where);
 

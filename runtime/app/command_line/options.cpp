@@ -37,7 +37,7 @@ constexpr const char* kFooter =
     "  galactic-run world.pack --policy picker.pack --contact-sheet run.png --render rgb\n"
     "  galactic-run world.pack --policy scripted --steps 500 --envs 4 --view run.html\n"
     "  galactic-run world.pack --policy replay:run.rec";
-/// Perhaps the first that a newcomer reads.
+/// Perhaps the first message that a newcomer reads.
 constexpr const char* kNoPack =
     "found no pack; name one to open and verify it (galactic-run world.pack), or a world to step "
     "(galactic-run world.pack --steps 1000); galactic-bake makes packs";
@@ -45,8 +45,8 @@ constexpr const char* kPackOption = "PACK,--pack";
 constexpr const char* kReplayPrefix = "replay:";
 constexpr const char* kPolicySuffix = ".pack";
 
-/// PACK and --pack are one option, which has two lines in --help: only the first of them says that
-/// it is needed.
+/// PACK and --pack are one option with two lines in --help, of which only the first says that it is
+/// required.
 class RunHelp : public HelpLines<CLI::Formatter, CLI::Option> {
  public:
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
@@ -67,7 +67,7 @@ void addPlainOptions(CLI::App& app, RunOptions& options) {
       ->type_name("FILE");
 }
 
-/// What no single option can see to be wrong; empty when nothing is.
+/// What is wrong with the options taken together; empty if nothing is.
 std::string faultOf(const RunOptions& options) {
   if (options.bench && options.simulates) {
     return "--bench measures queries and simulates nothing; leave it out, or the other options";
@@ -97,7 +97,8 @@ std::string faultOf(const RunOptions& options) {
   return {};
 }
 
-/// Which option was typed without what it is a detail of; empty when none.
+/// Reports an option that was typed without the option that it is a detail of; empty if there is
+/// none.
 std::string loneDetail(const CLI::App& app, const RunOptions& options) {
   if (options.view.empty() && app.count("--view-envs") > 0) {
     return "--view-envs applies to the page of a run only; add --view FILE.html";
@@ -117,8 +118,8 @@ std::vector<std::string> longNamesOf(const CLI::App& app) {
   return names;
 }
 
-/// What is wrong with a command line that cannot be read. The parser misses the packs before it
-/// minds an option that it does not know, which is what may have been typed in their place.
+/// What is wrong with a command line that cannot be parsed. The parser complains about missing
+/// packs before it complains about an unknown option, which may be what was typed in their place.
 std::string complaintOf(const CLI::App& app, const CLI::ParseError& error) {
   std::string complaint = error.what();
   if (error.get_name() == "RequiredError") {
@@ -131,7 +132,7 @@ std::string complaintOf(const CLI::App& app, const CLI::ParseError& error) {
   return withSuggestions(complaint, longNamesOf(app));
 }
 
-/// Options that begin with `prefix`, all but `main`, and do nothing where `is_off`.
+/// Options that begin with `prefix`, except `main`, and that have no effect if `is_off`.
 struct Details {
   std::string_view prefix;
   std::string_view main;
@@ -139,7 +140,7 @@ struct Details {
   std::string_view what_to_do;
 };
 
-/// Which option of the simulation was typed and does nothing; empty when none.
+/// Reports a simulation option that was typed but has no effect; empty if there is none.
 std::string withoutEffect(const CLI::App& app, const SimulationOptions& simulation) {
   const SensorOptions& sensors = simulation.sensors;
   const TaskOptions& task = simulation.task;
@@ -206,7 +207,7 @@ std::optional<int> parseCommandLine(int argc, const char* const* argv, RunOption
   visitWorldTask(options.simulation, visitor);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
+  } catch (const CLI::Success& asked) {  // For --help and --version.
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
     return refuseCommandLine(complaintOf(app, error));

@@ -11,7 +11,7 @@
 
 namespace galactic {
 
-/// Heading of the options that start no simulation.
+/// Heading of the options that do not start a simulation.
 inline constexpr const char* kPlainGroup = "Options";
 
 /// What the command line asks for.
@@ -21,25 +21,25 @@ struct RunOptions {
   std::vector<std::string> packs;
   bool trusted = false;
   bool bench = false;
-  /// Whether errors alone are printed.
+  /// Whether to print only errors.
   bool is_quiet = false;
-  /// Whether any option of a simulation was typed: then the packs are a world and step, else they
-  /// are summarized.
+  /// Whether any option of a simulation was typed: then the packs are a world to step; otherwise
+  /// they are summarized.
   bool simulates = false;
   SimulationOptions simulation;
-  /// Why an option of the simulation that was typed does nothing beside all the others; empty when
-  /// none. World, policy and recording have a say in it: it counts when they have been read.
+  /// Why a typed simulation option has no effect alongside the others; empty if all have one.
+  /// Depends on world, policy and recording, so it is only valid after they have been read.
   std::string without_effect;
-  /// Of the whole batch.
+  /// Steps of the whole batch.
   std::uint64_t steps = 1000;
   std::string policy = "random";
-  /// Whether a learned policy takes its likeliest actions, instead of drawing them.
+  /// Whether a learned policy takes its likeliest actions instead of sampling.
   bool is_deterministic = false;
   DrawingOptions drawing;
   /// Files to write; empty for none.
   std::string record;
   std::string report;
-  /// The page that plays the run, and how many of the first envs it shows.
+  /// A page that plays the run, and how many envs it shows, from the first one on.
   std::string view;
   std::uint32_t view_envs = 4;
   /// The first episode of the first env as an animated scene.
@@ -47,13 +47,13 @@ struct RunOptions {
 
   /// The file of "replay:FILE"; empty for the other policies.
   [[nodiscard]] std::string replayFile() const;
-  /// The policy pack, where the policy is one; empty for the other policies.
+  /// The policy pack, if `policy` is one; empty for the other policies.
   [[nodiscard]] std::string policyFile() const;
 };
 
-/// Names each option of a run that is none of the simulation's (visitOptions), once: for the
-/// command line and for reports. Calls those of the table of simulations on `v`, `whole` with 64
-/// bits, too, those of visitDrawingOptions, and
+/// Visits each option of a run that is not one of the simulation's (visitOptions), in one place for
+/// the command line and for reports. On `v` it calls the functions of the table of simulations,
+/// with `whole` also for 64 bits, those of visitDrawingOptions, and
 ///   policy(name, field, help), likeliest(name, field).
 template <class Visitor>
 void visitRunOptions(RunOptions& o, Visitor& v) {
@@ -81,8 +81,8 @@ void visitRunOptions(RunOptions& o, Visitor& v) {
   visitDrawingOptions(o.drawing, v);
 }
 
-/// Reads the command line into `options`; what is not typed keeps its value. Prints help, version
-/// and what is wrong. Returns an exit code when there is nothing more to do.
+/// Reads the command line into `options`; options that are not typed keep their values. Prints
+/// help, version and errors. Returns an exit code if nothing remains to be done.
 [[nodiscard]] std::optional<int> parseCommandLine(int argc, const char* const* argv,
                                                   RunOptions& options);
 

@@ -16,7 +16,7 @@ std::string unknownPolicy(std::string_view name, std::string_view expected) {
 }
 
 void addSampling(CLI::App& app, bool& is_deterministic) {
-  // The text keeps the help from listing what excludes what.
+  // An explicit text keeps --help from listing which options exclude each other.
   constexpr const char* kNoText = " ";
   CLI::Option* likeliest = app.add_flag("--deterministic", is_deterministic,
                                         "Let a policy pack take its likeliest actions")

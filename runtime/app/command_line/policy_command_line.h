@@ -8,9 +8,9 @@ class App;
 
 namespace galactic {
 
-// What the command lines that play policies have in common.
+// What the command lines of programs that play policies have in common.
 
-/// Why a policy of this name is none of those `expected`.
+/// The message that a policy of this name is unknown; `expected` lists the policies.
 [[nodiscard]] std::string unknownPolicy(std::string_view name, std::string_view expected);
 
 /// Adds --deterministic and --sampled.

@@ -11,7 +11,7 @@
 namespace galactic {
 namespace {
 
-/// Whether an option of drawing counts for what a policy sees, too.
+/// Whether a drawing option also applies to what a policy sees.
 bool isForPolicies(std::string_view name) {
   const auto is_it = [name](const auto& option) { return name.substr(2) == option.name; };
   return name == "--backend" || name == "--device" ||
@@ -19,7 +19,7 @@ bool isForPolicies(std::string_view name) {
          std::ranges::any_of(kCameraJitterOptions, is_it);
 }
 
-/// Of noise of images that are not drawn.
+/// The complaint about noise for images that are not drawn.
 std::string noiseFault(const DrawingOptions& drawing) {
   constexpr const char* kFault = "{} applies to {} only; draw it with --render {}, or leave {} out";
   if (drawing.noise.changesDepth() && !drawing.hasDepth()) {
@@ -33,7 +33,7 @@ std::string noiseFault(const DrawingOptions& drawing) {
   return {};
 }
 
-/// Of a camera that stands in the home.
+/// The complaint about a camera that stands in the home.
 std::string eyeFault(const DrawingOptions& drawing, const CLI::App& app) {
   if (drawing.eye.has_value() != drawing.look_at.has_value()) {
     return drawing.eye ? "--eye needs --look-at, what the camera looks at; add it"

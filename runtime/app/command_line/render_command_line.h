@@ -9,7 +9,7 @@ class App;
 
 namespace galactic {
 
-/// What no single option of drawing can see to be wrong; empty when nothing is. `app` has
+/// What is wrong with the drawing options taken together; empty if nothing is. `app` must have
 /// parsed them.
 [[nodiscard]] std::string drawingFault(const DrawingOptions& drawing, const CLI::App& app);
 

@@ -13,47 +13,47 @@
 
 namespace galactic {
 
-/// What is drawn during a run, and what becomes of it.
+/// What a run draws, and where the images go.
 struct DrawingOptions {
   /// "rgb", "depth", "rgbd" or "rgbds" (with semantic ids); empty: nothing is drawn.
   std::string images;
-  /// Pixels.
+  /// In pixels.
   std::uint32_t width = 128;
   std::uint32_t height = 128;
   RenderBackend backend = RenderBackend::kAuto;
   /// RenderOptions::device.
   std::string device;
-  /// What the camera moves with: chooseCamera().
+  /// What the camera is mounted on, as in chooseCamera().
   std::string camera = "head";
-  /// Between the lower and the upper edge; 0: what belongs to the camera.
+  /// Vertical field of view; 0: that of the camera.
   float fov_degrees = 0;
-  /// CameraWish has the rest.
+  /// See CameraWish.
   std::array<float, 3> camera_position{};
   std::array<float, 3> camera_rpy_degrees{};
   float near = 0;
-  /// Where it stands in the home and what it looks at, points in the world, meters, instead of the
-  /// three above that place it on the robot: both, or none.
+  /// Where the camera stands in the home and what it looks at: points in the world, meters. They
+  /// replace the three options above that place it on the robot. Give both or neither.
   std::optional<std::array<float, 3>> eye;
   std::optional<std::array<float, 3>> look_at;
   ImageNoise noise;
   CameraJitter jitter;
 
-  /// Whether a policy pack is played, which may want images: then backend, device, noise and jitter
-  /// count, whether or not anything else is drawn.
+  /// Whether a policy pack is played, which may need images: then backend, device, noise and jitter
+  /// apply even if nothing else is drawn.
   bool policy_may_draw = false;
 
-  /// Folder of PNG files, contact sheet and video; empty for none.
+  /// A folder of PNG files, a contact sheet and a video; empty: none.
   std::string frames;
   std::string contact_sheet;
   std::string video;
-  /// Each how many steps, and of the first how many envs, there is a picture.
+  /// Pictures are made once in this many steps, and of this many envs, from the first one on.
   std::uint32_t frame_every = 1;
   std::uint32_t frame_envs = 4;
 
-  /// Whether pictures show what the simulation knows beside what the camera sees.
+  /// Whether pictures show the simulation's internal state beside what the camera sees.
   bool debug_view = false;
   std::string debug_camera = "follow";
-  /// Whose column grid is shown, meters; 0: the smallest of the world.
+  /// Radius of the spheres whose column grid is shown, meters; 0: the smallest in the world.
   float debug_radius = 0;
 
   [[nodiscard]] bool draws() const { return !images.empty(); }
@@ -68,7 +68,7 @@ struct DrawingOptions {
   }
 };
 
-/// What --help shows for the value of an option.
+/// What --help shows as the value of an option.
 struct Shown {
   const char* value;
 };
@@ -81,13 +81,13 @@ inline constexpr auto kBackendNames = [] {
   }
   return names;
 }();
-/// Heading of the options of drawing.
+/// Heading of the drawing options.
 inline constexpr const char* kDrawingGroup = "Rendering";
 
-/// Names each option of drawing, once: for the command line and for reports. Calls on `v` those of
-/// the table of simulations (option_table.h), and
+/// Visits each drawing option, in one place for the command line and for reports. Calls the
+/// functions of the table of simulations (option_table.h) on `v`, and
 ///   word(name, field, words, help), size(name, drawing, help), text(name, field, Shown, help),
-///   wish(name, field, Within, Shown, help), of a number that is 0 where nobody wishes one,
+///   wish(name, field, Within, Shown, help), for a number that is 0 unless it is given,
 ///   three(name, field, most, Shown, help), point(name, field, most, Shown, help),
 ///   sensor(SensorOption, values).
 template <class Visitor>

@@ -16,7 +16,7 @@ using pictures::textWidth;
 namespace {
 
 constexpr std::string_view kBetweenPhrases = ", ";
-/// Of a legend's colors, and after each entry.
+/// Size of the colors in a legend, and gaps after a color and after an entry.
 constexpr int kSwatch = kTextHeight;
 constexpr int kSwatchGap = 6;
 constexpr int kEntryGap = 24;
@@ -33,7 +33,7 @@ std::vector<std::string_view> phrasesOf(std::string_view caption) {
   return phrases;
 }
 
-/// The lines of a caption: as many phrases in each as `width` pixels take, at least one.
+/// The lines of a caption: each has as many phrases as fit into `width` pixels, but at least one.
 std::vector<std::string> linesOf(std::string_view caption, int width) {
   std::vector<std::string> lines;
   for (const std::string_view phrase : phrasesOf(caption)) {
@@ -51,14 +51,14 @@ int widthOf(const SheetGuide::Entry& entry) {
   return (entry.color ? kSwatch + kSwatchGap : 0) + textWidth(entry.text);
 }
 
-/// Where an entry of a legend goes.
+/// The place of an entry in the legend.
 struct PlacedEntry {
   const SheetGuide::Entry* entry = nullptr;
   int x = 0;
   int line = 0;
 };
 
-/// The entries of a legend from left to right and line to line, in `width` pixels.
+/// Places the entries of a legend from left to right and line by line, within `width` pixels.
 std::vector<PlacedEntry> placesOf(const SheetGuide& guide, int width) {
   std::vector<PlacedEntry> places;
   int line = 0;

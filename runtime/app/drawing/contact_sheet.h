@@ -9,49 +9,50 @@
 
 namespace galactic {
 
-/// A picture of a sheet and what stands below it.
+/// A picture of a sheet and the caption below it.
 struct SheetCell {
   pictures::Image picture;
-  /// Phrases with ", " between them, from line to line as the picture is wide.
+  /// Phrases separated by ", ", which are wrapped to the width of the picture.
   std::string caption;
 };
 
-/// What explains the pictures of a sheet.
+/// Explains the pictures of a sheet.
 struct SheetGuide {
-  /// Above the pictures of each column, `x` pixels from their left edge.
+  /// Stands above the pictures of each column, `x` pixels from their left edge.
   struct Heading {
     int x = 0;
     std::string text;
   };
-  /// A color and what it means, or what follows in its line.
+  /// A color and its meaning; without a color, text that continues the line.
   struct Entry {
     std::optional<pictures::Rgb> color;
     std::string text;
   };
 
   std::vector<Heading> headings;
-  /// Below all of them, each on a line of its own, or on more where the sheet is narrow.
+  /// Lines below all pictures; each wraps if the sheet is narrow.
   std::vector<std::vector<Entry>> legend;
 };
 
 /// Pixels around and between the cells of a sheet, and between picture and caption.
 inline constexpr int kSheetGap = 8;
-/// More of them between captions that are wider than their pictures: else they read as one.
+/// The gap between captions that are wider than their pictures: larger, or they would read as one.
 inline constexpr int kCaptionGap = 16;
-/// And from line to line of a caption.
+/// Pixels from line to line of a caption.
 inline constexpr int kCaptionAdvance = 18;
 
-/// How cells lie on a sheet.
+/// How the cells of a sheet are laid out.
 struct SheetLayout {
   int across = 0;
   int down = 0;
-  /// Of a cell, its caption included, pixels.
+  /// Size of a cell with its caption, pixels.
   int cell_width = 0;
   int cell_height = 0;
-  /// Of the headings above and the legend below all cells, with their gaps; 0 without.
+  /// Height of the headings above and the legend below all cells, including their gaps; 0 without
+  /// them.
   int headings_height = 0;
   int legend_height = 0;
-  /// What the widest entry of the legend needs.
+  /// The width that the widest entry of the legend needs.
   int least_width = 0;
 
   [[nodiscard]] int width() const;
@@ -60,15 +61,15 @@ struct SheetLayout {
   }
 };
 
-/// Of `count` cells, `columns` in each row, all as large as `picture`, or as the longest phrase of
-/// `captions` is wide: those of the cells, or the longest.
+/// Lays out `count` cells, `columns` in each row, all as large as `picture`, or as wide as the
+/// longest phrase of `captions`: those of all cells, or just the longest.
 [[nodiscard]] SheetLayout sheetLayout(std::size_t count, std::size_t columns,
                                       const pictures::Image& picture,
                                       std::span<const std::string> captions,
                                       const SheetGuide& guide = {});
 
-/// The cells, row by row, `columns` in each; all as large as the first one, or as their captions
-/// are wide. There is at least one cell.
+/// Draws the cells row by row, `columns` in each row; all are as large as the first one, or as wide
+/// as their captions. Needs at least one cell.
 [[nodiscard]] pictures::Image contactSheet(const std::vector<SheetCell>& cells, std::size_t columns,
                                            const SheetGuide& guide = {});
 

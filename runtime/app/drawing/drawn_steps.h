@@ -12,25 +12,25 @@
 
 namespace galactic {
 
-/// Steps a batch and draws it: the state before a step is drawn while the step is simulated.
+/// Steps a batch and draws it: the state before a step is drawn while the step is being simulated.
 class DrawnSteps {
  public:
-  /// One step in so many is simulated and drawn one after the other instead, to measure each alone.
-  /// The first step of a run, in which memory is touched for the first time, is not measured.
+  /// One in this many steps is simulated and drawn one after the other, to measure each alone. The
+  /// first step of a run, which touches memory for the first time, is not measured.
   static constexpr std::uint64_t kMeasureEvery = 16;
 
-  /// Of the run of `options`. Fails with the errors of PictureOutput::open and Rendering::create.
+  /// For the run of `options`. Fails with the errors of PictureOutput::open and Rendering::create.
   [[nodiscard]] static Result<DrawnSteps> create(const World& world,
                                                  const BatchSimulator& simulator,
                                                  const RunOptions& options);
 
-  /// Draws the state and simulates a step; `report.steps` are done so far. Adds to the report's
-  /// times.
+  /// Draws the state and simulates a step; `report.steps` steps have been done so far. Adds to the
+  /// times in the report.
   [[nodiscard]] Result<void> step(BatchSimulator& simulator, std::span<const float> actions,
                                   RunReport& report);
 
-  /// After the last step, also of a run that ended early: shows the last state and ends all
-  /// pictures.
+  /// Call it after the last step, even if the run ended early: draws the last state and completes
+  /// all pictures.
   [[nodiscard]] Result<void> finish(const BatchSimulator& simulator, const RunReport& report);
 
   [[nodiscard]] const BatchRenderer& renderer() const { return rendering_.renderer(); }

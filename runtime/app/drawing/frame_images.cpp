@@ -33,7 +33,7 @@ DeepImage deepImage(const DrawnImage& image) {
 
 Rgb semanticColor(std::uint32_t id) {
   if (id == 0) return {};
-  // Numbers that follow each other become colors far apart, none of them dark.
+  // Maps consecutive ids to colors that are far apart and never dark.
   constexpr std::uint32_t kScatter = 2654435769U;
   constexpr std::uint32_t kDarkest = 64;
   const std::uint32_t bits = id * kScatter;

@@ -28,20 +28,20 @@ namespace {
 
 using pictures::Image;
 
-/// Between the images of a tile, and between the tiles of a video; pixels.
+/// Gap between the images of a tile, and between the tiles of a video; pixels.
 constexpr int kTileGap = 2;
 
-/// Most pixels along a side of a sheet: what viewers and browsers show.
+/// Most pixels along a side of a sheet that viewers and browsers can show.
 constexpr int kMostSheetSide = 16384;
 
-/// Beside the frames: what semantic ids mean.
+/// A file beside the frames with the meanings of semantic ids.
 constexpr std::string_view kLegendName = "semantics.json";
 
 std::string frameName(std::size_t env, std::uint64_t step, std::string_view what) {
   return fmt::format("env_{:04}_step_{:06}_{}", env, step, what);
 }
 
-/// Where the camera of a frame stood and how it makes an image, for programs that read frames.
+/// Describes where the camera of a frame stood and how it projects, for programs that read frames.
 std::string cameraText(const EnvFrame& frame) {
   const std::array<float, 9> k =
       cameraMatrix(frame.seen_from, frame.camera.width, frame.camera.height);
@@ -54,12 +54,12 @@ std::string cameraText(const EnvFrame& frame) {
       x.x, y.x, z.x, t.x, x.y, y.y, z.y, t.y, x.z, y.z, z.z, t.z);
 }
 
-/// How `count` tiles are laid out in a video: about as many rows as columns.
+/// Number of columns for `count` tiles in a video: about as many columns as rows.
 std::size_t tileColumns(std::size_t count) {
   return static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
 }
 
-/// What an idle env shows is no task any more.
+/// An idle env has no task, so its caption names none.
 std::string captionOf(std::size_t env, std::uint64_t step, const EnvFrame& frame) {
   if (frame.is_idle) return fmt::format("env {}, step {}, idle", env, step);
   std::string caption = fmt::format("env {}, step {}, episode {}", env, step, frame.episode);
@@ -78,7 +78,7 @@ std::vector<std::string_view> imagesOf(const DrawingOptions& options) {
   return images;
 }
 
-/// A tile as it will be, of nothing.
+/// An empty tile of the final size.
 Image emptyTile(const DrawingOptions& options) {
   const int images = static_cast<int>(imagesOf(options).size());
   return {images * (static_cast<int>(options.width) + kTileGap) - kTileGap,
@@ -90,7 +90,8 @@ bool isViewable(const SheetLayout& layout) {
   return layout.width() <= kMostSheetSide && layout.height() <= kMostSheetSide;
 }
 
-/// The largest number up to `most` that `fits`, as all smaller ones do; 0 when none does.
+/// The largest number up to `most` for which `fits` is true; 0 if there is none. If a number fits,
+/// all smaller ones must fit, too.
 template <typename Fits>
 std::size_t largestThat(std::size_t most, const Fits& fits) {
   std::size_t known = 0;
@@ -105,7 +106,7 @@ std::size_t largestThat(std::size_t most, const Fits& fits) {
   return known;
 }
 
-/// What depths and the colors of the debug view mean, and which image is which.
+/// Explains depths and the colors of the debug view, and which image is which.
 SheetGuide guideOf(const DrawingOptions& options) {
   SheetGuide guide;
   const std::vector<std::string_view> images = imagesOf(options);
@@ -191,7 +192,7 @@ Result<PictureOutput> PictureOutput::open(const DrawingOptions& options, const P
   return output;
 }
 
-/// How a sheet of the first `envs` lies when a run does all its steps.
+/// The layout of a sheet of the first `envs` envs for a run that does all its steps.
 SheetLayout PictureOutput::plannedSheet(const PicturedRun& run, const DrawingOptions& options,
                                         std::size_t envs) const {
   EnvFrame frame;
@@ -202,7 +203,7 @@ SheetLayout PictureOutput::plannedSheet(const PicturedRun& run, const DrawingOpt
                      guideOf(options));
 }
 
-/// What makes a sheet that is too large one that can be viewed.
+/// How to make a sheet that is too large small enough to be viewed.
 std::string PictureOutput::adviceForSheet(const PicturedRun& run) const {
   const std::size_t envs = largestThat(
       envs_, [&](std::size_t count) { return isViewable(plannedSheet(run, options_, count)); });
@@ -218,7 +219,7 @@ std::string PictureOutput::adviceForSheet(const PicturedRun& run) const {
                      edge);
 }
 
-/// Before the run: it would be a pity afterwards.
+/// Called before the run, because failing afterwards would waste it.
 Result<void> PictureOutput::checkSheet(const PicturedRun& run) const {
   if (!sheet_) return {};
   const SheetLayout layout = plannedSheet(run, options_, envs_);
@@ -228,7 +229,7 @@ Result<void> PictureOutput::checkSheet(const PicturedRun& run) const {
                             "a side; {}",
                             layout.width(), layout.height(), kMostSheetSide, adviceForSheet(run)));
   }
-  // The tiles of all moments that are held, the sheet, and the file that becomes of it.
+  // The tiles of all moments that are held, the sheet, and its encoded file.
   constexpr double kHeld =
       static_cast<double>(SheetMoments::mostHeld()) / static_cast<double>(SheetMoments::kMost);
   constexpr double kBytesPerPixel = (kHeld + 2) * sizeof(pictures::Rgb);
@@ -273,7 +274,7 @@ Result<void> PictureOutput::show(std::uint64_t step, std::span<const EnvFrame> f
   for (const EnvFrame& frame : frames) tiles.push_back(tileOf(frame));
   Result<void> filmed;
   if (is_filmed) filmed = video_->append(videoFrame(tiles));
-  // The video has ended, and the sheet goes on without it.
+  // The video has failed; the sheet goes on without it.
   if (!filmed) video_.reset();
   if (is_on_sheet) {
     SheetMoments::Moment moment{.step = step, .cells = {}};
@@ -327,7 +328,7 @@ Image PictureOutput::videoFrame(std::span<const Image> tiles) const {
   const std::size_t rows = (tiles.size() + columns - 1) / columns;
   const int step_x = tiles[0].width() + kTileGap;
   const int step_y = tiles[0].height() + kTileGap;
-  // The usual codecs take even sizes only.
+  // Common codecs accept only even sizes.
   const auto even = [](std::size_t count, int step) {
     const int length = static_cast<int>(count) * step - kTileGap;
     return length + length % 2;

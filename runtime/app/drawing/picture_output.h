@@ -18,7 +18,7 @@
 
 namespace galactic {
 
-/// What is shown of one env at one moment: what its camera sees, and the debug view where there is
+/// What is shown of one env at one moment: the image of its camera, and the debug view if there is
 /// one.
 struct EnvFrame {
   DrawnImage camera;
@@ -26,57 +26,59 @@ struct EnvFrame {
   RenderCamera seen_from = {};
   /// Whether the env is idle (BatchSimulator::idle()).
   bool is_idle = false;
-  /// Number of the episode, its target, and what the hand holds; empty: nothing.
+  /// Index of the episode, its target, and what the hand holds; empty: nothing.
   std::uint32_t episode = 0;
   std::string_view target = {};
   std::string_view held = {};
 };
 
-/// The run that pictures are made of.
+/// The run that the pictures show.
 struct PicturedRun {
   std::uint64_t steps = 0;
   std::size_t envs = 0;
-  /// Of all objects and episodes.
+  /// The longest name of an object in any episode.
   std::string_view longest_name = {};
   std::size_t episodes = 0;
 };
 
-/// What `frame` looks like in sheets and videos: color, depth, semantics and debug view side by
-/// side, as far as they are there.
+/// A frame as it appears in sheets and videos: color, depth, semantics and debug view side by side,
+/// as far as they exist.
 [[nodiscard]] pictures::Image tileOf(const EnvFrame& frame);
 
-/// Whether a frame may have this name, or what stands beside the frames.
+/// Whether a frame, or the file that accompanies the frames, may have this name.
 [[nodiscard]] bool isFrameName(std::string_view name);
 
-/// Makes the folder that frames are written into, if needed, and removes the frames that killed
-/// runs began to write there. Fails with kIo when it cannot be made, or when no frame can be
-/// written there.
+/// Makes the folder for frames if needed, and removes the frames that killed runs had begun to
+/// write there. Fails with kIo when the folder cannot be made, or when no frame can be written
+/// there.
 [[nodiscard]] Result<void> makeFrameFolder(const std::filesystem::path& folder);
 
-/// Writes frames, contact sheet and video of a run, as the options say.
+/// Writes frames, contact sheet and video of a run, as the options ask.
 class PictureOutput {
  public:
-  /// Whether files can be written is for others to try: makeFrameFolder() and tryFile(). Fails with
+  /// Does not check whether files can be written: makeFrameFolder() and tryFile() do. Fails with
   /// the errors of VideoPipe, and with kUnsupported when the sheet would be too large.
   [[nodiscard]] static Result<PictureOutput> open(const DrawingOptions& options,
                                                   const PicturedRun& run);
 
-  /// Writes what the ids of semantic images mean beside the frames; nothing where there are none.
+  /// Writes the meaning of the ids in semantic images beside the frames; does nothing if there are
+  /// no frames.
   [[nodiscard]] Result<void> writeLegend(std::string_view json) const;
 
   /// Whether the state after `step` steps is shown.
   [[nodiscard]] bool wants(std::uint64_t step) const;
-  /// Whether that state is shown if it is the last one: a sheet ends with it.
+  /// Whether that state is shown if it is the last one: a sheet ends with the last state.
   [[nodiscard]] bool wantsLast(std::uint64_t step) const;
-  /// How many envs are shown, from the first one on.
+  /// How many envs are shown, starting with the first one.
   [[nodiscard]] std::size_t envCount() const { return envs_; }
 
-  /// The state after `step` steps, which is wanted; `frames`: of envCount() envs. After a failure,
-  /// finish() still writes what there is, all but a video that failed.
+  /// Adds the state after `step` steps, for which wants() must be true. `frames` has envCount()
+  /// elements. After a failure, finish() still writes everything except a video that failed.
   [[nodiscard]] Result<void> add(std::uint64_t step, std::span<const EnvFrame> frames);
-  /// The same of the state with which the run ends, which is wanted as the last one.
+  /// The same for the state with which the run ends, for which wantsLast() must be true.
   [[nodiscard]] Result<void> addLast(std::uint64_t step, std::span<const EnvFrame> frames);
-  /// After the last step, also of a run that ended early: writes the sheet and ends the video.
+  /// Call it after the last step, even if the run ended early: writes the sheet and completes the
+  /// video.
   [[nodiscard]] Result<void> finish();
 
  private:

@@ -14,7 +14,7 @@
 namespace galactic {
 namespace {
 
-/// Of one image, on this side; a backend has its own memory besides.
+/// Memory of one image on our side; a backend has its own memory in addition.
 double bytesPerImage(const RenderOptions& options) {
   const std::size_t per_pixel = static_cast<std::size_t>(options.color) +
                                 (options.depth ? sizeof(float) : 0) +
@@ -22,8 +22,9 @@ double bytesPerImage(const RenderOptions& options) {
   return static_cast<double>(per_pixel) * options.width * options.height;
 }
 
-/// OpenGL's software driver frees and takes its lists anew for every flush: with glibc's thresholds
-/// that costs a third of its time in page faults. They are the program's to set, not the library's.
+/// OpenGL's software driver frees and reallocates its lists on every flush: with glibc's default
+/// thresholds, it spends a third of its time on page faults. The program may change the thresholds;
+/// the library should not.
 void keepFreedMemory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
@@ -47,7 +48,7 @@ Result<ImageBatch> ImageBatch::create(const RenderLibrary& library, const Render
       checkMemory(static_cast<double>(images) * bytesPerImage(options),
                   fmt::format("{} images of {} x {} pixels", images, options.width, options.height),
                   "draw fewer envs at once (--envs), or smaller images (--size)"));
-  // It is tried where it is asked for, alone.
+  // The software driver is used only if it is asked for.
   if (options.device == "software") keepFreedMemory();
   ASSIGN_OR_RETURN(BatchRenderer renderer, BatchRenderer::create(library, options));
   return ImageBatch(std::move(renderer), images);
@@ -159,7 +160,7 @@ class DebugBatch {
 
 }  // namespace
 
-/// Stays in one place: its parts look at each other.
+/// Must not move, because its parts refer to each other.
 struct Rendering::Parts {
   Parts(const World& of, WorldModels world_models) : world(of), models(std::move(world_models)) {}
 

@@ -42,7 +42,7 @@ std::vector<SheetMoments::Moment> SheetMoments::take() {
   auto next = held_.begin();
   for (std::size_t row = 0; row < kMost; ++row) {
     const std::uint64_t wanted = spread(last, row, kMost);
-    // Enough are left for the rows below.
+    // Leaves enough moments for the rows below.
     const auto end = held_.end() - static_cast<std::ptrdiff_t>(kMost - 1 - row);
     next = std::min_element(next, end, [wanted](const Moment& a, const Moment& b) {
       return distance(a.step, wanted) < distance(b.step, wanted);

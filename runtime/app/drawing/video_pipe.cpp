@@ -29,7 +29,7 @@ tl::unexpected<Error> failure(const std::filesystem::path& path, const std::stri
   return fail(ErrorCode::kIo, path.string(), message);
 }
 
-/// Whether some folder of PATH that may be looked into has a file of this name.
+/// Whether a folder of PATH that can be read contains a file of this name.
 bool isOnPath(const std::string& program) {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
@@ -45,7 +45,8 @@ bool isOnPath(const std::string& program) {
 
 std::string textOf(int error) { return std::generic_category().message(error); }
 
-/// How a child process is set up: what it reads from, and that the terminal's Ctrl-C is not for it.
+/// How a child process is set up: it reads from `input`, and the terminal's Ctrl-C does not reach
+/// it.
 class SpawnSetup {
  public:
   explicit SpawnSetup(int input) {
@@ -67,7 +68,7 @@ class SpawnSetup {
   SpawnSetup(SpawnSetup&&) = delete;
   SpawnSetup& operator=(SpawnSetup&&) = delete;
 
-  /// The error number of the attempt to start argv[0] from PATH; 0 for none.
+  /// Starts argv[0] from PATH; returns the error number, 0 if there is none.
   int start(std::vector<std::string> arguments, pid_t& child) const {
     std::vector<char*> argv;
     argv.reserve(arguments.size() + 1);
@@ -85,7 +86,7 @@ std::vector<std::string> ffmpegCommand(const std::filesystem::path& path, const 
   return {"ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
           fmt::format("{}x{}", like.width(), like.height()), "-r", std::to_string(VideoPipe::kRate),
           "-i", "-", "-an", "-pix_fmt",
-          // Whatever the name begins with, it is no option and no protocol.
+          // Prevents a path from being read as an option or a protocol.
           "yuv420p", (path.is_absolute() ? path : "." / path).string()};
 }
 
@@ -106,10 +107,10 @@ class VideoPipe::Child {
                   "has no ending that tells ffmpeg the format; name it, for example, run.mp4");
     }
     (void)removeStaleParts(path_.parent_path(), {.target = path_.filename().string()});
-    // The ending tells ffmpeg the format.
+    // Keep the extension, by which ffmpeg chooses the format.
     part_.emplace(path_, PartEnding::kOfTarget);
     if (part_->error() != 0) return failure(path_, "cannot be written: " + textOf(part_->error()));
-    // A socket, unlike a pipe, can be told to raise no signal when nobody reads it.
+    // Unlike a pipe, a socket can be set to raise no signal when nobody reads from it.
     std::array<int, 2> ends{-1, -1};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
       return failure(path_, "cannot make a pipe to ffmpeg: " + textOf(errno));
@@ -121,7 +122,7 @@ class VideoPipe::Child {
     if (error == 0) return {};
     pid_ = 0;
     closeSocket();
-    // A folder of PATH that may not be looked into says no more than that it may not.
+    // A folder of PATH that cannot be read causes EACCES even if there is no ffmpeg.
     if (error == ENOENT || (error == EACCES && !isOnPath("ffmpeg"))) {
       return fail(ErrorCode::kUnsupported, path_.string(),
                   "needs ffmpeg, which is not on PATH; install it, or take --frames instead");

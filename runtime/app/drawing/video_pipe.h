@@ -7,25 +7,25 @@
 
 namespace galactic {
 
-/// A video that ffmpeg, found on PATH, makes of pictures sent to it one by one. It grows under
-/// another name beside its path and is renamed when it is whole.
+/// A video that ffmpeg, which must be on PATH, encodes from pictures sent to it one by one. The
+/// file grows under another name beside its path and is renamed when it is whole.
 class VideoPipe {
  public:
   /// Frames per second.
   static constexpr int kRate = 30;
 
-  /// Of frames of one size; ffmpeg chooses the format by the ending of `path`. Fails with
-  /// kUnsupported when there is no ffmpeg, and with kIo when it cannot be started.
+  /// All frames must have the size of `like`; ffmpeg chooses the format by the extension of `path`.
+  /// Fails with kUnsupported when there is no ffmpeg, and with kIo when it cannot be started.
   [[nodiscard]] static Result<VideoPipe> start(const std::filesystem::path& path,
                                                const pictures::Image& like);
-  /// Not finished: leaves no file behind.
+  /// Leaves no file behind if the video was not finished.
   ~VideoPipe();
   VideoPipe(VideoPipe&&) noexcept;
   VideoPipe& operator=(VideoPipe&&) noexcept;
 
   /// Fails with kIo when ffmpeg has ended early.
   [[nodiscard]] Result<void> append(const pictures::Image& frame);
-  /// After the last frame. Fails with kIo when ffmpeg or the file system does.
+  /// Call it after the last frame. Fails with kIo when ffmpeg or the file system fails.
   [[nodiscard]] Result<void> finish();
 
  private:

@@ -14,7 +14,7 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-/// Room for the answers of the longest group, used again for each.
+/// Room for the answers of the longest group, reused for each group.
 struct Answers {
   explicit Answers(std::size_t count) : clearance(count), down(count), up(count) {}
 
@@ -37,8 +37,7 @@ void askOneByOne(const ColumnGrid& grid, const SphereCenters& centers, Answers& 
   }
 }
 
-/// Seconds of the fastest of several passes: the others were disturbed by something else on the
-/// machine.
+/// Seconds of the fastest of several passes: other load on the machine slowed the others down.
 template <class Ask>
 double measure(std::span<const SceneGrids> scenes, const QueryWorkload& workload, Ask ask) {
   constexpr int kPasses = 7;
@@ -55,7 +54,8 @@ double measure(std::span<const SceneGrids> scenes, const QueryWorkload& workload
   return best;
 }
 
-/// How many of the queries find a free place; apart from the clock, since counting takes time too.
+/// How many of the queries find a free place; separate from the measurement, since counting takes
+/// time, too.
 std::size_t countFree(std::span<const SceneGrids> scenes, const QueryWorkload& workload) {
   Answers answers(workload.longest);
   std::ptrdiff_t free = 0;

@@ -14,10 +14,10 @@ constexpr std::size_t kHandSpheres = 16;
 constexpr std::size_t kArmSpheres = 16;
 constexpr std::size_t kBodySpheres = 8;
 constexpr std::size_t kRobotSpheres = kHandSpheres + kArmSpheres + kBodySpheres;
-/// Farthest that a robot drives in a step, meters.
+/// Farthest that a robot moves in a step, meters.
 constexpr float kStep = 0.02F;
 
-/// Uniform numbers, the same with every standard library.
+/// Uniform random numbers that are the same with every standard library.
 class Uniform {
  public:
   explicit Uniform(std::uint32_t seed) : random_(seed) {}
@@ -34,7 +34,7 @@ class Uniform {
   std::mt19937 random_;
 };
 
-/// A robot: where its base stands and where its spheres are relative to it.
+/// A robot: the place of its base, and the places of its spheres relative to the base.
 struct Robot {
   std::uint32_t scene = 0;
   Vec3 base;
@@ -43,7 +43,7 @@ struct Robot {
 };
 
 /// The middle of a random column with free space, at the bottom of its lowest span; the grid's
-/// corner when none is found.
+/// corner if none is found.
 Vec3 freePlace(const ColumnGrid& grid, Uniform& uniform) {
   constexpr int kTries = 1000;
   const ColumnGridLayout& layout = grid.layout();

@@ -9,27 +9,28 @@
 
 namespace galactic {
 
-/// The grids of one scene, ascending radius.
+/// The grids of one scene, by ascending radius.
 using SceneGrids = std::vector<ColumnGrid>;
 
-/// Spheres of one radius in one scene that are asked for together.
+/// Spheres of one radius in one scene that are queried together.
 struct QueryGroup {
   std::uint32_t scene = 0;
   std::uint32_t grid = 0;
-  /// Range in the workload's coordinates.
+  /// Range of the group in the workload's coordinates.
   std::size_t first = 0;
   std::size_t count = 0;
 };
 
-/// A fixed sequence of queries, made before any clock runs. Coordinates are in the world frame.
+/// A fixed sequence of queries, made before any time is measured. Coordinates are in the world
+/// frame.
 struct QueryWorkload {
   std::string name;
   std::vector<float> x, y, z;
   std::vector<QueryGroup> groups;
-  /// Spheres that exist at a time; sphere number n is asked for again at query n + spheres. 0 when
+  /// Number of spheres that exist at a time; sphere n is queried again at query n + spheres. 0 if
   /// the queries are unrelated.
   std::size_t spheres = 0;
-  /// Longest group.
+  /// Spheres in the longest group.
   std::size_t longest = 0;
 
   [[nodiscard]] SphereCenters centers(const QueryGroup& group) const {
@@ -41,9 +42,9 @@ struct QueryWorkload {
 };
 
 /// `robots` robots of 40 spheres (16 of the smallest radius on the hand, 16 of the middle one along
-/// the arm, 8 of the largest one up the body), spread over the scenes' free space, each moving at
-/// most 2 cm per step for `steps` steps. `scenes` must hold at least one grid each. The same seed
-/// gives the same workload.
+/// the arm, 8 of the largest one up the body), spread over the free space of the scenes, each
+/// moving at most 2 cm per step for `steps` steps. Each scene must have at least one grid. The same
+/// seed gives the same workload.
 [[nodiscard]] QueryWorkload coherentWorkload(std::span<const SceneGrids> scenes,
                                              std::uint32_t robots, std::uint32_t steps,
                                              std::uint32_t seed);

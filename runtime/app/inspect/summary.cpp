@@ -32,7 +32,7 @@ std::string openingLine(const PackFile& pack, const OpenTimes& times) {
                      verified);
 }
 
-/// What kind of asset it is, with its name or how much it has of what.
+/// The kind of the asset, with its name or with the numbers of its parts.
 std::string titleOf(const schema::Pack& pack) {
   if (const schema::ObjectSet* set = pack.asset_as_ObjectSet()) {
     return counted(set->objects()->size(), "object");

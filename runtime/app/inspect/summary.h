@@ -7,14 +7,15 @@
 
 namespace galactic {
 
-/// How long opening took, seconds of wall clock.
+/// How long opening took, in seconds of wall-clock time.
 struct OpenTimes {
   double map = 0;
-  /// 0 when the pack was trusted.
+  /// 0 if the pack was trusted.
   double verify = 0;
 };
 
-/// What a pack of any kind is and how it opened, its warnings: lines of text, each ended.
+/// Describes a pack of any kind, how it was opened, and its warnings; lines of text, each ended by
+/// a line break.
 [[nodiscard]] std::string summarize(const PackFile& pack, const OpenTimes& times);
 
 }  // namespace galactic

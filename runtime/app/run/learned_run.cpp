@@ -29,7 +29,7 @@ CameraWish wishOf(const PolicyImage& image, const CameraJitter& jitter, const st
           .options = {.camera = pack, .fov = pack, .position = pack, .rpy = pack, .near = pack}};
 }
 
-/// Draws what a policy wants to see. Stays in one place: its parts look at each other.
+/// Draws the images that a policy sees. Must not move, because its parts refer to each other.
 class PolicyEyes {
  public:
   static Result<std::unique_ptr<PolicyEyes>> create(const PolicyImage& image, const World& world,
@@ -71,7 +71,7 @@ class PolicyEyes {
   std::optional<ImageBatch> images_;
 };
 
-/// Fails where noise is to be added to images that are drawn neither for the policy nor for people.
+/// Fails if noise was requested for images that are drawn neither for the policy nor for people.
 Result<void> checkNoise(const OpenedPolicy& policy, const DrawingOptions& drawing) {
   const std::optional<PolicyImage>& image = policy.needs.image;
   const bool has_depth = drawing.hasDepth() || (image && image->depth);
@@ -89,7 +89,7 @@ Result<void> checkNoise(const OpenedPolicy& policy, const DrawingOptions& drawin
   return {};
 }
 
-/// The actions of a network, which sees what the simulator observes, and images of it.
+/// A network as a policy: it gets the simulator's observations, and images.
 class NetworkPolicy final : public Policy {
  public:
   NetworkPolicy(LearnedPolicy policy, const BatchSimulator& simulator,

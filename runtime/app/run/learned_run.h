@@ -11,7 +11,7 @@
 
 namespace galactic {
 
-/// A policy pack that is to be played.
+/// A policy pack to be played.
 struct OpenedPolicy {
   PackFile pack;
   PolicyInterface needs;
@@ -20,14 +20,14 @@ struct OpenedPolicy {
 /// Opens RunOptions::policyFile(). Fails with the errors of PackFile::open and policyInterface.
 [[nodiscard]] Result<OpenedPolicy> openPolicy(const RunOptions& options);
 
-/// Gives the simulation the options that the policy was trained with. Fails with kInvalidInput
-/// where a trusted pack has others than there are.
+/// Gives the simulation the options with which the policy was trained. Fails with kInvalidInput if
+/// a trusted pack names options or values that do not exist.
 [[nodiscard]] Result<void> applyNeeds(const OpenedPolicy& policy, SimulationOptions& simulation);
 
-/// The policy, ready to act: where its network wants images, it draws them by itself. `world` and
-/// `simulator` must outlive it. Fails with the errors of LearnedPolicy::create and, where images
-/// are wanted, with those of chooseCamera, WorldModels::from and ImageBatch::create; with
-/// kInvalidInput also where noise was asked for of images that nobody draws.
+/// Makes the policy, ready to act; it draws the images that its network needs by itself. `world`
+/// and `simulator` must outlive it. Fails with the errors of LearnedPolicy::create and, if it needs
+/// images, with those of chooseCamera, WorldModels::from and ImageBatch::create; also with
+/// kInvalidInput if noise was requested for images that nobody draws.
 [[nodiscard]] Result<std::unique_ptr<Policy>> makeLearnedPolicy(const OpenedPolicy& policy,
                                                                 const World& world,
                                                                 const BatchSimulator& simulator,

@@ -6,12 +6,12 @@
 
 namespace galactic {
 
-/// One line on a terminal that says how a run goes; silent elsewhere.
+/// One line on a terminal that shows the progress of a run; silent if there is no terminal.
 class LiveLine {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `steps` of the whole batch are wanted.
+  /// The whole batch is to do `steps` steps.
   LiveLine(std::uint64_t steps, std::uint64_t envs);
   ~LiveLine();
   LiveLine(const LiveLine&) = delete;
@@ -20,7 +20,7 @@ class LiveLine {
   LiveLine& operator=(LiveLine&&) = delete;
 
   [[nodiscard]] bool isEnabled() const { return enabled_; }
-  /// `done` steps are done; `sum` is what happened in them.
+  /// `done` steps have been done; `sum` counts what happened in them.
   void show(std::uint64_t done, const SimulationStatistics& sum);
 
  private:

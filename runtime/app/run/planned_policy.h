@@ -8,8 +8,8 @@
 
 namespace galactic {
 
-/// The actions of a plan, which looks at the simulator: see ScriptedPolicy. `simulator` must
-/// outlive it. Fails as ScriptedPolicy::create does.
+/// A policy that follows a plan and reads the whole state of the simulator: see ScriptedPolicy.
+/// `simulator` must outlive it. Fails with the errors of ScriptedPolicy::create.
 [[nodiscard]] Result<std::unique_ptr<Policy>> makePlannedPolicy(const World& world,
                                                                 const BatchSimulator& simulator);
 

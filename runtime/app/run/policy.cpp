@@ -9,7 +9,7 @@
 namespace galactic {
 namespace {
 
-/// The top 24 bits of a word as a number in [-1, 1).
+/// The highest 24 bits of a word as a number in [-1, 1).
 float symmetric(std::uint32_t word) { return static_cast<float>(word >> 8U) * 0x1p-23F - 1; }
 
 class ZeroPolicy final : public Policy {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array<char, 8> kMagic{'G', 'A', 'L', 'R', 'E', 'C', 'R', 'D'};
 constexpr std::uint32_t kVersion = 1;
-/// Far beyond any run; they keep sizes from overflowing.
+/// Limits far beyond any run, so that sizes cannot overflow.
 constexpr std::uint32_t kMostEnvs = 1U << 20U;
 constexpr std::uint32_t kMostActions = 1U << 12U;
 constexpr std::uint32_t kMostPacks = 1U << 20U;
@@ -35,16 +35,16 @@ struct Header {
   std::uint32_t reserved = 0;
   std::uint64_t steps = 0;
   std::array<std::uint64_t, 2> reserved_words{};
-  /// Of the header with this field 0, the stamps and the text.
+  /// Hash of the header with this field 0, the stamps and the text.
   std::uint64_t hash = 0;
 };
 static_assert(sizeof(Header) == 64);
 static_assert(sizeof(PackStamp) == 24);
 
-/// What follows the actions of a step.
+/// The data after the actions of a step.
 struct StepTail {
   std::uint64_t digest = 0;
-  /// Of the step's number, actions and digest.
+  /// Hash of the step's number, actions and digest.
   std::uint64_t hash = 0;
 };
 
@@ -53,7 +53,7 @@ std::span<const std::byte> bytesOf(const T& value) {
   return std::as_bytes(std::span(&value, 1));
 }
 
-/// The hash that belongs into the header.
+/// The hash for the header.
 std::uint64_t hashOf(Header header, std::span<const PackStamp> stamps, std::string_view text) {
   header.hash = 0;
   XXH64_state_t state;
@@ -73,7 +73,7 @@ std::uint64_t hashOf(std::uint64_t step, std::span<const float> actions, std::ui
   return XXH3_64bits_digest(&state);
 }
 
-/// Fills `out` from the file; false at its end.
+/// Reads bytes of the file into `out`; returns false at the end of the file.
 bool fill(std::ifstream& file, std::span<std::byte> out) {
   file.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size()));
   return file.good() || (file.eof() && file.gcount() == static_cast<std::streamsize>(out.size()));
@@ -83,7 +83,7 @@ tl::unexpected<Error> damaged(const std::string& where, std::string message) {
   return fail(ErrorCode::kInvalidInput, where, std::move(message) + "; record it again");
 }
 
-/// Reads and checks the header on its own: magic, version, counts, size of the file.
+/// Reads the header and checks it by itself: magic, version, counts, size of the file.
 Result<Header> readHeader(std::ifstream& file, const std::string& where, std::uint64_t size) {
   Header header;
   if (size < sizeof(Header) || !fill(file, std::as_writable_bytes(std::span(&header, 1))) ||

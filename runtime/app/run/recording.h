@@ -16,8 +16,8 @@
 
 namespace galactic {
 
-/// What tells a pack from all others: from its header, so nothing is hashed again. The memory
-/// layout is that of a recording.
+/// Identifies a pack by values from its header, so that nothing is hashed again. The memory layout
+/// is that of a recording.
 struct PackStamp {
   std::uint32_t kind = 0;
   std::uint32_t reserved = 0;
@@ -31,16 +31,16 @@ struct PackStamp {
   }
 };
 
-/// The stamps of a world's packs, ascending: the same for any order of the packs.
+/// The stamps of a world's packs in ascending order: the same for any order of the packs.
 [[nodiscard]] std::vector<PackStamp> stampsOf(const World& world);
 
 /// XXH3 of what the last step returned: observations, rewards, dones and successes of all envs.
 [[nodiscard]] std::uint64_t digestOf(const BatchSimulator& simulator);
 
-/// What a recording is of.
+/// What was recorded.
 struct RecordingSubject {
   SimulationOptions options;
-  /// Per env.
+  /// Actions per env.
   std::uint32_t actions = 0;
   std::vector<PackStamp> packs;
 
@@ -49,10 +49,10 @@ struct RecordingSubject {
   }
 };
 
-/// Writes a recording, little-endian: a header of 64 bytes (magic "GALRECRD", version, counts and
-/// an XXH64 of the header, stamps and options), the stamps, the options as lines "name=value", and
-/// for each step its actions (floats, env after env), the digest of what it returned, and a hash of
-/// both. The file appears when it is finished.
+/// Writes a recording, little-endian: a header of 64 bytes (magic "GALRECRD", version, counts, and
+/// an XXH64 of header, stamps and options), the stamps, the options as lines "name=value", and for
+/// each step its actions (floats, env by env), the digest of what it returned, and a hash of both.
+/// The file appears when it is finished.
 class RecordingWriter {
  public:
   /// Fails with kIo.
@@ -60,7 +60,7 @@ class RecordingWriter {
                                                       const RecordingSubject& subject);
 
   [[nodiscard]] Result<void> append(std::span<const float> actions, std::uint64_t digest);
-  /// The last call.
+  /// Must be the last call.
   [[nodiscard]] Result<void> finish();
 
  private:
@@ -73,19 +73,19 @@ class RecordingWriter {
   std::uint64_t steps_ = 0;
 };
 
-/// Reads a recording, step after step. A recording is untrusted input.
+/// Reads a recording step by step. Treats it as untrusted input.
 class RecordingReader {
  public:
-  /// Fails with kIo (cannot be read), kUnsupported (a later version) and kInvalidInput (no
-  /// recording, damaged, or not of the size that its header says).
+  /// Fails with kIo (cannot be read), kUnsupported (a later version) and kInvalidInput (not a
+  /// recording, damaged, or not of the size that its header gives).
   [[nodiscard]] static Result<RecordingReader> open(const std::filesystem::path& path);
 
   [[nodiscard]] const RecordingSubject& subject() const { return subject_; }
   [[nodiscard]] std::uint64_t steps() const { return steps_; }
   [[nodiscard]] const std::string& where() const { return where_; }
 
-  /// Reads the next step into `actions`, subject().actionCount() of them; returns its digest. Fails
-  /// with kIo and, when the step is damaged, kInvalidInput. steps() times at most.
+  /// Reads the next step into `actions`, subject().actionCount() of them, and returns its digest.
+  /// Fails with kIo, and with kInvalidInput if the step is damaged. Call it at most steps() times.
   [[nodiscard]] Result<std::uint64_t> next(std::span<float> actions);
 
  private:
@@ -98,8 +98,8 @@ class RecordingReader {
   std::uint64_t read_ = 0;
 };
 
-/// Whether `world` is the one that was recorded: kInvalidInput, naming the kind of the first pack
-/// that is another, when not.
+/// Checks that `world` is the one that was recorded; otherwise fails with kInvalidInput, naming the
+/// kind of the first pack that differs.
 [[nodiscard]] Result<void> checkWorld(const RecordingReader& recording, const World& world);
 
 }  // namespace galactic

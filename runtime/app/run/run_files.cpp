@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kFrames = "--frames";
 
-/// The packs of the world, those that it lists among them, and where the actions come from.
+/// The packs of the world, including those that it lists, and the file that actions come from.
 std::vector<fs::path> inputsOf(const World& world, const RunOptions& options) {
   std::vector<fs::path> inputs(options.packs.begin(), options.packs.end());
   for (const PackFile& pack : world.packs()) inputs.emplace_back(pack.where());
@@ -26,7 +26,7 @@ std::vector<fs::path> inputsOf(const World& world, const RunOptions& options) {
   return inputs;
 }
 
-/// The files that options name.
+/// The output files that options name.
 std::vector<OutputFile> filesOf(const RunOptions& options) {
   const DrawingOptions& drawing = options.drawing;
   std::vector<OutputFile> files;
@@ -40,7 +40,7 @@ std::vector<OutputFile> filesOf(const RunOptions& options) {
   return files;
 }
 
-/// Whether the names of files of one kind say what they are.
+/// Checks that the extension of each output matches its kind of file.
 Result<void> checkExtensions(const RunOptions& options) {
   const std::string& sheet = options.drawing.contact_sheet;
   if (!sheet.empty()) RETURN_IF_ERROR(checkExtension(sheet, kPictureFile));
@@ -49,7 +49,8 @@ Result<void> checkExtensions(const RunOptions& options) {
   return checkExtension(options.animation, {".glb", "animations are binary glTF files"});
 }
 
-/// Of all frames those that could be another file of the run: by its name, or as a link to it.
+/// Of all frames, those that could be another file of the run: because of their name, or because
+/// they are links.
 std::vector<OutputFile> doubtfulFrames(const fs::path& folder, const std::vector<fs::path>& inputs,
                                        const std::vector<OutputFile>& files) {
   std::vector<OutputFile> frames;
@@ -81,7 +82,7 @@ Result<void> tryOutputs(const World& world, const RunOptions& options) {
   }
   RETURN_IF_ERROR(checkOutputs(outputs, inputs));
   RETURN_IF_ERROR(checkExtensions(options));
-  // Other files may go into the folder of the frames.
+  // After the checks, because other files may go into the folder of the frames.
   if (!frames.empty()) RETURN_IF_ERROR(makeFrameFolder(frames));
   for (const OutputFile& output : files) RETURN_IF_ERROR(tryFile(output.file));
   return {};

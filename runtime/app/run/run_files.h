@@ -5,10 +5,10 @@
 
 namespace galactic {
 
-/// Before a run, which may take hours: checks all that it will write against all that it reads,
-/// then makes the folder of its frames and tries each file. Fails with kInvalidInput when an output
-/// is a file that the run reads or another of its outputs, with kUnsupported when its extension is
-/// of another kind of file, and with kIo when it cannot be written.
+/// Checks, before a run that may take hours, everything that it will write against everything that
+/// it reads; then makes the folder of its frames and tries each file. Fails with kInvalidInput when
+/// an output is a file that the run reads or another of its outputs, with kUnsupported when its
+/// extension belongs to another kind of file, and with kIo when it cannot be written.
 [[nodiscard]] Result<void> tryOutputs(const World& world, const RunOptions& options);
 
 }  // namespace galactic

@@ -60,14 +60,14 @@ std::string episodeLines(const RunReport& report) {
   const std::size_t playable = report.world_episodes - report.skipped.size();
   const bool is_once = report.options.simulation.order == EpisodeOrder::kPartition;
   const std::string of_all = is_once ? fmt::format(" of {}", playable) : "";
-  // Without a task, nothing is asked of the target.
+  // Without a task, nobody has to pick the target.
   const bool is_asked = report.options.simulation.task.kind != TaskKind::kNone;
   const std::string picked = is_asked ? fmt::format("; {} picked", sum.picks) : "";
   std::string text = line(
       "episodes", fmt::format("{}{} ended: {}, {}, {} out of time{}", sum.episodes, of_all,
                               counted(sum.successes, "success"), counted(sum.failures, "failure"),
                               sum.episodes - sum.successes - sum.failures, picked));
-  // Without an episode that ended there is no mean.
+  // If no episode has ended, there is no mean.
   if (episodes.ended == 0) return text;
   return text +
          line("return", fmt::format("{:.4f} in {:.1f} steps, means of the episodes that ended",
@@ -75,7 +75,7 @@ std::string episodeLines(const RunReport& report) {
                                     ratio(episodes.steps, episodes.ended)));
 }
 
-/// Which options of the task come from the world, and which of the world's were overridden.
+/// Which options of the task come from the world, and which options of the world were overridden.
 std::string taskLine(const RunReport& report) {
   if (report.world_task.empty()) return {};
   std::string in_force;
@@ -102,7 +102,7 @@ std::string renderLines(const RunReport& report) {
       line("images", fmt::format("{:>12.0f} images/s{:>11.3f} s",
                                  ratio(static_cast<double>(drawn.images), report.step_seconds),
                                  report.step_seconds));
-  // A short run has no step of each kind to measure.
+  // A short run may have no step of each kind to measure.
   if (drawn.overlapped.steps == 0) return text;
   return text +
          line("one step",
@@ -135,7 +135,7 @@ std::string replayLine(const RunReport& report) {
 
 bool isInForce(const OptionText& option, const RunOptions& options) {
   const std::vector<OptionText> all = listOptions(options.simulation, OptionScope::kTask);
-  // Values are compared as they are printed, whatever way the pack writes its own.
+  // Compare values as they are printed, because the pack may write them differently.
   SimulationOptions alone;
   (void)setOptions(std::span(&option, 1), OptionScope::kTask, alone);
   const std::vector<OptionText> wanted = listOptions(alone, OptionScope::kTask);

@@ -21,7 +21,7 @@
 namespace galactic {
 namespace {
 
-/// Writes the options of a run as one types them: null where nothing is typed by default.
+/// Writes the options of a run as they would be typed; null where the default is to type nothing.
 class OptionWriter {
  public:
   explicit OptionWriter(JsonWriter& json) : json_(json) {}
@@ -146,7 +146,7 @@ void writeRendering(JsonWriter& json, const RunReport& report) {
   }
   json.begin("seconds_per_step", '{');
   const auto mean = [&json](std::string_view key, const StepTime& time) {
-    // Without a step there is no mean: null.
+    // null, because there is no mean without steps.
     json.number(key, time.seconds / static_cast<double>(time.steps));
   };
   mean("rendering_alone", drawn.rendering);
@@ -173,7 +173,7 @@ void writeCounts(JsonWriter& json, const RunReport& report) {
   json.number("failures", sum.failures);
   json.number("out_of_time", sum.episodes - sum.successes - sum.failures);
   json.number("picked", sum.picks);
-  // Without an ended episode there is no mean: null.
+  // null, because there is no mean without ended episodes.
   json.number("mean_return", report.episodes.returns / ended);
   json.number("mean_steps", static_cast<double>(report.episodes.steps) / ended);
   json.number("in_world", report.world_episodes);

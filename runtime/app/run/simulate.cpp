@@ -33,7 +33,7 @@ double secondsBetween(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-/// The actions of a recording.
+/// Replays the actions of a recording.
 class ReplayPolicy final : public Policy {
  public:
   explicit ReplayPolicy(RecordingReader& recording) : recording_(recording) {}
@@ -44,7 +44,7 @@ class ReplayPolicy final : public Policy {
     return {};
   }
 
-  /// What the step returned when it was recorded.
+  /// Digest of what the step returned when it was recorded.
   [[nodiscard]] std::uint64_t digest() const { return digest_; }
 
  private:
@@ -75,7 +75,7 @@ class ReturnTally {
   std::vector<std::uint32_t> steps_;
 };
 
-/// One run: where actions come from and where they go.
+/// One run: the source of its actions, and its outputs.
 class Run {
  public:
   Run(const RunOptions& options, BatchSimulator& simulator, RunReport& report)
@@ -85,21 +85,21 @@ class Run {
         tally_(simulator.envCount()),
         actions_(simulator.envCount() * simulator.actionCount()) {}
 
-  /// Before go().
+  /// Call it before go().
   void replay(RecordingReader& recording) {
     auto policy = std::make_unique<ReplayPolicy>(recording);
     replay_ = policy.get();
     policy_ = std::move(policy);
   }
 
-  /// Before go().
+  /// Call it before go().
   Result<void> plan(const World& world) {
     ASSIGN_OR_RETURN(std::unique_ptr<Policy> policy, makePlannedPolicy(world, simulator_));
     policy_ = std::move(policy);
     return {};
   }
 
-  /// Before go().
+  /// Call it before go().
   Result<void> play(const OpenedPolicy& policy, const World& world) {
     ASSIGN_OR_RETURN(std::unique_ptr<Policy> made,
                      makeLearnedPolicy(policy, world, simulator_, options_));
@@ -109,7 +109,7 @@ class Run {
     return {};
   }
 
-  /// Before go().
+  /// Call it before go().
   Result<void> draw(const World& world) {
     ASSIGN_OR_RETURN(DrawnSteps drawn, DrawnSteps::create(world, simulator_, options_));
     drawn_.emplace(std::move(drawn));
@@ -122,10 +122,10 @@ class Run {
     return {};
   }
 
-  /// Before go().
+  /// Call it before go().
   void track(const World& world) { tracked_.emplace(world, simulator_, options_); }
 
-  /// Before go().
+  /// Call it before go().
   Result<void> record(const World& world) {
     const RecordingSubject subject{
         options_.simulation, static_cast<std::uint32_t>(simulator_.actionCount()), stampsOf(world)};
@@ -134,8 +134,8 @@ class Run {
     return {};
   }
 
-  /// Until all steps are done, or what it writes cannot be written (RunReport::fault). Fails only
-  /// when no action comes: of a recording that is damaged.
+  /// Steps until all steps are done, or until an output cannot be written (RunReport::fault). Fails
+  /// only if no action is available, because a recording is damaged.
   Result<void> go(const StopRequest& stop) {
     if (!policy_) {
       const SimulationOptions& simulation = options_.simulation;
@@ -165,8 +165,8 @@ class Run {
   }
 
  private:
-  /// Writes what comes last. What cannot be written keeps nothing else from it; the recording is
-  /// first, because all the rest can be made of it.
+  /// Completes the outputs. One that cannot be written does not keep the others from being written;
+  /// the recording comes first, because everything else can be made from it.
   void finish() {
     if (writer_) note(writer_->finish());
     writer_.reset();
@@ -174,7 +174,7 @@ class Run {
     if (tracked_) note(tracked_->finish());
   }
 
-  /// Of several faults, the first one is told.
+  /// Keeps only the first of several faults.
   void note(Result<void> written) {
     if (!written && !report_.fault) report_.fault = std::move(written.error());
   }
@@ -209,7 +209,8 @@ class Run {
     const std::uint64_t digest = digestOf(simulator_);
     if (writer_) {
       Result<void> written = writer_->append(actions_, digest);
-      // A part of a recording is none; without it, a full disk has room for the rest.
+      // Part of a recording is useless; discarding it makes room for the other files on a full
+      // disk.
       if (!written) writer_.reset();
       note(std::move(written));
     }
@@ -224,7 +225,7 @@ class Run {
   ReturnTally tally_;
   std::vector<float> actions_;
   std::unique_ptr<Policy> policy_;
-  /// The policy, when it replays.
+  /// The policy, if it replays a recording.
   const ReplayPolicy* replay_ = nullptr;
   std::optional<RecordingWriter> writer_;
   std::optional<DrawnSteps> drawn_;

@@ -17,7 +17,7 @@
 namespace galactic {
 namespace {
 
-/// What a page needs of a world: the episodes that were played, and what is in them.
+/// The parts of a world that a page needs: the episodes that were played, and what is in them.
 struct PlayedParts {
   std::set<std::uint32_t> episodes;
   std::set<std::string_view> scenes;
@@ -56,7 +56,7 @@ bool isPlayed(const PackFile& pack, const PlayedParts& parts) {
   return pack.kind() == PackKind::kRobot || pack.kind() == PackKind::kEpisodes;
 }
 
-/// What the run was: nothing that differs from one time to the next.
+/// The facts about the run that do not differ from one time to the next.
 std::string factsOf(const RunOptions& options) {
   JsonWriter json;
   json.begin('{');

@@ -13,24 +13,24 @@
 
 namespace galactic {
 
-/// What a page needs of the world of a track: the episodes that were played, and what is in them.
-/// Fails with the errors of SharedTextures and renderMeshesOf.
+/// The assets that a page needs to show a track: the episodes that were played, and what is in
+/// them. Fails with the errors of SharedTextures and renderMeshesOf.
 [[nodiscard]] Result<std::vector<PageAsset>> pageAssetsOf(const RunTrack& track);
 
-/// Keeps what the first envs of a run do, and writes it as a page and as an animation.
+/// Keeps track of what the first envs of a run do, and writes it as a page and as an animation.
 class TrackedRun {
  public:
-  /// Most steps of all kept envs together: what is kept of them takes some 200 bytes a step.
+  /// Most steps of all tracked envs together: each takes about 200 bytes.
   static constexpr std::uint64_t kMostSteps = 1'000'000;
 
-  /// Of the run of `options`.
+  /// For the run of `options`.
   TrackedRun(const World& world, const BatchSimulator& simulator, const RunOptions& options);
 
-  /// After a step with `actions`.
+  /// Call it after a step with `actions`.
   void add(const BatchSimulator& simulator, std::span<const float> actions) {
     track_.add(simulator, actions);
   }
-  /// After the last step, also of a run that ended early. Fails with kIo and the errors of
+  /// Call it after the last step, even if the run ended early. Fails with kIo and the errors of
   /// viewPage and animationGlb.
   [[nodiscard]] Result<void> finish() const;
 
