@@ -1,10 +1,9 @@
-#include "check/asset_checks.h"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <string_view>
 
+#include "check/asset_checks.h"
 #include "check/common_check.h"
 #include "check/offence.h"
 

@@ -1,11 +1,10 @@
-#include "check/asset_checks.h"
-
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <string_view>
 #include <vector>
 
+#include "check/asset_checks.h"
 #include "check/common_check.h"
 #include "check/offence.h"
 #include "check/world_check.h"

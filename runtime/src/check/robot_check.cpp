@@ -1,10 +1,9 @@
-#include "check/asset_checks.h"
-
 #include <set>
 #include <string_view>
 #include <tuple>
 #include <vector>
 
+#include "check/asset_checks.h"
 #include "check/common_check.h"
 #include "check/offence.h"
 #include "check/render_check.h"
