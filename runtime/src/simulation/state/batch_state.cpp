@@ -10,15 +10,15 @@ namespace {
 
 std::size_t odometryRows(const Model& model) { return model.hasOdometry() ? kOdometryRows : 0; }
 
-/// Rows of a chunk: its robots, three points, the joint actions of the step before, and odometry.
+/// Rows of a chunk: its robots, three points, the joint actions of the previous step, and odometry.
 std::size_t rowCount(const Model& model) {
   return kBaseRows + model.variableCount() + kGripNumbers + std::size_t{3} * 3 +
          model.motion.controlled.size() + odometryRows(model);
 }
 
-/// What the vectors of one env take, so that a batch asks for its memory at once.
+/// Bytes of one env in all vectors, so that a batch can allocate its memory in one piece.
 std::size_t envBytes(const Model& model) {
-  // What the alignment of an env's own vectors may cost.
+  // The most that the alignment of an env's own vectors may cost.
   constexpr std::size_t kPadding = 96;
   // Done, success, ending, pick and idle, beside the reward.
   constexpr std::size_t kOutcomeBytes = 5;
@@ -41,13 +41,12 @@ std::size_t bytesOf(const std::pmr::vector<T>& values) {
 
 std::size_t paddedToChunks(std::size_t count) { return (count + kChunk - 1) / kChunk * kChunk; }
 
-/// Into the second-level cache: more than a chunk does not stay in the first.
+/// Prefetches into the second-level cache: the first does not hold more than a chunk.
 void prefetchBytes(const void* first, std::size_t bytes) noexcept {
   constexpr std::size_t kCacheLine = 64;
   const auto* at = static_cast<const char*>(first);
   for (std::size_t n = 0; n < bytes; n += kCacheLine) __builtin_prefetch(at + n, 0, 2);
-  // GCC takes a function that does nothing else for one without effect, and leaves out calls of it
-  // that it sees.
+  // GCC considers a function that only prefetches to have no effect, and drops calls to it.
   asm volatile("");
 }
 
@@ -122,7 +121,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   held_.resize(padded);
   resting_.reserve(padded);
   for (std::size_t n = 0; n < padded; ++n) {
-    // Whatever asks for objects: spheres, and the hand.
+    // The largest radius in any query: that of a sphere or of the hand.
     const float reach = std::max(model.world->radii().back(), model.motion.grasp_radius);
     resting_.emplace_back(model.most_objects, reach, &memory_, &bounds_memory_);
   }
@@ -140,7 +139,7 @@ BatchState::BatchState(const Model& model, std::size_t envs)
   endings_.resize(padded);
   picks_.resize(padded);
   idle_.resize(padded);
-  // A core that has less to read each step waits less for it than it takes to ask for it ahead.
+  // If a step reads less than this, waiting for the data costs a core less than prefetching it.
   constexpr std::size_t kNear = std::size_t{1} << 20U;
   const std::size_t read = sizeof(Env) + sizeof(RestingView) + row_count_ * sizeof(float) +
                            observation_size_ * sizeof(float) + body_count_ * sizeof(RigidTransform);
@@ -152,7 +151,7 @@ void BatchState::prefetch(std::size_t n) const noexcept {
   prefetchBytes(&envs_[n], sizeof(Env));
   prefetchRow(observation(n));
   prefetchRow(bodyTransforms(n));
-  // The chunk's rows in equal parts, an env each.
+  // Each env prefetches an equal part of the chunk's rows.
   const std::size_t part = row_count_ * sizeof(float);
   prefetchBytes(reinterpret_cast<const std::byte*>(rows_.data()) + n * part, part);
   prefetchBytes(&resting_[n], sizeof(RestingView));

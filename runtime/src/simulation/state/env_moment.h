@@ -7,9 +7,9 @@
 
 namespace galactic::simulation {
 
-/// What the luck of an env follows from, of its sensors and its motions: its own number and how
-/// many episodes it has begun or, in an episode that the caller has named, that episode alone,
-/// wherever it is played.
+/// The moment that seeds the random numbers of an env's sensors and motions. It consists of the
+/// env's number and how many episodes it has begun or, in an episode that the caller named, of that
+/// episode alone, whichever env plays it.
 [[nodiscard]] inline EnvMoment momentOf(const Model& model, const BatchState& state,
                                         std::size_t n) noexcept {
   const Env& env = state.env(n);
@@ -20,7 +20,7 @@ namespace galactic::simulation {
                    .episode = counters.begun};
   if (counters.is_named) {
     moment.env = 0;
-    // No env begins so many.
+    // No env begins that many episodes, so these moments differ from all others.
     moment.episode = ~std::uint64_t{model.starts[env.start].episode};
   }
   return moment;

@@ -16,7 +16,7 @@ std::string faultIn(std::string_view field, const Vec3& v) {
                      v.x, v.y, v.z, kLargestPlain);
 }
 
-/// Of a pose that is not plain.
+/// Describes the fault of a pose that is not plain.
 std::string faultIn(std::string_view field, const Pose& pose) {
   if (!isPlain(pose.translation)) {
     return faultIn(fmt::format("{}.translation", field), pose.translation);

@@ -13,8 +13,8 @@ namespace galactic::simulation {
                                       std::size_t env) noexcept;
 [[nodiscard]] EnvState envStateOf(const Model& model, const BatchState& state, std::size_t env);
 
-/// What is wrong with the numbers of a state that somebody has made: they have to be finite, of
-/// kLargestPlain at most, and rotations of unit length. Empty when nothing is.
+/// Describes what is wrong with the numbers of a state from a caller: they have to be finite and at
+/// most kLargestPlain in magnitude, and rotations of unit length. Empty if nothing is wrong.
 [[nodiscard]] std::string faultOfNumbers(const EnvState& state);
 [[nodiscard]] std::string faultOfNumbers(const FollowedState& state);
 

@@ -11,7 +11,7 @@ std::uint32_t permuted(std::uint32_t index, std::uint32_t count, std::uint64_t k
   const std::uint64_t half_mask = (std::uint64_t{1} << half_bits) - 1;
   constexpr std::uint64_t kRounds = 4;
   std::uint64_t value = index;
-  // Each number below `count` lies on a cycle with one, so the walk ends.
+  // The permutation's cycle through a number below `count` returns to it, so the loop ends.
   do {
     std::uint64_t left = value >> half_bits;
     std::uint64_t right = value & half_mask;

@@ -9,11 +9,11 @@ namespace galactic::simulation {
   return {grip[9], grip[10], grip[11]};
 }
 
-/// Of the base's yaw.
+/// Cosine and sine of the base's yaw.
 [[nodiscard]] inline float headingCosine(const GripFrame& grip) { return grip[12]; }
 [[nodiscard]] inline float headingSine(const GripFrame& grip) { return grip[13]; }
 
-/// A point in the grip's frame, in the world.
+/// Transforms a point from the grip's frame to the world.
 [[nodiscard]] inline Vec3 gripToWorld(const GripFrame& grip, const Vec3& point) {
   return {grip[0] * point.x + grip[3] * point.y + grip[6] * point.z + grip[9],
           grip[1] * point.x + grip[4] * point.y + grip[7] * point.z + grip[10],

@@ -33,7 +33,7 @@ using GripFrame = std::array<float, kGripStride>;
 struct Model;
 class BatchState;
 
-/// Some envs of a batch.
+/// A range of a batch's envs.
 struct EnvRange {
   std::size_t first = 0;
   std::size_t count = 0;
@@ -41,15 +41,15 @@ struct EnvRange {
 
 /// A part of an observation that the kernels do not write.
 struct SensedPart {
-  /// Of the elements of a row.
+  /// Its first element in a row.
   std::size_t first = 0;
   std::size_t size = 0;
-  /// Writes it, `part`, to the observations of `envs`.
+  /// Writes `part` to the observations of `envs`.
   void (*write)(const Model& model, BatchState& state, EnvRange envs,
                 const SensedPart& part) = nullptr;
 };
 
-/// How an env stands when an episode begins.
+/// The state of an env when an episode begins.
 struct EpisodeStart {
   /// Index into the episode set.
   std::uint32_t episode = 0;
@@ -57,39 +57,40 @@ struct EpisodeStart {
   Vec3 base;
   float yaw = 0;
   GripFrame grip{};
-  /// In Model::clearance.
+  /// Number of its floor's map in Model::clearance.
   std::uint32_t clearance_map = kNoClearanceMap;
-  /// Of Model::start_bounds and start_boxes: the first of its objects, and how many there are.
+  /// Its first elements in Model::start_bounds and Model::start_boxes, and the number of its
+  /// objects.
   std::size_t first_bounds = 0;
   std::size_t first_box = 0;
   std::size_t objects = 0;
 };
 
-/// What never changes in a run: computed once, shared by all threads.
+/// Everything that never changes in a run: computed once, shared by all threads.
 struct Model {
   std::optional<World> world;
-  /// The world's, at hand: each step asks for that of an env.
+  /// The world's scenes, at hand because each step looks up that of each env.
   std::span<const Scene> scenes;
   SimulationOptions options;
   MotionModel motion;
   MotionKernels kernels;
   MotionTables tables;
-  /// Episodes that can be started, ascending; and those that cannot.
+  /// Episodes that can be started, ascending; `skipped` has those that cannot.
   std::vector<EpisodeStart> starts;
-  /// Variables of each start. Shape: starts * variables.
+  /// Values of the variables at each start. Shape: starts * variables.
   std::vector<float> start_variables;
-  /// Shape: starts * bodyCount().
+  /// Body transforms at each start. Shape: starts * bodyCount().
   std::vector<RigidTransform> start_bodies;
   /// Bounds and boxes of the objects at all starts, which envs share until they move one.
   std::pmr::vector<PackedBounds> start_bounds{detail::hugePages()};
   std::pmr::vector<RestingBox> start_boxes{detail::hugePages()};
   std::vector<std::uint32_t> skipped;
-  /// The robot's spheres in eights.
+  /// The robot's spheres in groups of eight.
   std::vector<EightSpheres> groups;
-  /// A lane for each group, padded to whole eights; then one for each radius of the working set,
+  /// Maps with one lane per group, padded to whole eights, then one per radius of the working set
   /// for what the robot holds.
   ClearanceMaps clearance;
-  /// Of the same floors, by the same numbers.
+  /// Slices of the same floors, with the same numbers.
   FreeSlices slices;
   LevelFloors level_floors;
   std::size_t most_objects = 0;
@@ -97,44 +98,45 @@ struct Model {
   std::size_t most_held_spheres = 0;
   std::vector<ObservationPart> observation;
   std::size_t observation_size = 0;
-  /// The last ones of a row.
+  /// The last parts of a row.
   std::vector<SensedPart> sensed;
   sensors::Laser laser;
-  /// By start; off unless it is observed or rewarded.
+  /// Indexed by start; off unless geodesic distances are observed or rewarded.
   sensors::Geodesic geodesic;
 
-  /// Of what grows with the world: homes and episodes.
+  /// Bytes of everything that grows with the world, that is with scenes and episodes.
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] ActionLayout actionLayout() const {
     return {motion.controlled.size(), motion.base.sideways_step > 0};
   }
   [[nodiscard]] std::size_t actionCount() const { return actionLayout().count(); }
   [[nodiscard]] std::size_t variableCount() const { return motion.variables.size(); }
-  /// Whether robots know by odometry alone where they are.
+  /// Whether robots know their place from odometry only.
   [[nodiscard]] bool hasOdometry() const { return options.noise.localization.most > 0; }
-  /// Of how many steps, the last ones, actions are kept: they may arrive late, or be observed.
+  /// The number of past steps whose actions are kept, because actions may arrive late or be
+  /// observed.
   [[nodiscard]] std::size_t keptSteps() const {
     return std::max(options.noise.action_delay.most, options.sensors.last_actions);
   }
   /// Spheres of the robot, padded to lanes.
   [[nodiscard]] std::size_t sphereCount() const { return motion.spheres.size(); }
-  /// Root and nodes, or none where the run does not want their poses.
+  /// The number of root and nodes, or 0 unless the run wants their poses.
   [[nodiscard]] std::size_t bodyCount() const {
     return options.body_transforms ? motion.nodes.size() + 1 : 0;
   }
-  /// The number that an env's random numbers and episodes depend on.
+  /// The env's number over all ranks, on which its random numbers and episodes depend.
   [[nodiscard]] std::uint32_t globalEnv(std::size_t env) const {
     return firstEnvOf(options) + static_cast<std::uint32_t>(env);
   }
-  /// 64-bit words of one bit for each sphere of a held object.
+  /// 64-bit words that hold one bit for each sphere of a held object.
   [[nodiscard]] std::size_t heldWords() const { return wordsFor(most_held_spheres); }
   /// The same for the robot.
   [[nodiscard]] std::size_t bodyWords() const { return wordsFor(sphereCount()); }
   [[nodiscard]] const Episode& episodeOf(std::uint32_t start) const {
     return world->episodes().episodes()[starts[start].episode];
   }
-  /// The index into `starts` of the episode of this index in the world; none for a number that is
-  /// no episode's, and for an episode that is skipped.
+  /// The index into `starts` of the episode with this index in the world; none if there is no such
+  /// episode or it is skipped.
   [[nodiscard]] OptionalIndex startOf(std::int64_t episode) const noexcept;
   [[nodiscard]] PresentObjects present(const Episode& episode) const {
     return world->episodes().present(episode, options.task.distractors);
@@ -142,13 +144,13 @@ struct Model {
   [[nodiscard]] std::span<const Placement> placements(const Episode& episode) const {
     return present(episode).placements;
   }
-  /// The objects at a start.
+  /// The resting objects at a start.
   [[nodiscard]] RestingView objectsAt(std::uint32_t start) const {
     const EpisodeStart& at = starts[start];
     return {start_bounds.data() + at.first_bounds, packsFor(at.objects),
             start_boxes.data() + at.first_box, at.objects};
   }
-  /// The object of that number in the episode of that start.
+  /// Object `number` of the episode of `start`.
   [[nodiscard]] const ObjectModel& object(std::uint32_t start, std::uint32_t number) const {
     return world->objectOf(placements(episodeOf(start))[number]);
   }

@@ -9,7 +9,7 @@
 
 namespace galactic::simulation {
 
-/// Far beyond any world, meters, and any joint; keeps arithmetic on what comes from outside finite.
+/// Far beyond any world (meters) and any joint; keeps arithmetic on numbers from outside finite.
 inline constexpr float kLargestPlain = 1e6F;
 
 inline bool isPlain(float value) { return std::abs(value) <= kLargestPlain; }
