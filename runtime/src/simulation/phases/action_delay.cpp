@@ -25,7 +25,7 @@ void keep(const ChunkStep& step) {
   const std::span<const EnvRow> asked = step.chunk.actions();
   for (std::size_t e = 0; e < kChunk; ++e) {
     const std::size_t n = step.first + e;
-    // Whatever an idle env is asked to do, it is in none of its steps.
+    // An action for an idle env belongs to none of its steps.
     if (step.state.idle()[n] != 0) continue;
     const std::span<EnvRow> kept = step.state.keptActions(n, step.state.env(n).step);
     for (std::size_t a = 0; a < asked.size(); ++a) kept[a].values[e] = asked[a].values[e];
@@ -35,7 +35,7 @@ void keep(const ChunkStep& step) {
 }  // namespace
 
 void beginDelay(const Model& model, BatchState& state, std::size_t n) noexcept {
-  // A hand holds still at a number that depends on what it holds, and at none in any case.
+  // The hand actions that leave a hand alone depend on whether it holds something; NaN always does.
   constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
   const std::size_t moving = model.actionLayout().movingCount();
   for (std::size_t step = 0; step < state.keptSteps(); ++step) {
@@ -48,7 +48,7 @@ void beginDelay(const Model& model, BatchState& state, std::size_t n) noexcept {
 
 void keepActions(const ChunkStep& step) noexcept {
   if (step.state.keptSteps() == 0) return;
-  // With the longest delay, what is due makes room for what is asked for now.
+  // Read first: at the longest delay, the current actions overwrite those that are due.
   if (step.model.options.noise.delaysActions()) letArrive(step);
   keep(step);
 }

@@ -7,18 +7,20 @@
 
 namespace galactic::simulation {
 
-/// Nothing is under way to the robot of an env: its episode begins.
+/// Clears the actions on their way to the robot of an env, whose episode begins.
 void beginDelay(const Model& model, BatchState& state, std::size_t n) noexcept;
 
-/// Lets those actions of a chunk arrive that are due, where they may be late, and keeps those that
-/// are asked for now, where they are wanted later.
+/// Lets the due actions of a chunk arrive if actions are delayed, and stores the current ones if
+/// later steps need them.
 void keepActions(const ChunkStep& step) noexcept;
 
-/// What reaches the robots of a chunk: the actions themselves, unless these are late. Where none
-/// has arrived yet, motions are 0, and hand and terminate no numbers, which reach no threshold.
+/// The actions that reach the robots of a chunk in this step: the current ones, unless actions are
+/// delayed. Before the first action arrives, motions are 0, and the hand and terminate actions are
+/// NaN, which exceeds no threshold.
 [[nodiscard]] std::span<const EnvRow> arrivedOf(const ChunkStep& step) noexcept;
 
-/// What an env was asked to do and has not done yet: BatchSimulator::actionsUnderWay(). Allocates.
+/// The actions that were requested of an env and have not reached it yet; see
+/// BatchSimulator::actionsUnderWay(). Allocates.
 [[nodiscard]] std::vector<float> actionsUnderWay(const Model& model, const BatchState& state,
                                                  std::size_t n);
 

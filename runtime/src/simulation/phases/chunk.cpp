@@ -5,16 +5,16 @@
 namespace galactic::simulation {
 namespace {
 
-/// How often each sphere may be added to a way out: once with each attempt of the default rule.
+/// How often each sphere may be added to a way out: once per attempt of the default rule.
 constexpr std::size_t kWaysOut = 3;
 
-/// Eights of spheres that a way out may have at most. Groups come whole, and spheres that no slice
-/// knows one by one.
+/// The most eights of spheres that a way out may have. Groups are added whole; spheres outside the
+/// slices one by one.
 std::size_t mostWays(const Model& model) {
   return kWaysOut * (2 * model.groups.size() + model.most_held_spheres / kLanes + 1);
 }
 
-/// A point, whose coordinates are these rows.
+/// Moves one env's point, whose coordinates are in three rows.
 void moveBy(EnvRow* rows, std::size_t env, const Vec3& by) {
   rows[0].values[env] += by.x;
   rows[1].values[env] += by.y;
@@ -80,7 +80,7 @@ void Chunk::shift(std::size_t env, const Vec3& by) {
                   .extents = extents_[env].values});
   moveBy(&rows_.back() + 1 - kGripNumbers + 9, env, by);
   if (!wants_bodies_) return;
-  // Frames move later, those of all candidates at once, and each by one move at a time.
+  // Frames follow later, those of all candidates at once; each may lag by one move only.
   const std::uint32_t bit = std::uint32_t{1} << env;
   if ((are_behind_ & bit) != 0) shiftFrames();
   are_behind_ |= bit;

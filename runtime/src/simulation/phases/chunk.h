@@ -18,36 +18,36 @@
 
 namespace galactic::simulation {
 
-/// What a look at one candidate found of eight groups of eight spheres; groups as bits.
+/// The result of a query about eight groups of eight spheres of one candidate; groups as bits.
 struct SeenGroups {
-  /// Not free as a whole, as far as the maps know.
+  /// Groups that the maps do not know to be entirely free.
   unsigned unsure = 0;
-  /// One bit for each sphere that the scene blocks.
+  /// Spheres that the scene blocks, as bits.
   std::uint64_t blocked = 0;
 };
 
-/// What a look at one candidate found of what it holds.
+/// The result of a query about the object that one candidate holds.
 struct SeenHeld {
-  /// Of the centers of its spheres, and a bit more.
+  /// Bounds of the centers of its spheres, with a small margin.
   CenterBounds bounds;
-  /// Whether the scene surely leaves them free, as far as the maps know.
+  /// Whether the maps know that the scene blocks none of them.
   bool clears_scene = false;
 };
 
-/// Room for a search for the way out of the scene.
+/// Scratch space of a search for the way out of the scene.
 struct SceneExitScratch {
   explicit SceneExitScratch(const Model& model);
 
   WayOut way;
   ColumnWays columns;
-  /// Of the robot's groups, eight by eight, as bits: those all of whose spheres were added to the
-  /// way, so that they are free where it leads.
+  /// The robot's groups, eight by eight, as bits: those all of whose spheres were added to the way,
+  /// so that they are free where it leads.
   std::vector<unsigned> suited;
-  /// Those whose spheres were added to the columns.
+  /// Groups whose spheres were added to the columns.
   std::vector<unsigned> in_columns;
 };
 
-/// Room for kChunk envs on their way through a step, allocated once for each thread.
+/// Scratch space for kChunk envs during a step, allocated once per thread.
 class Chunk {
  public:
   explicit Chunk(const Model& model);
@@ -55,14 +55,14 @@ class Chunk {
   /// Actions of the chunk's envs, each in [-1, 1]. Shape: actions.
   [[nodiscard]] std::span<EnvRow> actions() { return actions_; }
   [[nodiscard]] float& action(std::size_t n, std::size_t env) { return actions_[n].values[env]; }
-  /// Room for those that have arrived by now. Empty where none is late.
+  /// Space for the actions that arrive in this step. Empty unless actions are delayed.
   [[nodiscard]] std::span<EnvRow> arrived() { return arrived_; }
-  /// Room for what the robots do of the actions that move them: joints, forward, turn. Empty where
-  /// they do just these.
+  /// Space for the motions that the robots make of their actions: joints, forward, turn. Empty if
+  /// they move exactly as asked.
   [[nodiscard]] std::span<EnvRow> motions() { return motions_; }
-  /// Room for the actions of the chunk as a caller gives them.
+  /// Space for the actions of the chunk as a caller passes them.
   [[nodiscard]] std::span<float> givenActions() { return given_actions_; }
-  /// Candidates of the envs from `first` of the chunk on.
+  /// Candidate poses of the chunk's envs from `first` on.
   [[nodiscard]] PoseArrays candidates(std::size_t first) {
     return posesAt(rows_.front().values + first);
   }
@@ -74,7 +74,7 @@ class Chunk {
   }
   /// Moves a candidate with all its spheres and its grip.
   void shift(std::size_t env, const Vec3& by);
-  /// Takes over the candidate of another chunk's env, with its spheres, grip and bodies.
+  /// Copies the candidate of another chunk's env, with its spheres, grip and bodies.
   void takeOver(std::size_t env, Chunk& other, std::size_t from);
   [[nodiscard]] SphereBatch spheres(std::size_t env) const;
   /// Bounds of the candidate's sphere centers, eight by eight, from group 8 * `eight` on.
@@ -84,19 +84,20 @@ class Chunk {
   }
   /// Floats from the spheres of one env to those of the next.
   [[nodiscard]] std::size_t spheresStride() const { return 3 * sphere_count_; }
-  /// From the bounds of one env to those of the next.
+  /// Floats from the bounds of one env to those of the next.
   [[nodiscard]] std::size_t boundsStride() const { return kBounds * group_stride_; }
-  /// What the maps said last of the groups from 8 * `eight` on, env by env.
+  /// The maps' last answers about the groups from 8 * `eight` on, env by env.
   [[nodiscard]] std::span<SureGroups> sure(std::size_t eight) {
     return std::span(sure_).subspan(eight * kChunk, kChunk);
   }
-  /// What slices said of those of them that are not surely free, when all envs were looked at.
+  /// The slices' answers about those of these groups that are not surely free, from the last
+  /// lookAtAll().
   [[nodiscard]] std::span<InSlices> inSlices(std::size_t eight) {
     return std::span(in_slices_).subspan(eight * kChunk, kChunk);
   }
   /// Bounds of all sphere centers of the candidate.
   [[nodiscard]] const CenterBounds& extents(std::size_t env) const { return extents_[env]; }
-  /// The least and the greatest height of a center.
+  /// The lowest and the highest height of a center.
   [[nodiscard]] float lowest(std::size_t env) const { return extents_[env].values[2]; }
   [[nodiscard]] float highest(std::size_t env) const { return extents_[env].values[3]; }
   [[nodiscard]] BoundedSpheres boundedSpheres(std::size_t env) const;
@@ -114,26 +115,26 @@ class Chunk {
   [[nodiscard]] Floor& floor(std::size_t env) { return floor_[env]; }
   [[nodiscard]] CollisionScratch& collision() { return collision_; }
   [[nodiscard]] PlacementScratch& placement() { return placement_; }
-  /// Of the groups from 8 * `eight` on: what the last look for blocked spheres found.
+  /// What the last search for blocked spheres found among the groups from 8 * `eight` on.
   [[nodiscard]] SeenGroups& seen(std::size_t eight) { return seen_[eight]; }
-  /// Of the groups from 8 * `eight` on that slices were asked about: where their spheres are.
+  /// The places of the spheres of those groups from 8 * `eight` on that slices were asked about.
   [[nodiscard]] EightPlaces* places(std::size_t env, std::size_t eight) {
     return places_.data() + env * group_count_ + eight * kLanes;
   }
-  /// From the places of one env to those of the next.
+  /// EightPlaces from those of one env to those of the next.
   [[nodiscard]] std::size_t placesStride() const { return group_count_; }
-  /// Room for a search for the way out of the scene.
+  /// Scratch space of a search for the way out of the scene.
   [[nodiscard]] SceneExitScratch& sceneExit() { return scene_exit_; }
-  /// What the last look at what the candidate holds found.
+  /// What the last query about the held object found.
   [[nodiscard]] SeenHeld& seenHeld(std::size_t env) { return seen_held_[env]; }
-  /// One bit for each sphere of the held object that may penetrate something, whether it counts or
-  /// not: where the candidate was found free.
+  /// One bit for each sphere of the held object that penetrates something, whether it counts or
+  /// not. Valid once the candidate was found free.
   [[nodiscard]] std::span<std::uint64_t> heldBits() { return held_bits_; }
-  /// Room for a bit for each sphere of the robot.
+  /// Space for one bit per sphere of the robot.
   [[nodiscard]] std::span<std::uint64_t> bodyBits() { return body_bits_; }
 
  private:
-  /// Moves the frames of the candidates that shift() has moved.
+  /// Catches up the frames with the candidates that shift() has moved.
   void shiftFrames();
   [[nodiscard]] const EnvRow* gripRows() const { return &rows_.back() + 1 - kGripNumbers; }
 
@@ -152,15 +153,15 @@ class Chunk {
   std::vector<EnvRow> arrived_;
   std::vector<EnvRow> motions_;
   std::vector<float> given_actions_;
-  /// As those of a BatchState begin.
+  /// Laid out like the first rows of a BatchState.
   std::vector<EnvRow> rows_;
   std::vector<AlignedLanes> centers_;
   std::vector<AlignedLanes> bounds_;
   std::array<CenterBounds, kChunk> extents_{};
-  /// Of the groups, meters, padded to lanes.
+  /// Radii of the groups, meters, padded to lanes.
   std::vector<AlignedLanes> group_radii_;
   std::vector<EnvRow> frames_;
-  /// By how much the frames are behind, along X, Y and Z, and those of which candidates, as bits.
+  /// How far the frames lag behind their candidates, along X, Y and Z, and which ones lag, as bits.
   std::array<EnvRow, 3> frames_behind_{};
   std::uint32_t are_behind_ = 0;
   std::array<Floor, kChunk> floor_{};
@@ -183,7 +184,7 @@ struct ChunkStep {
   BatchState& state;
   Chunk& chunk;
   std::size_t first = 0;
-  /// Room for places on the way of one env; none where only the ends of moves are looked at.
+  /// Scratch space for places on the way of one env; null if only the ends of moves are checked.
   Chunk* between = nullptr;
 };
 

@@ -24,7 +24,7 @@ bool bodyTouchesObjects(const ChunkStep& step, std::size_t e) {
   return touches;
 }
 
-/// The groups of an eight that there are, as bits.
+/// The groups that an eight really has, as bits.
 unsigned groupsOf(const Model& model, std::size_t eight) {
   return (1U << std::min(model.groups.size() - eight * kLanes, kLanes)) - 1;
 }
@@ -33,10 +33,10 @@ std::uint32_t mapOf(const ChunkStep& step, std::size_t e) {
   return step.state.env(step.first + e).clearance_map;
 }
 
-/// Bounds of the ball around what the candidate holds.
+/// Bounds of the ball around the object that the candidate holds.
 CenterBounds boundsOfHeld(const ChunkStep& step, std::size_t e) {
   const Held& held = step.state.held(step.first + e);
-  // More than the spheres can leave the ball by through rounding, meters.
+  // Rounding moves no sphere further out of the ball than this, meters.
   constexpr float kSlack = 1e-3F;
   const Vec3 center = gripToWorld(step.chunk.grip(e), held.ball_center);
   const float reach = held.ball_radius + kSlack;
@@ -45,7 +45,8 @@ CenterBounds boundsOfHeld(const ChunkStep& step, std::size_t e) {
   return {{least.x, most.x, least.y, most.y, least.z, most.z, least.z, most.z}};
 }
 
-/// Asks maps about what some candidates hold, so that none waits for the answer about another.
+/// Asks the maps about what several candidates hold, so that no query waits for the answer to
+/// another.
 void lookAtHeld(const ChunkStep& step, std::span<const std::size_t> holding) {
   std::array<std::uint32_t, kChunk> maps;
   std::array<CenterBounds, kChunk> bounds;
@@ -72,11 +73,11 @@ void lookAtAllHeld(const ChunkStep& step) {
   if (count > 0) lookAtHeld(step, std::span(holding).first(count));
 }
 
-/// No groups are known to be free.
+/// For searches in which no group is known to be free.
 unsigned noGroups(std::size_t) { return 0; }
 
-/// As findBlocked(), where maps have been asked already. `look`: what slices say of some groups of
-/// an eight. `free`: the groups of an eight that are free anyway.
+/// Like findBlocked(), after the maps have been asked. `look`: returns the slices' answers about
+/// some groups of an eight. `free`: returns the groups of an eight that are known to be free.
 template <class Look, class Free>
 bool findBlockedBy(const Look& look, const Free& free, const ChunkStep& step, std::size_t e) {
   const Env& env = step.state.env(step.first + e);

@@ -50,7 +50,7 @@ void takeStock(const Model& model, BatchState& state, std::size_t n) noexcept {
   const WayLeft way = measureWay(model, state, n);
   env.way = way.length;
   env.is_way_to_goal = way.is_to_goal;
-  // Those of the other envs of the chunk stay as they are.
+  // Observes the whole chunk; the observations of its other envs do not change.
   observe(model, state, n / kChunk * kChunk);
   sense(model, state, {n, 1});
 }
@@ -82,7 +82,7 @@ void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) no
   const auto count = static_cast<std::uint32_t>(model.starts.size());
   const std::uint64_t number = model.globalEnv(env);
   const auto next = nthEpisode(model.options, number, state.counters(env).turns, count);
-  // An env that never has one stands somewhere, too.
+  // An env that never gets an episode needs a place to stand, too.
   const bool has_begun = state.counters(env).begun > 0;
   if (next || !has_begun) {
     const std::uint32_t start = next.value_or(static_cast<std::uint32_t>(number % count));
@@ -102,7 +102,7 @@ void renewEpisodes(const ChunkStep& step) noexcept {
     if (step.model.options.auto_reset) {
       beginNextEpisode(step.model, step.state, n);
     } else {
-      // Until the caller begins another one.
+      // It stays idle until the caller begins another episode.
       step.state.idle()[n] = 1;
     }
   }

@@ -9,22 +9,23 @@
 
 namespace galactic::simulation {
 
-/// What follows from the rest of an env's state: the distances that are left, and its observation.
+/// Computes what follows from the rest of an env's state: the remaining distances, and its
+/// observation.
 void takeStock(const Model& model, BatchState& state, std::size_t env) noexcept;
 
-/// Env `env` stands at the start `start` (index into Model::starts) and its observation is written.
+/// Puts env `env` at the start `start` (index into Model::starts) and writes its observation.
 void beginEpisode(const Model& model, BatchState& state, std::size_t env, std::uint32_t start,
                   EpisodeChoice choice) noexcept;
-/// The same at the start of the episode that is the env's next. Without one it is idle from now on,
-/// and stays as it is: see BatchSimulator::idle().
+/// The same with the env's next episode. If there is none, the env becomes idle and stays as it is:
+/// see BatchSimulator::idle().
 void beginNextEpisode(const Model& model, BatchState& state, std::size_t env) noexcept;
 
-/// Where the episode ended: keeps the last observation and begins the next one or, without
-/// auto_reset, leaves the env idle.
+/// For each env whose episode has ended: keeps the last observation, then begins the next episode
+/// or, without auto_reset, leaves the env idle.
 void renewEpisodes(const ChunkStep& step) noexcept;
 
-/// Begins the episodes that the caller asks for: for each env of the batch an index into the
-/// world's episodes. Numbers without a start (Model::startOf) begin none.
+/// Begins the episodes that the caller asks for. `resets`: for each env of the batch an index into
+/// the world's episodes; a number without a start (Model::startOf) begins none.
 void resetEpisodes(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept;
 
 }  // namespace galactic::simulation

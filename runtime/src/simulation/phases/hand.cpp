@@ -35,8 +35,8 @@ bool mayRestAt(const ChunkStep& step, std::size_t n, const Pose& pose) {
   return dot(away, away) < task.success_distance * task.success_distance;
 }
 
-/// The robot's spheres that penetrate the object which the hand has let go of do not count against
-/// it until they are free of it.
+/// Marks the robot's spheres that penetrate the object that the hand let go of: they do not count
+/// against it until they are free of it.
 void beginToLeave(const ChunkStep& step, std::size_t e, std::uint32_t object) {
   // The chunk's spheres are those of a candidate that may have been refused.
   const std::size_t group = e / kLanes * kLanes;
@@ -112,8 +112,8 @@ void useHands(const ChunkStep& step) noexcept {
   const EnvRow& values = arrivedOf(step)[layout.hand()];
   const EnvRow& terminates = arrivedOf(step)[layout.terminate()];
   const std::uint8_t* idle = step.state.idle().data() + step.first;
-  // Nobody can guess what a hand does next, so no branch depends on it but those of the few that do
-  // something.
+  // What a hand does next is unpredictable, so there is no branch on it except for the few hands
+  // that do something.
   unsigned grasps = 0;
   unsigned releases = 0;
   for (std::size_t e = 0; e < kChunk; ++e) {

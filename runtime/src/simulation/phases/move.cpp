@@ -13,10 +13,11 @@
 namespace galactic::simulation {
 namespace {
 
-/// The candidate is the robot's from now on, apart from its pose, grip and bodies.
+/// Accepts the candidate, except for its pose, grip and bodies: updates the spheres that do not
+/// count.
 void accept(const ChunkStep& step, std::size_t e) {
   const std::size_t n = step.first + e;
-  // The bits are those of the accepted candidate.
+  // The chunk's bits are those of the accepted candidate.
   Env& env = step.state.env(n);
   if (env.ignores) env.ignores = keepPenetrating(step.state.ignored(n), step.chunk.heldBits());
   forEachLeft(step, e, [&](std::uint32_t object) {
@@ -26,14 +27,14 @@ void accept(const ChunkStep& step, std::size_t e) {
   });
 }
 
-/// As walkToCandidate(), looking at the end of the way alone, which lookAtAll() has seen.
+/// Like walkToCandidate(), but checks only the end of the way, about which lookAtAll() has asked.
 Walk jumpToCandidate(const ChunkStep& step, std::size_t e) {
   const Hindrance met = hindranceAsSeen(step, e);
   if (met == Hindrance::kNone) return Walk::kStraight;
   return slideClear(step, e, met) ? Walk::kHindered : Walk::kNone;
 }
 
-/// Takes over the poses and grips of accepted candidates: all envs of a number at once, without a
+/// Copies the poses and grips of accepted candidates: each number for all envs at once, without a
 /// branch.
 void acceptPoses(const ChunkStep& step, const EnvMask& accepted) {
   const std::span<EnvRow> to = step.state.poseRows(step.first);
@@ -69,7 +70,7 @@ void followFloorsOf(const Scene& scene, const ChunkStep& step, std::size_t first
   }
 }
 
-/// Whether the envs are in the scene of the first of them.
+/// Whether all these envs are in the same scene.
 bool areInOneScene(const ChunkStep& step, std::size_t first, std::size_t count) {
   const auto scene_of = [&](std::size_t e) { return step.state.env(step.first + e).scene; };
   std::uint32_t others = 0;
@@ -77,7 +78,7 @@ bool areInOneScene(const ChunkStep& step, std::size_t first, std::size_t count) 
   return others == 0;
 }
 
-/// Puts candidates on level floors. Whether all stand on one.
+/// Puts candidates on level floors. Returns whether all stand on one; if not, changes nothing.
 bool followLevelFloors(const ChunkStep& step, std::size_t first, std::size_t count) {
   std::array<std::uint32_t, kChunk> maps;
   std::uint32_t others = 0;
@@ -179,8 +180,8 @@ void moveRobots(const ChunkStep& step) noexcept {
   if (step.between == nullptr) lookAtAll(step);
   step.state.prefetchChunk(step.first + kChunk);
   for (std::size_t e = 0; e < kChunk; ++e) {
-    // A thread takes one chunk after the other. Asked for while the longest phase lasts, what the
-    // next one needs is there in time, and none of it waits for much else.
+    // A thread steps one chunk after another. Prefetched during the longest phase, the data of the
+    // next chunk arrives in time, and no load has to queue behind many others.
     step.state.prefetch(step.first + kChunk + e);
     Env& env = step.state.env(step.first + e);
     if (step.state.idle()[step.first + e] != 0) continue;

@@ -11,20 +11,20 @@ namespace galactic::simulation {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Above the rounding of a grid's heights, its quantum included, meters.
+/// More than the rounding of a grid's heights, its quantum included, meters.
 constexpr float kLeastClearance = 2e-4F;
-/// Added to a lift so that rounding does not ask for the same one again, meters; the fall that
+/// Added to a lift so that rounding does not demand the same lift again, meters; the fall that
 /// follows takes it back.
 constexpr float kNudge = 1e-4F;
-/// Boxes and spheres may overlap by rounding, meters.
+/// By how much boxes and spheres may overlap because of rounding, meters.
 constexpr float kRounding = 1e-5F;
-/// A lift out of one thing may lead into another; in a scene of shelves a few times.
+/// A lift out of one thing may lead into another, a few times in a row between shelves.
 constexpr int kMostLifts = 16;
-/// Directions that are tried for one jitter; the later half goes anywhere.
+/// Directions that are tried for one jitter; the second half of them are arbitrary.
 constexpr int kDraws = 4;
-/// Spans of a column that are looked at: far more than a building has floors and shelves.
+/// The most spans of a column that are read: far more than a building has floors and shelves.
 constexpr std::size_t kMostSpans = 64;
-/// A direction is none when it is shorter than this, meters.
+/// A shorter vector gives no direction, meters.
 constexpr float kLeastDirection = 1e-3F;
 
 Pose raised(const Pose& pose, float height) {
@@ -33,8 +33,9 @@ Pose raised(const Pose& pose, float height) {
   return result;
 }
 
-/// The direction of a sum of horizontal vectors, which does not depend on their order: floats in
-/// fixed point. PushSum would not do: in it, one vector cancels out many that point the other way.
+/// The direction of a sum of horizontal vectors that does not depend on their order: floats are
+/// added in fixed point. PushSum would not do: there, one vector cancels out many that point the
+/// other way.
 class DirectionSum {
  public:
   void add(float x, float z) {
@@ -42,7 +43,7 @@ class DirectionSum {
     z_ += fixed(z);
   }
 
-  /// The unit vector; none when the vectors cancel out.
+  /// The sum as a unit vector; none if the vectors cancel out.
   [[nodiscard]] std::optional<Vec3> direction() const {
     const Vec3 sum{static_cast<float>(x_) / kUnit, 0, static_cast<float>(z_) / kUnit};
     const float length = std::sqrt(dot(sum, sum));
@@ -52,7 +53,7 @@ class DirectionSum {
 
  private:
   static constexpr float kUnit = 0x1p20F;
-  /// Longer vectors, and NaN, say nothing about a push.
+  /// Longer vectors, and NaN, are ignored.
   static constexpr float kLongest = 1000;
 
   static std::int64_t fixed(float value) {
@@ -63,8 +64,8 @@ class DirectionSum {
   std::int64_t z_ = 0;
 };
 
-/// How far up a center that is not free has to go to be free of the static scene; infinity when
-/// there is no free height above it.
+/// How far a center that is not free has to rise to be free of the static scene; infinity if there
+/// is no free height above it.
 float liftOutOf(const ColumnGrid& grid, const Vec3& center) {
   const ColumnGridLayout& layout = grid.layout();
   const float cell_x = (center.x - layout.min_x) * layout.inverse_spacing;
@@ -81,7 +82,7 @@ float liftOutOf(const ColumnGrid& grid, const Vec3& center) {
   return kInfinity;
 }
 
-/// One object among its obstacles, at one candidate after the other.
+/// Tries one object among its obstacles at one candidate pose after another.
 class Candidate {
  public:
   Candidate(const Obstacles& obstacles, const ObjectModel& object, const PlacementOptions& options,
@@ -93,7 +94,7 @@ class Candidate {
         most_lift_(options.most_lift),
         clearance_(std::max(options.clearance, kLeastClearance)) {}
 
-  /// Where the object rests when it is let go at `pose`; none when it finds no place.
+  /// Where the object comes to rest when released at `pose`; none if it finds no place.
   [[nodiscard]] std::optional<Pose> settle(const Pose& pose) {
     const std::optional<float> lift = findLift(pose);
     if (!lift) return std::nullopt;
@@ -105,7 +106,7 @@ class Candidate {
     return landed;
   }
 
-  /// Away from what blocked the last candidate.
+  /// The direction away from what blocked the last candidate.
   [[nodiscard]] std::optional<Vec3> wayOut() const {
     const std::optional<Vec3> away = from_objects_.direction();
     return away ? away : from_scene_.direction();
@@ -162,8 +163,8 @@ class Candidate {
     }
   }
 
-  /// The lowest height above `pose` at which the object is free, and moves it there; none when that
-  /// is higher than it may be lifted: then the pushes are set.
+  /// Lifts the object from `pose` to the lowest height at which it is free, and returns the lift;
+  /// none if that exceeds the largest allowed lift, in which case the pushes are set.
   [[nodiscard]] std::optional<float> findLift(const Pose& pose) {
     float lift = 0;
     for (int n = 0; n < kMostLifts; ++n) {
@@ -179,14 +180,15 @@ class Candidate {
     return std::nullopt;
   }
 
-  /// How far all spheres have to rise to be free of the scene. Spheres that need more than `limit`
-  /// push.
+  /// How far the object has to rise for its spheres to be free of the scene. Spheres that need more
+  /// than `limit` add a push.
   [[nodiscard]] float liftOutOfScene(float limit) {
     float most = 0;
     forEachSphere([&](std::size_t n, const Vec3& center, const RadiusRange& range) {
       if (scratch_.clearance[n] == Clearance::kFree) return;
       const float lift = liftOutOf(scene_.grids()[range.radius_index], center);
-      // A column may call a height free that the batched query, which counts in quanta, does not.
+      // A height that is free in the column may not be free in the batched query, which counts in
+      // quanta.
       most = std::max(most, std::max(lift, kNudge));
       if (lift > limit) from_scene_.add(box_.center.x - center.x, box_.center.z - center.z);
     });
@@ -219,13 +221,13 @@ class Candidate {
     if (length > kLeastDirection) from_objects_.add(away.x / length, away.z / length);
   }
 
-  /// How far the object, which is free, can sink; infinity when there is nothing under it.
+  /// How far the object, which is free, can sink; infinity if nothing is under it.
   [[nodiscard]] float findFall() const {
     float least = kInfinity;
     forEachSphere([&](std::size_t n, const Vec3& center, const RadiusRange& range) {
       const ColumnGridLayout& layout = scene_.grids()[range.radius_index].layout();
       const float down = scratch_.down[n];
-      // A span that begins where the grid does has no floor.
+      // A span that begins at the bottom of the grid has no floor.
       if (center.y - down > layout.heights.lo + 2 * layout.quantum) least = std::min(least, down);
       least = std::min(least, objects_.fall(center, range.radius));
     });
@@ -248,7 +250,7 @@ class Candidate {
     return free;
   }
 
-  /// First, because it is aligned to a cache line.
+  /// First member, because it is aligned to a cache line.
   RestingBox box_;
   const Scene& scene_;
   const RestingObjects& objects_;
@@ -261,10 +263,11 @@ class Candidate {
   DirectionSum from_objects_;
 };
 
-/// A horizontal unit vector: `way` turned by up to `spread`, or any when there is no way.
+/// A random horizontal unit vector: `way` turned by up to `spread`, or any direction if there is no
+/// way.
 Vec3 drawDirection(const std::optional<Vec3>& way, float spread, RandomStream& random) {
   const float share = 2 * random.unit() - 1;
-  // In double precision: the last digit of the functions for floats differs between compilers.
+  // Double precision, because the last digit of the float functions differs between compilers.
   const double range = way ? static_cast<double>(spread) : std::numbers::pi;
   const double angle = range * static_cast<double>(share);
   const auto cosine = static_cast<float>(std::cos(angle));

@@ -14,7 +14,7 @@
 namespace galactic::simulation {
 namespace {
 
-/// Objects that are further from the hand than this are not observed, meters.
+/// Objects further from the hand than this are not observed, meters.
 constexpr float kFarthestSeen = 1;
 
 /// Appends numbers to a row.
@@ -28,25 +28,26 @@ class Row {
   float* next_;
 };
 
-/// A direction along the floor in the robot's frame: ahead, and to the left.
+/// Turns a direction along the floor into the robot's frame: ahead, and to the left.
 std::array<float, 2> seenByRobot(const GripFrame& grip, float x, float z) {
   const float cosine = headingCosine(grip);
   const float sine = headingSine(grip);
   return {cosine * x - sine * z, -(sine * x + cosine * z)};
 }
 
-/// Where that side of the target points that was up when the episode began, in the robot's frame.
+/// The current direction of the side of the target that was up when the episode began, in the
+/// robot's frame.
 void senseUp(const Model& model, const BatchState& state, std::size_t n, std::span<float> part) {
   const Vec3 up = targetUp(model, state, n);
   const auto [ahead, left] = seenByRobot(state.grip(n), up.x, up.z);
   Row out(part);
   out.add(ahead);
   out.add(up.y);
-  // The axes of the base: Z is to the right.
+  // In the base's frame, Z points to the right.
   out.add(-left);
 }
 
-/// The resting objects nearest to a point, the nearest first: the ways from there to their boxes.
+/// Vectors from a point to the boxes of the resting objects nearest to it, the nearest first.
 class NearestWays {
  public:
   explicit NearestWays(std::size_t count) : count_(count) {}
@@ -64,7 +65,7 @@ class NearestWays {
  private:
   struct Way {
     float squared = kFarthestSeen * kFarthestSeen;
-    /// Where there is no object so near: above all of them.
+    /// Stands for an object if there are too few within reach: straight up, as far as the farthest.
     Vec3 way{0, kFarthestSeen, 0};
   };
 
@@ -72,7 +73,7 @@ class NearestWays {
   std::array<Way, kMostNearObjects> ways_{};
 };
 
-/// The ways from the hand to the objects nearest to it but the target.
+/// Writes the vectors from the hand to the objects nearest to it, without the target.
 void senseNearObjects(const Model& model, const BatchState& state, std::size_t n,
                       std::span<float> part) {
   const std::size_t count = model.options.sensors.near_objects;
@@ -95,9 +96,9 @@ void senseNearObjects(const Model& model, const BatchState& state, std::size_t n
   }
 }
 
-/// How far it is to what is around.
+/// Writes the laser's distances to its surroundings.
 void senseLaser(const Model& model, const BatchState& state, std::size_t n, std::span<float> part) {
-  // Apart from the numbers that place objects.
+  // Separates these random numbers from those that place objects.
   constexpr std::uint64_t kLaserSalt = 0x6C617365722D2D31ULL;
   const GripFrame grip = state.grip(n);
   const EnvMoment moment = momentOf(model, state, n);
@@ -112,7 +113,7 @@ void senseLaser(const Model& model, const BatchState& state, std::size_t n, std:
       part);
 }
 
-/// The ways to target and goal.
+/// Writes length and direction of the ways to target and goal.
 void senseWays(const Model& model, const BatchState& state, std::size_t n, std::span<float> part) {
   const Env& env = state.env(n);
   const GripFrame grip = state.grip(n);
@@ -130,7 +131,7 @@ void senseWays(const Model& model, const BatchState& state, std::size_t n, std::
   add(model.geodesic.toGoal(env.start, base));
 }
 
-/// What was asked for in the last steps, the latest first.
+/// Writes the actions that were asked for in the last steps, the latest first.
 void senseLastActions(const Model& model, const BatchState& state, std::size_t n,
                       std::span<float> part) {
   const std::size_t next_step = state.env(n).step + state.keptSteps();
@@ -138,32 +139,32 @@ void senseLastActions(const Model& model, const BatchState& state, std::size_t n
   for (std::size_t ago = 1; ago <= model.options.sensors.last_actions; ++ago) {
     for (const EnvRow& action : state.keptActions(n, next_step - ago)) {
       const float value = action.values[n % kChunk];
-      // Hands and terminations of steps before the episode.
+      // NaN: the hand and terminate actions of steps before the episode.
       out.add(std::isnan(value) ? 0 : value);
     }
   }
 }
 
-/// What the sizes of parts depend on.
+/// Everything that the sizes of parts depend on.
 struct Asked {
   const SensorOptions& sensors;
   std::size_t joints = 0;
   std::size_t actions = 0;
-  /// Elements of a scan.
+  /// Elements of a laser scan.
   std::size_t laser = 0;
 };
 
 /// A part of an observation.
 struct ObservedPart {
   const char* name;
-  /// Elements; 0: not observed.
+  /// Its number of elements; 0 if it is not observed.
   std::size_t (*size)(const Asked& asked);
-  /// See SensedPart. Null: the kernels write it.
+  /// See SensedPart. Null if the kernels write it.
   void (*write)(const Model& model, BatchState& state, EnvRange envs,
                 const SensedPart& part) = nullptr;
 };
 
-/// Writes a part of some envs by what writes that of one.
+/// Writes a part for several envs with a function that writes it for one.
 template <auto kSense>
 void each(const Model& model, BatchState& state, EnvRange envs, const SensedPart& part) {
   for (std::size_t n = envs.first; n < envs.first + envs.count; ++n) {
@@ -181,7 +182,8 @@ std::size_t where(const Asked& asked) {
   return asked.sensors.*kOption ? kCount : 0;
 }
 
-/// In their order. The kernels write the first ones of a row, in theirs.
+/// All parts, in their order in a row. The kernels write the first ones, whose order here must be
+/// the kernels'.
 constexpr std::array kParts{
     ObservedPart{"robot_target", always<3>},
     ObservedPart{"grip_target", always<3>},
@@ -205,10 +207,10 @@ constexpr std::array kParts{
                  each<senseLastActions>},
 };
 
-/// Room for points as robots see them that know by odometry alone where they are.
+/// Points as seen by robots that know their place from odometry only.
 class BelievedPoints {
  public:
-  /// They take the place of those of a batch.
+  /// Replaces the points of a batch with the believed ones.
   void put(const BatchState& state, std::size_t first, ObserveBatch& batch) {
     const bool is_one_target = batch.targets == batch.current_targets;
     copy(batch.goals, goals_);
@@ -216,7 +218,7 @@ class BelievedPoints {
     batch.goals = goals_.front().values;
     copy(batch.current_targets, current_);
     displace(state, first, current_);
-    // What is in the hand is where the hand is.
+    // A robot knows where the object in its hand is.
     for (std::size_t e = 0; e < kChunk; ++e) {
       const Env& env = state.env(first + e);
       if (!holdsTarget(env)) continue;

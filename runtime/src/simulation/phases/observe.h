@@ -5,15 +5,15 @@
 
 namespace galactic::simulation {
 
-/// Says in the model what its options make parts of an observation: see
-/// BatchSimulator::observationParts. `laser_size`: elements of a scan of its laser, 0 without one.
+/// Lays out in the model the parts of an observation that its options ask for: see
+/// BatchSimulator::observationParts. `laser_size`: elements of a laser scan, 0 without a laser.
 void layOutObservation(std::size_t laser_size, Model& model);
 
-/// Writes the observations of the envs of a chunk, whose first one is `first`, but for their
-/// sensors.
+/// Writes the observations, except for sensed parts, of the envs of the chunk that begins at
+/// `first`.
 void observe(const Model& model, BatchState& state, std::size_t first) noexcept;
 
-/// Writes those of the sensors of some envs.
+/// Writes the sensed parts of the observations of some envs.
 void sense(const Model& model, BatchState& state, EnvRange envs) noexcept;
 
 }  // namespace galactic::simulation

@@ -10,22 +10,22 @@
 namespace galactic::simulation {
 namespace {
 
-// Apart from each other, and from the numbers of sensors.
+// Salts that separate these random numbers from each other, and from those of sensors.
 constexpr std::uint64_t kMotionSalt = 0x4D6F74696F6E2D31ULL;
 constexpr std::uint64_t kBiasSalt = 0x426961732D2D3031ULL;
 constexpr std::uint64_t kOdometrySalt = 0x4F646F6D2D2D3031ULL;
 
-/// The luck of a moment.
+/// The random numbers of a moment.
 RandomStream luckOf(const EnvMoment& moment, std::uint64_t salt) {
   return {moment.seed ^ salt, moment.env, moment.episode, moment.step};
 }
 
-/// The luck of all of a moment's episode.
+/// The random numbers of a moment's whole episode.
 RandomStream lastingLuckOf(const EnvMoment& moment, std::uint64_t salt) {
   return {moment.seed ^ salt, moment.env, moment.episode, 0};
 }
 
-/// By which share each motion is off, one after the other.
+/// The relative errors of motions, one after another.
 class Errors {
  public:
   Errors(float deviation, const RandomStream& random) : deviation_(deviation), random_(random) {}
@@ -37,7 +37,7 @@ class Errors {
   RandomStream random_;
 };
 
-/// The motions of one env.
+/// Applies noise to the motions of one env.
 void disturb(const ChunkStep& step, std::size_t e) {
   const RobotNoise& noise = step.model.options.noise;
   const EnvMoment moment = momentOf(step.model, step.state, step.first + e);
@@ -48,7 +48,7 @@ void disturb(const ChunkStep& step, std::size_t e) {
   for (std::size_t m = 0; m < motions.size(); ++m) {
     motions[m].values[e] = asked[m].values[e] * (1 + fleeting.next() + lasting.next());
   }
-  // Wheels that differ turn a base that drives, to whichever side.
+  // Unequal wheels turn a driving base to one side or the other.
   const float drift = fleeting.next() + lasting.next();
   const ActionLayout layout = step.model.actionLayout();
   float drive = asked[layout.forward()].values[e];
@@ -59,7 +59,7 @@ void disturb(const ChunkStep& step, std::size_t e) {
   motions[layout.turn()].values[e] += drive * drift;
 }
 
-/// A way along the floor, turned.
+/// Turns a vector along the floor.
 Vec3 turned(const Vec3& way, float angle) {
   const auto cosine = static_cast<float>(std::cos(static_cast<double>(angle)));
   const auto sine = static_cast<float>(std::sin(static_cast<double>(angle)));
@@ -93,7 +93,7 @@ void followOdometry(const ChunkStep& step) noexcept {
     const EnvMoment moment = momentOf(step.model, step.state, n);
     Errors errors(drawnIn(moment, step.model.options.noise.localization, kLocalizationDraw),
                   luckOf(moment, kOdometrySalt));
-    // As motions are off: see disturb().
+    // Perceived motions have the same kind of errors as the motions themselves: see disturb().
     const float felt_turn = turn * (1 + errors.next());
     const float drift = length / steps.forward_step * steps.turn_step * errors.next();
     const float yaw = wrappedAngle(believed.yaw + felt_turn + drift);

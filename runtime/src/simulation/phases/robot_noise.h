@@ -5,20 +5,20 @@
 
 namespace galactic::simulation {
 
-/// What the robots of a chunk do of what their actions ask for, in rows: joints, forward, turn.
-/// What reaches them (arrivedOf()), unless RobotNoise changes motions.
+/// The motions that the robots of a chunk really make, in rows: joints, forward, turn. Equal to the
+/// actions that reach them (arrivedOf()), unless RobotNoise changes motions.
 [[nodiscard]] std::span<const EnvRow> motionsOf(const ChunkStep& step) noexcept;
 
-/// The robot of an env knows where it is: its episode begins.
+/// Sets the believed pose of an env's robot, whose episode begins, to its true pose.
 void beginOdometry(const Model& model, BatchState& state, std::size_t n) noexcept;
 
-/// Adds what the robots of a chunk have moved to where they take themselves to be. Only where there
-/// is odometry.
+/// Updates the believed poses of a chunk's robots by their noisy perception of how they moved. Does
+/// nothing without odometry.
 void followOdometry(const ChunkStep& step) noexcept;
 
-/// Moves points of the world, one for each env of a chunk, to where the robots take them to be
-/// seen from themselves: they know the points by their place in the world. Only where there is
-/// odometry. `first`: env of the chunk.
+/// Moves world points, one for each env of a chunk, to where they would have to be for the robot at
+/// its true pose to see them as it believes to from its believed pose. Only with odometry. `first`:
+/// the chunk's first env.
 void displace(const BatchState& state, std::size_t first, PointRows& points) noexcept;
 
 }  // namespace galactic::simulation

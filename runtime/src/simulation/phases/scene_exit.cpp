@@ -27,7 +27,7 @@ void SceneExit::follow(const Push& moved, bool is_level) {
   moved_ = moved;
 }
 
-/// No group is known to suit a way, nor to be in columns.
+/// Forgets which groups suit a way, and which are in columns.
 void SceneExit::forgetGroups() {
   std::ranges::fill(scratch_.suited, 0U);
   if (asks_columns_) clearColumns();
@@ -40,7 +40,7 @@ void SceneExit::clearColumns() {
 }
 
 bool SceneExit::addBlocked(Hindrance met) {
-  // Under a floor that is too high nobody has looked.
+  // The last query stopped at the floor, which is too high, before it reached the scene.
   if (met == Hindrance::kRise) findBlocked(step_, e_, suited());
   const bool body = met == Hindrance::kRise || met == Hindrance::kScene;
   if (!body && !heldIsBlocked()) return false;
@@ -71,16 +71,16 @@ FoundWay SceneExit::shortest(const Push& drive) {
 
 Vec3 SceneExit::floorProbeHere() const { return floorProbe(step_, e_); }
 
-/// Adds the robot's spheres in all groups that are not free as a whole: those that are blocked, and
-/// those of which it is known where they are free.
+/// Adds the robot's spheres in all groups that are not known to be free: those that are blocked,
+/// and those that slices know to be free.
 void SceneExit::addBody() {
   for (std::size_t eight = 0; eight * kLanes < step_.model.groups.size(); ++eight) {
     scratch_.suited[eight] |= isBegun() ? addFromBefore(eight) : addFromHere(eight);
   }
 }
 
-/// Adds the groups of an eight; the way out begins where they are. Those whose spheres were all
-/// added, as bits.
+/// Adds the groups of an eight to a way that begins at their current place. Returns the groups
+/// whose spheres were all added, as bits.
 unsigned SceneExit::addFromHere(std::size_t eight) {
   const EightPlaces* places = step_.chunk.places(e_, eight);
   const SeenGroups& seen = step_.chunk.seen(eight);
@@ -96,7 +96,7 @@ unsigned SceneExit::addFromHere(std::size_t eight) {
   return added.whole;
 }
 
-/// The same where the way out was begun before.
+/// The same for a way that begins elsewhere, because the candidate has moved since begin().
 unsigned SceneExit::addFromBefore(std::size_t eight) {
   unsigned whole = 0;
   for (unsigned left = step_.chunk.seen(eight).unsure; left != 0; left &= left - 1) {
@@ -111,14 +111,15 @@ unsigned SceneExit::addFromBefore(std::size_t eight) {
   return whole;
 }
 
-/// The spheres of group `n` of an eight, as bits, but for those that only columns call free.
+/// The spheres of group `n` of an eight, as bits, except for those that only the columns know to be
+/// free.
 unsigned SceneExit::freeOrBlocked(std::size_t eight, std::size_t n) const {
   const auto blocked = static_cast<unsigned>(step_.chunk.seen(eight).blocked >> (n * kLanes));
   return step_.model.groups[eight * kLanes + n].spheres &
          (step_.chunk.places(e_, eight)[n].free | blocked);
 }
 
-/// Adds spheres of a group of which slices know nothing where the way out begins.
+/// Adds spheres of a group that are outside the slices where the way out begins.
 void SceneExit::addSingles(std::size_t group, unsigned spheres) {
   if (spheres == 0) return;
   const std::uint32_t radius = step_.model.groups[group].radius_index;
@@ -147,7 +148,7 @@ EightPlaces SceneExit::placesBefore(std::size_t group) const {
   return places;
 }
 
-/// Calls visit(radius index, center) for each sphere of what the robot holds that counts.
+/// Calls visit(radius index, center) for each sphere of the held object that counts.
 template <class Visit>
 void SceneExit::forEachHeld(const Visit& visit) const {
   if (env_.held < 0) return;
@@ -172,21 +173,21 @@ bool SceneExit::heldIsBlocked() const {
   return any;
 }
 
-/// As addBody() for what the robot holds.
+/// Like addBody(), for the held object.
 void SceneExit::addHeld() {
   forEachHeld([&](std::uint32_t radius, const Vec3& center) {
     if (isBlocked(radius, center) || isKnown(radius, center)) addSphere(radius, center);
   });
 }
 
-/// Whether slices say rightly that a sphere is free where it is. Close above a table they do not,
-/// and would have it leave the table.
+/// Whether slices know that a sphere, which is not blocked, is free. They do not for a sphere close
+/// above a table, and would make it leave the table.
 bool SceneExit::isKnown(std::uint32_t radius, const Vec3& center) const {
   const auto around = step_.model.slices.around(env_.clearance_map, radius, center);
   return !around || around->isFree(0, 0);
 }
 
-/// `center`: where the sphere is now.
+/// `center`: the sphere's current place.
 void SceneExit::addSphere(std::uint32_t radius, const Vec3& center) {
   const ColumnGrid& grid = scene_.grids()[radius];
   const Vec3 before{center.x - moved_.x, center.y, center.z - moved_.z};
@@ -194,8 +195,9 @@ void SceneExit::addSphere(std::uint32_t radius, const Vec3& center) {
   scratch_.way.add(around ? around->cells() : surroundingsOf(grid, before), grid.layout(), before);
 }
 
-/// Whether slices call each cell blocked for one of the robot's spheres that were looked at where
-/// the way begins: most searches of columns end here.
+/// Whether slices know for each cell that one of the robot's spheres is blocked there. True for
+/// most searches of columns, which then end without a look at any. Only if the way begins at the
+/// current place.
 bool SceneExit::isHopelessInSlices(Hindrance met) const {
   if (isBegun() || (met != Hindrance::kScene && met != Hindrance::kRise)) return false;
   CommonCells may_be_free = CommonCells::everywhere();
@@ -210,15 +212,15 @@ bool SceneExit::isHopelessInSlices(Hindrance met) const {
   return false;
 }
 
-/// Adds all spheres that are not free as a whole, and what the robot holds, and asks the columns
-/// where the slices do not know better.
+/// Adds all groups that are not known to be free, and the held object, and asks the columns where
+/// slices do not know.
 void SceneExit::addColumns(Hindrance met) {
   if (isHopelessInSlices(met)) return scratch_.way.close();
   if (met == Hindrance::kRise) addColumn(0, floorProbeHere());
   for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
     unsigned& in_columns = scratch_.in_columns[n / kLanes];
     const unsigned bit = 1U << (n % kLanes);
-    // Those that suited a way through slices have to suit this one, too.
+    // Groups that suited a way through slices have to suit this one, too.
     const unsigned wanted = step_.chunk.seen(n / kLanes).unsure | scratch_.suited[n / kLanes];
     if ((wanted & ~in_columns & bit) == 0) continue;
     in_columns |= bit;
@@ -231,14 +233,14 @@ void SceneExit::addColumns(Hindrance met) {
   holds_columns_ = true;
   scratch_.way.clear(scene_.grids().front().spacing());
   if (!scratch_.columns.addTo(scratch_.way)) scratch_.way.close();
-  // No group needs another look where they lead.
+  // These groups need no further check where the way leads.
   std::ranges::copy(scratch_.in_columns, scratch_.suited.begin());
 }
 
 void SceneExit::addColumnsOfGroup(std::size_t n) {
   const EightSpheres& group = step_.model.groups[n];
   const SphereBatch spheres = step_.chunk.spheres(e_);
-  // Where the way begins here, it is known where they are.
+  // If the way begins here, their places are known.
   const bool is_seen = (step_.chunk.seen(n / kLanes).unsure >> (n % kLanes) & 1U) != 0;
   const bool has_places = !isBegun() && is_seen;
   const EightPlaces& places = step_.chunk.places(e_, n / kLanes)[n % kLanes];
@@ -256,13 +258,14 @@ void SceneExit::addColumnsOfGroup(std::size_t n) {
   }
 }
 
-/// `center`: where the sphere is now.
+/// `center`: the sphere's current place.
 void SceneExit::addColumn(std::uint32_t radius, const Vec3& center) {
   const Vec3 before{center.x - moved_.x, center.y, center.z - moved_.z};
   addColumn(radius, before, step_.model.slices.around(env_.clearance_map, radius, before));
 }
 
-/// `center`: where the way begins. `around`: what slices know.
+/// `center`: the sphere's place where the way begins. `around`: what slices know of the cells
+/// around it.
 void SceneExit::addColumn(std::uint32_t radius, const Vec3& center,
                           const std::optional<SurroundingRows>& around) {
   scratch_.columns.add(scene_.grids()[radius], center, around);

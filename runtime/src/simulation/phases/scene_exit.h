@@ -13,44 +13,43 @@
 
 namespace galactic::simulation {
 
-/// Seeks the shortest move of one candidate out of the scene: gathers the spheres that decide where
-/// it leads, of the robot or of what it holds, at first with what slices know of the cells around
-/// them, and once these know no way out, with what the columns do.
-///
-/// All ways begin where begin() was called last. Where the candidate has been moved since, spheres
-/// that are found to be blocked there join those that were added before.
+/// Finds the shortest move of one candidate out of the scene. Gathers the spheres of the robot, or
+/// of the held object, that decide where it leads. Uses what the slices know of the cells around
+/// the spheres and, if these know no way out, the columns themselves. All ways begin where the
+/// candidate was at the last begin(). If it has moved since then, spheres that are blocked at its
+/// new place join those that were added before.
 class SceneExit {
  public:
   SceneExit(const ChunkStep& step, std::size_t e);
 
-  /// Forgets all spheres; ways begin where the candidate is now.
+  /// Forgets all spheres and lets ways begin at the candidate's current place.
   void begin();
 
-  /// The candidate was moved to `moved` from where ways begin. At another height than before
-  /// (`is_level`), nothing is known of any group.
+  /// Call when the candidate has been moved to `moved`, counted from where ways begin. Unless it
+  /// kept its height (`is_level`), forgets what is known of the groups.
   void follow(const Push& moved, bool is_level);
 
   /// How far the candidate is from where ways begin.
   [[nodiscard]] const Push& moved() const { return moved_; }
 
-  /// Adds the spheres that decide, where the candidate is now and meets `met`. Whether the scene
-  /// blocks any.
+  /// Adds the deciding spheres at the candidate's current place, where it meets `met`. Returns
+  /// whether the scene blocks any.
   bool addBlocked(Hindrance met);
 
-  /// Asks columns from now on, for want of a way that slices know. False if that was done before.
+  /// Switches to asking columns, because slices know no way. Returns false if that was done before.
   bool turnToColumns(Hindrance met);
 
-  /// The shortest move from where ways begin, no longer than a slide may be, and not on along
-  /// `drive`.
+  /// The shortest move from where ways begin, no longer than a slide may be, that does not push the
+  /// robot further along `drive`.
   [[nodiscard]] FoundWay shortest(const Push& drive);
 
-  /// Whether there is any place around that is free for all spheres.
+  /// Whether any place around is free for all spheres.
   [[nodiscard]] bool isOpen() const { return scratch_.way.isOpen(); }
 
-  /// Groups that are free where the last way leads, as bits, eight by eight.
+  /// The groups known to be free where the last way leads, as bits, eight by eight.
   [[nodiscard]] std::span<const unsigned> suited() const { return scratch_.suited; }
 
-  /// Whether the scene blocks what the robot holds.
+  /// Whether the scene blocks the held object.
   [[nodiscard]] bool heldIsBlocked() const;
 
  private:
@@ -84,7 +83,7 @@ class SceneExit {
   SceneExitScratch& scratch_;
   Push moved_;
   bool asks_columns_ = false;
-  /// What the robot holds is in the columns.
+  /// Whether the held object was added to the columns.
   bool holds_columns_ = false;
 };
 

@@ -11,7 +11,7 @@
 namespace galactic::simulation {
 namespace {
 
-/// Moves the candidate over the floor. Whether it is as high as before.
+/// Moves the candidate over the floor. Returns whether its height stays the same.
 bool moveBase(const ChunkStep& step, std::size_t e, const Push& by) {
   const float floor_before = *step.state.poses(step.first + e).y;
   const Vec3 base = step.chunk.base(e);
@@ -21,8 +21,8 @@ bool moveBase(const ChunkStep& step, std::size_t e, const Push& by) {
   return under.height == base.y;
 }
 
-/// Slides one candidate along what blocks it: the shortest move out of the scene, then out of
-/// objects, and so on until it is free.
+/// Slides one candidate along its obstacles: makes the shortest move out of the scene, then out of
+/// objects, and so on until the candidate is free.
 class Glide {
  public:
   Glide(const ChunkStep& step, std::size_t e)
@@ -36,7 +36,7 @@ class Glide {
     drive_ = {to.x - from.x, to.z - from.z};
   }
 
-  /// Whether the candidate, which met `met`, is free now.
+  /// Slides the candidate, which met `met`. Returns whether it is free now.
   bool run(Hindrance met) {
     for (std::uint32_t attempt = 0; attempt < step_.model.options.slide.attempts; ++attempt) {
       if (met == Hindrance::kDrop || !leave(met)) return false;
@@ -48,7 +48,7 @@ class Glide {
 
  private:
   bool leave(Hindrance met) {
-    // Under a floor that is too high, maps are asked anew.
+    // A candidate on a floor that is too high has not asked the maps yet.
     if (met == Hindrance::kRise) since_asked_.reset();
     return exit_.addBlocked(met) ? leaveScene(met) : leaveObjects();
   }
@@ -56,7 +56,8 @@ class Glide {
   bool leaveScene(Hindrance met) {
     FoundWay way = exit_.shortest(drive_);
     if (way.squared == kNoWay && exit_.turnToColumns(met)) way = exit_.shortest(drive_);
-    // Where the arm or a turn led into something, the drive is not to blame.
+    // If the arm or a turn led into something, the drive is not to blame, and the way out may lead
+    // along it.
     if (way.squared == kNoWay && exit_.isOpen() && isBlockedWithoutDrive())
       way = exit_.shortest({});
     if (way.squared == kNoWay) return false;
@@ -85,7 +86,7 @@ class Glide {
     return true;
   }
 
-  /// Moves the candidate over the floor. Whether it is as high as before.
+  /// Moves the candidate over the floor. Returns whether its height stays the same.
   bool move(const Push& by) {
     const bool is_level = moveBase(step_, e_, by);
     if (!is_level) since_asked_.reset();
@@ -93,11 +94,11 @@ class Glide {
     return is_level;
   }
 
-  /// What the candidate meets where it was moved to.
+  /// The first hindrance of the candidate at its new place.
   Hindrance lookAgain() {
     const Hindrance floor = hindranceByFloor(step_, e_);
     if (floor != Hindrance::kNone) return floor;
-    // With something in the hand, another way out may be sought for the groups that are asked here.
+    // While the hand holds something, a further search may need the answers about these groups.
     const bool is_sure =
         env_.held < 0 && since_asked_ && isSureAfter(step_, e_, *since_asked_, exit_.suited());
     if (!is_sure) {
@@ -108,7 +109,7 @@ class Glide {
     return hindranceByObjects(step_, e_);
   }
 
-  /// Whether the scene would block the robot, or what it holds, if it had not driven.
+  /// Whether the scene would block the robot, or the held object, even without the drive.
   [[nodiscard]] bool isBlockedWithoutDrive() {
     if (drive_.x == 0 && drive_.z == 0) return false;
     const Push moved = exit_.moved();
@@ -125,14 +126,14 @@ class Glide {
   const Env& env_;
   RestingObjects& objects_;
   SceneExit exit_;
-  /// The way that the robot came.
+  /// How the robot drove in this step.
   Push drive_;
-  /// How far the candidate has been moved since maps were asked about it; none where what they said
-  /// counts no more: they were asked about another place, or at another height.
+  /// How far the candidate has moved since the maps were asked about it; none if their answers are
+  /// not valid for it, because they are about another height or another pose.
   std::optional<Push> since_asked_ = Push{};
 };
 
-/// The jitter of the published rule away from a sphere: towards the base.
+/// The jitter of the published rule for a sphere in contact: from the sphere towards the base.
 Push pushFrom(const ChunkStep& step, std::size_t e, const SphereBatch& spheres,
               std::uint32_t sphere) {
   const Vec3 base = step.chunk.base(e);
@@ -145,9 +146,9 @@ Push pushFrom(const ChunkStep& step, std::size_t e, const SphereBatch& spheres,
   return {x * scale, z * scale};
 }
 
-/// The published rule asks about one thing after the other, and the first sphere in contact
-/// decides: the robot in the scene, what it holds in the scene, then both among the objects. In the
-/// scene, attempts take turns to begin with the robot's last sphere and with its first.
+/// The published rule: the first sphere in contact decides. Checks the robot against the scene, the
+/// held object against the scene, then both against the objects. Against the scene, attempts begin
+/// alternately with the robot's last sphere and with its first.
 class TowardsBase {
  public:
   TowardsBase(const ChunkStep& step, std::size_t e, std::uint32_t attempt)
@@ -175,7 +176,7 @@ class TowardsBase {
   }
 
  private:
-  /// Of those whose bit is set, one of which there is.
+  /// The first sphere whose bit is set, of which there must be one; the last one if `from_last`.
   [[nodiscard]] std::uint32_t firstOfBody(bool from_last) const {
     const std::span<const std::uint32_t> order = step_.model.motion.spheres_by_link;
     const std::span<const std::uint64_t> bits = step_.chunk.bodyBits();

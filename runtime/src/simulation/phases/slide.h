@@ -6,8 +6,9 @@
 
 namespace galactic::simulation {
 
-/// Slides the candidate of the chunk's env `e` along what hinders it: moves its base until nothing
-/// does. `met`: what hinders it where it is, as found by the last look. Whether it succeeded.
+/// Slides the candidate of the chunk's env `e` along its obstacles: moves its base until nothing
+/// hinders it. `met`: what hinders it at its current place, as the last query found. Returns
+/// whether it succeeded.
 bool slideClear(const ChunkStep& step, std::size_t e, Hindrance met) noexcept;
 
 }  // namespace galactic::simulation

@@ -27,7 +27,7 @@ void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
                                                 .count = count,
                                                 .to = step.chunk.actions().front().values,
                                                 .envs = kChunk});
-  // Those of the next chunk come nearer in the meantime.
+  // Prefetch the actions of the next chunk.
   constexpr std::size_t kFloatsOfLine = 16;
   const std::span<const float> next = all.subspan(std::min(first + kChunk * count, all.size()));
   for (std::size_t n = 0; n < std::min(kChunk * count, next.size()); n += kFloatsOfLine) {
@@ -41,7 +41,7 @@ void readActions(const ChunkStep& step, std::span<const float> all) noexcept {
 
 namespace {
 
-/// See finishStep(). Tells `lap` after each phase.
+/// See finishStep(). Calls `lap` after each phase.
 template <class Lap>
 void runLastPhases(const ChunkStep& step, std::span<const std::int32_t> resets,
                    const Lap& lap) noexcept {
@@ -57,7 +57,7 @@ void runLastPhases(const ChunkStep& step, std::span<const std::int32_t> resets,
   lap(Phase::kRenew);
 }
 
-/// Runs the phases, telling `lap` after each of them.
+/// Runs the phases, and calls `lap` after each of them.
 template <class Lap>
 void runPhases(const ChunkStep& step, const StepInput& input, const Lap& lap) noexcept {
   step.state.prefetchBounds(step.first);
@@ -90,7 +90,7 @@ void stepChunk(const ChunkStep& step, const StepInput& input) noexcept {
 void stepChunkMeasured(const ChunkStep& step, const StepInput& input,
                        PhaseSeconds& seconds) noexcept {
   double before = detail::threadSeconds();
-  // Asking takes as long as a short phase.
+  // Reading the clock takes as long as a short phase.
   const double asking = detail::threadSeconds() - before;
   before += asking;
   runPhases(step, input, [&](Phase phase) {

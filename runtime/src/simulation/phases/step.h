@@ -9,9 +9,9 @@
 
 namespace galactic::simulation {
 
-/// What the caller gives for a step of the whole batch.
+/// The caller's input to a step of the whole batch.
 struct StepInput {
-  /// Env after env, not padded.
+  /// Env after env, without padding.
   std::span<const float> actions;
   /// Empty, or one per env.
   std::span<const std::int32_t> resets;
@@ -30,26 +30,26 @@ enum class Phase : std::uint8_t {
   kSense,
   kRenew,
 };
-/// By phase.
+/// Indexed by phase.
 inline constexpr std::array<std::string_view, 10> kPhaseNames{
     "actions", "propose", "floor",   "kinematics", "collide",
     "hands",   "task",    "observe", "sense",      "renew"};
 static_assert(kPhaseNames.size() == static_cast<std::size_t>(Phase::kRenew) + 1);
 using PhaseSeconds = std::array<double, kPhaseNames.size()>;
 
-/// Copies the actions of the chunk's envs, clamped; what is not a number becomes 0 and is counted.
-/// Envs that are only padding get 0.
+/// Copies and clamps the actions of the chunk's envs; NaN becomes 0 and is counted. Padding envs
+/// get 0.
 void readActions(const ChunkStep& step, std::span<const float> all) noexcept;
 
-/// The end of a step, once robots and hands are where it leaves them: judges and observes it, and
-/// begins the next episodes of those that ended and those that the caller asks for (`resets`:
-/// empty, or one per env of the batch).
+/// Finishes a step after robots and hands have moved: judges and observes it, begins the next
+/// episode in envs whose episode has ended, and begins the episodes that the caller asks for
+/// (`resets`: empty, or one per env of the batch).
 void finishStep(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept;
 
-/// One step of the chunk's envs.
+/// Steps the chunk's envs.
 void stepChunk(const ChunkStep& step, const StepInput& input) noexcept;
 
-/// The same, adding to `seconds` how long the processor worked on each phase.
+/// The same, and adds the processor time of each phase to `seconds`.
 void stepChunkMeasured(const ChunkStep& step, const StepInput& input,
                        PhaseSeconds& seconds) noexcept;
 

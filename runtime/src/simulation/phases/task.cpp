@@ -27,8 +27,8 @@ EpisodeEnd endOfRearrange(const TaskOptions& task, const Env& env, float transpo
   return EpisodeEnd::kNone;
 }
 
-/// How the rules of a task end the episode (paper, appendix A), apart from its time. `transport` is
-/// the distance of target and goal after the step, in meters.
+/// How the rules of a task, except for its time limit, end the episode (paper, appendix A).
+/// `transport`: the distance from target to goal after the step, meters.
 inline EpisodeEnd endOf(const TaskOptions& task, const Env& env, float transport) {
   EpisodeEnd end = EpisodeEnd::kNone;
   switch (task.kind) {
@@ -60,8 +60,8 @@ float rewardOf(const TaskOptions& task, const Env& env, const TargetDistances& n
          (is_overlooked ? task.drop_penalty : 0.0F);
 }
 
-/// For the part of the way along the floor that is behind now. A step in which the way began to
-/// lead elsewhere counts nothing, nor one from or to a place without a way.
+/// The reward for the progress along the way on the floor. It is 0 if the way leads to something
+/// else than before, or there is no way before or after the step.
 float shapingOf(const TaskOptions& task, const Env& env, const WayLeft& way) {
   const bool is_one_way = env.is_way_to_goal == way.is_to_goal && env.way >= 0 && way.length >= 0;
   if (!is_one_way) return 0;
@@ -110,7 +110,7 @@ WayLeft measureWay(const Model& model, const BatchState& state, std::size_t env_
 
 namespace {
 
-/// What judge() wants to know of all envs of a chunk.
+/// What judge() measures for all envs of a chunk.
 struct Measured {
   EnvRow change;
   EnvRow reach;
@@ -138,7 +138,7 @@ Measured measure(const ChunkStep& step) {
   return measured;
 }
 
-/// What became of the steps of the envs of a chunk.
+/// The outcomes of a step for the envs of a chunk.
 struct Outcomes {
   std::array<float, kChunk> rewards{};
   std::array<EpisodeEnd, kChunk> endings{};
@@ -164,7 +164,7 @@ void count(EpisodeEnd end, const Env& env, EnvCounters& counters) {
   counters.picks += env.has_picked ? 1U : 0U;
 }
 
-/// How the episode ends with this step, if it does: without a task, with its time alone.
+/// How the episode ends with this step, if it does; without a task, only its time limit ends it.
 inline EpisodeEnd endNow(const TaskOptions& task, bool has_task, const Env& env, float transport) {
   const EpisodeEnd end = has_task ? endOf(task, env, transport) : EpisodeEnd::kNone;
   return end == EpisodeEnd::kNone && isLate(task, env) ? EpisodeEnd::kTimeOut : end;
@@ -176,7 +176,7 @@ float rewardAtEnd(const TaskOptions& task, EpisodeEnd end, float reward) {
   return isFailure(end) ? reward - task.failure_penalty : reward;
 }
 
-/// What the change of the way along the floor earns; the way becomes the last one.
+/// The reward for the change of the way along the floor; stores the new way in `env`.
 float earnOfWay(const ChunkStep& step, std::size_t n, Env& env) {
   const WayLeft way = measureWay(step.model, step.state, n);
   const float earned = shapingOf(step.model.options.task, env, way);
@@ -185,7 +185,8 @@ float earnOfWay(const ChunkStep& step, std::size_t n, Env& env) {
   return earned;
 }
 
-/// What a target that is carried tilted costs: nothing upright, the penalty on its side.
+/// The cost of carrying the target tilted: 0 when it is upright, the whole penalty when it lies on
+/// its side.
 float payForTilt(const ChunkStep& step, std::size_t n) {
   if (!holdsTarget(step.state.env(n))) return 0;
   return step.model.options.task.tilt_penalty * (1 - targetUp(step.model, step.state, n).y);
@@ -195,12 +196,12 @@ float payForTilt(const ChunkStep& step, std::size_t n) {
 
 void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept {
   const TaskOptions& task = step.model.options.task;
-  // Without a task nothing is earned, and episodes end with their time alone.
+  // Without a task there is no reward, and only the time limit ends an episode.
   const bool has_task = task.kind != TaskKind::kNone;
   const bool pays_for_ways = has_task && task.geodesic_weight != 0;
   const bool pays_for_tilt = has_task && task.tilt_penalty != 0;
   const std::uint8_t* idle = step.state.idle().data() + step.first;
-  // Those of the next chunk come nearer in the meantime.
+  // Prefetch the resets of the next chunk.
   if (step.first + kChunk < resets.size()) __builtin_prefetch(&resets[step.first + kChunk]);
   const Measured measured = measure(step);
   Outcomes outcomes;
@@ -210,7 +211,7 @@ void judge(const ChunkStep& step, std::span<const std::int32_t> resets) noexcept
     const bool begins_anew = n < resets.size() && step.model.startOf(resets[n]);
     if (idle[e] != 0 || begins_anew) continue;
     Env& env = step.state.env(n);
-    // The first step of an episode has none before it.
+    // The first step of an episode has no previous action.
     const float change = env.step == 0 ? 0 : measured.change.values[e];
     ++env.step;
     const TargetDistances now{measured.reach.values[e], measured.transport.values[e]};

@@ -12,10 +12,10 @@
 namespace galactic::simulation {
 namespace {
 
-/// The lane of `step.between` in which slides are looked at on their way.
+/// The lane of `step.between` in which places along a slide are checked.
 constexpr std::size_t kSpareLane = kLanes;
 
-/// Meters.
+/// The smallest radius of any sphere, meters.
 float smallestRadius(const SphereBatch& spheres) {
   float smallest = HUGE_VALF;
   for (const RadiusRange& range : spheres.ranges) {
@@ -24,7 +24,7 @@ float smallestRadius(const SphereBatch& spheres) {
   return smallest;
 }
 
-/// Whether one of the spheres with a bit that do not count as ignored is smaller than `radius`.
+/// Whether any sphere that has its bit set and is not ignored is smaller than `radius`.
 bool anySmaller(const SphereBatch& spheres, std::span<const std::uint64_t> bits,
                 IgnoredSpheres ignored, float radius) {
   for (const RadiusRange& range : spheres.ranges) {
@@ -36,8 +36,8 @@ bool anySmaller(const SphereBatch& spheres, std::span<const std::uint64_t> bits,
   return false;
 }
 
-/// One env's robot on its way. The lanes of `step.between` are places one after the other: lane 0
-/// is where the robot is, the others are the next parts.
+/// Walks one env's robot along its way. The lanes of `step.between` are successive places: lane 0
+/// is where the robot is, the others are the ends of the next parts.
 class Walker {
  public:
   Walker(const ChunkStep& step, std::size_t e)
@@ -62,16 +62,17 @@ class Walker {
     if (reached_ == parts_ && !has_slid && isFree(step_, e_)) return Walk::kStraight;
     if (reached_ == 0) return Walk::kNone;
     step_.chunk.takeOver(e_, *step_.between, lane_);
-    // Of what it slid out of, rounding may tell the place when it is computed again.
+    // After a slide, rounding may put the robot back into the obstacle when the place is computed
+    // again.
     return isFree(step_, e_) ? Walk::kHindered : Walk::kNone;
   }
 
  private:
   enum class Progress : std::uint8_t { kFree, kSlid, kBlocked };
 
-  /// A step in whose chunk this lane stands for the env: all lanes do. For the first envs of a
-  /// batch the step begins below 0, as unsigned numbers wrap, and the lane added to that is the env
-  /// again. So nobody may ask such a step for its first env.
+  /// A step in whose chunk lane `lane` stands for this env. For the first envs of a batch, `first`
+  /// wraps below 0 and adding the lane wraps it back to the env. So no code may use such a step's
+  /// `first` without adding the lane.
   [[nodiscard]] ChunkStep at(std::size_t lane) const {
     return {step_.model, step_.state, *step_.between, step_.first + e_ - lane};
   }
@@ -88,7 +89,7 @@ class Walker {
     parts_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(farthest)));
   }
 
-  /// Puts the robot to where it is and to the next parts of its way.
+  /// Places the robot at its current place (lane 0) and at the ends of the next parts.
   void placeNext() {
     const PoseArrays places = step_.between->candidates(0);
     heights_[0] = heights_[lane_];
@@ -103,7 +104,7 @@ class Walker {
       for (std::size_t v = 0; v < step_.model.variableCount(); ++v) {
         const float from = from_.variables[v * from_.stride];
         const float to = to_.variables[v * to_.stride];
-        // An angle that came to the other end of its turn went the short way there.
+        // An angle that wraps goes the shorter way round.
         places.variables[v * places.stride + lane] =
             step_.model.motion.variables[v].wraps
                 ? wrappedAngle(between(from, from + wrappedAngle(to - from)))
@@ -119,19 +120,20 @@ class Walker {
     const float from = heights_[lane == 0 ? 0 : lane - 1];
     const FloorUnder under =
         floorUnder(scene_, {places.x[lane], from, places.z[lane]}, step_.model.options.ground);
-    // A part may not climb on from where others of the step have climbed to.
+    // All parts of a step together may not climb or drop more than one step may.
     step_.between->floor(lane) = isInReach(under.height) ? under.floor : Floor::kDrops;
     heights_[lane] = under.height;
     places.y[lane] = under.height;
   }
 
-  /// Whether one step may rise or drop to a height.
+  /// Whether the whole step may rise or drop to a height.
   [[nodiscard]] bool isInReach(float height) const {
     const GroundOptions& ground = step_.model.options.ground;
     return height <= *from_.y + ground.most_rise && height >= *from_.y - ground.most_drop;
   }
 
-  /// Goes through the lanes as long as they are free; the first slide changes those after it.
+  /// Advances through the lanes while they are free; stops after a slide, which changes the lanes
+  /// behind it.
   Progress goOn() {
     for (std::size_t lane = 1; lane < kLanes && reached_ < parts_; ++lane) {
       const Hindrance met = hindranceOf(at(lane), lane);
@@ -154,8 +156,8 @@ class Walker {
     return true;
   }
 
-  /// Whether no sphere passed through something as a lane slid `by`. A part is shorter than any
-  /// radius; a slide may be longer than some.
+  /// Whether no sphere passed through something when a lane slid `by`. No sphere moves further than
+  /// its radius in a part, but a slide may be longer than some radii.
   [[nodiscard]] bool slidThroughNothing(std::size_t lane, const Push& by) const {
     const float length = std::sqrt(by.x * by.x + by.z * by.z);
     const float looks = std::ceil(length / smallest_radius_);
@@ -172,7 +174,7 @@ class Walker {
     return true;
   }
 
-  /// Of the spheres that findBlocked() found.
+  /// Whether findBlocked() found a sphere smaller than `radius`.
   [[nodiscard]] bool blocksSmallerThan(float radius) const {
     for (std::size_t n = 0; n < step_.model.groups.size(); ++n) {
       const std::uint64_t words = step_.between->seen(n / kLanes).blocked;
@@ -182,8 +184,8 @@ class Walker {
     return false;
   }
 
-  /// Whether a sphere of the robot that is smaller than `radius` is in a resting object, where the
-  /// spare lane is.
+  /// Whether a sphere of the robot in the spare lane that is smaller than `radius` penetrates a
+  /// resting object.
   [[nodiscard]] bool objectsMeet(const ChunkStep& there, float radius) const {
     const RestingObjects& objects = step_.state.resting(step_.first + e_);
     if (!objects.mayTouch(there.chunk.extents(kSpareLane))) return false;
@@ -202,7 +204,7 @@ class Walker {
     return meets_left;
   }
 
-  /// The same of what the robot holds, in the scene or in a resting object.
+  /// The same for the held object, against the scene and the resting objects.
   [[nodiscard]] bool heldMeets(const ChunkStep& there, float radius) const {
     if (step_.state.env(step_.first + e_).held < 0) return false;
     lookAtHeld(there, kSpareLane);
@@ -221,11 +223,11 @@ class Walker {
   float turn_;
   std::size_t parts_ = kLanes;
   float smallest_radius_ = 0;
-  /// Parts that are behind, and the lane that is there.
+  /// The number of finished parts, and the lane at the end of the last one.
   std::size_t reached_ = 0;
   std::size_t lane_ = 0;
   Push slid_;
-  /// Of the floor under each lane.
+  /// The heights of the floor under each lane.
   std::array<float, kLanes> heights_{};
 };
 

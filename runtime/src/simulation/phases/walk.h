@@ -7,17 +7,18 @@
 namespace galactic::simulation {
 
 enum class Walk : std::uint8_t {
-  /// Everything on the way is free, and the candidate, too.
+  /// The candidate and the whole way to it are free.
   kStraight = 0,
-  /// It slid along something, or stopped before something: the candidate is where it got to.
+  /// The robot slid along something, or stopped in front of something: the candidate is the place
+  /// that it reached.
   kHindered = 1,
-  /// There is not even a beginning of the way; the candidate is of no use.
+  /// Not even the first part of the way is possible; the candidate is of no use.
   kNone = 2,
 };
 
 /// Moves a robot from its pose toward the candidate in parts so short that no sphere moves further
-/// than its radius, and slides a little in each part where something blocks it: so it passes
-/// through nothing. `step.between` must be there.
+/// than its radius, and slides it a little in each part in which something blocks it, so that it
+/// passes through nothing. `step.between` must not be null.
 [[nodiscard]] Walk walkToCandidate(const ChunkStep& step, std::size_t e) noexcept;
 
 }  // namespace galactic::simulation
