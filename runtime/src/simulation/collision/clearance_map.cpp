@@ -10,7 +10,7 @@
 namespace galactic::simulation {
 namespace {
 
-/// Cells after the last one: look-ups read two at a time.
+/// Padding cells after the last one, because look-ups read two cells at a time.
 constexpr std::size_t kReadBeyond = 1;
 
 }  // namespace
@@ -21,7 +21,7 @@ ClearanceMaps::ClearanceMaps(std::vector<std::uint32_t> radius_of_lane, std::siz
       most_bytes_(most_bytes),
       lanes_(eights_),
       cells_(1 + kReadBeyond, detail::hugePages()) {
-  // Lanes beyond the last group repeat the first of their eight, as bounds do.
+  // Lanes beyond the last group repeat the first lane of their eight, as bounds do.
   for (std::size_t n = radius_of_lane_.size(); n < eights_ * kLanes; ++n) {
     radius_of_lane_.push_back(radius_of_lane_[n / kLanes * kLanes]);
   }
@@ -115,7 +115,7 @@ void ClearanceMaps::answer(std::span<const ClearanceQuestion> questions, std::si
 
 namespace {
 
-/// How far room reaches on one side, in steps from the middle of its cell.
+/// How far the room reaches on one side, in steps from the middle of its cell.
 float roomOn(int side, RoomAround room) {
   return static_cast<float>(static_cast<unsigned>(room) >> side & kMostRoom);
 }
@@ -152,7 +152,7 @@ SureGroups surelyFree(const ClearanceLanes& lanes, const RoomAround* cells, cons
         i % kClearanceTile;
     const RoomAround room =
         cells[static_cast<std::size_t>(lanes.first[n] + plane * lanes.band_cells[n]) + cell];
-    // What room is counted from: a cell that is not free has none.
+    // Room is counted from the middle of the cell; a cell that is not free has none.
     const auto middle_x = static_cast<float>(i * kStepsPerCell + 1);
     const auto middle_z = static_cast<float>(k * kStepsPerCell + 1);
     const float down_x = least_x - (middle_x - roomOn(kRoomDownX, room));

@@ -11,66 +11,62 @@
 
 namespace galactic::simulation {
 
-// How most spheres are known to be free without a look at their columns.
-//
-// Around each place of a scene's floor there is a rectangle in which nothing stands higher than
-// some height. A map stores how far that rectangle reaches beyond each cell on each side, for a few
-// heights (bands) and each radius of the robot: two bytes per cell and band. Eight spheres whose
-// bounds lie within the rectangle, and between the band's height and the map's highest one, are
-// free: one look-up answers for eight columns. A map only ever says "surely free"; wherever it does
-// not, the columns are asked.
-//
-// Floors differ by what lies on them: a rug. What is so low that a rug would block it gets a band
-// of its own, which is clear where there is none.
+// How most spheres are found to be free without a look at their columns. Around each place of a
+// scene's floor there is a rectangle in which nothing stands higher than some height. A map stores
+// how far the rectangle around each cell reaches on each side, for a few heights (bands) and each
+// radius of the robot: two bytes per cell and band. Eight spheres are free if their bounds lie
+// within the rectangle, and between the band's height and the map's highest one: one look-up
+// replaces those of eight columns. A map can only prove that spheres are free; where it cannot, the
+// columns are asked. Low things may lie on a floor, such as a rug. Spheres so low that a rug would
+// block them get a band of their own, which is clear away from the rug.
 
-/// The bounds of eight groups of one env, as BodyArrays::bounds has them.
+/// The bounds of eight groups of one env, laid out as in BodyArrays::bounds.
 struct GroupBounds {
   const float* values = nullptr;
-  /// From one bound to the next: groups, padded to lanes.
+  /// From one bound to the next: the number of groups, padded to lanes.
   std::size_t stride = 0;
 };
 
-/// The number of the floor of which nothing is known, here and wherever floors go by the numbers of
-/// their maps.
+/// The number of a floor without a map, here and wherever floors have the numbers of their maps.
 inline constexpr std::uint32_t kNoClearanceMap = 0;
 
-/// The maps of the floors of all scenes. Any thread may ask.
+/// The maps of the floors of all scenes. Const members may be called from any thread.
 class ClearanceMaps {
  public:
-  /// `radius_of_lane`: index into the working set, of each group that will be asked about.
-  /// `most_bytes`: of all maps, at most what look-ups can count.
+  /// `radius_of_lane`: index into the working set, for each group that will be asked about.
+  /// `most_bytes`: limit for all maps, at most as many as the indices of look-ups can address.
   explicit ClearanceMaps(std::vector<std::uint32_t> radius_of_lane = {},
                          std::size_t most_bytes = kMostBytes);
   static constexpr std::size_t kMostBytes = (std::size_t{1} << 31) * sizeof(RoomAround);
 
-  /// Adds the maps of a floor. Returns the number by which surelyFree() knows it: 1, 2, ...;
-  /// kNoClearanceMap where there is no room for it.
+  /// Adds the maps of a floor. Returns its number for surelyFree(): 1, 2, ...; kNoClearanceMap if
+  /// there is no room for it.
   std::uint32_t add(const FloorClearance& floor);
-  /// Makes room for so many cells of all floors to come.
+  /// Reserves memory for `cells` cells, those of all floors to be added.
   void reserve(std::size_t cells);
-  /// Whether a floor of so many cells can be added.
+  /// Whether a floor with `cells` cells can be added.
   [[nodiscard]] bool hasRoomFor(std::size_t cells) const noexcept {
     return (cells_.size() + cells) * sizeof(RoomAround) <= most_bytes_;
   }
 
-  /// Which of eight groups are surely free: those of the lanes from 8 * `eight` on, with these
-  /// bounds. `map`: as add() returned it; none are for kNoClearanceMap.
+  /// Finds which of eight groups are surely free: those of the lanes from 8 * `eight` on, with
+  /// these bounds. `map`: as add() returned it; for kNoClearanceMap no group is.
   void surelyFree(std::uint32_t map, std::size_t eight, const GroupBounds& bounds,
                   SureGroups& sure) const noexcept;
 
   /// The same for several envs, kMostAsked at most, each in its own map. `bounds`: of the first
-  /// one; `env_stride`: from the bounds of one env to those of the next.
+  /// env; `env_stride`: from the bounds of one env to those of the next.
   void surelyFree(std::span<const std::uint32_t> maps, std::size_t eight, const GroupBounds& bounds,
                   std::size_t env_stride, std::span<SureGroups> sure) const noexcept;
   static constexpr std::size_t kMostAsked = 16;
 
-  /// Which of eight groups are surely free that have the same bounds, for several of these,
-  /// kMostAsked at most, each in its own map. `free`: of each, those that are, as bits.
+  /// The same for eight groups that share their bounds, with several such bounds, kMostAsked at
+  /// most, each in its own map. `free`: for each bounds the groups that are surely free, as bits.
   void surelyFree(std::span<const std::uint32_t> maps, std::size_t eight,
                   std::span<const CenterBounds> bounds, std::span<unsigned> free) const noexcept;
 
-  /// The groups, as bits, that are surely free after a move along X and Z, too, meters. `sure`:
-  /// what surelyFree() said of them.
+  /// The groups, as bits, that are still surely free after a move along X and Z, meters. `sure`:
+  /// the result of surelyFree() before the move.
   [[nodiscard]] unsigned freeAfter(std::uint32_t map, std::size_t eight, const SureGroups& sure,
                                    float x, float z) const noexcept;
 
@@ -78,7 +74,7 @@ class ClearanceMaps {
     return std::span(cells_).size_bytes() + std::span(lanes_).size_bytes();
   }
 
-  /// How many eights of lanes there are.
+  /// The number of eights of lanes.
   [[nodiscard]] std::size_t eights() const { return eights_; }
 
  private:
@@ -88,17 +84,17 @@ class ClearanceMaps {
   void answer(std::span<const ClearanceQuestion> questions, std::size_t stride,
               SureGroups* sure) const noexcept;
 
-  /// Whether any lane is of that radius.
+  /// Whether any lane has this radius.
   [[nodiscard]] bool isAsked(std::uint32_t radius) const;
 
   std::vector<std::uint32_t> radius_of_lane_;
   std::size_t eights_ = 0;
   std::size_t most_bytes_ = kMostBytes;
-  /// Maps, that of kNoClearanceMap among them.
+  /// The number of maps, including that of kNoClearanceMap.
   std::uint32_t count_ = 1;
-  /// Shape: maps x eights_; those of kNoClearanceMap are as wide as nothing.
+  /// Shape: maps x eights_; those of kNoClearanceMap have no width.
   std::vector<ClearanceLanes> lanes_;
-  /// Of all maps, after one for what is outside of them.
+  /// The cells of all maps, after one that answers for places outside of maps.
   std::pmr::vector<RoomAround> cells_;
 };
 

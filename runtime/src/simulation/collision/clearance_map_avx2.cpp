@@ -21,7 +21,7 @@ void store(std::int32_t* to, __m256i value) {
   _mm256_store_si256(reinterpret_cast<__m256i*>(to), value);
 }
 
-/// Where eight cells are, in tiles of eight by eight. `i`, `k`: theirs.
+/// The indices of eight cells in tiles of eight by eight. `i`, `k`: their numbers along X and Z.
 __m256i cellIndex(__m256i i, __m256i k, __m256i tiles_x) {
   const __m256i in_tile = _mm256_set1_epi32(7);
   const __m256i tile = _mm256_add_epi32(_mm256_mullo_epi32(_mm256_srli_epi32(k, 3), tiles_x),
@@ -31,14 +31,14 @@ __m256i cellIndex(__m256i i, __m256i k, __m256i tiles_x) {
                          _mm256_or_si256(row, _mm256_and_si256(i, in_tile)));
 }
 
-/// Eight groups on the way to an answer; all but the indices in steps.
+/// Intermediate results for eight groups; coordinates are in steps.
 struct alignas(32) Asked {
   float least_x[kLanes], most_x[kLanes], least_z[kLanes], most_z[kLanes];
-  /// The middle of the cell of each.
+  /// The middle of each group's cell.
   std::int32_t middle_x[kLanes], middle_z[kLanes];
-  /// Their cells; 0 for those elsewhere.
+  /// Indices of their cells; 0 for groups outside of the map.
   std::int32_t index[kLanes];
-  /// All bits of those inside of the map.
+  /// All bits set for groups inside of the map.
   float inside[kLanes];
 };
 
@@ -58,7 +58,7 @@ struct Bounds {
           _mm256_loadu_ps(from + 5 * stride)};
 }
 
-/// The same bounds for all.
+/// The same bounds for all eight groups.
 [[gnu::always_inline]] inline Bounds boundsOfAll(const float* from) {
   return {_mm256_broadcast_ss(from),     _mm256_broadcast_ss(from + 1),
           _mm256_broadcast_ss(from + 2), _mm256_broadcast_ss(from + 3),
@@ -110,7 +110,7 @@ struct Bounds {
                                  integers(lanes.tiles_x));
   const __m256i first = _mm256_add_epi32(integers(lanes.first),
                                          _mm256_mullo_epi32(plane, integers(lanes.band_cells)));
-  // Lanes elsewhere read cell 0; their answer is no.
+  // Lanes outside of the map read cell 0; their answer is no.
   store(asked.index, _mm256_and_si256(_mm256_add_epi32(first, cell), _mm256_castps_si256(inside)));
 }
 
@@ -146,7 +146,8 @@ template <int kSide>
 
 }  // namespace
 
-// Each step for several: a core can hold back few loads whose addresses are not known yet.
+// Runs each step for several questions, because a core can queue only few loads whose addresses are
+// not known yet.
 
 void surelyFreeAvx2(const ClearanceQuestion* questions, std::size_t count, const RoomAround* cells,
                     std::size_t stride, SureGroups* sure) noexcept {

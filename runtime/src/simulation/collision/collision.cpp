@@ -11,14 +11,14 @@
 namespace galactic::simulation {
 namespace {
 
-/// The spheres of one radius with their padding.
+/// The centers of one radius with their padding.
 SphereCenters centersOf(const SphereBatch& spheres, const RadiusRange& range) {
   const std::size_t count = paddedToLanes(range.count);
   return {std::span(spheres.x + range.first, count), std::span(spheres.y + range.first, count),
           std::span(spheres.z + range.first, count)};
 }
 
-/// Asks the grid of one radius about its spheres, whole lanes at a time.
+/// Asks the grid of one radius about its spheres, in whole groups of lanes.
 std::span<const Clearance> askScene(const Scene& scene, const SphereBatch& spheres,
                                     const RadiusRange& range, CollisionScratch& scratch) {
   const std::span<Clearance> answers = scratch.clearance(paddedToLanes(range.count));
@@ -67,7 +67,7 @@ bool addTouching(const RestingObjects& objects, const SphereBatch& spheres,
 
 CollisionScratch::CollisionScratch(std::size_t most_spheres) {
   clearance_.resize(paddedToLanes(most_spheres));
-  // More overlaps at a time change no push; only the largest in each direction count.
+  // More overlaps hardly change a push: only the largest in each direction counts.
   constexpr std::size_t kHitsPerSphere = 4;
   hits_.resize(kHitsPerSphere * most_spheres);
 }
@@ -102,7 +102,8 @@ std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
   const auto grid_of = [&](std::size_t group) -> const ColumnGrid& {
     return scene.grids()[groups[first + group].radius_index];
   };
-  // Most often a few are asked about, of several eights: one by one. What is left goes by eights.
+  // Mostly only a few spheres in several groups are asked about: the first few go one by one, the
+  // rest in groups of eight.
   constexpr int kFew = 4;
   std::uint64_t blocked = 0;
   for (int few = 0; few < kFew && asked != 0; ++few, asked &= asked - 1) {
@@ -127,7 +128,7 @@ std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
 }
 
 bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept {
-  // Whole lanes at a time: the padding repeats a sphere.
+  // Whole groups of lanes, since the padding repeats a sphere.
   for (std::size_t n = spheres.ranges.size(); n-- > 0;) {
     const RadiusRange& range = spheres.ranges[n];
     const SphereCenters centers = centersOf(spheres, range);
@@ -143,7 +144,7 @@ Push pushOutOfBox(const RestingBox& box, const Vec3& center, float radius) noexc
   constexpr float kNoDirection = 1e-6F;
   constexpr float kMargin = 1e-4F;
   if (across > kNoDirection) {
-    // Moving by t along the horizontal part of the normal makes its length the radius.
+    // Moving by t along the horizontal part of the normal makes the normal as long as the radius.
     const float needed = std::sqrt(std::max(0.0F, radius * radius - normal.y * normal.y));
     const float t = std::max(0.0F, needed - across) + kMargin;
     return {normal.x / across * t, normal.z / across * t};

@@ -14,10 +14,10 @@
 
 namespace galactic::simulation {
 
-/// Room for the answers about the spheres of one batch, allocated once.
+/// Scratch space for the answers about the spheres of one batch, allocated once.
 class CollisionScratch {
  public:
-  /// `most_spheres`: padded to lanes, of any batch.
+  /// `most_spheres`: the most of any batch, padded to lanes.
   explicit CollisionScratch(std::size_t most_spheres);
 
   [[nodiscard]] std::span<Clearance> clearance(std::size_t count) {
@@ -30,45 +30,46 @@ class CollisionScratch {
   std::vector<SphereHit> hits_;
 };
 
-/// The farthest way of a sphere from one batch to the other, in radii of the sphere that goes it.
-/// Both have the same ranges.
+/// The farthest move of any sphere from one batch to the other, in radii of that sphere. Both
+/// batches have the same ranges.
 [[nodiscard]] float farthestMove(const SphereBatch& from, const SphereBatch& to) noexcept;
 
 /// The groups of a batch with these ranges, in order.
 [[nodiscard]] std::vector<EightSpheres> spheresByEights(std::span<const RadiusRange> ranges);
 
-/// What a robot, and an object that it holds or releases, can hit.
+/// Everything that a robot, or an object that it holds or releases, can hit.
 struct Obstacles {
   const Scene& scene;
   const RestingObjects& objects;
 };
 
-/// Whether any sphere penetrates the static scene or a resting object. A place that the grid does
-/// not know counts as penetrated.
+/// Whether any sphere penetrates the static scene or a resting object. A place outside of the grid
+/// counts as penetrated.
 [[nodiscard]] bool penetrates(const Obstacles& obstacles, const SphereBatch& spheres) noexcept;
 
-/// Which spheres of up to eight groups the static scene blocks, as bits from the first of the
-/// groups on. `groups`: of the whole batch; `asked`: the spheres of those from `first` on, as bits.
+/// The spheres of up to eight groups from `first` on that the static scene blocks, as bits.
+/// `groups`: of the whole batch; `asked`: the spheres to check, as bits from group `first` on.
 [[nodiscard]] std::uint64_t blockedSpheres(const Scene& scene, const SphereBatch& spheres,
                                            std::span<const EightSpheres> groups, std::size_t first,
                                            std::uint64_t asked) noexcept;
 
-/// The way out of a box for a sphere that overlaps it: the shortest horizontal one along the normal
-/// of contact.
+/// The push that moves an overlapping sphere out of a box: the shortest horizontal one along the
+/// normal of contact.
 [[nodiscard]] Push pushOutOfBox(const RestingBox& box, const Vec3& center, float radius) noexcept;
 
-/// The way out of resting objects for all spheres that penetrate some and are not ignored. Returns
-/// their number.
+/// Adds to `sum` the pushes out of resting objects for all overlaps of spheres that are not
+/// ignored. Returns the number of these overlaps.
 std::size_t pushOutOfObjects(const RestingObjects& objects, const SphereBatch& spheres,
                              IgnoredSpheres ignored, CollisionScratch& scratch,
                              PushSum& sum) noexcept;
 
-/// Sets the bit of each sphere that overlaps the box, clears the others. Returns whether any does.
+/// Sets the bit of each sphere that overlaps the box and clears the others. Returns whether any
+/// does.
 bool overlapping(const RestingBox& box, const SphereBatch& spheres,
                  std::span<std::uint64_t> bits) noexcept;
 
-/// Sets the bit of each sphere that penetrates the static scene, clears the others. Returns whether
-/// any does.
+/// Sets the bit of each sphere that penetrates the static scene and clears the others. Returns
+/// whether any does.
 bool penetratingScene(const Scene& scene, const SphereBatch& spheres, CollisionScratch& scratch,
                       std::span<std::uint64_t> bits) noexcept;
 /// The same for resting objects.

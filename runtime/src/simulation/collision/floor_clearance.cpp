@@ -9,10 +9,10 @@
 namespace galactic::simulation {
 namespace {
 
-/// What a band's height and the spheres that it clears differ by at least, meters: more than any
-/// rounding.
+/// The least difference between a band's height and the spheres that it clears, meters: more than
+/// any rounding.
 constexpr float kSlack = 1e-3F;
-/// How far above the lowest height that it can have a sphere is looked for, meters.
+/// Spheres are considered from this far above the lowest height that they can have, meters.
 constexpr float kOverContact = 5e-3F;
 
 struct Heights {
@@ -22,15 +22,15 @@ struct Heights {
   float band_from = 0;
   float band_height = 0;
 
-  /// The least height of a center that a plane clears: the lower one, then the bands.
+  /// The least height of a center that a plane clears. Plane 0 is the one below all bands.
   [[nodiscard]] float lowOf(std::uint32_t plane) const {
     if (plane == 0) return lowest;
     return plane == 1 ? low : band_from + static_cast<float>(plane - 1) * band_height;
   }
 };
 
-/// Columns along a step: enough to count room that reaches far, and a power of two, so that no
-/// rounding tells a sphere's cell from its column's.
+/// Columns along a step: enough for rooms that reach far, and a power of two, so that rounding
+/// cannot assign a sphere to another cell than its column.
 std::uint32_t columnsOfStep(float spacing) {
   constexpr float kFar = 0.25F;
   constexpr std::uint32_t kMost = 64;
@@ -69,8 +69,8 @@ Cells cellsOf(const ColumnGrid& grid) {
   return cells;
 }
 
-/// For each column of the cells the height from which on it is free up to `highest`; infinity where
-/// it is not, or is missing.
+/// For each column of the cells the height from which it is free up to `highest`; infinity if it is
+/// not free there, or the column does not exist.
 std::vector<float> lowestFree(const ColumnGrid& grid, const Cells& cells, float highest) {
   const ColumnGridLayout& layout = grid.layout();
   const std::uint32_t columns = cells.columnsX();
@@ -96,8 +96,8 @@ std::vector<float> lowestFree(const ColumnGrid& grid, const Cells& cells, float 
   return lowest;
 }
 
-/// How many columns of a rectangle are not clear: sums over all columns before each, along both
-/// axes (Crow 1984). What lies outside of the grid is not clear.
+/// Counts the columns of a rectangle that are not clear, with a summed-area table (Crow 1984).
+/// Places outside of the grid are not clear.
 class NotClear {
  public:
   NotClear(const Cells& cells, std::span<const float> lowest_free, float low)
@@ -130,12 +130,12 @@ class NotClear {
   std::vector<std::uint32_t> sums_;
 };
 
-/// The square around a cell that is not clear itself.
+/// Stands for the square around a cell that is not clear itself.
 constexpr std::int64_t kNotClear = -1;
 
-/// The largest square around a cell that is clear, in steps beyond the cell. `before`: that of the
-/// cell before along X, kNotClear for the first one. From cell to cell it grows and shrinks by no
-/// more than the steps of a cell.
+/// The largest clear square around a cell, in steps beyond the cell. `before`: that of the previous
+/// cell along X, kNotClear for the first one. From cell to cell it changes by at most the steps of
+/// a cell.
 std::int64_t squareAround(const Cells& cells, const NotClear& not_clear, std::int64_t x,
                           std::int64_t z, std::int64_t before) {
   const auto is_clear = [&](std::int64_t square) {
@@ -151,8 +151,8 @@ std::int64_t squareAround(const Cells& cells, const NotClear& not_clear, std::in
   return square;
 }
 
-/// The square around a cell, which grows by a step on each side after the other, where there is
-/// room beside it.
+/// The room around a cell: its clear square, extended by a step on each side in turn as long as
+/// there is room beside it.
 RoomAround roomAround(const Cells& cells, const NotClear& not_clear, std::int64_t x, std::int64_t z,
                       std::int64_t square) {
   if (square == kNotClear) return 0;
@@ -166,7 +166,7 @@ RoomAround roomAround(const Cells& cells, const NotClear& not_clear, std::int64_
     room = static_cast<RoomAround>(room + (steps << side));
   };
   for (const int side : {kRoomDownX, kRoomUpX, kRoomDownZ, kRoomUpZ}) add(side, square + 1);
-  // What is in the way of a side stays there when others grow.
+  // A side that is blocked once stays blocked as the others grow.
   unsigned blocked = 0;
   const auto grow = [&](int side, std::int64_t& border, std::int64_t by, const auto& is_clear) {
     if ((blocked >> side & 1U) != 0) return;
@@ -189,7 +189,7 @@ RoomAround roomAround(const Cells& cells, const NotClear& not_clear, std::int64_
   return room;
 }
 
-/// The room around each cell in one plane, tile by tile, to `out`.
+/// Writes the room around each cell in one plane to `out`, tile by tile.
 void fillPlane(const Cells& cells, std::span<const float> lowest_free, float low,
                std::span<RoomAround> out) {
   const NotClear not_clear(cells, lowest_free, low);
@@ -223,7 +223,8 @@ FloorClearance makeFloorClearance(const Scene& scene, float floor, float unevenn
     const float from = floor + heights.lowest - 2 * kSlack;
     const float highest = floor + unevenness + heights.highest + 2 * kSlack;
     const float over_contact = floor + grid.radius() + kOverContact;
-    // Over what lies on the floor and is lower than all spheres of the radius, they are free, too.
+    // Spheres of the radius are also free above anything on the floor that is lower than all of
+    // them.
     const float lowest = std::max(heights.lowest, lowestOver(lowest_of_radius, radius));
     const Heights asked{.lowest = std::max(floor + lowest - 2 * kSlack, over_contact),
                         .low = std::max(from, over_contact + unevenness),

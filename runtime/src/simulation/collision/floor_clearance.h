@@ -23,16 +23,17 @@ struct RadiusClearance {
   std::vector<RoomAround> cells;
 };
 
-/// The maps of one floor, of each radius.
+/// The maps of one floor, one per radius.
 using FloorClearance = std::vector<RadiusClearance>;
 
-/// `floor`: its least height, meters; the robot's centers are `heights` above it, or above floors
-/// up to `unevenness` higher. `lowest_of_radius`: see lowestOver().
+/// Makes the maps of a floor. `floor`: its lowest height, meters; the robot's centers are `heights`
+/// above it, or above parts of the floor up to `unevenness` higher. `lowest_of_radius`: see
+/// lowestOver().
 [[nodiscard]] FloorClearance makeFloorClearance(const Scene& scene, float floor, float unevenness,
                                                 const HeightsOverFloor& heights,
                                                 std::span<const float> lowest_of_radius = {});
 
-/// How many cells that makes, of all radii.
+/// The number of cells of all radii in these maps.
 [[nodiscard]] std::size_t clearanceCells(const Scene& scene);
 
 }  // namespace galactic::simulation

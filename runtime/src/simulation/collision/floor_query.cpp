@@ -9,21 +9,21 @@
 namespace galactic::simulation {
 namespace {
 
-/// Where a larger most_rise ends in a ceiling or beyond what the grid knows, the floor is looked
-/// for from so high: as by default.
+/// If a probe at a larger most_rise ends in a ceiling or outside of the grid, the floor is searched
+/// from this height: the default most_rise.
 constexpr float kLowRise = GroundOptions{}.most_rise;
 
-/// The smallest sphere, standing so far above a base.
+/// The center of the smallest sphere, standing `rise` above a base.
 Vec3 probeAbove(const Scene& scene, const Vec3& base, float rise) {
   return {base.x, base.y + rise + scene.grids().front().radius(), base.z};
 }
 
-/// Whether a probe found nothing that one less high might not find.
+/// Whether a probe found no floor, but a lower one might.
 bool isTooHigh(Clearance clearance, const GroundOptions& options) {
   return clearance != Clearance::kFree && options.most_rise > kLowRise;
 }
 
-/// What the floor's probe found at the height `probe`; `down`: how far the floor is under it.
+/// The floor that the probe found from height `probe`; `down`: how far the floor is below it.
 FloorUnder floorFound(const ColumnGrid& grid, const Vec3& base, float probe, Clearance clearance,
                       float down, const GroundOptions& options) {
   if (clearance == Clearance::kBlocked) return {Floor::kBlocks, base.y};
@@ -33,7 +33,7 @@ FloorUnder floorFound(const ColumnGrid& grid, const Vec3& base, float probe, Cle
   return {Floor::kCarries, height};
 }
 
-/// What a probe finds that is so far above a base.
+/// The floor that a probe finds from `rise` above a base.
 FloorUnder lookDown(const Scene& scene, const Vec3& base, float rise,
                     const GroundOptions& options) {
   const ColumnGrid& grid = scene.grids().front();
@@ -90,7 +90,7 @@ Vec3 floorProbe(const Scene& scene, const Vec3& base, const Vec3& before,
                 const GroundOptions& options) noexcept {
   float rise = options.most_rise;
   if (rise > kLowRise) {
-    // Under a low ceiling no way out leads to where the higher probe is free.
+    // Under a low ceiling, no way out leads to a place where the higher probe is free.
     const Vec3 higher = probeAbove(scene, before, rise);
     if (isTooHigh(scene.grids().front().contact(higher).clearance, options)) rise = kLowRise;
   }

@@ -9,22 +9,22 @@
 
 namespace galactic::simulation {
 
-/// What the floor under a base allows.
+/// Whether the floor under a base carries it, and why not.
 enum class Floor : std::uint8_t {
   kCarries = 0,
-  /// Higher than the base may climb, or no height for it.
+  /// It is higher than the base may climb, or offers no height for it.
   kBlocks = 1,
-  /// Deeper than the base may drop, or unknown.
+  /// It is deeper than the base may drop, or unknown.
   kDrops = 2,
 };
 
 struct FloorUnder {
   Floor floor = Floor::kDrops;
-  /// Of the floor; where it does not carry, that of the base.
+  /// The floor's height, or the base's if the floor does not carry it.
   float height = 0;
 };
 
-/// What is under a base at `base` (its y: the floor it comes from).
+/// The floor under a base at `base`, whose y is the height of the floor that it comes from.
 [[nodiscard]] FloorUnder floorUnder(const Scene& scene, const Vec3& base,
                                     const GroundOptions& options) noexcept;
 
@@ -32,17 +32,18 @@ struct FloorUnder {
 [[nodiscard]] FloorUnder floorUnderStart(const Scene& scene, const Vec3& start,
                                          const GroundOptions& options) noexcept;
 
-/// Bases in one query.
+/// The most bases in one query.
 inline constexpr std::size_t kMostBases = 16;
 
-/// What is under each of `bases`, kMostBases at most: one batched query, so that none waits for
-/// what another one asks the memory for. Shape of `under`: as many.
+/// The floor under each of `bases`, kMostBases at most: one batched query, so that none waits for
+/// the memory loads of another. Shape of `under`: that of `bases`.
 void floorsUnder(const Scene& scene, std::span<const Vec3> bases, const GroundOptions& options,
                  std::span<FloorUnder> under) noexcept;
 
-/// Of a base under which there is no floor: the smallest sphere of the working set, standing on a
-/// rise as high as the base may climb or, where that is too high for the room at `before`, where it
-/// was, as high as by default. Where it is free there is a floor under it.
+/// The sphere center that has to become free for a base under which there is no floor: the smallest
+/// sphere of the working set, standing on a rise as high as the base may climb. If there is no
+/// headroom for that at `before`, where the base was, the rise is the default one. Wherever this
+/// sphere is free, there is a floor under it.
 [[nodiscard]] Vec3 floorProbe(const Scene& scene, const Vec3& base, const Vec3& before,
                               const GroundOptions& options) noexcept;
 

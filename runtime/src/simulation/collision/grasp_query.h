@@ -9,27 +9,28 @@
 
 namespace galactic::simulation {
 
-/// How far a point (world frame) is beyond the outermost plane around the object's convex hull,
-/// meters: 0 behind all of them, and where none is known. Not more than the distance to the hull.
+/// How far a point (world frame) lies beyond the outermost plane of the object's convex hull,
+/// meters: 0 if it is behind all planes, or the object has none. Never more than the distance to
+/// the hull.
 [[nodiscard]] float distanceToHullPlanes(const ObjectModel& object, const Pose& world_from_object,
                                          const Vec3& point) noexcept;
 
-/// Squared distance from a point (world frame) to what the hand touches of an object that rests as
-/// `box`, square meters: to its box or, with GraspShape::kHull, to the further of its box and the
-/// planes around its hull.
+/// Squared distance from a point (world frame) to the grasp shape of an object that rests as `box`,
+/// square meters: to its box or, with GraspShape::kHull, the larger of the distances to its box and
+/// to its hull's planes.
 [[nodiscard]] float squaredGraspDistance(const ObjectModel& object, const RestingBox& box,
                                          const Pose& world_from_object, const Vec3& point,
                                          GraspShape shape) noexcept;
 
-/// What a hand grasps with, in the world frame; meters.
+/// The sphere with which a hand grasps, in the world frame; meters.
 struct GraspSphere {
   Vec3 center;
   float radius = 0;
 };
 
 /// The resting object nearest to the center of `sphere` (whose radius is at most the objects'
-/// largest) among those that it touches; the lower index when equally near. `model(index)` and
-/// `pose(index)` are those of an object.
+/// largest) among those that it touches; the lower index if equally near. `model(index)` and
+/// `pose(index)` return those of an object.
 template <class Model, class ObjectPose>
 [[nodiscard]] OptionalIndex nearestToGrasp(const RestingObjects& resting, const GraspSphere& sphere,
                                            GraspShape shape, const Model& model,
@@ -40,7 +41,7 @@ template <class Model, class ObjectPose>
   float least = sphere.radius * sphere.radius;
   resting.forEachInColumnOf(center, [&](std::uint32_t index) {
     const RestingBox& box = resting.box(index);
-    // Planes are looked at where the box is near enough only.
+    // Only boxes that are near enough need a look at the planes.
     if (!(squaredDistance(box, center) < least)) return;
     const float squared = squaredGraspDistance(model(index), box, pose(index), center, shape);
     if (!(squared < least)) return;

@@ -5,7 +5,7 @@
 namespace galactic::simulation {
 namespace {
 
-/// A pose as a matrix, by columns: a sphere then takes nine multiplications.
+/// A pose as the columns of a matrix, so that each sphere takes nine multiplications.
 struct Columns {
   explicit Columns(const Pose& pose)
       : x(rotate(pose.rotation, {1, 0, 0})),
@@ -22,8 +22,8 @@ struct Target {
   float* z;
 };
 
-/// Writes the centers and fills the last group. A plain counted loop over arrays that do not
-/// overlap, so that compilers make vectors of it.
+/// Writes the centers and pads the last group. A plain counted loop over arrays that do not
+/// overlap, so that compilers vectorize it.
 void place(std::span<const SetSphere> spheres, const Columns& columns, const Target& target) {
   const SetSphere* from = spheres.data();
   const std::size_t count = spheres.size();
@@ -48,7 +48,7 @@ void place(std::span<const SetSphere> spheres, const Columns& columns, const Tar
 
 HeldSpheres::HeldSpheres(std::size_t most_spheres, std::span<const float> radii)
     : radii_(radii.begin(), radii.end()), ranges_(radii.size()) {
-  // Each radius may leave part of its last group open.
+  // Each radius may need padding in its last group.
   const std::size_t room = paddedToLanes(most_spheres) + kLanes * radii.size();
   x_.resize(room);
   y_.resize(room);

@@ -9,10 +9,10 @@
 
 namespace galactic::simulation {
 
-/// Room for the spheres of one held object in the world; after construction nothing allocates.
+/// Space for the spheres of one held object in the world; after construction nothing allocates.
 class HeldSpheres {
  public:
-  /// `most_spheres` that any object has; `radii` of the working set, meters.
+  /// `most_spheres`: of any object. `radii`: of the working set, meters.
   HeldSpheres(std::size_t most_spheres, std::span<const float> radii);
 
  private:
@@ -21,14 +21,14 @@ class HeldSpheres {
 
   std::vector<float> radii_;
   std::vector<float> x_, y_, z_;
-  /// One per radius; the first so many are in use.
+  /// One per radius; only the first ones are in use.
   std::vector<RadiusRange> ranges_;
 };
 
-/// The spheres of `object` at `world_from_object` (rotation of unit length), in `room`, where they
-/// stay until the next call: the one place that loops over a held object's spheres to place them.
-/// Each radius is one range, in the order of the object's spheres, so they may come in any order
-/// that keeps radii together.
+/// Places the spheres of `object` at `world_from_object` (rotation of unit length) in `room`, where
+/// they stay until the next call. No other code places a held object's spheres. Each radius becomes
+/// one range, in the order of the object's spheres, which must keep spheres of the same radius
+/// together.
 [[nodiscard]] SphereBatch holdSpheres(const ObjectModel& object, const Pose& world_from_object,
                                       HeldSpheres& room) noexcept;
 

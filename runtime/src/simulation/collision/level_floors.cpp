@@ -11,8 +11,8 @@ void LevelFloors::add(const LevelFloor& floor) {
   words_.insert(words_.end(), floor.words.begin(), floor.words.end());
 }
 
-// Loops without branches and of a length that is known, so that the compiler makes vectors of them:
-// all but the look-up itself.
+// Loops without branches and of known length, so that the compiler vectorizes all but the look-up
+// itself.
 bool LevelFloors::heightsUnder(std::uint32_t map, const Bases& bases,
                                float* heights) const noexcept {
   assert(bases.count % kLanes == 0);
@@ -34,7 +34,7 @@ std::int32_t LevelFloors::heightsOfEight(const LevelFloorLayout& floor, const Ba
     const float z = (bases.z[first + n] - floor.min_z) * floor.inverse_spacing;
     const float least = std::min(x, z);
     const bool inside = (least >= 0) & (x < floor.columns_x) & (z < floor.columns_z);
-    // Those outside ask about the first column.
+    // Bases outside of the grid look up the first column.
     i[n] = static_cast<std::int32_t>(inside ? x : 0);
     k[n] = static_cast<std::int32_t>(inside ? z : 0);
     is_inside[n] = inside ? 1 : 0;

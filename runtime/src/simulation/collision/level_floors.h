@@ -13,7 +13,7 @@
 
 namespace galactic::simulation {
 
-/// How the columns of a floor's grid lie among words of bits, rows along X.
+/// How the columns of a floor's grid map to bits in words, in rows along X.
 struct LevelFloorLayout {
   static constexpr std::uint32_t kBits = 32;
   static constexpr std::uint32_t kMostHeights = 8;
@@ -24,7 +24,7 @@ struct LevelFloorLayout {
 
   float min_x = 0, min_z = 0, inverse_spacing = 0;
   float columns_x = 0, columns_z = 0;
-  /// The last one is the first again.
+  /// Heights each of which leads to the next; the last one repeats the first.
   std::array<float, kMostHeights + 1> heights{};
   std::uint32_t height_count = 0;
   std::uint32_t row_words = 0;
@@ -37,9 +37,9 @@ struct LevelFloor {
   std::vector<std::uint32_t> words;
 };
 
-/// `height_found(center, height)`: the height at which a base finds the floor in a column when it
-/// stood at `height` before, NaN where none carries it. The floor's height is that of the base
-/// `start`.
+/// Makes the bits of one floor, whose height is that of the base `start`. `height_found(center,
+/// height)`: the height at which a base that stood at `height` finds the floor in a column; NaN if
+/// no floor carries it there.
 template <class HeightFound>
 [[nodiscard]] LevelFloor makeLevelFloor(const ColumnGrid& grid, const Vec3& start,
                                         const HeightFound& height_found) {
@@ -79,19 +79,18 @@ template <class HeightFound>
   return made;
 }
 
-/// Where floors are level: one bit for each column of a scene's first grid, set where a base that
-/// stands on the floor finds it at the floor's height again. Most steps need no other look at it.
-/// Any thread may ask.
-///
-/// Rounding may take a base that stands still to the next float with every step, and back after a
-/// few. So a floor has some heights, each of which leads to the next one.
+/// Where floors are level: one bit for each column of a scene's first grid, set if a base that
+/// stands on the floor finds it at the floor's height again. Most steps need no other query of the
+/// floor. Const members may be called from any thread. Rounding may move a base that stands still
+/// to the next float in each step, and back after a few steps. So a floor has a cycle of heights,
+/// each of which leads to the next.
 class LevelFloors {
  public:
-  /// Adds a floor, by the number of its clearance map: 1, 2, ...
+  /// Adds a floor. Its number is that of its clearance map: 1, 2, ...
   void add(const LevelFloor& floor);
 
-  /// The height at which a base finds the floor, its y being where it stood before; none where that
-  /// is not known. `map`: as from ClearanceMaps::add().
+  /// The height at which a base finds the floor; none if it is not known. `map`: as from
+  /// ClearanceMaps::add(). `base`: its y is the height at which it stood before.
   [[nodiscard]] std::optional<float> heightUnder(std::uint32_t map,
                                                  const Vec3& base) const noexcept {
     const LevelFloorLayout& floor = floors_[map];
@@ -102,7 +101,7 @@ class LevelFloors {
     const auto i = static_cast<std::uint32_t>(x);
     const auto k = static_cast<std::uint32_t>(z);
     if ((words_[floor.wordOf(i, k)] >> (i % kBits) & 1U) == 0) return std::nullopt;
-    // Which of them it is nobody can guess: no branch.
+    // Which height it is is unpredictable, so there is no branch.
     std::uint32_t is_height = 0;
     for (std::uint32_t n = 0; n < floor.height_count; ++n) {
       is_height |= (base.y == floor.heights[n] ? 1U : 0U) << n;
@@ -111,7 +110,7 @@ class LevelFloors {
     return floor.heights[static_cast<std::size_t>(std::countr_zero(is_height)) + 1];
   }
 
-  /// Bases over one floor, kLanes or a multiple of that. `y` is where they stood before.
+  /// Bases over one floor, a multiple of kLanes. `y`: the heights at which they stood before.
   struct Bases {
     const float* x = nullptr;
     const float* y = nullptr;
@@ -119,7 +118,8 @@ class LevelFloors {
     std::size_t count = 0;
   };
 
-  /// The same for several. Whether all heights are known, which are written in any case.
+  /// The same for several bases. Returns whether all heights are known; writes `heights` in any
+  /// case.
   [[nodiscard]] bool heightsUnder(std::uint32_t map, const Bases& bases,
                                   float* heights) const noexcept;
 
@@ -130,13 +130,13 @@ class LevelFloors {
  private:
   static constexpr std::uint32_t kBits = LevelFloorLayout::kBits;
 
-  /// 1 where all heights of eight bases from `first` on are known, else 0.
+  /// 1 if all heights of the eight bases from `first` on are known, else 0.
   std::int32_t heightsOfEight(const LevelFloorLayout& floor, const Bases& bases, std::size_t first,
                               float* heights) const noexcept;
 
-  /// After that of no map, which is as wide as nothing.
+  /// The first layout, for kNoClearanceMap, has no width.
   std::vector<LevelFloorLayout> floors_ = std::vector<LevelFloorLayout>(1);
-  /// After one for what is outside of all floors.
+  /// The first word, which is 0, answers for places outside of all floors.
   std::vector<std::uint32_t> words_ = {0};
 };
 

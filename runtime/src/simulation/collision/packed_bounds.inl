@@ -1,4 +1,4 @@
-// Comparing bounds with those of 32 objects: included by resting_objects.cpp and by the kernels,
+// Compares bounds with those of 32 objects. Included by resting_objects.cpp and by the kernels,
 // which may use other instructions. No library templates here: see column_grid_avx2.cpp.
 #include "simulation/collision/resting_objects_kernels.h"
 
@@ -65,8 +65,8 @@ constexpr QueryBounds queryBounds(const CellSpan& x, const CellSpan& bands, cons
           isEverywhere(x, z)};
 }
 
-/// Of the objects from `first` on that are compared at once, those that are apart from the query
-/// along a horizontal axis, as bits.
+/// Of the objects compared at once, from `first` on, those that do not overlap the query along a
+/// horizontal axis, as bits.
 inline std::uint32_t apart(const PackedBounds& objects, const QueryBounds& query,
                            std::uint32_t first) {
   const Bytes x = (loadBytes(objects.most_x + first) - query.least_x) |
@@ -76,7 +76,7 @@ inline std::uint32_t apart(const PackedBounds& objects, const QueryBounds& query
   return signsOf(x | z) << first;
 }
 
-/// Those that share no band with the query.
+/// Of the same objects those that share no band with the query.
 inline std::uint32_t inOtherBands(const PackedBounds& objects, const QueryBounds& query,
                                   std::uint32_t first) {
   const Bytes none{};
@@ -84,7 +84,7 @@ inline std::uint32_t inOtherBands(const PackedBounds& objects, const QueryBounds
   return signsOf(reinterpret_cast<Bytes>(others)) << first;
 }
 
-/// The objects whose bounds meet those of a query, as bits.
+/// The objects whose bounds overlap those of a query, as bits.
 inline std::uint32_t objectsNear(const PackedBounds& objects, const QueryBounds& query) {
   std::uint32_t apart_from = 0;
   std::uint32_t others = 0;
@@ -96,12 +96,12 @@ inline std::uint32_t objectsNear(const PackedBounds& objects, const QueryBounds&
   return objects.resting & (everywhere | ~apart_from) & ~others;
 }
 
-/// Of the p-th 32 objects of a view, the one that is not there, as a bit.
+/// The absent object as a bit, if it is in pack `p` of a view.
 inline std::uint32_t absentOf(const RestingView& objects, std::size_t p) {
   return p == objects.absent_pack ? objects.absent : 0;
 }
 
-/// Of the p-th 32 objects of a view, those whose bounds meet those of a query, as bits.
+/// The objects in pack `p` of a view whose bounds overlap those of a query, as bits.
 inline std::uint32_t objectsNear(const RestingView& objects, std::size_t p,
                                  const QueryBounds& query) {
   return objectsNear(objects.bounds[p], query) & ~absentOf(objects, p);

@@ -2,18 +2,18 @@
 
 namespace galactic::simulation {
 
-/// A move in the ground plane by which something gets free, meters; (0, 0) for none.
+/// A move in the ground plane that frees something, meters; (0, 0) for none.
 struct Push {
   float x = 0;
   float z = 0;
 };
 
-/// Adds up pushes so that their order changes nothing: the largest in each of the four directions
-/// of the axes, opposite ones against each other.
+/// Adds up pushes independently of their order: keeps the largest in each of the four directions of
+/// the axes, and subtracts opposite ones.
 class PushSum {
  public:
   void add(const Push& push) noexcept;
-  /// At most `longest` meters long; (0, 0) when nothing was added or pushes cancel out.
+  /// The sum, at most `longest` meters long; (0, 0) if nothing was added or pushes cancel out.
   [[nodiscard]] Push total(float longest) const noexcept;
 
  private:

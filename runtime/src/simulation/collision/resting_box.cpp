@@ -8,8 +8,8 @@
 namespace galactic::simulation {
 namespace {
 
-/// What is added to a box's half height so that rounding cannot make it too small: more than ten
-/// times the rounding of a distance between points as far apart as the box is large.
+/// Added to a box's half height so that rounding cannot make it too small: more than ten times the
+/// rounding error of distances as large as the box.
 constexpr float kHeightSlack = 1e-5F;
 
 /// 0 for negative numbers; NaN stays NaN, as with the second operand of maxps.
@@ -100,14 +100,14 @@ struct Line {
   Triple slope{};
 };
 
-/// The hull of what a line meets of the parts of a rounded box.
+/// Computes the hull of a line's intersections with the parts of a rounded box.
 class RoundedBox {
  public:
   RoundedBox(const Triple& half, double radius) : half_(half), radius_(radius) {}
 
   [[nodiscard]] Clip meet(const Line& line) {
     for (std::size_t axis = 0; axis < 3; ++axis) addSlab(line, axis);
-    // What is not rounded is all slab.
+    // Without rounding, the slabs are the whole box.
     if (radius_ == 0) return hull_;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (unsigned corner = 0; corner < 4; ++corner) addEdge(line, axis, corner);
@@ -123,7 +123,7 @@ class RoundedBox {
     hull_.hi = std::max(hull_.hi, part.hi);
   }
 
-  /// `bit` set: the positive end of `axis`.
+  /// The positive or the negative end of `axis`.
   [[nodiscard]] double end(std::size_t axis, bool positive) const {
     return positive ? half_[axis] : -half_[axis];
   }
@@ -159,7 +159,7 @@ class RoundedBox {
 
   Triple half_;
   double radius_;
-  /// Empty: the ends the wrong way round.
+  /// Empty: its ends are in reverse order.
   Clip hull_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };
 
@@ -234,7 +234,7 @@ std::optional<double> wayToOverlap(const RestingBox& box, const Vec3& from,
 }
 
 std::optional<Span> overlapShifts(const RestingBox& moving, const RestingBox& fixed) noexcept {
-  // The cross product of two axes that are nearly parallel says nothing that the axes do not.
+  // The cross product of two nearly parallel axes adds nothing to the axes themselves.
   constexpr double kNearlyParallel = 1e-10;
   const Frame a(moving);
   const Frame b(fixed);

@@ -12,21 +12,21 @@
 namespace galactic::simulation {
 namespace {
 
-/// Bounds of objects are this much larger, so that no rounding of a query can find an overlap that
-/// they do not know: meters, and parts of a coordinate.
+/// Margins of objects' bounds, so that no overlap that a query finds through rounding lies outside
+/// them: in meters, and relative to a coordinate.
 constexpr float kSlack = 1e-4F;
 constexpr float kRelativeSlack = 1e-6F;
 
 std::uint32_t bitOf(std::uint32_t index) { return 1U << (index % kPackedObjects); }
 
-/// Some objects, as bits, rest no more.
+/// Removes some objects, given as bits.
 void takeOut(PackedBounds& bounds, std::uint32_t objects) {
   bounds.resting &= ~objects;
   bounds.everywhere &= ~objects;
 }
 
-/// Number of the cell that a coordinate is in, which never falls where coordinates rise; the last
-/// one for NaN. The kernels do the same.
+/// Number of the cell that contains a coordinate, monotonic in the coordinate; the last cell for
+/// NaN. The kernels do the same.
 std::int32_t cellOf(float coordinate, float edge) {
   const float cell = coordinate * (1 / edge);
   const float below = cell < kFarthestCell ? cell : kFarthestCell;
@@ -42,14 +42,14 @@ QueryBounds boundsOf(const Vec3& least, const Vec3& most) {
                      cellSpan(least.z, most.z, kCellEdge));
 }
 
-/// The centers that some query within `reach` of `center` may have.
+/// The cells in which query centers within `reach` of `center` may lie.
 CellSpan cellsAround(float center, float reach, float edge) {
   const float around = reach + kSlack + kRelativeSlack * (std::fabs(center) + reach);
   return cellSpan(center - around, center + around, edge);
 }
 
-/// Calls `visit` with the index of each object whose bounds meet those of a query, ascending, until
-/// it returns true; whether it did.
+/// Calls `visit` with the index of each object whose bounds overlap those of a query, ascending,
+/// until it returns true. Returns whether it did.
 template <class Visit>
 bool anyNear(const RestingView& objects, const QueryBounds& query, const Visit& visit) {
   for (std::size_t p = 0; p < objects.bounds_count; ++p) {
@@ -61,25 +61,25 @@ bool anyNear(const RestingView& objects, const QueryBounds& query, const Visit& 
   return false;
 }
 
-/// The objects that overlap a sphere, ascending, to `visit` as in anyNear.
+/// Calls `visit`, as anyNear() does, with the objects that overlap a sphere, ascending.
 template <class Visit>
 bool anyOverlapping(const RestingView& objects, const Vec3& center, float radius,
                     const Visit& visit) {
   return anyNear(objects, boundsOf(center, center), [&](std::uint32_t index) {
     const RestingBox& box = objects.boxes[index];
-    // The kernels ask for the heights first, too: no answer depends on it.
+    // The kernels test heights first, too; this only saves time and changes no answer.
     return std::fabs(center.y - box.center.y) < box.half_height + radius &&
            overlaps(box, center, radius) && visit(index);
   });
 }
 
-/// The fastest ones that this processor can run.
+/// The fastest kernels that this processor can run.
 const RestingKernels& restingKernels() {
   static const RestingKernels kernels = detail::hasAvx2() ? avx2Resting() : portableResting();
   return kernels;
 }
 
-/// What the caller of a query guarantees.
+/// The precondition of a query.
 [[maybe_unused]] bool radiiFit(const SphereBatch& spheres, float largest_radius) {
   return std::all_of(spheres.ranges.begin(), spheres.ranges.end(),
                      [=](const RadiusRange& range) { return range.radius <= largest_radius; });
@@ -164,7 +164,7 @@ void RestingObjects::insert(std::uint32_t index, const RestingBox& box) noexcept
 
 void RestingObjects::remove(std::uint32_t index) noexcept {
   assert(isResting(index));
-  // A hand takes one object, which needs no bounds of its own.
+  // Shared bounds stay shared while one object is missing, as when a hand has taken it.
   if (!ownsBounds() && now_.absent == 0) {
     now_.absent_pack = index / kPackedObjects;
     now_.absent = bitOf(index);
@@ -236,7 +236,7 @@ float RestingObjects::fall(const Vec3& center, float radius) const noexcept {
   float least = std::numeric_limits<float>::infinity();
   forEachInColumnOf(center, [&](std::uint32_t index) {
     const RestingBox& box = now_.boxes[index];
-    // Whoever lies lower than the sphere is known to sink, or aside of it, needs no closer look.
+    // An object below the depth found so far, or beside the sphere, needs no closer look.
     if (center.y - radius - box.center.y - box.half_height > least) return;
     const Vec3 half = halfBounds(box);
     const float around = radius + kSlack;

@@ -25,10 +25,10 @@ struct SphereHit {
   friend bool operator==(const SphereHit&, const SphereHit&) = default;
 };
 
-/// The objects of one env that rest in the scene. Their bounds are packed, 32 objects together, as
-/// often as the objects need, so no capacity can overflow, and each 32 cost a query the same. How
-/// that works: resting_objects_kernels.h. They may be those of others at first (share()), of which
-/// they keep their own copies when they change. After construction nothing allocates and nothing
+/// The objects of one env that rest in the scene. Their bounds are stored in packs of 32 objects,
+/// as many packs as needed, so no capacity can overflow, and a query costs the same for each pack;
+/// resting_objects_kernels.h has the details. The objects may be shared with others at first
+/// (share()) and are copied when they change. After construction nothing allocates and nothing
 /// throws. One thread at a time; const members from any.
 class alignas(64) RestingObjects {
  public:
@@ -37,7 +37,7 @@ class alignas(64) RestingObjects {
   RestingObjects(std::size_t most_objects, float largest_radius,
                  std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
                  std::pmr::memory_resource* bounds_memory = std::pmr::get_default_resource());
-  /// What was shared stays shared; of the one that is left, nothing may be asked.
+  /// Shared objects stay shared; the moved-from one may not be used.
   RestingObjects(RestingObjects&&) = default;
   RestingObjects& operator=(RestingObjects&&) = delete;
   RestingObjects(const RestingObjects&) = delete;
@@ -47,54 +47,55 @@ class alignas(64) RestingObjects {
   /// Forgets all objects.
   void clear() noexcept;
 
-  /// Has the objects of `others`, capacity() at most, which are for the same largest radius.
-  /// Nothing is copied before it changes here; there it must neither change nor go away as long as
-  /// it is shared. So envs that began the same episode read the same memory.
+  /// Takes the objects of `others`, capacity() at most, made for the same largest radius. Copies
+  /// nothing until it changes here; `others` must neither change nor go away while shared. So envs
+  /// that began the same episode read the same memory.
   void share(const RestingView& others) noexcept;
 
-  /// Object `index` (less than capacity()) rests at `box` from now on. It must not be resting
-  /// already. It may be anywhere: there is no frame to be outside of.
+  /// Lays object `index` (less than capacity()) to rest at `box`. It must not be resting already.
+  /// It may be anywhere: there are no limits to be outside of.
   void insert(std::uint32_t index, const RestingBox& box) noexcept;
 
-  /// Object `index`, which must be resting, rests no more (it was grasped).
+  /// Removes object `index`, which must be resting (it was grasped).
   void remove(std::uint32_t index) noexcept;
 
-  /// Objects that there is room for.
+  /// The number of objects that there is room for.
   [[nodiscard]] std::uint32_t capacity() const noexcept {
     return static_cast<std::uint32_t>(own_boxes_.size());
   }
   [[nodiscard]] bool isResting(std::uint32_t index) const noexcept;
-  /// Of a resting object.
+  /// The box of a resting object.
   [[nodiscard]] const RestingBox& box(std::uint32_t index) const noexcept {
     return now_.boxes[index];
   }
   [[nodiscard]] float largestRadius() const noexcept { return largest_radius_; }
 
-  /// Whether any sphere overlaps any object. No radius may exceed the largest. A sphere with a
-  /// center that is not a number overlaps nothing.
+  /// Whether any sphere overlaps any object. No radius may exceed the largest. A sphere whose
+  /// center has a NaN overlaps nothing.
   [[nodiscard]] bool touches(const SphereBatch& spheres) const noexcept;
-  /// The same for a robot's, which their bounds answer for most of the time.
+  /// The same for a robot's spheres; their bounds suffice for the answer most of the time.
   [[nodiscard]] bool touches(const BoundedSpheres& spheres) const noexcept;
 
   /// Whether a sphere (radius at most the largest) whose center is within bounds could overlap an
-  /// object. No means no.
+  /// object. If false, none does.
   [[nodiscard]] bool mayTouch(const CenterBounds& centers) const noexcept;
 
-  /// All overlaps, by sphere, then object; as many as `out` takes. Returns how many were written.
+  /// Writes all overlaps, sorted by sphere, then object, as far as `out` has room. Returns how many
+  /// were written.
   [[nodiscard]] std::size_t hits(const SphereBatch& spheres,
                                  std::span<SphereHit> out) const noexcept;
 
   /// The object whose box is nearest to `center` among those that a sphere of `radius` (at most the
-  /// largest) overlaps; the lower index when equally near.
+  /// largest) overlaps; the lower index if equally near.
   [[nodiscard]] OptionalIndex nearest(const Vec3& center, float radius) const noexcept;
 
   /// How far a sphere (radius at most the largest) can sink from `center` before it touches an
-  /// object: 0 when it overlaps one already, infinity when nothing is under it. Exact but for
+  /// object: 0 if it overlaps one already, infinity if nothing is under it. Exact except for
   /// rounding: the sphere sinks to where its center enters the box grown by the radius.
   [[nodiscard]] float fall(const Vec3& center, float radius) const noexcept;
 
-  /// Calls `visit(box, y)` for each resting object, ascending, whose box is somewhere between
-  /// `heights`; `y`: the nearest of them to its center.
+  /// Calls `visit(box, y)` for each resting object, ascending, whose box overlaps the range
+  /// `heights`; `y`: the height in the range nearest to its center.
   template <class Visit>
   void forEachBetween(const Span& heights, const Visit& visit) const {
     forEachOf([&](std::size_t pack) { return between(pack, heights); },
@@ -106,21 +107,21 @@ class alignas(64) RestingObjects {
   }
 
   /// Calls `visit(index)` for each resting object, ascending, that a sphere (radius at most the
-  /// largest) around `center` could overlap, be it higher or lower: few, and all that it overlaps.
+  /// largest) around `center` could overlap if it were higher or lower: few objects, among them all
+  /// that it overlaps.
   template <class Visit>
   void forEachInColumnOf(const Vec3& center, const Visit& visit) const {
     forEachOf([&](std::size_t pack) { return inColumnOf(pack, center); }, visit);
   }
 
-  /// What `touches` reads, for the kernels, and to share.
+  /// The data that touches() reads: for the kernels, and to share.
   [[nodiscard]] const RestingView& view() const noexcept { return now_; }
 
-  /// Of its own memory.
+  /// Bytes of its own memory.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  /// Calls `visit` with the index of each object that is among those of `choose(pack)`, as bits,
-  /// ascending.
+  /// Calls `visit` with the index of each object, ascending, whose bit is set in choose(pack).
   template <class Choose, class Visit>
   void forEachOf(const Choose& choose, const Visit& visit) const {
     for (std::size_t p = 0; p < now_.bounds_count; ++p) {
@@ -130,17 +131,18 @@ class alignas(64) RestingObjects {
       }
     }
   }
-  /// Of the pack-th 32 objects, those that centers at a height, or at a place, may be near.
+  /// The objects of a pack that may be near centers between `heights`, or in the column of
+  /// `center`, as bits.
   [[nodiscard]] std::uint32_t between(std::size_t pack, const Span& heights) const noexcept;
   [[nodiscard]] std::uint32_t inColumnOf(std::size_t pack, const Vec3& center) const noexcept;
 
   [[nodiscard]] bool ownsBounds() const noexcept { return now_.bounds == own_bounds_.data(); }
   void showOwn() noexcept;
-  /// Where they are its own, after copying those of others.
+  /// Its own bounds, or box, of an object; copies shared ones first.
   [[nodiscard]] PackedBounds& ownBounds(std::uint32_t index) noexcept;
   [[nodiscard]] RestingBox& ownBox(std::uint32_t index) noexcept;
 
-  /// Its own or another's; first, because each step reads it.
+  /// Its own or shared objects; first member, because each step reads it.
   RestingView now_;
   float largest_radius_;
   std::pmr::vector<PackedBounds> own_bounds_;

@@ -1,6 +1,6 @@
-// Which spheres overlap resting objects, in terms of vectors of eight: included by
-// resting_objects_portable.cpp and resting_objects_avx2.cpp, which differ in nothing else but the
-// instructions that they may use. No library templates here: see column_grid_avx2.cpp.
+// Finds which spheres overlap resting objects, with vectors of eight. Included by
+// resting_objects_portable.cpp and resting_objects_avx2.cpp, which differ only in the instructions
+// that they may use. No library templates here: see column_grid_avx2.cpp.
 #include "simulation/collision/packed_bounds.inl"
 // The second needs the first.
 #include "simulation/lanes/lanes_eight.inl"
@@ -17,7 +17,7 @@ inline Centers centersAt(const float* x, const float* y, const float* z, std::si
   return {load(x + n), load(y + n), load(z + n)};
 }
 
-/// Cells of eight coordinates, as cellOf() of resting_objects.cpp.
+/// The cells of eight coordinates, like cellOf() in resting_objects.cpp.
 inline IntLanes cellsOf(Lanes coordinates, Lanes per_meter) {
   const Lanes below = lesser(spread(kFarthestCell), coordinates * per_meter);
   return nearestWhole(greater(spread(-kFarthestCell), below));
@@ -37,7 +37,7 @@ inline QueryBounds boundsOf(const CenterBounds& bounds) {
   constexpr float kCells = 1 / kCellEdge;
   constexpr float kHeights = 1 / kBandHeight;
   const Lanes per_meter{kCells, kCells, kHeights, kHeights, kCells, kCells, kCells, kCells};
-  // In halves, as some callers write them: a load of both would wait.
+  // Loads halves, because some callers write halves: a load of the whole vector would stall.
   const Lanes values = __builtin_shufflevector(
       loadFour(bounds.values), loadFour(bounds.values + kLanes / 2), 0, 1, 2, 3, 4, 5, 6, 7);
   std::int32_t cells[kLanes];
@@ -50,7 +50,7 @@ inline Lanes absolute(Lanes value) {
   return reinterpret_cast<Lanes>(reinterpret_cast<IntLanes>(value) & kAllButSign);
 }
 
-/// How far beyond the faces across one axis: 0 between them; NaN stays NaN.
+/// How far centers lie beyond the two faces across one axis: 0 between the faces; NaN stays NaN.
 inline Lanes beyond(const Vec3& axis, float half, const Centers& offset) {
   const Lanes along =
       spread(axis.x) * offset.x + spread(axis.y) * offset.y + spread(axis.z) * offset.z;
@@ -70,7 +70,8 @@ inline unsigned overlapping(const RestingBox& box, const Centers& centers, float
   return signsOf((squared < spread(radius * radius)) & at_height);
 }
 
-/// The lanes that overlap an object, of those that the bounds of all eight meet.
+/// The lanes that overlap an object; checks only objects whose bounds overlap those of all eight
+/// lanes.
 inline unsigned touchingLanes(const RestingView& objects, const Centers& centers, float radius) {
   const QueryBounds query = boundsOf(centers);
   unsigned lanes = 0;
@@ -85,7 +86,7 @@ inline unsigned touchingLanes(const RestingView& objects, const Centers& centers
 
 bool findTouchingKernel(const RestingView& given_objects, const SphereBatch& given_spheres,
                         LaneGroup& at) noexcept {
-  // Copies: nothing that is written below can change them.
+  // Copies, so that the compiler knows that no write below changes them.
   const RestingView objects = given_objects;
   const SphereBatch spheres = given_spheres;
   std::size_t group = at.group;
@@ -109,8 +110,8 @@ bool mayTouchKernel(const RestingView& objects, const CenterBounds& bounds) noex
   for (std::size_t p = 0; p < objects.bounds_count; ++p) {
     const std::uint32_t near = objectsNear(objects, p, query);
     any |= near;
-    // Whoever asks looks at these next, mostly at one. How many there are nobody can guess: no
-    // loop.
+    // The caller looks at these objects next, mostly at one. Their number is unpredictable, so
+    // there is no loop.
     if (near != 0) {
       __builtin_prefetch(objects.boxes + p * kPackedObjects +
                          static_cast<std::size_t>(__builtin_ctz(near)));
@@ -119,7 +120,7 @@ bool mayTouchKernel(const RestingView& objects, const CenterBounds& bounds) noex
   return any != 0;
 }
 
-/// Bounds of eight groups of spheres, as those of QueryBounds.
+/// Bounds of eight groups of spheres, with the members of QueryBounds.
 struct EightBounds {
   IntLanes least_x, most_x, least_z, most_z, bands, is_everywhere;
 };
@@ -150,10 +151,10 @@ inline EightBounds boundsOfEight(const float* bounds, std::size_t stride) {
   return eight;
 }
 
-/// The groups of an eight whose bounds meet those of object `n`, as bits: objectsNear() the other
-/// way around.
+/// The groups of an eight whose bounds overlap those of object `n`, as bits: objectsNear() the
+/// other way around.
 inline unsigned groupsNear(const PackedBounds& objects, std::size_t n, const EightBounds& eight) {
-  // The sign of a byte.
+  // Shifts the sign of a byte to that of an integer.
   constexpr int kAbove = 24;
   const IntLanes apart = ((eight.most_x - std::int32_t{objects.least_x[n]}) |
                           (std::int32_t{objects.most_x[n]} - eight.least_x) |
@@ -165,8 +166,7 @@ inline unsigned groupsNear(const PackedBounds& objects, std::size_t n, const Eig
   return signsOf((~apart | eight.is_everywhere | is_object_everywhere) & ~in_other_bands);
 }
 
-/// Whether a sphere of groups overlaps one of some objects, as bits, whose bounds are packed
-/// together.
+/// Whether any sphere overlaps one of the `objects`, given as bits, of one pack.
 inline bool touchesSome(const PackedBounds& bounds, const RestingBox* boxes, std::uint32_t objects,
                         const BoundedSpheres& spheres) {
   for (std::size_t first = 0; first < spheres.group_count; first += kLanes) {

@@ -7,10 +7,10 @@ namespace galactic::simulation {
 /// Spheres are handled eight at a time.
 inline constexpr std::size_t kLanes = 8;
 
-/// Numbers that bound centers: least and most x, then y, then z, meters.
+/// The numbers of bounds of centers: least and most x, then y, then z, meters.
 inline constexpr std::size_t kBounds = 6;
 
-/// These of a set of spheres, and the last two again: one vector.
+/// The bounds of a set of spheres, with the last two repeated to fill a vector.
 struct alignas(32) CenterBounds {
   float values[kLanes] = {};
 };
@@ -28,18 +28,18 @@ struct RadiusRange {
   float radius = 0;
   /// A multiple of kLanes.
   std::uint32_t first = 0;
-  /// Spheres; the arrays go on to paddedToLanes(count) with copies of the last one, so that whole
-  /// lanes can be read and an extra lane changes no answer.
+  /// The number of spheres. The arrays are padded to paddedToLanes(count) with copies of the last
+  /// one, so that whole groups can be read and an extra lane changes no answer.
   std::uint32_t count = 0;
 };
 
-/// A span of ranges, but a plain one: kernels read it, which instantiate no library templates.
+/// A plain span of ranges, for the kernels, which must instantiate no library templates.
 struct RadiusRanges {
   const RadiusRange* first = nullptr;
   std::size_t count = 0;
 
   constexpr RadiusRanges() = default;
-  /// Of a vector, a span, or an array of them. Implicit, as those of a std::span are.
+  /// From a vector, a span, or an array of ranges. Implicit, like the constructors of std::span.
   // NOLINTBEGIN(google-explicit-constructor)
   template <class Ranges>
   constexpr RadiusRanges(const Ranges& ranges) : first(ranges.data()), count(ranges.size()) {}
@@ -52,13 +52,13 @@ struct RadiusRanges {
   [[nodiscard]] constexpr const RadiusRange& operator[](std::size_t n) const { return first[n]; }
 };
 
-/// The spheres of one env's robot, or of the object that it holds: centers in the world frame as
-/// three arrays, radius by radius.
+/// The spheres of one env's robot, or of the object that it holds: their centers in the world frame
+/// as three arrays, sorted by radius.
 struct SphereBatch {
   const float* x = nullptr;
   const float* y = nullptr;
   const float* z = nullptr;
-  /// Ascending `first`, no two of one radius.
+  /// Sorted by `first`; no two have the same radius.
   RadiusRanges ranges;
 };
 
@@ -72,20 +72,21 @@ struct EightSpheres {
   unsigned spheres = 0;
 };
 
-/// The spheres of one env's robot by eights, with bounds, which spare most looks at them.
+/// The spheres of one env's robot in groups of eight, with bounds, which make most looks at the
+/// spheres unnecessary.
 struct BoundedSpheres {
   /// World frame, meters; spheres 8 g to 8 g + 7 are group g.
   const float* x = nullptr;
   const float* y = nullptr;
   const float* z = nullptr;
   std::size_t group_count = 0;
-  /// Of each group, meters, padded to lanes.
+  /// The radius of each group, meters, padded to lanes.
   const float* radii = nullptr;
-  /// Of their centers, as BodyArrays::bounds.
+  /// The bounds of the groups' centers, laid out as BodyArrays::bounds.
   const float* bounds = nullptr;
-  /// From one bound to the next: groups, padded to lanes.
+  /// From one bound to the next: the number of groups, padded to lanes.
   std::size_t bounds_stride = 0;
-  /// Of all centers.
+  /// The bounds of all centers.
   const CenterBounds* all = nullptr;
 };
 

@@ -27,23 +27,23 @@ inline void setBit(std::span<std::uint64_t> bits, std::size_t sphere) {
 }
 
 /// Spheres that do not count: those of a held object that penetrated something already when it was
-/// grasped (its spheres reach further than the box as which it rested), until they are free. Empty:
-/// all count.
+/// grasped (its spheres reach further than the box that represented it at rest), until they are
+/// free. If empty, all spheres count.
 using IgnoredSpheres = std::span<const std::uint64_t>;
 
 [[nodiscard]] inline bool isIgnored(IgnoredSpheres ignored, std::size_t sphere) {
   return !ignored.empty() && hasBit(ignored, sphere);
 }
 
-/// Whether a bit is set that is not ignored.
+/// Whether any bit is set that is not ignored.
 [[nodiscard]] inline bool anyCounts(std::span<const std::uint64_t> bits, IgnoredSpheres ignored) {
   std::uint64_t any = 0;
   for (std::size_t w = 0; w < bits.size(); ++w) any |= bits[w] & ~ignored[w];
   return any != 0;
 }
 
-/// Spheres that are free now, which do not have their bit, count from now on; whether some still do
-/// not.
+/// Stops ignoring the spheres that are free now, whose bit is not set. Returns whether any sphere
+/// is still ignored.
 inline bool keepPenetrating(std::span<std::uint64_t> ignored, std::span<const std::uint64_t> bits) {
   std::uint64_t any = 0;
   for (std::size_t w = 0; w < ignored.size(); ++w) {
