@@ -12,13 +12,13 @@ namespace galactic::simulation {
 namespace {
 
 constexpr int kRowBits = 16;
-/// The bits that count.
+/// The bits that stand for cells.
 constexpr std::array<std::uint64_t, Surroundings::kWords> kCells = Surroundings::everywhere().rows;
 
-/// What one query takes.
+/// The most cells in one query.
 constexpr std::size_t kMostAsked = 64;
 
-/// Cells of one radius, waiting for an answer.
+/// Cells to ask the grid of one radius about.
 struct Question {
   alignas(32) std::array<float, kMostAsked> x;
   alignas(32) std::array<float, kMostAsked> y;
@@ -50,7 +50,7 @@ void answer(const ColumnGrid& grid, Question& question, Surroundings& free) {
   question.count = 0;
 }
 
-/// The cells of a set and all that touch one, be it with a corner.
+/// The cells of a set and all that touch one of them, even at a corner only.
 Surroundings grown(const Surroundings& cells) {
   std::array<std::uint64_t, Surroundings::kWords> wide{};
   for (std::size_t n = 0; n < wide.size(); ++n) {
@@ -97,7 +97,7 @@ void ColumnWays::add(const ColumnGrid& grid, const Vec3& center,
     may_be_free_.rows[n] &= ~sphere.asked.rows[n];
     sphere.asked.rows[n] |= sphere.free.rows[n];
   }
-  // Such a sphere decides nothing.
+  // A sphere that is free everywhere decides nothing.
   if (is_free_everywhere) spheres_.pop_back();
 }
 

@@ -10,15 +10,15 @@
 
 namespace galactic::simulation {
 
-/// Finds in which cells around them spheres are free by asking the columns, where slices do not say
-/// so: slices lose what lies closely above or below something, and with it ways out.
-///
-/// Few columns are asked: none of which slices know that they are blocked, and first only those of
-/// cells that all spheres so far leave free; where some cells remain, those next to them too, which
-/// decide how much of a move can be taken back. The order of spheres changes nothing.
+/// Finds in which cells around them spheres are free by asking the columns about cells that slices
+/// do not know to be free: slices lose free heights closely above or below something, and with them
+/// ways out. Few columns are asked: none that slices know to be blocked, and at first only those of
+/// cells in which all spheres so far are free. If some cells remain, those next to them are asked,
+/// too, because they decide how much of a move can be taken back. The order of spheres changes
+/// nothing.
 class ColumnWays {
  public:
-  /// Room for that many spheres.
+  /// Makes room for this many spheres.
   explicit ColumnWays(std::size_t most_spheres) {
     spheres_.reserve(most_spheres);
     clear();
@@ -26,22 +26,24 @@ class ColumnWays {
 
   void clear() noexcept;
 
-  /// Adds a sphere of a grid. `around`: what slices know.
+  /// Adds a sphere whose radius is that of `grid`. `around`: what slices know of the cells around
+  /// it.
   void add(const ColumnGrid& grid, const Vec3& center,
            const std::optional<SurroundingRows>& around) noexcept;
 
-  /// Whether slices call every cell blocked for one of the spheres so far: there is no way out.
+  /// Whether slices know that every cell is blocked for some sphere so far, so that there is no way
+  /// out.
   [[nodiscard]] bool isHopeless() const noexcept;
 
-  /// Asks the columns, and adds the spheres to `way`. False where they leave no cell free, or there
-  /// were more of them than there is room for: there is no way out.
+  /// Asks the columns, and adds the spheres to `way`. Returns false, which means no way out, if no
+  /// cell is free for all spheres or there are more spheres than there is room for.
   bool addTo(WayOut& way) noexcept;
 
  private:
   struct Sphere {
     const ColumnGrid* grid = nullptr;
     Vec3 center;
-    /// Known to be free; known either way.
+    /// Cells known to be free, and cells known to be free or blocked.
     Surroundings free;
     Surroundings asked;
   };
@@ -49,7 +51,7 @@ class ColumnWays {
   static void ask(const Surroundings& cells, Sphere& sphere) noexcept;
 
   std::vector<Sphere> spheres_;
-  /// The cells that slices call blocked for no sphere.
+  /// The cells that slices know to be blocked for no sphere.
   Surroundings may_be_free_;
   bool is_full_ = false;
 };

@@ -16,33 +16,34 @@
 namespace galactic::simulation {
 namespace {
 
-/// Height of a slice, meters, and how many there are at most. Higher ones where they do not
-/// suffice.
+/// The height of a slice, meters, and the most slices. If these do not suffice, slices become
+/// higher.
 constexpr float kSlice = 0.04F;
 constexpr std::size_t kMostSlices = 64;
-/// What blocks is at least this far from a free slice, meters: more than any rounding.
+/// Obstacles are at least this far from a free slice, meters: more than any rounding.
 constexpr float kSlack = 1e-3F;
-/// What tileOfRow() can tell: of wider scenes nothing is known.
+/// The limit of tileOfRow(): nothing is known of wider scenes.
 constexpr std::uint32_t kMostColumnsZ = 1U << 16U;
 
 /// Slices of one column, as bits.
 struct ColumnSlices {
-  /// Free at all heights; blocked at all heights.
+  /// Slices that are free at all heights, and slices that are blocked at all heights.
   std::uint64_t free = 0;
   std::uint64_t blocked = 0;
 };
 
-/// The bits of the lowest slices, so many.
+/// The bits of the `count` lowest slices.
 std::uint64_t lowestSlices(unsigned count) {
   return count == kMostSlices ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
 }
 
-/// How many of `count` slices lie whole below a height, in slices over the lowest.
+/// How many of `count` slices lie entirely below a height, which is given in slices above the
+/// lowest.
 unsigned slicesBelow(float height, float count) {
   return static_cast<unsigned>(std::clamp(height, 0.0F, count));
 }
 
-/// The same, with the one in which the height is.
+/// The same, including the slice that contains the height.
 unsigned slicesUpTo(float height, float count) {
   const float inside = std::clamp(height, 0.0F, count);
   const auto below = static_cast<unsigned>(inside);
@@ -52,14 +53,14 @@ unsigned slicesUpTo(float height, float count) {
 /// Cuts columns into slices.
 class ColumnSlicer {
  public:
-  /// `lowest`: where the slices begin, of which there are `count`. Meters.
+  /// `lowest`: where the `count` slices begin. Meters.
   ColumnSlicer(const ColumnGrid& grid, float lowest, float thickness, float count)
       : grid_(grid), lowest_(lowest), thickness_(thickness), count_(count) {}
 
   ColumnSlices at(std::uint32_t i, std::uint32_t k) {
     SomeSpans& spans = spans_[current_];
     const std::size_t found = grid_.spans(i, k, spans);
-    // Most columns are like the one before.
+    // Most columns equal the previous one.
     const std::size_t kept = std::min(found, spans.size());
     if (found == last_found_ && std::ranges::equal(std::span(spans).first(kept),
                                                    std::span(spans_[1 - current_]).first(kept))) {
@@ -67,14 +68,14 @@ class ColumnSlicer {
     }
     last_found_ = found;
     last_ = slicesOf(std::span(spans).first(kept));
-    // Of more spans than there is room for, those left out may be free anywhere.
+    // If there were too many spans, those left out may be free anywhere.
     if (found > kept) last_.blocked = 0;
     current_ = 1 - current_;
     return last_;
   }
 
  private:
-  /// Room for what is free in a column: more spans than nearly any has.
+  /// The free spans of a column: more than almost any has.
   using SomeSpans = std::array<Span, 16>;
 
   [[nodiscard]] ColumnSlices slicesOf(std::span<const Span> spans) const {
@@ -92,7 +93,7 @@ class ColumnSlicer {
 
   const ColumnGrid& grid_;
   float lowest_, thickness_, count_;
-  /// Of the column that is asked about, the current ones, and of the one that was cut last.
+  /// The spans of the current column, at `current_`, and of the column that was cut last.
   std::array<SomeSpans, 2> spans_;
   std::size_t current_ = 0;
   std::size_t last_found_ = std::numeric_limits<std::size_t>::max();
@@ -109,7 +110,8 @@ std::uint32_t tilesZ(const ColumnGrid& grid) {
 
 using BitMatrix = std::array<std::uint64_t, 64>;
 
-/// Swaps rows and columns: halves, then halves of these, and so on (Warren, Hacker's Delight, 7-3).
+/// Swaps rows and columns: first in halves, then in halves of these, and so on (Warren, Hacker's
+/// Delight, 7-3).
 void transpose(BitMatrix& matrix) {
   std::uint64_t low_half = 0x0000'0000'ffff'ffff;
   for (std::size_t half = 32; half != 0; half /= 2, low_half ^= low_half << half) {
@@ -121,9 +123,10 @@ void transpose(BitMatrix& matrix) {
   }
 }
 
-/// One bit for each slice and column: a plane for each slice, in rows along X of words, of which
-/// those of one column of words lie side by side. They begin kCellsAround before the first column,
-/// and so do rows along Z, so that tiles begin with the bit and the row at which they stand.
+/// One bit for each slice and column. Each slice is a plane of rows of words along X; words at the
+/// same place in their rows are adjacent in memory. Planes begin kCellsAround before the first
+/// column, along X and Z, so that the bits and rows around a tile's first column begin at the
+/// tile's own position.
 class BitPlanes {
  public:
   BitPlanes(const ColumnGrid& grid, std::size_t slices)
@@ -132,7 +135,7 @@ class BitPlanes {
         rows_(std::size_t{tilesZ(grid)} * kTileRows + SliceTile::kRows - kTileRows),
         bits_(slices_ * rows_ * words_) {}
 
-  /// Sets 64 columns of row `k`, those of word `word`: one number of slices as bits for each.
+  /// Sets the 64 columns of word `word` of row `k`. `columns`: the slices of each as bits.
   void set(std::uint32_t k, std::size_t word, BitMatrix& columns) {
     transpose(columns);
     for (std::size_t slice = 0; slice < slices_; ++slice) {
@@ -141,7 +144,7 @@ class BitPlanes {
   }
   [[nodiscard]] std::size_t words() const { return words_; }
 
-  /// The rows of a tile of a slice.
+  /// Cuts the rows of one tile out of a slice.
   void cut(std::size_t slice, std::uint32_t tile_x, std::uint32_t tile_z,
            std::uint16_t (&rows)[SliceTile::kRows]) const {
     const std::size_t bit = std::size_t{tile_x} * kTileColumns;
@@ -165,7 +168,7 @@ class BitPlanes {
   static constexpr std::size_t kRowBits = 16;
 
   std::size_t slices_;
-  /// Of a row; and rows of a plane.
+  /// Words of a row, and rows of a plane.
   std::size_t words_, rows_;
   std::vector<std::uint64_t> bits_;
 };
@@ -212,7 +215,7 @@ void addTiles(const ColumnGrid& grid, float thickness, const SliceLayout& layout
         SliceTile tile;
         planes.free.cut(slice, tile_x, tile_z, tile.free);
         planes.blocked.cut(slice, tile_x, tile_z, tile.blocked);
-        // Most are those of the slice below.
+        // Most tiles equal that of the slice below.
         if (!isSame(tile, floor.tiles.tiles()[number])) number = floor.tiles.numberOf(tile);
         floor.numbers.push_back(number);
       }
@@ -235,7 +238,7 @@ std::uint32_t DistinctTiles::numberOf(const SliceTile& tile) {
 }
 
 std::vector<std::uint32_t> DistinctTiles::numbersOf(const DistinctTiles& others) {
-  // What is looked at lies anywhere in memory: so far ahead it is asked for.
+  // Look-ups hit scattered memory, so they are prefetched this far ahead.
   constexpr std::size_t kSlotsAhead = 24;
   constexpr std::size_t kTilesAhead = 12;
   const std::span<const Hash> hashes = others.hashes_;
@@ -252,7 +255,7 @@ std::vector<std::uint32_t> DistinctTiles::numbersOf(const DistinctTiles& others)
 std::uint32_t DistinctTiles::numberOf(const SliceTile& tile, Hash hash) {
   const std::size_t slot = slotOf(tile, hash);
   if (slots_[slot].count != 0) return slots_[slot].count - 1;
-  // Rows are counted in 32 bits.
+  // Indices of rows have 32 bits.
   constexpr std::size_t kMostTiles = (std::size_t{1} << 31) / kTileStride;
   if (tiles_.size() == kMostTiles) return kNothingKnown;
   tiles_.push_back(tile);
@@ -293,14 +296,14 @@ void DistinctTiles::prefetchTile(Hash hash) const {
 
 FloorSlices makeFloorSlices(const Scene& scene, float floor, const HeightsOverFloor& heights,
                             std::span<const float> lowest_of_radius) {
-  // No pack has more.
+  // No pack has more radii.
   assert(scene.grids().size() <= kLanes);
   FloorSlices made;
   for (std::uint32_t radius = 0; radius < scene.grids().size(); ++radius) {
     const ColumnGrid& grid = scene.grids()[radius];
     const ColumnGridLayout& from = grid.layout();
-    // Nothing can be lower than at contact with the floor, and slices that begin where the lowest
-    // sphere is know that it is free over a rug.
+    // No sphere can be lower than at contact with the floor. Slices that begin at the lowest sphere
+    // know that it is free above a rug.
     const float over_floor =
         std::max(heights.lowest, lowestOver(lowest_of_radius, radius)) - kSlack;
     const float lowest = floor + std::max(over_floor, grid.radius() + 2 * kSlack);

@@ -12,22 +12,22 @@
 
 namespace galactic::simulation {
 
-/// The number of a tile of which no cell is surely free nor surely blocked.
+/// The number of the tile in which no cell is known to be free or blocked.
 inline constexpr std::uint32_t kNothingKnown = 1;
 
-/// Tiles of which one of each kind is kept. Two are there from the start: see TileSet, and
+/// A set of tiles that stores each distinct one once. Two are there from the start: see TileSet and
 /// kNothingKnown.
 class DistinctTiles {
  public:
   DistinctTiles();
 
-  /// Of a tile, which is kept if it is of a new kind and there is room for it.
+  /// The number of a tile, which is added if it is new and there is room for it.
   [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile);
 
-  /// The same of all tiles of another set, in their order.
+  /// The same for all tiles of another set, in their order.
   [[nodiscard]] std::vector<std::uint32_t> numbersOf(const DistinctTiles& others);
 
-  /// In the order of their numbers.
+  /// The tiles in the order of their numbers.
   [[nodiscard]] std::span<const SliceTile> tiles() const noexcept { return tiles_; }
 
   [[nodiscard]] std::size_t bytes() const noexcept {
@@ -36,43 +36,44 @@ class DistinctTiles {
 
  private:
   using Hash = std::uint64_t;
-  /// A tile, as one more than its number, and a part of its hash; 0 where there is none.
+  /// One more than the number of a tile, and a part of its hash; 0 for an empty slot.
   struct Slot {
     std::uint32_t count = 0;
     std::uint32_t hash = 0;
   };
 
-  /// A number of a slot that may be too large, from the first one on again.
+  /// Wraps the index of a slot around the end of the table.
   [[nodiscard]] std::size_t wrapped(std::size_t at) const { return at & (slots_.size() - 1); }
-  /// Where a tile stands in `slots_`, or where there is room for it.
+  /// The slot of a tile, or the empty slot where it belongs.
   [[nodiscard]] std::size_t slotOf(const SliceTile& tile, Hash hash) const;
   [[nodiscard]] std::uint32_t numberOf(const SliceTile& tile, Hash hash);
   void growSlots();
-  /// Ask the memory for what looks for a tile read: its first slot; and then what that leads to.
+  /// Prefetch what a search for a tile reads: its first slot, then the tile that the slot refers
+  /// to.
   void prefetchSlot(Hash hash) const;
   void prefetchTile(Hash hash) const;
 
   std::pmr::vector<SliceTile> tiles_;
   std::vector<Hash> hashes_;
-  /// Each tile at the first free slot from that of its hash on. As many as a power of two, at most
-  /// half of them taken.
+  /// Each tile is in the first free slot from that of its hash on. Their number is a power of two,
+  /// and at most half of them are taken.
   std::vector<Slot> slots_;
 };
 
-/// The slices of a floor, of each radius.
+/// The slices of a floor, one layout per radius.
 using SlicesOfRadii = std::array<SliceLayout, kLanes>;
 
-/// The slices of one floor, which know nothing of other floors.
+/// The slices of one floor, independent of other floors.
 struct FloorSlices {
-  /// They count from the first of `numbers`.
+  /// Their `first` counts from the start of `numbers`.
   SlicesOfRadii layouts;
-  /// Of `tiles`.
+  /// Numbers of tiles in `tiles`.
   std::vector<std::uint32_t> numbers;
   DistinctTiles tiles;
 };
 
-/// `floor`: its height, meters; the robot's centers are `heights` above it. `lowest_of_radius`: see
-/// lowestOver().
+/// Cuts the room above a floor into slices. `floor`: its height, meters; the robot's centers are
+/// `heights` above it. `lowest_of_radius`: see lowestOver().
 [[nodiscard]] FloorSlices makeFloorSlices(const Scene& scene, float floor,
                                           const HeightsOverFloor& heights,
                                           std::span<const float> lowest_of_radius = {});

@@ -39,7 +39,7 @@ CellInTile inTile(const SliceLayout& layout, const TileSet& tiles, const SliceCe
 FreeSlices::FreeSlices(std::vector<EightSpheres> groups)
     : groups_(std::move(groups)), numbers_(detail::hugePages()) {
   for (const EightSpheres& group : groups_) slice_groups_.push_back({{}, group.spheres});
-  // What is outside of slices asks for the first number.
+  // Places outside of slices look up the first number.
   numbers_.push_back(0);
 }
 

@@ -9,7 +9,7 @@
 namespace galactic::simulation {
 namespace {
 
-/// From 0 up to `end`, not NaN.
+/// Whether values are in [0, end); false for NaN.
 __m256 isWithin(__m256 value, float end) {
   return _mm256_and_ps(_mm256_cmp_ps(value, _mm256_setzero_ps(), _CMP_GE_OQ),
                        _mm256_cmp_ps(value, _mm256_set1_ps(end), _CMP_LT_OQ));
@@ -30,24 +30,24 @@ __m256i integers(const std::int32_t* from) {
   return _mm256_load_si256(reinterpret_cast<const __m256i*>(from));
 }
 
-/// Eight centers on the way to their places.
+/// Intermediate results for eight centers.
 struct alignas(32) OnTheWay {
   /// Where the number of each tile stands, counted from `numbers`.
   std::int32_t number_at[kLanes];
   /// The first row around each center, in its tile.
   std::int32_t row_in_tile[kLanes];
-  /// Bits above that of its own cell.
+  /// For each center the number of bits above that of its own cell.
   std::int32_t above[kLanes];
   const std::uint32_t* numbers;
   EightPlaces* places;
-  /// Those inside of slices, and those that count, as bits.
+  /// Centers inside of slices, and those that are spheres, as bits.
   unsigned inside;
   unsigned spheres;
-  /// Which of those asked about they are.
+  /// The group's bit among those asked about.
   unsigned bit;
 };
 
-/// Which tiles eight centers are in, and where in these.
+/// Finds the tiles that contain eight centers, and their places in these.
 [[gnu::always_inline]] inline void findTiles(const SliceLayout& layout, const float* x,
                                              const float* y, const float* z, OnTheWay& eight) {
   const __m256 cell_x = scaled(x, layout.min_x, layout.inverse_spacing);
@@ -56,7 +56,7 @@ struct alignas(32) OnTheWay {
   const __m256 inside = _mm256_and_ps(
       _mm256_and_ps(isWithin(cell_x, layout.columns_x), isWithin(cell_z, layout.columns_z)),
       isWithin(height, layout.slices));
-  // What is outside asks for the first number.
+  // Centers outside of slices look up the first number.
   const __m256i mask = _mm256_castps_si256(inside);
   const __m256i i = _mm256_and_si256(_mm256_cvttps_epi32(cell_x), mask);
   const __m256i k = _mm256_and_si256(_mm256_cvttps_epi32(cell_z), mask);
@@ -80,7 +80,7 @@ struct alignas(32) OnTheWay {
   places.inside = eight.inside;
 }
 
-/// The first row around each of them, among all tiles.
+/// Finds the first row around each center, counted over all tiles.
 [[gnu::always_inline]] inline void findRows(const OnTheWay& eight) {
   const __m256i number = detail::gatherEight<sizeof(*eight.numbers)>(
       eight.numbers, detail::indicesAt(eight.number_at));
@@ -89,15 +89,15 @@ struct alignas(32) OnTheWay {
         _mm256_add_epi32(_mm256_slli_epi32(number, 6), integers(eight.row_in_tile)));
 }
 
-/// The bits of the cells in which eight centers are. `row`: the first around each.
+/// The bits of the cells that contain eight centers. `row`: the first row around each.
 [[gnu::always_inline]] inline unsigned ownBits(const std::uint16_t* rows,
                                                const detail::EightIndices& row, __m256i above) {
   const __m256i words = detail::gatherEight<sizeof(*rows)>(rows + kCellsAround, row);
-  // Into the sign.
+  // Shifts the bit into the sign.
   return bitsOf(_mm256_castsi256_ps(_mm256_sllv_epi32(words, above)));
 }
 
-/// Which of them are surely free, and surely blocked.
+/// Finds which centers are surely free, and which surely blocked.
 [[gnu::always_inline]] inline void findBits(const SliceTile* tiles, const OnTheWay& eight) {
   EightPlaces& places = *eight.places;
   const detail::EightIndices row = detail::indicesAt(places.row);
@@ -106,7 +106,7 @@ struct alignas(32) OnTheWay {
   places.blocked = eight.inside & ownBits(tiles->blocked, row, above);
 }
 
-/// Begins with the spheres of a group, which start at x, y and z.
+/// Starts the search for the spheres of a group, whose centers begin at x, y and z.
 [[gnu::always_inline]] inline void begin(const SliceGroup& group, const TileSet& tiles,
                                          const float* x, const float* y, const float* z,
                                          OnTheWay& eight) {
@@ -117,11 +117,11 @@ struct alignas(32) OnTheWay {
 
 }  // namespace
 
-// Each step for all groups: a core can hold back few loads whose addresses are not known yet, those
-// of one group at most.
+// Run each step for all groups, because a core can queue only few loads whose addresses are not
+// known yet, at most those of one group.
 
 InSlices findPlacesAvx2(const PlacesQuery& given) noexcept {
-  // Copies: nothing that is written below can change them.
+  // Copies, so that the compiler knows that no write below changes them.
   const PlacesQuery query = given;
   const SomeGroups some = *query.some;
   OnTheWay eights[kLanes];

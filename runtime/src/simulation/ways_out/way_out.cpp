@@ -45,7 +45,7 @@ void WayOut::add(const std::uint16_t* rows, const EightPlaces& places, unsigned 
   if (lanes == 0) return;
   EightWays* ways = next();
   if (ways == nullptr) return;
-  // Whether they count nobody can guess: no branch.
+  // Whether they count is unpredictable, so there is no branch.
   count_ += kernels_.add(rows, places, lanes, *ways, common_) ? 1U : 0U;
 }
 
@@ -61,7 +61,7 @@ void WayOut::add(const Surroundings& around, float part_x, float part_z) noexcep
   if (in_eight_ == kLanes) {
     EightWays* ways = next();
     if (ways == nullptr) return;
-    // No sphere yet.
+    // Without any sphere yet.
     *ways = {};
     ways->rows = single_rows_.data();
     std::ranges::fill(ways->cells.rows, kAllFree);

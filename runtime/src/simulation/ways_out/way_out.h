@@ -9,50 +9,51 @@
 
 namespace galactic::simulation {
 
-/// The shortest move in the ground plane after which the spheres that were added are free of the
-/// scene. Their order changes nothing.
-///
-/// A sphere is free where the column of its cell is, so where it may be is a union of cells, and
-/// where a robot may be is what its spheres' unions, each moved by where the sphere is, have in
-/// common. The search goes over moves by whole cells, all spheres at once as bits, and takes back
-/// of each that may be the shortest what can be taken back: up to the border of a cell that blocks
-/// a sphere.
+/// Finds the shortest move in the ground plane after which all added spheres are free of the scene.
+/// Their order changes nothing. A sphere is free where the column of its cell is free, so its free
+/// places are a union of cells. The free places of the robot are the intersection of these unions,
+/// each shifted by its sphere's position. The search tries moves by whole cells, with all spheres
+/// at once as bits. Each move that may become the shortest is then shortened as far as possible: up
+/// to the border of a cell that blocks a sphere.
 class WayOut {
  public:
-  /// Room for that many times eight spheres.
+  /// Makes room for this many groups of eight spheres.
   explicit WayOut(std::size_t most_eights, const WayKernels& kernels = wayKernels());
 
   /// Forgets all spheres. `spacing`: edge of a cell, meters.
   void clear(float spacing) noexcept;
 
-  /// From now on no move is free, until clear().
+  /// Rules out all moves until clear().
   void close() noexcept;
 
-  /// Whether there is a cell around their own in which all spheres are free.
+  /// Whether all spheres are free after some move by whole cells, or where they are.
   [[nodiscard]] bool isOpen() const noexcept;
 
-  /// Adds the spheres of `lanes` at `places`. `rows`: of the slices for their radius.
+  /// Adds the spheres of `lanes` at `places`. `rows`: what places count from.
   void add(const std::uint16_t* rows, const EightPlaces& places, unsigned lanes) noexcept;
 
-  /// Adds the spheres of several groups that are free or blocked, but for those outside of slices.
+  /// Adds the spheres of several groups that are known to be free or blocked, except for those
+  /// outside of slices.
   AddedGroups add(const GroupsToAdd& groups) noexcept;
 
-  /// Adds a sphere: in which cells around its own it is free, and where in that it is, 0 to 1.
+  /// Adds a sphere. `around`: the cells around its own in which it is free; `part_x`, `part_z`: its
+  /// position in its own cell, 0 to 1.
   void add(const Surroundings& around, float part_x, float part_z) noexcept;
-  /// The same for a sphere at `center`; of the grid's frame, the cells alone count.
+  /// The same for a sphere at `center`; only the grid's cells matter, not its content.
   void add(const Surroundings& around, const ColumnGridLayout& grid, const Vec3& center) noexcept;
 
-  /// At most `longest` meters, and not on along `drive`, the way that the robot came: nothing
-  /// pushes it through an obstacle.
+  /// The shortest move, at most `longest` meters long. Does not push the robot further along
+  /// `drive`, the way that it came, because that could take it through an obstacle.
   [[nodiscard]] FoundWay shortest(const Push& drive, float longest) noexcept;
 
-  /// Takes from `cells` those in which slices call a sphere of groups blocked. Whether any is left.
+  /// Removes from `cells` those that slices know to be blocked for some sphere of `groups`. Returns
+  /// whether any is left.
   [[nodiscard]] bool leaveUnblocked(const GroupsToAdd& groups, CommonCells& cells) const noexcept {
     return kernels_.leave_unblocked(groups, cells);
   }
 
  private:
-  /// Room for eight spheres more; null where there is none, and no move is known to be free.
+  /// Space for eight more spheres; if there is none, rules out all moves and returns null.
   [[nodiscard]] EightWays* next() noexcept;
 
   WayKernels kernels_;
@@ -62,9 +63,11 @@ class WayOut {
   std::vector<EightWays> ways_;
   std::vector<DecidingEight> deciding_;
   std::size_t count_ = 0;
-  /// The rows of spheres added one by one, sixteen each; first those of one that is free anywhere.
+  /// The rows of spheres that were added one by one, sixteen each, after those of a sphere that is
+  /// free anywhere.
   std::vector<std::uint16_t> single_rows_;
-  /// The eight that these spheres go into, how many it has, and how many there are.
+  /// The index of the EightWays that the next such sphere goes into, how many spheres that has, and
+  /// the number of all such spheres.
   std::size_t singles_ = 0;
   std::size_t in_eight_ = kLanes;
   std::size_t single_count_ = 0;

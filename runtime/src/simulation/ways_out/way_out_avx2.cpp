@@ -4,7 +4,7 @@
 #if !defined(__AVX2__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
-// Needed by what follows.
+// Each of these needs the one before it.
 #include "simulation/lanes/lanes_eight.inl"
 #include "simulation/lanes/operations.inl"
 #include "simulation/ways_out/way_out_kernel.inl"

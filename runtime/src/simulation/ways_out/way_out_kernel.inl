@@ -1,5 +1,5 @@
-// The kernels of ways out, in terms of vectors of eight spheres: included after lanes_eight.inl and
-// operations.inl by way_out_portable.cpp and way_out_avx2.cpp, which differ in nothing else but the
+// The kernels of ways out, with vectors of eight spheres. Included after lanes_eight.inl and
+// operations.inl by way_out_portable.cpp and way_out_avx2.cpp, which differ only in the
 // instructions that they may use. No library templates here: see column_grid_avx2.cpp.
 namespace galactic::simulation {
 namespace {
@@ -7,14 +7,15 @@ namespace {
 /// Rows of sixteen bits.
 using Rows = std::uint16_t __attribute__((vector_size(32)));
 
-/// The nine columns of all nine rows that count; those behind the middle one, and before it.
+/// The bits of a row that count, those behind the middle one, and those before it; then all cells
+/// that count, and the rows before and behind the middle one.
 constexpr std::uint16_t kNine = 0x1ff;
 constexpr std::uint16_t kBehind = 0x1e0;
 constexpr std::uint16_t kBefore = 0x00f;
 constexpr Rows kCells{kNine, kNine, kNine, kNine, kNine, kNine, kNine, kNine, kNine};
 constexpr Rows kRowsBefore{kNine, kNine, kNine, kNine};
 constexpr Rows kRowsBehind{0, 0, 0, 0, 0, kNine, kNine, kNine, kNine};
-/// All but the middle one.
+/// All cells but the middle one.
 constexpr Rows kElsewhere{kNine, kNine, kNine, kNine, kBefore | kBehind,
                           kNine, kNine, kNine, kNine};
 
@@ -24,7 +25,7 @@ inline Rows loadRows(const std::uint16_t* from) {
   return rows;
 }
 
-/// The same of what was written in halves, which a load of both would wait for.
+/// The same for rows that were written in halves: a load of the whole would stall.
 inline Rows loadHalves(const std::uint16_t* from) {
   using Half = std::uint16_t __attribute__((vector_size(16)));
   Half first;
@@ -35,7 +36,7 @@ inline Rows loadHalves(const std::uint16_t* from) {
                                  15);
 }
 
-/// From bit `column` on.
+/// Shifts rows so that they begin with bit `column`.
 inline Rows shiftedRows(Rows rows, std::int32_t column) {
 #if defined(__AVX2__)
   return reinterpret_cast<Rows>(
@@ -45,7 +46,7 @@ inline Rows shiftedRows(Rows rows, std::int32_t column) {
 #endif
 }
 
-/// Whether all cells that count are among them.
+/// Whether `rows` has all cells that count.
 inline bool areAllCells(Rows rows) {
   const Rows missing = ~rows & kCells;
   std::uint64_t words[4];
@@ -53,7 +54,7 @@ inline bool areAllCells(Rows rows) {
   return (words[0] | words[1] | words[2]) == 0;
 }
 
-/// Whether any cell that counts is among them.
+/// Whether `rows` has any cell that counts.
 inline bool isAnyCell(Rows rows) {
   const Rows counted = rows & kCells;
   std::uint64_t words[4];
@@ -63,8 +64,8 @@ inline bool isAnyCell(Rows rows) {
 
 bool leaveUnblockedKernel(const GroupsToAdd& given, CommonCells& cells) noexcept {
   const GroupsToAdd some = given;
-  // Behind what is free of each tile; in the first one, nothing is blocked. The nine rows that
-  // count come last of sixteen: what follows may be the end of all tiles.
+  // The blocked rows of a tile follow its free rows; in the first tile nothing is blocked. Sixteen
+  // rows are loaded so that the nine that count are the last, because memory may end after them.
   constexpr std::ptrdiff_t kRowsThatDoNot = 7;
   const std::uint16_t* rows = some.rows + SliceTile::kRows - kRowsThatDoNot;
   Rows left_over = loadRows(cells.rows);
@@ -86,7 +87,7 @@ bool leaveUnblockedKernel(const GroupsToAdd& given, CommonCells& cells) noexcept
   return isAnyCell(left_over);
 }
 
-/// Makes ways of spheres, and returns the cells in which all are free.
+/// Makes ways of spheres. Returns the cells in which all of them are free.
 inline Rows addEight(const std::uint16_t* rows, const EightPlaces& places, unsigned spheres,
                      EightWays& ways) {
   const IntLanes added = lanesOf(spheres);
@@ -116,7 +117,7 @@ bool addKernel(const std::uint16_t* rows, const EightPlaces& places, unsigned sp
 
 AddedGroups addGroupsKernel(const GroupsToAdd& given, EightWays* ways,
                             CommonCells& common) noexcept {
-  // A copy: nothing that is written below can change it.
+  // A copy, so that the compiler knows that no write below changes it.
   const GroupsToAdd some = given;
   AddedGroups found;
   Rows both = loadHalves(common.rows);
@@ -140,35 +141,36 @@ AddedGroups addGroupsKernel(const GroupsToAdd& given, EightWays* ways,
 /// 1, 0 or -1.
 constexpr int signOf(int value) { return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0); }
 
-/// The cells that a move by whole cells leaves last, the same for all spheres: those before the one
-/// where it ends along one axis or both.
+/// The cells that a move by whole cells leaves last, the same for all spheres: the neighbors of its
+/// end one cell back along X, along Z, and along both.
 struct CellsBefore {
-  /// Rows of 16 bits from a sphere's first to the lower of the two that they are in.
+  /// Rows of 16 bits from a sphere's first row to the lower of the two rows that contain the cells.
   std::int32_t first_row = 0;
-  /// Their bits for a sphere in column 0, both rows side by side: before along z, x, and both.
+  /// Their bits for a sphere in column 0, with both rows side by side: one back along X, Z, and
+  /// both.
   std::int32_t x = 0;
   std::int32_t z = 0;
   std::int32_t both = 0;
-  /// All of them.
+  /// All three bits.
   std::uint32_t bits = 0;
 };
 
-/// Where a place in a cell is along an axis, from the border that a move crosses last: multiplied
-/// by this and then added, as it is or 1 less it.
+/// Converts a position in a cell along an axis to the distance from the border that a move crosses
+/// last: times * position + plus, which is the position itself or 1 minus it.
 struct FromBorder {
   float times = 0;
   float plus = 0;
 };
 
-/// A move by whole cells, and all about it that no sphere changes.
+/// A move by whole cells, and everything about it that is the same for all spheres.
 struct alignas(64) CellMove {
-  /// Cells along each axis, and which way.
+  /// Cells along each axis, and the direction.
   float x = 0;
   float z = 0;
   float sign_x = 0;
   float sign_z = 0;
-  /// The square of what is left of it at least, in cells: one less along each axis for spheres at
-  /// the border of theirs.
+  /// The least squared length to which it can be shortened, in cells: one cell less along each
+  /// axis, for spheres at the border of their cells.
   float least_squared = 0;
   bool is_diagonal = false;
   FromBorder from_border_x, from_border_z;
@@ -206,7 +208,7 @@ constexpr CellMove cellMove(int x, int z) {
           cellsBefore(x, z)};
 }
 
-/// Of each bit of CommonCells that counts, the move to its cell.
+/// For each bit of CommonCells that counts the move to its cell.
 struct CellMoves {
   static constexpr int kEdge = 2 * kCellsAround + 1;
   CellMove moves[16 * kEdge];
@@ -224,34 +226,34 @@ constexpr CellMoves cellMoves() {
 
 constexpr CellMoves kCellMoves = cellMoves();
 
-/// What parts of a cell, up to 1, a move by whole cells can take back along x and z: as much as
-/// leaves all spheres free, which those that the cell before blocks decide.
+/// By which part of a cell, up to 1, a move by whole cells can be shortened along X and Z so that
+/// all spheres stay free. Spheres that are blocked in the cell before limit it.
 struct TakenBack {
   float x = 1;
   float z = 1;
 };
 
-/// The same, first along one axis as if the whole way along the other were gone, then along the
-/// other, each sphere from the cell along the first in which it is then.
+/// The same in both orders: first along one axis with the whole move along the other, then along
+/// the other, where each sphere is in the cell to which the first shortening took it.
 struct TakenBackBoth {
   TakenBack along_x_first;
   TakenBack along_z_first;
 };
 
-/// Added to cells before they are rounded: truncation rounds down what is positive.
+/// Added to cells before rounding, because truncation rounds down only positive numbers.
 constexpr float kAboveCells = 64;
 
-/// A move, in cells, after which rounding may take spheres `rounding` further.
+/// A move in cells, after which rounding may put spheres up to `rounding` further.
 struct CellPush {
   float x = 0;
   float z = 0;
   float rounding = 0;
-  /// Spheres that end nearer than this to the border of a cell are looked at: the others are free.
+  /// Only spheres that end nearer than this to the border of a cell need a check: the others are
+  /// free.
   float near = 0;
 };
 
-/// Which of up to eight times eight spheres, as bits, have one that is not free in one of the
-/// cells.
+/// Which of up to eight groups, as bits, have a sphere that is not free in one of the cells.
 inline unsigned deciding(const EightWays* ways, std::size_t count, const CellsBefore& cells) {
   const auto rows_of = [&](std::size_t n) {
     std::int32_t rows = 0;
@@ -266,11 +268,11 @@ inline unsigned deciding(const EightWays* ways, std::size_t count, const CellsBe
   return signsOf(blocked) & counted;
 }
 
-/// What decides how much of a move spheres can take back.
+/// What limits how much of a move eight spheres can take back.
 struct WayLanes {
-  /// The signs say where a sphere is free.
+  /// The sign is set if the sphere is free in that cell.
   IntLanes free_x, free_z, free_both;
-  /// From the border that the move crosses last.
+  /// Distances from the border that the move crosses last, in cells.
   Lanes to_border_x, to_border_z;
 };
 
@@ -279,16 +281,16 @@ inline Lanes placesFrom(const FromBorder& border, const float* part) {
 }
 
 inline WayLanes lanesBefore(const EightWays& ways, IntLanes rows, const CellMove& move) {
-  // The bit of a cell, as the sign.
+  // Shifts a cell's bit into the sign.
   const IntLanes above = 31 - loadInts(ways.column);
   const CellsBefore& cells = move.before;
   return {rows << (above - cells.x), rows << (above - cells.z), rows << (above - cells.both),
           placesFrom(move.from_border_x, ways.part_x), placesFrom(move.from_border_z, ways.part_z)};
 }
 
-/// `margin`: how far into a cell spheres go, as a part of it: those that are less than that from
-/// the border of their cell along the first axis are a cell behind along it. `found`: room for as
-/// many as there are ways.
+/// `margin`: how far spheres go into a cell, as a part of it. Spheres nearer than that to the
+/// border of their cell along the first axis are in the cell before it. `found`: space for as many
+/// as there are ways.
 inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const CellMove& move,
                                float margin, DecidingEight* found) {
   const Lanes whole = spread(1);
@@ -296,11 +298,11 @@ inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const C
   Lanes least_z = whole;
   std::size_t found_count = 0;
   for (std::size_t first = 0; first < count; first += kWaysAtATime) {
-    // Most eights are free in all of these cells.
+    // In most groups all spheres are free in all of these cells.
     unsigned left = deciding(ways + first, count - first, move.before);
     for (; left != 0; left &= left - 1) {
       const EightWays& eight = ways[first + static_cast<std::size_t>(__builtin_ctz(left))];
-      // The row of each sphere in which the move ends, and that before it.
+      // For each sphere the row in which the move ends and the previous one.
       const IntLanes rows =
           gather<sizeof(*eight.rows)>(eight.rows + move.before.first_row, eight.row);
       found[found_count].ways = &eight;
@@ -313,7 +315,7 @@ inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const C
   }
   TakenBack first;
   leastOf(least_x, least_z, first.x, first.z);
-  // Along one axis alone, either comes first.
+  // For a move along one axis, the order does not matter.
   if (!move.is_diagonal) return {first, first};
   least_x = least_z = whole;
   for (std::size_t n = 0; n < found_count; ++n) {
@@ -330,7 +332,7 @@ inline TakenBackBoth takenBack(const EightWays* ways, std::size_t count, const C
   return {{first.x, second.z}, {second.x, first.z}};
 }
 
-/// The cells along one axis that a place may be in, from a sphere's own.
+/// The range of cells along one axis that may contain a place, relative to the sphere's own cell.
 struct CellRange {
   int first = 0;
   int last = 0;
@@ -362,14 +364,14 @@ inline bool isFreeAfter(const EightWays& ways, std::size_t sphere, const CellPus
   const CellRange z = cellsAfter(ways.part_z[sphere], by.z, by.rounding);
   const bool is_known = x.first >= -kCellsAround && z.first >= -kCellsAround &&
                         x.last <= kCellsAround && z.last <= kCellsAround;
-  // What no cell around it blocks goes anywhere.
+  // A sphere that no cell around it blocks may go anywhere.
   if (!is_known) return isFreeEverywhere(ways, sphere);
   return isFreeIn(ways, sphere, x.first, z.first) && isFreeIn(ways, sphere, x.first, z.last) &&
          isFreeIn(ways, sphere, x.last, z.first) && isFreeIn(ways, sphere, x.last, z.last);
 }
 
-/// Where places end near the border of a cell. What does not move along an axis may be at its
-/// border.
+/// Which places end near the border of a cell. A place that does not move along an axis may lie at
+/// a border.
 inline IntLanes isNearBorder(const float* part, float by, float near) {
   const Lanes move = spread(by);
   const Lanes cell = (load(part) + move) + spread(kAboveCells);
@@ -389,8 +391,8 @@ inline bool areFree(const EightWays* ways, std::size_t count, const CellPush& by
   return true;
 }
 
-/// The cells of a set from which no cell of it is nearer to the middle along an axis: nobody needs
-/// to go on from a free cell.
+/// The cells of a set whose neighbor toward the middle, along each axis, is not in the set: a move
+/// never needs to go beyond a free cell.
 inline Rows nearestCells(Rows cells) {
   const Rows here = cells & kCells;
   const Rows none{};
@@ -417,7 +419,8 @@ class Search {
     for (std::size_t n = 0; n < kWords; ++n) moves_[n] = words[n];
   }
 
-  /// `is_each_asked`: none that some sphere does not suit.
+  /// `is_each_asked`: whether to check each move with suits(), and reject those that do not suit
+  /// all spheres.
   FoundWay run(bool is_each_asked) {
     std::uint64_t moves[kWords] = {moves_[0], moves_[1], moves_[2]};
     FoundWay best;
@@ -435,10 +438,10 @@ class Search {
   }
 
   [[nodiscard]] bool suits(const FoundWay& way) const {
-    // Less than what spheres go into cells by.
+    // Less than how far spheres go into cells.
     const float rounding = 0.5F * kIntoCell / query_.spacing;
-    // What a move is shortened to leaves all spheres free but for those that rounding may take
-    // further.
+    // A shortened move leaves all spheres free except for those that rounding may take across a
+    // border.
     const float near = 1.25F * rounding;
     return areFree(query_.ways, query_.count,
                    {way.x / query_.spacing, way.z / query_.spacing, rounding, near});
@@ -447,7 +450,7 @@ class Search {
  private:
   static constexpr std::size_t kWords = 3;
 
-  /// Without a branch, which nobody could guess.
+  /// Takes the first move off a set, without an unpredictable branch.
   static const CellMove& takeFirst(std::uint64_t* moves) {
     const std::size_t word = static_cast<std::size_t>(moves[0] == 0) +
                              static_cast<std::size_t>((moves[0] | moves[1]) == 0);
@@ -468,9 +471,9 @@ class Search {
     return one.squared > other.squared ? other : one;
   }
 
-  /// Whether a move leads back, or aside.
+  /// Whether a move leads back or sideways.
   [[nodiscard]] bool isBack(const FoundWay& way) const {
-    // What it may have along the drive, as a part of its length: the cosine of 60 degrees.
+    // The largest part of its length that may point along the drive: the cosine of 60 degrees.
     constexpr float kAlongDrive = 0.5F;
     const float along = way.x * query_.drive_x + way.z * query_.drive_z;
     return along <= 0 || along <= kAlongDrive * driven_ * __builtin_sqrtf(way.squared);
@@ -479,7 +482,7 @@ class Search {
   const WaysQuery& query_;
   /// How far spheres go into cells, in cells.
   float margin_ = 0;
-  /// Square meters.
+  /// The area of a cell, square meters.
   float squared_cell_ = 0;
   float driven_ = 0;
   std::uint64_t moves_[kWords];
@@ -489,7 +492,8 @@ FoundWay shortestKernel(const WaysQuery& query) noexcept {
   Search search(query);
   const FoundWay way = search.run(false);
   if (way.squared == kNoWay || search.suits(way)) return way;
-  // A sphere goes further than into the next cell, which happens to those at a border: ask each.
+  // Some sphere, at a border, ends in a cell that the move did not check. Check each sphere for
+  // each move.
   return search.run(true);
 }
 

@@ -1,6 +1,6 @@
 #include "simulation/ways_out/way_out_kernels.h"
 
-// Each needs what is above it.
+// Each of these needs the one before it.
 #include "simulation/lanes/lanes_eight.inl"
 #include "simulation/lanes/operations.inl"
 #include "simulation/ways_out/way_out_kernel.inl"
