@@ -4,7 +4,7 @@
 #if !defined(__AVX2__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
-// Needed by what follows.
+// Each of these needs those before it.
 #include "simulation/lanes/lanes_eight.inl"
 #include "simulation/lanes/operations.inl"
 #include "simulation/motion/motion_kernel.inl"

@@ -2,7 +2,7 @@
 #include "simulation/motion/motion_kernels.h"
 
 #if defined(__AVX512F__)
-// Needed by what follows.
+// Each of these needs those before it.
 #include "simulation/lanes/lanes_sixteen.inl"
 #include "simulation/lanes/operations.inl"
 #include "simulation/motion/motion_kernel.inl"
@@ -11,7 +11,7 @@
 namespace galactic::simulation {
 namespace {
 
-// Eights are left to AVX2.
+// Batches of eight envs go to AVX2.
 
 bool readSixteens(const ActionBatch& batch) noexcept {
   return batch.envs % kWidth == 0 ? readKernel(batch) : avx2Motion().read(batch);

@@ -1,7 +1,7 @@
-// The motion kernels, in terms of vectors of kWidth envs: included after lanes_eight.inl by
-// motion_portable.cpp and motion_avx2.cpp, after lanes_sixteen.inl by motion_avx512.cpp, and after
-// operations.inl. These differ in nothing else but the instructions that they may use. No library
-// templates here: see column_grid_avx2.cpp.
+// The motion kernels, with vectors of kWidth envs. Included by motion_portable.cpp and
+// motion_avx2.cpp after lanes_eight.inl and operations.inl, and by motion_avx512.cpp after
+// lanes_sixteen.inl and operations.inl. These files differ only in the instructions that they may
+// use. No library templates here: see column_grid_avx2.cpp.
 namespace galactic::simulation {
 namespace {
 
@@ -10,7 +10,7 @@ inline Lanes clampTo(Lanes value, float lower, float upper) {
   return pick(value > spread(upper), spread(upper), value);
 }
 
-/// An angle in [-pi, pi) as one in the same range: the input lies within a few turns.
+/// An angle of at most a few turns, wrapped to [-pi, pi).
 inline Lanes wrapped(Lanes angle) {
   constexpr float kPi = 3.14159265F;
   constexpr float kTurn = 6.28318531F;
@@ -50,7 +50,7 @@ struct LaneVector {
   Lanes x, y, z;
 };
 
-/// World frame: axes and origin of the frames of kWidth envs.
+/// Axes and origin of the frames of kWidth envs, in the world frame.
 struct LaneFrame {
   LaneVector x_axis, y_axis, z_axis, origin;
 };
@@ -109,7 +109,7 @@ inline void storePoint(float* rows, const LaneVector& point) {
   store(rows + 2 * kMostWidth, point.z);
 }
 
-/// That of a node, or with -1 that of the root.
+/// The frame of a node, or of the root for -1.
 inline LaneFrame frameOf(const float* frames, std::int32_t node) {
   const float* rows = frames + frameRows(0) * kMostWidth * static_cast<std::size_t>(node + 1);
   return {loadPoint(rows), loadPoint(rows + 3 * kMostWidth), loadPoint(rows + 6 * kMostWidth),
@@ -123,7 +123,7 @@ inline void storeFrame(float* rows, const LaneFrame& frame) {
   storePoint(rows + 9 * kMostWidth, frame.origin);
 }
 
-/// Least and most of a coordinate of eight spheres.
+/// The least and the greatest value of a coordinate of eight spheres.
 struct LaneBounds {
   Lanes least, most;
 };
@@ -137,13 +137,13 @@ inline LaneBounds boundsOf(const Lanes values[kLanes]) {
   return bounds;
 }
 
-/// The centers of eight spheres: rows of each coordinate.
+/// The centers of eight spheres: a vector of envs for each coordinate of each sphere.
 struct EightCenters {
   Lanes x[kLanes], y[kLanes], z[kLanes];
 };
 
-/// Of spheres that are fixed to the root, which stands upright: the sums of moved() without what is
-/// multiplied by 0.
+/// Places spheres that are fixed to the root, which stands upright: moved() without the terms that
+/// are multiplied by 0.
 inline void placeOnRoot(const BodySphere* spheres, const float* frames, EightCenters& centers) {
   const LaneFrame root = frameOf(frames, -1);
   for (std::size_t n = 0; n < kLanes; ++n) {
@@ -170,8 +170,8 @@ inline bool areOnRoot(const BodySphere* spheres) {
   return nodes == -1;
 }
 
-/// The centers of eight spheres. `bounds`: of these spheres, kBounds vectors; null
-/// when nobody wants them.
+/// Places eight spheres and writes their centers. `bounds`: kBounds vectors for the bounds of these
+/// spheres; null if not wanted.
 inline void placeEightSpheres(const BodySphere* spheres, const float* frames, float* centers,
                               std::size_t count, Lanes* bounds) {
   EightCenters found;
@@ -200,7 +200,7 @@ inline void placeGrip(const MotionTables& tables, const float* frames, float* gr
   store(grips + (kFrameNumbers + 1) * kMostWidth, root.z_axis.x);
 }
 
-/// Root and nodes.
+/// Places root and nodes.
 inline void placeFrames(const MotionTables& tables, const PoseArrays& pose, float* frames) {
   storeFrame(frames, rootFrame(pose, tables.root_height));
   for (std::uint32_t n = 0; n < tables.node_count; ++n) {
@@ -242,8 +242,8 @@ inline void moveLanes(const MotionTables& tables, const MoveBatch& batch) noexce
   }
 }
 
-/// The bounds of `count` groups, to the rows of the envs from `to` on; the first one
-/// again where there are less than eight.
+/// Writes the bounds of `count` groups to the rows of the envs from `to` on; pads them to eight
+/// groups with copies of the first.
 inline void storeBounds(const Lanes groups[kLanes][kBounds], std::size_t count, float* to,
                         std::size_t stride) {
   for (std::size_t b = 0; b < kBounds; ++b) {
@@ -253,7 +253,7 @@ inline void storeBounds(const Lanes groups[kLanes][kBounds], std::size_t count, 
   }
 }
 
-/// Bounds that hold both.
+/// Extends bounds to contain others.
 inline void extend(Lanes all[kBounds], const Lanes more[kBounds]) {
   for (std::size_t b = 0; b < kBounds; b += 2) {
     all[b] = lesser(all[b], more[b]);
@@ -261,13 +261,13 @@ inline void extend(Lanes all[kBounds], const Lanes more[kBounds]) {
   }
 }
 
-/// The bounds of all spheres, to the rows of the envs.
+/// Writes the bounds of all spheres to the rows of the envs.
 inline void storeExtents(const Lanes all[kBounds], float* to) {
   const Lanes rows[kLanes] = {all[0], all[1], all[2], all[3], all[4], all[5], all[4], all[5]};
   storeColumns(rows, to, kExtentStride);
 }
 
-/// All spheres, and the bounds of each eight of them.
+/// Places all spheres, with the bounds of each group of eight.
 inline void placeSpheres(const MotionTables& tables, const BodyArrays& body) {
   const std::uint32_t groups = tables.sphere_count / kLanes;
   const std::size_t stride = paddedToLanes(groups);

@@ -15,8 +15,8 @@ namespace {
 
 /// The rotation that takes +X to the unit vector `axis`.
 Quat turnXTo(const Vec3& axis) {
-  // Half-way quaternion (1 + x . axis, x cross axis); for the opposite direction half a turn about
-  // Y.
+  // The half-way quaternion (1 + x . axis, x cross axis); for the opposite direction, half a turn
+  // about Y.
   constexpr float kOpposite = -0.999999F;
   if (axis.x < kOpposite) return {0, 1, 0, 0};
   const Vec3 cross_product{0, -axis.z, axis.y};
@@ -34,7 +34,7 @@ FixedFrame fixedFrame(std::int32_t node, const Pose& node_from_frame) {
           .origin = node_from_frame.translation};
 }
 
-/// A link fixed to a node, while the tree is walked.
+/// The node that a link is fixed to, used while walking the tree.
 struct Attached {
   std::int32_t node = -1;
   Pose node_from_link;
@@ -49,7 +49,7 @@ class Folding {
     forwardKinematics(at_start, {}, robot.startPositions(), links_at_start_);
   }
 
-  /// The links, each fixed to the node that moves it.
+  /// Returns for each link the node that moves it.
   Result<std::vector<Attached>> fold() {
     const std::span<const LinkFrame> links = robot_.links();
     attached_.resize(links.size());
@@ -131,15 +131,14 @@ void addVariables(const Robot& robot, std::span<const std::uint32_t> also_variab
                                .upper = limits.upper,
                                .wraps = isPeriodic(robot, position)});
   }
-  // A recipe may limit a continuous joint; elsewhere it is the wrapping that keeps the angle in
-  // range.
+  // A recipe may limit a continuous joint; without limits, wrapping keeps the angle in range.
   for (MotionVariable& variable : model.variables) {
     constexpr float kUnlimited = std::numeric_limits<float>::max();
     if (variable.lower > -kUnlimited || variable.upper < kUnlimited) variable.wraps = false;
   }
 }
 
-/// A sphere, and its place in the robot's own order.
+/// A sphere and its place in the robot's own order.
 struct PlacedSphere {
   BodySphere sphere;
   std::uint32_t place = 0;
@@ -166,9 +165,9 @@ int longestAxis(std::span<const PlacedSphere> spheres) {
 }
 
 /// Orders spheres of one node, the first of which will be sphere number `first` of its radius, so
-/// that those that share an eight are close together: maps and slices answer for eight at once, and
-/// more often for eight that take little room. Parts them like a tree does, at the borders of
-/// eights.
+/// that those in the same group of eight are close together: maps and slices answer for eight at
+/// once, and succeed more often for compact groups. Splits the spheres recursively, as a k-d tree
+/// does, at the borders of groups.
 void sortByEights(std::span<PlacedSphere> spheres, std::size_t first) {
   const std::size_t border = (first + spheres.size() / 2 + kLanes / 2) / kLanes * kLanes;
   const std::size_t last_border = (first + spheres.size() - 1) / kLanes * kLanes;
@@ -215,7 +214,7 @@ std::vector<PlacedSphere> spheresOfRadius(const Robot& robot, const std::vector<
 
 void addSpheres(const Robot& robot, const std::vector<Attached>& links, MotionModel& model) {
   const std::span<const float> radii = robot.radii();
-  // Place in the robot's own order, and index into the model's spheres.
+  // Pairs of place in the robot's own order and index into the model's spheres.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
   for (std::uint32_t r = 0; r < radii.size(); ++r) {
     const std::vector<PlacedSphere> spheres = spheresOfRadius(robot, links, r);

@@ -18,23 +18,22 @@ namespace galactic::simulation {
 struct MotionVariable {
   /// Index into the robot's joint positions.
   std::uint32_t position = 0;
-  /// Limits of the motion, radians or meters.
+  /// Limits of the position, radians or meters.
   float lower = 0;
   float upper = 0;
-  /// Farthest move of one action; 0 for a position that only episodes set.
+  /// The farthest move of one action; 0 for a position that only episodes set.
   float step = 0;
-  /// Index of its action, -1 for none.
+  /// Index of its action; -1 for none.
   std::int32_t action = -1;
-  /// Whether the angle is kept in [-pi, pi): a continuous joint that nobody limits and no gear
-  /// follows.
+  /// Whether the angle is kept in [-pi, pi): it has no limits and is periodic (isPeriodic()).
   bool wraps = false;
 };
 
-/// Whether a whole turn more or less of a position changes nothing: that of a continuous joint,
-/// followed by none that slides or turns by another part of a turn.
+/// Whether a whole turn more or less of a position changes nothing: it is that of a continuous
+/// joint, and no joint that follows it slides or turns by a fractional multiple.
 [[nodiscard]] bool isPeriodic(const Robot& robot, std::uint32_t position);
 
-/// The nearest value that a variable takes.
+/// The nearest value that the variable may take.
 [[nodiscard]] inline float within(const MotionVariable& variable, float value) {
   return variable.wraps ? wrappedAngle(value) : std::clamp(value, variable.lower, variable.upper);
 }
@@ -89,7 +88,7 @@ struct MotionModel {
   std::vector<std::uint32_t> spheres_by_link;
   /// Origin at the grasp point, axes of the end effector's link.
   FixedFrame grip;
-  /// Of each link of the robot.
+  /// The frame of each link of the robot.
   std::vector<FixedFrame> links;
   /// Variables of the controlled joints, in the order of the actions.
   std::vector<std::uint32_t> controlled;
@@ -97,9 +96,10 @@ struct MotionModel {
   float grasp_radius = 0;
 };
 
-/// Folds everything that stays as it is. `also_variable`: joint positions that episodes set besides
-/// those that actions move. Fails with kUnsupported when one of them belongs to a planar or
-/// floating joint, and with kInvalidInput when the robot has no end effector, base or sphere.
+/// Makes the model; everything that does not change is folded into constants. `also_variable`:
+/// joint positions that episodes set besides those that actions move. Fails with kUnsupported if a
+/// variable belongs to a planar or floating joint, and with kInvalidInput if the robot has no end
+/// effector, base or sphere.
 [[nodiscard]] Result<MotionModel> makeMotionModel(const Robot& robot,
                                                   std::span<const std::uint32_t> also_variable);
 

@@ -1,6 +1,6 @@
 #include "simulation/motion/motion_kernels.h"
 
-// Each needs what is above it.
+// Each of these needs those before it.
 #include "simulation/lanes/lanes_eight.inl"
 #include "simulation/lanes/operations.inl"
 #include "simulation/motion/motion_kernel.inl"

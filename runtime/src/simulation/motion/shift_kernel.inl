@@ -1,4 +1,4 @@
-// How the spheres of one env move, eight numbers at a time. Included after lanes_eight.inl.
+// Shifts the spheres of one env, eight numbers at a time. Included after lanes_eight.inl.
 namespace galactic::simulation {
 namespace {
 
@@ -8,14 +8,14 @@ inline void addToAll(float* to, std::size_t count, float by) {
 }
 
 void shiftKernel(const SphereShift& given) noexcept {
-  // A copy: nothing that is written below can change it.
+  // A copy, so that the compiler knows that no write below changes it.
   const SphereShift shift = given;
   const std::size_t spheres = shift.sphere_count;
   addToAll(shift.centers, spheres, shift.by_x);
   // Most floors are flat.
   if (shift.by_y != 0) addToAll(shift.centers + spheres, spheres, shift.by_y);
   addToAll(shift.centers + 2 * spheres, spheres, shift.by_z);
-  // Rounding keeps order: the bounds of what has moved are the bounds moved.
+  // Rounding is monotonic, so the bounds of shifted spheres are the shifted bounds.
   const std::size_t two_bounds = 2 * shift.group_count;
   addToAll(shift.bounds, two_bounds, shift.by_x);
   addToAll(shift.bounds + two_bounds, two_bounds, shift.by_y);

@@ -1,9 +1,9 @@
-// What else happens to all envs alike, in terms of vectors of kWidth envs: actions are read, steps
-// judged and observed. Included after motion_kernel.inl.
+// Other work that is the same for all envs, with vectors of kWidth envs: reading actions, judging
+// and observing steps. Included after motion_kernel.inl.
 namespace galactic::simulation {
 namespace {
 
-/// Actions cut to [-1, 1] and 0 where they are not numbers; these are marked.
+/// Clamps actions to [-1, 1] and replaces NaN by 0, which it marks in `none`.
 inline Lanes cut(Lanes action, IntLanes& none) {
   const IntLanes is_none = action != action;
   none |= is_none;
@@ -25,7 +25,7 @@ bool readKernel(const ActionBatch& batch) noexcept {
       store(to + n * kMostWidth, cut(loadStrided(from + n, batch.count), none));
     }
     for (std::size_t n = 0; batch.count >= kLanes && n < batch.count; n += kLanes) {
-      // The last eight again, in part.
+      // The last eight overlap those before.
       const std::size_t at = n + kLanes <= batch.count ? n : batch.count - kLanes;
       Lanes eight[kLanes];
       loadColumns(from + at, batch.count, eight);
@@ -39,7 +39,7 @@ bool readKernel(const ActionBatch& batch) noexcept {
   return any != 0;
 }
 
-/// The next eight rows become eight numbers of each wanted env, `stride` apart.
+/// Writes eight rows as eight consecutive numbers of each wanted env, `stride` apart.
 inline void putEight(const float* rows, IntLanes wanted, float* to, std::size_t stride) {
   Lanes eight[kLanes];
   for (std::size_t n = 0; n < kLanes; ++n) eight[n] = load(rows + n * kMostWidth);
@@ -75,7 +75,7 @@ void putFramesKernel(const FrameBatch& batch) noexcept {
     IntLanes wanted;
     __builtin_memcpy(&wanted, batch.wanted + first, sizeof(wanted));
     for (std::size_t n = 0; n < batch.rows; n += kLanes) {
-      // The last eight again, in part.
+      // The last eight overlap those before.
       const std::size_t at = n + kLanes <= batch.rows ? n : batch.rows - kLanes;
       putEight(batch.frames + at * kMostWidth + first, wanted, batch.to + first * batch.rows + at,
                batch.rows);
@@ -124,7 +124,7 @@ void judgeKernel(const JudgeBatch& batch) noexcept {
   }
 }
 
-/// Appends numbers to what the envs observe.
+/// Appends numbers to the observations of the envs.
 class RowsOut {
  public:
   RowsOut(float* out, std::size_t stride) : out_(out), stride_(stride) {}
@@ -138,7 +138,7 @@ class RowsOut {
     add(v.y);
     add(v.z);
   }
-  /// What is left of the last eight numbers.
+  /// Writes the numbers left over in the last, incomplete eight.
   void finish() {
     if (count_ == 0) return;
     for (std::size_t n = count_; n < kLanes; ++n) eight_[n] = eight_[0];
@@ -162,7 +162,7 @@ class RowsOut {
   Lanes eight_[kLanes];
 };
 
-/// The frames that points are observed in.
+/// The frames in which points are observed.
 struct LaneEyes {
   LaneVector base;
   LaneFrame grip;
@@ -176,7 +176,7 @@ struct LaneEyes {
         cosine(load(batch.grips + 12 * kMostWidth + first)),
         sine(load(batch.grips + 13 * kMostWidth + first)) {}
 
-  /// From the base, which is turned by the yaw only.
+  /// Turns a vector into the frame of the base, which is turned by the yaw only.
   [[nodiscard]] LaneVector turned(const LaneVector& away) const {
     return {cosine * away.x - sine * away.z, away.y, sine * away.x + cosine * away.z};
   }
