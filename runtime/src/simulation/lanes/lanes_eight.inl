@@ -1,5 +1,5 @@
-// Vectors of eight envs or spheres, and how they become rows, one each: kernels are written in
-// terms of these. No library templates here: see column_grid_avx2.cpp.
+// Vectors of eight envs or spheres, in terms of which kernels are written, and their conversion to
+// one row per env or sphere. No library templates here: see column_grid_avx2.cpp.
 #if defined(__AVX2__)
 #include <immintrin.h>
 
@@ -36,7 +36,7 @@ inline void storeInts(std::int32_t* to, IntLanes lanes) {
   __builtin_memcpy(to, &lanes, sizeof(lanes));
 }
 
-/// All bits of the lanes whose bit is set.
+/// Sets all bits of the lanes whose bit is set in `bits`.
 inline IntLanes lanesOf(unsigned bits) {
   const IntLanes each{1, 2, 4, 8, 16, 32, 64, 128};
   return (each & static_cast<std::int32_t>(bits)) != 0;
@@ -49,12 +49,12 @@ inline unsigned signsOf(IntLanes lanes) {
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(lanes)));
 }
 
-/// The nearest whole numbers, the even ones of two, for |value| < 2^31.
+/// The nearest whole numbers, with ties to even, for |value| < 2^31.
 inline IntLanes nearestWhole(Lanes value) {
   return reinterpret_cast<IntLanes>(_mm256_cvtps_epi32(reinterpret_cast<__m256>(value)));
 }
 
-/// Words that lie `index` times kScale bytes behind `from`; no index is negative.
+/// Loads the words at `index` times kScale bytes after `from`; no index may be negative.
 template <int kScale>
 inline IntLanes gather(const void* from, const std::int32_t* index) {
   return reinterpret_cast<IntLanes>(detail::gatherEight<kScale>(from, detail::indicesAt(index)));
@@ -90,7 +90,7 @@ inline IntLanes gather(const void* from, const std::int32_t* index) {
 
 #endif
 
-/// The least of eight numbers each.
+/// The least of the eight numbers of each vector.
 inline void leastOf(Lanes x, Lanes z, float& least_x, float& least_z) {
   const auto lesser = [](auto a, auto b) { return b < a ? b : a; };
   const Lanes pairs = lesser(__builtin_shufflevector(x, z, 0, 8, 1, 9, 4, 12, 5, 13),
@@ -101,13 +101,13 @@ inline void leastOf(Lanes x, Lanes z, float& least_x, float& least_z) {
   least_z = both[3] < both[1] ? both[3] : both[1];
 }
 
-/// The least and the most of eight numbers.
+/// The least and the greatest of eight numbers.
 inline void spanOf(IntLanes lanes, std::int32_t& least, std::int32_t& most) {
   const auto lower = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3);
   const auto upper = __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
   const auto less = upper < lower ? upper : lower;
   const auto more = upper > lower ? upper : lower;
-  // Inverting turns the order around.
+  // Inverting the bits reverses the order.
   const auto one = __builtin_shufflevector(less, ~more, 0, 1, 4, 5);
   const auto other = __builtin_shufflevector(less, ~more, 2, 3, 6, 7);
   const auto both = other < one ? other : one;
@@ -115,7 +115,7 @@ inline void spanOf(IntLanes lanes, std::int32_t& least, std::int32_t& most) {
   most = ~(both[3] < both[2] ? both[3] : both[2]);
 }
 
-/// Element 0 of eight rows.
+/// Loads element 0 of eight rows.
 inline Lanes loadStrided(const float* p, std::size_t stride) {
   return Lanes{p[0],          p[stride],     p[2 * stride], p[3 * stride],
                p[4 * stride], p[5 * stride], p[6 * stride], p[7 * stride]};
@@ -130,7 +130,7 @@ inline Quarter loadFour(const float* from) {
   return four;
 }
 
-/// Four rows of eight become columns: number n of the lower four lanes, and of the upper four.
+/// The columns of four rows of eight: the four numbers of lane n, then those of lane n + 4.
 inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
   const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 8, 1, 9, 4, 12, 5, 13);
   const Lanes b = __builtin_shufflevector(rows[0], rows[1], 2, 10, 3, 11, 6, 14, 7, 15);
@@ -155,7 +155,7 @@ inline void loadColumns(const float* from, std::size_t stride, Lanes rows[8]) {
   }
 }
 
-/// Writes eight vectors as columns: number n to `to` + n * stride. Half of the lanes after the
+/// Writes eight vectors as columns: lane n to `to` + n * stride. One half of the lanes after the
 /// other, so that no register is spilled.
 inline void storeColumns(const Lanes rows[8], float* to, std::size_t stride) {
   Lanes halves[4];

@@ -1,4 +1,4 @@
-// As lanes_eight.inl, for vectors of sixteen envs: what motion asks of them.
+// Like lanes_eight.inl for vectors of sixteen envs, with only what the motion kernels need.
 namespace galactic::simulation {
 namespace {
 
@@ -13,7 +13,7 @@ inline Lanes load(const float* from) {
   return lanes;
 }
 
-/// All lanes, or a part of them.
+/// Stores all lanes, or a part of them.
 template <class Part>
 inline void store(float* to, Part lanes) {
   __builtin_memcpy(to, &lanes, sizeof(lanes));
@@ -24,7 +24,7 @@ inline Lanes spread(float value) {
                value, value, value, value, value, value, value, value};
 }
 
-/// Element 0 of sixteen rows.
+/// Loads element 0 of sixteen rows.
 inline Lanes loadStrided(const float* p, std::size_t stride) {
   const float* q = p + 8 * stride;
   return Lanes{p[0],          p[stride],     p[2 * stride], p[3 * stride],
@@ -43,12 +43,12 @@ inline Quarter loadFour(const float* from) {
   return four;
 }
 
-/// Of two columns.
+/// Loads four floats from each of two columns.
 inline Half loadTwoFours(const float* from, std::size_t columns) {
   return __builtin_shufflevector(loadFour(from), loadFour(from + columns), 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/// Four rows of sixteen become columns: number n of each four lanes.
+/// The columns of four rows of sixteen: the numbers of lanes n, n + 4, n + 8 and n + 12.
 inline void transposeFour(const Lanes rows[4], Lanes columns[4]) {
   const Lanes a = __builtin_shufflevector(rows[0], rows[1], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9,
                                           25, 12, 28, 13, 29);
@@ -82,7 +82,7 @@ inline void loadColumns(const float* from, std::size_t stride, Lanes rows[8]) {
   }
 }
 
-/// Writes eight vectors as columns: number n to `to` + n * stride.
+/// Writes eight vectors as columns: lane n to `to` + n * stride.
 inline void storeColumns(const Lanes rows[8], float* to, std::size_t stride) {
   Lanes first[4];
   Lanes last[4];

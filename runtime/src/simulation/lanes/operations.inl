@@ -1,11 +1,11 @@
-// What vectors of any width compute, lane by lane: included after lanes_eight.inl or
+// Operations on vectors of any width, lane by lane. Included after lanes_eight.inl or
 // lanes_sixteen.inl.
 namespace galactic::simulation {
 namespace {
 
 inline Lanes pick(IntLanes mask, Lanes yes, Lanes no) { return mask ? yes : no; }
 
-/// The first one where neither is less: what vminps and vmaxps do with their operands swapped.
+/// Returns `a` if neither is less, as vminps and vmaxps do with their operands swapped.
 inline Lanes lesser(Lanes a, Lanes b) { return b < a ? b : a; }
 inline Lanes greater(Lanes a, Lanes b) { return b > a ? b : a; }
 
