@@ -19,13 +19,12 @@
 namespace galactic::simulation {
 namespace {
 
-/// Roots that are tilted further, radians, are of another frame, or of quaternions in another
-/// order.
+/// A root that is tilted further, radians, is in another frame, or its quaternion in another order.
 constexpr float kMostTilt = 0.1F;
-/// Beyond what is left of a grasp after a pose's way through other frames and files, meters.
+/// More than a pose can lose on its way through other frames and files, meters.
 constexpr float kGraspSlack = 1e-3F;
 
-/// How far the vertical axis is from that of the world, radians.
+/// The angle between the rotated vertical axis and the world's, radians.
 float tiltOf(const Quat& rotation) {
   return 2 * std::asin(std::min(1.0F, std::hypot(rotation.x, rotation.z)));
 }
@@ -77,7 +76,7 @@ StateChooser::StateChooser(const Model& model) : model_(model), state_(model, 1)
 }
 
 std::optional<SavedEnv> StateChooser::choose(const EnvState& chosen) {
-  // faultOf() has looked whether there is one.
+  // faultOf() has checked that there is one.
   beginEpisode(model_, state_, 0, *model_.startOf(chosen.episode), EpisodeChoice::kDrawn);
   if (chosen.held >= 0 && !touchesHeld(chosen)) return std::nullopt;
   restObjects(model_, state_, 0, chosen.objects, chosen.held);
@@ -99,7 +98,7 @@ void StateChooser::addBodies(SavedEnv& saved) {
   saved.bodies.assign(bodies.begin(), bodies.end());
 }
 
-/// By the wider of the rules by which hands grasp, so that states go from the one to the other.
+/// Uses the wider of the two grasp rules, so that states can be moved from one to the other.
 bool StateChooser::touchesHeld(const EnvState& chosen) const {
   const auto object = static_cast<std::uint32_t>(chosen.held);
   const RestingBox box =
@@ -149,7 +148,7 @@ void StateChooser::fillHand(const EnvState& chosen) {
   env.ignores = !isEmpty(ignored);
 }
 
-/// As after a release: see Env::left.
+/// Treats objects in reach of the hand as after a release: see Env::left.
 void StateChooser::leaveWhatIsInReach() {
   Env& env = state_.env(0);
   const RestingObjects& resting = state_.resting(0);
@@ -166,7 +165,8 @@ void StateChooser::leaveWhatIsInReach() {
   }
 }
 
-/// Whether the target has been in the hand: is now, or lies elsewhere after steps of the episode.
+/// Whether the target has been in the hand: it is now, or it is not at its start pose although the
+/// episode has had steps.
 bool StateChooser::hasPicked(const EnvState& chosen) const {
   const Env& env = state_.env(0);
   if (holdsTarget(env)) return true;
@@ -186,7 +186,7 @@ SavedEnv StateChooser::taken(const EnvState& chosen) {
   saved.env.has_picked = hasPicked(chosen);
   saved.held = state_.held(0);
   saved.goal = chosen.goal.translation;
-  // Of a held one it is where the episode has it.
+  // For a held target, this is its place at the start of the episode.
   saved.target_start = state_.objects(0)[env.target].translation;
   saved.base = chunk_.base(0);
   const PoseArrays pose = chunk_.candidates(0);

@@ -11,25 +11,26 @@
 
 namespace galactic::simulation {
 
-/// What is wrong with a state that need not be of this world; empty when nothing is.
+/// Describes what is wrong with a state, which may be from another world; empty if nothing is.
 [[nodiscard]] std::string faultOf(const Model& model, const EnvState& state);
 
-/// Makes what envs go on from: of states that somebody has chosen, and of saved ones that lack the
-/// robot's bodies.
+/// Makes states that envs can go on from: out of states that a caller has chosen, and out of saved
+/// ones without the robot's bodies.
 class StateChooser {
  public:
   /// `model` must outlive it and stay where it is.
   explicit StateChooser(const Model& model);
 
-  /// The state of an env: robot, objects, hand, step and goal as `chosen` says. The base goes to
-  /// the floor under it, joints into their limits, and what is held follows the hand. Counters and
-  /// what the last step returned are for the caller to fill in. None where no floor carries the
-  /// base, where the robot penetrates the scene or a resting object that the hand could not have
-  /// let go of there, or where the hand does not touch what it is to hold. `chosen`: without fault.
+  /// Makes the state of an env: robot, objects, hand, step and goal are those of `chosen`. The base
+  /// is put on the floor under it, joints are clamped to their limits, and a held object follows
+  /// the hand. The caller has to fill in the counters and what the last step returned. None if no
+  /// floor carries the base, if the robot penetrates the scene or a resting object that the hand
+  /// could not have let go of there, or if the hand does not touch the object that it is to hold.
+  /// `chosen` must have no fault (faultOf()).
   [[nodiscard]] std::optional<SavedEnv> choose(const EnvState& chosen);
 
-  /// Where the robot's bodies are in a saved state, to within the rounding of steps, which move
-  /// bodies with a robot that slides.
+  /// Adds the poses of the robot's bodies to a saved state. They may differ by rounding from those
+  /// of the simulation, which shifts bodies when a robot slides.
   void addBodies(SavedEnv& saved);
 
  private:
@@ -43,7 +44,7 @@ class StateChooser {
   [[nodiscard]] SavedEnv taken(const EnvState& chosen);
 
   const Model& model_;
-  /// Of the one env that is tried.
+  /// The state of the one env that is tried.
   BatchState state_;
   Chunk chunk_;
 };

@@ -18,19 +18,19 @@
 namespace galactic::simulation {
 namespace {
 
-/// Starts whose floors differ by no more stand on one floor, with rugs. Meters.
+/// Starts whose heights differ by no more than this are on the same floor, maybe on rugs. Meters.
 constexpr float kUnevenness = 0.03F;
 
-/// A floor of a scene, and the starts on it, which are its by the order of sortedStarts().
+/// A floor of a scene, and the range of its starts in the order of sortedStarts().
 struct Storey {
   std::uint32_t scene = 0;
-  /// The lowest of them.
+  /// The base of the lowest of its starts.
   Vec3 start;
   std::size_t first = 0;
   std::size_t end = 0;
 };
 
-/// What is known of a floor.
+/// All maps of a floor.
 struct FloorMaps {
   FloorClearance clearance;
   FloorSlices slices;
@@ -41,7 +41,7 @@ std::uint32_t sceneOf(const Model& model, std::uint32_t start) {
   return model.world->sceneIndexOf(model.episodeOf(start));
 }
 
-/// Scene by scene, and from the lowest to the highest.
+/// The starts sorted by scene, then from the lowest to the highest.
 std::vector<std::uint32_t> sortedStarts(const Model& model) {
   std::vector<std::uint32_t> order(model.starts.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -66,8 +66,8 @@ std::vector<Storey> storeysOf(const Model& model, std::span<const std::uint32_t>
   return storeys;
 }
 
-/// For each radius how far above the floor its lowest center is where all are fixed to the robot's
-/// root, and so always as high; 0 where some are not.
+/// For each radius the height of its lowest sphere center above the floor if all its spheres are
+/// fixed to the robot's root, and so never change their height; otherwise 0.
 std::vector<float> lowestOfRadius(const Model& model) {
   std::vector<float> lowest(model.world->radii().size());
   for (const RadiusRange& range : model.motion.ranges) {
@@ -90,10 +90,10 @@ LevelFloor levelFloorOf(const Scene& scene, const Vec3& start, const GroundOptio
 
 FloorMaps mapsOf(const Storey& storey, const HeightsOverFloor& heights,
                  std::span<const float> lowest_of_radius, const Model& model) {
-  // What the hand holds may be higher than the robot was at any start.
+  // A held object may be higher than the robot was at any start.
   constexpr float kOverRobot = 0.25F;
-  // So may a raised arm, and more: slices have to know where it is. Maps that reached as high would
-  // know less below.
+  // A raised arm may be higher still, and slices have to cover it. Maps that reached as high would
+  // know less further down.
   constexpr float kRaisedArm = 0.75F;
   const Scene& scene = model.scenes[storey.scene];
   const float floor = storey.start.y;
@@ -114,14 +114,14 @@ void mapFloors(const HeightsOverFloor& heights, Model& model) {
   std::size_t cells = 0;
   for (const Storey& storey : storeys) cells += clearanceCells(model.scenes[storey.scene]);
   model.clearance.reserve(cells);
-  // So many at a time that no thread waits long for the others, and that what they make needs
-  // little memory beside what is kept.
+  // Enough at a time that no thread waits long for the others, but so few that maps not yet added
+  // to the model need little memory.
   const std::uint32_t threads = detail::threadCount(model.options.threads);
   const std::size_t at_a_time = std::size_t{8} * threads;
   for (std::size_t first = 0; first < storeys.size(); first += at_a_time) {
     const std::span some =
         std::span(storeys).subspan(first, std::min(at_a_time, storeys.size() - first));
-    // Where the maps have no room left, robots ask the columns themselves.
+    // If the maps have no room left, robots ask the columns themselves.
     std::vector<std::optional<FloorMaps>> maps(some.size());
     detail::forEachPart(threads, some.size(), [&](std::size_t n) {
       if (!model.clearance.hasRoomFor(clearanceCells(model.scenes[some[n].scene]))) return;

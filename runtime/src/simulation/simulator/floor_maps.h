@@ -5,8 +5,8 @@
 namespace galactic::simulation {
 
 /// Maps each floor of each scene on which episodes start, with the threads of the model's options,
-/// and tells the starts which map is theirs. `heights`: of the robot's sphere centers at the
-/// starts. The maps are the same with any number of threads.
+/// and stores in each start the number of its map. `heights`: of the robot's sphere centers at the
+/// starts. The maps do not depend on the number of threads.
 void mapFloors(const HeightsOverFloor& heights, Model& model);
 
 }  // namespace galactic::simulation

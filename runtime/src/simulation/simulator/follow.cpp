@@ -11,7 +11,7 @@
 namespace galactic::simulation {
 namespace {
 
-/// The root, upright, and the joints as a candidate.
+/// Makes a candidate of the state's root, upright, and joints.
 void propose(const ChunkStep& step, std::size_t e, const FollowedState& state) {
   const PoseArrays to = step.chunk.candidates(e);
   const Pose& root = state.world_from_root;
@@ -24,12 +24,13 @@ void propose(const ChunkStep& step, std::size_t e, const FollowedState& state) {
   }
 }
 
-/// What nobody asked for stays where it is: forward kinematics reads all envs of the chunk.
+/// Makes a candidate of the current pose of an env that does not follow: forward kinematics reads
+/// all envs of the chunk.
 void proposeCurrent(const ChunkStep& step, std::size_t e) {
   copyPose(step.state.poses(step.first + e), step.chunk.candidates(e), step.model.variableCount());
 }
 
-/// Grasps and releases as the hand did, after the objects have moved.
+/// Grasps and releases as the hand did. Call after the objects have been moved.
 void followHand(const ChunkStep& step, std::size_t e, const FollowedState& state) {
   const std::size_t n = step.first + e;
   Env& env = step.state.env(n);
@@ -43,7 +44,7 @@ void followHand(const ChunkStep& step, std::size_t e, const FollowedState& state
   if (state.held < 0) return;
   const auto held = static_cast<std::uint32_t>(state.held);
   if (env.held < 0) takeInHand(step, e, held);
-  // It may slip.
+  // The object may slip in the hand.
   step.state.held(n).grip_from_object = inverse(gripPose(step.state.grip(n))) * state.objects[held];
   measureHeld(heldModel(step.model, env), step.state.held(n));
 }
@@ -82,7 +83,7 @@ void followChunk(const ChunkStep& step, std::span<const float> actions,
     followed[e] = ~std::uint32_t{0};
   }
   keepBodies(step, followed);
-  // A release places bodies anew, so all candidates are taken by now.
+  // A release overwrites candidates, so this loop runs after all of them have been taken.
   for (std::size_t e = 0; e < kChunk; ++e) {
     if (!is_followed(e)) continue;
     const std::size_t n = step.first + e;

@@ -5,8 +5,8 @@
 
 namespace galactic::simulation {
 
-/// A step of the chunk's envs that was made elsewhere: see BatchSimulator::follow. `actions` and
-/// `states`: those of the whole batch.
+/// Follows a step of the chunk's envs that was made elsewhere: see BatchSimulator::follow.
+/// `actions` and `states`: those of the whole batch.
 void followChunk(const ChunkStep& step, std::span<const float> actions,
                  std::span<const FollowedState> states) noexcept;
 

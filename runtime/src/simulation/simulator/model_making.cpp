@@ -20,7 +20,8 @@
 namespace galactic::simulation {
 namespace {
 
-/// Spheres of an object as a SphereBatch has them: each radius padded to whole lanes.
+/// The number of an object's spheres in a SphereBatch: each radius is padded to whole groups of
+/// lanes.
 std::size_t paddedSpheres(const ObjectModel& object, std::size_t radii) {
   std::size_t padded = 0;
   for (std::uint32_t radius = 0; radius < radii; ++radius) {
@@ -40,7 +41,7 @@ void measure(const World& world, Model& model) {
   }
 }
 
-/// Tries the episodes one after the other in a batch of one chunk, whose first env is used.
+/// Tries the episodes one after another in the first env of a batch of one chunk.
 class StartFinder {
  public:
   explicit StartFinder(Model& model) : model_(model), state_(model, 1), chunk_(model) {}
@@ -63,7 +64,7 @@ class StartFinder {
     }
   }
 
-  /// Of the robot's sphere centers at the starts.
+  /// Heights of the robot's sphere centers at the starts.
   [[nodiscard]] const HeightsOverFloor& heights() const { return heights_; }
 
  private:
@@ -83,7 +84,8 @@ class StartFinder {
     }
   }
 
-  /// The floor at or under the episode's base: at once, or further down.
+  /// Puts the base on the floor at the episode's base position, or further down. Returns false if
+  /// the floor is too deep or unknown.
   bool setBase(const Episode& episode) {
     const FloorUnder under = floorUnderStart(model_.world->sceneOf(episode), episode.base_position,
                                              model_.options.ground);
@@ -91,10 +93,10 @@ class StartFinder {
     *pose.x = episode.base_position.x;
     *pose.y = under.height;
     *pose.z = episode.base_position.z;
-    // Episodes may have turned any number of times; the motion kernels want one turn.
+    // A yaw of an episode may have any number of turns; the motion kernels expect less than one.
     constexpr double kTurn = 6.283185307179586;
     *pose.yaw = static_cast<float>(std::remainder(static_cast<double>(episode.base_yaw), kTurn));
-    // Nobody has driven there.
+    // The robot did not drive there, so it comes from the same place.
     *state_.poses(0).x = episode.base_position.x;
     *state_.poses(0).y = under.height;
     *state_.poses(0).z = episode.base_position.z;
@@ -113,7 +115,7 @@ class StartFinder {
     state_.env(0).scene = scene;
   }
 
-  /// As setObjects() left them.
+  /// Stores the objects that setObjects() has laid to rest.
   void keepObjects(std::size_t count) {
     const RestingView& objects = state_.resting(0).view();
     EpisodeStart& start = model_.starts.back();
@@ -156,8 +158,8 @@ class StartFinder {
                             .highest = -std::numeric_limits<float>::infinity()};
 };
 
-/// The radius of each group of the robot that maps are asked about and, in eights after these, each
-/// radius of what its hand may hold.
+/// The radii of the lanes that maps are asked about: one per group of the robot, padded to whole
+/// eights, then all radii for held objects.
 std::vector<std::uint32_t> radiiOfLanes(const Model& model) {
   std::vector<std::uint32_t> radii;
   for (const EightSpheres& group : model.groups) radii.push_back(group.radius_index);
@@ -168,7 +170,7 @@ std::vector<std::uint32_t> radiiOfLanes(const Model& model) {
   return radii;
 }
 
-/// Once per start, as many as there are.
+/// The floor of each start; starts on the same floor repeat it.
 std::vector<sensors::StoodOn> floorsOf(const Model& model) {
   std::vector<sensors::StoodOn> floors;
   floors.reserve(model.starts.size());
@@ -179,7 +181,7 @@ std::vector<sensors::StoodOn> floorsOf(const Model& model) {
   return floors;
 }
 
-/// One for each start.
+/// The errand of each start.
 std::vector<sensors::Errand> errandsOf(const Model& model) {
   std::vector<sensors::Errand> errands;
   errands.reserve(model.starts.size());
@@ -194,7 +196,7 @@ std::vector<sensors::Errand> errandsOf(const Model& model) {
   return errands;
 }
 
-/// What sensors know of the world, once the starts are found.
+/// Makes what sensors know of the world. Call after the starts have been found.
 Result<void> makeSensors(const sensors::LaserSettings& laser, Model& model) {
   const SimulationOptions& options = model.options;
   const std::uint32_t threads = detail::threadCount(options.threads);

@@ -6,7 +6,8 @@
 
 namespace galactic::simulation {
 
-/// See BatchSimulator::create for how it fails. Tries every episode once.
+/// Makes the model of a simulator; tries the start of every episode once. See
+/// BatchSimulator::create for how it fails.
 [[nodiscard]] Result<Model> makeModel(const World& world, const SimulationOptions& options);
 
 }  // namespace galactic::simulation

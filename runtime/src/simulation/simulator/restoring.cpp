@@ -33,7 +33,7 @@ void restoreActions(const Model& model, BatchState& state, std::size_t n, const 
   }
 }
 
-/// The hand, and which spheres do not count yet.
+/// Restores the hand, and which spheres do not count yet.
 void restoreHand(const Model& model, BatchState& state, std::size_t n, const SavedEnv& saved) {
   Env& env = state.env(n);
   env.held = saved.env.held;
@@ -45,7 +45,7 @@ void restoreHand(const Model& model, BatchState& state, std::size_t n, const Sav
   std::ranges::copy(saved.leaving, state.leaving(n).begin());
 }
 
-/// Once the hand is restored.
+/// Call after restoreHand().
 void restoreObjects(const Model& model, BatchState& state, std::size_t n, const SavedEnv& saved) {
   const Env& env = state.env(n);
   RestingObjects& resting = state.resting(n);
@@ -53,7 +53,7 @@ void restoreObjects(const Model& model, BatchState& state, std::size_t n, const 
     const Pose& pose = saved.objects[object];
     const bool is_held = static_cast<std::int32_t>(object) == env.held;
     const bool has_moved = !(pose == state.objects(n)[object]);
-    // While nobody has moved any, they are shared with other envs.
+    // Objects stay shared with other envs as long as none of them has moved.
     if (has_moved && !is_held) {
       restObject(model, state, n, object, pose);
       continue;
@@ -63,7 +63,7 @@ void restoreObjects(const Model& model, BatchState& state, std::size_t n, const 
   }
 }
 
-/// What the env has counted, and what its last step returned.
+/// Restores the env's counters, and what its last step returned.
 void restoreRecord(BatchState& state, std::size_t n, const SavedEnv& saved) {
   state.counters(n) = saved.counters;
   state.moves(n) = saved.moves;
@@ -79,7 +79,7 @@ void restoreRecord(BatchState& state, std::size_t n, const SavedEnv& saved) {
 }  // namespace
 
 void restoreEnv(const Model& model, BatchState& state, std::size_t n, const SavedEnv& saved) {
-  // Brings what the episode says; all that has changed since follows.
+  // Sets everything that follows from the episode; the rest is restored below.
   beginEpisode(model, state, n, saved.env.start, EpisodeChoice::kDrawn);
   Env& env = state.env(n);
   env.step = saved.env.step;

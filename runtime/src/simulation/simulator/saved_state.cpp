@@ -31,18 +31,18 @@ struct Header {
   std::uint32_t version = kVersion;
   std::uint32_t envs = 0;
   std::uint32_t option_bytes = 0;
-  /// 0 without the poses of the robot's bodies.
+  /// The number of the robot's bodies; 0 if their poses were not saved.
   std::uint32_t bodies = 0;
   std::uint64_t seed = 0;
   std::uint64_t steps = 0;
   std::uint64_t world = 0;
   std::uint64_t reserved = 0;
-  /// XXH3 of the header with this field 0 and of all that follows.
+  /// XXH3 of the header, with 0 in this field, and of all that follows.
   std::uint64_t hash = 0;
 };
 static_assert(sizeof(Header) == 64);
 
-/// The numbers of an env in one piece.
+/// The numbers of an env that have a fixed size.
 struct EnvRecord {
   std::uint64_t begun = 0;
   std::uint64_t turns = 0;
@@ -53,7 +53,7 @@ struct EnvRecord {
   std::uint32_t episode = 0;
   std::uint32_t step = 0;
   std::int32_t held = -1;
-  /// Objects that the robot leaves.
+  /// The number of objects that the robot is leaving.
   std::uint32_t left = 0;
   std::array<std::uint32_t, 8> counts{};
   Pose grip_from_held;
@@ -69,13 +69,13 @@ struct EnvRecord {
   std::uint32_t is_idle = 0;
   std::uint32_t is_named = 0;
   std::uint32_t picks = 0;
-  /// Of the episode that the last step ended.
+  /// has_picked of the episode that the last step ended.
   std::uint32_t had_picked = 0;
 };
 static_assert(std::is_trivially_copyable_v<EnvRecord> &&
               sizeof(EnvRecord) == 40 + 16 + 32 + 28 + 24 + 16 + sizeof(GripFrame) + 28);
 
-/// The options that two simulators must share for a state of one to mean something in the other.
+/// The options that two simulators must share so that one can go on from a state of the other.
 std::vector<OptionText> sharedOptions(const SimulationOptions& options) {
   std::vector<OptionText> shared = listOptions(options);
   std::erase_if(shared, [](const OptionText& option) {
@@ -85,8 +85,8 @@ std::vector<OptionText> sharedOptions(const SimulationOptions& options) {
   return shared;
 }
 
-/// Behind them: whether envs begin their next episodes by themselves, which is no option of
-/// programs.
+/// Follow the options: whether envs begin their next episodes by themselves, which is not an option
+/// of programs.
 constexpr std::string_view kBegins = "auto_reset=true\n";
 constexpr std::string_view kWaits = "auto_reset=false\n";
 
@@ -96,7 +96,7 @@ std::string linesOf(const std::vector<OptionText>& options) {
   return lines;
 }
 
-/// Of a whole state, as it belongs into the header.
+/// The hash of a whole state, for its header.
 std::uint64_t hashOf(Header header, std::span<const std::byte> rest) {
   header.hash = 0;
   XXH3_state_t state;
@@ -127,7 +127,7 @@ class Writer {
   std::vector<std::byte>& bytes_;
 };
 
-/// Takes values from bytes; what is not there any more is zeros, and the reader exhausted.
+/// Takes values from bytes. If too few are left, it becomes exhausted and leaves values unchanged.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -146,7 +146,7 @@ class Reader {
       bytes_ = bytes_.subspan(values.size_bytes());
     }
   }
-  /// `count` values, as far as there can be so many.
+  /// Takes `count` values; none, without allocating, if too few bytes are left.
   template <class T>
   [[nodiscard]] std::vector<T> takeMany(std::size_t count) {
     std::vector<T> values(count * sizeof(T) <= bytes_.size() ? count : 0);
@@ -208,7 +208,8 @@ void writeEnv(const Model& model, const BatchState& state, std::size_t n, Writer
   if (state.endings()[n] != EpisodeEnd::kNone) out.add(state.finalObservation(n));
 }
 
-/// What is wrong with an env's record in a world that it may not be of; empty when nothing is.
+/// Describes what is wrong with an env's record, which may be from another world; empty if nothing
+/// is.
 std::string faultOfRecord(const Model& model, const EnvRecord& record) {
   if (!model.startOf(record.episode)) {
     return fmt::format("is in episode {}, which cannot be started", record.episode);
@@ -237,7 +238,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   const auto& [refused, slid, grasps, drops, restored, episodes, successes, failures] =
       record.counts;
   SavedEnv saved;
-  // faultOfRecord() has looked whether there is one.
+  // faultOfRecord() has checked that there is one.
   saved.env.start = *model.startOf(record.episode);
   saved.env.step = record.step;
   saved.env.held = record.held;
@@ -273,7 +274,7 @@ SavedEnv envOf(const Model& model, const EnvRecord& record) {
   return saved;
 }
 
-/// Whether the robot leaves as many objects as the state says, and not the one in its hand.
+/// Whether the robot is leaving as many objects as the record says, and not the one in its hand.
 bool leavesAsSaid(const Model& model, const SavedEnv& saved) {
   const std::size_t words = model.bodyWords();
   std::uint32_t left = 0;
@@ -286,8 +287,8 @@ bool leavesAsSaid(const Model& model, const SavedEnv& saved) {
   return left == saved.env.left;
 }
 
-/// Whether they can be those of some steps: from -1 to 1, and hands and terminations also no
-/// numbers, of steps in which nothing was asked for.
+/// Whether these can be actions of steps: from -1 to 1; those of hand and terminate may be NaN,
+/// from steps before the first action.
 bool areActions(std::span<const float> actions, const ActionLayout& layout) {
   for (std::size_t n = 0; n < actions.size(); ++n) {
     const bool may_be_none = n % layout.count() >= layout.movingCount() && std::isnan(actions[n]);
@@ -300,7 +301,7 @@ tl::unexpected<Error> refused(std::string message) {
   return fail(ErrorCode::kInvalidInput, kWhere, std::move(message));
 }
 
-/// Env number `n` of the state.
+/// Reads env number `n` of the state.
 Result<SavedEnv> readEnv(const Model& model, const Header& header, std::size_t n, Reader& in) {
   EnvRecord record;
   in.take(record);
@@ -334,7 +335,7 @@ Result<SavedEnv> readEnv(const Model& model, const Header& header, std::size_t n
   return saved;
 }
 
-/// Of the header and the options, apart from the envs.
+/// Checks the world and the options of a state, but not its envs.
 Result<void> checkSubject(const Model& model, const Header& header, std::string_view lines) {
   if (header.world != model.world->hash()) {
     return refused("is of another world; restore it where it was saved");
@@ -348,7 +349,7 @@ Result<void> checkSubject(const Model& model, const Header& header, std::string_
       lines.remove_prefix(line.size());
       continue;
     }
-    // Whoever saved it before there was this option did as by default.
+    // A version that did not have this option yet behaved as its default.
     const bool is_named = lines.starts_with(option.name + "=");
     if (is_named) {
       return refused(fmt::format("was saved with other options: expected {}={}, found {}",
@@ -364,7 +365,8 @@ Result<void> checkSubject(const Model& model, const Header& header, std::string_
   return refused("was saved with options that this version does not know");
 }
 
-/// Whether an env waits for somebody to begin its next episode, which here none can do.
+/// Whether an env waits for a caller to begin its next episode, which no caller does with
+/// auto_reset.
 bool waitsInVain(const Model& model, const SavedEnv& saved, std::string_view lines) {
   return model.options.auto_reset && saved.is_idle && lines.ends_with(kWaits);
 }
