@@ -7,11 +7,12 @@
 
 namespace galactic::simulation {
 
-/// The objects of a state that somebody hands to `call` ("RayCaster"): all of its episode, or its
-/// target alone. A state does not say of which world it is: throws ErrorException with
-/// kInvalidInput where it cannot be of this one, as there is no such scene, episode or held object,
-/// or the episode is in another scene or has another number of objects, or the robot of joint
-/// positions; and where a number is not finite or a rotation is none (faultOfNumbers()).
+/// The objects of a state that was passed to `call` (such as "RayCaster"): all of its episode, or
+/// its target alone. A state does not name its world. Throws ErrorException with kInvalidInput if
+/// it cannot be from this one: if there is no such scene, episode or held object, if the episode is
+/// in another scene or has another number of objects, or if the robot has another number of joint
+/// positions. Also throws if a number is not finite or a rotation not of unit length
+/// (faultOfNumbers()).
 [[nodiscard]] std::span<const Placement> checkedObjects(const char* call, const World& world,
                                                         const EnvState& state);
 

@@ -17,10 +17,10 @@ using detail::Directions;
 using detail::GridDistance;
 using detail::SignedDistance;
 
-/// x, y, z and yaw.
+/// The numbers of a base: x, y, z and yaw.
 constexpr std::size_t kBaseNumbers = 4;
 
-/// Whether a joint that actions move is between a link and the root.
+/// Whether any joint between a link and the root is moved by actions.
 bool isMoved(const Robot& robot, std::uint32_t link) {
   for (auto n = static_cast<std::int32_t>(link); n >= 0;) {
     const LinkFrame& frame = robot.links()[static_cast<std::size_t>(n)];
@@ -36,7 +36,7 @@ bool isMoved(const Robot& robot, std::uint32_t link) {
   return false;
 }
 
-/// From inside of a box, the nearest of its faces is the way out.
+/// The signed distance of a point inside of a box: its nearest face is the way out.
 SignedDistance depthIn(const RestingBox& box, const Vec3& point) {
   const Vec3 from = point - box.center;
   const std::array axes{box.axis_x, box.axis_y, box.axis_z};
@@ -62,7 +62,7 @@ struct Ball {
   Vec3 center;
   float radius = 0;
   std::uint32_t radius_index = 0;
-  /// In its batch.
+  /// Its index in its batch.
   std::size_t entry = 0;
 };
 

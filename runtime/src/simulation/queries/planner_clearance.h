@@ -14,8 +14,8 @@
 
 namespace galactic::simulation {
 
-/// The distances of all grids of a world, made scene by scene when first asked for. Safe to share
-/// between threads.
+/// The distance fields of all grids of a world, made for each scene when first asked for. Safe to
+/// share between threads.
 class WorldDistances {
  public:
   explicit WorldDistances(const World& world);
@@ -32,35 +32,38 @@ class WorldDistances {
   std::vector<OfScene> scenes_;
 };
 
-/// How far a robot's spheres, and those of what it holds, are from what surrounds them; see
-/// PlanningScene::clearances(). Copies share what they know of the scenes.
+/// How far a robot's spheres, and those of its held object, are from their surroundings; see
+/// PlanningScene::clearances(). Copies share the distances of the scenes.
 class PlannerClearance {
  public:
   explicit PlannerClearance(const World& world);
 
   [[nodiscard]] std::size_t sphereCount(const PlannerEnv& env) const;
 
-  /// Of all spheres of the robot as it is put together; valid until the next call. `base`: finite.
+  /// Measures the clearances of all spheres of the robot with its assembled joints; valid until the
+  /// next call. `base`: finite.
   std::span<const SphereClearance> measure(PlannerEnv& env, const BasePlace& base, float most);
 
-  /// How the last of these change with the base and the joints. `gradients`: of this one pose.
+  /// Writes how the last measured clearances change with the base and the joints. `gradients`: of
+  /// this one pose.
   void derive(const PlannerEnv& env, const RobotPose& pose,
               const ClearanceGradients& gradients) const;
 
  private:
-  /// Finds the objects at rest that a sphere can be near, over a base there.
+  /// Finds the resting objects that may be within `most` of a sphere when the base is there.
   void findNear(const PlannerEnv& env, const BasePlace& base, float most);
 
   std::shared_ptr<WorldDistances> distances_;
-  /// Of each sphere of the robot: the link that carries it, and whether no controlled joint does.
+  /// For each sphere of the robot the link that carries it, and whether it keeps its height because
+  /// no controlled joint moves it.
   std::vector<std::uint32_t> links_;
   std::vector<bool> keeps_height_;
 
-  // Of the last measure().
+  // Results of the last measure().
   std::vector<SphereClearance> clearances_;
   /// World frame.
   std::vector<Vec3> centers_;
-  /// Objects, ascending.
+  /// Indices of objects, ascending.
   std::vector<std::uint32_t> near_;
 };
 

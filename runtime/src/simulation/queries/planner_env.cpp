@@ -27,7 +27,7 @@ SphereCloud cloudOf(const Robot& robot) {
   return {spheres, robot.radii()};
 }
 
-/// Options in their ranges; throws for others.
+/// Returns the options; throws if one is out of range.
 const SimulationOptions& checked(const SimulationOptions& options) {
   orThrow(checkOptions(options));
   return options;
@@ -48,12 +48,12 @@ PlannerEnv::PlannerEnv(const World& world, const SimulationOptions& options)
       links_(world.robot().links().size()),
       robot_(cloudOf(world.robot())),
       self_collision_(world_.robot()),
-      // Whatever asks for objects: spheres, and the hand.
+      // The largest radius in any query: that of a sphere or of the hand.
       resting_(world.mostObjects(),
                std::max(world.radii().back(), world.robot().endEffector()->grasp_radius)),
       collision_(mostSpheres(world)),
       placement_(mostSpheres(world), world.radii()) {
-  // A jitter is random; what is planned shall not be.
+  // Jitters are random, but plans must not be.
   options_.placement.attempts = 1;
   overlapping_.resize(wordsFor(robot_.paddedCount()));
 }
@@ -235,7 +235,7 @@ void PlannerEnv::countFree(const BasePlace& base) {
   if (left_.empty()) return;
   const SphereBatch spheres = robotAt(base);
   std::erase_if(left_, [&](Left& left) {
-    // One in the hand is back where it rested after putBack().
+    // Keep an object that is in the hand: putBack() lays it to rest where it was.
     if (!resting_->isResting(left.object)) return false;
     overlapping(resting_->box(left.object), spheres, overlapping_);
     return !keepPenetrating(left.spheres, overlapping_);

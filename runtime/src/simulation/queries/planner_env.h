@@ -43,9 +43,9 @@ class OwnObjects {
   RestingObjects objects_;
 };
 
-/// What a PlanningScene knows of an env, and what it says of one pose; see there. Calls do not ask
-/// for what has to be there, but for update(), setJoints(), hold() and putBack(), which throw as
-/// PlanningScene does.
+/// What a PlanningScene knows of an env, and its answers about one pose; see there. Only update(),
+/// setJoints(), hold() and putBack() check their arguments and throw as PlanningScene does; other
+/// calls do not check their preconditions.
 class PlannerEnv {
  public:
   PlannerEnv(const World& world, const SimulationOptions& options);
@@ -72,9 +72,9 @@ class PlannerEnv {
 
   [[nodiscard]] std::optional<Pose> landing(const BasePlace& base);
 
-  /// isFree() with other joints, which stay.
+  /// isFree() with other joints, which remain assembled.
   [[nodiscard]] bool isPoseFree(const RobotPose& pose);
-  /// Puts links and spheres to where these joints have them.
+  /// Places links and spheres for these joint positions.
   void assemble(std::span<const float> positions);
   [[nodiscard]] std::optional<float> floorAt(const Vec3& base) const;
 
@@ -85,7 +85,7 @@ class PlannerEnv {
 
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const SimulationOptions& options() const { return options_; }
-  /// Of an env that was taken over.
+  /// The scene of the env that update() has loaded.
   [[nodiscard]] const Scene& scene() const { return *scene_; }
   [[nodiscard]] std::span<const Pose> links() const { return links_; }
   [[nodiscard]] float reach() const { return reach_; }
@@ -100,26 +100,27 @@ class PlannerEnv {
 
   [[nodiscard]] bool isUpdated() const { return scene_ != nullptr; }
   [[nodiscard]] bool hasJoints() const { return has_joints_; }
-  /// Both.
+  /// Whether both are true.
   [[nodiscard]] bool isReady() const { return is_ready_; }
 
  private:
   friend class PlannerClearance;
   friend class PlannerMotion;
-  /// A resting object that the robot leaves, and which of its spheres do not count against it.
+  /// A resting object that the robot is leaving, and the spheres of the robot that do not count
+  /// against it.
   struct Left {
     std::uint32_t object = 0;
     std::vector<std::uint64_t> spheres;
   };
 
   [[nodiscard]] Obstacles obstacles() const { return {scene(), *resting_}; }
-  /// Whether an object's bounds lie within the robot's, over a base at `position`.
+  /// Whether any resting object is within reach of the robot when its base is at `position`.
   [[nodiscard]] bool isAnyNear(const Vec3& position) const;
   void assembleHeld();
   void take(std::uint32_t object, const Pose& grip_from_object);
-  /// What penetrates something as the robot of an env is does not count from now on.
+  /// Ignores the spheres that penetrate something with the robot as it is in `state`.
   void ignoreAsIn(const EnvState& state);
-  /// The robot's spheres that penetrate resting objects here do not count against these.
+  /// Ignores the robot's spheres that penetrate resting objects here, against these objects only.
   void leavePenetrating(const BasePlace& base);
   /// Finds the held object's spheres that penetrate something.
   [[nodiscard]] std::span<const std::uint64_t> findPenetrating(const BasePlace& base);
@@ -133,17 +134,17 @@ class PlannerEnv {
   World world_;
   SimulationOptions options_;
   float root_height_ = 0;
-  /// The current joints, and root_from_link for these.
+  /// The joint positions of setJoints(), and root_from_link for those last assembled.
   std::vector<float> joints_;
   std::vector<Pose> links_;
   SphereCloud robot_;
   SelfCollision self_collision_;
   float reach_ = 0;
 
-  /// None before update().
+  /// Null before update().
   const Scene* scene_ = nullptr;
   bool has_joints_ = false;
-  /// Whether there are both, as questions about places want it.
+  /// Whether there are an env and joints, which questions about places need.
   bool is_ready_ = false;
   OwnObjects resting_;
   std::vector<const ObjectModel*> models_;
@@ -151,7 +152,7 @@ class PlannerEnv {
 
   const ObjectModel* held_ = nullptr;
   std::uint32_t held_number_ = 0;
-  /// Whether hold() took it, not the robot of the env.
+  /// Whether hold() took the held object; false if the env's robot holds it.
   bool is_pretended_ = false;
   Pose grip_from_object_;
   SphereCloud held_spheres_;
@@ -167,10 +168,10 @@ class PlannerEnv {
   PlacementScratch placement_;
 };
 
-/// Joint positions in order; throws, as `call`, for others.
+/// Throws, in the name of `call`, unless all joint positions are finite and not too large.
 void checkPositions(const char* call, const char* name, std::span<const float> positions);
 
-/// A place of finite numbers; throws, as `call`, for others.
+/// Throws, in the name of `call`, unless all numbers of the place are finite and not too large.
 void checkPlace(const char* call, const char* name, const BasePlace& base);
 
 }  // namespace galactic::simulation

@@ -14,17 +14,18 @@
 namespace galactic::simulation {
 namespace {
 
-/// The farthest that all joints together turn from one place of a motion to the next, radians: so
-/// that spheres go no farther round than straight.
+/// The most that base and joints together may turn from one place of a motion to the next, radians,
+/// so that the arcs of spheres are hardly longer than straight lines.
 constexpr double kMostTurn = 0.5;
-/// As long as the place after is aimed at, in radii: some less than the longest, as ways are bent.
+/// The next place is aimed to be this far away, in radii: a bit less than allowed, because ways are
+/// curved.
 constexpr double kAimedMove = 0.9;
-/// Places of a motion that are nearer to each other are one, as floats round.
+/// Places of a motion nearer to each other than this share of the way are the same up to rounding.
 constexpr double kLeastShare = 1e-9;
-/// Floors whose heights differ by less are one, meters.
+/// Floors whose heights differ by less than this are the same, meters.
 constexpr float kSameFloor = 1e-3F;
 
-/// Of each position, whether its joint moves the shorter way round.
+/// For each joint position, whether it moves the shorter way round.
 std::vector<bool> wrapsOf(const Robot& robot) {
   constexpr float kUnlimited = std::numeric_limits<float>::max();
   std::vector<PositionLimits> limits(robot.limits().begin(), robot.limits().end());
@@ -65,7 +66,7 @@ bool PlannerMotion::walk() {
   const std::optional<float> first = env_->floorAt(from_.base.position);
   const std::optional<float> last = env_->floorAt(to_.base.position);
   if (!first || !last) return false;
-  // The end first: it is the likeliest to be blocked.
+  // Check the end first, because it is the most likely to be blocked.
   putTo(1);
   base_.position.y = *last;
   if (!env_->isFree(base_)) return false;
@@ -135,7 +136,7 @@ bool PlannerMotion::goTo(double share) {
 
 bool PlannerMotion::followFloor(const Vec3& before) {
   if (base_.position.x == before.x && base_.position.z == before.z) return true;
-  // Within a step of the simulation, the floor may rise or drop once.
+  // The limits of rise and drop apply to each whole step of the simulation.
   const Vec3 gone = before - climbed_from_;
   const float step = env_->world().robot().base()->forward_step;
   if (gone.x * gone.x + gone.z * gone.z >= step * step) climbed_from_ = before;

@@ -11,50 +11,52 @@
 
 namespace galactic::simulation {
 
-/// Takes robots from one pose to another, place by place; see PlanningScene::isMotionFree().
+/// Moves robots from one pose to another, place by place; see PlanningScene::isMotionFree().
 class PlannerMotion {
  public:
   explicit PlannerMotion(const Robot& robot);
 
-  /// Poses of finite numbers, in an env that is there and is afterwards what it was.
+  /// Whether the motion is free. The poses must be finite and `env` loaded; it is left as it was.
   [[nodiscard]] bool isFree(PlannerEnv& env, const RobotPose& from, const RobotPose& to);
 
  private:
   [[nodiscard]] bool walk();
-  /// All that turns on the way, radians.
+  /// The sum of all turns on the way, radians.
   [[nodiscard]] double wholeTurn() const;
   [[nodiscard]] float wayOf(std::size_t position) const;
-  /// Puts the spheres to a share of the way, and the base but for its height.
+  /// Puts the spheres, and the base except for its height, to a share of the way.
   void putTo(double share);
-  /// Puts them to the next place, or to a nearer one where that is too far. Says in next_ how far
-  /// the one after may be. False where rounding leaves no place that is near enough.
+  /// Puts them to the place at `share`, or to a nearer one if that is too far. Stores in next_ how
+  /// far the place after that may be. Returns false if rounding leaves no place that is near
+  /// enough.
   [[nodiscard]] bool goTo(double share);
-  /// From where the base was.
+  /// Puts the base, which was at `before`, on the floor. Returns whether it may rise or drop that
+  /// far.
   [[nodiscard]] bool followFloor(const Vec3& before);
-  /// Whether the place is free; then, what is free there counts.
+  /// Whether the place is free; if so, spheres that are free there count from now on.
   [[nodiscard]] bool arrives();
 
-  /// Of each position, whether its joint moves the shorter way round.
+  /// For each joint position, whether it moves the shorter way round.
   std::vector<bool> wraps_;
 
-  // Of the motion under way.
+  // The current motion.
   PlannerEnv* env_ = nullptr;
   RobotPose from_;
   RobotPose to_;
   float turn_ = 0;
-  /// The farthest from one place to the next, as a share of the way.
+  /// The farthest that one place may be from the next, as a share of the way.
   double most_share_ = 1;
   double next_ = 1;
-  /// Where the robot is.
+  /// The robot's current place.
   double share_ = 0;
   BasePlace base_;
   std::vector<float> joints_;
-  /// Where a step of the simulation would have begun.
+  /// Where the current step of the simulation would have begun.
   Vec3 climbed_from_;
-  /// As the spheres were at the place before.
+  /// The spheres at the previous place.
   SphereCloud robot_before_;
   SphereCloud held_before_;
-  /// What did not count when it began.
+  /// The spheres that did not count when the motion began.
   std::vector<std::uint64_t> ignored_;
   std::vector<PlannerEnv::Left> left_;
 };

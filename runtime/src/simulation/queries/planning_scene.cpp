@@ -19,10 +19,10 @@
 namespace galactic {
 namespace {
 
-/// Poses that a thread looks at before it takes others.
+/// The number of poses that a thread takes at a time.
 constexpr std::size_t kPosesOfAPart = 128;
 
-// Out of the way of calls that are in order.
+// Separate functions, out of the way of calls that are in order.
 [[noreturn]] void refuseWithoutEnv(const char* call) {
   detail::refuseCall(call, "found no env; take one over first, with update()");
 }
@@ -57,7 +57,7 @@ class PlanningScene::Impl : public simulation::PlannerEnv {
     clearance_.derive(*this, pose, gradients);
   }
 
-  // What calls ask of those before them: they throw where that is missing.
+  // Preconditions of calls: throw if an earlier call is missing.
   void requireUpdated(const char* call) const {
     if (!isUpdated()) [[unlikely]]
       refuseWithoutEnv(call);
@@ -66,7 +66,7 @@ class PlanningScene::Impl : public simulation::PlannerEnv {
     if (!hasJoints()) [[unlikely]]
       refuseWithoutJoints(call);
   }
-  /// Both: one branch, as planners ask millions of times.
+  /// Requires both with one branch, because planners ask millions of times.
   void requireReady(const char* call) const {
     if (isReady()) [[likely]]
       return;
@@ -91,11 +91,11 @@ class PlanningScene::Impl : public simulation::PlannerEnv {
 
 namespace {
 
-/// Rows of as many joint positions as a robot has.
+/// Poses as rows of joint positions, checked.
 class PoseRows {
  public:
-  /// Throws, as `call`, where they are not in order. `name`: "from.", or "" where there are no
-  /// others.
+  /// Throws, in the name of `call`, if they are not in order. `name`: such as "from.", or "" if
+  /// there is only one set of poses.
   PoseRows(const char* call, const std::string& name, const RobotPoses& poses, const Robot& robot)
       : poses_(poses), positions_(robot.positionCount()) {
     const std::string joints = name + "joints";
@@ -112,7 +112,7 @@ class PoseRows {
   std::size_t positions_;
 };
 
-/// Calls `ask(copy, n)` for each n below `count` with copies of a scene, one for each part.
+/// Calls `ask(copy, n)` for each n below `count` with copies of a scene, one copy per part.
 template <class Scene, class Ask>
 void askCopies(const Scene& scene, std::size_t count, std::uint32_t threads, const Ask& ask) {
   const std::size_t parts = (count + kPosesOfAPart - 1) / kPosesOfAPart;
@@ -129,13 +129,13 @@ void checkMost(const char* call, float most) {
                                        most, simulation::kLargestPlain));
 }
 
-/// Of a wanted array of derivatives.
+/// Checks the length of an array of derivatives, unless it is empty because it is not wanted.
 void checkGradient(const char* call, const char* name, std::span<const float> gradient,
                    std::size_t expected) {
   if (!gradient.empty()) detail::checkLength(call, name, gradient.size(), expected);
 }
 
-/// The part of an array that the n-th of `count` poses has; none of none.
+/// The part of an array that belongs to the n-th of `count` poses; empty if the array is.
 template <class Number>
 std::span<Number> partOf(std::span<Number> all, std::size_t n, std::size_t count) {
   const std::size_t each = all.size() / count;

@@ -22,12 +22,12 @@ namespace {
 using detail::StraightLine;
 using simulation::RestingBox;
 
-/// What a thread takes at a time.
+/// The number of lines that a thread takes at a time.
 constexpr std::size_t kLinesOfAPart = 256;
-/// A ball around a box is so much larger that no rounding leaves out a corner.
+/// Enlarges the ball around a box, so that rounding does not leave out a corner.
 constexpr double kSlack = 1 + 1e-6;
 
-/// A sphere of the robot, or of what it holds.
+/// A sphere of the robot, or of its held object.
 struct Ball {
   Vec3 center;
   float radius = 0;
@@ -37,12 +37,12 @@ struct Ball {
 
 struct Box {
   RestingBox box;
-  /// Of a ball around it.
+  /// The radius of a ball around it.
   double radius = 0;
   std::int32_t index = -1;
 };
 
-/// How far along a line it enters a ball: 0 from inside, none when it passes by.
+/// How far along a line it enters a ball: 0 from inside, none if it passes by.
 std::optional<double> wayToBall(const StraightLine& line, const Vec3& center, double radius) {
   const double x = static_cast<double>(center.x) - static_cast<double>(line.from.x);
   const double y = static_cast<double>(center.y) - static_cast<double>(line.from.y);
@@ -55,13 +55,14 @@ std::optional<double> wayToBall(const StraightLine& line, const Vec3& center, do
   return beyond / (ahead + std::sqrt(square));
 }
 
-/// What a line has come to so far.
+/// The nearest thing that a line has met so far.
 struct Nearest {
   double distance = 0;
   CastEnd end = CastEnd::kNothing;
   std::int32_t index = -1;
 
-  /// Where nothing is in the way, what is right at the end counts.
+  /// Whether a thing at distance `other` is nearer. If nothing is in the way so far, a thing
+  /// exactly at the end counts, too.
   [[nodiscard]] bool isBehind(double other) const {
     return other < distance || (other == distance && end == CastEnd::kNothing);
   }
@@ -108,7 +109,7 @@ void checkLines(const char* call, const CastLines& lines, std::size_t hits) {
   }
 }
 
-/// The grid for spheres of a radius.
+/// The grid for spheres of a radius; throws if there is none.
 const ColumnGrid& gridOf(const char* call, const Scene& scene, float radius) {
   const std::optional<std::size_t> index = scene.gridIndex(radius);
   if (index) return scene.grids()[*index];
@@ -121,7 +122,7 @@ const ColumnGrid& gridOf(const char* call, const Scene& scene, float radius) {
                                        radius, radii));
 }
 
-/// Calls `cast` with the number, the lines and the hits of each env of a batch.
+/// Calls `cast` with the index, the lines and the hits of each env of a batch.
 template <class Cast>
 void forEachEnv(const char* call, const BatchSimulator& simulator, const CastLines& lines,
                 std::span<CastHit> hits, std::uint32_t threads, const Cast& cast) {
@@ -152,11 +153,12 @@ class RayCaster::Impl {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
-  /// Whether spheres of the grid's radius touch nothing.
+  /// Finds which spheres of the grid's radius touch nothing.
   void find(const ColumnGrid& grid, std::span<const Vec3> centers, std::span<std::uint8_t> free,
             std::uint32_t threads) const;
 
-  /// What moves is met by a ball of `radius`, the scene by that of the grid.
+  /// Casts a ball of `radius` against the robot and the objects, and one of the grid's radius
+  /// against the scene.
   void cast(const ColumnGrid& grid, float radius, const CastLines& lines, std::span<CastHit> hits,
             std::uint32_t threads) const;
 
@@ -166,7 +168,7 @@ class RayCaster::Impl {
   [[nodiscard]] CastHit castOne(const ColumnGrid& grid, float radius,
                                 const StraightLine& line) const;
 
-  /// What keeps the packs of the scene, where it is not the caller.
+  /// Keeps the packs of the scene alive, unless the caller does.
   std::optional<World> world_;
   Scene scene_;
   std::vector<Box> boxes_;
@@ -302,7 +304,7 @@ void sweepSpheresInEnvs(const BatchSimulator& simulator, float radius, const Cas
                         std::span<CastHit> hits, CastRobot robot, std::uint32_t threads) {
   constexpr const char* kCall = "sweepSpheresInEnvs";
   checkLines(kCall, lines, hits.size());
-  // The scenes of a world have grids of the same radii.
+  // All scenes of a world have grids of the same radii.
   static_cast<void>(gridOf(kCall, simulator.world().scenes()[0], radius));
   forEachEnv(kCall, simulator, lines, hits, threads,
              [&](std::size_t env, const CastLines& own, std::span<CastHit> found) {

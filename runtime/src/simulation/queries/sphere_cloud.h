@@ -11,8 +11,8 @@
 
 namespace galactic::simulation {
 
-/// Spheres of rigid parts, first put together in the frame of the robot's root, then taken to many
-/// places of its base.
+/// Spheres of rigid parts, which are first assembled in the frame of the robot's root, then moved
+/// to many places of its base.
 class SphereCloud {
  public:
   struct Sphere {
@@ -21,11 +21,12 @@ class SphereCloud {
     SetSphere sphere;
   };
   SphereCloud() = default;
-  /// `radii` of the working set, meters.
+  /// `radii`: of the working set, meters.
   SphereCloud(std::span<const Sphere> spheres, std::span<const float> radii);
 
   [[nodiscard]] std::size_t paddedCount() const { return entries_.size(); }
-  /// Which of the spheres it was made of an entry of at() is; the padding repeats one.
+  /// The index, among the spheres given to the constructor, of an entry of at(); padding entries
+  /// repeat a sphere.
   [[nodiscard]] std::uint32_t sphereOf(std::size_t entry) const { return numbers_[entry]; }
   /// root_from_part of all parts.
   void assemble(std::span<const Pose> parts);
@@ -36,7 +37,7 @@ class SphereCloud {
   [[nodiscard]] SphereBatch at(const BasePlace& base, float root_height);
 
  private:
-  /// Radius by radius, each padded to whole lanes.
+  /// Sorted by radius; each radius is padded to whole groups of lanes.
   std::vector<Sphere> entries_;
   std::vector<std::uint32_t> numbers_;
   std::vector<RadiusRange> ranges_;
