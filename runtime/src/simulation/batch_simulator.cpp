@@ -45,7 +45,7 @@ std::vector<std::uint32_t> allEnvs(std::size_t count) {
   return envs;
 }
 
-/// Of envs that are to go on from something each: where one is named twice, one thing is lost.
+/// Fails if an env is named twice: each can go on from one state only.
 Result<void> requireDistinct(std::span<const std::uint32_t> envs) {
   std::vector<std::uint32_t> named(envs.begin(), envs.end());
   std::erase(named, BatchSimulator::kNoEnv);
@@ -198,7 +198,7 @@ class BatchSimulator::Impl {
     return {};
   }
 
-  /// A copy of what one env knows.
+  /// A copy of the state of one env.
   EnvState envState(std::size_t env) const {
     constexpr const char* kCall = "BatchSimulator::envState";
     requireIdle(kCall);
@@ -217,7 +217,7 @@ class BatchSimulator::Impl {
     RETURN_IF_ERROR(checkStates(states));
     simulation::StateChooser& chooser = this->chooser();
     std::vector<std::uint8_t> were_set(envs.size());
-    // Whatever needs memory comes before the first env changes.
+    // Everything that allocates comes before the first env changes.
     std::vector<std::optional<SavedEnv>> chosen(envs.size());
     for (std::size_t n = 0; n < envs.size(); ++n) {
       chosen[n] = chooser.choose(states[n]);
@@ -259,10 +259,10 @@ class BatchSimulator::Impl {
   }
 
  private:
-  /// What a thread works with.
+  /// The scratch space of a thread.
   struct Desk {
     Chunk chunk;
-    /// Where options.continuous_collision asks for it.
+    /// Only with options.continuous_collision.
     std::optional<Chunk> between;
     simulation::PhaseSeconds seconds{};
   };
@@ -305,7 +305,7 @@ class BatchSimulator::Impl {
     return *chooser_;
   }
 
-  /// To envs that were saved without them, where this run wants them.
+  /// Adds bodies to envs that were saved without them, if this run wants bodies.
   void addBodies(SavedState& saved) {
     if (model_.bodyCount() == 0) return;
     for (SavedEnv& env : saved.envs) {
@@ -313,7 +313,7 @@ class BatchSimulator::Impl {
     }
   }
 
-  /// What an env has counted, and what its last step returned.
+  /// Copies the env's counters, and what its last step returned, into a chosen state.
   void keepRecord(std::size_t env, EpisodeChoice choice, SavedEnv& chosen) const {
     chosen.counters = state_.counters(env);
     ++chosen.counters.begun;
@@ -328,7 +328,7 @@ class BatchSimulator::Impl {
     chosen.final_observation.assign(last.begin(), last.end());
   }
 
-  /// The saved envs become `envs`, in that order; a single one becomes each of them.
+  /// Restores the saved envs into `envs`, in that order; a single one into each of them.
   void put(const SavedState& saved, std::span<const std::uint32_t> envs) {
     const bool is_single = saved.envs.size() == 1;
     for (std::size_t n = 0; n < envs.size(); ++n) {
@@ -343,7 +343,7 @@ class BatchSimulator::Impl {
     }
   }
 
-  /// A step of the n-th chunk.
+  /// Runs a step of the n-th chunk.
   void run(std::size_t thread, std::size_t n) noexcept {
     Desk& desk = desks_[thread];
     const simulation::ChunkStep step{model_, state_, desk.chunk, n * kChunk,
@@ -362,13 +362,13 @@ class BatchSimulator::Impl {
   std::size_t threads_ = 1;
   std::vector<Desk> desks_;
   simulation::StepInput input_;
-  /// Of a step that was made elsewhere.
+  /// The states of a step that was made elsewhere.
   std::span<const FollowedState> states_;
   std::uint64_t steps_ = 0;
   std::uint32_t sample_every_ = 0;
   bool measures_ = false;
   bool is_stepping_ = false;
-  /// Once somebody sets a state, or restores one without bodies.
+  /// Made when a caller first sets a state, or restores one without bodies.
   std::unique_ptr<simulation::StateChooser> chooser_;
   std::unique_ptr<detail::Workers> workers_;
 };
@@ -479,7 +479,7 @@ SimulationStatistics BatchSimulator::statistics(std::size_t env) const {
   detail::checkIndex(kCall, "env", env, envCount());
   const simulation::EnvCounters& counters = impl_->state().counters(env);
   const simulation::MoveCounters& moves = impl_->state().moves(env);
-  // An env that came from a longer run may have idled for longer than this one has run.
+  // An env from a longer run may have been idle for more steps than this run has had.
   return {.steps = impl_->steps() - std::min(impl_->steps(), counters.idle_steps),
           .refused = moves.refused,
           .slid = moves.slid,
