@@ -25,16 +25,16 @@ struct DeviceWish {
   DeviceUuid uuid{};
 };
 
-/// What EGL tells of a device before anything is opened on it.
+/// What EGL reports about a device before anything is opened on it.
 struct DeviceFacts {
   /// Its node in the file system, or another name for messages.
   std::string name;
   bool software = false;
-  /// Number that CUDA has for it.
+  /// CUDA's number of the device.
   std::optional<std::int64_t> cuda;
 };
 
-/// What an opened OpenGL context tells of itself.
+/// What an opened OpenGL context reports about itself.
 struct ContextFacts {
   int major = 0;
   int minor = 0;
@@ -44,23 +44,24 @@ struct ContextFacts {
 };
 
 /// Reads RenderOptions::device: an index, "cuda:N", a UUID (32 hexadecimal digits, with or without
-/// dashes and a leading "GPU-"), "software", or nothing. Fails with kInvalidInput on other text.
+/// dashes and a leading "GPU-"), "software", or nothing. Fails with kInvalidInput if the text is
+/// anything else.
 [[nodiscard]] Result<DeviceWish> parseDeviceWish(std::string_view text);
 
-/// The numbers of the devices to try for a wish, best first. Fails with kUnsupported when no device
-/// can be the right one. Those that CUDA knows stand before others; a software driver is only ever
-/// tried when it is asked for.
+/// The indices of the devices to try for a wish, best first. Devices that CUDA knows come before
+/// others; a software driver is tried only if the wish asks for it. Fails with kUnsupported if no
+/// device can be the right one.
 [[nodiscard]] Result<std::vector<std::size_t>> devicesFor(const DeviceWish& wish,
                                                           std::span<const DeviceFacts> devices);
 
-/// Whether the renderer string is that of a driver which draws on the processor.
+/// Whether the renderer string belongs to a driver that draws on the processor.
 [[nodiscard]] bool isSoftwareRenderer(std::string_view renderer);
 
-/// Whether an opened context is what was wished for: OpenGL 4.5, a graphics processor unless
-/// software was asked for, the right UUID. Fails with kUnsupported, and says what was found.
+/// Checks that an opened context meets the wish: OpenGL 4.5, a graphics processor unless the wish
+/// is for software, the right UUID. Fails with kUnsupported; the message names what was found.
 [[nodiscard]] Result<void> judgeContext(const DeviceWish& wish, const ContextFacts& context);
 
-/// The error for a machine with nothing but a software driver, whose renderer string is `name`.
+/// The error for a machine that has only a software driver, whose renderer string is `name`.
 [[nodiscard]] Error onlySoftware(std::string_view name);
 
 }  // namespace galactic::render

@@ -6,10 +6,10 @@
 
 namespace galactic::render {
 
-/// Throws ErrorException with kInvalidInput where a view has the number of no model, a model on a
-/// body that it does not have, or semantic ids for another number of posed models than its own.
-/// `call`: "BatchRenderer::render"; `models`: RenderLibrary::modelCount(). Does not allocate,
-/// unless it throws.
+/// Throws ErrorException with kInvalidInput if a view names a model or a body that does not exist,
+/// or if it has semantic ids, but not one for each posed model. `call`: the name of the calling
+/// function, such as "BatchRenderer::render"; `models`: RenderLibrary::modelCount(). Allocates only
+/// if it throws.
 void checkViews(const char* call, std::span<const RenderView> views, std::size_t models);
 
 }  // namespace galactic::render

@@ -14,28 +14,28 @@
 
 namespace galactic::render::cuda {
 
-/// What tests choose.
+/// Settings that only tests choose.
 struct CudaTuning {
-  /// The library that has the driver.
+  /// The library of the driver.
   std::string library = "libcuda.so.1";
   /// Views are drawn together while their lists and pixels need no more memory than this; a view
   /// that needs more is drawn by itself.
   std::size_t slice_bytes = std::size_t{1} << 30U;
-  /// Waits for each kernel, so that CudaTimings says what it took.
+  /// Wait for each kernel, so that CudaTimings can say how long it took.
   bool measure = false;
 };
 
-/// Where time went since the engine was made, seconds; all but setup only where that is measured.
+/// Where time went since the engine was made, seconds; all but `setup` need CudaTuning::measure.
 struct CudaTimings {
-  /// Of the processor: lists and poses.
+  /// Time of the processor for lists and poses.
   double setup = 0;
-  /// By kernel; those that clear pixels count as part of the first.
+  /// By kernel; clearing pixels counts as part of the first.
   std::array<double, kKernels> kernels{};
-  /// Images to the processor.
+  /// Copying images to the processor.
   double readback = 0;
 };
 
-/// The compiled kernels on a device, whose context must be current for all calls.
+/// The compiled kernels on a device, whose context must be current during all calls.
 class Kernels {
  public:
   [[nodiscard]] static Result<Kernels> load(const Driver& driver);
@@ -54,10 +54,10 @@ class Kernels {
   std::array<void*, kKernels> functions_{};
 };
 
-/// Draws on a CUDA device: kernels that give the images of the `soft` renderer, bit for bit.
+/// Draws on a CUDA device. The images are those of the `soft` renderer, bit for bit.
 class CudaEngine final : public RenderEngine {
  public:
-  /// As makeCudaEngine(), with what tests choose.
+  /// Like makeCudaEngine(), with the settings that only tests choose.
   [[nodiscard]] static Result<std::unique_ptr<CudaEngine>> make(const RenderLibrary& library,
                                                                 const RenderOptions& options,
                                                                 const CudaTuning& tuning);
@@ -65,8 +65,8 @@ class CudaEngine final : public RenderEngine {
   CudaEngine(const CudaEngine&) = delete;
   CudaEngine& operator=(const CudaEngine&) = delete;
 
-  /// Throw ErrorException where the driver fails: the images would be wrong. The next batch begins
-  /// anew.
+  /// Both throw ErrorException if the driver fails, since the images would be wrong. The next batch
+  /// starts afresh.
   void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
   void end() override;
   [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
@@ -75,17 +75,17 @@ class CudaEngine final : public RenderEngine {
   [[nodiscard]] std::string description() const override;
   [[nodiscard]] RenderStatistics statistics() const override { return statistics_; }
   [[nodiscard]] const Device& device() const { return device_; }
-  /// How many times the last batch was cut.
+  /// How many slices the last batch was cut into.
   [[nodiscard]] std::size_t sliceCount() const { return slices_.size(); }
   [[nodiscard]] const CudaTimings& timings() const { return timings_; }
 
  private:
-  /// Views [first, end) of the batch, and what their lists have room for.
+  /// Views [first, end) of the batch, and how many clusters their lists have room for.
   struct ViewRange {
     std::size_t first, end;
     std::size_t clusters;
   };
-  /// Where arrays lie in `staged_` and in its copy on the device.
+  /// Where each array lies in `staged_` and in its copy on the device.
   struct Upload {
     std::size_t views, instances, posed, posed_semantics, attached, bodies, panes, first_clusters,
         bytes;
@@ -99,23 +99,23 @@ class CudaEngine final : public RenderEngine {
   CudaEngine(const RenderOptions& options, std::unique_ptr<Driver> driver, Device device);
 
   Result<void> draw(std::span<const RenderView> views);
-  /// Writes poses where they are copied from, and counts clusters.
+  /// Writes the lists into `staged_`, from where they are copied, and counts clusters.
   Result<void> stage(std::span<const RenderView> views, const Upload& at);
   /// Cuts the batch into slices.
   void cutSlices(const Upload& at);
   [[nodiscard]] std::size_t bytesOf(std::size_t views, std::size_t clusters) const;
   /// Makes room on the device.
   Result<void> reserve(std::size_t views);
-  /// What the first pane of the batch shows.
+  /// The task of the batch's first pane.
   [[nodiscard]] PaneTask firstTask() const;
-  /// Launches, and waits where that is measured.
+  /// Launches a kernel, and waits for it if that is measured.
   Result<void> launch(Kernel kernel, std::uint32_t blocks, const PassParameters& parameters);
   Result<void> drawSlice(const ViewRange& range, std::size_t number, const Upload& at);
   [[nodiscard]] ViewSlice sliceOf(const ViewRange& range, std::size_t number,
                                   const Upload& at) const;
   Result<void> readCounts();
   Result<void> readImages();
-  /// Waits for what was launched of a batch that failed, whose memory the next one takes.
+  /// Waits for the kernels of a batch that failed, because the next batch uses the same memory.
   void abandon();
   [[noreturn]] void giveUp(const Error& error);
 
@@ -126,7 +126,7 @@ class CudaEngine final : public RenderEngine {
   std::unique_ptr<Kernels> kernels_;
   std::unique_ptr<DeviceScene> scene_;
 
-  /// Of an image.
+  /// The panes of an image.
   std::vector<PaneRectangle> panes_;
   std::uint32_t pixels_of_pane_;
   std::uint32_t tiles_of_pane_;
@@ -140,7 +140,7 @@ class CudaEngine final : public RenderEngine {
   std::vector<std::uint32_t> clusters_of_views_;
   std::vector<SliceCounts> read_counts_;
   RenderTargets targets_;
-  /// What everything is launched on; null: the default stream.
+  /// The stream of all launches; null: the default stream.
   void* stream_ = nullptr;
   RenderStatistics statistics_;
   CudaTimings timings_;

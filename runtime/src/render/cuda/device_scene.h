@@ -10,23 +10,23 @@
 namespace galactic::render::cuda {
 
 /// A library in the memory of a device, as the kernels read it. The device's context must be
-/// current for all calls, also for the destructor.
+/// current during all calls, including the destructor's.
 class DeviceScene {
  public:
-  /// Uploads; the library is not needed afterwards. Fails where memory is short.
+  /// Uploads the library, which is not needed afterwards. Fails if there is too little memory.
   [[nodiscard]] static Result<DeviceScene> upload(const RenderLibrary& library,
                                                   const Driver& driver);
 
-  /// On the device: ModelTables by the numbers of the library, bases of texels.
+  /// Addresses on the device: ModelTables, in the order of the library, and the bases of texels.
   [[nodiscard]] DeviceAddress models() const { return models_; }
   [[nodiscard]] DeviceAddress texelBases() const { return texel_bases_; }
-  /// By the numbers of the library.
+  /// In the order of the library's models.
   [[nodiscard]] const std::vector<std::uint32_t>& clusterCounts() const { return cluster_counts_; }
 
  private:
   explicit DeviceScene(const Driver& driver) : driver_(&driver) {}
 
-  /// Copies an array; address 0 where it is empty.
+  /// Copies an array to the device; returns address 0 if it is empty.
   template <class Values>
   Result<DeviceAddress> put(const Values& values);
   Result<PackTables> putPack(const RenderMeshes& meshes, std::vector<DeviceAddress>& bases);
@@ -36,7 +36,7 @@ class DeviceScene {
   DeviceAddress models_ = 0;
   DeviceAddress texel_bases_ = 0;
   std::vector<std::uint32_t> cluster_counts_;
-  /// Where textures are. Asked, never walked through.
+  /// Where textures are. Only looked up, never iterated, so the order of addresses does not matter.
   std::map<TextureKey, SurfaceTexels> known_;
 };
 

@@ -12,7 +12,7 @@ namespace galactic::render::cuda {
 /// Addresses of memory on a device.
 using DeviceAddress = std::uint64_t;
 
-/// The functions of CUDA's driver that are used: see CudaSymbols.
+/// The functions of CUDA's driver that are used; see CudaSymbols.
 struct DriverFunctions {
   int (*init)(unsigned flags) = nullptr;
   int (*error_name)(int error, const char** name) = nullptr;
@@ -43,19 +43,19 @@ struct DriverFunctions {
   int (*synchronize)(void* stream) = nullptr;
 };
 
-/// CUDA's driver, opened when it is first asked for: the program neither links nor needs it.
+/// CUDA's driver, opened when it is first needed: the program neither links it nor needs it.
 class Driver {
  public:
-  /// Fails with kUnsupported where there is no driver, where it is too old, and where it finds no
-  /// device. `library`: a path, or a name that the system's loader finds.
+  /// Fails with kUnsupported if there is no driver, if it is too old, or if it finds no device.
+  /// `library`: a path, or a name that the system's loader finds.
   [[nodiscard]] static Result<std::unique_ptr<Driver>> open(
       const std::string& library = kCudaLibrary);
 
   [[nodiscard]] const DriverFunctions& functions() const { return functions_; }
   [[nodiscard]] int deviceCount() const { return device_count_; }
-  /// The error of a call that did not return 0, which tried to do `what`.
+  /// The error for a call that tried to do `what` and returned `error`, which is not 0.
   [[nodiscard]] Error failure(int error, const std::string& what) const;
-  /// The same as a result.
+  /// Success if `error` is 0, otherwise failure(error, what).
   [[nodiscard]] Result<void> check(int error, const char* what) const;
 
  private:
@@ -63,29 +63,29 @@ class Driver {
   int device_count_ = 0;
 };
 
-/// A device. Once it is opened, its context is there while this lives: the one that CUDA's runtime
-/// and the learning libraries use.
+/// A device. After open(), this keeps the device's context alive, the one that CUDA's runtime and
+/// the learning libraries also use.
 class Device {
  public:
-  /// `wish` as in RenderOptions::device: nothing, a number, "cuda:N" or a UUID. Numbers are CUDA's
-  /// own, so CUDA_VISIBLE_DEVICES counts. Fails with kUnsupported where there is no such device,
-  /// with kInvalidInput on other text.
+  /// `wish`: see RenderOptions::device; nothing, a number, "cuda:N" or a UUID. Numbers are CUDA's
+  /// own, so CUDA_VISIBLE_DEVICES applies. Fails with kUnsupported if there is no such device, and
+  /// with kInvalidInput if the text is anything else.
   [[nodiscard]] static Result<Device> choose(const Driver& driver, const std::string& wish);
   Device(Device&& other) noexcept;
   Device& operator=(Device&&) = delete;
   ~Device();
 
-  /// Fails with kUnsupported where the driver refuses.
+  /// Fails with kUnsupported if the driver refuses.
   [[nodiscard]] Result<void> open();
-  /// Whether its chip is made for data centers: those have few units that draw triangles, and all
-  /// of them have a compute capability that ends with 0 (V100, A100, H100, B200).
+  /// Whether the chip is made for data centers. Such chips have few units that draw triangles, and
+  /// their compute capabilities end in 0 (V100, A100, H100, B200).
   [[nodiscard]] bool isForDataCenters() const { return minor_ == 0; }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] int major() const { return major_; }
   [[nodiscard]] int minor() const { return minor_; }
   [[nodiscard]] int multiprocessors() const { return multiprocessors_; }
   [[nodiscard]] void* context() const { return context_; }
-  /// CUDA's own, which learning libraries use, too.
+  /// CUDA's own number, which learning libraries use too.
   [[nodiscard]] int number() const { return number_; }
 
  private:
@@ -101,8 +101,8 @@ class Device {
   int multiprocessors_ = 0;
 };
 
-/// Makes a device's context the current one of this thread for a scope, and then the one that was
-/// current before. Where the driver refuses, that one stays current, and must be left alone.
+/// Makes a device's context current on this thread for a scope, then restores the one that was
+/// current before. If the driver refuses, that one stays current and must be left alone.
 class CurrentDevice {
  public:
   CurrentDevice(const Driver& driver, const Device& device)
@@ -126,8 +126,8 @@ class CurrentDevice {
   int error_;
 };
 
-/// Memory of the device, or memory of the processor that the device reads. Its device's context
-/// must be current for all calls, also for the destructor.
+/// Memory of the device, or memory of the processor that the device reads. The device's context
+/// must be current during all calls, including the destructor's.
 class Memory {
  public:
   enum class Kind : std::uint8_t { kDevice, kHost };
@@ -136,14 +136,14 @@ class Memory {
   Memory(Memory&& other) noexcept;
   Memory& operator=(Memory&&) = delete;
 
-  /// Makes room for so many bytes; what is there is lost where there was less.
+  /// Makes room for `bytes` bytes. If the memory grows, it loses its content.
   [[nodiscard]] Result<void> reserve(std::size_t bytes);
   [[nodiscard]] DeviceAddress address() const { return address_; }
-  /// For Kind::kHost.
+  /// Only for Kind::kHost.
   [[nodiscard]] std::byte* bytes() const { return host_; }
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// Gives it back.
+  /// Frees the memory.
   void free();
 
  private:

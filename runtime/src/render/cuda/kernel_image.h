@@ -3,7 +3,7 @@
 namespace galactic::render::cuda {
 
 /// The kernels as PTX for compute capability 7.0 or 7.5, which the driver compiles for its device
-/// and keeps in its cache. Null where the build had no compiler for them.
+/// and caches. Null if the build had no compiler for them.
 [[nodiscard]] const char* kernelImage();
 
 }  // namespace galactic::render::cuda

@@ -6,15 +6,15 @@
 
 namespace galactic::render::gl {
 
-/// A buffer of OpenGL in CUDA's memory.
+/// An OpenGL buffer as CUDA addresses it.
 struct MappedBuffer {
   std::uint64_t address = 0;
   /// CUDA's number of the device.
   int device = 0;
 };
 
-/// Gives CUDA the memory of a buffer of OpenGL, without a copy. The OpenGL context must be current
-/// for all calls, also for the destructor, unless it is lost.
+/// Gives CUDA the memory of an OpenGL buffer, without a copy. The OpenGL context must be current
+/// during all calls, including the destructor's, unless it is lost.
 class CudaMapping {
  public:
   CudaMapping();
@@ -22,14 +22,15 @@ class CudaMapping {
   CudaMapping(const CudaMapping&) = delete;
   CudaMapping& operator=(const CudaMapping&) = delete;
 
-  /// `buffer` after all that OpenGL has been told to do with it, which is done when this returns.
-  /// What `stream` does with it ends before unmap() lets OpenGL have it again.
-  /// CUDA's context must be current on this thread. OpenGL must not touch the buffer until
-  /// unmap(). Fails with kUnsupported where CUDA is absent or is on another device.
+  /// Maps `buffer`. When this returns, OpenGL has finished everything that it was told to do with
+  /// the buffer; OpenGL must not touch it again until unmap(). OpenGL's work after unmap() starts
+  /// only when `stream` has finished the work that it has by then. A CUDA context must be current
+  /// on this thread. Fails with kUnsupported if CUDA is absent or if the context is on another
+  /// device.
   [[nodiscard]] Result<MappedBuffer> map(std::uint32_t buffer, std::uintptr_t stream);
-  /// OpenGL may use the buffer again, after all that the stream has been told to do with it.
+  /// Gives the buffer back to OpenGL; see map().
   void unmap();
-  /// To be called before a buffer is deleted.
+  /// Call this before the buffer is deleted.
   void forget();
 
  private:

@@ -10,17 +10,17 @@
 
 namespace galactic::render::gl {
 
-/// Whether the dynamic linker can load a library, and keeps it loaded.
+/// Loads a library for good; returns whether the dynamic linker could.
 using LibraryLoads = std::function<bool(const char* name)>;
 
-/// Loads with dlopen.
+/// Loads with dlopen().
 [[nodiscard]] bool loadsLibrary(const char* name);
 
-/// Whether EGL and OpenGL are installed. To be asked before the first call into libepoxy, which
-/// ends the program where they are not. Fails with kUnsupported and names the Debian package.
+/// Checks that EGL and OpenGL are installed. Call this before any function of libepoxy, which ends
+/// the program if they are not. Fails with kUnsupported and names the Debian package.
 [[nodiscard]] Result<void> checkLibraries(const LibraryLoads& loads);
 
-/// An OpenGL context that needs no display and no surface. Movable. Its EGL display is never
+/// An OpenGL context that needs neither a screen nor a surface. Movable. Its EGL display is never
 /// closed, because other contexts of the program may share it.
 class EglContext {
  public:
@@ -42,16 +42,17 @@ class EglContext {
   ContextFacts facts_;
 };
 
-/// Makes a context current on this thread for a scope, and then what was current before: the caller
-/// may draw with OpenGL himself, and may call from another thread the next time. Where EGL refuses,
-/// none is current in this scope: nothing must reach the caller's.
+/// Makes a context current on this thread for a scope, then restores the one that was current
+/// before: the caller may use OpenGL too, and may make the next call from another thread. If EGL
+/// refuses, no context is current in the scope, so that nothing reaches the caller's context.
 class CurrentContext {
  public:
   explicit CurrentContext(const EglContext& context);
   ~CurrentContext();
-  /// Whether it worked. It does not once another part of the program has closed the display.
+  /// Whether the context is current. It is not if another part of the program has closed the
+  /// display.
   [[nodiscard]] bool holds() const { return holds_; }
-  /// What EGL said to it.
+  /// EGL's error code if it is not.
   [[nodiscard]] EGLint error() const { return error_; }
   CurrentContext(const CurrentContext&) = delete;
   CurrentContext& operator=(const CurrentContext&) = delete;
@@ -68,8 +69,9 @@ class CurrentContext {
 };
 
 /// Opens an OpenGL 4.5 core context on the wished device: EGL's device platform first, Mesa's
-/// surfaceless platform last. `explain`: whether the name of a driver that was not wished for is
-/// worth the time to open it. Fails with kUnsupported, and says what was found.
+/// surfaceless platform last. `explain`: whether to spend the time of opening a driver that does
+/// not meet the wish, only to name it in the error. Fails with kUnsupported; the message names what
+/// was found.
 [[nodiscard]] Result<EglContext> openContext(const DeviceWish& wish, bool explain);
 
 }  // namespace galactic::render::gl

@@ -11,10 +11,10 @@
 
 namespace galactic::render::gl {
 
-/// The backend: a context, what is loaded on it, and the slices under way.
+/// The `gl` backend: a context, what is loaded on it, and the slices that are being drawn.
 class GlEngine final : public RenderEngine {
  public:
-  /// As makeGlEngine(), with what tests and benchmarks choose.
+  /// Like makeGlEngine(), with the settings that only tests and benchmarks choose.
   [[nodiscard]] static Result<std::unique_ptr<GlEngine>> make(const RenderLibrary& library,
                                                               const RenderOptions& options,
                                                               const GlTuning& tuning,
@@ -29,7 +29,7 @@ class GlEngine final : public RenderEngine {
   void end() override;
   [[nodiscard]] Result<DeviceImages> renderToDevice(std::span<const RenderView> views,
                                                     std::uintptr_t stream) override;
-  /// The first part of it: draws into renderer().deviceImages(), and waits.
+  /// The first part of renderToDevice(): draws into renderer().deviceImages(), and waits.
   [[nodiscard]] Result<ImageLayout> drawToDevice(std::span<const RenderView> views);
   [[nodiscard]] const EglContext& context() const { return context_; }
   [[nodiscard]] const GlRenderer& renderer() const { return *renderer_; }
@@ -39,15 +39,15 @@ class GlEngine final : public RenderEngine {
   [[nodiscard]] const GlTimings& timings() const { return renderer_->timings(); }
 
  private:
-  /// Starts slices while views wait and a slice is idle.
+  /// Starts slices until no view waits or no slice is idle.
   void submitNext();
-  /// Waits for all that is under way.
+  /// Waits for all slices that are being drawn.
   void finishSlices();
 
   EglContext context_;
   std::unique_ptr<GlRenderer> renderer_;
   std::unique_ptr<CudaMapping> cuda_ = std::make_unique<CudaMapping>();
-  /// Two: one is drawn while the other is read.
+  /// Two, so that one is drawn while the other is read.
   std::array<ViewSlice, 2> slices_;
   std::span<const RenderView> views_;
   RenderTargets targets_;

@@ -16,9 +16,9 @@
 
 namespace galactic::render::gl {
 
-/// What tests and benchmarks choose and users need not.
+/// Settings that only tests and benchmarks choose.
 struct GlTuning {
-  /// Most views of a slice; 0 for what suits the device.
+  /// Most views of a slice; 0: as many as suit the device.
   std::size_t most_views = 0;
   /// Whether to do without extensions that are not part of OpenGL 4.5.
   bool core_only = false;
@@ -26,7 +26,7 @@ struct GlTuning {
   bool measure = false;
 };
 
-/// Seconds since the start, by what they went into; the last two on the graphics processor.
+/// Where time went since the start, seconds; the last two are times of the graphics processor.
 struct GlTimings {
   double setup = 0;
   double copy = 0;
@@ -34,7 +34,7 @@ struct GlTimings {
   double readback = 0;
 };
 
-/// What a class of commands came to: a line of the scan shader's totals.
+/// The totals of the draw commands of one class, as the scan shader writes them.
 struct DrawTotals {
   std::uint32_t draws = 0;
   std::uint32_t clusters = 0;
@@ -42,7 +42,7 @@ struct DrawTotals {
   std::uint32_t unused = 0;
 };
 
-/// A slice on its way: views that share one set of draw commands. Its buffers are its own, so that
+/// A slice: views that share one set of draw commands. Each slice has buffers of its own, so that
 /// the next slice can be prepared and drawn while this one is read.
 struct ViewSlice {
   Buffer upload{Access::kWrite};
@@ -51,39 +51,39 @@ struct ViewSlice {
   GLsync fence = nullptr;
   std::size_t first_view = 0;
   std::size_t views = 0;
-  /// Of the images of this slice, or of the whole batch when they stay on the device.
+  /// Layout of the slice's images or, if they stay on the device, of the whole batch's.
   ImageLayout layout;
   bool stays = false;
   SliceCounts counts;
 };
 
-/// Draws slices of views on the current context, which must be the same for all calls, also for the
-/// destructor.
+/// Draws slices of views on the current context, which must be the same for all calls, including
+/// the destructor's.
 class GlRenderer {
  public:
-  /// Loads the library. Fails with kUnsupported when the driver has too little for it.
+  /// Loads the library. Fails with kUnsupported if the driver's limits are too low for it.
   [[nodiscard]] static Result<std::unique_ptr<GlRenderer>> make(const RenderLibrary& library,
                                                                 const RenderOptions& options,
                                                                 const GlTuning& tuning);
 
   [[nodiscard]] std::size_t mostViews() const { return most_views_; }
-  /// Starts to draw `views` and to read the images back. `slice` is idle.
+  /// Starts to draw `views` and to read the images back. `slice` must be idle.
   void submit(std::span<const RenderView> views, ViewSlice& slice);
   /// Waits for a slice and copies its images to their place in `targets`. Throws an ErrorException
-  /// when they were not drawn.
+  /// if they were not drawn.
   void collect(ViewSlice& slice, const RenderTargets& targets);
 
-  /// The same with images that stay on the device, in deviceImages(): makes room for so many views.
-  /// Fails with kUnsupported when they are too many for the driver.
+  /// Makes room in deviceImages() for the images of `views` views that stay on the device. Fails
+  /// with kUnsupported if they are too many for the driver.
   [[nodiscard]] Result<ImageLayout> reserveDeviceImages(std::size_t views);
-  /// Whether that leaves the buffer as it is.
+  /// Whether reserveDeviceImages() would keep the buffer as it is.
   [[nodiscard]] bool hasRoomOnDevice(std::size_t views) const {
     return imageLayout(options_, views).bytes <= device_images_.size();
   }
-  /// `slice.first_view` is a multiple of 4.
+  /// Starts to draw `views` into deviceImages(). `slice.first_view` must be a multiple of 4.
   void submitToDevice(std::span<const RenderView> views, const ImageLayout& layout,
                       ViewSlice& slice);
-  /// Waits for a slice. Throws an ErrorException when it was not drawn.
+  /// Waits for a slice. Throws an ErrorException if it was not drawn.
   void finish(ViewSlice& slice);
   [[nodiscard]] const Buffer& deviceImages() const { return device_images_; }
 
@@ -96,16 +96,16 @@ class GlRenderer {
   [[nodiscard]] Result<void> load(const RenderLibrary& library, const GlTuning& tuning);
   void makeVertexArray(bool vertex_colors);
   void chooseSlices(const GlTuning& tuning);
-  /// Lists what the views hold, and sends the lists on their way.
+  /// Lists what the views hold, and starts to copy the lists to the device.
   void upload(std::span<const RenderView> views, ViewSlice& slice);
-  /// Which clusters are seen, as draw commands.
+  /// Writes draw commands for the clusters that are seen.
   void cull(const SliceCounts& counts);
   void draw(const SliceCounts& counts);
   /// Prepares and draws a slice whose layout is known.
   void start(std::span<const RenderView> views, ViewSlice& slice);
   void resolve(const ViewSlice& slice);
   void readBack(const ViewSlice& slice) const;
-  /// What is thrown when the driver has refused a part of drawing a slice.
+  /// The exception to throw if the driver has refused a part of drawing a slice.
   [[nodiscard]] ErrorException notDrawn(const ViewSlice& slice, GLenum error) const;
 
   RenderOptions options_;

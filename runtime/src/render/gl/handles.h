@@ -7,11 +7,11 @@
 
 namespace galactic::render::gl {
 
-/// Whether OpenGL can be called on this thread. Where the context is lost, so is what it had.
+/// Whether OpenGL can be called on this thread. If the context is lost, so are its objects.
 inline bool hasContext() { return eglGetCurrentContext() != EGL_NO_CONTEXT; }
 
-/// A name that OpenGL gave, given back at the end. Its context must be current then; or none, where
-/// it is lost.
+/// Owns an object of OpenGL by its name, and deletes it in the destructor. The object's context
+/// must be current then; if it is lost, no context may be.
 template <void (*Delete)(GLuint)>
 class Handle {
  public:
@@ -47,22 +47,22 @@ using VertexArray = Handle<deleteVertexArray>;
 using Program = Handle<deleteProgram>;
 using Query = Handle<deleteQuery>;
 
-/// Throws ErrorException where OpenGL could not reserve the bytes that it was asked for last.
+/// Throws ErrorException if OpenGL failed to allocate the `bytes` that it was last asked for.
 void requireMemory(std::size_t bytes);
 
-/// How the processor reaches a buffer.
+/// How the processor accesses a buffer.
 enum class Access { kNone, kWrite, kRead };
 
-/// A buffer that only grows, and is mapped all the time when the processor reaches it.
+/// A buffer that only grows. If the processor accesses it, it stays mapped all the time.
 class Buffer {
  public:
   Buffer() = default;
   explicit Buffer(Access access) : access_(access) {}
 
-  /// Makes room for so many bytes; what was in it is lost when it grows. At least one byte, so that
-  /// it can be bound. Throws ErrorException where memory is lacking.
+  /// Makes room for `bytes` bytes, and for at least one, so that the buffer can be bound. If it
+  /// grows, it loses its content. Throws ErrorException if there is too little memory.
   void reserve(std::size_t bytes);
-  /// Fills a buffer of exactly this content, for good.
+  /// Makes a buffer of exactly this size and content, which never changes again.
   void fill(const void* data, std::size_t bytes);
 
   [[nodiscard]] GLuint get() const { return name_.get(); }

@@ -17,13 +17,13 @@ inline constexpr std::uint32_t kNoTexture = 0xFFFFFFFF;
          log_size << 24U;
 }
 
-/// What the driver can do.
+/// The driver's limits.
 struct TextureLimits {
   /// Arrays that a fragment shader can read.
   std::size_t arrays = 16;
   /// Layers of an array.
   std::size_t layers = 2048;
-  /// Whether it reads BC1 blocks; they are decoded else.
+  /// Whether the driver reads BC1 blocks; otherwise they are decoded.
   bool bc1 = true;
 };
 
@@ -34,14 +34,14 @@ struct TextureArray {
   std::vector<const RenderTexture*> layers;
 };
 
-/// How the textures of a library are spread over arrays.
+/// How the textures of a library are distributed over arrays.
 struct TexturePlan {
   std::vector<TextureArray> arrays;
-  /// For each pack, for each texture: its textureSlot().
+  /// For each pack and each texture in it: the textureSlot().
   std::vector<std::vector<std::uint32_t>> slots;
 };
 
-/// Fails with kUnsupported when the textures do not fit into the arrays that the driver has.
+/// Fails with kUnsupported if the textures do not fit into the arrays that the driver offers.
 [[nodiscard]] Result<TexturePlan> planTextures(const RenderLibrary& library,
                                                const TextureLimits& limits);
 

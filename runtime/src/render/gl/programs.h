@@ -15,7 +15,7 @@ struct Programs {
   Program resolve;
 };
 
-/// Compiles and links them on the current context. Fails with kInternal and the driver's words.
+/// Compiles and links them on the current context. Fails with kInternal and the driver's message.
 [[nodiscard]] Result<Programs> makePrograms(const ShaderVariant& variant);
 
 }  // namespace galactic::render::gl

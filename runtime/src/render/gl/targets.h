@@ -8,10 +8,10 @@
 
 namespace galactic::render::gl {
 
-/// Of color, depth and semantics together.
+/// Color, depth and semantics together.
 inline constexpr std::size_t kTargetBytesPerPixel = 12;
 
-/// What is drawn into: a layer for each view of a slice.
+/// The textures that are drawn into, with a layer for each view of a slice.
 class Targets {
  public:
   /// Texture units of color, depth and semantics for the resolving shader.
@@ -19,12 +19,12 @@ class Targets {
 
   explicit Targets(const RenderOptions& options) : options_(options) {}
 
-  /// Makes room for so many layers; what was drawn is lost when they get more. Throws
-  /// ErrorException where memory is lacking.
+  /// Makes room for `layers` layers; if their number grows, what was drawn is lost. Throws
+  /// ErrorException if there is too little memory.
   void reserve(std::size_t layers);
-  /// Binds them for drawing, cleared to the background.
+  /// Binds the textures for drawing and clears them to the background.
   void beginDrawing() const;
-  /// Binds them to their texture units.
+  /// Binds the textures to their texture units.
   void bindForReading() const;
 
  private:
@@ -38,14 +38,14 @@ class Targets {
   Texture semantics_;
 };
 
-/// Where the images of up to `capacity` views lie in one buffer, bytes. Each part begins at a
-/// multiple of 256, where every driver can bind it.
+/// Where the images of a number of views lie in one buffer, bytes. Each part begins at a multiple
+/// of 256, where every driver can bind it.
 struct ImageLayout {
   std::size_t color = 0;
   std::size_t depth = 0;
   std::size_t semantics = 0;
   std::size_t bytes = 0;
-  /// Of a view; 0 for images that are not wanted.
+  /// Size of one view's image; 0 for images that are not wanted.
   std::size_t color_of_view = 0;
   std::size_t depth_of_view = 0;
   std::size_t semantics_of_view = 0;

@@ -13,16 +13,16 @@ namespace galactic::render::gl {
 struct GpuInstance {
   /// Rows of camera_from_model: camera coordinate = dot(row, (p, 1)).
   std::array<std::array<float, 4>, 3> rows{};
-  /// From z / x and y / x of the camera's frame to -1 to 1 across the image.
+  /// Factors that take z / x and y / x in the camera's frame to -1 to 1 across the image.
   float scale_x = 0;
   float scale_y = 0;
   std::uint32_t layer = 0;
-  /// Of all of it, or kSemanticsOfPack.
+  /// The semantic id of the whole instance, or kSemanticsOfPack.
   std::uint32_t semantic = 0;
 };
 static_assert(sizeof(GpuInstance) == 64);
 
-/// Up to kChunkClusters neighboring clusters of one class of an instance (std430).
+/// Up to kChunkClusters neighboring clusters of an instance, all of one class (std430).
 struct GpuChunk {
   std::uint32_t instance = 0;
   std::uint32_t first_cluster = 0;
@@ -30,12 +30,13 @@ struct GpuChunk {
 };
 static_assert(sizeof(GpuChunk) == 12);
 
-/// How much the views of a slice hold.
+/// How many items the views of a slice have.
 struct SliceCounts {
-  /// Only those that something can be seen of.
+  /// Without those that have nothing to show: empty models, transforms that are not finite.
   std::uint32_t instances = 0;
   std::uint64_t clusters = 0;
-  /// By class: chunks, and commands if every other cluster is seen.
+  /// By class: the chunks, and the most commands that they can need, which is if every other
+  /// cluster is seen.
   std::array<std::uint32_t, kDrawClasses> chunks{};
   std::array<std::uint32_t, kDrawClasses> draws{};
 
@@ -46,15 +47,15 @@ struct SliceCounts {
 [[nodiscard]] SliceCounts countSlice(std::span<const RenderView> views,
                                      std::span<const ModelClusters> models);
 
-/// Where the lists of a slice go, and what countSlice() counted for it.
+/// Where the lists of a slice are written, and what countSlice() counted for it.
 struct SliceLists {
   SliceCounts counts;
   std::span<GpuInstance> instances;
   std::span<GpuChunk> chunks;
 };
 
-/// Writes the lists: chunks by class, in a class by view, instance and cluster. `aspect`: width
-/// over height of the images.
+/// Writes the lists; chunks are sorted by class, view, instance and cluster. `aspect`: width of the
+/// images divided by their height.
 void listSlice(std::span<const RenderView> views, std::span<const ModelClusters> models,
                float aspect, const SliceLists& lists);
 

@@ -8,14 +8,13 @@
 
 namespace galactic::render {
 
-/// Adds RenderOptions::noise to images that have been drawn, whatever drew them: on all threads,
-/// image by image.
+/// Adds RenderOptions::noise to images that any backend has drawn: on all threads, image by image.
 class NoisePass {
  public:
-  /// The options are within range; some noise is on.
+  /// The options must be within range, with some noise on.
   explicit NoisePass(const RenderOptions& options);
 
-  /// `targets`: images of `views`.
+  /// `targets`: the images of `views`.
   void run(std::span<const RenderView> views, const RenderTargets& targets) noexcept;
 
  private:
@@ -25,12 +24,12 @@ class NoisePass {
   RenderOptions options_;
   bool has_avx2_;
 
-  /// Of the batch in work.
+  /// The batch that is being worked on.
   std::span<const RenderView> views_;
   RenderTargets targets_;
   std::atomic<std::size_t> next_{0};
 
-  /// Last, so that its threads end before what they use.
+  /// Comes last, so that its threads end before the members that they use.
   detail::Workers workers_;
 };
 

@@ -2,8 +2,8 @@
 #include "galactic/pose.h"
 #include "render/raster/pane_task.h"
 
-// From poses to what rasterizers read; for processors and for graphics processors, so without the
-// library.
+// Turns poses into what rasterizers read. This code runs on processors and on graphics processors,
+// so it does without the standard library.
 namespace galactic::render {
 
 GALACTIC_EVERYWHERE inline bool isFinite(const Vec3& v) {
@@ -14,9 +14,8 @@ GALACTIC_EVERYWHERE inline bool isFinite(const RigidTransform& t) {
   return isFinite(t.x_axis) && isFinite(t.y_axis) && isFinite(t.z_axis) && isFinite(t.origin);
 }
 
-/// The rows of a placed model; false where its numbers are too large. `focal`: 1/256 pixels at a
-/// distance of 1 m for each meter beside the camera's axis. The camera looks along its x; y is up,
-/// z to the right.
+/// Computes the rows of a placed model; returns false if a number overflows. `focal`: see
+/// focalLength(). The camera looks along its x axis; y is up, z to the right.
 GALACTIC_EVERYWHERE inline bool placeModel(const RigidTransform& camera_from_world, float focal,
                                            const RigidTransform& world_from_model,
                                            PlacedModel& placed) {

@@ -3,24 +3,24 @@
 
 #include "render/raster/pane_task.h"
 
-// What the kernels of the `soft` renderer read and write, as bare pointers: see pane_task.h.
+// What the kernels of the `soft` renderer read and write, as bare pointers; see pane_task.h.
 namespace galactic::render {
 
 static_assert(kMostTiles <= 32, "one bit each");
 
-/// What a pane has room for; when it is used up, what is seen so far is shaded.
+/// Records that a pane has room for. When they are used up, what is visible so far is shaded.
 inline constexpr std::uint32_t kMostRecords = 16384;
 
 /// What a thread needs to draw panes. All pointers are aligned to 64 bytes.
 struct PaneScratch {
-  /// 1/w by pixel: 0 where nothing is, infinite outside of the image.
+  /// 1/w by pixel: 0 where nothing is drawn, infinite outside the image.
   float* depth = nullptr;
-  /// By pixel, the first number of its record: 0 for background, kShaded where the image has the
-  /// color.
+  /// By pixel, the index of the first number of its record: 0 for the background, kShaded if the
+  /// image already has the color.
   std::int32_t* ids = nullptr;
-  /// Least 1/w of each tile, where it has not changed since.
+  /// Least 1/w of each tile; out of date for tiles with a bit in `tile_changed`.
   float* tile_depth = nullptr;
-  /// For each row of tiles, bit n: tile n has changed since.
+  /// For each row of tiles, bit n: tile n has changed since its `tile_depth` was computed.
   std::uint32_t* tile_changed = nullptr;
   /// Room for all clusters of a view.
   SeenCluster* seen = nullptr;
@@ -32,15 +32,15 @@ struct PaneScratch {
 };
 inline constexpr std::int32_t kShaded = -1;
 
-/// What a pane took.
+/// What was drawn on a pane.
 struct PaneCounts {
   std::uint64_t clusters = 0;
   std::uint64_t clusters_drawn = 0;
   std::uint64_t triangles_drawn = 0;
 };
 
-/// Draws a pane. All versions do the same operations in the same order, and none is contracted:
-/// the images agree bit for bit.
+/// Draws a pane. All versions do the same operations in the same order, without contraction, so
+/// their images agree bit for bit.
 using DrawPane = PaneCounts (*)(const PaneTask&, const PaneScratch&) noexcept;
 /// For any processor.
 PaneCounts drawPanePortable(const PaneTask& task, const PaneScratch& scratch) noexcept;

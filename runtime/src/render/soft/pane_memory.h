@@ -7,23 +7,23 @@
 
 namespace galactic::render {
 
-/// What one thread needs to draw panes of a size: allocated once, apart from the room for clusters,
-/// which grows to the largest view seen.
+/// The memory that one thread needs to draw panes of up to a given size. It is allocated once,
+/// except for models and clusters, whose room grows to the largest view so far.
 class PaneMemory {
  public:
-  /// Pixels of the largest pane, at most kPaneEdge each.
+  /// `width`, `height`: of the largest pane, pixels, at most kPaneEdge each.
   PaneMemory(std::uint32_t width, std::uint32_t height);
   ~PaneMemory();
   PaneMemory(const PaneMemory&) = delete;
   PaneMemory& operator=(const PaneMemory&) = delete;
 
-  /// Makes room for views of so many models and clusters.
+  /// Makes room for views of up to this many models and clusters.
   void reserve(std::size_t models, std::size_t clusters);
 
   [[nodiscard]] const PaneScratch& scratch() const { return scratch_; }
   [[nodiscard]] PlacedModel* models() { return models_.data(); }
 
-  /// What the thread did in this batch.
+  /// What the thread has drawn in this batch.
   PaneCounts counts;
 
  private:

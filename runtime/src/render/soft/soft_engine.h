@@ -13,10 +13,10 @@
 
 namespace galactic::render {
 
-/// Draws on the processor: every image by itself, in panes, which the threads take one by one.
+/// Draws on the processor. Images are cut into panes, which the threads take one by one.
 class SoftEngine final : public RenderEngine {
  public:
-  /// `draw` is one of the kernels that this processor can run.
+  /// `draw`: a kernel that this processor can run.
   SoftEngine(const RenderLibrary& library, const RenderOptions& options, DrawPane draw);
 
   void begin(std::span<const RenderView> views, const RenderTargets& targets) override;
@@ -40,12 +40,12 @@ class SoftEngine final : public RenderEngine {
   std::vector<std::unique_ptr<PaneMemory>> memories_;
   RenderStatistics statistics_;
 
-  /// Of the batch in work.
+  /// The batch that is being drawn.
   std::span<const RenderView> views_;
   RenderTargets targets_;
   std::atomic<std::size_t> next_{0};
 
-  /// Last, so that its threads end before what they use.
+  /// Comes last, so that its threads end before the members that they use.
   std::unique_ptr<detail::Workers> workers_;
 };
 

@@ -11,21 +11,21 @@
 
 namespace galactic::render {
 
-/// From a base to the last byte of its texels: what the kernels' numbers of texels can tell, and
-/// more than any texture has.
+/// Most bytes from a base to the end of its texels: what the kernels can address, and more than any
+/// texture has.
 inline constexpr std::size_t kMostTexelBytes = 0x7FFFFFFF;
 
-/// A library as the kernels read it: pointers into the packs' memory, and what has to be unpacked.
-/// Immutable, so safe to share between threads; the library must outlive it. Not movable: its
-/// tables point at each other.
+/// A library as the kernels read it: pointers into the packs' memory, and unpacked copies where the
+/// kernels need another format. Immutable, so safe to share between threads; the library must
+/// outlive it. Not movable, because its tables point at each other.
 class SoftScene {
  public:
-  /// `most_bytes`: kMostTexelBytes, but for tests.
+  /// `most_bytes`: always kMostTexelBytes, except in tests.
   explicit SoftScene(const RenderLibrary& library, std::size_t most_bytes = kMostTexelBytes);
   SoftScene(const SoftScene&) = delete;
   SoftScene& operator=(const SoftScene&) = delete;
 
-  /// By the numbers of the library.
+  /// In the order of the library's models.
   [[nodiscard]] const std::vector<ModelTables>& models() const { return models_; }
   [[nodiscard]] const std::uint32_t* const* texelBases() const { return bases_.data(); }
 
@@ -42,12 +42,12 @@ class SoftScene {
   std::vector<PackTables> packs_;
   std::vector<ModelTables> models_;
   std::size_t most_bytes_;
-  /// First those in the packs' memory, then one for each of `unpacked_`.
+  /// First the bases in the packs' memory, then one for each of `unpacked_`.
   std::vector<const std::uint32_t*> bases_;
   std::size_t bases_in_packs_ = 0;
-  /// Texels that no pack has as they are drawn.
+  /// Texels that the packs have in another format than the kernels read.
   std::vector<std::vector<std::uint32_t>> unpacked_;
-  /// Asked, never walked through.
+  /// Only looked up, never iterated, so the order of addresses does not matter.
   std::map<TextureKey, SurfaceTexels> known_;
 };
 
