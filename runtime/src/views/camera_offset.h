@@ -7,17 +7,17 @@
 
 namespace galactic {
 
-/// Where a camera is in the frame that it would have otherwise: meters ahead, to the left and up,
-/// then turned by roll, pitch (down is positive) and yaw.
+/// The pose of a camera in the frame that it would have without this offset: moved by meters ahead,
+/// to the left and up, then turned by roll, pitch (down is positive) and yaw.
 [[nodiscard]] Pose cameraOffset(const std::array<float, 3>& position,
                                 const std::array<float, 3>& rpy_degrees) noexcept;
 
-/// The offset of the camera with this CameraMount::number in the episode of `moment`, each part of
-/// it as likely as any other within the jitter's limits.
+/// The random offset of the camera with this CameraMount::number in the episode of `moment`. Each
+/// coordinate and angle is distributed uniformly within the jitter's limits.
 [[nodiscard]] Pose drawOffset(const CameraJitter& jitter, std::uint64_t camera,
                               const EnvMoment& moment) noexcept;
 
-/// The same of its vertical field of view: radians, more or less than it should be.
+/// The random offset of the camera's vertical field of view, radians, above or below 0.
 [[nodiscard]] float drawFovOffset(const CameraJitter& jitter, std::uint64_t camera,
                                   const EnvMoment& moment) noexcept;
 

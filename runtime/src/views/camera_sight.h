@@ -11,13 +11,13 @@ struct SightLine {
   Vec3 target;
 };
 
-/// Where a camera at `wanted`, which follows a robot whose base is at `base`, sees it: nothing of
-/// the scene stands between, as one of the scene's column grids can tell. Where something does, the
-/// camera goes round the target, rises and comes nearer, whichever changes the picture least. It
-/// still looks at where its axis passes the base, or lower, where that is inside of something.
-/// Stays as it is where the grid has no free place above the base, and where `wanted` looks away
-/// from the vertical line through the base: whoever turned it that far asked for something else
-/// than the robot. Neither allocates nor throws; thread-safe.
+/// Moves a camera at `wanted`, which follows a robot whose base is at `base`, to where it sees the
+/// robot: nothing of the scene stands between them, according to one of the scene's column grids.
+/// If something does, the camera goes around the target, rises or comes nearer, whichever changes
+/// the picture least. Its target is the point where its axis passes the base, or a lower point if
+/// that one is inside something. The camera stays at `wanted` if the grid has no free place above
+/// the base, or if `wanted` looks away from the vertical line through the base: a user who turned
+/// it that far does not want to see the robot. Neither allocates nor throws; thread-safe.
 [[nodiscard]] SightLine inSight(const Scene& scene, const Vec3& base,
                                 const RigidTransform& wanted) noexcept;
 

@@ -6,13 +6,14 @@
 
 namespace galactic::views {
 
-// Of calls that read a simulator for views: all throw ErrorException with kInvalidInput. `call`:
-// "WorldViews".
+// Checks of calls that read a simulator for views. All throw ErrorException with kInvalidInput.
+// `call`: the name in the message, such as "WorldViews".
 
-/// Where no views can be made of `simulator` and of models with this worldHash().
+/// Throws if no views can be made from `simulator` and from models with this worldHash().
 void requireParts(const char* call, std::uint64_t models, const BatchSimulator& simulator);
 
-/// The same; returns `models`, so that no member is built before.
+/// Like requireParts(), but returns `models`, so that a constructor can check them before it builds
+/// any member.
 template <class Models>
 const Models& checkedModels(const char* call, const Models& models,
                             const BatchSimulator& simulator) {
@@ -20,8 +21,8 @@ const Models& checkedModels(const char* call, const Models& models,
   return models;
 }
 
-/// Where `simulator` cannot be followed by views of the first `envs` envs of a world with this
-/// World::hash().
+/// Throws if views of the first `envs` envs of a world with this World::hash() cannot follow
+/// `simulator`.
 void requireFollowed(const char* call, std::uint64_t world, const BatchSimulator& simulator,
                      std::size_t envs);
 

@@ -6,13 +6,13 @@
 
 namespace galactic::views {
 
-/// Heights are rounded to multiples of this, so that level ground becomes few triangles; meters.
+/// Heights are rounded to multiples of this, meters, so that level ground becomes few triangles.
 inline constexpr double kHeightStep = 0.005;
 
-/// The surface of the free space of a grid, seen from inside it, in the world's frame: under each
-/// column's spans a floor, above them a ceiling, and walls where a neighboring column is blocked.
-/// Where the grid's knowledge ends (its border, its lowest and highest height) there is none.
-/// Colors: shades of gray by direction. No triangles where nothing is free.
+/// The surface of the free space of a grid as seen from inside it, in the world frame: each
+/// column's spans have a floor below and a ceiling above them, and walls where a neighboring column
+/// is blocked. There is no surface at the limits of the grid (its border, its lowest and highest
+/// height). Colors: a shade of gray for each direction. No triangles if nothing is free.
 [[nodiscard]] RenderSurface gridSurface(const ColumnGrid& grid);
 
 }  // namespace galactic::views

@@ -6,7 +6,7 @@
 
 namespace galactic::views {
 
-/// A square of a plane of squares. Squares of equal `key` can be joined.
+/// A square in a plane of squares. Squares with equal `key` can be joined.
 struct KeyedSquare {
   std::array<std::int32_t, 4> key{};
   std::int32_t row = 0;
@@ -18,7 +18,7 @@ struct KeyedSquare {
   }
 };
 
-/// Squares [first_row, end_row) x [first_column, end_column) of one key.
+/// Squares [first_row, end_row) x [first_column, end_column), all with the same key.
 struct KeyedRectangle {
   std::array<std::int32_t, 4> key{};
   std::int32_t first_column = 0;
@@ -27,15 +27,15 @@ struct KeyedRectangle {
   std::int32_t end_row = 0;
 
   friend bool operator==(const KeyedRectangle&, const KeyedRectangle&) = default;
-  /// By key, then columns, then rows: what can be joined stands one after the other.
+  /// Sorts by key, then columns, then rows, so that rectangles that can be joined are neighbors.
   friend bool operator<(const KeyedRectangle& a, const KeyedRectangle& b) {
     return std::tie(a.key, a.first_column, a.end_column, a.first_row) <
            std::tie(b.key, b.first_column, b.end_column, b.first_row);
   }
 };
 
-/// Rectangles that cover the squares, which differ from each other, and nothing else, each once:
-/// runs along the columns, joined along the rows where they are equally long.
+/// Rectangles that cover each of the squares once, and nothing else: runs along the columns, joined
+/// along the rows if they have the same ends. The squares must differ from each other.
 [[nodiscard]] std::vector<KeyedRectangle> mergeSquares(std::vector<KeyedSquare> squares);
 
 }  // namespace galactic::views

@@ -4,15 +4,16 @@
 
 namespace galactic::views {
 
-// Closed shapes seen from outside, in colors that show their form: balls as if light
-// came from above, boxes with a shade for each direction.
+// Closed shapes, to be seen from outside, with colors that show their form: balls as if lit from
+// above, boxes with a shade for each direction.
 
-/// About the origin, of 320 triangles with corners on the sphere; meters. `color`: RGBA, R lowest.
+/// A ball around the origin, made of 320 triangles with their corners on the sphere; meters.
+/// `color`: RGBA, R lowest.
 [[nodiscard]] RenderSurface sphereSurface(float radius, std::uint32_t color);
 
 [[nodiscard]] RenderSurface boxSurface(const OrientedBox& box, std::uint32_t color);
 
-/// The twelve edges of the box as beams around them.
+/// Beams along the twelve edges of the box.
 [[nodiscard]] RenderSurface boxFrameSurface(const OrientedBox& box, std::uint32_t color);
 
 /// Half the thickness of the beams, meters.
