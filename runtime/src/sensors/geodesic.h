@@ -12,38 +12,38 @@
 
 namespace galactic::sensors {
 
-/// What an episode's ways lead from and to, world frame.
+/// The ends of an episode's paths, world frame.
 struct Errand {
   std::uint32_t scene = 0;
-  /// The base at the start.
+  /// Position of the base at the start.
   Vec3 base;
   Vec3 target;
   Vec3 goal;
 };
 
-/// Elements of the observation: to the target and to the goal, length and direction.
+/// Elements of the observation: length and direction of the paths to the target and to the goal.
 inline constexpr std::size_t kGeodesicSize = 6;
-/// A target this near to where it began, or to the goal, meters, is taken to be there.
+/// A target within this distance of its start or of the goal counts as being there, meters.
 inline constexpr float kSamePlace = 0.3F;
 
-/// The ways along the floor of all episodes, worked out at the start. Immutable afterwards.
+/// The paths along the floor in all episodes, computed at construction. Immutable afterwards.
 class Geodesic {
  public:
-  /// None.
+  /// Has no paths.
   Geodesic() = default;
 
-  /// One field for each point that some errand leads to; points of one cell of a floor plan and
-  /// one height, within 0.25 m, share one. Uses up to `threads` threads. Fails with kInvalidInput
-  /// when fields would take more than `most_megabytes`.
+  /// Makes a field for each point that an errand leads to; points in the same cell of a floor plan
+  /// whose heights are within 0.25 m share a field. Uses up to `threads` threads. Fails with
+  /// kInvalidInput if the fields would take more than `most_megabytes`.
   [[nodiscard]] static Result<Geodesic> make(const World& world, const StandingRobot& robot,
                                              const GroundOptions& ground,
                                              std::span<const Errand> errands,
                                              std::uint32_t most_megabytes, std::uint32_t threads);
 
-  /// The way of errand `n` to its goal.
+  /// The path of errand `n` from `base` to the goal.
   [[nodiscard]] Way toGoal(std::uint32_t n, const Vec3& base) const noexcept;
-  /// The way to the target, which is at `target` now; none where that is neither near to where it
-  /// began nor to the goal.
+  /// The path of errand `n` from `base` to the target, whose current position is `target`. There is
+  /// none unless the target is near its start or near the goal.
   [[nodiscard]] Way toTarget(std::uint32_t n, const Vec3& base, const Vec3& target) const noexcept;
 
   [[nodiscard]] std::size_t fieldCount() const noexcept { return fields_.size(); }
@@ -69,7 +69,7 @@ class Geodesic {
 
   std::vector<Known> errands_;
   std::vector<FloorPlan> plans_;
-  /// Of each plan.
+  /// The scene of each plan.
   std::vector<std::uint32_t> scenes_;
   std::vector<Field> fields_;
 };

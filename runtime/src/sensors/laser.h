@@ -16,11 +16,11 @@
 
 namespace galactic::sensors {
 
-/// A laser's options after the robot's recipe has had its say.
+/// The settings of a laser, from the options and, where those are unset, from the robot's recipe.
 struct LaserSettings {
-  /// Of one plane; 0: no laser.
+  /// Beams of one plane; 0: no laser.
   std::uint32_t beams = 0;
-  /// Between which each scan looks, above the floor, meters.
+  /// The range of heights that each scan covers, above the floor, meters.
   std::vector<Span> heights;
   /// Radians.
   float field_of_view = 0;
@@ -28,7 +28,7 @@ struct LaserSettings {
   float range = 0;
   float least_range = 0;
   DrawnNumber noise = 0;
-  /// Where beams leave, in the frame of the base, meters: +X is ahead, +Z to the right.
+  /// Where the beams start, in the frame of the base, meters: +X is ahead, +Z to the right.
   float ahead = 0;
   float right = 0;
   /// Yaw of the laser in the frame of the base, radians.
@@ -38,56 +38,57 @@ struct LaserSettings {
   [[nodiscard]] std::size_t size() const { return beams * heights.size(); }
 };
 
-/// `motion`: of the same robot. Fails with kInvalidInput where the numbers do not fit each other,
-/// and with kUnsupported where an action or an episode moves the link that carries the laser.
+/// `motion`: of the same robot. Fails with kInvalidInput if the numbers contradict each other, and
+/// with kUnsupported if an action or an episode moves the link that carries the laser.
 [[nodiscard]] Result<LaserSettings> laserSettings(const LaserOptions& options, const Robot& robot,
                                                   const simulation::MotionModel& motion);
 
-/// A floor on which robots stand: index of its scene, and height, meters.
+/// A floor on which robots stand: the index of its scene, and its height, meters.
 struct StoodOn {
   std::uint32_t scene = 0;
   float floor = 0;
 };
 
-/// From where an env's laser looks, and at what.
+/// Where an env's laser is, and what it sees.
 struct LaserView {
   std::uint32_t scene = 0;
-  /// On the floor under the root, world frame.
+  /// The point on the floor under the root, world frame.
   Vec3 base;
-  /// Of the base's yaw.
+  /// Cosine and sine of the base's yaw.
   float cosine = 1;
   float sine = 0;
   const simulation::RestingObjects& objects;
-  /// Standard deviation of a distance, meters: of this episode.
+  /// Standard deviation of a distance in this episode, meters.
   float noise = 0;
-  /// Of this env and step.
+  /// The random numbers of this env and step.
   RandomStream random;
 };
 
-/// The laser of all envs. After construction immutable: any thread may scan.
+/// The lasers of all envs. Immutable after construction, so any thread may scan.
 class Laser {
  public:
-  /// None.
+  /// No laser.
   Laser() = default;
 
-  /// Cuts a plane through each scene at each of the settings' heights above each floor that is
-  /// stood on; floors within kFloorBand share one. Uses up to `threads` threads. Fails with
-  /// kInvalidInput when a plane is blocked everywhere.
+  /// Cuts a plane through each scene at each of the settings' heights above each of the `floors`;
+  /// floors within kFloorBand share their planes. Uses up to `threads` threads. Fails with
+  /// kInvalidInput if a plane is blocked everywhere.
   [[nodiscard]] static Result<Laser> make(const LaserSettings& settings, const World& world,
                                           std::span<const StoodOn> floors, std::uint32_t threads);
 
-  /// Writes the distances of an env, shares of the range: 1 where nothing is within it. Plane by
-  /// plane, beams from the right to the left. Shape of `out`: settings.size().
-  /// A beam ends where a sphere of the scene's smallest radius would not be free of the static
-  /// scene, or in the box of a resting object; robot and held object are not seen. A robot that has
-  /// left the floors sees the planes of the one whose height is nearest.
+  /// Writes the distances of an env as fractions of the range: 1 if nothing is within it. They are
+  /// sorted plane by plane, and in a plane from the right to the left. Shape of `out`:
+  /// settings.size(). A beam ends where a sphere of the scene's smallest radius would not be free
+  /// of the static scene, or where it enters the box of a resting object; it passes through the
+  /// robot and the held object. A robot that is on none of the floors scans the planes of the floor
+  /// whose height is nearest.
   void scan(const LaserView& view, std::span<float> out) const noexcept;
 
-  /// Elements of a scan.
+  /// Numbers in a scan.
   [[nodiscard]] std::size_t size() const { return settings_.size(); }
-  /// Standard deviation of a distance, meters: from what episodes draw it.
+  /// Standard deviation of a distance, meters: the range from which each episode draws it.
   [[nodiscard]] const DrawnNumber& noise() const { return settings_.noise; }
-  /// Of all planes.
+  /// Bytes of all planes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -109,11 +110,11 @@ class Laser {
   /// Directions of the beams in the frame of the base, padded to whole lanes.
   std::vector<float> beams_ahead_;
   std::vector<float> beams_right_;
-  /// By scene, height ascending.
+  /// By scene, in ascending order of height.
   std::vector<std::vector<Floor>> floors_;
 };
 
-/// Floors whose heights differ by no more than this share their planes, meters.
+/// Floors whose heights differ by at most this share their planes, meters.
 inline constexpr float kFloorBand = 0.1F;
 
 }  // namespace galactic::sensors

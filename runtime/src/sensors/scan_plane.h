@@ -8,15 +8,15 @@
 
 namespace galactic::sensors {
 
-/// A horizontal plane through a scene, ready for beams: a byte for each cell of a column grid, 0
-/// where a sphere of the grid's radius is not free at that height, else how far a beam may go from
-/// anywhere in the cell without a look. Around it lies a ring of blocked cells: what the grid does
-/// not know stops a beam as it stops the robot. Immutable.
+/// A horizontal plane through a scene, ready for beams: a byte for each cell of a column grid, 0 if
+/// a sphere of the grid's radius is not free at that height, otherwise how far a beam may go from
+/// anywhere in the cell before it has to look again. A ring of blocked cells surrounds the plane:
+/// space that the grid does not cover stops a beam, as it stops the robot. Immutable.
 class ScanPlane {
  public:
-  /// Nothing.
+  /// No cells.
   ScanPlane() = default;
-  /// Of what is between `heights` of the world frame, meters. O(cells).
+  /// The plane of everything between `heights`, world frame, meters. O(cells).
   ScanPlane(const ColumnGrid& grid, const Span& heights);
 
   [[nodiscard]] ScanPlaneView view() const noexcept;
