@@ -19,7 +19,7 @@ namespace {
 
 constexpr float kRadiansPerDegree = std::numbers::pi_v<float> / 180;
 
-/// A camera that looks ahead and down.
+/// A camera at `place` that looks ahead and `degrees` down.
 Pose pitchedDown(const Vec3& place, float degrees) {
   const float half = -0.5F * degrees * kRadiansPerDegree;
   return {place, {.x = 0, .y = 0, .z = std::sin(half), .w = std::cos(half)}};
@@ -40,7 +40,7 @@ ChosenCamera topCamera() {
   constexpr float kHeight = 6;
   constexpr float kStraightDown = 90;
   constexpr float kFov = 60;
-  // What is higher than this hides the robot.
+  // Anything higher than this would hide the robot, so the near plane cuts it off.
   constexpr float kHighestShown = 2.1F;
   return {{.frame = CameraFrame::kBase,
            .link = 0,
@@ -49,10 +49,10 @@ ChosenCamera topCamera() {
           kHeight - kHighestShown};
 }
 
-/// Whether it names a camera that is no link of the robot.
+/// Whether `name` is a camera other than a link of the robot.
 bool isNoLink(std::string_view name) { return name == "head" || name == "follow" || name == "top"; }
 
-/// The link of a camera, which may be called `link:NAME` or just NAME.
+/// The link in the name of a camera, which is `link:NAME` or just NAME.
 std::string_view linkIn(std::string_view name) {
   constexpr std::string_view kPrefix = "link:";
   return name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : name;
@@ -106,7 +106,8 @@ Result<ChosenCamera> cameraInWorld(const CameraWish& wish) {
                        .world_from_camera = wish.world_from_camera}};
 }
 
-/// The same of the same place on the same link, however it is called, another one elsewhere.
+/// A number for the camera. Cameras in the same place on the same link have the same number, even
+/// if one is called `link:NAME` and one NAME; other cameras have other numbers.
 std::uint64_t numberOf(const CameraWish& wish) {
   const std::string_view link = linkIn(wish.name);
   const std::string_view name = isNoLink(link) ? wish.name : link;
@@ -119,10 +120,10 @@ std::uint64_t numberOf(const CameraWish& wish) {
   return number;
 }
 
-/// A comparison with NaN is false.
+/// False for NaN, since comparisons with NaN are false.
 bool isWithin(float value, float least, float most) { return value >= least && value <= most; }
 
-/// What is wrong with a place; empty where nothing is.
+/// The error message for a place; empty if nothing is wrong with it.
 std::string faultOf(const RigidTransform& place) {
   const auto& [x, y, z, origin] = place;
   for (const float meters : {origin.x, origin.y, origin.z}) {
@@ -174,14 +175,14 @@ Result<void> checkNumbers(const CameraWish& wish) {
   return {};
 }
 
-/// Of a camera with the field of view `fov`, radians.
+/// Checks the jitter of a camera with the field of view `fov`, radians.
 Result<void> checkJitter(const CameraWish& wish, float fov) {
   const CameraOptionNames& names = wish.options;
   struct Named {
     const std::string& option;
     const char* unit;
   };
-  // In the order of the table.
+  // In the order of kCameraJitterOptions.
   const std::array<Named, kCameraJitterOptions.size()> told{
       {{names.jitter, "m"}, {names.jitter_degrees, "degrees"}, {names.jitter_fov, "degrees"}}};
   for (std::size_t n = 0; n < told.size(); ++n) {
@@ -196,7 +197,7 @@ Result<void> checkJitter(const CameraWish& wish, float fov) {
   const float off = wish.jitter.camera_jitter_fov.most;
   if (off == 0) return {};
   const float degrees = fov / kRadiansPerDegree;
-  // Rounding decides nothing.
+  // Rounding errors must not make a difference.
   constexpr float kAbout = 1e-3F;
   if (isWithin(degrees - off, kLeastFovDegrees - kAbout, kMostFovDegrees) &&
       isWithin(degrees + off, kLeastFovDegrees, kMostFovDegrees + kAbout)) {

@@ -23,7 +23,7 @@ Pose cameraOffset(const std::array<float, 3>& position,
 
 Pose drawOffset(const CameraJitter& jitter, std::uint64_t camera,
                 const EnvMoment& moment) noexcept {
-  // Apart from each other, and from the numbers of other sensors.
+  // Keep these draws independent of each other and of those of other sensors.
   constexpr std::uint64_t kJitterSalt = 0x4A69747465722D31ULL;
   constexpr std::uint64_t kPlaceDraw = 0x4A69747465724431ULL;
   constexpr std::uint64_t kTurnDraw = 0x4A69747465724432ULL;

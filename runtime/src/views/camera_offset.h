@@ -13,7 +13,7 @@ namespace galactic {
                                 const std::array<float, 3>& rpy_degrees) noexcept;
 
 /// The random offset of the camera with this CameraMount::number in the episode of `moment`. Each
-/// coordinate and angle is distributed uniformly within the jitter's limits.
+/// coordinate and angle is distributed uniformly within the jitter's limit for that episode.
 [[nodiscard]] Pose drawOffset(const CameraJitter& jitter, std::uint64_t camera,
                               const EnvMoment& moment) noexcept;
 

@@ -9,19 +9,21 @@
 namespace galactic {
 namespace {
 
-/// A ball of this size moves along the line, if there is a grid for it: so wide is what the near
-/// plane of an image shows.
+/// The line is free if a ball of this radius can move along it: the near plane of an image is about
+/// this wide. Without a grid for it, a smaller ball has to do.
 constexpr float kRadius = 0.05F;
-/// Turns that are tried, to either side.
+/// How many turns are tried to either side, up to half a turn.
 constexpr int kTurns = 12;
 constexpr float kTurn = std::numbers::pi_v<float> / kTurns;
-/// To turn half about is as bad as to come so much nearer, as a share of the distance.
+/// Half a turn is as bad as coming nearer by this fraction of the distance.
 constexpr float kPriceOfHalfATurn = 0.5F;
-/// The camera rises by so much, too; each of these steps is as bad as to come so much nearer.
+/// The camera is also tried up to kRises steps of kRise higher, as an angle. Each step is as bad as
+/// coming nearer by the fraction kPriceOfARise.
 constexpr int kRises = 2;
 constexpr float kRise = std::numbers::pi_v<float> / 9;
 constexpr float kPriceOfARise = 0.1F;
-/// Targets that are tried, meters below each other.
+/// Lower targets are tried too: kLower meters below each other, down to kLowestTarget above the
+/// base.
 constexpr float kLower = 0.15F;
 constexpr float kPriceOfMetersLower = 0.4F;
 constexpr float kLowestTarget = 0.1F;
@@ -32,7 +34,7 @@ const ColumnGrid& gridFor(const Scene& scene) {
   return wide != scene.grids().end() ? *wide : scene.grids().back();
 }
 
-/// Turned about the vertical line through `pivot`.
+/// The camera, turned about the vertical line through `pivot`.
 RigidTransform turned(const RigidTransform& from, const Vec3& pivot, float angle) {
   const float c = std::cos(angle);
   const float s = std::sin(angle);
@@ -41,7 +43,7 @@ RigidTransform turned(const RigidTransform& from, const Vec3& pivot, float angle
           pivot + turn(from.origin - pivot)};
 }
 
-/// On a circle about `pivot`, which is on the camera's axis, upwards.
+/// The camera, moved upwards by `angle` on a circle about `pivot`, which is on its axis.
 RigidTransform raised(const RigidTransform& from, const Vec3& pivot, float angle) {
   const float c = std::cos(angle);
   const float s = std::sin(angle);
@@ -51,7 +53,7 @@ RigidTransform raised(const RigidTransform& from, const Vec3& pivot, float angle
           pivot - ahead * std::sqrt(dot(away, away))};
 }
 
-/// How much of the way from `from` to `to` is free, 0 to 1.
+/// Which fraction of the line from `from` to `to` is free before the first obstacle, 0 to 1.
 float freeShare(const ColumnGrid& grid, const Vec3& from, const Vec3& to) {
   const Vec3 way = to - from;
   const double length = detail::lengthOf(way);
@@ -61,7 +63,7 @@ float freeShare(const ColumnGrid& grid, const Vec3& from, const Vec3& to) {
   return static_cast<float>(free.length / length);
 }
 
-/// The point of the camera's axis that is nearest to the vertical line through `base`.
+/// The point on the camera's axis that is nearest to the vertical line through `base`.
 Vec3 targetOf(const RigidTransform& camera, const Vec3& base) {
   const Vec3& axis = camera.x_axis;
   const float level = axis.x * axis.x + axis.z * axis.z;
@@ -79,7 +81,7 @@ SightLine inSight(const Scene& scene, const Vec3& base, const RigidTransform& wa
   float best = -1;
   const auto consider = [&](const RigidTransform& start, const Vec3& target, float price) {
     for (int n = 0; n < 2 * kTurns; ++n) {
-      // 0, then to the left and to the right by turns.
+      // 0, then alternately to the left and to the right.
       const int turns = (n % 2 == 0 ? 1 : -1) * ((n + 1) / 2);
       const float whole = price + kPriceOfHalfATurn * std::abs(static_cast<float>(turns)) / kTurns;
       if (1 - whole <= best) return;
@@ -92,8 +94,8 @@ SightLine inSight(const Scene& scene, const Vec3& base, const RigidTransform& wa
     }
   };
   float lowered = 0;
-  // Not above the base either: a place that is none. Nor beyond what any place is worth: the target
-  // of a camera that looks up is as far away as it likes.
+  // If a number is NaN, the first condition ends the loop. The second ends it once no lower target
+  // can be better: the target of a camera that looks up can be arbitrarily high.
   while (highest.y - lowered >= base.y + kLowestTarget &&
          1 - kPriceOfMetersLower * lowered > best) {
     const Vec3 target = highest - Vec3{0, lowered, 0};

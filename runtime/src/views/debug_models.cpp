@@ -14,7 +14,7 @@
 namespace galactic {
 namespace {
 
-/// What semantic ids tell apart, in their order.
+/// The semantic ids, in the order of the names in PartList.
 enum Semantic : std::uint16_t { kGrid, kRobotSphere, kHeldSphere, kRestingBox, kGoal };
 
 Result<std::size_t> gridIndexOf(const World& world, float radius) {
@@ -28,7 +28,7 @@ Result<std::size_t> gridIndexOf(const World& world, float radius) {
       fmt::format("found a radius of {} m; expected one of the world's: {}", radius, known));
 }
 
-/// Collects parts, numbered as they come.
+/// Collects parts and numbers them in the order in which they are added.
 class PartList {
  public:
   PartList() {
@@ -36,7 +36,7 @@ class PartList {
     source_.semantics = {"grid", "robot sphere", "held sphere", "resting box", "goal"};
   }
 
-  /// Returns its number.
+  /// Returns the number of the part.
   std::uint32_t add(RenderSurface surface, Semantic semantic) {
     const std::uint32_t number = count();
     surface.semantic = semantic;
@@ -55,7 +55,7 @@ class PartList {
   RenderMeshSource source_;
 };
 
-/// The box of each object that the episodes name.
+/// The box of each object that the episodes use.
 std::vector<OrientedBox> boxesOf(const World& world) {
   std::vector<OrientedBox> boxes;
   for (std::uint32_t n = 0; n < world.episodes().objectNames().size(); ++n) {
@@ -103,7 +103,7 @@ Result<DebugModels> DebugModels::from(const World& world, const DebugOptions& op
 }
 
 std::optional<std::uint32_t> DebugModels::sceneModel(std::uint32_t scene) const {
-  // Scenes come first, then spheres, one for each radius, then boxes, one for each object.
+  // Scenes come first, so their number is that of the first sphere.
   detail::checkIndex("DebugModels::sceneModel", "scene", scene, first_robot_sphere_);
   if (library_->model(scene).cluster_count == 0) return std::nullopt;
   return scene;

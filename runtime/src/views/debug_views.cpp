@@ -10,7 +10,8 @@
 namespace galactic {
 namespace {
 
-/// Spheres look the same from everywhere: shaded as if the light stood still in the world.
+/// Spheres are placed without rotation, so that their shading looks like light that is fixed in the
+/// world.
 RigidTransform sphereAt(const Vec3& center_in_world) {
   RigidTransform place;
   place.origin = center_in_world;
@@ -39,7 +40,7 @@ DebugViews::DebugViews(const DebugModels& models, const BatchSimulator& simulato
                           link.place * sphere.center});
     }
   }
-  // A scene, the objects, the goal, the robot and what it holds.
+  // The scene, the objects, the goal, the robot's spheres and those of the held object.
   stride_ = 1 + world_.mostObjects() + 1 + spheres_.size() + world_.mostObjectSpheres();
   instances_.resize(envs * stride_);
   views_.resize(envs);

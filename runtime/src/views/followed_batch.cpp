@@ -7,7 +7,8 @@
 namespace galactic::views {
 namespace {
 
-/// A state that can be read: one with poses of bodies, which no thread is changing.
+/// Throws unless the state can be read: it must have poses of bodies, and no thread may be changing
+/// it.
 void requireState(const char* call, const BatchSimulator& simulator) {
   if (simulator.isStepping()) {
     detail::refuseCall(call, "found a step that has begun; end it first, with endStep()");

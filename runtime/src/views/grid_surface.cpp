@@ -12,14 +12,14 @@
 namespace galactic::views {
 namespace {
 
-/// Which way a face looks; the first number of a square's key.
+/// The direction in which a face looks; this is the first number of a square's key.
 enum Facing : std::int32_t { kUp, kDown, kPlusX, kMinusX, kPlusZ, kMinusZ };
 
-/// Light comes from above and a little from +X.
+/// As if light came from above and a little from +X.
 constexpr std::array<std::uint32_t, 6> kGrays{0xFFBEBEBE, 0xFF6E6E6E, 0xFFA0A0A0,
                                               0xFF828282, 0xFF929292, 0xFF8A8A8A};
 
-/// A free interval of heights in steps: low < high.
+/// A free interval of heights, in steps of kHeightStep: low < high.
 struct Interval {
   std::int32_t low = 0;
   std::int32_t high = 0;
@@ -57,7 +57,7 @@ class FreeSpace {
     for (const Span& span : spans) {
       const Interval next{heightSteps(span.lo), heightSteps(span.hi)};
       if (next.low == next.high) continue;
-      // Rounding can close what is between two spans.
+      // Rounding can close the gap between two spans.
       if (intervals_.size() > first && intervals_.back().high >= next.low) {
         intervals_.back().high = next.high;
       } else {
@@ -71,7 +71,7 @@ class FreeSpace {
   std::vector<Interval> intervals_;
 };
 
-/// Calls `face(Interval)` for each stretch that is in `here` and not in `there`.
+/// Calls `face(Interval)` for each interval that is in `here` and not in `there`.
 template <class Face>
 void eachDifference(std::span<const Interval> here, std::span<const Interval> there,
                     const Face& face) {
@@ -121,10 +121,10 @@ class FaceGatherer {
     }
   }
 
-  /// Between a column and its neighbor at +X or +Z.
+  /// Adds the walls between column `a` and its neighbor `b` at +X or +Z.
   void addWalls(const Column& a, const Column& b) {
     const bool along_x = a.i != b.i;
-    // Walls on one line through the grid join along it.
+    // Walls in the same line of the grid can be joined along it.
     const auto line = static_cast<std::int32_t>(along_x ? b.i : b.k);
     const auto place = static_cast<std::int32_t>(along_x ? b.k : b.i);
     const auto add = [&](Facing facing) {
@@ -145,7 +145,7 @@ class FaceGatherer {
   std::vector<KeyedSquare> squares_;
 };
 
-/// Turns rectangles into triangles in the world.
+/// Turns rectangles into triangles in the world frame.
 class SurfaceWriter {
  public:
   explicit SurfaceWriter(const ColumnGridLayout& layout) : layout_(layout) {}
@@ -191,7 +191,7 @@ class SurfaceWriter {
   }
   static float height(std::int32_t steps) { return static_cast<float>(steps * kHeightStep); }
 
-  /// Counter-clockwise as given, or the other way round.
+  /// Adds the corners in the given order or, if `turned`, in reverse order.
   void addQuad(const std::array<Vec3, 4>& corners, Facing facing, bool turned) {
     const auto first = static_cast<std::uint32_t>(surface_.vertices.size());
     for (const Vec3& corner : corners) {

@@ -9,7 +9,7 @@
 namespace galactic::views {
 namespace {
 
-/// `color` with that share of its brightness.
+/// `color`, its brightness multiplied by `light`.
 std::uint32_t dimmed(std::uint32_t color, float light) {
   std::uint32_t result = color & 0xFF000000U;
   for (const unsigned shift : {0U, 8U, 16U}) {
@@ -19,7 +19,7 @@ std::uint32_t dimmed(std::uint32_t color, float light) {
   return result;
 }
 
-/// How bright a ball is where its normal is `normal`.
+/// The brightness of a ball where its normal is `normal`.
 float lightOn(const Vec3& normal) {
   // Unit length.
   constexpr Vec3 kLight{0.36F, 0.8F, 0.48F};
@@ -29,7 +29,8 @@ float lightOn(const Vec3& normal) {
 
 Vec3 unit(const Vec3& v) { return v * (1 / std::sqrt(dot(v, v))); }
 
-/// An icosahedron whose triangles are split in four, again and again, onto the unit sphere.
+/// An icosahedron. Each split() replaces every triangle by four, with their corners on the unit
+/// sphere.
 class Icosphere {
  public:
   Icosphere() {
@@ -63,9 +64,9 @@ class Icosphere {
   }
 
  private:
-  /// The twenty triples of points that are neighbors of each other.
+  /// Adds the twenty triples of points that are neighbors of each other.
   void addFaces() {
-    // Neighbors see each other under 63 degrees, others under 116 or more.
+    // Seen from the center, neighbors are 63 degrees apart, other points at least 116.
     constexpr float kBetween = 0.2F;
     const auto is_edge = [this](std::uint32_t a, std::uint32_t b) {
       return dot(points_[a], points_[b]) > kBetween;
@@ -105,7 +106,7 @@ void addBox(RenderSurface& surface, const Pose& object_from_box, const LocalBox&
   // Corner n is high along the axes whose bits are set.
   constexpr std::array<std::array<std::uint32_t, 4>, 6> kFaces{
       {{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}};
-  // Opposite faces are alike: objects lie on any of them.
+  // Opposite faces get the same light, since an object can lie on any of them.
   constexpr std::array<float, 3> kLights{0.86F, 1.0F, 0.72F};
   for (std::size_t face = 0; face < kFaces.size(); ++face) {
     const auto first = static_cast<std::uint32_t>(surface.vertices.size());

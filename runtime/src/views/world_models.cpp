@@ -46,7 +46,7 @@ Result<RenderMeshes> requiredMeshes(const PackFile& pack, const SharedTextures& 
   return std::move(*meshes);
 }
 
-/// Adds a pack's models; `name_of(part)` says which of the world's things a model shows.
+/// Adds a pack's models. `name_of(part)` returns the name of what the model shows.
 template <class NameOf>
 void addNamed(RenderLibrary& library, RenderMeshes meshes, const NameOf& name_of,
               ModelOfName& models) {

@@ -15,7 +15,7 @@
 namespace galactic {
 namespace {
 
-/// The frame on the floor under the root: Y up, X where the robot looks.
+/// The frame on the floor under the root: Y up, X ahead of the robot.
 RigidTransform baseFrame(const RigidTransform& root, float root_height) {
   const float length = std::sqrt(root.x_axis.x * root.x_axis.x + root.x_axis.z * root.x_axis.z);
   const float scale = length > 0 ? 1 / length : 0;
@@ -24,7 +24,7 @@ RigidTransform baseFrame(const RigidTransform& root, float root_height) {
   return {ahead, up, cross(ahead, up), root.origin - up * root_height};
 }
 
-/// The same of the same camera in the same place, another one elsewhere.
+/// A number that is the same for the same camera in the same place, and different otherwise.
 std::uint64_t numberOfPlace(std::uint64_t camera, const RigidTransform& place) {
   std::uint64_t number = camera;
   for (const Vec3& v : {place.x_axis, place.y_axis, place.z_axis, place.origin}) {
