@@ -16,10 +16,10 @@ using simulation::kLanes;
 
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array<PlanCell, 4> kAround{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-/// Cells about a start in which its floor is looked for.
+/// The floor of a start is looked for in up to this many cells around it.
 constexpr std::int32_t kStartReach = 3;
-/// Places in a cell where the robot is tried, in cells from the middle: it passes between things
-/// that are no cell further apart than it is wide.
+/// Places in a cell where the robot is tried, in cells from the middle. Because of them, a gap need
+/// not be a whole cell wider than the robot to let it pass.
 constexpr float kAside = 1.0F / 3;
 constexpr std::array<std::array<float, 2>, 9> kPlaces{{{0, 0},
                                                        {kAside, 0},
@@ -30,30 +30,30 @@ constexpr std::array<std::array<float, 2>, 9> kPlaces{{{0, 0},
                                                        {-kAside, kAside},
                                                        {kAside, -kAside},
                                                        {-kAside, -kAside}}};
-/// Two floors at one place are further apart, meters.
+/// Two floors above each other are at least this far apart, meters.
 constexpr float kStorey = 0.5F;
 
-/// Lanes as the kernels of the motion want them.
+/// Aligned as the kernels of the motion require.
 struct alignas(32) Lanes {
   std::array<float, kLanes> values{};
 };
 
-/// Tries where the robot can stand in cells.
+/// Tries whether the robot can stand in a cell, and at what height.
 class Stander {
  public:
   Stander(const Scene& scene, const StandingRobot& robot, const GroundOptions& ground)
       : scene_(scene), robot_(robot), step_(ground) {
-    // What can be driven both ways.
+    // Only steps that the robot can drive both up and down count.
     step_.most_rise = step_.most_drop = std::min(ground.most_rise, ground.most_drop);
   }
 
   struct Answer {
-    /// Whether there is a floor within a step of the one that it comes from.
+    /// Whether there is a floor within a step of the one that the robot comes from.
     bool has_floor = false;
-    /// Of the floor on which it can stand, meters.
+    /// Height of the floor on which the robot can stand, meters.
     std::optional<float> height;
   };
-  /// In the cell with this middle, coming from a floor at `from_height`.
+  /// Tries the cell with this middle; the robot comes from a floor at `from_height`.
   [[nodiscard]] Answer tryAt(const Vec3& middle, float from_height,
                              StandingRobot::Scratch& scratch) const {
     Answer answer;
@@ -165,7 +165,7 @@ FloorPlan::FloorPlan(const Scene& scene, const StandingRobot& robot, const Floor
       const PlanCell next{cell.i + way.i, cell.k + way.k};
       if (!isInside(next) || is_tried[indexOf(next)] != 0) continue;
       const Stander::Answer answer = stander.tryAt(middle(next), height, scratch);
-      // Another neighbor may lie higher or lower.
+      // The cell may still be reached from another neighbor, which is higher or lower.
       if (!answer.has_floor) continue;
       is_tried[indexOf(next)] = 1;
       if (!answer.height) continue;
@@ -189,7 +189,7 @@ std::optional<FloorSeed> FloorPlan::seedOf(const Scene& scene, const StandingRob
     for (std::int32_t k = -reach; k <= reach; ++k) {
       for (std::int32_t i = -reach; i <= reach; ++i) {
         const PlanCell cell{first.i + i, first.k + k};
-        // Nearer ones have been tried.
+        // Nearer cells have already been tried.
         const bool is_new = std::max(std::abs(i), std::abs(k)) == reach;
         if (!is_new || !plan.isInside(cell)) continue;
         const Stander::Answer answer =

@@ -14,7 +14,7 @@
 namespace galactic::sensors {
 namespace {
 
-/// Heights of points that share a field, meters.
+/// Points that share a field are in the same band of heights, of this width, meters.
 constexpr float kLevel = 0.25F;
 
 bool isNear(const Vec3& a, const Vec3& b) {
@@ -22,15 +22,15 @@ bool isNear(const Vec3& a, const Vec3& b) {
   return dot(apart, apart) < kSamePlace * kSamePlace;
 }
 
-/// The floors of one scene, each planned once. Starts come one after the other: most share the
-/// first one's floor.
+/// Plans each floor of a scene once. Starts are handled one after the other, because most are on
+/// the floor of the first.
 class ScenePlanner {
  public:
   ScenePlanner(const Scene& scene, const StandingRobot& robot, const GroundOptions& ground,
                std::size_t most_bytes)
       : scene_(scene), robot_(robot), ground_(ground), most_bytes_(most_bytes) {}
 
-  /// The number of the plan of a start.
+  /// The number of the plan whose floor a start is on.
   std::uint32_t planOf(const Vec3& start) {
     const std::uint32_t covering =
         firstWhere([&](const FloorPlan& plan) { return plan.covers(start); });
@@ -46,12 +46,13 @@ class ScenePlanner {
  private:
   static constexpr std::uint32_t kNowhere = 0;
 
-  /// That of a start which no plan covers.
+  /// The number of the plan of a start that no plan covers.
   std::uint32_t planBeside(const Vec3& start) {
     const std::optional<FloorSeed> seed = FloorPlan::seedOf(scene_, robot_, start, ground_);
     if (!seed) return kNowhere;
     const std::uint32_t known = firstWhere([&](const FloorPlan& plan) { return plan.has(*seed); });
-    // A field is made for each plan, at least; where these are too many, make() refuses them.
+    // Each plan gets at least one field. Beyond `most_bytes_` make() fails anyway, so no more plans
+    // are made.
     if (known < plans_.size()) return known;
     if (bytes_ > most_bytes_) return kNowhere;
     plans_.emplace_back(scene_, robot_, *seed, ground_);
@@ -69,9 +70,9 @@ class ScenePlanner {
   const GroundOptions& ground_;
   std::size_t most_bytes_;
   std::size_t bytes_ = 0;
-  /// The first one is that of all starts where the robot cannot stand.
+  /// The first plan is for all starts where the robot cannot stand.
   std::vector<FloorPlan> plans_{FloorPlan()};
-  /// By cell and height, of starts which no plan covered.
+  /// The plans of starts that no plan covered, by cell and height.
   std::map<std::tuple<std::int32_t, std::int32_t, float>, std::uint32_t> beside_;
 };
 
@@ -153,7 +154,8 @@ std::size_t Geodesic::bytes() const noexcept {
 
 Way Geodesic::along(std::uint32_t field, const Vec3& base) const noexcept {
   const FloorPlan& plan = plans_[fields_[field].plan];
-  // Each of the four cells around the base may be beside the floor.
+  // kBeside + 1, because the path starts in the four cells around the base, each of which may be
+  // kBeside cells beside the floor.
   if (!plan.covers(base, kBeside + 1)) return {};
   return wayFrom(plan, fields_[field].lengths, base.x, base.z);
 }

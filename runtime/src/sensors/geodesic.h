@@ -33,7 +33,7 @@ class Geodesic {
   Geodesic() = default;
 
   /// Makes a field for each point that an errand leads to; points in the same cell of a floor plan
-  /// whose heights are within 0.25 m share a field. Uses up to `threads` threads. Fails with
+  /// and the same 0.25 m band of heights share a field. Uses up to `threads` threads. Fails with
   /// kInvalidInput if the fields would take more than `most_megabytes`.
   [[nodiscard]] static Result<Geodesic> make(const World& world, const StandingRobot& robot,
                                              const GroundOptions& ground,

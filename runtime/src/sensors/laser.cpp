@@ -19,10 +19,10 @@ namespace {
 
 using simulation::RestingBox;
 
-/// What a robot without a laser in its recipe gets: meters and radians.
+/// Settings of a robot whose recipe has no laser: meters and radians.
 constexpr float kHeight = 0.25F;
 constexpr float kRange = 10.0F;
-/// As options allow.
+/// The limit of the options.
 constexpr std::size_t kMostBeams = 1024;
 
 float orRobots(float option, float robots) { return option < 0 ? robots : option; }
@@ -31,7 +31,7 @@ tl::unexpected<Error> refuse(const std::string& message) {
   return fail(ErrorCode::kInvalidInput, "simulation options", message);
 }
 
-/// Takes place, field of view and ranges from the recipe's laser.
+/// Takes the place, field of view, ranges and noise from the recipe's laser.
 Result<void> mount(const Robot& robot, const simulation::MotionModel& motion,
                    LaserSettings& settings) {
   const RobotLaser& laser = *robot.laser();
@@ -60,7 +60,8 @@ Result<void> mount(const Robot& robot, const simulation::MotionModel& motion,
   return {};
 }
 
-/// Floors stood on in each scene, those within kFloorBand as one, ascending.
+/// Heights of the floors that are stood on, for each scene, ascending; those within kFloorBand
+/// count as one.
 std::vector<std::vector<float>> floorsOf(std::span<const StoodOn> stood_on, std::size_t scenes) {
   std::vector<std::vector<float>> heights(scenes);
   for (const StoodOn& one : stood_on) heights[one.scene].push_back(one.floor);
@@ -157,7 +158,7 @@ void Laser::aimBeams() {
   beams_ahead_.resize(padded);
   beams_right_.resize(padded);
   const auto field = static_cast<double>(settings_.field_of_view);
-  // A whole turn has no two ends.
+  // In a whole turn the last beam must not coincide with the first.
   const bool is_round = settings_.field_of_view >= kFullTurn;
   const std::uint32_t gaps = is_round && beams > 1 ? beams : beams - 1;
   for (std::uint32_t n = 0; n < padded; ++n) {
@@ -219,7 +220,7 @@ void Laser::finish(std::span<const float> distances, float noise, RandomStream& 
   const float range = settings_.range;
   for (std::size_t n = 0; n < out.size(); ++n) {
     float distance = distances[n];
-    // What returns nothing has nothing to be wrong about.
+    // A beam that hits nothing measures nothing, so it gets no noise.
     if (noise > 0 && distance < range) distance += noise * random.nearlyNormal();
     out[n] = std::clamp(distance, settings_.least_range, range) / range;
   }

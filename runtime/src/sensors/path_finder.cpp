@@ -27,12 +27,12 @@ using sensors::kNoWay;
 using sensors::kPlanCell;
 using sensors::PlanCell;
 
-/// Of the lengths that fields hold, meters.
+/// The longest path that a field can store, meters.
 constexpr float kFarthest = (kNoWay - 1) * sensors::kWayUnit;
 constexpr std::array<PlanCell, 8> kNeighbors{
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
 
-/// Whether a point has a cell at all: numbers that are none have not, nor others than any scene's.
+/// Whether a point can have a cell: its numbers must be finite, and smaller than 1000 km.
 bool isPlace(const Vec3& point) {
   constexpr float kMost = 1e6F;
   const float farthest = std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)});
@@ -45,18 +45,18 @@ float squaredDistance(const Vec3& a, const Vec3& b) {
   return dot(apart, apart);
 }
 
-/// Whether a base is where its way ends. So near to the goal, what a field says between the middles
-/// of cells has no direction, and is too long.
+/// Whether a base is at the end of its path. So near to the goal, interpolation between the middles
+/// of cells gives no direction and too long a path.
 bool isAtEnd(float distance, const Vec3& base, const Vec3& goal) {
   constexpr float kThere = 1e-4F;
-  // A hand's goal may be right above a base that has to go around something to reach it.
+  // A hand's goal may be right above a base that still has to go around something to reach it.
   constexpr float kNear = 2 * kPlanCell;
   const float x = goal.x - base.x;
   const float z = goal.z - base.z;
   return distance < kNear && x * x + z * z < kThere * kThere;
 }
 
-/// The passable cell nearest to a base, of those within kBeside and on its storey.
+/// The passable cell nearest to a base, among those within kBeside cells and on its storey.
 std::optional<PlanCell> cellBeside(const FloorPlan& plan, const Vec3& base) {
   if (!isPlace(base)) return std::nullopt;
   const PlanCell at = plan.cellAt(base.x, base.z);
@@ -76,8 +76,8 @@ std::optional<PlanCell> cellBeside(const FloorPlan& plan, const Vec3& base) {
   return nearest;
 }
 
-/// Whether a straight line in the ground plane stays on passable cells, a step from one to the
-/// next.
+/// Whether a straight line in the ground plane stays on passable cells whose floors are at most a
+/// step apart.
 bool isOpen(const FloorPlan& plan, const Vec3& a, const Vec3& b) {
   constexpr float kStride = 0.02F;
   const float x = b.x - a.x;
@@ -93,8 +93,8 @@ bool isOpen(const FloorPlan& plan, const Vec3& a, const Vec3& b) {
   return true;
 }
 
-/// Of passable cells, the one around `cell` whose way is shortest, and shorter than its own.
-/// Corners are not cut.
+/// The passable cell around `cell` with the shortest path, if that is shorter than the path of
+/// `cell`. Diagonal steps must not cut corners.
 std::optional<PlanCell> nextCell(const FloorPlan& plan, std::span<const std::uint16_t> lengths,
                                  const PlanCell& cell) {
   std::optional<PlanCell> next;
@@ -113,14 +113,14 @@ std::optional<PlanCell> nextCell(const FloorPlan& plan, std::span<const std::uin
   return next;
 }
 
-/// Height of the floor at a start or under it, as episodes look for theirs.
+/// Height of the floor at a start or below it, found in the same way as for episodes.
 float floorBelow(const Scene& scene, const Vec3& start, const GroundOptions& ground) {
   const simulation::FloorUnder under = simulation::floorUnderStart(scene, start, ground);
   return under.floor == simulation::Floor::kDrops ? start.y : under.height;
 }
 
-/// The corners that remain when straight lines over passable cells take the place of points between
-/// them.
+/// The corners of the path that remain when straight lines over passable cells replace the points
+/// between them.
 std::vector<Vec3> pulledTight(const FloorPlan& plan, const std::vector<Vec3>& points) {
   std::vector<Vec3> corners{points.front()};
   for (std::size_t n = 1; n + 1 < points.size(); ++n) {
@@ -145,10 +145,10 @@ std::vector<Vec3> GeodesicFields::path(std::size_t n, const Vec3& base) const {
   detail::checkIndex("GeodesicFields::path", "goal", n, goals_.size());
   const std::span<const std::uint16_t> lengths = lengths_[n];
   std::optional<PlanCell> cell = cellBeside(*plan_, base);
-  // Behind the farthest length, nothing tells the way.
+  // Beyond the longest length that the field can store, it has no directions.
   if (!cell || lengths[plan_->indexOf(*cell)] >= kNoWay - 1) return {};
   std::vector<Vec3> points{base};
-  // From beside the floor, a path begins with a step onto it.
+  // If the base is beside the floor, the path begins with a step onto it.
   if (!plan_->isPassable(plan_->cellAt(base.x, base.z))) points.push_back(plan_->middle(*cell));
   while ((cell = nextCell(*plan_, lengths, *cell))) points.push_back(plan_->middle(*cell));
   if (are_places_) points.push_back(goals_[n]);

@@ -1,6 +1,6 @@
 // Compiled for AVX2. It includes no header whose inline functions it could instantiate: the linker
 // may keep one copy of such a function for the whole program, and a copy built here would not run
-// on an older processor. scan_portable.cpp says what is computed.
+// on an older processor. scan_portable.cpp explains what is computed.
 #include "sensors/scan_kernels.h"
 
 #if defined(__x86_64__)
@@ -11,7 +11,7 @@
 namespace galactic::sensors {
 namespace {
 
-/// Directions of eight beams in the world's ground plane.
+/// Directions of eight beams in the ground plane, world frame.
 struct Headings {
   __m256 x, z;
 };
@@ -31,20 +31,20 @@ __m256 oneWherePositive(__m256 value) {
   return _mm256_and_ps(_mm256_cmp_ps(value, _mm256_setzero_ps(), _CMP_GT_OQ), _mm256_set1_ps(1));
 }
 
-/// What eight beams have in common.
+/// What all beams have in common.
 struct Plane {
   __m256 from_x, from_z, last_i, last_k, range;
   __m256i columns_x;
   const int* cells;
 };
 
-/// Eight beams on their way.
+/// The state of eight beams.
 struct Beams {
-  /// Of the first one, in the batch.
+  /// Index of the first beam in the batch.
   std::size_t number;
   Headings heading;
   __m256 inverse_x, inverse_z, beyond_x, beyond_z, way;
-  /// Lanes that go on.
+  /// The lanes whose beams have not ended yet.
   __m256 open;
 };
 
@@ -104,8 +104,8 @@ __m256 either(__m256 one, More... more) {
   return _mm256_or_ps(one, either(more...));
 }
 
-/// Casts a few eights of beams side by side: while the cells of one are on their way from memory,
-/// the others are computed.
+/// Casts a few groups of eight beams side by side: while the processor waits for the cells of one
+/// group, it computes the others.
 template <class... Eight>
 void castTogether(const Plane& plane, const ScanPlaneView& view, const BeamBatch& batch,
                   float* distances, Eight... eights) {
@@ -142,7 +142,7 @@ void castSceneAvx2(const ScanPlaneView& view, const BeamBatch& batch, float* dis
   }
 }
 
-/// The part of eight beams that lies within all slabs so far.
+/// The parts of eight beams that lie within all slabs so far.
 struct Within {
   __m256 from, to;
 

@@ -7,17 +7,18 @@
 namespace galactic::sensors {
 namespace {
 
-/// Cells of the ring on either side.
+/// Width of the ring on each side, cells.
 constexpr std::uint32_t kRing = 1;
 
-/// Bytes of cells, row by row.
+/// The bytes of the cells, row by row.
 struct Cells {
   std::vector<std::uint8_t>& bytes;
   std::size_t columns_x;
   std::size_t columns_z;
 };
 
-/// Marks the cells of the grid whose columns are free between `heights` with 1.
+/// Sets the cells whose columns are free between `heights` to 1, the others to 0; returns how many
+/// are free.
 std::size_t markFree(const ColumnGrid& grid, const Span& heights, const Cells& cells) {
   const ColumnGridLayout& layout = grid.layout();
   const std::size_t count = grid.columnsX();
@@ -43,9 +44,9 @@ std::size_t markFree(const ColumnGrid& grid, const Span& heights, const Cells& c
   return free;
 }
 
-/// For each cell the distance along its column, in cells between squares, to the nearest cell that
-/// is blocked or beside a blocked one in its row. The ring's first and last row are blocked, so
-/// there is one in every column.
+/// For each cell the distance along its column, measured in cells from square to square, to the
+/// nearest cell that is blocked or next to a blocked one in its row. The ring's first and last row
+/// are blocked, so every column has such a cell.
 std::vector<std::int32_t> columnDistances(const Cells& cells) {
   const std::size_t nx = cells.columns_x;
   const std::size_t nz = cells.columns_z;
@@ -62,14 +63,14 @@ std::vector<std::int32_t> columnDistances(const Cells& cells) {
       steps[k * nx + i] = std::min(steps[k * nx + i], steps[(k + 1) * nx + i] + 1);
     }
   }
-  // Between squares it is one less than between their middles.
+  // The distance between squares is one less than the distance between their middles.
   for (std::int32_t& step : steps) step = std::max(step - 1, 0);
   return steps;
 }
 
 /// The lower envelope of the parabolas (i - p)^2 + step[p]^2 over one row (Felzenszwalb and
-/// Huttenlocher, Distance transforms of sampled functions, 2012), in whole numbers as Meijster et
-/// al. 2000 have it.
+/// Huttenlocher, Distance transforms of sampled functions, 2012), computed in integers as in
+/// Meijster et al. 2000.
 class Envelope {
  public:
   explicit Envelope(std::size_t columns) : middle_(columns), from_(columns) {}
@@ -107,12 +108,12 @@ class Envelope {
   }
 
  private:
-  /// Of each piece of the envelope the parabola, and the first i at which it is the lowest.
+  /// For each piece of the envelope: its parabola, and the first i at which this one is the lowest.
   std::vector<std::int64_t> middle_;
   std::vector<std::int64_t> from_;
 };
 
-/// The byte of a free cell from which blocked squares are that far, in squared cells.
+/// The byte of a free cell whose nearest blocked square is at this squared distance, in cells.
 std::uint8_t promiseOf(std::int64_t squared) {
   constexpr double kMost = 254;
   const double jumps =
@@ -129,8 +130,9 @@ ScanPlane::ScanPlane(const ColumnGrid& grid, const Span& heights) {
   cells_.assign(nx * nz + kReadBeyond, 0);
   const Cells cells{cells_, nx, nz};
   free_cells_ = markFree(grid, heights, cells);
-  // The distance of two squares is that of their middles when one is grown by its eight neighbors:
-  // columnDistances grows along x, and along z by taking one cell off.
+  // The distance between two squares is the distance between their middles after one of them has
+  // grown by its eight neighbors. columnDistances() grows the blocked squares along x, and along z
+  // by subtracting one cell.
   const std::vector<std::int32_t> steps = columnDistances(cells);
   Envelope envelope(nx);
   for (std::size_t k = 0; k < nz; ++k) {

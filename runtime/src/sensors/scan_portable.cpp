@@ -1,4 +1,4 @@
-// The kernels of a scan for any processor, one beam at a time: what scan_avx2.cpp repeats operation
+// The kernels of a scan for any processor, one beam at a time. scan_avx2.cpp repeats them operation
 // by operation.
 #include "sensors/scan_kernels.h"
 #include "support/processor.h"
@@ -6,11 +6,11 @@
 namespace galactic::sensors {
 namespace {
 
-// As minps and maxps have it: the second one when either is not a number.
+// Like minps and maxps: return the second number if either is NaN.
 float least(float a, float b) { return a < b ? a : b; }
 float most(float a, float b) { return a > b ? a : b; }
 
-/// Direction of a beam in the world's ground plane.
+/// Direction of a beam in the ground plane, world frame.
 struct Heading {
   float x = 0;
   float z = 0;
@@ -21,7 +21,7 @@ Heading headingOf(const BeamBatch& beams, std::size_t n) {
           beams.cosine * beams.right[n] - beams.sine * beams.ahead[n]};
 }
 
-/// Cell of a coordinate in cells; one outside, or not a number, goes to the ring.
+/// The cell of a coordinate, in cells. Coordinates outside and NaN give a cell of the ring.
 std::int32_t cellOf(float coordinate, std::int32_t count) {
   return static_cast<std::int32_t>(least(most(coordinate, 0), static_cast<float>(count - 1)));
 }
@@ -61,7 +61,8 @@ struct Within {
   float from = 0;
   float to = 0;
 
-  /// `along`: the beam's direction along the slab's axis; from and to one face.
+  /// Cuts the part to another slab. `along`: the beam's direction along the slab's axis; `to_low`,
+  /// `to_high`: distances along that axis from the beam's start to the slab's faces.
   void keep(float along, float to_low, float to_high) {
     const float inverse = 1 / along;
     const float low = to_low * inverse;

@@ -14,9 +14,9 @@ namespace galactic::sensors {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Both sides along X, then along Z.
+/// Both neighbors along X, then both along Z.
 constexpr std::array<PlanCell, 4> kAround{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-/// How far above and below a floor a point may be, meters, to be reached from it.
+/// How far above and below a floor a point may be so that it can be reached from there, meters.
 constexpr Span kReach{-0.3F, 2.2F};
 
 /// Distance in the ground plane.
@@ -26,10 +26,10 @@ float across(const Vec3& a, const Vec3& b) {
   return std::sqrt(x * x + z * z);
 }
 
-/// Whether nothing of the static scene stands between a point and a place beside it, at one of two
-/// heights above the point.
+/// Whether nothing of the static scene stands between a point and the place `from`, at one of two
+/// heights above the point at least.
 bool isInSight(const ColumnGrid& grid, const Vec3& point, const Vec3& from) {
-  // What the point lies on or in is not between them.
+  // What the point lies on or in does not count as between them.
   constexpr float kNear = 0.06F;
   const float length = across(point, from);
   for (const float above : {0.06F, 0.2F}) {
@@ -44,8 +44,9 @@ bool isInSight(const ColumnGrid& grid, const Vec3& point, const Vec3& from) {
   return false;
 }
 
-/// Lengths of ways, spreading over a plan: fast marching (Sethian 1999, "Fast Marching Methods"),
-/// of second order where two cells on a line know theirs, of first order elsewhere.
+/// Spreads the lengths of paths over a plan by fast marching (Sethian 1999, "Fast Marching
+/// Methods"): of second order if the next two cells in a line have lengths, otherwise of first
+/// order.
 class Spreading {
  public:
   explicit Spreading(const FloorPlan& plan)
@@ -82,7 +83,7 @@ class Spreading {
     }
   }
 
-  /// Gives impassable cells beside those with lengths one, too.
+  /// Gives lengths to the impassable cells next to cells that have one.
   void widen() {
     std::vector<float> wide = lengths_;
     for (std::size_t index = 0; index < lengths_.size(); ++index) {
@@ -98,15 +99,16 @@ class Spreading {
     lengths_ = std::move(wide);
   }
 
-  /// Of all cells.
+  /// The lengths of all cells; infinite for cells without a path.
   [[nodiscard]] const std::vector<float>& lengths() const { return lengths_; }
 
  private:
-  /// A term (weight (length - from) / cell)^2 of the eikonal equation, whose terms add up to 1.
+  /// A term (weight (length - from) / cell)^2 of the eikonal equation. The terms of an equation add
+  /// up to 1.
   struct Term {
     float weight = 0;
     float from = kInfinity;
-    /// The length where this is the only one: the way goes along the axis, from cell to cell.
+    /// The length if this is the only term: the path goes along the axis, from cell to cell.
     float alone = kInfinity;
   };
 
@@ -131,7 +133,7 @@ class Spreading {
     std::ranges::push_heap(waiting_, std::greater<>());
   }
 
-  /// Of the neighbor on one side of a cell, and of the one behind it.
+  /// The term of the neighbor on one side of a cell, and of the cell behind that neighbor.
   [[nodiscard]] Term termOf(std::size_t index, std::size_t way) const {
     if (!leadsOn(index, way)) return {};
     const std::size_t first = beside(index, way);
@@ -145,13 +147,14 @@ class Spreading {
     }
     return {1, length, length + kPlanCell};
   }
-  /// Along X or Z: of the side from which the way is shorter. `way`: one of both sides.
+  /// The term along X or Z for the side from which the path is shorter. `way`: the first of the two
+  /// sides.
   [[nodiscard]] Term shorterOf(std::size_t index, std::size_t way) const {
     const Term one = termOf(index, way);
     const Term other = termOf(index, way + 1);
     return one.alone <= other.alone ? one : other;
   }
-  /// The eikonal equation at a cell, upwind, of the neighbors from which a base can come.
+  /// Solves the eikonal equation at a cell, upwind, for the neighbors from which a base can come.
   [[nodiscard]] float reachedFrom(std::size_t index) const {
     const Term x = shorterOf(index, 0);
     const Term z = shorterOf(index, 2);
@@ -168,18 +171,18 @@ class Spreading {
   }
 
   const FloorPlan& plan_;
-  /// From the index of a cell to those around it.
+  /// What to add to the index of a cell for each neighbor of kAround.
   std::array<std::ptrdiff_t, kAround.size()> steps_;
-  /// The ways of kAround on which a base can leave each cell, as bits.
+  /// For each cell, the directions of kAround in which a base can leave it, as bits.
   std::vector<std::uint8_t> exits_;
-  /// The least that was found so far.
+  /// The shortest lengths found so far.
   std::vector<float> tried_;
-  /// Those that no other way makes less.
+  /// Final lengths, which no other path can shorten.
   std::vector<float> lengths_;
   std::vector<std::pair<float, std::size_t>> waiting_;
 };
 
-/// Cells from which the point can be reached for.
+/// Begins in the cells from which a hand can reach the point.
 void beginAt(const FloorPlan& plan, const Scene& scene, const Vec3& point, Spreading& spreading) {
   const ColumnGrid& grid = scene.grids().front();
   const auto reach = static_cast<std::int32_t>(kLastLeg / kPlanCell) + 1;
@@ -196,7 +199,7 @@ void beginAt(const FloorPlan& plan, const Scene& scene, const Vec3& point, Sprea
   }
 }
 
-/// Cells around a place on the floor.
+/// Begins in the cell of a place on the floor and in those around it.
 void beginAround(const FloorPlan& plan, const Vec3& place, Spreading& spreading) {
   const PlanCell at = plan.cellAt(place.x, place.z);
   for (std::int32_t k = at.k - 1; k <= at.k + 1; ++k) {
@@ -207,7 +210,7 @@ void beginAround(const FloorPlan& plan, const Vec3& place, Spreading& spreading)
   }
 }
 
-/// The field of what has begun.
+/// Spreads out from where it has begun, and returns the field.
 std::vector<std::uint16_t> spreadOut(Spreading& spreading) {
   spreading.run();
   for (int n = 0; n < kBeside; ++n) spreading.widen();
@@ -221,7 +224,7 @@ std::vector<std::uint16_t> spreadOut(Spreading& spreading) {
   return field;
 }
 
-/// One value of a field; none for what has no way.
+/// The length at a cell; infinite if no path leads from there.
 float lengthAt(const FloorPlan& plan, std::span<const std::uint16_t> field, std::int32_t i,
                std::int32_t k) {
   const PlanCell cell{i, k};
@@ -230,14 +233,15 @@ float lengthAt(const FloorPlan& plan, std::span<const std::uint16_t> field, std:
   return value == kNoWay ? kInfinity : static_cast<float>(value) * kWayUnit;
 }
 
-/// The same of a neighbor of `here`: none beyond a ledge.
+/// The length at a neighbor of `here`; infinite also beyond a ledge.
 float lengthBeside(const FloorPlan& plan, std::span<const std::uint16_t> field,
                    const PlanCell& here, const PlanCell& neighbor) {
   if (plan.areApart(here, neighbor)) return kInfinity;
   return lengthAt(plan, field, neighbor.i, neighbor.k);
 }
 
-/// Change per cell from one neighbor to the other; to one side where only that has a way.
+/// Change per cell from one neighbor to the other, or to `here` from the only neighbor that has a
+/// path.
 float slope(float before, float here, float after) {
   if (before == kInfinity) return after == kInfinity ? 0 : after - here;
   return after == kInfinity ? here - before : 0.5F * (after - before);
@@ -265,7 +269,7 @@ Way wayFrom(const FloorPlan& plan, std::span<const std::uint16_t> field, float x
   const auto k0 = static_cast<std::int32_t>(std::floor(v));
   const float part_x = u - static_cast<float>(i0);
   const float part_z = v - static_cast<float>(k0);
-  // The cell that the point is in: those beyond a ledge do not count.
+  // The cell of the point; of the four cells, those beyond a ledge of it do not count.
   const PlanCell at = plan.cellAt(x, z);
   float weights = 0;
   float length = 0;
